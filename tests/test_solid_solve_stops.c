@@ -77,6 +77,25 @@ static void test_pull_in_agrees_with_the_exact_disc(void **state)
   assert_close(far.point.voltage_V, near.point.voltage_V, 1e-5, 0);
 }
 
+/* A membrane that goes slack close to its pull-in (random design 1): the path has a corner there,
+ * and a load step that begins before it ends in a state that only the end of the law holds. */
+static void test_membrane_does_not_leap_over_pull_in(void **state)
+{
+  (void)state;
+  struct dea_device device =
+      disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 13.74e-6, 1.245, 8.619e-3, 33.66e-3);
+  device.film.permittivity.at_rest = 4.8;
+  struct dea_event exact, found;
+  double at_V;
+  assert_int_equal(sweep(dea_model_find("axisymmetric"), &device, NULL, 191.4, 6, &at_V, &exact),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(sweep(&dea_solid_module, &device, &membrane, 191.4, 6, &at_V, &found),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(found.kind, DEA_EVENT_PULL_IN);
+  assert_close(at_V, 191.4 * 4 / 6, 0, 1e-9);
+  assert_close(found.point.voltage_V, exact.point.voltage_V, 5e-3, 0);
+}
+
 /* What a path has come by. */
 struct watched {
   size_t count;
@@ -143,6 +162,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_path_beside_load_steps),
       cmocka_unit_test(test_pull_in_agrees_with_the_exact_disc),
+      cmocka_unit_test(test_membrane_does_not_leap_over_pull_in),
       cmocka_unit_test(test_loss_of_tension_is_located),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -181,16 +181,30 @@ def slack_between(points):
     return None
 
 
+def last_taut(mine, other):
+    """Stretches at the last voltage at which both films keep their tension: of waves the flat one
+    knows nothing. None: there is none above 0 V."""
+    both = [p for p in zip(mine, other) if p[0]["voltage_V"] > 0 and
+            all(x.get("min_tension_N_per_m", 0) >= 0 for x in p)]
+    return [x["electrode_stretch"] for x in both[-1]] if both else None
+
+
 def differs(mine, other, within):
-    """What two summaries of one disc do not agree on; "" where they do."""
+    """What two summaries of one disc do not agree on; "" where they do, None where nothing tells."""
     kinds = [m.get("verdict", "") or "complete" for m in (mine, other)]
     limits = [m.get("limits", {}) for m in (mine, other)]
     if kinds == ["complete", "complete"]:
-        a, b = (m["points"][-1]["electrode_stretch"] for m in (mine, other))
+        taut = last_taut(mine["points"], other["points"])
+        if taut is None:
+            return None
+        a, b = taut
         return "" if abs(a - b) <= within * abs(b - 1) + 2e-3 else "stretch %.4g, %.4g" % (a, b)
     if kinds == ["pull_in", "pull_in"]:
         a, b = (m.get("pull_in_voltage_V") for m in limits)
         return "" if same_within(a, b, within) else "pull-in at %s, %s V" % (a, b)
+    if kinds == ["pull_in", "slack"]:  # a membrane that loses its tension thins there
+        a, b = limits[0].get("pull_in_voltage_V"), limits[1].get("slack_voltage_V")
+        return "" if same_within(a, b, within) else "pull-in at %s, slack at %s V" % (a, b)
     if kinds[0] == "slack":
         between, lost = slack_between(other["points"]), limits[0].get("slack_voltage_V")
         last = other["points"][-1]["voltage_V"]
@@ -213,7 +227,9 @@ def run_design(a, folder, number):
            "why": re.sub(r"\s+", " ", why)}
     if a.beside and summary is not None and "\nfibres:" not in text:
         other = run_one(a.dea, path, a.beside, a.seconds)[3]
-        row["beside"] = differs(summary, other, a.within) if other is not None else "no answer"
+        off = differs(summary, other, a.within) if other is not None else "no answer"
+        if off is not None:
+            row["beside"] = off
     if not a.keep or verdict in ("complete", "refused"):
         os.remove(path)
     return row

@@ -11,6 +11,12 @@ static const double leap = 1.5;
 /* Neither does what moves so many times as far by its way as in the step before. */
 static const double rush = 5;
 
+static double area_of(const struct dea_ending *e, const struct dea_solid_extremes *film)
+{
+  double V = dea_solid_voltage(e->owner.solid);
+  return V > 0 ? film->true_field_V_per_m * e->owner.flat_thickness_m / V : 1;
+}
+
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
  * largest area stretch. */
 static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
@@ -21,7 +27,7 @@ static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated on the way");
   }
-  e->area = V > 0 ? film.true_field_V_per_m * e->owner.flat_thickness_m / V : 1;
+  e->area = area_of(e, &film);
   e->tension[0] = e->tension[1];
   e->tension_V[0] = e->tension_V[1];
   e->tension[1] = film.min_tension_N_per_m;
@@ -54,7 +60,8 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   struct dea_ending *e = user;
   double V = dea_solid_voltage(e->owner.solid);
   bool before = is_taut(e);
-  if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && before)) {
+  bool thins = before || e->leapt; // where it turns unstable: in one place
+  if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && thins)) {
     return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
   }
   if (where == DEA_STOP_UNSTABLE) {
@@ -67,6 +74,18 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
     e->limit.point.voltage_V = sqrt((1 - share) * at_V[0] * at_V[0] + share * at_V[1] * at_V[1]);
   }
+  return DEA_OK;
+}
+
+static dea_status has_grown(struct dea_context *ctx, void *user, bool *grew)
+{
+  const struct dea_ending *e = user;
+  struct dea_solid_extremes film;
+  dea_status status = dea_solid_extremes(e->owner.solid, e->owner.films, &film);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
+  }
+  *grew = area_of(e, &film) > leap * fmax(e->area, 1);
   return DEA_OK;
 }
 
@@ -150,12 +169,16 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
 /* Looks for a limit point between there and where the solid is. *share: of the way to it, NAN:
  * there is none. */
 static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
-                            const struct dea_solid_stand *from, double *share)
+                            const struct dea_solid_stand *from, bool leapt, double *share)
 {
   struct dea_solid_stop stop;
   const struct dea_ending kept = *e; // what the points of the path change
   e->limited = false;
-  DEA_TRY(ctx, dea_solid_look_back(ctx, e->owner.solid, from, see_point, e, &stop));
+  e->leapt = leapt;
+  e->tension[1] = e->tension[0]; // as the path begins
+  e->tension_V[1] = e->tension_V[0];
+  DEA_TRY(ctx,
+          dea_solid_look_back(ctx, e->owner.solid, from, leapt, see_point, has_grown, e, &stop));
   struct dea_event found = e->limit;
   bool passed = stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
   *e = kept;
@@ -176,6 +199,29 @@ static bool rushes(struct dea_ending *e, double *rate, double way,
   return before > 0 && *rate > rush * before;
 }
 
+/* A membrane that thins at once has no tension in that place, where nothing but the end of its law
+ * holds its natural width (docs/theory/membrane.md): that is no state of the film. */
+static dea_status refuse_leap(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
+                              const struct dea_solid_stand *from)
+{
+  char stretch[60] = ""; // of a disc
+  double area = e->area;
+  e->limit = e->passed;
+  e->limited = true;
+  e->has_passed = false;
+  e->rate[0] = 0;
+  dea_solid_stand_again(e->owner.solid, from);
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  if (!isnan(e->limit.point.electrode_stretch)) {
+    snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
+             e->limit.point.electrode_stretch);
+  }
+  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                  "pull-in at %.6g kV%s: beyond it the film has no tension in one place and thins "
+                  "there to the end of its law (to 1/%.3g at %.6g kV)",
+                  1e-3 * e->limit.point.voltage_V, stretch, area, 1e-3 * voltage_V);
+}
+
 /* Where a load step has come to. */
 static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
                                const struct dea_solid_stand *from, bool snapped)
@@ -186,7 +232,10 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
   bool thins = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
   bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
   if (thins || (rushed && taut && is_taut(e) && !snapped)) {
-    DEA_TRY(ctx, look_back(ctx, e, from, &share));
+    DEA_TRY(ctx, look_back(ctx, e, from, thins, &share));
+  }
+  if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {
+    return refuse_leap(ctx, e, voltage_V, from);
   }
   e->leapt = thins || !isnan(share);
   return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
@@ -199,7 +248,7 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   struct dea_solid_stand from;
   struct dea_solid_stop stop;
   e->from_V = from_V;
-  e->limited = false;
+  e->limited = e->leapt = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
   dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
@@ -227,7 +276,7 @@ dea_status dea_ending_watch(struct dea_context *ctx, struct dea_ending *e, doubl
   e->from_V = dea_solid_voltage(e->owner.solid);
   DEA_TRY(ctx, look_at_tension(ctx, e));
   if (rushes(e, &e->rate[1], way, from) && is_taut(e)) {
-    DEA_TRY(ctx, look_back(ctx, e, from, share));
+    DEA_TRY(ctx, look_back(ctx, e, from, false, share));
   }
   return DEA_OK;
 }

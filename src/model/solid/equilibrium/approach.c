@@ -13,11 +13,14 @@ struct search {
   struct dea_solid *s;
   double *state, *from, *goal; // state and controls at its start, controls that are wanted
   dea_solid_path_sink points;
+  dea_solid_growth_test grew; // of a search for a leap
   void *user;
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
-  bool went_on; // the solid is at a stable equilibrium further on
-  bool looks;   // it is known where the solid goes, and only asked what is on the way
+  bool went_on;   // the solid is at a stable equilibrium further on
+  bool looks;     // it is known where the solid goes, and only asked what is on the way
+  bool stuck;     // the path could not be followed to its end; where it looks the solid stays there
+  double reached; // share of the way of the last point of the path
 };
 
 /* Displacement that counts as much as the whole load: a share of that on the way, as far as the
@@ -79,6 +82,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
   struct dea_continuation_point at = {0};
   for (int i = 0; i < a->s->settings.approach_points; i++) {
     DEA_TRY(ctx, dea_solid_continuation_step(ctx, path, &at));
+    a->reached = at.load;
     if (at.passed == DEA_CONTINUATION_LIMIT) {
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
       return DEA_OK;
@@ -114,14 +118,16 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   dea_solid_state_get(a->s, a->state);
   dea_solid_controls_get(a->s, a->from);
   options.unit_m = unit_of(a->s, a->from, a->goal);
-  a->went_on = false;
+  a->went_on = a->stuck = false;
+  a->reached = 0;
   *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_status status = dea_continuation_create_to(ctx, a->s, a->goal, &options, &path);
   if (status == DEA_OK) {
     status = follow(ctx, a, path);
   }
   dea_solid_continuation_destroy(ctx, path);
-  if (!a->went_on) {
+  a->stuck = dea_solid_may_shorten(status);
+  if (!a->went_on && !(a->looks && a->stuck)) {
     dea_solid_state_set(a->s, a->state);
     dea_solid_controls_set(a->s, a->from);
     a->s->found.factor_fits = a->s->found.predicted_fits = false;
@@ -252,8 +258,111 @@ void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at
   s->found.factor_fits = s->found.predicted_fits = false;
 }
 
+/* Controls a share of the way: the square of the voltage, and all others, in proportion. */
+static void set_between(const struct dea_solid *s, const double *from, const double *goal,
+                        double share, double *out)
+{
+  for (size_t i = 1; i < s->work.load_steps.control_count; i++) {
+    out[i] = from[i] + share * (goal[i] - from[i]);
+  }
+  out[0] = sqrt((1 - share) * from[0] * from[0] + share * goal[0] * goal[0]);
+}
+
+/* The solid on its side of a leap: near, which it leaps from, and far, where it leaps to. */
+struct leap_ends {
+  struct dea_solid_stand near, far;
+  double at[2]; // shares of the way
+  double whole; // motion between them at first
+  bool apart;   // the far one has no state, or the film has grown at once to it
+};
+
+/* The state that a step has come to takes the place of the end that it belongs to. */
+static dea_status take_end(struct dea_context *ctx, const struct search *a, const double *controls,
+                           struct leap_ends *ends, bool *stays)
+{
+  struct dea_solid *s = a->s;
+  bool grown = false;
+  DEA_TRY(ctx, a->grew(ctx, a->user, &grown));
+  *stays = !grown && dea_solid_moved_m(s, &ends->near) < dea_solid_moved_m(s, &ends->far);
+  struct dea_solid_stand *end = *stays ? &ends->near : &ends->far;
+  dea_solid_state_get(s, end->state);
+  memcpy(end->controls, controls, s->work.load_steps.control_count * sizeof *controls);
+  ends->apart = *stays ? ends->apart : grown;
+  return *stays ? a->points(ctx, a->user, DEA_STOP_UNKNOWN) : DEA_OK;
+}
+
+/* Between both ends a share of the way; the solid is then at the near one. */
+static dea_status halve_leap(struct dea_context *ctx, const struct search *a, const double *from,
+                             double share, struct leap_ends *ends)
+{
+  struct dea_solid_report report;
+  bool stays = false;
+  set_between(a->s, from, a->goal, share, a->from);
+  dea_status status = dea_load_steps_solve_to(ctx, a->s, a->from, &report);
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    ends->apart = true;
+  } else {
+    DEA_TRY(ctx, status);
+    DEA_TRY(ctx, take_end(ctx, a, a->from, ends, &stays));
+  }
+  ends->at[stays ? 0 : 1] = share;
+  if (!stays) {
+    dea_solid_stand_again(a->s, &ends->near);
+  }
+  return DEA_OK;
+}
+
+/* Steps that grow from where the path ends, then halves. */
+static dea_status bracket_leap(struct dea_context *ctx, const struct search *a, const double *from,
+                               struct leap_ends *ends)
+{
+  const double least = a->s->settings.leap_way;
+  double first = ends->at[0], by = first > 0 ? least : 0.5;
+  while (ends->at[1] - ends->at[0] > 1.01 * least) {
+    double low = ends->at[0], high = ends->at[1], next = low + by;
+    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    DEA_TRY(ctx, halve_leap(ctx, a, from, next < high ? next : 0.5 * (low + high), ends));
+    by = ends->at[1] < 1 ? 0.5 * (ends->at[1] - ends->at[0]) : 4 * by;
+  }
+  return DEA_OK;
+}
+
+/* Where the path says nothing of a leap - a membrane that goes slack has a corner, which arc length
+ * does not get around, and a long step of it leaps itself - load steps do: the states on both sides
+ * of a limit point stay apart however close their voltages come. The solid is then at the nearer
+ * one. From the last point of the path; from, to: the ends of the way. */
+static dea_status find_leap(struct dea_context *ctx, struct search *a, const double *from,
+                            const struct dea_solid_stand *to)
+{
+  struct dea_solid *s = a->s;
+  struct leap_ends ends = {.at = {a->stuck ? a->reached : 0, 1}};
+  dea_status status = dea_solid_stand_keep(ctx, s, &ends.near);
+  if (status == DEA_OK) {
+    dea_solid_stand_again(s, to);
+    status = dea_solid_stand_keep(ctx, s, &ends.far);
+    dea_solid_stand_again(s, &ends.near);
+  }
+  if (status == DEA_OK) {
+    ends.whole = dea_solid_moved_m(s, &ends.far);
+    status = a->points(ctx, a->user, DEA_STOP_UNKNOWN);
+  }
+  if (status == DEA_OK) {
+    status = bracket_leap(ctx, a, from, &ends);
+  }
+  bool leaps = status == DEA_OK &&
+               (ends.apart || dea_solid_moved_m(s, &ends.far) > s->settings.leap_jump * ends.whole);
+  if (leaps) {
+    *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(s), ends.at[0], 0};
+    status = a->points(ctx, a->user, DEA_STOP_LIMIT);
+  }
+  dea_solid_stand_free(&ends.near);
+  dea_solid_stand_free(&ends.far);
+  return status;
+}
+
 /* At `from` with room for a search. */
-static dea_status search_back(struct dea_context *ctx, struct search *a,
+static dea_status search_back(struct dea_context *ctx, struct search *a, bool leapt,
                               const struct dea_solid_stand *from, const struct dea_solid_stand *now)
 {
   struct dea_solid_stand room;
@@ -265,22 +374,31 @@ static dea_status search_back(struct dea_context *ctx, struct search *a,
     dea_solid_stand_again(a->s, from);
     status = search_path(ctx, a);
   }
+  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && (a->stuck || leapt)) {
+    status = find_leap(ctx, a, from->controls, now);
+  }
   dea_solid_stand_free(&room);
   return status;
 }
 
 dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *s,
-                               const struct dea_solid_stand *from, dea_solid_path_sink points,
-                               void *user, struct dea_solid_stop *stop)
+                               const struct dea_solid_stand *from, bool leapt,
+                               dea_solid_path_sink points, dea_solid_growth_test grew, void *user,
+                               struct dea_solid_stop *stop)
 {
   struct dea_solid_report report = {0};
-  struct search a = {
-      .s = s, .points = points, .user = user, .report = &report, .stop = stop, .looks = true};
+  struct search a = {.s = s,
+                     .points = points,
+                     .grew = grew,
+                     .user = user,
+                     .report = &report,
+                     .stop = stop,
+                     .looks = true};
   struct dea_solid_stand now;
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_status status = dea_solid_stand_keep(ctx, s, &now);
   if (status == DEA_OK && s->problem.field == NULL) {
-    status = search_back(ctx, &a, from, &now);
+    status = search_back(ctx, &a, leapt, from, &now);
     dea_solid_stand_again(s, &now);
   }
   dea_solid_stand_free(&now);

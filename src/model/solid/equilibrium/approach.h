@@ -24,6 +24,10 @@ struct dea_solid_stop {
 typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
                                           enum dea_solid_stop_kind where);
 
+/* Whether the film has grown at once from the last point that a sink has looked at to where the
+ * solid is: a film may thin in one place without a displacement that tells. */
+typedef dea_status (*dea_solid_growth_test)(struct dea_context *ctx, void *user, bool *grew);
+
 /* As dea_load_steps_solve; load steps that fail go on along the path by arc length, around a
  * bifurcation too, and then by load steps again. points: sees each point of such a path. taut: the
  * film has tension, so that what takes more than approach_iterations is not looked for at first. A
@@ -48,11 +52,14 @@ void dea_solid_stand_again(struct dea_solid *solid, const struct dea_solid_stand
 double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
 
 /* Whether load steps from there to where the solid is have gone past a limit point or a
- * bifurcation: follows the path from there towards the controls as they are. The solid is then
- * where it was. *stop: where, which `points` has seen last; DEA_STOP_UNKNOWN: there was none, or
- * none was found. */
+ * bifurcation: follows the path from there towards the controls as they are. Where the path comes
+ * to no end, and where it says nothing of what is known to have `leapt`, load steps close in on the
+ * controls at which the states on both sides stay apart: a limit point, or a corner that acts as
+ * one. The solid is then where it was. *stop: where, which `points` has seen last;
+ * DEA_STOP_UNKNOWN: there was none, or none was found. */
 dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *solid,
-                               const struct dea_solid_stand *from, dea_solid_path_sink points,
-                               void *user, struct dea_solid_stop *stop);
+                               const struct dea_solid_stand *from, bool leapt,
+                               dea_solid_path_sink points, dea_solid_growth_test grew, void *user,
+                               struct dea_solid_stop *stop);
 
 #endif

@@ -456,3 +456,15 @@ dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid
   memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
   return solve_in_steps(ctx, s, least, report);
 }
+
+dea_status dea_load_steps_solve_to(struct dea_context *ctx, struct dea_solid *s, const double *goal,
+                                   struct dea_solid_report *report)
+{
+  struct dea_load_steps *path = &s->work.load_steps;
+  *report = (struct dea_solid_report){0};
+  DEA_TRY(ctx, dea_solid_check(ctx, s));
+  dea_solid_controls_get(s, path->controls);
+  memcpy(path->controls_goal, goal, path->control_count * sizeof(double));
+  memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
+  return solve_in_steps(ctx, s, 1, report);
+}
