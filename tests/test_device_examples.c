@@ -2,7 +2,9 @@
 // ctest: solid
 #include "device/device.h"
 #include "model/model.h"
+#include "result/result.h"
 #include "study/design_file.h"
+#include "study/study.h"
 #include "testing.h"
 
 #include <math.h>
@@ -92,6 +94,51 @@ static void test_quadrants(void **state)
   close_example(&quadrants);
 }
 
+/* Each quadrant has a source of its own: with the voltages the tilt goes a quarter round in a
+ * quarter of a cycle, and the tables say what was played. */
+static void test_quadrants_round(void **state)
+{
+  (void)state;
+  static const struct dea_override changes[] = {
+      {"compute.transient.until", "0.25 s"},
+      {"compute.transient.tolerance", "0.01"},
+      {"compute.transient.longest_step", "0.125 s"},
+  };
+  static const char *const names[] = {"transient"};
+  struct example round = {NULL, NULL, NULL};
+  struct dea_result *result;
+  const char *path = DEA_SOURCE_DIR "/examples/devices/quadrants-round.yaml";
+  assert_int_equal(dea_design_read(ctx, path, changes, 3, &round.design), DEA_OK);
+  assert_int_equal(dea_device_build(ctx, round.design, &round.device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, round.design, round.device, &result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, 1, result), DEA_OK);
+  const struct dea_result_table *monitors =
+      dea_result_find_table(result, "3d", "transient", "monitors");
+  const struct dea_result_table *channels =
+      dea_result_find_table(result, "3d", "transient", "channels");
+  assert_true(monitors != NULL && monitors->row_count >= 4); // rest, the jump, steps
+  assert_true(channels != NULL && channels->row_count == 4 * monitors->row_count);
+  double turn[2][2];
+  for (int k = 0; k < 2; k++) { // after the jump, and at the end
+    size_t row = k == 0 ? 1 : monitors->row_count - 1;
+    assert_close(dea_result_table_cell(monitors, row, 0)->number, 0.25 * k, 1e-12, 0);
+    for (size_t i = 0; i < 2; i++) {
+      turn[k][i] = dea_result_table_cell(monitors, row, 2 + DEA_OBSERVED_TURN_X + i)->number;
+    }
+    for (size_t c = 0; c < 4; c++) { // east leads, a quarter each
+      double V = 2e3 + 2e3 * cos(0.5 * acos(-1.0) * ((double)k - (double)c));
+      assert_close(dea_result_table_cell(channels, 4 * row + c, 2)->number, V, 1e-9, 1e-6);
+    }
+  }
+  double size = hypot(turn[0][0], turn[0][1]);
+  assert_true(size > 5e-4);
+  assert_close(turn[1][0], -turn[0][1], 0, 5e-3 * size);
+  assert_close(turn[1][1], turn[0][0], 0, 5e-3 * size);
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, round.device);
+  dea_design_destroy(ctx, round.design);
+}
+
 /* The film on a flexible frame curls when it is let go, and opens with the voltage. */
 static void test_gripper(void **state)
 {
@@ -107,9 +154,8 @@ static void test_gripper(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cone),
-      cmocka_unit_test(test_stack),
-      cmocka_unit_test(test_quadrants),
+      cmocka_unit_test(test_cone),      cmocka_unit_test(test_stack),
+      cmocka_unit_test(test_quadrants), cmocka_unit_test(test_quadrants_round),
       cmocka_unit_test(test_gripper),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

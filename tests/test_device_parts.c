@@ -251,6 +251,17 @@ static const struct {
      "the line 'line' needs both its ends, 'from' and 'to'", "line,"},
     {MORE, "monitors: [{name: line, ply: lower}]", "lacks the point x, y", NULL},
     {MORE, "channels: [{name: ground}]", "needs no line of its own", "ground"},
+    {MORE, "channels: [{name: drive, waveform: {kind: sin, amplitude: 1 kV}}]", "'sin'", "sin"},
+    {MORE, "channels: [{name: drive, waveform: {kind: step, to: 1 m}}]",
+     "is a length, but a voltage", "1 m"},
+    {MORE,
+     "channels: [{name: drive, waveform: {kind: sine, amplitude: 1 kV, frequency: 1 Hz, cycles: "
+     "1}}]\ndrive: {series_resistance: 1 Mohm}",
+     "series_resistance: in time the channel 'drive' has a waveform of its own", NULL},
+    {MORE,
+     "channels: [{name: drive, voltage: 1 kV}]\ndrive: {waveform: {kind: sine, amplitude: 1 kV, "
+     "frequency: 1 Hz, cycles: 1}, current_limit: 1 mA}",
+     "current_limit: in time the channel 'drive' has a voltage of its own", NULL},
     {PLIES,
      "plies: [{name: lower, shape: film, material: film, thickness: 1 um, pre_stretch: [1, 1, "
      "1]}]",

@@ -29,13 +29,13 @@ static struct dea_model *begin(const struct dea_device *device,
   return model;
 }
 
-static const struct dea_time_options quiet = {{0, INFINITY}, false, 0.8};
+static const struct dea_time_options quiet = {{0, INFINITY}, NULL, false, 0.8};
 
 /* One accepted step; the status and, for DEA_OK, the point. */
 static dea_status go(struct dea_model *model, double length_s, double V, struct dea_load_point *out)
 {
   const struct dea_model_type *type = dea_model_find("lumped");
-  const struct dea_time_step step = {length_s, V};
+  const struct dea_time_step step = {length_s, V, NULL};
   double error;
   dea_status status = type->advance(ctx, model, &step, out, &error);
   if (status == DEA_OK) {
@@ -256,10 +256,10 @@ static void test_second_order(void **state)
     double end_s;
     int n;
   } cases[] = {
-      {{{0, INFINITY}, false, 0.8}, 1, 40},
-      {{{1e9, INFINITY}, false, 0.8}, 1, 80},  // R C 0.05 s
-      {{{0, INFINITY}, true, 0.5}, 4e-2, 400}, // vibrations of about a kilohertz
-      {{{1e7, INFINITY}, true, 1}, 4e-2, 800},
+      {{{0, INFINITY}, NULL, false, 0.8}, 1, 40},
+      {{{1e9, INFINITY}, NULL, false, 0.8}, 1, 80},  // R C 0.05 s
+      {{{0, INFINITY}, NULL, true, 0.5}, 4e-2, 400}, // vibrations of about a kilohertz
+      {{{1e7, INFINITY}, NULL, true, 1}, 4e-2, 800},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     const struct dea_time_options *o = &cases[i].options;
@@ -288,9 +288,9 @@ static void test_energy(void **state)
     double end_s;
     int n;
   } cases[] = {
-      {{{0, INFINITY}, false, 0.8}, 3, 300},   {{{1e9, INFINITY}, false, 0.8}, 3, 300},
-      {{{0, 2e-7}, false, 0.8}, 3, 1000},      {{{1e8, 3e-7}, false, 0.8}, 3, 1000},
-      {{{1e7, INFINITY}, true, 1}, 0.2, 4000},
+      {{{0, INFINITY}, NULL, false, 0.8}, 3, 300},   {{{1e9, INFINITY}, NULL, false, 0.8}, 3, 300},
+      {{{0, 2e-7}, NULL, false, 0.8}, 3, 1000},      {{{1e8, 3e-7}, NULL, false, 0.8}, 3, 1000},
+      {{{1e7, INFINITY}, NULL, true, 1}, 0.2, 4000},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct dea_load_point p = play(&cases[i].options, cases[i].end_s, cases[i].n);
@@ -305,7 +305,7 @@ static void test_leakage_of_an_open_film(void **state)
 {
   (void)state;
   struct dea_device device = whole();
-  const struct dea_time_options options = {{1e16, INFINITY}, false, 0.8};
+  const struct dea_time_options options = {{1e16, INFINITY}, NULL, false, 0.8};
   const struct dea_model_type *type = dea_model_find("lumped");
   struct dea_model *model;
   struct dea_load_point p;
@@ -348,7 +348,7 @@ static void test_rejected_steps(void **state)
   for (int k = 0; k < 2; k++) {
     struct dea_model *model = begin(&device, &quiet);
     for (int i = 0; i < 5; i++) {
-      const struct dea_time_step other = {3, 7000}, jump = {0, 1e9};
+      const struct dea_time_step other = {3, 7000, NULL}, jump = {0, 1e9, NULL};
       double error;
       if (k == 1) {
         assert_int_equal(type->advance(ctx, model, &other, &p[k], &error), DEA_OK);
@@ -381,7 +381,7 @@ static void test_period(void **state)
   (void)state;
   struct dea_device device = whole();
   device.film.branch_count = 0;
-  const struct dea_time_options options = {{0, INFINITY}, true, 1};
+  const struct dea_time_options options = {{0, INFINITY}, NULL, true, 1};
   struct dea_model *model = begin(&device, &options);
   struct dea_lumped lumped = {.pre_stretch = 1.5, .coverage = 0.25};
   struct dea_lumped_balance at_rest;

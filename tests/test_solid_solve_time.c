@@ -79,7 +79,7 @@ static void film_create(struct film *film)
                                             .held = film->held,
                                             .self = film};
   const struct dea_solid_time_options steps = {&film->branches, film->density_kg_per_m3 > 0,
-                                               film->radius};
+                                               film->radius, false};
   assert_int_equal(dea_solid_create(ctx, film->grid, &options, &film->solid), DEA_OK);
   if (film->held == on_planes) {
     hang_weights(film);
@@ -158,7 +158,7 @@ static void test_held_film_stays(void **state)
     film_create(&film);
     struct dea_solid_report report;
     if (voltage_V > 0) { // held: the branches start anew from there
-      const struct dea_solid_time_options steps = {&film.branches, false, 1};
+      const struct dea_solid_time_options steps = {&film.branches, false, 1, false};
       dea_solid_time_destroy(ctx, film.time);
       assert_int_equal(dea_load_steps_solve(ctx, film.solid, voltage_V, &report), DEA_OK);
       assert_int_equal(dea_solid_time_create(ctx, film.solid, &steps, &film.time), DEA_OK);

@@ -108,7 +108,7 @@ static inline void body_create(struct body *body)
                                             .held = body->held,
                                             .self = body};
   const struct dea_solid_time_options steps = {&body->branches, body->density_kg_per_m3 > 0,
-                                               body->radius};
+                                               body->radius, false};
   verify_ok(ctx, dea_solid_create(ctx, body->grid, &options, &body->solid));
   if (body->held == on_planes) {
     hang_weights(body);

@@ -61,6 +61,7 @@ struct dea_field {
   /* Of a DEA_FIELD_SECTION: the tables of which one holds, for printing; ended by NULL, NULL: none.
    */
   const struct dea_record *const *kinds;
+  bool kinds_elsewhere; // tables for people have them at another field, which `doc` names
 
   /* Of a key that is none here, but is one of another form of file: what to write instead, for the
    * message; NULL: it is one. */

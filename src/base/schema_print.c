@@ -92,7 +92,8 @@ static void walk(const struct dea_record *record, const char *path, print_fn pri
     if (dea_field_has_record(field)) {
       walk(field->record, dea_text_get(&inner), print, out);
     }
-    for (size_t k = 0; field->kinds != NULL && field->kinds[k] != NULL; k++) {
+    bool listed = field->kinds != NULL && !field->kinds_elsewhere;
+    for (size_t k = 0; listed && field->kinds[k] != NULL; k++) {
       struct dea_text kind = {.ctx = out->ctx};
       dea_text_add(&kind, "%s(%s)", dea_text_get(&inner), field->kinds[k]->name);
       out->failed = out->failed || kind.failed;

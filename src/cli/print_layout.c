@@ -47,11 +47,16 @@ void cli_layout_print(const struct dea_layout *l)
     printf("  %-32s  ", c->name);
     if (i == 0) {
       puts("0 V");
-    } else if (c->own_V == 0) {
-      printf("%g x voltage\n", c->ratio);
-    } else {
-      printf("%g x voltage %+g V\n", c->ratio, c->own_V);
+      continue;
     }
+    printf("%g x voltage", c->ratio);
+    if (c->own_V != 0) {
+      printf(" %+g V", c->own_V);
+    }
+    if (c->waveform != NULL) {
+      printf("; in time a waveform of its own (%s)", c->waveform);
+    }
+    puts("");
   }
   print_symmetry(&l->symmetry);
 }

@@ -7,6 +7,7 @@
 #include "base/arena.h"
 #include "base/value.h"
 #include "geometry/shape.h"
+#include "waveform/waveform.h"
 
 enum {
   DEA_PARTS_SHAPES_MAX = 1000,
@@ -73,6 +74,8 @@ struct dea_parts_electrode {
 struct dea_parts_channel {
   struct dea_label name;
   struct dea_quantity ratio, voltage_V;
+  const struct dea_node *section; // of its waveform; lent by the document; NULL: none
+  struct dea_waveform *waveform;  // owned by the parts; NULL: none
 };
 
 enum dea_parts_hold { DEA_HOLD_CLAMPED, DEA_HOLD_HINGED, DEA_HOLD_X, DEA_HOLD_Y, DEA_HOLD_Z };
@@ -133,6 +136,9 @@ struct dea_parts {
   size_t spring_count, pressure_count, monitor_count;
   struct dea_location place; // of the key `plies`
 };
+
+/* Whether a channel has a waveform of its own; of NULL: false. */
+bool dea_parts_in_time(const struct dea_parts *parts);
 
 /* NULL is fine. */
 void dea_parts_destroy(struct dea_context *ctx, struct dea_parts *parts);

@@ -276,7 +276,8 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
           dea_schema_read(&reader, plies != NULL ? &schema.general.record : &schema.disc.record,
                           root, "", raw));
   if (plies != NULL) {
-    DEA_TRY(ctx, dea_parts_read(&reader, &schema.shapes, &raw->parts, &design->parts));
+    DEA_TRY(ctx,
+            dea_parts_read(&reader, &schema.shapes, design->file, &raw->parts, &design->parts));
     design->parts->place = plies->key_place;
   }
   if (root->kind == DEA_NODE_SECTION) {

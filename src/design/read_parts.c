@@ -145,6 +145,22 @@ static dea_status take_lists(const struct dea_parts_raw *raw, struct dea_parts *
   return dea_arena_status(&parts->memory);
 }
 
+/* beside: the design file. */
+static dea_status read_waveforms(const struct dea_reader *reader, const char *beside,
+                                 struct dea_parts *parts)
+{
+  for (size_t i = 0; i < parts->channel_count; i++) {
+    struct dea_parts_channel *channel = &parts->channels[i];
+    char path[40];
+    snprintf(path, sizeof path, "channels[%zu].waveform", i);
+    if (channel->section != NULL) {
+      DEA_TRY(reader->ctx,
+              dea_waveform_read(reader, channel->section, path, beside, &channel->waveform));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check_lines(const struct dea_reader *reader, const struct dea_parts *parts)
 {
   for (size_t i = 0; i < parts->monitor_count; i++) {
@@ -159,7 +175,8 @@ static dea_status check_lines(const struct dea_reader *reader, const struct dea_
 }
 
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
-                          const struct dea_parts_raw *raw, struct dea_parts **out)
+                          const char *beside, const struct dea_parts_raw *raw,
+                          struct dea_parts **out)
 {
   struct dea_context *ctx = reader->ctx;
   struct dea_parts *parts = dea_alloc(ctx, 1, sizeof *parts);
@@ -177,13 +194,26 @@ dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shap
   for (size_t i = 0; i < parts->spring_count; i++) {
     DEA_TRY(ctx, read_table(reader, parts, &parts->springs[i]));
   }
+  DEA_TRY(ctx, read_waveforms(reader, beside, parts));
   DEA_TRY(ctx, check_lines(reader, parts));
   return check_all_names(reader, parts);
+}
+
+bool dea_parts_in_time(const struct dea_parts *parts)
+{
+  bool any = false;
+  for (size_t i = 0; parts != NULL && i < parts->channel_count; i++) {
+    any = any || parts->channels[i].waveform != NULL;
+  }
+  return any;
 }
 
 void dea_parts_destroy(struct dea_context *ctx, struct dea_parts *parts)
 {
   if (parts != NULL) {
+    for (size_t i = 0; i < parts->channel_count; i++) {
+      dea_waveform_destroy(parts->channels[i].waveform);
+    }
     dea_arena_free(&parts->memory);
     dea_free(ctx, parts);
   }

@@ -98,6 +98,15 @@ static const struct dea_field channel_fields[] = {
            .default_text = "1", .min = -1e6, .max = 1e6),
     NUMBER(dea_parts_channel, voltage_V, "voltage", "V", "voltage of its own", "2 kV",
            .default_text = "0 V", .min = -1e6, .max = 1e6),
+    {.key = "waveform",
+     .kind = DEA_FIELD_SECTION,
+     .offset = offsetof(struct dea_parts_channel, section),
+     .kinds = dea_wave_records,
+     .kinds_elsewhere = true,
+     .absent_text = "ratio times drive.waveform",
+     .doc = "voltage in time of a source of its own, to which `voltage` is added; keys as those of "
+            "drive.waveform",
+     .example = "{kind: sine, mean: 2 kV, amplitude: 1 kV, frequency: 1 Hz}"},
 };
 
 static const char *const holds[] = {"clamped", "hinged", "x", "y", "z", NULL}; // dea_parts_hold

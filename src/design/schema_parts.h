@@ -39,9 +39,10 @@ void dea_shape_schema_fill(struct dea_shape_schema *out);
 extern const struct dea_field dea_parts_fields[];
 extern const size_t dea_parts_field_count;
 
-/* Makes the lists of what was read, with the shapes, points and tables. out: owned by the caller,
- * also after a failure. */
+/* Makes the lists of what was read, with the shapes, points, tables and waveforms; beside: the
+ * design file, from whose folder paths count. out: owned by the caller, also after a failure. */
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
-                          const struct dea_parts_raw *raw, struct dea_parts **out);
+                          const char *beside, const struct dea_parts_raw *raw,
+                          struct dea_parts **out);
 
 #endif

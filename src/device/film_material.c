@@ -77,7 +77,7 @@ dea_status dea_generator_check_film_in_time(struct dea_context *ctx,
   const struct dea_material *material = film->material;
   bool chosen = film->viscosity->origin != DEA_ABSENT;
   struct dea_location location = chosen ? film->viscosity->location : film->name->location;
-  if (design->drive.waveform == NULL) {
+  if (design->drive.waveform == NULL && !dea_parts_in_time(design->parts)) {
     return DEA_OK;
   }
   if (material->branch_count == 0 && !chosen) {

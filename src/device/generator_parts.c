@@ -179,7 +179,8 @@ static dea_status add_channels(struct maker *m)
       continue;
     }
     l->channels[l->channel_count++] = (struct dea_layout_channel){
-        keep(m, from->name.text), from->ratio.si, from->voltage_V.si, from->name.location};
+        keep(m, from->name.text), from->ratio.si, from->voltage_V.si, from->name.location,
+        from->waveform != NULL ? from->waveform->type->name : NULL};
   }
   return dea_arena_status(&l->memory);
 }

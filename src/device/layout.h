@@ -52,6 +52,8 @@ struct dea_layout_channel {
   const char *name; // of 0: "ground"
   double ratio, own_V;
   struct dea_location location;
+  const char *waveform; // kind of that of a source of its own, which in time stands for the ratio's
+                        // part; static; NULL: none
 };
 
 /* Nodes of all plies that are held at a shift. */

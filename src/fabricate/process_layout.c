@@ -326,7 +326,10 @@ static void add_supports(const struct sheet *s)
   }
   for (size_t i = 1; i < l->channel_count; i++) {
     const struct dea_layout_channel *c = &l->channels[i];
-    if (c->own_V != 0) {
+    if (c->waveform != NULL) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to a source of its own (%s).", c->name,
+                       c->waveform);
+    } else if (c->own_V != 0) {
       dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage, and %+.4g V.",
                        c->name, c->ratio, c->own_V);
     } else if (c->ratio == 0) {

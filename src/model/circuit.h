@@ -30,6 +30,7 @@ struct dea_circuit {
 struct dea_time_step {
   double length_s;         // >= 0; 0: the supply's voltage jumps
   double source_voltage_V; // of the supply at the end of the step
+  const double *own_V;     // of sources beside it, see dea_time_options; NULL: there are none
 };
 
 /* The film as a circuit element, and the derivatives by whatever the caller varies (0 if unused).

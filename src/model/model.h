@@ -103,6 +103,9 @@ struct dea_ac_excitation {
 /* How a history in time is computed. */
 struct dea_time_options {
   struct dea_circuit circuit;
+  /* Channels of the device's layout, [channel_count], with ground, that have a source each: steps
+   * say its voltage, [channel_count]. NULL: none has. The circuit then has to be ideal. */
+  const bool *own_sources;
   bool inertia;   // false: each moment is an equilibrium of the film with its branches
   double rho_inf; // spectral radius of generalised alpha at high frequencies, 0 to 1
 };

@@ -38,6 +38,7 @@ struct dea_channel_values {
   double voltage_V;
   double charge_C;
   double capacitance_F; // change of its charge with its voltage, the film held; NAN: unknown
+  double current_A;     // of its source in the last step of a history; NAN: there is none
 };
 
 struct dea_observation {

@@ -19,19 +19,21 @@
     .key = name, .kind = DEA_CELL_TEXT, .title = name, .meaning = what                             \
   }
 
-enum { BEFORE = 2, OF_CHANNEL = 3 }; // columns before the quantities; quantities of a channel
+enum {
+  BEFORE = 2,
+  OF_CHANNEL = 3,
+  OF_CHANNEL_IN_TIME = 4
+}; // columns before the quantities; quantities of a channel
 
-/* In the order of enum dea_observed. */
+/* In the order of enum dea_observed; of channels as dea_observe_take has them. */
 #define MONITOR_COLUMNS_AT(where) where, NAME("monitor", "name in the design"), DEA_OBSERVED_COLUMNS
 #define CHANNEL_COLUMNS_AT(where)                                                                  \
-  {                                                                                                \
-    where, NAME("channel", "name in the design"),                                                  \
-        DEA_NUMBER_COLUMN("channel_voltage_V", "V", "kV", 1e-3, "voltage",                         \
-                          "voltage of the channel"),                                               \
-        DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),          \
-        DEA_NUMBER_COLUMN("capacitance_F", "F", "pF", 1e12, "capacitance",                         \
-                          "change of the channel's charge with its voltage, the film held"),       \
-  }
+  where, NAME("channel", "name in the design"),                                                    \
+      DEA_NUMBER_COLUMN("channel_voltage_V", "V", "kV", 1e-3, "voltage",                           \
+                        "voltage of the channel"),                                                 \
+      DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "charge on the channel"),            \
+      DEA_NUMBER_COLUMN("capacitance_F", "F", "pF", 1e12, "capacitance",                           \
+                        "change of the channel's charge with its voltage, the film held")
 
 static const struct dea_result_column monitor_columns[] = {
     MONITOR_COLUMNS_AT(VOLTAGE),
@@ -53,17 +55,32 @@ static const struct dea_result_column pass_columns[] = {
      .title = "small enough",
      .meaning = "the error is the tolerance or less"},
 };
-static const struct dea_result_column channel_columns[] = CHANNEL_COLUMNS_AT(VOLTAGE);
-static const struct dea_result_column channel_time_columns[] = CHANNEL_COLUMNS_AT(TIME);
+static const struct dea_result_column channel_columns[] = {CHANNEL_COLUMNS_AT(VOLTAGE)};
+static const struct dea_result_column channel_time_columns[] = {
+    CHANNEL_COLUMNS_AT(TIME),
+    DEA_NUMBER_COLUMN("current_A", "A", "uA", 1e6, "current",
+                      "of the channel's source into the film, mean of the step to this time"),
+};
+static const struct dea_result_column source_columns[] = {
+    NAME("channel", "name in the design"),
+    DEA_NUMBER_COLUMN("lowest_V", "V", "kV", 1e-3, "lowest", "voltage of the channel"),
+    DEA_NUMBER_COLUMN("highest_V", "V", "kV", 1e-3, "highest", "voltage of the channel"),
+    DEA_NUMBER_COLUMN("largest_charge_C", "C", "nC", 1e9, "charge", "largest size of its charge"),
+    DEA_NUMBER_COLUMN("largest_current_A", "A", "uA", 1e6, "current",
+                      "largest size of its source's current, jumps aside"),
+};
 enum {
+  SOURCE_COLUMNS = sizeof source_columns / sizeof source_columns[0],
   MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0],
   MONITOR_TIME_COLUMNS = sizeof monitor_time_columns / sizeof monitor_time_columns[0],
   PASS_COLUMNS = sizeof pass_columns / sizeof pass_columns[0],
-  CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0]
+  CHANNEL_COLUMNS = sizeof channel_columns / sizeof channel_columns[0],
+  CHANNEL_TIME_COLUMNS = sizeof channel_time_columns / sizeof channel_time_columns[0]
 };
 _Static_assert(MONITOR_TIME_COLUMNS == BEFORE + DEA_OBSERVED_COUNT, "a column a quantity");
 _Static_assert(MONITOR_COLUMNS == MONITOR_TIME_COLUMNS + 2, "and two errors");
 _Static_assert(CHANNEL_COLUMNS == BEFORE + OF_CHANNEL, "a column a quantity");
+_Static_assert(CHANNEL_TIME_COLUMNS == BEFORE + OF_CHANNEL_IN_TIME, "a column a quantity");
 
 /* Tables of a study: against the voltage of a sweep, against time. */
 struct tables {
@@ -97,7 +114,7 @@ static const struct tables of_history = {
                  .title = "Channels in time",
                  .where = DEA_IN_CSV,
                  .columns = channel_time_columns,
-                 .column_count = CHANNEL_COLUMNS},
+                 .column_count = CHANNEL_TIME_COLUMNS},
 };
 
 static const struct dea_result_table_type of_passes = {.study = "sweep",
@@ -109,6 +126,13 @@ static const struct dea_result_table_type of_passes = {.study = "sweep",
                                                        .columns = pass_columns,
                                                        .column_count = PASS_COLUMNS};
 
+static const struct dea_result_table_type of_sources = {.study = "transient",
+                                                        .name = "sources",
+                                                        .title = "channels",
+                                                        .where = DEA_IN_JSON | DEA_IN_SCREEN,
+                                                        .columns = source_columns,
+                                                        .column_count = SOURCE_COLUMNS};
+
 // What is observed at a point --------------------------------------------------------------------
 
 size_t dea_observe_width(const struct dea_model_type *type, const struct dea_result *result)
@@ -117,7 +141,8 @@ size_t dea_observe_width(const struct dea_model_type *type, const struct dea_res
     return 0;
   }
   const struct dea_layout *layout = result->device->layout;
-  return layout->monitor_count * DEA_OBSERVED_COUNT + (layout->channel_count - 1) * OF_CHANNEL;
+  return layout->monitor_count * DEA_OBSERVED_COUNT +
+         (layout->channel_count - 1) * OF_CHANNEL_IN_TIME;
 }
 
 /* Monitors, then channels without ground, which has what the others have with the other sign. */
@@ -133,6 +158,7 @@ dea_status dea_observe_take(struct dea_context *ctx, const struct dea_model_type
     *values++ = seen.channel[k].voltage_V;
     *values++ = seen.channel[k].charge_C;
     *values++ = seen.channel[k].capacitance_F;
+    *values++ = seen.channel[k].current_A;
   }
   return DEA_OK;
 }
@@ -169,7 +195,7 @@ static dea_status add_point(struct dea_context *ctx, const struct tables *tables
     DEA_TRY(ctx, add_row(ctx, table, where, layout->monitors[i].name, values,
                          error != NULL ? error[i] : NAN));
   }
-  for (size_t k = 1; k < layout->channel_count; k++, values += OF_CHANNEL) {
+  for (size_t k = 1; k < layout->channel_count; k++, values += OF_CHANNEL_IN_TIME) {
     DEA_TRY(ctx, dea_result_get_table(ctx, result, &tables->channels, model, &table));
     DEA_TRY(ctx, add_row(ctx, table, where, layout->channels[k].name, values, NAN));
   }
@@ -218,6 +244,33 @@ dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_mo
   return DEA_OK;
 }
 
+/* What each channel saw of a history. values: [count][width]. */
+static dea_status add_sources(struct dea_context *ctx, const char *model, const double *values,
+                              size_t count, size_t width, struct dea_result *result)
+{
+  const struct dea_layout *layout = result->device->layout;
+  struct dea_result_table *table = NULL;
+  for (size_t k = 1; k < layout->channel_count && count > 0; k++) {
+    const double *at = values + layout->monitor_count * DEA_OBSERVED_COUNT;
+    double lowest_V = INFINITY, highest_V = -INFINITY, charge_C = 0, current_A = 0;
+    at += (k - 1) * OF_CHANNEL_IN_TIME;
+    for (size_t i = 0; i < count; i++, at += width) {
+      lowest_V = fmin(lowest_V, at[0]);
+      highest_V = fmax(highest_V, at[0]);
+      charge_C = fmax(charge_C, fabs(at[1]));
+      current_A = fmax(current_A, fabs(at[3]));
+    }
+    const struct dea_result_table_value row[] = {{.text = layout->channels[k].name},
+                                                 {.number = lowest_V},
+                                                 {.number = highest_V},
+                                                 {.number = charge_C},
+                                                 {.number = current_A}};
+    DEA_TRY(ctx, dea_result_get_table(ctx, result, &of_sources, model, &table));
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_type *type,
                                const struct dea_curve *curve, const double *values,
                                struct dea_result *result)
@@ -226,6 +279,9 @@ dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_t
   for (size_t i = 0; i < curve->count && width > 0; i++) {
     DEA_TRY(ctx, add_point(ctx, &of_history, type->name, curve->points[i].time_s,
                            values + i * width, NULL, result));
+  }
+  if (width > 0) {
+    DEA_TRY(ctx, add_sources(ctx, type->name, values, curve->count, width, result));
   }
   return DEA_OK;
 }
@@ -425,6 +481,15 @@ static dea_status show_turns(struct dea_context *ctx, const struct dea_result *r
   return DEA_OK;
 }
 
+/* A column of the channels. */
+static dea_status show_channels(struct dea_context *ctx, const struct dea_result *result,
+                                const char *key, const char *label, struct dea_panel *panel)
+{
+  DEA_TRY(ctx, add_lines(ctx, result, &of_history.channels, key, "", DEA_LINE, panel));
+  finish(&of_history, panel, label);
+  return DEA_OK;
+}
+
 static dea_status show_charges(struct dea_context *ctx, const struct dea_result *result,
                                const struct tables *of, struct dea_panel *panel)
 {
@@ -498,4 +563,18 @@ dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea
                                        struct dea_plot *plot)
 {
   return show_charges(ctx, result, &of_history, &plot->panels[0]);
+}
+
+dea_status dea_observe_voltages_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                        struct dea_plot *plot)
+{
+  return show_channels(ctx, result, "channel_voltage_V", "Voltage {/:Italic V} (kV)",
+                       &plot->panels[0]);
+}
+
+dea_status dea_observe_currents_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                        struct dea_plot *plot)
+{
+  return show_channels(ctx, result, "current_A", "Current {/:Italic I} (\302\265A)",
+                       &plot->panels[0]);
 }

@@ -65,6 +65,10 @@ dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct d
                                          struct dea_plot *plot);
 dea_status dea_observe_turns_in_time(struct dea_context *ctx, const struct dea_result *result,
                                      struct dea_plot *plot);
+dea_status dea_observe_voltages_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                        struct dea_plot *plot);
+dea_status dea_observe_currents_in_time(struct dea_context *ctx, const struct dea_result *result,
+                                        struct dea_plot *plot);
 dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
                                        struct dea_plot *plot);
 

@@ -99,11 +99,48 @@ static const struct dea_record record = {
     "transient", "study of what happens in time, made when there is a waveform (drive)", fields,
     COUNT(fields)};
 
+static bool asked(const struct dea_design *design)
+{
+  return design->drive.waveform != NULL || dea_parts_in_time(design->parts);
+}
+
+/* The first channel with a voltage or a waveform of its own; NULL: none. */
+static const struct dea_parts_channel *own_channel(const struct dea_design *design)
+{
+  const struct dea_parts *parts = design->parts;
+  for (size_t i = 0; parts != NULL && i < parts->channel_count; i++) {
+    const struct dea_parts_channel *channel = &parts->channels[i];
+    if (channel->waveform != NULL ||
+        (channel->voltage_V.si != 0 && !isnan(channel->voltage_V.si))) {
+      return channel;
+    }
+  }
+  return NULL;
+}
+
+/* What lies between supply and film is known of one voltage only. */
+static dea_status check_sources(struct dea_context *ctx, const struct dea_design *design)
+{
+  const struct dea_parts_channel *own = asked(design) ? own_channel(design) : NULL;
+  const struct dea_quantity *R = &design->drive.series_resistance_ohm;
+  const struct dea_quantity *limit = &design->drive.current_limit_A;
+  const struct dea_quantity *which = R->si > 0 ? R : limit;
+  if (own == NULL || (!(R->si > 0) && limit->origin == DEA_ABSENT)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_ERROR, which->location,
+                         "%s: in time the channel '%.60s' has a %s of its own, and sources of "
+                         "several channels are ideal: without resistance and limit of the current",
+                         R->si > 0 ? "series_resistance" : "current_limit", own->name.text,
+                         own->waveform != NULL ? "waveform" : "voltage");
+}
+
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
 {
   const struct settings *settings = given->values;
-  if (design->drive.section == NULL && given->written) {
+  DEA_TRY(ctx, check_sources(ctx, design));
+  if (design->drive.section == NULL && !dea_parts_in_time(design->parts) && given->written) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, settings->until_s.location,
                                  "transient: without drive.waveform nothing happens in time"));
   }
@@ -126,13 +163,26 @@ static const struct settings *settings_of(const struct dea_design *design)
 
 enum { POINTS_MAX = 40000 }; // of a curve; beyond, every second point goes
 
+/* What a source plays. */
+struct source {
+  const struct dea_waveform *waveform; // NULL: none
+  struct dea_waveform *limited;        // the same as a slow source plays it; owned, NULL: as it is
+  double constant_V;                   // added to it
+};
+
 struct player {
   const struct dea_model_type *type;
   struct dea_model *model;
-  const struct dea_waveform *waveform;
+  /* Of the supply, [0], and of the channels of the layout, [source_count]; owned as what follows:
+   * whether a channel has one, and voltages at this time, at the end of a step, and the time of the
+   * next corner of each. */
+  struct source *sources;
+  size_t source_count;
+  bool *own, any_own;
+  double *now_V, *next_V, *corner_s;
   struct dea_curve *curve;
   double until_s, tolerance, longest_s, interval_s;
-  double time_s, source_V;
+  double time_s;
   double next_s;                 // length of the next step
   double last_V;                 // on the film
   struct dea_load_point pending; // the last one, if it is not kept yet
@@ -286,10 +336,66 @@ static dea_status stop(struct dea_context *ctx, struct player *p, dea_status sta
                   p->inertia ? "" : "; compute.transient.inertia: yes lets it move on");
 }
 
-/* The supply's voltage jumps here. */
-static dea_status jump(struct dea_context *ctx, struct player *p, double source_V)
+// Sources ----------------------------------------------------------------------------------------
+
+static const double rounding = 1e-14; // of the time: corners that are as close are one
+
+static const struct dea_waveform *played(const struct source *source)
 {
-  const struct dea_time_step step = {0, source_V};
+  return source->limited != NULL ? source->limited : source->waveform;
+}
+
+/* Voltages at a time into next_V; end: of a step there, before what jumps at it. */
+static void find_voltages(struct player *p, double time_s, bool end)
+{
+  for (size_t k = 0; k < p->source_count; k++) {
+    const struct source *source = &p->sources[k];
+    const struct dea_waveform *waveform = played(source);
+    bool before = end && p->corner_s[k] <= time_s * (1 + rounding);
+    p->next_V[k] = source->constant_V + (waveform == NULL ? 0
+                                         : before         ? dea_waveform_before(waveform, time_s)
+                                                          : dea_waveform_value(waveform, time_s));
+  }
+}
+
+/* Voltages at next_V, which a step has gone to. */
+static void take_voltages(struct player *p)
+{
+  memcpy(p->now_V, p->next_V, p->source_count * sizeof *p->now_V);
+}
+
+static bool voltages_jump(const struct player *p)
+{
+  bool any = false;
+  for (size_t k = 0; k < p->source_count; k++) {
+    any = any || p->next_V[k] != p->now_V[k];
+  }
+  return any;
+}
+
+/* The next corner of any source. */
+static double find_corner(struct player *p)
+{
+  double first_s = INFINITY;
+  for (size_t k = 0; k < p->source_count; k++) {
+    const struct dea_waveform *waveform = played(&p->sources[k]);
+    p->corner_s[k] = waveform != NULL ? dea_waveform_corner(waveform, p->time_s) : INFINITY;
+    first_s = fmin(first_s, p->corner_s[k]);
+  }
+  return first_s;
+}
+
+static struct dea_time_step step_of(const struct player *p, double length_s)
+{
+  return (struct dea_time_step){length_s, p->next_V[0], p->any_own ? p->next_V : NULL};
+}
+
+// Steps ------------------------------------------------------------------------------------------
+
+/* Sources jump to next_V here. */
+static dea_status jump(struct dea_context *ctx, struct player *p)
+{
+  const struct dea_time_step step = step_of(p, 0);
   struct dea_load_point point;
   double error;
   dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
@@ -297,7 +403,7 @@ static dea_status jump(struct dea_context *ctx, struct player *p, double source_
     return status == DEA_E_MEMORY ? status : stop(ctx, p, status);
   }
   p->type->accept(p->model);
-  p->source_V = source_V;
+  take_voltages(p);
   return keep(ctx, p, &point, true);
 }
 
@@ -310,16 +416,15 @@ static dea_status one_step(struct dea_context *ctx, struct player *p, double end
     double left = end - p->time_s, h = fmin(p->next_s, p->longest_s);
     bool last = h >= left * (1 - 1e-9);
     h = last ? left : fmin(h, fmax(0.5 * left, smallest)); // no last one that is much shorter
-    double source_V = last ? dea_waveform_before(p->waveform, end)
-                           : dea_waveform_value(p->waveform, p->time_s + h);
-    const struct dea_time_step step = {h, source_V};
+    find_voltages(p, last ? end : p->time_s + h, last);
+    const struct dea_time_step step = step_of(p, h);
     struct dea_load_point point;
     double error;
     dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
     if (status == DEA_OK && error <= p->tolerance) {
       p->type->accept(p->model);
       p->time_s = last ? end : p->time_s + h;
-      p->source_V = source_V;
+      take_voltages(p);
       double factor = 0.9 * cbrt(p->tolerance / fmax(error, 1e-30));
       p->next_s = fmax(p->next_s, h) * fmin(fmax(factor, 0.3), 3);
       return keep(ctx, p, &point, last);
@@ -352,13 +457,12 @@ static void tell(struct dea_context *ctx, struct player *p)
 
 static dea_status play(struct dea_context *ctx, struct player *p)
 {
-  static const double rounding = 1e-14; // of the time: corners that are as close are one
   while (p->time_s < p->until_s) {
-    double source_V = dea_waveform_value(p->waveform, p->time_s);
-    if (source_V != p->source_V) {
-      DEA_TRY(ctx, jump(ctx, p, source_V));
+    find_voltages(p, p->time_s, false);
+    if (voltages_jump(p)) {
+      DEA_TRY(ctx, jump(ctx, p));
     }
-    double end = fmin(dea_waveform_corner(p->waveform, p->time_s), p->until_s);
+    double end = fmin(find_corner(p), p->until_s);
     p->next_s = fmin(p->longest_s, 0.1 * (end - p->time_s));
     p->time_s = end - p->time_s <= rounding * end ? end : p->time_s;
     while (p->time_s < end) {
@@ -375,25 +479,74 @@ static dea_status play(struct dea_context *ctx, struct player *p)
   return DEA_OK;
 }
 
-/* Waveform of the supply, end and steps. limited: owned by the caller, may be NULL. */
-static dea_status prepare(struct dea_context *ctx, const struct dea_design *design,
-                          struct player *p, struct dea_waveform **limited)
+/* Room for the sources of a device. */
+static dea_status make_sources(struct dea_context *ctx, const struct dea_result *result,
+                               struct player *p)
 {
-  const struct dea_waveform *waveform = design->drive.waveform;
+  const struct dea_parts *parts = result->design->parts;
+  size_t count = parts != NULL ? result->device->layout->channel_count : 1;
+  p->sources = dea_alloc(ctx, count, sizeof *p->sources);
+  p->own = dea_alloc(ctx, count, sizeof *p->own);
+  p->now_V = dea_alloc(ctx, count, sizeof *p->now_V);
+  p->next_V = dea_alloc(ctx, count, sizeof *p->next_V);
+  p->corner_s = dea_alloc(ctx, count, sizeof *p->corner_s);
+  if (p->sources == NULL || p->own == NULL || p->now_V == NULL || p->next_V == NULL ||
+      p->corner_s == NULL) {
+    return DEA_E_MEMORY;
+  }
+  p->source_count = count;
+  p->sources[0].waveform = result->design->drive.waveform;
+  for (size_t i = 0; parts != NULL && i < parts->channel_count; i++) {
+    const struct dea_parts_channel *from = &parts->channels[i];
+    size_t k = dea_layout_find_channel(result->device->layout, from->name.text);
+    if (from->waveform != NULL && k < count) {
+      p->sources[k] = (struct source){.waveform = from->waveform, .constant_V = from->voltage_V.si};
+      p->now_V[k] = from->voltage_V.si; // before the start
+      p->own[k] = p->any_own = true;
+    }
+  }
+  return DEA_OK;
+}
+
+static void free_sources(struct dea_context *ctx, struct player *p)
+{
+  for (size_t k = 0; k < p->source_count; k++) {
+    dea_waveform_destroy(p->sources[k].limited);
+  }
+  dea_free(ctx, p->sources);
+  dea_free(ctx, p->own);
+  dea_free(ctx, p->now_V);
+  dea_free(ctx, p->next_V);
+  dea_free(ctx, p->corner_s);
+}
+
+/* Waveforms of the sources, end and steps. */
+static dea_status prepare(struct dea_context *ctx, const struct dea_design *design,
+                          struct player *p)
+{
   const struct dea_quantity *slew = &design->drive.slew_limit_V_per_s;
   const struct dea_quantity *longest = &settings_of(design)->longest_step_s;
   const struct dea_quantity *until = &settings_of(design)->until_s;
   struct dea_wave_cycle cycle;
-  p->waveform = waveform;
-  p->until_s = until->origin != DEA_ABSENT ? until->si : waveform->end_s;
-  if (slew->origin != DEA_ABSENT) {
-    DEA_TRY(ctx, dea_waveform_limit(ctx, waveform, slew->si, p->until_s, limited));
-    p->waveform = *limited != NULL ? *limited : waveform;
+  double end_s = 0, usual_s = INFINITY;
+  for (size_t k = 0; k < p->source_count; k++) {
+    const struct dea_waveform *waveform = p->sources[k].waveform;
+    if (waveform != NULL) {
+      end_s = fmax(end_s, waveform->end_s);
+      usual_s = fmin(usual_s, waveform->longest_step_s);
+      if (dea_waveform_cycle(waveform, 0, &cycle)) {
+        usual_s = fmin(usual_s, 0.05 * (cycle.end_s - cycle.start_s));
+      }
+    }
   }
-  double usual_s = fmin(waveform->longest_step_s, 0.02 * p->until_s);
-  if (dea_waveform_cycle(waveform, 0, &cycle)) {
-    usual_s = fmin(usual_s, 0.05 * (cycle.end_s - cycle.start_s));
+  p->until_s = until->origin != DEA_ABSENT ? until->si : end_s;
+  for (size_t k = 0; k < p->source_count && slew->origin != DEA_ABSENT; k++) {
+    if (p->sources[k].waveform != NULL) {
+      DEA_TRY(ctx, dea_waveform_limit(ctx, p->sources[k].waveform, slew->si, p->until_s,
+                                      &p->sources[k].limited));
+    }
   }
+  usual_s = fmin(usual_s, 0.02 * p->until_s);
   p->longest_s = longest->origin != DEA_ABSENT ? longest->si : usual_s;
   p->tolerance = settings_of(design)->tolerance.si;
   const struct dea_quantity *interval = &settings_of(design)->interval_s;
@@ -423,6 +576,7 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
   const struct dea_time_options options = {
       .circuit = {.series_resistance_ohm = design->drive.series_resistance_ohm.si,
                   .current_limit_A = limit->origin != DEA_ABSENT ? limit->si : INFINITY},
+      .own_sources = p->any_own ? p->own : NULL,
       .inertia = p->inertia,
       .rho_inf = settings_of(design)->rho_inf.si,
   };
@@ -457,7 +611,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 {
   (void)model; // none: this starts from rest
   struct player p = {.type = type, .inertia = settings_of(result->design)->inertia.value == 1};
-  struct dea_waveform *limited = NULL;
   if (type->advance == NULL) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                            "model %s knows no time: drive.waveform is without effect there",
@@ -466,9 +619,10 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient", type->name);
   dea_status status = make_room(ctx, result, &p);
+  status = status == DEA_OK ? make_sources(ctx, result, &p) : status;
   status = status == DEA_OK ? dea_model_create(ctx, type, result->design, result->device, &p.model)
                             : status;
-  status = status == DEA_OK ? prepare(ctx, result->design, &p, &limited) : status;
+  status = status == DEA_OK ? prepare(ctx, result->design, &p) : status;
   status = status == DEA_OK ? begin(ctx, result->design, &p) : status;
   status = status == DEA_OK ? play(ctx, &p) : status;
   dea_status flushed = flush(ctx, &p);
@@ -479,7 +633,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (p.model != NULL) {
     type->destroy(ctx, p.model);
   }
-  dea_waveform_destroy(limited);
+  free_sources(ctx, &p);
   DEA_TRY(ctx, dea_curve_end(ctx, p.curve, status));
   return DEA_OK;
 }
@@ -656,7 +810,7 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   }
   int column = dea_time_series_column(curve);
   DEA_TRY(ctx, put_facts(ctx, curve, column, model, result));
-  if (column < 0) {
+  if (column < 0 || result->design->drive.waveform == NULL) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_time_series_cycles(ctx, curve, result->design->drive.waveform, column, &cycles,
@@ -778,7 +932,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 {
   const struct dea_curve *curve = first_curve(result);
   double factor;
-  if (curve == NULL) {
+  if (curve == NULL || result->design->drive.waveform == NULL) { // the channels' figures show it
     return DEA_OK;
   }
   int column = motion_of(curve, &factor);
@@ -823,6 +977,9 @@ static dea_status build_force(struct dea_context *ctx, const struct dea_result *
 static dea_status build_current(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
+  if (result->design->drive.waveform == NULL) { // the channels' figure shows it
+    return DEA_OK;
+  }
   return build_one(ctx, result, plot, "current_A", "Current {/:Italic I} (\302\265A)");
 }
 
@@ -865,6 +1022,18 @@ static const struct dea_figure figures[] = {
         .build = dea_observe_turns_in_time,
     },
     {
+        .name = "history_voltages",
+        .study = study_name,
+        .caption = "voltages of the channels against time",
+        .build = dea_observe_voltages_in_time,
+    },
+    {
+        .name = "history_currents",
+        .study = study_name,
+        .caption = "currents of the channels' sources against time, means of the steps",
+        .build = dea_observe_currents_in_time,
+    },
+    {
         .name = "history_channels",
         .study = study_name,
         .caption = "charge on the channels against time",
@@ -874,16 +1043,11 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
-static bool asked(const struct dea_design *design)
-{
-  return design->drive.waveform != NULL;
-}
-
 const struct dea_study dea_study_transient = {
     .name = study_name,
     .keys = &section,
     .asked = asked,
-    .needs = "drive.waveform",
+    .needs = "drive.waveform or channels[].waveform",
     .own_models = true,
     .any_layout = true,
     .run = run,

@@ -795,7 +795,9 @@ static void add_channels(struct view *v)
     if (used == 0) {
       continue;
     }
-    if (c > 0 && channel->own_V != 0) {
+    if (channel->waveform != NULL) {
+      add_key(v, &style, "%.60s, a waveform of its own (%s)", channel->name, channel->waveform);
+    } else if (c > 0 && channel->own_V != 0) {
       add_key(v, &style, "%.60s, %.4g \303\227 voltage %+.4g V", channel->name, channel->ratio,
               channel->own_V);
     } else if (c > 0 && channel->ratio != 1) {

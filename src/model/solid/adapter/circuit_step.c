@@ -1,10 +1,12 @@
 #include "model/solid/adapter/circuit_step.h"
 
+#include "base/arena.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { VOLTAGES_MAX = 12 };
 static const double voltage_close = 1e-8;   // of the largest voltage
@@ -17,7 +19,19 @@ struct leap {
   double step_s, lost_J;
 };
 
+/* Charges of all channels of the grid, and what leaks between them. */
+struct network {
+  struct dea_solid_charged charged;
+  double *conductance_S; // [count][count]
+};
+
 struct dea_circuit_step {
+  struct dea_arena memory;              // of the next four lines
+  struct network network, network_next; // of driven.channels
+  double *own_V, *own_start_V;          // [channels] beside their shares
+  double *current_A;                    // [channels] of the last step, with all copies
+  bool *own_source;                     // [channels] of options
+  bool own;                             // any channel has a voltage of its own
   struct dea_driven_solid driven;
   struct dea_solid_time *time;
   struct dea_time_options options;
@@ -29,6 +43,7 @@ struct dea_circuit_step {
   struct dea_circuit_state circuit, circuit_next;
   double step_s, voltage_before_V, step_before_s; // of the step that is tried; before the last one
   double largest_m, largest_V, largest_J;         // so far
+  double charged_J;                               // charges times voltages after the last step
 };
 
 static double largest_motion(const struct dea_circuit_step *d)
@@ -74,21 +89,171 @@ static void find_leakage(struct dea_circuit_step *d)
   }
 }
 
+// Channels ---------------------------------------------------------------------------------------
+
+static size_t channel_count(const struct dea_circuit_step *d)
+{
+  return dea_solid_channel_count(d->driven.solid) + 1;
+}
+
+static bool any_of(const bool *flags, size_t count)
+{
+  bool any = false;
+  for (size_t k = 0; k < count && flags != NULL; k++) {
+    any = any || flags[k];
+  }
+  return any;
+}
+
+static dea_status allocate_network(struct dea_circuit_step *d)
+{
+  size_t count = channel_count(d);
+  struct network *const networks[] = {&d->network, &d->network_next};
+  for (size_t i = 0; i < 2; i++) {
+    struct dea_solid_charged *charged = &networks[i]->charged;
+    charged->count = count;
+    charged->voltage_V = dea_arena_alloc(&d->memory, count, sizeof(double));
+    charged->capacitance_F = dea_arena_alloc(&d->memory, count * count, sizeof(double));
+    networks[i]->conductance_S = dea_arena_alloc(&d->memory, count * count, sizeof(double));
+  }
+  d->own_V = dea_arena_alloc(&d->memory, count, sizeof *d->own_V);
+  d->own_start_V = dea_arena_alloc(&d->memory, count, sizeof *d->own_start_V);
+  d->current_A = dea_arena_alloc(&d->memory, count, sizeof *d->current_A);
+  d->own_source = dea_arena_alloc(&d->memory, count, sizeof *d->own_source);
+  return dea_arena_status(&d->memory);
+}
+
+/* Charges and conductances as they are now; tried: of the step that was closed. */
+static dea_status find_network(struct dea_context *ctx, struct dea_circuit_step *d, bool tried,
+                               struct network *out)
+{
+  struct dea_solid *solid = d->driven.solid;
+  size_t count = out->charged.count;
+  if (d->own) {
+    const struct dea_solid_charged *charged = dea_solid_time_charged(d->time, tried);
+    memcpy(out->charged.voltage_V, charged->voltage_V, count * sizeof(double));
+    memcpy(out->charged.capacitance_F, charged->capacitance_F, count * count * sizeof(double));
+  } else {
+    dea_solid_channel_voltages(solid, out->charged.voltage_V);
+    DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, out->charged.capacitance_F));
+  }
+  if (d->leaks_evenly) {
+    for (size_t i = 0; i < count * count; i++) {
+      out->conductance_S[i] = d->leakage_per_s * out->charged.capacitance_F[i];
+    }
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_solid_conductances(ctx, solid, d->driven.leakage_per_s, out->conductance_S));
+  return DEA_OK;
+}
+
+/* Row of a matrix of channels times their voltages. */
+static double row_times(const double *matrix, size_t row, const struct dea_solid_charged *at)
+{
+  double sum = 0;
+  for (size_t l = 0; l < at->count; l++) {
+    sum += matrix[row * at->count + l] * at->voltage_V[l];
+  }
+  return sum;
+}
+
+/* Charge that leaves a channel through the films in a step between the two networks. */
+static double leaked_C(const struct dea_circuit_step *d, size_t channel)
+{
+  return 0.5 * d->step_s *
+         (row_times(d->network.conductance_S, channel, &d->network.charged) +
+          row_times(d->network_next.conductance_S, channel, &d->network_next.charged));
+}
+
+/* Mean currents of the step between the two networks. */
+static void find_currents(struct dea_circuit_step *d)
+{
+  const struct network *from = &d->network, *to = &d->network_next;
+  for (size_t k = 0; k < to->charged.count; k++) {
+    double given = row_times(to->charged.capacitance_F, k, &to->charged) -
+                   row_times(from->charged.capacitance_F, k, &from->charged) + leaked_C(d, k);
+    d->current_A[k] = d->step_s > 0 ? d->driven.copies * given / d->step_s : 0;
+  }
+}
+
+/* Of the supply that channels without a source of their own share. */
+static double supply_share(const struct dea_circuit_step *d, size_t channel)
+{
+  return d->own_source[channel] ? 0 : d->driven.solid->problem.share[channel];
+}
+
+static double supply_charge_C(const struct dea_circuit_step *d, const struct network *at)
+{
+  double sum = 0;
+  for (size_t k = 0; k < at->charged.count; k++) {
+    sum += supply_share(d, k) * row_times(at->charged.capacitance_F, k, &at->charged);
+  }
+  return d->driven.copies * sum;
+}
+
+/* The step's account with an ideal source on each channel; charge and current of the state are
+ * those of the supply that the others share. */
+static void advance_network(struct dea_circuit_step *d, const struct dea_time_step *step)
+{
+  const struct network *from = &d->network, *to = &d->network_next;
+  struct dea_circuit_state *next = &d->circuit_next;
+  double copies = d->driven.copies, h = step->length_s;
+  *next = d->circuit;
+  next->source_voltage_V = next->voltage_V = step->source_voltage_V;
+  next->charge_C = supply_charge_C(d, to);
+  next->current_A = 0;
+  for (size_t k = 0; k < to->charged.count; k++) {
+    double V[2] = {from->charged.voltage_V[k], to->charged.voltage_V[k]};
+    next->current_A += supply_share(d, k) * d->current_A[k];
+    next->supply_work_J += copies * 0.5 * (V[0] + V[1]) * leaked_C(d, k);
+    next->leakage_loss_J += copies * 0.5 * h *
+                            (V[0] * row_times(from->conductance_S, k, &from->charged) +
+                             V[1] * row_times(to->conductance_S, k, &to->charged));
+  }
+  next->supply_work_J += h > 0 ? copies * dea_solid_sources_work(&from->charged, &to->charged) : 0;
+}
+
+/* Where the channels go in a step: those with a source of their own to its voltage. */
+static void drive_channels(struct dea_circuit_step *d, const struct dea_time_step *step)
+{
+  for (size_t k = 1; d->own && k < channel_count(d); k++) {
+    double share_V = d->driven.solid->problem.share[k] * step->source_voltage_V;
+    d->own_V[k] = d->own_source[k] ? step->own_V[k] - share_V : d->own_start_V[k];
+  }
+  if (d->own) {
+    dea_solid_time_drive(d->time, d->own_V);
+  }
+}
+
+// Creation ---------------------------------------------------------------------------------------
+
 static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
 {
   struct dea_solid *solid = d->driven.solid;
   double voltage_V = dea_solid_voltage(solid);
+  size_t count = channel_count(d);
+  bool own_sources = any_of(d->options.own_sources, count);
+  d->own = own_sources || dea_solid_has_own_voltages(solid);
   const struct dea_solid_time_options options = {.branches = d->driven.branches,
                                                  .inertia = d->options.inertia,
-                                                 .spectral_radius = d->options.rho_inf};
+                                                 .spectral_radius = d->options.rho_inf,
+                                                 .own_voltages = d->own};
   struct dea_circuit_film film = {.capacitance_F = 0};
-  if (dea_solid_has_own_voltages(solid)) {
+  if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || !d->driven.channels)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "a history in time is of channels that share the supply's voltage: none may "
-                    "have one of its own (channels[].voltage)");
+                    "channels with a voltage or a waveform of their own have ideal sources: no "
+                    "series resistance and no limit of the current is known of them");
   }
   find_leakage(d);
   DEA_TRY(ctx, dea_solid_time_create(ctx, solid, &options, &d->time));
+  if (d->driven.channels) {
+    DEA_TRY(ctx, dea_solid_agree(ctx, allocate_network(d)));
+    memcpy(d->own_start_V, solid->state.own_V, count * sizeof *d->own_V);
+    if (own_sources) {
+      memcpy(d->own_source, d->options.own_sources, count * sizeof *d->own_source);
+    }
+    DEA_TRY(ctx, find_network(ctx, d, false, &d->network));
+  }
   DEA_TRY(ctx, find_film(ctx, d, &film));
   d->circuit = (struct dea_circuit_state){.source_voltage_V = voltage_V,
                                           .voltage_V = voltage_V,
@@ -96,7 +261,13 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
                                           .current_A = film.conductance_S * voltage_V,
                                           .capacitance_F = film.capacitance_F,
                                           .conductance_S = film.conductance_S};
+  if (d->own) {
+    d->circuit.charge_C = supply_charge_C(d, &d->network);
+    d->circuit.current_A = 0; // a mean of no step
+  }
   d->circuit_next = d->circuit;
+  d->charged_J = d->own ? d->driven.copies * dea_solid_charged_energy(&d->network.charged)
+                        : d->circuit.charge_C * voltage_V;
   d->largest_m = smallest_motion * d->driven.thickness_m;
   d->largest_V = fabs(voltage_V);
   return DEA_OK;
@@ -111,6 +282,7 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_dri
   if (d == NULL) {
     return DEA_E_MEMORY;
   }
+  d->memory.ctx = ctx;
   d->driven = *driven;
   d->options = *time;
   dea_status status = prepare(ctx, d);
@@ -126,8 +298,18 @@ void dea_circuit_step_destroy(struct dea_context *ctx, struct dea_circuit_step *
 {
   if (d != NULL) {
     dea_solid_time_destroy(ctx, d->time);
+    dea_arena_free(&d->memory);
     dea_free(ctx, d);
   }
+}
+
+/* The step or jump to a voltage of the supply. */
+static dea_status try_step(struct dea_context *ctx, struct dea_circuit_step *d, double voltage_V,
+                           double length_s, struct dea_solid_report *report)
+{
+  DEA_TRY(ctx, length_s > 0 ? dea_solid_time_step(ctx, d->time, voltage_V, length_s, report)
+                            : dea_solid_time_jump(ctx, d->time, voltage_V, report));
+  return DEA_OK;
 }
 
 /* The step at the voltage that the circuit has with the film as it then is: fixed points and, from
@@ -142,11 +324,8 @@ static dea_status find_step(struct dea_context *ctx, struct dea_circuit_step *d,
                                     .conductance_S = d->circuit.conductance_S};
   double V = dea_circuit_voltage(circuit, &d->circuit, step, film, &slope);
   for (int i = 0; i < VOLTAGES_MAX; i++) {
-    dea_status status = i > 0 ? dea_solid_time_again(ctx, d->time, V, report)
-                        : step->length_s > 0
-                            ? dea_solid_time_step(ctx, d->time, V, step->length_s, report)
-                            : dea_solid_time_jump(ctx, d->time, V, report);
-    DEA_TRY(ctx, status);
+    DEA_TRY(ctx, i > 0 ? dea_solid_time_again(ctx, d->time, V, report)
+                       : try_step(ctx, d, V, step->length_s, report));
     DEA_TRY(ctx, find_film(ctx, d, film));
     double off = dea_circuit_voltage(circuit, &d->circuit, step, film, &slope) - V;
     if (fabs(off) <= voltage_close * fmax(d->largest_V, fabs(V))) {
@@ -229,6 +408,33 @@ static double find_error(struct dea_circuit_step *d, double error_m, double lost
   return error;
 }
 
+/* Charges, currents and works of the step that was closed; where they cannot be found the step is
+ * dropped. */
+static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step *d,
+                                const struct dea_time_step *step,
+                                const struct dea_circuit_film *film)
+{
+  if (d->driven.channels) {
+    dea_status status = find_network(ctx, d, true, &d->network_next);
+    if (status != DEA_OK) {
+      dea_solid_time_reject(d->time);
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+    find_currents(d);
+  }
+  if (d->own) {
+    advance_network(d, step);
+    d->charged_J = d->driven.copies * dea_solid_charged_energy(&d->network_next.charged);
+    return DEA_OK;
+  }
+  dea_circuit_advance(&d->options.circuit, &d->circuit, step, film, &d->circuit_next);
+  if (d->step_s > 0) {
+    refine_work(d);
+  }
+  d->charged_J = d->circuit_next.charge_C * d->circuit_next.voltage_V;
+  return DEA_OK;
+}
+
 dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_step *d,
                                     const struct dea_time_step *step,
                                     struct dea_solid_report *report, double *error)
@@ -236,14 +442,16 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
   struct dea_circuit_film film = {.capacitance_F = 0};
   double error_m;
   struct dea_solid_energies from = dea_solid_time_energies(d->time, false);
-  DEA_TRY(ctx, find_step(ctx, d, step, &film, report));
+  if (any_of(d->own_source, d->own ? channel_count(d) : 0) && step->own_V == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a step has to say the voltages of all sources");
+  }
+  drive_channels(d, step);
+  DEA_TRY(ctx, d->own ? try_step(ctx, d, step->source_voltage_V, step->length_s, report)
+                      : find_step(ctx, d, step, &film, report));
   DEA_TRY(ctx, dea_solid_time_close(ctx, d->time, &error_m));
   struct dea_solid_energies to = dea_solid_time_energies(d->time, true);
-  dea_circuit_advance(&d->options.circuit, &d->circuit, step, &film, &d->circuit_next);
   d->step_s = step->length_s;
-  if (d->step_s > 0) {
-    refine_work(d);
-  }
+  DEA_TRY(ctx, close_circuit(ctx, d, step, &film));
   d->time_next_s = d->time_s + d->step_s;
   if (d->step_s > 0) {
     *error = find_error(d, error_m, unaccounted(d, &from, &to), report);
@@ -265,6 +473,9 @@ void dea_circuit_step_accept(struct dea_circuit_step *d)
   d->step_before_s = d->step_s;
   d->voltage_before_V = d->circuit.voltage_V;
   d->circuit = d->circuit_next;
+  const struct network network = d->network;
+  d->network = d->network_next;
+  d->network_next = network;
   d->largest_V = fmax(d->largest_V, fabs(d->circuit.voltage_V));
   d->largest_J = fmax(d->largest_J, fabs(d->circuit.supply_work_J));
   d->time_s = d->time_next_s;
@@ -288,4 +499,17 @@ void dea_circuit_step_point(const struct dea_circuit_step *d, struct dea_load_po
       copies * e.dissipated + circuit->resistance_loss_J + circuit->leakage_loss_J;
   point->damped_J = copies * e.damped + d->lost_next_J;
   point->supply_work_J = circuit->supply_work_J;
+  if (d->own) { // of several voltages there is no one
+    point->capacitance_F = NAN;
+  }
+}
+
+double dea_circuit_step_charged_J(const struct dea_circuit_step *driven)
+{
+  return driven->charged_J;
+}
+
+const double *dea_circuit_step_currents_A(const struct dea_circuit_step *driven)
+{
+  return driven->current_A;
 }

@@ -868,6 +868,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   const struct dea_driven_solid driven = {.solid = model->solid,
                                           .branches = model->branches,
                                           .leakage_per_s = model->leakage_per_s,
+                                          .channels = true,
                                           .copies = model->copies,
                                           .thickness_m =
                                               model->layout->plies[model->film].thickness_m};
@@ -952,6 +953,9 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
   DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, out));
+  if (model->at.driven != NULL) {
+    dea_observer_set_currents(model->observer, dea_circuit_step_currents_A(model->at.driven));
+  }
   return DEA_OK;
 }
 

@@ -363,7 +363,7 @@ static dea_status observe_channels(struct dea_context *ctx, struct dea_observer 
   DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, capacitance));
   for (size_t k = 0; k < o->mesh->layout->channel_count; k++) {
     o->channel[k] = (struct dea_channel_values){voltage[k], copies * charge[k],
-                                                copies * capacitance[k * count + k]};
+                                                copies * capacitance[k * count + k], NAN};
   }
   return DEA_OK;
 }
@@ -410,6 +410,13 @@ dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *o,
                                   .body = (const double(*)[DEA_OBSERVED_COUNT])o->body,
                                   .channel = o->channel};
   return DEA_OK;
+}
+
+void dea_observer_set_currents(struct dea_observer *o, const double *current_A)
+{
+  for (size_t k = 0; k < o->mesh->layout->channel_count; k++) {
+    o->channel[k].current_A = current_A[k];
+  }
 }
 
 /* By a difference over a motion as small as rounding lets it be: most of them are linear. */

@@ -17,6 +17,9 @@ void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *observer
 dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *observer,
                              struct dea_solid *solid, struct dea_observation *out);
 
+/* Puts the currents of the channels' sources, [channels of the layout], into what was taken. */
+void dea_observer_set_currents(struct dea_observer *observer, const double *current_A);
+
 /* How much the monitors' motions change by a small motion v [3 node_count] from where the solid is,
  * out [monitor_count][DEA_OBSERVED_MOTIONS]; NAN as in an observation. The solid stays as it is. */
 dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *observer,

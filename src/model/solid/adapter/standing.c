@@ -291,7 +291,7 @@ static dea_status report_time(struct dea_context *ctx, struct dea_standing *stan
   DEA_TRY(ctx, owner->point(ctx, owner->model, standing->voltage_V, out));
   dea_circuit_step_point(standing->driven, out);
   out->stored_energy_J += standing->stored_J;
-  out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
+  out->energy_J = out->stored_energy_J - dea_circuit_step_charged_J(standing->driven);
   return DEA_OK;
 }
 
@@ -302,8 +302,8 @@ dea_status dea_standing_begin(struct dea_context *ctx, struct dea_standing *stan
   const struct dea_ending_owner *owner = &standing->ending.owner;
   dea_standing_end_history(ctx, standing);
   DEA_TRY(ctx, owner->point(ctx, owner->model, standing->voltage_V, out));
-  standing->stored_J = out->energy_J + out->capacitance_F * out->voltage_V * out->voltage_V;
   DEA_TRY(ctx, dea_circuit_step_create(ctx, driven, time, &standing->driven));
+  standing->stored_J = out->energy_J + dea_circuit_step_charged_J(standing->driven);
   DEA_TRY(ctx, report_time(ctx, standing, out));
   return DEA_OK;
 }

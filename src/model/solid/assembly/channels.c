@@ -106,7 +106,17 @@ struct sums {
   double *capacitance_F; // [channels][channels]
   const double *per_s;   // [constituents] conductance over capacitance
   double *conductance_S;
+  double *conductances_S; // [channels][channels]
 };
+
+/* Adds what lies between two channels to a matrix [count][count] of theirs. */
+static void add_between(double value, size_t top, size_t bottom, size_t count, double *matrix)
+{
+  matrix[top * count + top] += value;
+  matrix[bottom * count + bottom] += value;
+  matrix[top * count + bottom] -= value;
+  matrix[bottom * count + top] -= value;
+}
 
 static void add_element(const struct dea_solid *s, size_t e, double C, const struct sums *sums)
 {
@@ -119,14 +129,14 @@ static void add_element(const struct dea_solid *s, size_t e, double C, const str
     sums->charge_C[bottom] -= charge;
   }
   if (sums->capacitance_F != NULL) {
-    sums->capacitance_F[top * count + top] += C;
-    sums->capacitance_F[bottom * count + bottom] += C;
-    sums->capacitance_F[top * count + bottom] -= C;
-    sums->capacitance_F[bottom * count + top] -= C;
+    add_between(C, top, bottom, count, sums->capacitance_F);
   }
   if (sums->conductance_S != NULL) {
     double share = p->share[top] - p->share[bottom];
     *sums->conductance_S += share * share * sums->per_s[p->constituent_of[e]] * C;
+  }
+  if (sums->conductances_S != NULL) {
+    add_between(sums->per_s[p->constituent_of[e]] * C, top, bottom, count, sums->conductances_S);
   }
 }
 
@@ -167,6 +177,18 @@ dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, c
   const struct sums sums = {.per_s = per_s, .conductance_S = conductance_S};
   DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &sums)));
   dea_solid_sum(conductance_S, 1);
+  return DEA_OK;
+}
+
+dea_status dea_solid_conductances(struct dea_context *ctx, struct dea_solid *s, const double *per_s,
+                                  double *conductance_S)
+{
+  size_t count = s->problem.channel_count + 1;
+  memset(conductance_S, 0, count * count * sizeof *conductance_S);
+  DEA_TRY(ctx, refuse_coupled(ctx, s));
+  const struct sums sums = {.per_s = per_s, .conductances_S = conductance_S};
+  DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &sums)));
+  dea_solid_sum(conductance_S, count * count);
   return DEA_OK;
 }
 

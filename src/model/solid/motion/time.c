@@ -3,6 +3,7 @@
 #include "model/alpha.h"
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/incompressible.h"
@@ -33,6 +34,9 @@ struct dea_solid_time {
   struct dea_solid_energies sums, sums_next;
   double first_J; // stored energy at the start
   double capacitance_F, capacitance_next_F;
+  bool own, driven;            // channels have voltages of their own; own_first_V is filled
+  double *own_V, *own_first_V; // [charged.count] that are gone to; goals at the start
+  struct dea_solid_charged charged, charged_next;
 };
 
 /* ---- forces and stored energy at a state ---- */
@@ -86,20 +90,32 @@ static dea_status constrain_at_end(struct dea_context *ctx, struct dea_solid_tim
   return DEA_OK;
 }
 
-/* Elastic and electric energy and that of loads, and capacitance, without what steps add. */
+static dea_status find_charged(struct dea_context *ctx, struct dea_solid *s,
+                               struct dea_solid_charged *out)
+{
+  dea_solid_channel_voltages(s, out->voltage_V);
+  return dea_solid_capacitances(ctx, s, true, out->capacitance_F);
+}
+
+/* Elastic and electric energy and that of loads, without what steps add, and capacitance or, with
+ * own voltages, what is charged. */
 static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t, double *stored,
-                              double *capacitance_F)
+                              double *capacitance_F, struct dea_solid_charged *charged)
 {
   struct dea_solid *s = t->solid;
   double potential = 0, capacitance = 0;
   s->state.internal_variables = NULL;
   dea_status status = dea_solid_energy(s, s->state.u, s->state.voltage_V, &potential);
   if (status == DEA_OK) {
-    status = dea_solid_capacitance(ctx, s, &capacitance);
+    status = t->own ? find_charged(ctx, s, charged) : dea_solid_capacitance(ctx, s, &capacitance);
   }
   s->state.internal_variables = t->variables;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
+  }
+  if (t->own) {
+    *stored = potential + dea_solid_charged_energy(charged);
+    return DEA_OK;
   }
   *capacitance_F = isnan(capacitance) ? 0 : capacitance; // NAN: no electrodes
   *stored = potential + *capacitance_F * s->state.voltage_V * s->state.voltage_V;
@@ -126,6 +142,17 @@ static dea_status allocate_time(struct dea_solid_time *t)
   for (size_t i = 0; i < sizeof memory / sizeof memory[0]; i++) {
     *memory[i] = dea_arena_alloc(&t->memory, t->count, sizeof(double));
   }
+  if (t->own) {
+    size_t channels = t->solid->problem.channel_count + 1;
+    struct dea_solid_charged *const charged[] = {&t->charged, &t->charged_next};
+    t->own_V = dea_arena_alloc(&t->memory, channels, sizeof(double));
+    t->own_first_V = dea_arena_alloc(&t->memory, channels, sizeof(double));
+    for (size_t i = 0; i < 2; i++) {
+      charged[i]->count = channels;
+      charged[i]->voltage_V = dea_arena_alloc(&t->memory, channels, sizeof(double));
+      charged[i]->capacitance_F = dea_arena_alloc(&t->memory, channels * channels, sizeof(double));
+    }
+  }
   return dea_arena_status(&t->memory);
 }
 
@@ -134,6 +161,11 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
 {
   struct dea_solid *s = t->solid;
   DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(t)));
+  if (t->own) {
+    memcpy(t->own_V, s->state.own_goal_V, t->charged.count * sizeof *t->own_V);
+    memcpy(t->own_first_V, s->state.own_goal_V, t->charged.count * sizeof *t->own_V);
+    t->driven = true;
+  }
   if (options->branches != NULL) {
     DEA_TRY(ctx, dea_internal_variables_create(ctx, s, options->branches, &t->variables));
     dea_internal_variables_begin(t->variables, s, 0);
@@ -144,7 +176,7 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
   }
   memcpy(t->first, s->state.u, t->count * sizeof *t->first);
   DEA_TRY(ctx, find_forces(ctx, t, t->F));
-  DEA_TRY(ctx, find_stored(ctx, t, &t->first_J, &t->capacitance_F));
+  DEA_TRY(ctx, find_stored(ctx, t, &t->first_J, &t->capacitance_F, &t->charged));
   return DEA_OK;
 }
 
@@ -163,6 +195,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   t->memory.ctx = ctx;
   t->solid = solid;
   t->inertial = options->inertia;
+  t->own = options->own_voltages;
   t->alpha = dea_alpha_of(options->spectral_radius);
   t->count = 3 * solid->problem.grid->node_count;
   t->stay = solid->settings.accept_unstable;
@@ -195,6 +228,9 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   if (t->open) {
     return_to_accepted(t);
   }
+  if (t->driven) {
+    memcpy(t->solid->state.own_goal_V, t->own_first_V, t->charged.count * sizeof *t->own_V);
+  }
   t->solid->state.internal_variables = NULL;
   t->solid->state.inertia = NULL;
   t->solid->settings.accept_unstable = t->stay;
@@ -209,6 +245,11 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
 double *dea_solid_velocity(struct dea_solid_time *time)
 {
   return time->v;
+}
+
+void dea_solid_time_drive(struct dea_solid_time *time, const double *own_V)
+{
+  memcpy(time->own_V, own_V, time->charged.count * sizeof *own_V);
 }
 
 /* ---- steps ---- */
@@ -274,12 +315,16 @@ static dea_status set_inertia(struct dea_context *ctx, struct dea_solid_time *t,
   return DEA_OK;
 }
 
-/* The minimum of the potential that has been set up; the solid as it was when there is none. */
+/* The minimum of the potential that has been set up; the solid as it was when there is none. own_V:
+ * of the channels, where they have voltages of their own. */
 static dea_status solve_step(struct dea_context *ctx, struct dea_solid_time *t, double voltage_V,
-                             struct dea_solid_report *report)
+                             const double *own_V, struct dea_solid_report *report)
 {
   struct dea_solid *s = t->solid;
   follow_stiffness(t);
+  if (t->own) {
+    memcpy(s->state.own_goal_V, own_V, t->charged.count * sizeof *own_V);
+  }
   s->state.inertia = t->inertial ? &t->inertia : NULL;
   dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
   s->state.inertia = NULL;
@@ -305,7 +350,7 @@ static dea_status find_acceleration(struct dea_context *ctx, struct dea_solid_ti
     inertia->constant[i] = 0;
   }
   s->found.factor_fits = false;
-  DEA_TRY(ctx, solve_step(ctx, t, s->state.voltage_V, report));
+  DEA_TRY(ctx, solve_step(ctx, t, s->state.voltage_V, s->state.own_V, report));
   for (size_t i = 0; i < t->count; i++) {
     t->a[i] = (s->state.u[i] - inertia->around[i]) / (h * h);
   }
@@ -338,7 +383,7 @@ dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *t
   s->found.factor_fits =
       s->found.factor_fits && fabs(log(h / t->step_s)) < 0.5; // at first t->step_s is 0
   t->step_s = h;
-  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
+  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
   return DEA_OK;
 }
 
@@ -348,7 +393,7 @@ dea_status dea_solid_time_again(struct dea_context *ctx, struct dea_solid_time *
   if (t->inertial && !(t->step_s > 0)) {
     return dea_solid_time_jump(ctx, t, voltage_V, report);
   }
-  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
+  DEA_TRY(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
   return DEA_OK;
 }
 
@@ -367,6 +412,34 @@ double dea_solid_source_work(const double voltage_V[2], const double capacitance
   const double square[2] = {voltage_V[0] * voltage_V[0], voltage_V[1] * voltage_V[1]};
   return capacitance_F[1] * square[1] - capacitance_F[0] * square[0] -
          0.25 * (capacitance_F[0] + capacitance_F[1]) * (square[1] - square[0]);
+}
+
+/* Q.V at the end less Q.V at the start, less the integral of Q dV, which is half that of dV C V: C
+ * is symmetric, and nearly straight along the step. */
+double dea_solid_sources_work(const struct dea_solid_charged *from,
+                              const struct dea_solid_charged *to)
+{
+  const struct dea_solid_charged of_first = {from->count, to->voltage_V, from->capacitance_F};
+  const struct dea_solid_charged of_last = {from->count, from->voltage_V, to->capacitance_F};
+  double first = dea_solid_charged_energy(from), last = dea_solid_charged_energy(to);
+  return last - first -
+         0.25 * (dea_solid_charged_energy(&of_first) - first + last -
+                 dea_solid_charged_energy(&of_last));
+}
+
+double dea_solid_charged_energy(const struct dea_solid_charged *at)
+{
+  double sum = 0;
+  for (size_t i = 0; i < at->count * at->count; i++) {
+    sum += at->voltage_V[i / at->count] * at->capacitance_F[i] * at->voltage_V[i % at->count];
+  }
+  return sum;
+}
+
+const struct dea_solid_charged *dea_solid_time_charged(const struct dea_solid_time *time,
+                                                       bool tried)
+{
+  return tried ? &time->charged_next : &time->charged;
 }
 
 static double half_square(const double *v, const double *momentum, size_t count)
@@ -389,10 +462,11 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   if (t->variables != NULL) {
     DEA_TRY(ctx, dea_internal_variables_close(ctx, t->variables, s, &branches));
   }
-  DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F));
+  DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F, &t->charged_next));
   const double voltage_V[2] = {t->controls[0], s->state.voltage_V};
   const double capacitance_F[2] = {t->capacitance_F, t->capacitance_next_F};
-  sums->supply += dea_solid_source_work(voltage_V, capacitance_F);
+  sums->supply += t->own ? dea_solid_sources_work(&t->charged, &t->charged_next)
+                         : dea_solid_source_work(voltage_V, capacitance_F);
   sums->stored = stored - t->first_J;
   sums->branches = branches.stored;
   sums->dissipated += branches.dissipated;
@@ -496,6 +570,8 @@ void dea_solid_time_accept(struct dea_solid_time *t)
   t->start = t->start_next;
   t->open = false;
   t->capacitance_F = t->capacitance_next_F;
+  swap_arrays(&t->charged.voltage_V, &t->charged_next.voltage_V);
+  swap_arrays(&t->charged.capacitance_F, &t->charged_next.capacitance_F);
 }
 
 /* ---- jumps ---- */
@@ -515,9 +591,12 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
     memcpy(t->v_next, t->v, t->count * sizeof *t->v);
     memcpy(t->a_next, t->a, t->count * sizeof *t->a);
     s->state.voltage_V = voltage_V;
+    if (t->own) {
+      memcpy(s->state.own_V, t->own_V, t->charged.count * sizeof *t->own_V);
+    }
     DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
   } else {
-    DEA_TRY(ctx, solve_step(ctx, t, voltage_V, report));
+    DEA_TRY(ctx, solve_step(ctx, t, voltage_V, t->own_V, report));
   }
   return DEA_OK;
 }

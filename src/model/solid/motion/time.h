@@ -19,6 +19,16 @@ struct dea_solid_time_options {
   /* Of the steps with inertia for what they cannot resolve, 0 to 1: 1 damps nothing, 0 takes it
    * away in one step. */
   double spectral_radius;
+  /* Channels have voltages of their own, which `dea_solid_time_drive` says; otherwise none may. Not
+   * for a coupled field. */
+  bool own_voltages;
+};
+
+/* Voltages of all channels and their capacitances, the film held; charges are their product. */
+struct dea_solid_charged {
+  size_t count;          // of channels, with ground
+  double *voltage_V;     // [count]
+  double *capacitance_F; // [count][count]
 };
 
 /* Of the grid, not of its copies [J]; sums are from the creation on. */
@@ -41,6 +51,10 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *time
 
 /* Velocities [node_count][3], lent; they may be written before the start. */
 double *dea_solid_velocity(struct dea_solid_time *time);
+
+/* Voltages of the channels beside their shares, [channel_count + 1], at the end of the steps and
+ * jumps that follow; at first those of the start, to which solves go again afterwards. */
+void dea_solid_time_drive(struct dea_solid_time *time, const double *own_V);
 
 /* Tries a step to a voltage. A step that fails leaves the accepted state. */
 dea_status dea_solid_time_step(struct dea_context *ctx, struct dea_solid_time *time,
@@ -66,6 +80,15 @@ struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *t
 /* Work of a source, the integral of V dQ, on a film whose voltage and capacitance go from [0] to
  * [1]. */
 double dea_solid_source_work(const double voltage_V[2], const double capacitance_F[2]);
+
+/* The same of a source on each channel; any two states of the same channels. */
+double dea_solid_sources_work(const struct dea_solid_charged *from,
+                              const struct dea_solid_charged *to);
+/* Sum of charges times voltages [J]. */
+double dea_solid_charged_energy(const struct dea_solid_charged *at);
+/* With own voltages: of the step that was closed last, or at the accepted state; lent. */
+const struct dea_solid_charged *dea_solid_time_charged(const struct dea_solid_time *time,
+                                                       bool tried);
 
 /* Largest component of a displacement from where the solid was at the start [m]. */
 double dea_solid_time_motion(const struct dea_solid_time *time);
