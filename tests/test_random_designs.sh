@@ -1,8 +1,13 @@
 #!/bin/sh
 # ctest: solid
 # Twenty random designs on a coarse mesh: what cannot be computed is said to be what it is. The share
-# of "ours" is that of the day on which the test was written, and may only fall.
+# of "ours" is that of the day on which the test was written, and may only fall. And one on its own
+# (29: a coupled field on a film without pre-stretch, which wrinkles) that was called "ours" once.
 set -eu
 command -v python3 >/dev/null || exit 77
-exec python3 "$1/verify/random_designs.py" "$DEA_COMMAND" --count 20 --coarse --seconds 100 \
-  --share 0.16
+run() {
+  python3 "$source/verify/random_designs.py" "$DEA_COMMAND" --coarse --seconds 100 "$@"
+}
+source=$1
+run --count 20 --share 0.11
+run --first 29 --count 1 --share 0

@@ -114,6 +114,15 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
   return DEA_OK;
 }
 
+dea_status dea_actuator_lay_electrodes(struct dea_actuator *actuator, double share)
+{
+  struct dea_constituent *electrode = &actuator->constituents[DEA_CONSTITUENT_ELECTRODE];
+  double stretch = 1 + share * (actuator->device->pre_stretch - 1);
+  electrode->pre_stretch[0] = electrode->pre_stretch[1] = stretch;
+  electrode->pre_stretch[2] = 1 / (stretch * stretch);
+  return dea_constituent_relax(electrode);
+}
+
 int dea_actuator_constituent(const void *self, int region, int ply)
 {
   const struct dea_actuator *a = self;

@@ -32,6 +32,10 @@ dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_de
 dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device *device,
                                const struct dea_model_settings *settings, struct dea_actuator *out);
 
+/* Electrodes that were laid on the film when it had a share of its pre-stretch: at 0 they have no
+ * stress where it lies flat, at 1 they are those of the device. Fails where their law ends. */
+dea_status dea_actuator_lay_electrodes(struct dea_actuator *actuator, double share);
+
 /* Before anything that takes the constituents' densities: DEA_E_DESIGN where that of film or fibres
  * is unknown, a note where that of electrodes or glue is and the film's is taken. */
 dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_actuator *actuator);

@@ -127,7 +127,8 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
         stretch, stop->kind == DEA_STOP_LIMIT ? "beyond it" : "the film thins in one place, and",
         1e-3 * voltage_V);
   }
-  if (e->limited || (stop->kind == DEA_STOP_UNSTABLE && !is_taut(e))) {
+  bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
+  if (e->limited || (unsettled && !is_taut(e))) {
     return fail_slack(ctx, e, voltage_V, stop);
   }
   if (status == DEA_E_INVERTED) {

@@ -372,7 +372,7 @@ static dea_status search_back(struct dea_context *ctx, struct search *a, bool le
   a->goal = now->controls;
   if (status == DEA_OK) {
     dea_solid_stand_again(a->s, from);
-    status = search_path(ctx, a);
+    status = a->s->problem.field == NULL ? search_path(ctx, a) : DEA_OK;
   }
   if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && (a->stuck || leapt)) {
     status = find_leap(ctx, a, from->controls, now);
@@ -397,7 +397,7 @@ dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *s,
   struct dea_solid_stand now;
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_status status = dea_solid_stand_keep(ctx, s, &now);
-  if (status == DEA_OK && s->problem.field == NULL) {
+  if (status == DEA_OK) {
     status = search_back(ctx, &a, leapt, from, &now);
     dea_solid_stand_again(s, &now);
   }
