@@ -39,7 +39,7 @@ static void test_bluehill(void **state)
                           "\"0.300\",\"0.501\",\"0.0702\",\"0.0070\"\r\n",
                           "dea-import: 1\ntime: Time\ncolumns:\n"
                           "  - {column: Extension, as: displacement}\n"
-                          "  - {column: Load, as: force}\nignore: [Tensile*]\n"),
+                          "  - {column: Load, as: force}\nignore: [\"*sile s*ess\"]\n"),
               "Extension", "Load");
 }
 

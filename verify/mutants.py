@@ -29,12 +29,15 @@ OWN_TESTS = [
     ("src/model/solid/recovery/", "solid_recover"),
     ("src/material/law_", "material_law"),
     ("src/waveform/", "waveform"),
+    ("src/material/catalogue", "catalogue"),
     ("src/material/", "material_point material_plane material_law"),
     ("src/geometry/", "geometry_region geometry_boolean geometry_symmetry geometry_drawing"),
     ("src/lab/drive/arc_watch.c", "lab_drive_output"),
     ("src/lab/drive/drive_watch.c", "lab_drive_output lab_drive"),
     ("src/lab/drive/drive_output.c", "lab_drive_output"),
+    ("src/lab/protocol/export.c", "lab_export"),
     ("src/lab/protocol/", "lab_checks lab_protocol"),
+    ("src/lab/import/import_mat.c", "lab_mat"),
     ("src/lab/import/", "lab_import lab_import_odd lab_import_frames lab_import_mapping "
                         "lab_import_lvm lab_import_tdms"),
     ("src/base/dense.c", "dense"),
@@ -67,6 +70,8 @@ SAME = [
     ("l > 1 ? l : 1", "l > 2", "a search from further below for the same root"),
     ("stress = 0, slope", "stress = 1", "the stress of a step is looked at before"),
     ("fabs(off) <= limit", "fabs(off) < limit", "a point that is off by the limit to the last digit"),
+    ("(a->number > b->number)", "(a->number >= b->number)", "no two have one number"),
+    ("field.length < 40", "< 41", "how many letters of a name a message has"),
 ]
 
 SWAPS = {"<=": ["<", ">="], ">=": [">", "<="], "==": ["!="], "!=": ["=="], "&&": ["||"],
