@@ -70,7 +70,7 @@ static const struct dea_field fields[] = {
      .min = 1,
      .max = 6,
      .default_text = "1",
-     .doc = "fineness of the mesh: 1 is within about 1 % at a fibre tip, each one more halves all "
+     .doc = "fineness of the mesh: 1 is within 1 to 3 % at a fibre tip, each one more halves all "
             "sizes in the plane",
      .example = "1.5"},
     {.key = "adapt",
