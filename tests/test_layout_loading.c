@@ -194,6 +194,13 @@ static void test_bistable(void **state)
   double peak = dea_result_table_number(r.lines, 0, "peak_force_N", 0);
   double peak_at = dea_result_table_number(r.lines, 0, "peak_shift_m", 0);
   assert_true(peak > point(&r, 3, "force_N") && peak < 0.32 && peak_at > 1e-3 && peak_at < 2e-3);
+  double least = dea_result_table_number(r.lines, 0, "least_force_N", 0);
+  double least_at = dea_result_table_number(r.lines, 0, "least_shift_m", 0);
+  assert_true(least_at > 3e-3 && least_at < 5e-3);
+  assert_close(least, point(&r, 8, "force_N"), 0, 0.01); // of the row nearest to it
+  for (size_t i = 4; i < 13; i++) {
+    assert_true(point(&r, i, "force_N") > least - 1e-3);
+  }
   dea_result_destroy(ctx, r.result);
   dea_design_destroy(ctx, r.design);
   r = run(device,
@@ -207,6 +214,20 @@ static void test_bistable(void **state)
     assert_close(point(&r, i, "unstable_modes"), 0, 0, 0);
   }
   assert_non_null(find_finding(ctx, DEA_NOTE, "leaps from"));
+  assert_true(isnan(dea_result_table_number(r.lines, 0, "least_force_N", 0)));
+  dea_result_destroy(ctx, r.result);
+  dea_design_destroy(ctx, r.design);
+  r = run(device,
+          "{body: hub, force_from: 0 mN, force_to: 360 mN, steps: 18, back: yes, voltage: [3 kV]}",
+          DEA_OK);
+  assert_int_equal(r.points->row_count, 37);
+  for (size_t i = 18; i < 37; i++) { // and leaps back below the minimum
+    double force = point(&r, i, "force_N"), shift = point(&r, i, "shift_m");
+    assert_true(fabs(force - least) < 5e-3 || (force > least ? shift > 3e-3 : shift < peak_at));
+  }
+  // located on the path, where the curve above has parabolas through steps of 0.5 mm
+  assert_close(dea_result_table_number(r.lines, 0, "peak_force_N", 0), peak, 0.01, 0);
+  assert_close(dea_result_table_number(r.lines, 0, "least_force_N", 0), least, 0.03, 0);
   end(&r, device);
 }
 

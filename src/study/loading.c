@@ -264,6 +264,9 @@ static const struct dea_result_column line_columns[] = {
     DEA_NUMBER_COLUMN("peak_force_N", "N", "mN", 1e3, "peak force",
                       "first maximum of the force on the way: a weight above it snaps through"),
     DEA_NUMBER_COLUMN("peak_shift_m", "m", "mm", 1e3, "at shift", "shift of that maximum"),
+    DEA_NUMBER_COLUMN("least_force_N", "N", "mN", 1e3, "least force",
+                      "first minimum of the force beyond it: a weight below it snaps back"),
+    DEA_NUMBER_COLUMN("least_shift_m", "m", "mm", 1e3, "at shift", "shift of that minimum"),
     {.key = "points", .kind = DEA_CELL_COUNT, .title = "points", .meaning = "of the line"},
     {.key = "complete",
      .kind = DEA_CELL_FLAG,
@@ -320,7 +323,8 @@ struct loading {
   double voltage_V, blocked[2]; // force or moment at rest and at the voltage
   double x[3], f[3];            // the last places and forces, the newest first
   size_t count;
-  double peak_at, peak; // NAN: none so far
+  double peak_at, peak;   // NAN: none so far
+  double least_at, least; // the same of the minimum beyond it
 };
 
 static double value_at(const struct loading *l, size_t i)
@@ -351,7 +355,8 @@ static void look_at_body(const struct loading *l, const struct dea_observation *
   }
 }
 
-/* A maximum of the force on the way out, by a parabola, and a leap of a body that is pushed. */
+/* A maximum of the force on the way out and the minimum beyond it, by parabolas, and a leap of a
+ * body that is pushed. */
 static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, double x, double f)
 {
   memmove(l->x + 1, l->x, 2 * sizeof *l->x);
@@ -363,11 +368,13 @@ static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, d
   }
   double step[2] = {l->x[1] - l->x[2], l->x[0] - l->x[1]};
   double slope[2] = {(l->f[1] - l->f[2]) / step[0], (l->f[0] - l->f[1]) / step[1]};
-  if (l->range == SHIFT && !back && isnan(l->peak) && slope[0] > 0 && slope[1] < 0) {
+  bool highest = isnan(l->peak) && slope[0] > 0 && slope[1] < 0;
+  bool lowest = !isnan(l->peak) && isnan(l->least) && slope[0] < 0 && slope[1] > 0;
+  if (l->range == SHIFT && !back && (highest || lowest)) {
     double bend = (slope[1] - slope[0]) / (step[0] + step[1]);
     double rise = slope[0] + bend * step[0]; // at the middle one
-    l->peak_at = l->x[1] - 0.5 * rise / bend;
-    l->peak = l->f[1] - 0.25 * rise * rise / bend;
+    *(highest ? &l->peak_at : &l->least_at) = l->x[1] - 0.5 * rise / bend;
+    *(highest ? &l->peak : &l->least) = l->f[1] - 0.25 * rise * rise / bend;
   }
   if (l->range == FORCE && fabs(step[1]) > 5 * fabs(step[0]) && step[0] != 0) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
@@ -408,8 +415,9 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
   look_at_body(l, &seen, value, v);
   const struct dea_event *passed = l->type->passed != NULL ? l->type->passed(l->model) : NULL;
-  if (passed != NULL && l->range == FORCE && isnan(l->peak) && !back) {
-    l->peak = passed->point.force_N;
+  double *limit = back ? &l->least : &l->peak;
+  if (passed != NULL && l->range == FORCE && isnan(*limit)) {
+    *limit = passed->point.force_N;
   }
   l->point++;
   const struct dea_result_table_value row[] = {
@@ -485,7 +493,8 @@ static dea_status follow(struct dea_context *ctx, struct loading *l, double volt
   char why[256] = "";
   l->model = NULL;
   l->voltage_V = voltage_V;
-  l->blocked[0] = l->blocked[1] = l->peak = l->peak_at = NAN;
+  l->blocked[0] = l->blocked[1] = NAN;
+  l->peak = l->peak_at = l->least = l->least_at = NAN;
   l->count = 0;
   dea_status stopped = go(ctx, l);
   if (l->model != NULL) {
@@ -500,6 +509,8 @@ static dea_status follow(struct dea_context *ctx, struct loading *l, double volt
                                                {.number = l->range == TURN ? blocked : NAN},
                                                {.number = l->peak},
                                                {.number = l->peak_at},
+                                               {.number = l->least},
+                                               {.number = l->least_at},
                                                {.number = (double)(l->point - before)},
                                                {.number = stopped == DEA_OK},
                                                {.text = why}};
