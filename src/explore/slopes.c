@@ -85,7 +85,7 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   int columns[DEA_EXPLORE_QUANTITIES_MAX];
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
   const size_t count = wanted_columns(question, held, quantity, columns);
-  const struct dea_gradient_ask ask = {sides->changes, sides->count, columns, count};
+  const struct dea_gradient_ask ask = {sides->changes, sides->count, columns, count, NULL, 0};
   if (count == 0) {
     return DEA_OK;
   }

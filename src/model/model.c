@@ -98,7 +98,8 @@ dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_typ
   return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
 }
 
-/* Quantities of a device at a voltage, out [column_count]; NAN without an equilibrium there. */
+/* Quantities of a device at a voltage, out [dea_gradient_width]; NAN without an equilibrium there,
+ * and of monitors, which no model without a gradient of its own has. */
 static dea_status answer(struct dea_context *ctx, const struct dea_model_type *type,
                          const struct dea_model_settings *settings, const struct dea_device *device,
                          double voltage_V, const struct dea_gradient_ask *ask, double *out)
@@ -115,6 +116,9 @@ static dea_status answer(struct dea_context *ctx, const struct dea_model_type *t
   for (size_t i = 0; i < ask->column_count; i++) {
     out[i] = status == DEA_OK ? dea_point_get(&point, ask->columns[i]) : NAN;
   }
+  for (size_t i = 0; i < ask->monitor_count; i++) {
+    out[ask->column_count + i] = NAN;
+  }
   if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
@@ -129,16 +133,17 @@ static dea_status difference(struct dea_context *ctx, const struct dea_model_typ
                              const struct dea_model_settings *settings,
                              const struct dea_gradient_ask *ask, double *out)
 {
-  double *sides = dea_alloc(ctx, 2 * ask->column_count, sizeof *sides);
+  const size_t width = dea_gradient_width(ask);
+  double *sides = dea_alloc(ctx, 2 * width, sizeof *sides);
   dea_status status = sides != NULL ? DEA_OK : DEA_E_MEMORY;
   for (size_t c = 0; c < ask->change_count && status == DEA_OK; c++) {
     const struct dea_design_change *change = &ask->changes[c];
     for (size_t k = 0; k < 2 && status == DEA_OK; k++) {
       status = answer(ctx, type, settings, change->device[k], change->voltage_V[k], ask,
-                      sides + k * ask->column_count);
+                      sides + k * width);
     }
-    for (size_t i = 0; i < ask->column_count && status == DEA_OK; i++) {
-      out[c * ask->column_count + i] = (sides[ask->column_count + i] - sides[i]) / change->width;
+    for (size_t i = 0; i < width && status == DEA_OK; i++) {
+      out[c * width + i] = (sides[width + i] - sides[i]) / change->width;
     }
   }
   dea_free(ctx, sides);

@@ -117,13 +117,22 @@ struct dea_design_change {
   double voltage_V[2];
   double width;
 };
-/* Slopes that are wanted: of columns of load points (result/columns.h) by changes. All lent. */
+/* Slopes that are wanted: of columns of load points (result/columns.h), then of the main motion
+ * (dea_observed_main) of monitors of the layout, by changes. All lent. */
 struct dea_gradient_ask {
   const struct dea_design_change *changes; // [change_count]
   size_t change_count;
   const int *columns; // [column_count]
   size_t column_count;
+  const size_t *monitors; // [monitor_count]
+  size_t monitor_count;
 };
+
+/* How many quantities that are. */
+static inline size_t dea_gradient_width(const struct dea_gradient_ask *ask)
+{
+  return ask->column_count + ask->monitor_count;
+}
 
 struct dea_model_type {
   const char *name;      // "lumped"
@@ -162,7 +171,7 @@ struct dea_model_type {
   dea_status (*long_path)(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_path_options *options, dea_point_sink points,
                           dea_event_sink events, void *user);
-  /* Slopes of quantities of the last point solved, out [change_count][column_count]
+  /* Slopes of quantities of the last point solved, out [change_count][dea_gradient_width]
    * (docs/theory/gradients.md): NAN where the model has none, and of a change that its mesh cannot
    * follow, with a note. NULL: dea_model_gradient computes the changed devices. */
   dea_status (*gradient)(struct dea_context *ctx, struct dea_model *model,

@@ -3,6 +3,7 @@
 #include "design/schema.h"
 #include "device/geometry.h"
 #include "result/columns.h"
+#include "study/part_numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -124,7 +125,7 @@ static void add_key(const struct dea_design *design, const struct dea_record *re
   const struct dea_quantity *quantity = inplane ? &length->length : place;
   struct dea_design_number number = {
       .unit = field->unit,
-      .of_design = true,
+      .of = DEA_NUMBER_OF_DESIGN,
       .scale = field->scale != 0 ? field->scale : 1,
       .offset = offset + (inplane ? offsetof(struct dea_inplane_length, length) : 0) +
                 offsetof(struct dea_quantity, si)};
@@ -147,6 +148,7 @@ void dea_design_numbers(const struct dea_design *design, const struct dea_device
   *count = 0;
   add_number(out, count, &voltage);
   if (device->general) {
+    dea_part_numbers(design, device, out, count);
     return;
   }
   dea_design_schema_fill(&none, &schema);
@@ -158,24 +160,37 @@ void dea_design_numbers(const struct dea_design *design, const struct dea_device
 
 // Changed devices --------------------------------------------------------------------------------
 
-/* The device with a value in place of the design's. scratch: room for a design. */
-static void change(const struct dea_design_gradient *ask, const struct dea_design_number *number,
-                   double value, struct dea_design *scratch, struct dea_device *out)
+/* Room for changed devices. */
+struct changed {
+  struct dea_arena memory; // of all, and of what devices of the general form are built from
+  struct dea_design *scratch;
+  struct dea_device *devices; // [2 number_count]; those of the general form own their layouts
+  struct dea_design_change *changes; // [number_count]
+};
+
+/* The device with a value in place of the design's. */
+static dea_status change(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                         const struct dea_design_number *number, double value, struct changed *all,
+                         struct dea_device *out)
 {
   double kept = number->scale * value;
+  if (ask->device->general) {
+    DEA_TRY(ctx, dea_part_change(ctx, ask->design, number, value, &all->memory, out));
+    return DEA_OK;
+  }
   *out = *ask->device;
-  if (number->of_design) {
-    *scratch = *ask->design;
-    memcpy((char *)scratch + number->offset, &kept, sizeof kept);
-    dea_geometry_fill(scratch, out);
+  if (number->of == DEA_NUMBER_OF_DESIGN) {
+    *all->scratch = *ask->design;
+    memcpy((char *)all->scratch + number->offset, &kept, sizeof kept);
+    dea_geometry_fill(all->scratch, out);
   } else {
     memcpy((char *)out + number->offset, &kept, sizeof kept);
   }
+  return DEA_OK;
 }
 
-/* devices: [2 number_count]. */
-static void make_changes(const struct dea_design_gradient *ask, struct dea_design *scratch,
-                         struct dea_device *devices, struct dea_design_change *changes)
+static dea_status make_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                               struct changed *all)
 {
   double share = ask->type->gradient != NULL ? step_at_state : step_anew;
   for (size_t i = 0; i < ask->number_count; i++) {
@@ -184,31 +199,39 @@ static void make_changes(const struct dea_design_gradient *ask, struct dea_desig
     for (size_t k = 0; k < 2; k++) {
       double value = number->value * (1 + (k == 0 ? -share : share));
       if (!voltage) {
-        change(ask, number, value, scratch, &devices[2 * i + k]);
+        DEA_TRY(ctx, change(ctx, ask, number, value, all, &all->devices[2 * i + k]));
       }
-      changes[i].device[k] = voltage ? ask->device : &devices[2 * i + k];
-      changes[i].voltage_V[k] = voltage ? value : ask->voltage_V;
+      all->changes[i].device[k] = voltage ? ask->device : &all->devices[2 * i + k];
+      all->changes[i].voltage_V[k] = voltage ? value : ask->voltage_V;
     }
-    changes[i].width = 2 * share * number->value;
+    all->changes[i].width = 2 * share * number->value;
   }
+  return DEA_OK;
 }
 
 dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                     double *slopes)
 {
-  struct dea_arena memory = {.ctx = ctx};
+  struct changed all = {.memory = {.ctx = ctx}};
   const struct dea_model_settings settings = dea_model_settings_of(ask->design);
-  struct dea_device *devices = dea_arena_alloc(&memory, 2 * ask->number_count, sizeof *devices);
-  struct dea_design *scratch = dea_arena_alloc(&memory, 1, sizeof *scratch);
-  struct dea_design_change *changes = dea_arena_alloc(&memory, ask->number_count, sizeof *changes);
-  dea_status status = dea_arena_status(&memory);
+  all.devices = dea_arena_alloc(&all.memory, 2 * ask->number_count, sizeof *all.devices);
+  all.scratch = dea_arena_alloc(&all.memory, 1, sizeof *all.scratch);
+  all.changes = dea_arena_alloc(&all.memory, ask->number_count, sizeof *all.changes);
+  dea_status status = dea_arena_status(&all.memory);
   if (status == DEA_OK) {
-    make_changes(ask, scratch, devices, changes);
-    const struct dea_gradient_ask all = {changes, ask->number_count, ask->columns,
-                                         ask->column_count};
-    status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &all, slopes);
+    status = make_changes(ctx, ask, &all);
   }
-  dea_arena_free(&memory);
+  if (status == DEA_OK) {
+    const struct dea_gradient_ask question = {all.changes,   ask->number_count,
+                                              ask->columns,  ask->column_count,
+                                              ask->monitors, ask->monitor_count};
+    status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
+  }
+  for (size_t i = 0; all.devices != NULL && ask->device->general && i < 2 * ask->number_count;
+       i++) {
+    dea_layout_destroy(ctx, all.devices[i].layout);
+  }
+  dea_arena_free(&all.memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 

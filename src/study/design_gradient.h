@@ -5,23 +5,33 @@
 
 #include "model/model.h"
 
-enum { DEA_NUMBERS_MAX = 64, DEA_NUMBER_KEY_SIZE = 64 };
+enum { DEA_NUMBERS_MAX = 256, DEA_NUMBER_KEY_SIZE = 64 };
+
+/* Where a number is kept. */
+enum dea_number_of {
+  DEA_NUMBER_OF_DEVICE, // in a struct dea_device; "voltage": nowhere
+  DEA_NUMBER_OF_DESIGN, // in a struct dea_design
+  DEA_NUMBER_OF_PART,   // in an item of a list of struct dea_parts (part_numbers.h)
+  DEA_NUMBER_OF_PLY,    // in the material of a ply of the layout
+};
 
 /* One number: a key of the design file with a value ("film.thickness"), "voltage", or one of a
  * material: "film.law.PARAMETER", "film.permittivity.at_rest", "film.permittivity.slope",
- * "electrodes.law.PARAMETER", "fibres.young_modulus", "fibres.poisson_ratio". */
+ * "electrodes.law.PARAMETER", "fibres.young_modulus", "fibres.poisson_ratio"; of the general form
+ * those of part_numbers.h. */
 struct dea_design_number {
   char key[DEA_NUMBER_KEY_SIZE];
   double value;     // SI, as the file has it: a diameter is a diameter
   const char *unit; // SI; static storage
   double tolerance; // of the workshop, SI; NAN: none
-  bool of_design;   // where it is kept: in a struct dea_design, else in a struct dea_device
-  size_t offset;    // there; "voltage": not used
-  double scale;     // what is kept over the value
+  enum dea_number_of of;
+  size_t list, item; // of a part: list and place in it; of a ply: its place
+  size_t offset;     // there; "voltage": not used
+  double scale;      // what is kept over the value
 };
 
-/* All numbers of a disc's design that its device depends on, but those that are 0. out:
- * [DEA_NUMBERS_MAX]. */
+/* All numbers of a design that its device depends on, but those that are 0; of the general form
+ * without those of shapes and of what is held. out: [DEA_NUMBERS_MAX]. */
 void dea_design_numbers(const struct dea_design *design, const struct dea_device *device,
                         double voltage_V, struct dea_design_number *out, size_t *count);
 
@@ -36,14 +46,16 @@ struct dea_design_gradient {
   size_t number_count;
   const int *columns; // [column_count] of load points
   size_t column_count;
+  const size_t *monitors; // [monitor_count] of the layout, their main motions
+  size_t monitor_count;
 };
 
-/* slopes [number_count][column_count], SI of the quantity by SI of the number: NAN where the model
- * knows none, or its mesh cannot follow. */
+/* slopes [number_count][column_count + monitor_count], SI of the quantity by SI of the number: NAN
+ * where the model knows none, or its mesh cannot follow. */
 dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                     double *slopes);
 
-/* All from a disc's design: values [column_count] of quantities at a voltage and their slopes
+/* All from a design: values [column_count] of quantities at a voltage and their slopes
  * [key_count][column_count] by keys, as above. DEA_E_ARGUMENT for a key that is no such number, and
  * as the model's `solve`. */
 dea_status dea_design_gradient_at(struct dea_context *ctx, const struct dea_model_type *type,

@@ -3,6 +3,7 @@
 #include "base/schema.h"
 #include "result/columns.h"
 #include "study/design_gradient.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -43,7 +44,7 @@ static const struct dea_design_section section = {
 static const char *const quantities[] = {
     "fibre_tip_z_m",    "centre_z_m",          "electrode_edge_u_m", "true_field_V_per_m",
     "breakdown_margin", "min_tension_N_per_m", "capacitance_F",      "energy_J"};
-enum { QUANTITIES = COUNT(quantities) };
+enum { QUANTITIES = COUNT(quantities), FIELD = 3, CAPACITANCE = 6 };
 
 static const struct dea_result_column slope_columns[] = {
     {.key = "voltage_V",
@@ -116,27 +117,103 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .columns = matter_columns,
                                                           .column_count = COUNT(matter_columns)};
 
+/* Of the general form: monitors' main motions are quantities too, which go by their names. */
+#define NAMED(its_key, its_title, its_meaning)                                                     \
+  {                                                                                                \
+    .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
+  }
+static const struct dea_result_column part_slope_columns[] = {
+    {.key = "voltage_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "voltage"},
+    NAMED("number", "number", "of the design"),
+    {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
+    NAMED("number_unit", "unit", "of the number"),
+    NAMED("quantity", "quantity", "of load points, or of a monitor: middle.z_m"),
+    {.key = "value", .title = "quantity's value", .meaning = "there, in SI"},
+    {.key = "slope",
+     .title = "slope",
+     .meaning = "of the quantity by the number, SI units of both"},
+    {.key = "elasticity",
+     .title = "per cent by one per cent",
+     .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
+};
+static const struct dea_result_table_type part_slope_table = {
+    .study = study_name,
+    .name = "slopes",
+    .title = "slopes by the design's numbers",
+    .where = DEA_IN_JSON | DEA_IN_CSV,
+    .columns = part_slope_columns,
+    .column_count = COUNT(part_slope_columns)};
+
+static const struct dea_result_column part_matter_columns[] = {
+    {.key = "voltage_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .title = "V",
+     .meaning = "voltage"},
+    NAMED("quantity", "quantity", "that the rows are sorted by: main motion of a monitor"),
+    NAMED("number", "1 % of", "of the design"),
+    NAMED("number_text", "value", "of the number"),
+    ELASTICITY("change", "changes it by, %"),
+    ELASTICITY("true_field_V_per_m", "field, %"),
+    ELASTICITY("breakdown_margin", "margin, %"),
+    ELASTICITY("min_tension_N_per_m", "tension, %"),
+    ELASTICITY("capacitance_F", "capacitance, %"),
+    ELASTICITY("energy_J", "energy, %"),
+};
+static const struct dea_result_table_type part_matter_table = {.study = study_name,
+                                                               .name = "matters",
+                                                               .title = "what matters",
+                                                               .where = DEA_IN_SCREEN,
+                                                               .columns = part_matter_columns,
+                                                               .column_count =
+                                                                   COUNT(part_matter_columns)};
+
 // Study ------------------------------------------------------------------------------------------
+
+/* Keys of motions, in the order of enum dea_observed. */
+static const struct dea_result_column motions[] = {DEA_OBSERVED_COLUMNS};
 
 /* One voltage. */
 struct stop {
+  struct dea_arena memory; // of the arrays
   double voltage_V;
   struct dea_load_point point;
+  const struct dea_layout *layout; // of the general form; NULL: a disc
   int columns[QUANTITIES];
+  size_t width;              // quantities: QUANTITIES, then monitors
+  size_t *monitors;          // [width - QUANTITIES]
+  enum dea_observed *motion; // [width - QUANTITIES] main ones
+  double *motion_value;      // [width - QUANTITIES]
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
-  double slopes[DEA_NUMBERS_MAX][QUANTITIES];
+  double *slopes; // [number_count][width]
 };
 
 static double value_of(const struct stop *stop, size_t quantity)
 {
-  return dea_point_get(&stop->point, stop->columns[quantity]);
+  return quantity < QUANTITIES ? dea_point_get(&stop->point, stop->columns[quantity])
+                               : stop->motion_value[quantity - QUANTITIES];
+}
+
+static double slope_of(const struct stop *stop, size_t number, size_t quantity)
+{
+  return stop->slopes[number * stop->width + quantity];
 }
 
 static double elasticity(const struct stop *stop, size_t number, size_t quantity)
 {
   double value = value_of(stop, quantity);
-  return value != 0 ? stop->slopes[number][quantity] * stop->numbers[number].value / value : NAN;
+  if (quantity >= QUANTITIES) {
+    const enum dea_observed motion = stop->motion[quantity - QUANTITIES];
+    value -= motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH ? 1 : 0;
+  }
+  return value != 0 ? slope_of(stop, number, quantity) * stop->numbers[number].value / value : NAN;
 }
 
 /* The first quantity that the model knows at this point. */
@@ -173,13 +250,13 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
     const struct dea_design_number *number = &stop->numbers[i];
     for (size_t k = 0; k < QUANTITIES; k++) {
       const struct dea_result_table_value row[] = {
-          {.number = stop->voltage_V},    {.text = number->key},
-          {.number = number->value},      {.text = number->unit},
-          {.number = stop->columns[k]},   {.number = value_of(stop, k)},
-          {.number = stop->slopes[i][k]}, {.number = elasticity(stop, i, k)},
-          {.number = number->tolerance},  {.number = stop->slopes[i][k] * number->tolerance},
+          {.number = stop->voltage_V},      {.text = number->key},
+          {.number = number->value},        {.text = number->unit},
+          {.number = stop->columns[k]},     {.number = value_of(stop, k)},
+          {.number = slope_of(stop, i, k)}, {.number = elasticity(stop, i, k)},
+          {.number = number->tolerance},    {.number = slope_of(stop, i, k) * number->tolerance},
       };
-      if (!isnan(stop->slopes[i][k])) {
+      if (!isnan(slope_of(stop, i, k))) {
         DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
       }
     }
@@ -187,14 +264,14 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
   return DEA_OK;
 }
 
-static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t i,
-                             struct dea_result_table *table)
+static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
+                             size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
   struct dea_result_table_value row[COUNT(matter_columns)] = {{.number = stop->voltage_V},
                                                               {.text = number->key}};
   char value[48], tolerance[48] = "", change[48] = "";
-  size_t lead = leading(stop), n = 2;
+  size_t n = 2;
   write_number(number->value, number->unit, value, sizeof value);
   row[n++].text = value;
   for (size_t k = 0; k < QUANTITIES; k++) {
@@ -202,7 +279,7 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
   }
   if (!isnan(number->tolerance) && number->tolerance > 0) {
     write_number(number->tolerance, number->unit, tolerance, sizeof tolerance);
-    write_number(stop->slopes[i][lead] * number->tolerance,
+    write_number(slope_of(stop, i, lead) * number->tolerance,
                  dea_point_columns[stop->columns[lead]].si_unit, change, sizeof change);
   }
   row[n++].text = tolerance;
@@ -211,12 +288,14 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
   return DEA_OK;
 }
 
-/* Numbers by how much they matter to the leading quantity, most first. */
-static dea_status put_matters(struct dea_context *ctx, const struct stop *stop,
-                              struct dea_result_table *table)
+/* Numbers by how much they matter to a quantity, most first; `put` adds the row of one. */
+static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, size_t lead,
+                             dea_status (*put)(struct dea_context *ctx, const struct stop *stop,
+                                               size_t lead, size_t number,
+                                               struct dea_result_table *table),
+                             struct dea_result_table *table)
 {
   bool told[DEA_NUMBERS_MAX] = {false};
-  size_t lead = leading(stop);
   for (size_t n = 0; n < stop->number_count; n++) {
     size_t best = stop->number_count;
     for (size_t i = 0; i < stop->number_count; i++) {
@@ -230,7 +309,90 @@ static dea_status put_matters(struct dea_context *ctx, const struct stop *stop,
       return DEA_OK;
     }
     told[best] = true;
-    DEA_TRY(ctx, put_matter(ctx, stop, best, table));
+    DEA_TRY(ctx, put(ctx, stop, lead, best, table));
+  }
+  return DEA_OK;
+}
+
+/* "middle.z_m", or the key of a column. */
+static void name_of(const struct stop *stop, size_t quantity, char *out, size_t size)
+{
+  if (quantity < QUANTITIES) {
+    snprintf(out, size, "%s", dea_point_columns[stop->columns[quantity]].key);
+  } else {
+    const size_t i = quantity - QUANTITIES;
+    snprintf(out, size, "%.40s.%s", stop->layout->monitors[stop->monitors[i]].name,
+             motions[stop->motion[i]].key);
+  }
+}
+
+static dea_status put_part_slopes(struct dea_context *ctx, const struct stop *stop,
+                                  struct dea_result_table *table)
+{
+  char name[80];
+  for (size_t i = 0; i < stop->number_count * stop->width; i++) {
+    const size_t n = i / stop->width, k = i % stop->width;
+    const struct dea_design_number *number = &stop->numbers[n];
+    name_of(stop, k, name, sizeof name);
+    const struct dea_result_table_value row[] = {
+        {.number = stop->voltage_V},
+        {.text = number->key},
+        {.number = number->value},
+        {.text = number->unit},
+        {.text = name},
+        {.number = value_of(stop, k)},
+        {.number = slope_of(stop, n, k)},
+        {.number = elasticity(stop, n, k)},
+    };
+    if (!isnan(slope_of(stop, n, k))) {
+      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status put_part_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
+                                  size_t i, struct dea_result_table *table)
+{
+  const struct dea_design_number *number = &stop->numbers[i];
+  char quantity[80], value[48];
+  name_of(stop, lead, quantity, sizeof quantity);
+  write_number(number->value, number->unit, value, sizeof value);
+  struct dea_result_table_value row[COUNT(part_matter_columns)] = {
+      {.number = stop->voltage_V},
+      {.text = quantity},
+      {.text = number->key},
+      {.text = value},
+      {.number = elasticity(stop, i, lead)}};
+  for (size_t k = FIELD, n = 5; k < QUANTITIES; k++) {
+    row[n++].number = elasticity(stop, i, k);
+  }
+  DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  return DEA_OK;
+}
+
+/* Monitors of a device of the general form, with their main motions. */
+static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_model *model, const struct dea_device *device,
+                                struct stop *stop)
+{
+  struct dea_observation seen;
+  stop->width = QUANTITIES;
+  if (!device->general) {
+    return DEA_OK;
+  }
+  stop->layout = device->layout;
+  const size_t count = stop->layout->monitor_count;
+  stop->monitors = dea_arena_alloc(&stop->memory, count, sizeof *stop->monitors);
+  stop->motion = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion);
+  stop->motion_value = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion_value);
+  DEA_TRY(ctx, dea_arena_status(&stop->memory));
+  DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
+  stop->width += count;
+  for (size_t i = 0; i < count; i++) {
+    stop->monitors[i] = i;
+    stop->motion[i] = dea_observed_main(seen.monitor[i]);
+    stop->motion_value[i] = seen.monitor[i][stop->motion[i]];
   }
   return DEA_OK;
 }
@@ -244,6 +406,10 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   for (size_t k = 0; k < QUANTITIES; k++) {
     stop->columns[k] = dea_point_column_find(quantities[k]);
   }
+  DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
+  stop->slopes =
+      dea_arena_alloc(&stop->memory, stop->number_count * stop->width, sizeof *stop->slopes);
+  DEA_TRY(ctx, dea_arena_status(&stop->memory));
   const struct dea_design_gradient ask = {.type = type,
                                           .model = model,
                                           .design = result->design,
@@ -252,8 +418,27 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
                                           .numbers = stop->numbers,
                                           .number_count = stop->number_count,
                                           .columns = stop->columns,
-                                          .column_count = QUANTITIES};
-  DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, stop->slopes[0]));
+                                          .column_count = QUANTITIES,
+                                          .monitors = stop->monitors,
+                                          .monitor_count = stop->width - QUANTITIES};
+  DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, stop->slopes));
+  return DEA_OK;
+}
+
+/* Its rows of both tables, of a device of the general form: first by what each monitor shows, or
+ * without monitors by the capacitance. */
+static dea_status put_part_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
+                                struct dea_result *result)
+{
+  struct dea_result_table *table;
+  const bool seen = stop->width > QUANTITIES;
+  DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_matter_table, model, &table));
+  for (size_t k = seen ? QUANTITIES : CAPACITANCE; k < (seen ? stop->width : CAPACITANCE + 1);
+       k++) {
+    DEA_TRY(ctx, put_sorted(ctx, stop, k, put_part_matter, table));
+  }
+  DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_slope_table, model, &table));
+  DEA_TRY(ctx, put_part_slopes(ctx, stop, table));
   return DEA_OK;
 }
 
@@ -262,8 +447,12 @@ static dea_status put_stop(struct dea_context *ctx, const char *model, const str
                            struct dea_result *result)
 {
   struct dea_result_table *table;
+  if (stop->layout != NULL) {
+    DEA_TRY(ctx, put_part_stop(ctx, model, stop, result));
+    return DEA_OK;
+  }
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
-  DEA_TRY(ctx, put_matters(ctx, stop, table));
+  DEA_TRY(ctx, put_sorted(ctx, stop, leading(stop), put_matter, table));
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
   DEA_TRY(ctx, put_slopes(ctx, stop, table));
   return DEA_OK;
@@ -278,11 +467,13 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   if (stop == NULL) {
     return DEA_E_MEMORY;
   }
+  stop->memory.ctx = ctx;
   stop->voltage_V = at->voltage_V;
   stop->point = *at;
   dea_status status = dea_curve_add_point(ctx, curve, at);
   status = status == DEA_OK ? find_stop(ctx, type, model, result, stop) : status;
   status = status == DEA_OK ? put_stop(ctx, type->name, stop, result) : status;
+  dea_arena_free(&stop->memory);
   dea_free(ctx, stop);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
@@ -297,8 +488,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                      ? dea_study_stops(result->design, settings->voltages_V,
                                        settings->voltage_count, false, voltages_V)
                      : 1;
-  DEA_TRY(ctx,
-          dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V, count, take));
+  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, false, voltages_V, count,
+                                      take));
   return DEA_OK;
 }
 
@@ -308,5 +499,6 @@ const struct dea_study dea_study_sensitivity = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
+    .any_layout = true,
     .run = run,
 };

@@ -58,7 +58,7 @@ dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model
 
 dea_status dea_study_stop_by_stop(
     struct dea_context *ctx, const struct dea_model_type *type, struct dea_result *result,
-    const char *kind, bool able, const double *voltages_V, size_t count,
+    const char *kind, bool able, bool whole, const double *voltages_V, size_t count,
     dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at, size_t stop,
                        struct dea_result *result, struct dea_curve *curve))
@@ -73,7 +73,8 @@ dea_status dea_study_stop_by_stop(
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));
   curve->listed = true;
   snprintf(what, sizeof what, "%s %s", type->name, kind);
-  dea_status status = dea_model_create_whole(ctx, type, result->design, result->device, &model);
+  dea_status status = (whole ? dea_model_create_whole : dea_model_create)(ctx, type, result->design,
+                                                                          result->device, &model);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     struct dea_load_point at;
     if (dea_interrupted(ctx)) {

@@ -74,10 +74,11 @@ size_t dea_study_stops(const struct dea_design *design, const struct dea_quantit
 dea_status dea_study_rising(struct dea_context *ctx, double from,
                             const struct dea_quantity *refinements, size_t count);
 /* A model of its own goes through voltages [count] in their order; `take` adds what there is at
- * each stop to the curve of that kind. Nothing but a note where the model is not `able`. */
+ * each stop to the curve of that kind. whole: of all of a device of the general form, not a sector.
+ * Nothing but a note where the model is not `able`. */
 dea_status dea_study_stop_by_stop(
     struct dea_context *ctx, const struct dea_model_type *type, struct dea_result *result,
-    const char *kind, bool able, const double *voltages_V, size_t count,
+    const char *kind, bool able, bool whole, const double *voltages_V, size_t count,
     dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at, size_t stop,
                        struct dea_result *result, struct dea_curve *curve));

@@ -363,11 +363,11 @@ static void find_fields(struct dea_layout_mesh *mesh)
   }
 }
 
+/* All but the plane. */
 static dea_status fill(struct dea_context *ctx, const struct dea_model_settings *settings,
                        struct dea_layout_mesh *mesh)
 {
   size_t plies = mesh->layout->ply_count;
-  DEA_TRY(ctx, make_plane(ctx, settings, mesh));
   size_t count = mesh->plane->region_count * plies;
   mesh->present = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->present);
   mesh->field = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->field);
@@ -391,7 +391,62 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
   if (settings->domain == DEA_DOMAIN_SECTOR && dea_boolean_find(module, sizeof module)) {
     out->sector = dea_layout_sector_of(layout);
   }
+  dea_status status = make_plane(ctx, settings, out);
+  if (status == DEA_OK) {
+    status = fill(ctx, settings, out);
+  }
+  if (status != DEA_OK) {
+    dea_layout_mesh_free(ctx, out);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
+static bool same_region(const struct dea_region *a, const struct dea_region *b)
+{
+  bool same = a->contour_count == b->contour_count && a->vertex_count == b->vertex_count;
+  for (size_t i = 0; i < a->contour_count && same; i++) {
+    same = a->end[i] == b->end[i];
+  }
+  for (size_t i = 0; i < a->vertex_count && same; i++) {
+    const struct dea_vertex *v = &a->vertex[i], *w = &b->vertex[i];
+    same = v->x_m == w->x_m && v->y_m == w->y_m && v->bulge == w->bulge;
+  }
+  return same;
+}
+
+/* Whether all shapes are where they were. */
+static bool same_regions(const struct dea_layout *a, const struct dea_layout *b)
+{
+  bool same = a->region_count == b->region_count;
+  for (size_t i = 0; i < a->region_count && same; i++) {
+    same = same_region(&a->regions[i].region, &b->regions[i].region);
+  }
+  return same;
+}
+
+dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea_layout *layout,
+                                       const struct dea_model_settings *settings,
+                                       const struct dea_layout_mesh *like,
+                                       struct dea_layout_mesh *out)
+{
+  *out = (struct dea_layout_mesh){.memory = {.ctx = ctx},
+                                  .layout = layout,
+                                  .membrane = like->membrane,
+                                  .sector = like->sector,
+                                  .plane = like->plane,
+                                  .like = true,
+                                  .group = like->group};
+  if (!same_regions(layout, like->layout) || layout->ply_count != like->layout->ply_count) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a change of shapes");
+  }
   dea_status status = fill(ctx, settings, out);
+  const size_t used = like->grid->element_count * DEA_HEX_NODES_MAX;
+  if (status == DEA_OK &&
+      (out->grid->element_count != like->grid->element_count ||
+       memcmp(out->grid->nodes, like->grid->nodes, used * sizeof *like->grid->nodes) != 0)) {
+    status = dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow the change");
+  }
   if (status != DEA_OK) {
     dea_layout_mesh_free(ctx, out);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -402,7 +457,9 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
 void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh)
 {
   dea_grid_destroy(ctx, mesh->grid);
-  dea_plane_mesh_destroy(ctx, mesh->plane);
+  if (!mesh->like) {
+    dea_plane_mesh_destroy(ctx, mesh->plane);
+  }
   dea_arena_free(&mesh->memory);
   *mesh = (struct dea_layout_mesh){0};
 }

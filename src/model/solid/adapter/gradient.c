@@ -7,15 +7,42 @@
 #include <math.h>
 #include <string.h>
 
+double *dea_gradient_extreme(enum dea_film_extreme which, struct dea_load_point *point)
+{
+  double *const all[DEA_FILM_EXTREMES] = {
+      [DEA_FILM_FIELD] = &point->true_field_V_per_m,
+      [DEA_FILM_MARGIN] = &point->breakdown_margin,
+      [DEA_FILM_TENSION] = &point->min_tension_N_per_m,
+  };
+  return all[which];
+}
+
+bool dea_gradient_extreme_of(int column, enum dea_film_extreme *out)
+{
+  static const char *const keys[DEA_FILM_EXTREMES] = {
+      [DEA_FILM_FIELD] = "true_field_V_per_m",
+      [DEA_FILM_MARGIN] = "breakdown_margin",
+      [DEA_FILM_TENSION] = "min_tension_N_per_m",
+  };
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    if (column == dea_point_column_find(keys[i])) {
+      *out = (enum dea_film_extreme)i;
+      return true;
+    }
+  }
+  return false;
+}
+
 struct work {
   const struct dea_gradient_owner *owner;
   const struct dea_gradient_ask *ask;
   struct dea_adjoint *adjoint;
-  bool *known;  // [column_count] there is an answer
-  double *side; // [2][column_count]
+  bool *known;    // [dea_gradient_width] there is an answer
+  double *side;   // [2][dea_gradient_width]
+  double *motion; // [monitor_count]
 };
 
-/* The answers of all columns. */
+/* The answers of all quantities. */
 static dea_status answer(struct dea_context *ctx, struct work *w)
 {
   for (size_t i = 0; i < w->ask->column_count; i++) {
@@ -23,11 +50,19 @@ static dea_status answer(struct dea_context *ctx, struct work *w)
                                  dea_adjoint_slope(w->adjoint, i),
                                  dea_adjoint_pressure_slope(w->adjoint, i), &w->known[i]));
   }
+  for (size_t i = 0; i < w->ask->monitor_count; i++) {
+    const size_t at = w->ask->column_count + i;
+    w->known[at] = w->owner->monitor_slope != NULL;
+    if (w->known[at]) {
+      DEA_TRY(ctx, w->owner->monitor_slope(ctx, w->owner->model, w->ask->monitors[i],
+                                           dea_adjoint_slope(w->adjoint, at)));
+    }
+  }
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, w->known));
   return DEA_OK;
 }
 
-/* J - lambda . R - mu . C of every column on one side of a change. */
+/* J - lambda . R - mu . C of every quantity on one side of a change. */
 static dea_status evaluate(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
 {
   struct dea_solid *s = w->owner->solid;
@@ -35,12 +70,18 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
   double energy_J;
   s->state.voltage_V = voltage_V;
   DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J));
-  for (size_t i = 0; i < w->ask->column_count; i++) {
+  for (size_t i = 0; i < dea_gradient_width(w->ask); i++) {
     out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
   }
   DEA_TRY(ctx, w->owner->point(ctx, w->owner->model, voltage_V, energy_J, &point));
   for (size_t i = 0; i < w->ask->column_count; i++) {
     out[i] += dea_point_get(&point, w->ask->columns[i]);
+  }
+  if (w->owner->monitors != NULL && w->ask->monitor_count > 0) {
+    DEA_TRY(ctx, w->owner->monitors(ctx, w->owner->model, w->motion));
+    for (size_t i = 0; i < w->ask->monitor_count; i++) {
+      out[w->ask->column_count + i] += w->motion[i];
+    }
   }
   return DEA_OK;
 }
@@ -52,7 +93,8 @@ static dea_status difference(struct dea_context *ctx, struct work *w,
   for (int k = 0; k < 2; k++) {
     dea_status status = w->owner->enter(ctx, w->owner->model, change->device[k]);
     if (status == DEA_OK) {
-      status = evaluate(ctx, w, change->voltage_V[k], w->side + (size_t)k * w->ask->column_count);
+      status =
+          evaluate(ctx, w, change->voltage_V[k], w->side + (size_t)k * dea_gradient_width(w->ask));
     }
     w->owner->solid->state.voltage_V = w->owner->voltage_V;
     w->owner->leave(ctx, w->owner->model);
@@ -63,7 +105,7 @@ static dea_status difference(struct dea_context *ctx, struct work *w,
 
 static dea_status find(struct dea_context *ctx, struct work *w, double *out)
 {
-  size_t count = w->ask->column_count;
+  size_t count = dea_gradient_width(w->ask);
   DEA_TRY(ctx, answer(ctx, w));
   for (size_t c = 0; c < w->ask->change_count; c++) {
     size_t errors = dea_finding_trial_begin(ctx);
@@ -93,11 +135,12 @@ dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_
   struct dea_arena memory = {.ctx = ctx};
   struct work w = {.owner = owner, .ask = ask};
   double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
-  w.known = dea_arena_alloc(&memory, ask->column_count, sizeof *w.known);
-  w.side = dea_arena_alloc(&memory, 2 * ask->column_count, sizeof *w.side);
+  w.known = dea_arena_alloc(&memory, dea_gradient_width(ask), sizeof *w.known);
+  w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
+  w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
   if (status == DEA_OK) {
-    status = dea_adjoint_create(ctx, s, ask->column_count, &w.adjoint);
+    status = dea_adjoint_create(ctx, s, dea_gradient_width(ask), &w.adjoint);
   }
   if (status == DEA_OK) {
     status = find(ctx, &w, out);

@@ -4,14 +4,17 @@
 #include "model/solid/actuator/constituent_of_material.h"
 #include "model/solid/adapter/adapt.h"
 #include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/gradient.h"
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
 #include "model/solid/adapter/solid_of_actuator.h"
 #include "model/solid/adapter/standing.h"
+#include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
+#include "result/columns.h"
 #include "result/copies.h"
 
 #include <math.h>
@@ -56,9 +59,11 @@ struct dea_model {
   double thinnest_m;        // least unstretched thickness of dielectric plies over their voltage
   double flat_m;            // the same as they are in the flat state
   double pressure_factor;   // on all pressures
-  double *rest;             // [3 node_count] displacement where it was released
+  double *rest;             // u [3 node_count] where it was released, and multipliers there
   bool rest_is_one_of;      // several states there
   struct dea_control moved; // of the last move
+  bool was_moved;           // there was one
+  struct variant *variant;  // a changed device is under the solid; NULL: its own
   double *answers;          // of the last response, as in model/model.h
   double *answer;           // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
   struct marks marks;       // of saved states, made by the first
@@ -584,10 +589,34 @@ static void find_thinnest(struct dea_model *model)
   model->flat_m /= ratio;
 }
 
+/* Room for what each ply has. */
+static dea_status make_plies(struct dea_context *ctx, struct dea_model *model)
+{
+  size_t plies = model->layout->ply_count;
+  model->constituents = dea_arena_alloc(&model->memory, plies, sizeof *model->constituents);
+  model->films = dea_arena_alloc(&model->memory, plies, sizeof *model->films);
+  model->branches = dea_arena_alloc(&model->memory, plies, sizeof *model->branches);
+  model->leakage_per_s = dea_arena_alloc(&model->memory, plies, sizeof *model->leakage_per_s);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  return DEA_OK;
+}
+
+static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_solid *s = model->solid;
+  size_t values = s->problem.dofs, pressures = dea_solid_pressure_count(s);
+  model->at.rest_energy_J = model->at.report.energy_J;
+  model->rest_is_one_of = model->at.left_a_state;
+  model->rest = dea_arena_alloc(&model->memory, values + pressures, sizeof *model->rest);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  memcpy(model->rest, s->state.u, values * sizeof *model->rest);
+  memcpy(model->rest + values, s->state.multiplier, pressures * sizeof *model->rest);
+  return DEA_OK;
+}
+
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
-  size_t plies = device->layout->ply_count;
   model->layout = device->layout;
   model->settings = *settings;
   model->memory.ctx = ctx;
@@ -597,13 +626,10 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
                     "compute.solid.field: coupled is known of the disc with one pair of electrodes "
                     "only; take compute.solid.field: thin");
   }
-  model->constituents = dea_arena_alloc(&model->memory, plies, sizeof *model->constituents);
-  model->films = dea_arena_alloc(&model->memory, plies, sizeof *model->films);
-  model->branches = dea_arena_alloc(&model->memory, plies, sizeof *model->branches);
+  DEA_TRY(ctx, make_plies(ctx, model));
   model->answer =
       dea_arena_alloc(&model->memory, device->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
                       sizeof *model->answer);
-  model->leakage_per_s = dea_arena_alloc(&model->memory, plies, sizeof *model->leakage_per_s);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, settings, &model->mesh));
   model->copies = (double)dea_layout_sector_copies(&model->mesh.sector);
@@ -614,13 +640,24 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
   find_thinnest(model);
   DEA_TRY(ctx, release(ctx, model));
-  model->at.rest_energy_J = model->at.report.energy_J;
-  model->rest_is_one_of = model->at.left_a_state;
-  size_t values = 3 * model->mesh.grid->node_count;
-  model->rest = dea_arena_alloc(&model->memory, values, sizeof *model->rest);
-  DEA_TRY(ctx, dea_arena_status(&model->memory));
-  memcpy(model->rest, dea_solid_displacement(model->solid), values * sizeof *model->rest);
+  DEA_TRY(ctx, keep_rest(ctx, model));
   return DEA_OK;
+}
+
+/* Loads, mesh and arrays. */
+static void free_parts(struct dea_context *ctx, struct dea_model *model)
+{
+  for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
+    dea_spring_destroy(ctx, model->springs[i]);
+  }
+  for (size_t i = 0; model->pressures != NULL && i < model->layout->pressure_count; i++) {
+    dea_pressure_destroy(ctx, model->pressures[i]);
+  }
+  for (size_t i = 0; model->surfaces != NULL && i < model->layout->pressure_count; i++) {
+    dea_surface_destroy(ctx, model->surfaces[i]);
+  }
+  dea_layout_mesh_free(ctx, &model->mesh);
+  dea_arena_free(&model->memory);
 }
 
 static void destroy(struct dea_context *ctx, struct dea_model *model)
@@ -633,17 +670,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   dea_free(ctx, model->answers);
   dea_free(ctx, model->passes);
   dea_solid_destroy(ctx, model->solid);
-  for (size_t i = 0; model->springs != NULL && i < model->layout->spring_count; i++) {
-    dea_spring_destroy(ctx, model->springs[i]);
-  }
-  for (size_t i = 0; model->pressures != NULL && i < model->layout->pressure_count; i++) {
-    dea_pressure_destroy(ctx, model->pressures[i]);
-  }
-  for (size_t i = 0; model->surfaces != NULL && i < model->layout->pressure_count; i++) {
-    dea_surface_destroy(ctx, model->surfaces[i]);
-  }
-  dea_layout_mesh_free(ctx, &model->mesh);
-  dea_arena_free(&model->memory);
+  free_parts(ctx, model);
   dea_free(ctx, model);
 }
 
@@ -667,6 +694,16 @@ static void find_heights(const struct dea_model *model, struct dea_load_point *o
   }
 }
 
+/* What of a point the displacements say by themselves. */
+static void describe(const struct dea_model *model, double voltage_V, struct dea_load_point *out)
+{
+  *out = dea_load_point_empty();
+  out->voltage_V = voltage_V;
+  find_heights(model, out);
+  out->nominal_field_V_per_m = voltage_V / model->thinnest_m;
+  out->energy_J = model->copies * (model->at.report.energy_J - model->at.rest_energy_J);
+}
+
 static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
                          struct dea_load_point *out)
 {
@@ -680,10 +717,7 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
   }
-  *out = dea_load_point_empty();
-  out->voltage_V = voltage_V;
-  find_heights(model, out);
-  out->nominal_field_V_per_m = voltage_V / model->thinnest_m;
+  describe(model, voltage_V, out);
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
   out->min_tension_N_per_m =
@@ -693,7 +727,6 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   out->compression_ratio = model->copies * extremes.compression_ratio;
   out->told |= (unsigned)model->at.left_a_state << DEA_FLAG_STATES;
   out->told |= (unsigned)model->mesh.membrane << DEA_FLAG_PREVIEW;
-  out->energy_J = model->copies * (model->at.report.energy_J - model->at.rest_energy_J);
   out->capacitance_F = model->copies * capacitance_F;
   out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
@@ -840,6 +873,7 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, check_control(ctx, model, control, value));
   dea_standing_end_history(ctx, &model->at);
   double from = where_control_is(model, control);
+  model->was_moved = true;
   DEA_TRY(ctx, set_control(ctx, model, control, value));
   dea_status status = follow_control(ctx, model, control, from, value);
   if (status != DEA_OK) {
@@ -858,6 +892,322 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   }
   DEA_TRY(ctx, report(ctx, model, model->at.voltage_V, out));
   return DEA_OK;
+}
+
+// Slopes (docs/theory/gradients.md) ---------------------------------------------------------------
+
+/* What a changed device takes the place of. Mesh, constituents and loads of the changed device are
+ * those of a solid of its own, of which nothing is solved. */
+struct variant {
+  struct dea_model own;             // as it was
+  struct dea_solid_problem problem; // as it was
+  struct dea_solid *solid;          // of the changed device; NULL: there is none
+  double *force, *own_V;            // [dofs], [channels] as they were
+  double *rest;                     // [dofs] u at rest, room
+  enum dea_observed *motion;        // [monitor_count of the question]
+  struct dea_film_place place[DEA_FILM_EXTREMES];
+  bool placed[DEA_FILM_EXTREMES];
+  const struct dea_gradient_ask *ask;
+};
+
+static bool same_hold(const struct dea_layout_support *a, const struct dea_layout_support *b)
+{
+  return a->region == b->region && a->edge == b->edge && a->within == b->within &&
+         a->components == b->components && a->hinged == b->hinged &&
+         memcmp(a->move_m, b->move_m, sizeof a->move_m) == 0;
+}
+
+static bool same_place(const struct dea_layout_body *a, const struct dea_layout_body *b)
+{
+  return a->region == b->region && a->free == b->free && a->moved == b->moved &&
+         memcmp(a->shift_m, b->shift_m, sizeof a->shift_m) == 0 &&
+         memcmp(a->turn_rad, b->turn_rad, sizeof a->turn_rad) == 0;
+}
+
+/* What is held where: unknowns at which slopes are taken do not move. */
+static bool same_supports(const struct dea_layout *a, const struct dea_layout *b)
+{
+  bool same = a->support_count == b->support_count && a->body_count == b->body_count &&
+              a->channel_count == b->channel_count;
+  for (size_t i = 0; same && i < a->support_count; i++) {
+    same = same_hold(&a->supports[i], &b->supports[i]);
+  }
+  for (size_t i = 0; same && i < a->body_count; i++) {
+    same = same_place(&a->bodies[i], &b->bodies[i]);
+  }
+  return same;
+}
+
+/* Mesh, constituents and loads of a changed device, with a solid that has them. */
+static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_model *own = &model->variant->own;
+  DEA_TRY(ctx, make_plies(ctx, model));
+  DEA_TRY(ctx, dea_layout_mesh_create_like(ctx, model->layout, &model->settings, &own->mesh,
+                                           &model->mesh));
+  DEA_TRY(ctx, fill_constituents(ctx, model));
+  DEA_TRY(ctx, make_solid(ctx, model));
+  find_thinnest(model);
+  set_pressures(model, 1);
+  DEA_TRY(ctx, set_weight(ctx, model));
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    memcpy(model->push[i], model->layout->bodies[i].force_N, 3 * sizeof(double));
+    memcpy(model->push[i] + 3, model->layout->bodies[i].moment_N_m, 3 * sizeof(double));
+    push_body(model, i);
+  }
+  const struct dea_solid_problem *p = &model->solid->problem;
+  for (size_t i = 0; i < p->load_count; i++) { // they stand where a solve would bring them
+    memcpy(p->loads[i].now, p->loads[i].goal, p->loads[i].parameter_count * sizeof(double));
+  }
+  return DEA_OK;
+}
+
+static dea_status enter(struct dea_context *ctx, void *self, const struct dea_device *device)
+{
+  struct dea_model *model = self;
+  struct variant *v = model->variant;
+  struct dea_solid *s = v->own.solid;
+  if (device->layout == v->own.layout) {
+    return DEA_OK;
+  }
+  model->layout = device->layout;
+  model->memory = (struct dea_arena){.ctx = ctx};
+  model->mesh = (struct dea_layout_mesh){.memory = {.ctx = ctx}};
+  model->solid = NULL;
+  model->springs = NULL;
+  model->pressures = NULL;
+  model->surfaces = NULL;
+  if (!same_supports(model->layout, v->own.layout)) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a change of what is held");
+  }
+  dea_status status = make_variant(ctx, model);
+  v->solid = model->solid;
+  model->solid = s;
+  DEA_TRY(ctx, status);
+  s->problem.grid = v->solid->problem.grid;
+  s->problem.constituents = v->solid->problem.constituents;
+  s->problem.share = v->solid->problem.share;
+  s->problem.point_mass = v->solid->problem.point_mass;
+  s->problem.loads = v->solid->problem.loads;
+  s->problem.load_count = v->solid->problem.load_count;
+  memcpy(s->state.force, v->solid->state.force_goal, s->problem.dofs * sizeof *s->state.force);
+  for (size_t k = 1; k < model->layout->channel_count; k++) {
+    s->state.own_V[k] = model->layout->channels[k].own_V;
+  }
+  return DEA_OK;
+}
+
+static void leave(struct dea_context *ctx, void *self)
+{
+  struct dea_model *model = self;
+  struct variant *v = model->variant;
+  struct dea_solid *s = v->own.solid;
+  if (model->layout != v->own.layout) {
+    dea_solid_destroy(ctx, v->solid);
+    v->solid = NULL;
+    free_parts(ctx, model);
+  }
+  *model = v->own;
+  s->problem = v->problem;
+  memcpy(s->state.force, v->force, s->problem.dofs * sizeof *s->state.force);
+  memcpy(s->state.own_V, v->own_V, (s->problem.channel_count + 1) * sizeof *s->state.own_V);
+}
+
+/* The nodes that stand for a place of the film's middle, highest with sign 1, lowest with -1. */
+static void weigh_height(const struct dea_model *model, double sign, double *weight)
+{
+  const double *u = dea_solid_displacement(model->solid), *X = model->mesh.grid->X;
+  const int *column = model->mesh.grid->column;
+  double best = -INFINITY;
+  size_t at[2] = {0, 0};
+  for (size_t n = 0; n < model->mesh_node_count;) {
+    size_t low = n, high = n, of = n;
+    for (; n < model->mesh_node_count && column[n] == column[of]; n++) {
+      low = X[3 * n + 2] < X[3 * low + 2] ? n : low;
+      high = X[3 * n + 2] > X[3 * high + 2] ? n : high;
+    }
+    double z_m = sign * 0.5 * (u[3 * low + 2] + u[3 * high + 2]);
+    if (z_m > best) {
+      best = z_m;
+      at[0] = low;
+      at[1] = high;
+    }
+  }
+  weight[3 * at[0] + 2] += 0.5;
+  weight[3 * at[1] + 2] += 0.5;
+}
+
+static dea_status slope(struct dea_context *ctx, void *self, int column, double *out,
+                        double *pressures, bool *known)
+{
+  struct dea_model *model = self;
+  struct dea_solid *s = model->solid;
+  const char *key = dea_point_columns[column].key;
+  enum dea_film_extreme which;
+  *known = true;
+  if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
+    weigh_height(model, strcmp(key, "highest_z_m") == 0 ? 1 : -1, out);
+  } else if (dea_gradient_extreme_of(column, &which)) {
+    *known = model->variant->placed[which];
+    if (*known) {
+      dea_solid_extreme_slope(s, model->films, which, &model->variant->place[which], out,
+                              pressures);
+    }
+  } else if (strcmp(key, "capacitance_F") == 0) {
+    double capacitance_F;
+    DEA_TRY(ctx, dea_solid_capacitance_wide(ctx, s, &capacitance_F));
+    *known = !isnan(capacitance_F);
+    if (*known) {
+      DEA_TRY(ctx, dea_solid_capacitance_slope(ctx, s, out));
+    }
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      out[i] *= model->copies;
+    }
+  } else { // forces of the energy are 0
+    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0;
+  }
+  return DEA_OK;
+}
+
+static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t monitor, double *out)
+{
+  struct dea_model *model = self;
+  const struct variant *v = model->variant;
+  size_t i = 0;
+  (void)ctx;
+  while (v->ask->monitors[i] != monitor) {
+    i++;
+  }
+  dea_observer_gradient(model->observer, model->solid, monitor, v->motion[i], out);
+  return DEA_OK;
+}
+
+static dea_status take_monitors(struct dea_context *ctx, void *self, double *out)
+{
+  struct dea_model *model = self;
+  const struct variant *v = model->variant;
+  struct dea_observation seen;
+  DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+  for (size_t i = 0; i < v->ask->monitor_count; i++) {
+    out[i] = seen.monitor[v->ask->monitors[i]][v->motion[i]];
+  }
+  return DEA_OK;
+}
+
+/* Energy of the changed device without voltage, at its own unknowns. */
+static dea_status rest_energy(struct dea_model *model, double *out)
+{
+  struct dea_solid *s = model->solid;
+  double *multiplier = s->state.multiplier, *rest = model->variant->rest;
+  memcpy(rest, model->rest, s->problem.dofs * sizeof *rest); // followers of bodies are moved
+  s->state.multiplier = model->rest + s->problem.dofs;
+  dea_status status = dea_solid_energy(s, rest, 0, out);
+  s->state.multiplier = multiplier;
+  return status;
+}
+
+static bool is_asked(const struct variant *v, const char *key)
+{
+  for (size_t i = 0; i < v->ask->column_count; i++) {
+    if (strcmp(dea_point_columns[v->ask->columns[i]].key, key) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+static dea_status variant_point(struct dea_context *ctx, void *self, double voltage_V,
+                                double energy_J, struct dea_load_point *out)
+{
+  struct dea_model *model = self;
+  const struct variant *v = model->variant;
+  dea_status status = DEA_OK;
+  model->at.report.energy_J = energy_J;
+  if (is_asked(v, "energy_J")) {
+    status = rest_energy(model, &model->at.rest_energy_J);
+  }
+  describe(model, voltage_V, out);
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) { // where they are without the change
+    if (v->placed[i]) {
+      *dea_gradient_extreme((enum dea_film_extreme)i, out) = dea_solid_extreme_at(
+          model->solid, model->films, (enum dea_film_extreme)i, &v->place[i], voltage_V);
+    }
+  }
+  if (status == DEA_OK && is_asked(v, "capacitance_F")) {
+    status = dea_solid_capacitance_wide(ctx, model->solid, &out->capacitance_F);
+    out->capacitance_F *= model->copies;
+  }
+  return status == DEA_OK
+             ? DEA_OK
+             : dea_fail(ctx, status, "a changed device cannot be evaluated at %g V", voltage_V);
+}
+
+/* The motion of each monitor that its slope is of. */
+static dea_status find_mains(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct variant *v = model->variant;
+  struct dea_observation seen;
+  if (v->ask->monitor_count > 0) {
+    DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
+    for (size_t i = 0; i < v->ask->monitor_count; i++) {
+      v->motion[i] = dea_observed_main(seen.monitor[v->ask->monitors[i]]);
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_gradient_ask *ask, double *out)
+{
+  struct variant *v = model->variant;
+  struct dea_solid *s = model->solid;
+  const struct dea_gradient_owner owner = {.solid = s,
+                                           .model = model,
+                                           .voltage_V = model->at.voltage_V,
+                                           .slope = slope,
+                                           .monitor_slope = monitor_slope,
+                                           .monitors = take_monitors,
+                                           .enter = enter,
+                                           .leave = leave,
+                                           .point = variant_point};
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    v->placed[i] = dea_solid_extreme_find(s, model->films, (enum dea_film_extreme)i, &v->place[i]);
+  }
+  memcpy(v->force, s->state.force, s->problem.dofs * sizeof *v->force);
+  memcpy(v->own_V, s->state.own_V, (s->problem.channel_count + 1) * sizeof *v->own_V);
+  v->problem = s->problem;
+  v->ask = ask;
+  v->own = *model;
+  DEA_TRY(ctx, find_mains(ctx, model));
+  DEA_TRY(ctx, dea_gradient_find(ctx, &owner, ask, out));
+  return DEA_OK;
+}
+
+static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
+                           const struct dea_gradient_ask *ask, double *out)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  const struct dea_solid_problem *p = &model->solid->problem;
+  dea_standing_end_history(ctx, &model->at);
+  if (model->was_moved) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "model 3d knows no gradients where a body or a pressure has been moved");
+  }
+  struct variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
+  double *values = dea_arena_alloc(&memory, 2 * p->dofs, sizeof *values);
+  double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);
+  enum dea_observed *motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *motion);
+  dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
+  if (status == DEA_OK) {
+    v->force = values;
+    v->rest = values + p->dofs;
+    v->own_V = own_V;
+    v->motion = motion;
+    status = find_gradient(ctx, model, ask, out);
+  }
+  model->variant = NULL;
+  dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 // In time ----------------------------------------------------------------------------------------
@@ -1304,6 +1654,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .create = create,
     .destroy = destroy,
     .solve = dea_standing_solve,
+    .gradient = gradient,
     .limit = dea_standing_limit,
     .passed = dea_standing_passed,
     .observe = observe,

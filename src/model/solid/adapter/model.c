@@ -430,23 +430,6 @@ struct variant {
   const struct dea_gradient_ask *ask;
 };
 
-/* Columns of extremes of the film. */
-static bool extreme_of(int column, enum dea_film_extreme *out)
-{
-  static const char *const keys[DEA_FILM_EXTREMES] = {
-      [DEA_FILM_FIELD] = "true_field_V_per_m",
-      [DEA_FILM_MARGIN] = "breakdown_margin",
-      [DEA_FILM_TENSION] = "min_tension_N_per_m",
-  };
-  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
-    if (column == dea_point_column_find(keys[i])) {
-      *out = (enum dea_film_extreme)i;
-      return true;
-    }
-  }
-  return false;
-}
-
 /* The film's node that is highest, sign 1, or lowest, -1. */
 static void weigh_height(const struct dea_model *model, double sign, double *weight)
 {
@@ -480,7 +463,7 @@ static dea_status slope(struct dea_context *ctx, void *self, int column, double 
     factor = strcmp(key, "electrode_stretch") == 0 ? 1 / model->device->electrode_radius_m : 1;
   } else if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
     weigh_height(model, strcmp(key, "highest_z_m") == 0 ? 1 : -1, out);
-  } else if (extreme_of(column, &which)) {
+  } else if (dea_gradient_extreme_of(column, &which)) {
     *known = model->variant->placed[which];
     if (*known) {
       dea_solid_extreme_slope(s, model->films, which, &model->variant->place[which], out,
@@ -530,15 +513,10 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
     status = rest_energy(model, &model->at.rest_energy_J);
   }
   describe(model, voltage_V, out);
-  double *const extremes[DEA_FILM_EXTREMES] = {
-      [DEA_FILM_FIELD] = &out->true_field_V_per_m,
-      [DEA_FILM_MARGIN] = &out->breakdown_margin,
-      [DEA_FILM_TENSION] = &out->min_tension_N_per_m,
-  };
   for (int i = 0; i < DEA_FILM_EXTREMES; i++) { // where they are without the change
     if (v->placed[i]) {
-      *extremes[i] = dea_solid_extreme_at(model->solid, model->films, (enum dea_film_extreme)i,
-                                          &v->place[i], voltage_V);
+      *dea_gradient_extreme((enum dea_film_extreme)i, out) = dea_solid_extreme_at(
+          model->solid, model->films, (enum dea_film_extreme)i, &v->place[i], voltage_V);
     }
   }
   if (status == DEA_OK && is_asked(v, "capacitance_F")) {

@@ -1,0 +1,199 @@
+#include "study/part_numbers.h"
+
+#include "design/schema_parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { NAMELESS = -1 };
+
+/* Lists of parts with numbers, in struct dea_parts. */
+static const struct list {
+  const char *key;
+  size_t items, count, size;
+  int name; // place of the label in an item
+} lists[] = {
+#define LIST(word, type, items, counter, label)                                                    \
+  {                                                                                                \
+    word, offsetof(struct dea_parts, items), offsetof(struct dea_parts, counter),                  \
+        sizeof(struct type), (label)                                                               \
+  }
+    LIST("plies", dea_parts_ply, plies, ply_count, offsetof(struct dea_parts_ply, name)),
+    LIST("channels", dea_parts_channel, channels, channel_count,
+         offsetof(struct dea_parts_channel, name)),
+    LIST("bodies", dea_parts_body, bodies, body_count, offsetof(struct dea_parts_body, name)),
+    LIST("springs", dea_parts_spring, springs, spring_count, NAMELESS),
+    LIST("pressures", dea_parts_pressure, pressures, pressure_count, NAMELESS),
+#undef LIST
+};
+enum { LISTS = sizeof lists / sizeof lists[0] };
+
+static const struct dea_record *record_of(const struct list *list)
+{
+  size_t i = 0;
+  while (strcmp(dea_parts_fields[i].key, list->key) != 0) {
+    i++;
+  }
+  return dea_parts_fields[i].record;
+}
+
+static void add(struct dea_design_number *out, size_t *count,
+                const struct dea_design_number *number)
+{
+  if (*count < DEA_NUMBERS_MAX && number->value != 0 && !isnan(number->value)) {
+    out[(*count)++] = *number;
+  }
+}
+
+// Keys of the file --------------------------------------------------------------------------------
+
+/* Where a body is moved to is held there, so that no slope is known by it. */
+static bool is_held(const struct list *list, const char *key)
+{
+  return strcmp(list->key, "bodies") == 0 &&
+         (strncmp(key, "move_", 5) == 0 || strncmp(key, "turn_", 5) == 0);
+}
+
+/* The numbers of a field of an item: one, or those of its list. */
+static void add_field(const struct list *list, size_t at, size_t item, const char *base,
+                      const struct dea_field *field, struct dea_design_number *out, size_t *count)
+{
+  size_t own = 1;
+  char name[DEA_NAME_SIZE];
+  if (!dea_field_varies(field) || is_held(list, field->key)) {
+    return;
+  }
+  if (field->list_max > 0) {
+    memcpy(&own, base + field->count_offset, sizeof own);
+  }
+  if (list->name == NAMELESS) {
+    snprintf(name, sizeof name, "%s[%zu]", list->key, item);
+  } else {
+    const struct dea_label *label = (const void *)(base + list->name);
+    snprintf(name, sizeof name, "%s.%.30s", list->key, label->text);
+  }
+  for (size_t k = 0; k < own; k++) {
+    const size_t offset = field->offset + k * sizeof(struct dea_quantity);
+    const struct dea_quantity *value = (const void *)(base + offset);
+    struct dea_design_number number = {.unit = field->unit,
+                                       .value = value->origin != DEA_ABSENT ? value->si : NAN,
+                                       .tolerance = NAN,
+                                       .of = DEA_NUMBER_OF_PART,
+                                       .list = at,
+                                       .item = item,
+                                       .offset = offset + offsetof(struct dea_quantity, si),
+                                       .scale = 1};
+    snprintf(number.key, sizeof number.key, "%.42s.%.18s", name, field->key);
+    if (own > 1) {
+      const size_t length = strlen(number.key);
+      snprintf(number.key + length, sizeof number.key - length, "[%zu]", k);
+    }
+    add(out, count, &number);
+  }
+}
+
+// Materials of plies -----------------------------------------------------------------------------
+
+static void add_material(const struct dea_layout_ply *ply, size_t item, const char *key,
+                         const char *param, const char *unit, size_t offset,
+                         struct dea_design_number *out, size_t *count)
+{
+  struct dea_design_number number = {.unit = unit,
+                                     .tolerance = NAN,
+                                     .of = DEA_NUMBER_OF_PLY,
+                                     .item = item,
+                                     .offset = offset,
+                                     .scale = 1};
+  snprintf(number.key, sizeof number.key, "plies.%.24s.%.16s%.14s", ply->name, key, param);
+  memcpy(&number.value, (const char *)&ply->material + offset, sizeof number.value);
+  add(out, count, &number);
+}
+
+#define AT(member) offsetof(struct dea_material, member)
+
+static void add_ply(const struct dea_layout *layout, size_t i, struct dea_design_number *out,
+                    size_t *count)
+{
+  const struct dea_layout_ply *ply = &layout->plies[i];
+  const struct dea_law *law = ply->material.law;
+  for (size_t k = 0; law != NULL && k < law->param_count; k++) {
+    add_material(ply, i, "law.", law->params[k].key, law->params[k].unit,
+                 AT(param) + k * sizeof(double), out, count);
+  }
+  if (law == NULL) {
+    add_material(ply, i, "young_modulus", "", "Pa", AT(young_modulus_Pa), out, count);
+    add_material(ply, i, "poisson_ratio", "", "1", AT(poisson_ratio), out, count);
+  }
+  if (dea_layout_is_dielectric(layout, i)) {
+    add_material(ply, i, "permittivity.", "at_rest", "1", AT(permittivity.at_rest), out, count);
+    add_material(ply, i, "permittivity.", "slope", "1", AT(permittivity.slope), out, count);
+  }
+}
+
+void dea_part_numbers(const struct dea_design *design, const struct dea_device *device,
+                      struct dea_design_number *out, size_t *count)
+{
+  for (size_t l = 0; l < LISTS; l++) {
+    const struct list *list = &lists[l];
+    const struct dea_record *record = record_of(list);
+    const char *items;
+    size_t item_count;
+    memcpy(&items, (const char *)design->parts + list->items, sizeof items);
+    memcpy(&item_count, (const char *)design->parts + list->count, sizeof item_count);
+    for (size_t i = 0; i < item_count; i++) {
+      for (size_t f = 0; f < record->field_count; f++) {
+        add_field(list, l, i, items + i * list->size, &record->fields[f], out, count);
+      }
+    }
+  }
+  for (size_t i = 0; i < device->layout->ply_count; i++) {
+    add_ply(device->layout, i, out, count);
+  }
+}
+
+// Changed devices --------------------------------------------------------------------------------
+
+/* A copy of the parts in which a number of the file is another one. */
+static dea_status change_part(struct dea_context *ctx, const struct dea_design_number *number,
+                              double value, struct dea_arena *scratch, struct dea_parts *parts)
+{
+  const struct list *list = &lists[number->list];
+  char *items, *copy;
+  size_t count;
+  memcpy(&items, (char *)parts + list->items, sizeof items);
+  memcpy(&count, (char *)parts + list->count, sizeof count);
+  copy = dea_arena_alloc(scratch, count, list->size);
+  if (copy == NULL) {
+    return dea_context_status(ctx);
+  }
+  memcpy(copy, items, count * list->size);
+  memcpy(copy + number->item * list->size + number->offset, &value, sizeof value);
+  memcpy((char *)parts + list->items, &copy, sizeof copy);
+  return DEA_OK;
+}
+
+dea_status dea_part_change(struct dea_context *ctx, const struct dea_design *design,
+                           const struct dea_design_number *number, double value,
+                           struct dea_arena *scratch, struct dea_device *out)
+{
+  struct dea_design changed = *design;
+  struct dea_parts parts = *design->parts;
+  struct dea_device *device;
+  changed.parts = &parts;
+  *out = (struct dea_device){.layout = NULL};
+  if (number->of == DEA_NUMBER_OF_PART) {
+    DEA_TRY(ctx, change_part(ctx, number, value, scratch, &parts));
+  }
+  const size_t errors = dea_finding_trial_begin(ctx); // what there is to say has been said
+  const dea_status status = dea_device_build(ctx, &changed, &device);
+  dea_finding_trial_end(ctx, errors);
+  DEA_TRY(ctx, status);
+  *out = *device;
+  dea_free(ctx, device); // its layout is that of *out
+  if (number->of == DEA_NUMBER_OF_PLY) {
+    memcpy((char *)&out->layout->plies[number->item].material + number->offset, &value,
+           sizeof value);
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,256 @@
+/* Gradients of devices of the general form: Taylor's remainder of each by the changed device, built
+ * and solved by itself. */
+// ctest: solid
+#include "model/model.h"
+#include "result/columns.h"
+#include "study/design_file.h"
+#include "study/part_numbers.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+#include <string.h>
+
+static const char *const keys[] = {"highest_z_m",         "true_field_V_per_m", "breakdown_margin",
+                                   "min_tension_N_per_m", "capacitance_F",      "energy_J"};
+enum { KEYS = sizeof keys / sizeof keys[0], MONITORS = 2, WIDTH = KEYS + MONITORS };
+
+/* A device with all that has numbers: a hub with a mass, a force and a spring, its own voltages. */
+static const char cone[] = "dea: 1\n"
+                           "title: cone\n"
+                           "shapes:\n"
+                           "  - {name: film, kind: circle, radius: 20 mm}\n"
+                           "  - {name: hub, kind: circle, radius: 5 mm}\n"
+                           "  - {name: active, kind: difference, of: [film, hub]}\n"
+                           "  - {name: ring, kind: ring, inner_radius: 6 mm, outer_radius: 12 mm}\n"
+                           "plies:\n"
+                           "  - {name: film, shape: film, material: elastosil-2030, "
+                           "thickness: 100 um, pre_stretch: [1.2, 1.25]}\n"
+                           "electrodes:\n"
+                           "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+                           "  - {ply: film, side: top, shape: active, channel: drive}\n"
+                           "channels:\n"
+                           "  - {name: drive, ratio: 0.8, voltage: 0.3 kV}\n"
+                           "supports:\n"
+                           "  - {edge: film}\n"
+                           "bodies:\n"
+                           "  - {name: hub, shape: hub, mass: 20 g, free: [z], force_z: 50 mN}\n"
+                           "springs:\n"
+                           "  - {body: hub, direction: z, stiffness: 10 N/m, free_at: 1 mm}\n"
+                           "monitors:\n"
+                           "  - {name: hub, body: hub}\n"
+                           "  - {name: ring, shape: ring}\n"
+                           "gravity: top_up\n"
+                           "compute:\n"
+                           "  voltage: {to: 3 kV, step: 1 kV}\n"
+                           "  solid: {film: membrane}\n";
+
+struct at {
+  struct dea_design *design;
+  struct dea_device *device;
+  double voltage_V;
+  size_t monitors[MONITORS], monitor_count;
+  enum dea_observed motion[MONITORS]; // found by the first that observes
+  bool found;
+};
+
+/* Quantities of a device that is solved by itself, out [WIDTH]. */
+static void solve(struct at *at, const struct dea_device *device, double voltage_V, double *out,
+                  struct dea_model **keep)
+{
+  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), device);
+  struct dea_model *model = NULL;
+  struct dea_load_point point;
+  struct dea_observation seen;
+  if (dea_model_create(ctx, type, at->design, device, &model) != DEA_OK ||
+      type->solve(ctx, model, voltage_V, &point) != DEA_OK ||
+      dea_model_observe(ctx, type, model, &seen) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  for (int k = 0; k < KEYS; k++) {
+    out[k] = dea_point_get(&point, dea_point_column_find(keys[k]));
+  }
+  for (size_t m = 0; m < at->monitor_count; m++) {
+    at->motion[m] = at->found ? at->motion[m] : dea_observed_main(seen.monitor[m]);
+    out[KEYS + m] = seen.monitor[m][at->motion[m]];
+  }
+  at->found = true;
+  if (keep != NULL) {
+    *keep = model;
+  } else {
+    type->destroy(ctx, model);
+  }
+}
+
+/* What the solver leaves of a quantity, over its size: of a tension the pressure's part, which does
+ * not become less where the tension nearly vanishes, as in a bender. */
+static double floor_of(const struct at *at, size_t k, double size)
+{
+  const struct dea_layout_ply *film = &at->device->layout->plies[at->device->layout->ply_count - 1];
+  const double whole =
+      film->material.law->shear_modulus(film->material.param) * film->thickness_m; // [N/m]
+  return k < KEYS && strcmp(keys[k], "min_tension_N_per_m") == 0 ? 3e-8 + 1e-9 * whole / size
+                                                                 : 3e-8;
+}
+
+static void check_number(struct at *at, const struct dea_design_number *number, const double *base,
+                         const double *slope)
+{
+  const double shares[] = {3e-3, 3e-4};
+  double moved[2][WIDTH];
+  bool voltage = strcmp(number->key, "voltage") == 0;
+  for (int n = 0; n < 2; n++) {
+    struct dea_arena scratch = {.ctx = ctx};
+    struct dea_device device = {.layout = NULL};
+    double value = number->value * (1 + shares[n]);
+    if (!voltage) {
+      assert_int_equal(dea_part_change(ctx, at->design, number, value, &scratch, &device), DEA_OK);
+    }
+    solve(at, voltage ? at->device : &device, voltage ? value : at->voltage_V, moved[n], NULL);
+    dea_layout_destroy(ctx, device.layout);
+    dea_arena_free(&scratch);
+  }
+  for (size_t k = 0; k < KEYS + at->monitor_count; k++) {
+    double size = fabs(base[k]);
+    if (k >= KEYS && at->motion[k - KEYS] == DEA_OBSERVED_AREA_STRETCH) {
+      size = fabs(base[k] - 1);
+    }
+    if (isnan(base[k]) || size < 1e-12) { // of what lies still
+      continue;
+    }
+    double left[2];
+    assert_true(!isnan(slope[k]));
+    for (int n = 0; n < 2; n++) {
+      left[n] = (moved[n][k] - base[k] - slope[k] * number->value * shares[n]) / size;
+    }
+    if (!(fabs(left[1] - 1e-2 * left[0]) <= 0.1 * fabs(1e-2 * left[0]) + floor_of(at, k, size))) {
+      fail_msg("%s by %s: remainders %.3e, %.3e, slope %.6g", k < KEYS ? keys[k] : "monitor",
+               number->key, left[0], left[1], slope[k] * number->value / size);
+    }
+  }
+}
+
+/* All numbers of a design. Returns how many there are. */
+static size_t check(struct at *at)
+{
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  size_t count;
+  int columns[KEYS];
+  double base[WIDTH];
+  struct dea_model *model;
+  assert_int_equal(dea_device_build(ctx, at->design, &at->device), DEA_OK);
+  dea_design_numbers(at->design, at->device, at->voltage_V, numbers, &count);
+  at->monitor_count = at->device->layout->monitor_count;
+  assert_in_range(at->monitor_count, 1, MONITORS);
+  for (size_t m = 0; m < at->monitor_count; m++) {
+    at->monitors[m] = m;
+  }
+  for (int k = 0; k < KEYS; k++) {
+    columns[k] = dea_point_column_find(keys[k]);
+  }
+  solve(at, at->device, at->voltage_V, base, &model);
+  const struct dea_design_gradient ask = {.type =
+                                              dea_model_of_device(dea_model_find("3d"), at->device),
+                                          .model = model,
+                                          .design = at->design,
+                                          .device = at->device,
+                                          .voltage_V = at->voltage_V,
+                                          .numbers = numbers,
+                                          .number_count = count,
+                                          .columns = columns,
+                                          .column_count = KEYS,
+                                          .monitors = at->monitors,
+                                          .monitor_count = at->monitor_count};
+  const size_t width = KEYS + at->monitor_count;
+  double *slopes = dea_alloc(ctx, count * width, sizeof *slopes);
+  assert_non_null(slopes);
+  if (dea_design_gradient_find(ctx, &ask, slopes) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  ask.type->destroy(ctx, model);
+  for (size_t i = 0; i < count; i++) {
+    check_number(at, &numbers[i], base, slopes + i * width);
+  }
+  dea_free(ctx, slopes);
+  dea_device_destroy(ctx, at->device);
+  dea_design_destroy(ctx, at->design);
+  return count;
+}
+
+static void test_cone(void **state)
+{
+  (void)state;
+  struct at at = {.voltage_V = 3e3};
+  assert_int_equal(
+      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  /* voltage, thickness, two stretches, ratio and voltage of a channel, mass, force, stiffness and
+   * free end of a spring, three of the law, permittivity */
+  assert_int_equal(check(&at), 14);
+}
+
+static void check_example(const char *file, double voltage_V)
+{
+  struct at at = {.voltage_V = voltage_V};
+  assert_int_equal(dea_design_read(ctx, file, NULL, 0, &at.design), DEA_OK);
+  check(&at);
+}
+
+static void test_pressure(void **state)
+{
+  (void)state;
+  check_example(DEA_SOURCE_DIR "/examples/devices/diaphragm.yaml", 3e3);
+}
+
+static void test_two_plies(void **state)
+{
+  (void)state;
+  check_example(DEA_SOURCE_DIR "/examples/devices/bender.yaml", 0.5e3);
+}
+
+/* Shapes and supports: the mesh of the device does not follow. */
+static void test_what_cannot_follow(void **state)
+{
+  (void)state;
+  struct at at = {.voltage_V = 1e3};
+  struct dea_model *model;
+  double base[WIDTH], slope;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  at.monitor_count = at.device->layout->monitor_count;
+  solve(&at, at.device, at.voltage_V, base, &model);
+  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
+  const struct dea_override wider = {"shapes.film.radius", "20.001 mm"},
+                            moved = {"supports", "[{edge: film, hold: [x, y, z], move_z: 1 um}]"};
+  const struct dea_override *const all[] = {&wider, &moved};
+  const int column = dea_point_column_find("capacitance_F");
+  for (int i = 0; i < 2; i++) {
+    struct dea_design *design;
+    struct dea_device *device;
+    assert_int_equal(
+        dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), all[i], 1, &design), DEA_OK);
+    assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+    const struct dea_design_change change = {
+        {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6};
+    const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0};
+    assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
+    assert_true(isnan(slope));
+    dea_device_destroy(ctx, device);
+    dea_design_destroy(ctx, design);
+  }
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, at.device);
+  dea_design_destroy(ctx, at.design);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_cone),
+      cmocka_unit_test(test_pressure),
+      cmocka_unit_test(test_two_plies),
+      cmocka_unit_test(test_what_cannot_follow),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
