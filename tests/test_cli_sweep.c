@@ -43,9 +43,42 @@ static void test_errors(void **state)
   expect("{name: pre_stretch, values: [1.5]}, {name: pre_stretch, values: [1.5]}", "",
          "the name 'pre_stretch' is taken by the variable in line 7");
   expect(good, "plan: sobo", "sobo");
+  static const char three[] = "{name: pre_stretch, low: 1.4, high: 1.5}, {name: film.thickness, "
+                              "low: 90 um, high: 110 um}, {name: film.law.c1, low: 170 kPa, "
+                              "high: 180 kPa}";
+  expect(three, "plan: sobol\ncorrelations: [0.9, 0.9, -0.9]",
+         "mine.yaml:9:16: error: no numbers have these correlations");
+  expect(three, "plan: sobol\ncorrelations: [0.9]", "1 correlations where 3 variables have 3");
+  expect(three, "plan: indices\ncorrelations: [0, 0, 0.9]", "correlations are of samples");
   write_file(good, "");
   assert_int_equal(command_run("sweep mine.yaml --shard 3/2"), 2);
   assert_int_equal(command_run("sweep mine.yaml -j 0"), 2);
+}
+
+/* Of a device made of plies: numbers of its parts and shapes. */
+static void test_parts(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *name, *message;
+  } cases[] = {
+      {"film.law.c1", "'film.law.c1' is no number of a part of the design"},
+      {"plies.film.thicknes", "did you mean 'plies.film.thickness'?"},
+      {"pressures[0].pressure", "'pressures[0].pressure' is no number of a part"},
+      {"shapes.active.width", "'shapes.active.width' is no number of a part"},
+      {"plies.film.thickness", "needs a disc"}, // a good one: lumped is no model of this device
+      {"shapes.active.radius", "needs a disc"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[1000];
+    snprintf(text, sizeof text,
+             "dea_explore: 1\nname: parts\ndesign: " DEA_SOURCE_DIR
+             "/examples/devices/diaphragm.yaml\nmodel: lumped\nquantities: [capacitance_F]\n"
+             "variables: [{name: \"%s\", values: [1 mm]}]\n",
+             cases[i].name);
+    command_write("parts.yaml", text);
+    command_expect("sweep parts.yaml --force", 3, cases[i].message);
+  }
 }
 
 /* Number of lines of a file that hold a text. */
@@ -167,6 +200,7 @@ static void test_optimise(void **state)
   assert_contains(command_out, best);
   assert_int_equal(command_run("check best/best.yaml"), 0);
   assert_contains(command_out, "pre_stretch");
+  command_write("best/best-3.yaml", "of a front that was longer\n");
   assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
   assert_contains(command_out, best);
   const char *at = strstr(command_out, "designs: ");
@@ -175,6 +209,8 @@ static void test_optimise(void **state)
   assert_int_equal(sscanf(at, "designs: %d, %d of them", &all, &before), 2);
   assert_int_equal(all, before);
   assert_int_equal(lines_with("best/progress.svg", "<svg"), 1);
+  assert_int_equal(command_run("check best/best-3.yaml"), 3); // it is gone
+  assert_contains(command_err, "best-3.yaml");
 }
 
 /* The keys of docs/explore.md. */
@@ -190,6 +226,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_errors),   cmocka_unit_test(test_grid),
       cmocka_unit_test(test_killed),   cmocka_unit_test(test_interrupted),
-      cmocka_unit_test(test_optimise), cmocka_unit_test(test_page)};
+      cmocka_unit_test(test_optimise), cmocka_unit_test(test_page),
+      cmocka_unit_test(test_parts)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

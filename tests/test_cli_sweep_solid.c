@@ -85,10 +85,35 @@ static void test_neighbours(void **state)
   }
 }
 
+/* A device made of plies: by a ply's thickness with the model's gradients, by a shape without. */
+static void test_parts(void **state)
+{
+  (void)state;
+  command_write("parts.yaml",
+                "dea_explore: 1\nname: parts\ndesign: " DEA_SOURCE_DIR
+                "/examples/devices/diaphragm.yaml\nmodel: 3d\nvoltages: [3 kV]\n"
+                "quantities: [highest_z_m, breakdown_margin]\nmethod: slsqp\nstarts: 1\n"
+                "evaluations: 12\ntolerance: 1e-3\nobjectives: [{quantity: highest_z_m}]\n"
+                "limits: [{quantity: breakdown_margin, above: 0.5}]\nvariables:\n"
+                "  - {name: plies.film.thickness, low: 80 um, high: 130 um, start: 120 um}\n"
+                "  - {name: shapes.active.radius, low: 8.5 mm, high: 9.5 mm}\n");
+  const int code = command_run("optimise parts.yaml -j 1 -q");
+  if (code == 2) { // a build without model 3d
+    skip();
+  }
+  assert_int_equal(code, 0);
+  assert_contains(command_out, "plies.film.thickness");
+  assert_contains(command_out, "by differences of shapes.active.radius");
+  const char *margin = strstr(command_out, "breakdown_margin");
+  assert_true(margin == NULL || strtod(margin + 16, NULL) > 0.499);
+  assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_neighbours),
+      cmocka_unit_test(test_parts),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

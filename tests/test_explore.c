@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 /* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, and a
  * store that is cut off anywhere. */
+#include "base/correlations.h"
 #include "explore/order.h"
 #include "explore/plan.h"
 #include "explore/pool.h"
@@ -95,6 +96,73 @@ static void test_quantile(void **state)
                   (x < 3 ? 1e-12 : 1e-16 * exp(0.5 * x * x) * 3));
     }
   }
+}
+
+/* Samples with correlations: those of the normal numbers behind them, and each still even. */
+static void test_correlated_samples(void **state)
+{
+  (void)state;
+  enum { N = 1 << 14, D = 3 };
+  static struct dea_explore_file file = {.variable_count = D, .correlation_count = 3};
+  const double wanted[] = {0.8, -0.3, 0.2}; // 2 with 1, 3 with 1, 3 with 2
+  for (int k = 0; k < 3; k++) {
+    file.correlations[k].si = wanted[k];
+  }
+  double *u = calloc((size_t)N * D, sizeof *u), product[D][D] = {{0}};
+  int hits[D][16] = {{0}};
+  dea_sample_sobol(D, N, 1, u);
+  dea_sample_correlate(&file, N, u);
+  for (size_t i = 0; i < N; i++) {
+    for (size_t a = 0; a < D; a++) {
+      hits[a][(size_t)(16 * u[i * D + a])]++;
+      for (size_t b = 0; b <= a; b++) {
+        product[a][b] += dea_normal_quantile(u[i * D + a]) * dea_normal_quantile(u[i * D + b]) / N;
+      }
+    }
+  }
+  for (size_t a = 0, next = 0; a < D; a++) {
+    assert_close(product[a][a], 1, 0, 2e-3);
+    for (size_t b = 0; b < a; b++) {
+      assert_close(product[a][b], wanted[next++], 0, 2e-3);
+    }
+    for (size_t k = 0; k < 16; k++) {
+      assert_in_range(hits[a][k], N / 16 - 16, N / 16 + 16);
+    }
+  }
+  free(u);
+}
+
+/* A matrix with an eigenvalue of 0 is one of numbers that go together; below 0 there are none. */
+static void test_impossible_correlations(void **state)
+{
+  (void)state;
+  const struct {
+    double of[3];
+    size_t count;
+    const char *wrong; // NULL: nothing
+  } cases[] = {
+      {{0.5, 0.5, 0.5}, 3, NULL},
+      {{-1, 1, -1}, 3, NULL},
+      {{0.6, 0.8, 0}, 3, NULL},            // 0 but for rounding: 0.36 + 0.64 = 1
+      {{0.9, 0.9, -0.9}, 3, "no numbers"}, // the third goes with both, which go apart
+      {{1, 0.5, -0.5}, 3, "no numbers"},   // two that are one, with different friends
+      {{0.5, 0.5}, 2, "2 correlations where 3 variables have 3"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_quantity listed[3] = {{0}};
+    size_t count;
+    for (int k = 0; k < 3; k++) {
+      listed[k].si = cases[i].of[k];
+    }
+    dea_finding_clear(ctx);
+    assert_int_equal(dea_correlations_check(ctx, listed, cases[i].count, 3, "variable"), DEA_OK);
+    const struct dea_finding *found = dea_finding_get(ctx, &count);
+    assert_int_equal(count, cases[i].wrong != NULL);
+    if (count > 0) {
+      assert_non_null(strstr(found[0].text, cases[i].wrong));
+    }
+  }
+  dea_finding_clear(ctx);
 }
 
 /* Ishigami and Homma's function, whose indices are known in closed form, to 1 %. */
@@ -317,11 +385,16 @@ static void test_store(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_sobol),    cmocka_unit_test(test_sobol_integral),
-      cmocka_unit_test(test_latin),    cmocka_unit_test(test_quantile),
-      cmocka_unit_test(test_ishigami), cmocka_unit_test(test_spread),
-      cmocka_unit_test(test_order),    cmocka_unit_test(test_pool),
-      cmocka_unit_test(test_store)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sobol),
+                                     cmocka_unit_test(test_sobol_integral),
+                                     cmocka_unit_test(test_latin),
+                                     cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_ishigami),
+                                     cmocka_unit_test(test_spread),
+                                     cmocka_unit_test(test_order),
+                                     cmocka_unit_test(test_pool),
+                                     cmocka_unit_test(test_store),
+                                     cmocka_unit_test(test_correlated_samples),
+                                     cmocka_unit_test(test_impossible_correlations)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -82,23 +82,25 @@ static dea_status make_scatter(struct work *w)
   }
   const size_t count = w->report->scattered;
   w->scatter = dea_alloc(w->ctx, count * n, sizeof *w->scatter);
-  double *u = dea_alloc(w->ctx, count * scattering, sizeof *u);
-  if (w->scatter == NULL || u == NULL) {
-    dea_free(w->ctx, u);
-    return DEA_E_MEMORY;
-  }
-  dea_sample_sobol(scattering, count - 1, (unsigned long long)question->file->seed.si, u);
-  for (size_t s = 0; s < count; s++) {
-    for (size_t j = 0, d = 0; j < n; j++) {
-      const struct dea_variable *variable = &question->variables[j];
-      const double at = s > 0 && variable->scatter > 0 ? u[(s - 1) * scattering + d] : 0.5;
+  double *few = dea_alloc(w->ctx, count * scattering, sizeof *few);
+  double *u = dea_alloc(w->ctx, count * n, sizeof *u);
+  if (w->scatter != NULL && few != NULL && u != NULL) {
+    dea_sample_sobol(scattering, count - 1, (unsigned long long)question->file->seed.si, few);
+    for (size_t i = 0, d = 0; i < (count - 1) * n; i++) { // what does not scatter: in its middle
+      u[i] = question->variables[i % n].scatter > 0 ? few[d++] : 0.5;
+    }
+    dea_sample_correlate(question->file, count - 1, u);
+    for (size_t i = n; i < count * n; i++) {
+      const struct dea_variable *variable = &question->variables[i % n];
       const bool normal = variable->text->distribution.value == DEA_NORMAL;
-      w->scatter[s * n + j] = variable->scatter * (normal ? dea_normal_quantile(at) : 2 * at - 1);
-      d += variable->scatter > 0 ? 1U : 0U;
+      const double at = u[i - n];
+      w->scatter[i] = variable->scatter * (normal ? dea_normal_quantile(at) : 2 * at - 1);
     }
   }
+  const dea_status status = w->scatter != NULL && few != NULL && u != NULL ? DEA_OK : DEA_E_MEMORY;
+  dea_free(w->ctx, few);
   dea_free(w->ctx, u);
-  return DEA_OK;
+  return status;
 }
 
 static void fill_search(struct work *w)
@@ -354,6 +356,22 @@ static dea_status draw_all(struct work *w)
 
 // All of it ---------------------------------------------------------------------------------------
 
+/* Takes away designs of an earlier search in the folder that had more of them, or of the other
+ * kind.
+ */
+static void remove_older(const struct work *w)
+{
+  const bool front = w->question->file->objective_count > 1;
+  for (size_t i = front ? w->report->count + 1 : 1; i <= DEA_EXPLORE_FRONT_MAX + 1; i++) {
+    struct dea_text path = {.ctx = w->ctx};
+    dea_text_add(&path, "%s/best-%zu.yaml", w->options->folder, i);
+    if (!path.failed) {
+      remove(dea_text_get(&path)); // most are not there
+    }
+    dea_text_free(&path);
+  }
+}
+
 static dea_status write_all(struct work *w)
 {
   const bool front = w->question->file->objective_count > 1;
@@ -361,6 +379,7 @@ static dea_status write_all(struct work *w)
     w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
   }
   DEA_TRY(w->ctx, write_cases(w));
+  remove_older(w);
   for (size_t i = 0; i < w->report->count; i++) {
     DEA_TRY(w->ctx, write_design(w, &w->report->optima[i], front ? i + 1 : 0));
   }

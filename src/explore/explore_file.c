@@ -1,5 +1,7 @@
 #include "explore/explore_file.h"
 
+#include "base/correlations.h"
+
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_explore_file, member)
 #define VARIABLE_AT(member) offsetof(struct dea_explore_variable, member)
@@ -142,6 +144,14 @@ static const struct dea_field file_fields[] = {
      .count_offset = AT(variable_count),
      .doc = "numbers of the design that change",
      .example = "[{name: film.thickness, values: [80 um, 100 um]}]"},
+    DEA_NUMBER_ROW(
+        "correlations", AT(correlations), "1", "[0.8]",
+        "of the variables, 2 with 1, 3 with 1, 3 with 2, ..., as dea fit writes them: of "
+        "samples, and of what scatters in an optimisation; those of other "
+        "distributions than normal are of the normal numbers behind them",
+        .min = -1, .max = 1, .list_min = 1, .list_max = DEA_EXPLORE_PAIRS_MAX,
+        .element_size = sizeof(struct dea_quantity), .count_offset = AT(correlation_count),
+        .absent_text = "none"),
     DEA_CHOICE_ROW("plan", AT(plan), plans, "sobol",
                    "grid: every combination; samples of the distributions; indices: samples for "
                    "Sobol indices, (variables + 2) times their number",
@@ -193,7 +203,7 @@ static const struct dea_field file_fields[] = {
                    "the search ends where the variables change by less, as a share of their range",
                    .min = 1e-12, .max = 0.1, .default_text = "1e-5"),
     DEA_INTEGER_ROW("front", AT(front), "11", "points of the front of two objectives", .min = 2,
-                    .max = 100, .default_text = "7"),
+                    .max = DEA_EXPLORE_FRONT_MAX, .default_text = "7"),
     {.key = "robust",
      .kind = DEA_FIELD_RECORD,
      .offset = AT(robust),
@@ -214,8 +224,20 @@ static dea_status check(struct dea_context *ctx, const void *user)
                                    "voltages have to rise"));
     }
   }
-  return dea_fit_names_check(ctx, file->variables, file->variable_count, sizeof file->variables[0],
-                             "variable");
+  DEA_TRY(ctx, dea_fit_names_check(ctx, file->variables, file->variable_count,
+                                   sizeof file->variables[0], "variable"));
+  DEA_TRY(ctx, dea_correlations_check(ctx, file->correlations, file->correlation_count,
+                                      file->variable_count, "variable"));
+  const int plan = file->plan.value;
+  if (file->correlation_count > 0 && file->objective_count == 0 &&
+      (plan == DEA_PLAN_GRID || plan == DEA_PLAN_INDICES)) {
+    return dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
+                           "correlations are of samples: plan: %s",
+                           plan == DEA_PLAN_GRID ? "sobol, not grid"
+                                                 : "sobol; indices are of variables that are "
+                                                   "independent of each other");
+  }
+  return DEA_OK;
 }
 
 dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,

@@ -13,6 +13,8 @@ enum {
   DEA_EXPLORE_LIMITS_MAX = 8,
   DEA_EXPLORE_OBJECTIVES_MAX = 2,
   DEA_EXPLORE_SCATTERED_MAX = 256,
+  DEA_EXPLORE_FRONT_MAX = 100, // points of a front
+  DEA_EXPLORE_PAIRS_MAX = DEA_DEVICE_PARAMS_MAX * (DEA_DEVICE_PARAMS_MAX - 1) / 2,
   DEA_EXPLORE_CASES_MAX = 10000000,
 };
 
@@ -64,7 +66,9 @@ struct dea_explore_file {
   size_t quantity_count;
   struct dea_explore_variable variables[DEA_DEVICE_PARAMS_MAX];
   size_t variable_count;
-  struct dea_choice plan; // enum dea_plan_kind
+  struct dea_quantity correlations[DEA_EXPLORE_PAIRS_MAX]; // 2 with 1, 3 with 1, 3 with 2, ...
+  size_t correlation_count;                                // 0: none correlate
+  struct dea_choice plan;                                  // enum dea_plan_kind
   struct dea_quantity samples, seed;
   struct dea_choice begin; // enum dea_begin
   struct dea_explore_limit limits[DEA_EXPLORE_LIMITS_MAX];

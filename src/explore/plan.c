@@ -1,5 +1,7 @@
 #include "explore/plan.h"
 
+#include "base/correlations.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -134,6 +136,28 @@ double dea_normal_quantile(double u)
   return upper ? -x : x;
 }
 
+void dea_sample_correlate(const struct dea_explore_file *file, size_t count, double *u)
+{
+  const size_t n = file->variable_count;
+  double L[DEA_CASE_PARAMS_MAX * DEA_CASE_PARAMS_MAX], z[DEA_CASE_PARAMS_MAX];
+  if (file->correlation_count == 0) {
+    return;
+  }
+  dea_correlations_factor(file->correlations, file->correlation_count, n, L);
+  for (size_t i = 0; i < count; i++, u += n) {
+    for (size_t j = 0; j < n; j++) {
+      z[j] = dea_normal_quantile(u[j]);
+    }
+    for (size_t j = 0; j < n; j++) {
+      double sum = 0;
+      for (size_t k = 0; k <= j; k++) {
+        sum += L[j * n + k] * z[k];
+      }
+      u[j] = fmin(fmax(0.5 * erfc(-sum * 0.70710678118654752440), 0x1p-33), 1 - 0x1p-33);
+    }
+  }
+}
+
 // Cases -------------------------------------------------------------------------------------------
 
 /* Value of a variable at a share of its distribution. */
@@ -230,6 +254,9 @@ static dea_status make_samples(const struct dea_question *question, struct dea_p
   double *u = dea_alloc(question->ctx, samples * dimensions, sizeof *u);
   dea_status status =
       out->p != NULL && u != NULL ? draw(question, dimensions, samples, u) : DEA_E_MEMORY;
+  if (status == DEA_OK && !indices) {
+    dea_sample_correlate(question->file, samples, u);
+  }
   for (size_t b = 0; b < blocks && status == DEA_OK; b++) {
     for (size_t i = 0; i < samples; i++) {
       for (size_t j = 0; j < n; j++) { // block 0: A, 1: B, 2 + j: A with column j of B

@@ -18,6 +18,9 @@ void dea_sample_random(size_t dimensions, size_t count, unsigned long long seed,
 
 /* x with P(X <= x) = u of a standard normal distribution; 0 < u < 1. */
 double dea_normal_quantile(double u);
+/* Gives shares u [count][variables] of the variables of a file its correlations, by the normal
+ * numbers behind them; without any they stay. */
+void dea_sample_correlate(const struct dea_explore_file *file, size_t count, double *u);
 
 /* Cases [count][params], owned (dea_free). Of indices: A, B, then for each variable A with the
  * variable of B, of `samples` each. */

@@ -38,6 +38,21 @@ static void add_material(struct dea_text *out, const struct dea_material *film)
       film->breakdown.known && film->breakdown.exponent_known ? film->breakdown.exponent : 0);
 }
 
+/* What the listed values of a design of the general form leave out: shapes and materials. */
+static void add_layout(struct dea_text *out, const struct dea_layout *layout)
+{
+  for (size_t i = 0; i < layout->region_count; i++) {
+    const struct dea_region *region = &layout->regions[i].region;
+    for (size_t k = 0; k < region->vertex_count; k++) {
+      const struct dea_vertex *vertex = &region->vertex[k];
+      dea_text_add(out, "%.12g,%.12g,%.12g\n", vertex->x_m, vertex->y_m, vertex->bulge);
+    }
+  }
+  for (size_t i = 0; i < layout->ply_count; i++) {
+    add_material(out, &layout->plies[i].material);
+  }
+}
+
 /* All that a design says of the device, in SI, and with which model at which voltages. */
 static void resolve(const struct dea_question *question, const struct dea_design *design,
                     const struct dea_device *device, struct dea_text *out)
@@ -55,6 +70,9 @@ static void resolve(const struct dea_question *question, const struct dea_design
   }
   add_material(out, &device->film);
   add_material(out, &device->fibre);
+  if (device->general) {
+    add_layout(out, device->layout);
+  }
   dea_text_add(out, "model=%s\n", question->model.type->name);
   for (size_t k = 0; k < question->voltage_count; k++) {
     dea_text_add(out, "%.12g V\n", question->voltages_V[k]);
@@ -235,6 +253,9 @@ static dea_status read_design(struct dea_question *question)
   DEA_TRY(ctx, dea_design_read_memory(ctx, question->path, question->bytes, question->length, NULL,
                                       0, &question->design));
   DEA_TRY(ctx, dea_device_build(ctx, question->design, &question->device));
+  if (question->model.type != NULL) {
+    question->model.type = dea_model_of_device(question->model.type, question->device);
+  }
   return DEA_OK;
 }
 

@@ -150,7 +150,7 @@ struct dea_evaluator dea_question_with_slopes(const struct dea_question *questio
 {
   struct dea_evaluator out = question->evaluator;
   const int method = question->file->method.value;
-  out.gradients = question->model.type->gradient != NULL && !question->device->general &&
+  out.gradients = question->model.type->gradient != NULL &&
                   (method == DEA_SLSQP || method == DEA_MMA) &&
                   question->file->gradients.value == DEA_SLOPES_MODEL;
   if (out.gradients && dea_evaluator_values(&out) <= DEA_CASE_VALUES_MAX) {

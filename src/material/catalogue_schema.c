@@ -1,4 +1,5 @@
 /* The table of a material's data, and what is checked beyond it. */
+#include "base/correlations.h"
 #include "base/schema_value.h"
 #include "material/catalogue.h"
 
@@ -486,11 +487,13 @@ static dea_status check_correlations(const struct dea_reader *reader, const stru
     known += set->uncertainties != NULL && !isnan(set->param_std[i].si) ? 1U : 0U;
   }
   const size_t wanted = known > 0 ? known * (known - 1) / 2 : 0;
-  return set->correlation_count == 0 || set->correlation_count == wanted
-             ? DEA_OK
-             : dea_schema_error(reader, set->correlations[0].location,
-                                "%zu correlations; the %zu parameters with an uncertainty have %zu",
-                                set->correlation_count, known, wanted);
+  if (set->correlation_count != 0 && set->correlation_count != wanted) {
+    return dea_schema_error(reader, set->correlations[0].location,
+                            "%zu correlations; the %zu parameters with an uncertainty have %zu",
+                            set->correlation_count, known, wanted);
+  }
+  return dea_correlations_check(reader->ctx, set->correlations, set->correlation_count, known,
+                                "parameter");
 }
 
 /* Two sets of one name: a design could never choose the second. */

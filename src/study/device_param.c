@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "base/write_file.h"
 #include "study/design_file.h"
+#include "study/part_numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -26,10 +27,40 @@ static const struct dea_listed *find_value(const struct dea_design *design, cons
   return NULL;
 }
 
+/* The same of a design of the general form. */
+static dea_status unknown_part(struct dea_context *ctx,
+                               const struct dea_device_param_source *source,
+                               const struct dea_label *name, const char *why)
+{
+  struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
+  const char *known[DEA_NUMBERS_MAX];
+  size_t count = 0;
+  if (numbers == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_part_numbers(source->design, source->device, numbers, &count);
+  for (size_t i = 0; i < count; i++) {
+    known[i] = numbers[i].key;
+  }
+  const char *nearest = dea_nearest_name(name->text, known, count);
+  const dea_status status =
+      dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
+                      why != NULL ? why
+                                  : "is no number of a part of the design (plies.NAME.thickness, "
+                                    "shapes.NAME.radius)",
+                      nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                      nearest != NULL ? "'?" : "");
+  dea_free(ctx, numbers);
+  return status;
+}
+
 dea_status dea_device_param_unknown(struct dea_context *ctx,
                                     const struct dea_device_param_source *source,
                                     const struct dea_label *name, const char *why)
 {
+  if (source->device->general) {
+    return unknown_part(ctx, source, name, why);
+  }
   const struct dea_listing *values = &source->design->values;
   const char *known[256];
   size_t count = 0;
@@ -113,6 +144,60 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   DEA_TRY(ctx, take_value(ctx, source->design, name, field, out));
   *good = true;
   return DEA_OK;
+}
+
+/* "shapes.NAME.PARAMETER" of a shape of the file, its value and unit; false: there is none. */
+static bool find_shape(const struct dea_parts *parts, const char *key, double *value,
+                       const char **unit)
+{
+  static const char prefix[] = "shapes.";
+  const char *dot = strrchr(key, '.');
+  if (strncmp(key, prefix, strlen(prefix)) != 0 || dot < key + strlen(prefix)) {
+    return false;
+  }
+  const char *name = key + strlen(prefix);
+  const size_t length = (size_t)(dot - name);
+  for (size_t i = 0; i < parts->shape_count; i++) {
+    const struct dea_parts_shape *shape = &parts->shapes[i];
+    const bool same = strlen(shape->name.text) == length &&
+                      memcmp(shape->name.text, name, length) == 0 &&
+                      shape->make == DEA_MAKE_PRIMITIVE;
+    for (size_t k = 0; same && k < shape->type->count; k++) {
+      const struct dea_shape_parameter *parameter = &shape->type->parameter[k];
+      if (strcmp(parameter->name, dot + 1) == 0 && shape->value[k].origin != DEA_ABSENT) {
+        *value = shape->value[k].si;
+        *unit = parameter->unit == DEA_SHAPE_ANGLE ? "radian" : "m";
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/* A key of a design of the general form: of a part, as --set has it, or of a shape. */
+static dea_status from_part(struct dea_context *ctx, const struct dea_device_param_source *source,
+                            const struct dea_label *name, struct dea_device_param *out, bool *good)
+{
+  struct dea_design_number *numbers = dea_alloc(ctx, DEA_NUMBERS_MAX, sizeof *numbers);
+  size_t count = 0;
+  if (numbers == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_part_numbers(source->design, source->device, numbers, &count);
+  *good = find_shape(source->design->parts, name->text, &out->designed, &out->param.unit);
+  for (size_t i = 0; i < count && !*good; i++) {
+    if (numbers[i].of == DEA_NUMBER_OF_PART && strchr(numbers[i].key, '[') == NULL &&
+        strcmp(numbers[i].key, name->text) == 0) {
+      out->designed = numbers[i].value;
+      out->param.unit = numbers[i].unit;
+      *good = true;
+    }
+  }
+  dea_free(ctx, numbers);
+  out->kind = DEA_DEVICE_KEY;
+  out->param.low = -INFINITY; // the file's reader says what cannot be
+  out->param.high = INFINITY;
+  return *good ? DEA_OK : dea_device_param_unknown(ctx, source, name, NULL);
 }
 
 /* "film.branch.1.modulus": the first of the film's branches. */
@@ -199,6 +284,9 @@ dea_status dea_device_param_find(struct dea_context *ctx,
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
   snprintf(out->param.name, sizeof out->param.name, "%.39s", name->text);
+  if (source->device->general) {
+    return from_part(ctx, source, name, out, good);
+  }
   return of_branch     ? from_branch(ctx, source, name, out, good)
          : of_material ? from_material(ctx, source, name, out, good)
                        : from_key(ctx, source, name, out, good);

@@ -12,6 +12,7 @@
  * one side where the other has no answer. */
 #include "base/schema.h"
 #include "base/yaml_write.h"
+#include "base/correlations.h"
 #include "calibrate/fit_head.h"
 #include "study/rerun.h"
 
@@ -107,15 +108,12 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
 {
   (void)design;
   const struct settings *settings = given->values;
-  const size_t n = settings->parameter_count, wanted = n > 0 ? n * (n - 1) / 2 : 0;
+  const size_t n = settings->parameter_count;
   DEA_TRY(ctx, dea_fit_names_check(ctx, settings->parameters, n, sizeof settings->parameters[0],
                                    "parameter"));
-  if (settings->correlation_count == 0 || settings->correlation_count == wanted) {
-    return DEA_OK;
-  }
-  return dea_finding_add(ctx, DEA_ERROR, settings->correlations[0].location,
-                         "%zu correlations where %zu parameters have %zu",
-                         settings->correlation_count, n, wanted);
+  DEA_TRY(ctx, dea_correlations_check(ctx, settings->correlations, settings->correlation_count, n,
+                                      "parameter"));
+  return DEA_OK;
 }
 
 static const struct dea_design_section section = {

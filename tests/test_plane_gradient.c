@@ -1,0 +1,141 @@
+/* Gradients of the models without a mesh: Taylor's remainder of each falls as the square of the
+ * change over four decades, for every number of a design. */
+#include "device/geometry.h"
+#include "result/columns.h"
+#include "study/design_file.h"
+#include "study/design_gradient.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+#include <string.h>
+
+static const char *const keys[] = {
+    "centre_z_m",         "fibre_tip_z_m",        "electrode_edge_u_m",  "electrode_stretch",
+    "true_field_V_per_m", "breakdown_margin",     "min_tension_N_per_m", "capacitance_F",
+    "energy_J",           "nominal_field_V_per_m"};
+static const double shares[] = {3e-2, 3e-3, 3e-4, 3e-5, 3e-6};
+enum { KEYS = sizeof keys / sizeof keys[0], SHARES = sizeof shares / sizeof shares[0], FROM = 1 };
+static void solve(const struct dea_model_type *type, const struct dea_device *device,
+                  double voltage_V, struct dea_load_point *out, struct dea_model **keep)
+{
+  struct dea_model *model;
+  if (type->create(ctx, device, NULL, &model) != DEA_OK ||
+      type->solve(ctx, model, voltage_V, out) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  if (keep != NULL) {
+    *keep = model;
+  } else {
+    type->destroy(ctx, model);
+  }
+}
+
+/* The device with another value of a number, built from the design where it is a key of it. */
+static struct dea_device changed(const struct dea_design *design, const struct dea_device *device,
+                                 const struct dea_design_number *number, double value)
+{
+  struct dea_device out = *device;
+  const double kept = number->scale * value;
+  if (number->of == DEA_NUMBER_OF_DESIGN) {
+    struct dea_design other = *design;
+    memcpy((char *)&other + number->offset, &kept, sizeof kept);
+    dea_geometry_fill(&other, &out);
+  } else {
+    memcpy((char *)&out + number->offset, &kept, sizeof kept);
+  }
+  return out;
+}
+
+static void check_number(const struct dea_model_type *type, const struct dea_design_gradient *ask,
+                         const struct dea_design_number *number, const struct dea_load_point *base,
+                         const double *slope, double floor)
+{
+  double left[SHARES];
+  struct dea_load_point moved[SHARES];
+  const bool voltage = strcmp(number->key, "voltage") == 0;
+  for (int n = 0; n < SHARES; n++) {
+    const double value = number->value * (1 + shares[n]);
+    const struct dea_device device =
+        voltage ? *ask->device : changed(ask->design, ask->device, number, value);
+    solve(type, &device, voltage ? value : ask->voltage_V, &moved[n], NULL);
+  }
+  for (int k = 0; k < KEYS; k++) {
+    const int column = dea_point_column_find(keys[k]);
+    const double from = dea_point_get(base, column);
+    if (isnan(from) || from == 0) { // the model has no such quantity
+      continue;
+    }
+    for (int n = 0; n < SHARES; n++) {
+      left[n] =
+          (dea_point_get(&moved[n], column) - from - slope[k] * number->value * shares[n]) / from;
+    }
+    for (int n = 0; n < SHARES; n++) {
+      const double wanted = left[FROM] * pow(shares[n] / shares[FROM], 2);
+      const double part = n < FROM ? 1 : 0.2; // of a large change the third power is seen
+      if (!(fabs(left[n] - wanted) <= part * fabs(wanted) + floor)) {
+        fail_msg("%s: %s by %s at %.0e: %.3e, not %.3e", type->name, keys[k], number->key,
+                 shares[n], left[n], wanted);
+      }
+    }
+  }
+}
+
+/* floor: what the solver leaves of a quantity, and the model's differences of its slope. */
+static void check(const char *model, double floor)
+{
+  const struct dea_model_type *type = dea_model_find(model);
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  static double slopes[DEA_NUMBERS_MAX * KEYS];
+  struct dea_load_point base;
+  size_t count;
+  int columns[KEYS];
+  for (int k = 0; k < KEYS; k++) {
+    columns[k] = dea_point_column_find(keys[k]);
+  }
+  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design),
+                   DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  struct dea_design_gradient ask = {.type = type,
+                                    .design = design,
+                                    .device = device,
+                                    .voltage_V = 3e3,
+                                    .numbers = numbers,
+                                    .columns = columns,
+                                    .column_count = KEYS};
+  dea_design_numbers(design, device, ask.voltage_V, numbers, &count);
+  assert_true(count >= 10);
+  ask.number_count = count;
+  solve(type, device, ask.voltage_V, &base, &ask.model);
+  assert_int_equal(dea_design_gradient_find(ctx, &ask, slopes), DEA_OK);
+  type->destroy(ctx, ask.model);
+  for (size_t i = 0; i < count; i++) {
+    check_number(type, &ask, &numbers[i], &base, slopes + i * KEYS, floor);
+  }
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+static void test_lumped(void **state)
+{
+  (void)state;
+  check("lumped", 2e-13);
+}
+
+static void test_axisymmetric(void **state)
+{
+  (void)state;
+  check("axisymmetric", 5e-12);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_lumped),
+      cmocka_unit_test(test_axisymmetric),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
