@@ -10,9 +10,9 @@
  *
  * g by central differences over +-s_j (not less than a step that the solution can resolve), or to
  * one side where the other has no answer. */
+#include "base/correlations.h"
 #include "base/schema.h"
 #include "base/yaml_write.h"
-#include "base/correlations.h"
 #include "calibrate/fit_head.h"
 #include "study/rerun.h"
 
