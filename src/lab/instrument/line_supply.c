@@ -133,7 +133,7 @@ static dea_status check_range(struct dea_context *ctx, const struct dea_line_sup
 static dea_status set_up(struct dea_context *ctx, struct dea_line_supply *s)
 {
   char command[DEA_LINE_SUPPLY_COMMAND_SIZE];
-  const char *answer;
+  const char *answer = "";
   double volts;
   DEA_TRY(ctx, wake(ctx, s));
   set_command(s, 0, command);

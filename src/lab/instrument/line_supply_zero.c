@@ -150,6 +150,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
       told = command_zero(ctx, z) && is_same(ctx, z) && read_back(ctx, z, &zero);
       dea_socket_close(&link.socket);
     }
+    z->link = NULL;
     if (!told) {
       dea_clock_wait(fmin(again_s, fmax(z->until_s - dea_clock_s(), 0)));
     }

@@ -134,6 +134,7 @@ static dea_status count_cycles(struct dea_context *ctx, struct dea_protocol_step
   if (step->waveform->end_s > 0) {
     return DEA_OK;
   }
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): each step has its section
   return dea_finding_add(ctx, DEA_ERROR, step->section->location,
                          "this waveform takes no time; give it a duration");
 }
@@ -191,6 +192,7 @@ static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *r
     struct dea_protocol_step *step = &raw->steps[i];
     step->start_s = start_s;
     step->first_cycle = (size_t)cycles;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): called without errors only
     start_s += step->repeat.si * step->waveform->end_s + step->pause_s.si;
     cycles += step->repeat.si * (double)step->cycles;
     if (cycles > cycles_max) {

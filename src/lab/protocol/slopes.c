@@ -40,9 +40,11 @@ static void look_at_pieces(struct dea_protocol_slopes *out, size_t step,
       add_jump(out, step, first->value_V - before->value_V);
     }
     if (b->cycles > 1) {
+      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a block has knots
       add_jump(out, step, first->value_V - last->value_V);
     }
     for (const struct dea_wave_knot *k = first; k < last; k++) {
+      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a block has knots
       double time_s = (k[1].phase - k->phase) / b->frequency_Hz + k[1].offset_s - k->offset_s;
       double change_V = k[1].value_V - k->value_V;
       if (time_s > 0) {
