@@ -235,6 +235,31 @@ static void test_arrange(void **state)
   dea_region_free(&region);
 }
 
+/* A square in the notch of a long contour, whose box holds it: a ray from it crosses that contour
+ * twice, so it lies beside it and is no hole. */
+static void test_arrange_in_a_notch(void **state)
+{
+  (void)state;
+  static const double corner[8][2] = {{0, 0}, {9, 0}, {9, 9}, {6, 9},
+                                      {6, 3}, {3, 3}, {3, 9}, {0, 9}};
+  enum { PARTS = 60 };
+  struct dea_vertex along[8 * PARTS];
+  for (int k = 0; k < 8 * PARTS; k++) {
+    const double *from = corner[k / PARTS], *to = corner[(k / PARTS + 1) % 8];
+    const double share = (double)(k % PARTS) / PARTS;
+    along[k] = (struct dea_vertex){.x_m = from[0] + share * (to[0] - from[0]),
+                                   .y_m = from[1] + share * (to[1] - from[1])};
+  }
+  struct dea_region region = empty();
+  dea_region_add(&region, along, 8 * PARTS);
+  add(&region, &dea_shape_rectangle, (double[]){4.5, 6.1, 1, 1});
+  add(&region, &dea_shape_rectangle, (double[]){1.5, 6.1, 1, 1}); // and one in its arm, a hole
+  assert_int_equal(dea_region_arrange(ctx, &region), DEA_OK);
+  assert_close(dea_region_area_m2(&region), 81 - 18 + 1 - 1, 1e-13, 0);
+  assert_true(dea_region_inside(&region, 4.5, 6.1) && !dea_region_inside(&region, 1.5, 6.1));
+  dea_region_free(&region);
+}
+
 /* The pieces near a box, against looking at all. */
 static void test_tree(void **state)
 {
@@ -304,6 +329,7 @@ int main(void)
       cmocka_unit_test(test_arrays_and_inside),
       cmocka_unit_test(test_check),
       cmocka_unit_test(test_arrange),
+      cmocka_unit_test(test_arrange_in_a_notch),
       cmocka_unit_test(test_tree),
       cmocka_unit_test(test_memory),
   };
