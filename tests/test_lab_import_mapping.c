@@ -94,8 +94,8 @@ static void test_profile(void **state)
   const char *text = "t (s),z1,z2,z3,zero\n0,1,2,3,9\n0.5,4,5,6,9\n";
   for (int turned = 0; turned < 2; turned++) {
     struct dea_recording *recording = record_text(
-        turned ? "t (s),z1,z2,z3,zero\n0,,2,3,9\n0.5,4,5,6,9\n" : text,
-        turned ? "dea-import: 1\nprofile: {columns: 'z*', unit: mm, x_from: 15 mm, x_to: -15 mm}\n"
+        turned ? "t (s),front z1,front z2,front z3,zero\n0,,2,3,9\n0.5,4,5,6,9\n" : text,
+        turned ? "dea-import: 1\nprofile: {columns: '*z*', unit: mm, x_from: 15 mm, x_to: -15 mm}\n"
                  "columns: [{column: zero, as: other}]\n"
                : "dea-import: 1\nprofile: {columns: 'z*', unit: mm, per_unit: -1, at_zero: 7 mm, "
                  "x_from: -1 mm, x_to: 1 mm}\ncolumns: [{column: zero, as: other}]\n");
