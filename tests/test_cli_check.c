@@ -33,6 +33,7 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"check coupled.yaml", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
       {"run coupled.yaml --json", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
       {"check turned.yaml", 3, "turned.yaml:2:18: error: model 3d: the film's law has a direction"},
+      {"run turned.yaml -m axisymmetric --json", 3, "turned.yaml:2:18: error: model axisymmetric"},
       {"check tab.yaml", 3, "tab.yaml:3:1: error: a tab stands here; YAML indents with spaces"},
       {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml is there already"},
       {"materials nothing", 3, "there is no material 'nothing'"},

@@ -53,6 +53,14 @@ static dea_status check_directions(struct dea_context *ctx, const struct dea_fil
   return DEA_OK;
 }
 
+dea_status dea_disc_check(struct dea_context *ctx, const struct dea_device *device)
+{
+  struct dea_film film;
+  DEA_TRY(ctx, dea_film_create(ctx, device, &film));
+  DEA_TRY(ctx, check_directions(ctx, &film, device->pre_stretch));
+  return DEA_OK;
+}
+
 dea_status dea_disc_create(struct dea_context *ctx, const struct dea_device *device,
                            size_t order_outer, struct dea_disc *out)
 {

@@ -33,6 +33,10 @@ struct dea_disc {
   struct dea_disc_element element[DEA_DISC_ELEMENTS];
 };
 
+/* DEA_E_DESIGN for a film that pulls harder in one direction than in the other. device: of a disc.
+ */
+dea_status dea_disc_check(struct dea_context *ctx, const struct dea_device *device);
+
 /* order_outer: of the elements outside the electrode, 2 to DEA_DISC_ORDER_MAX. device: lent.
  * DEA_E_DESIGN for a film with a direction (docs/theory/axisymmetric.md). */
 dea_status dea_disc_create(struct dea_context *ctx, const struct dea_device *device,

@@ -4,6 +4,7 @@
 #include "model/path.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -161,6 +162,24 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   return DEA_OK;
 }
 
+/* A film with a direction, at its place in the design. */
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        const struct dea_device *device)
+{
+  bool named = design->film.law.origin != DEA_ABSENT && design->film.law.origin != DEA_DEFAULT;
+  char why[300];
+  if (device->film.law == NULL || !device->film.law->anisotropic ||
+      dea_disc_check(ctx, device) == DEA_OK) {
+    return DEA_OK;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  dea_context_clear(ctx);
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR,
+                               named ? design->film.law.location : design->film.material.location,
+                               "model axisymmetric: %s", why));
+  return dea_fail(ctx, DEA_E_DESIGN, "%s", why);
+}
+
 static dea_status create(struct dea_context *ctx, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
@@ -236,6 +255,7 @@ const struct dea_model_type dea_model_axisymmetric = {
     .long_name = "axisymmetric disc in a ring (exact)",
     .create = create,
     .destroy = destroy,
+    .check = check,
     .solve = solve,
     .limit = limit,
     .path = path,
