@@ -6,7 +6,7 @@
 set -eu
 command -v python3 >/dev/null || exit 77
 run() {
-  python3 "$source/verify/random_designs.py" "$DEA_COMMAND" --coarse --seconds 100 "$@"
+  python3 "$source/verify/random_designs.py" "$DEA_COMMAND" --coarse --seconds 45 "$@"
 }
 source=$1
 run --count 20 --share 0.11
