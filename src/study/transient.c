@@ -927,12 +927,23 @@ static const struct dea_curve *first_curve(const struct dea_result *result)
   return NULL;
 }
 
+/* Whether the supply plays anything: of channels with sources of their own alone it is at 0 V, and
+ * the figures of channels show what there is. */
+static bool supplied(const struct dea_curve *curve)
+{
+  bool any = false;
+  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
+    any = any || curve->points[i].source_voltage_V != 0; // NAN: not known to be at 0 V
+  }
+  return any;
+}
+
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,
                         struct dea_plot *plot)
 {
   const struct dea_curve *curve = first_curve(result);
   double factor;
-  if (curve == NULL || result->design->drive.waveform == NULL) { // the channels' figures show it
+  if (!supplied(curve)) {
     return DEA_OK;
   }
   int column = motion_of(curve, &factor);
@@ -977,7 +988,7 @@ static dea_status build_force(struct dea_context *ctx, const struct dea_result *
 static dea_status build_current(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
-  if (result->design->drive.waveform == NULL) { // the channels' figure shows it
+  if (!supplied(first_curve(result))) {
     return DEA_OK;
   }
   return build_one(ctx, result, plot, "current_A", "Current {/:Italic I} (\302\265A)");
