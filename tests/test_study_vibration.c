@@ -87,6 +87,8 @@ static dea_status respond(struct dea_context *context, struct dea_model *model,
     points[i].ripple_V = excitation->amplitude_V;
     points[i].centre_amplitude_m = push * excitation->amplitude_V / hypot(gap, loss);
     points[i].centre_phase_rad = pi - atan2(loss, gap);
+    points[i].fibre_tip_amplitude_m = points[i].centre_amplitude_m;
+    points[i].fibre_tip_phase_rad = -atan2(loss, gap); // just below 0 at first
   }
   return DEA_OK;
 }
@@ -156,6 +158,30 @@ static void test_points(void **state)
   release();
 }
 
+/* Phases of the figure go on from where they begin, near 180 and near 0 degrees. */
+static void check_phases(void)
+{
+  char name[600], row[200];
+  snprintf(name, sizeof name, "%s/figures/bode.dat", folder);
+  FILE *file = fopen(name, "rb");
+  assert_non_null(file);
+  bool phases = false, begins = false;
+  int lines = 0;
+  while (fgets(row, sizeof row, file) != NULL) {
+    double frequency_Hz, value;
+    begins = row[0] == '#' || begins;
+    phases = row[0] == '#' ? strstr(row, "Phase") != NULL : phases;
+    if (phases && sscanf(row, "%lf %lf", &frequency_Hz, &value) == 2) {
+      lines += begins ? 1 : 0;
+      begins = false;
+      double start = lines % 2 == 1 ? 180 : 0; // centre and tip in turn
+      assert_true(value <= start && value >= start - 180);
+    }
+  }
+  fclose(file);
+  assert_true(lines >= 2);
+}
+
 /* Curves, shapes and figures of a run folder, there and back; and gone when it is cleared. */
 static void test_files(void **state)
 {
@@ -185,6 +211,7 @@ static void test_files(void **state)
   assert_int_equal(run->result->surface_count, 5);
   assert_non_null(dea_field_mesh_find(run->result->surfaces[0].mesh, "mode_3"));
   dea_run_destroy(ctx, run);
+  check_phases();
   dea_run_folder_clear(ctx, folder);
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     assert_false(there(names[i]));

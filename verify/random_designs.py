@@ -171,11 +171,14 @@ def same_within(a, b, share):
     return a is not None and b is not None and abs(a - b) <= share * max(abs(a), abs(b))
 
 
-def slack_between(points):
-    """Voltages between which the film loses its tension; None: it keeps it."""
+def lost_between(summary):
+    """Voltages between which a film loses its tension; None: it keeps it."""
+    at = summary.get("limits", {}).get("slack_voltage_V")
+    if at is not None:
+        return at, at
     before = 0.0
-    for point in points:
-        if point.get("min_tension_N_per_m", 1) < 0:
+    for point in summary["points"]:
+        if point.get("min_tension_N_per_m", 1) < -1e-6:  # less is rounding of a film at rest
             return before, point["voltage_V"]
         before = point["voltage_V"]
     return None
@@ -189,30 +192,36 @@ def last_taut(mine, other):
     return [x["electrode_stretch"] for x in both[-1]] if both else None
 
 
+def overlap(a, b, within):
+    return a[0] <= (1 + within) * b[1] and b[0] <= (1 + within) * a[1]
+
+
 def differs(mine, other, within):
-    """What two summaries of one disc do not agree on; "" where they do, None where nothing tells."""
-    kinds = [m.get("verdict", "") or "complete" for m in (mine, other)]
-    limits = [m.get("limits", {}) for m in (mine, other)]
+    """What two summaries of one disc do not agree on; "" where they do, None where nothing tells:
+    the flat model's limits say nothing of a film that has lost its tension, nor do points whose
+    smallest tension is that at the rim of a stiff electrode, where a solid film's is singular."""
+    both = (mine, other)
+    taut = last_taut(mine["points"], other["points"])
+    if taut and abs(taut[0] - taut[1]) > within * abs(taut[1] - 1) + 2e-3:
+        return "stretch %.4g, %.4g" % tuple(taut)
+    kinds = [m.get("verdict", "") or "complete" for m in both]
+    lost = [lost_between(m) for m in both]
+    ends = [m.get("limits", {}).get("pull_in_voltage_V") for m in both]
     if kinds == ["complete", "complete"]:
-        taut = last_taut(mine["points"], other["points"])
-        if taut is None:
+        return "" if taut else None
+    if "slack" in kinds:  # lost tension is a verdict of one of them
+        i = kinds.index("slack")
+        j = 1 - i
+        if lost[i] is None:  # it wrinkles as soon as it has no tension
             return None
-        a, b = taut
-        return "" if abs(a - b) <= within * abs(b - 1) + 2e-3 else "stretch %.4g, %.4g" % (a, b)
-    if kinds == ["pull_in", "pull_in"]:
-        a, b = (m.get("pull_in_voltage_V") for m in limits)
-        return "" if same_within(a, b, within) else "pull-in at %s, %s V" % (a, b)
-    if kinds == ["pull_in", "slack"]:  # a membrane that loses its tension thins there
-        a, b = limits[0].get("pull_in_voltage_V"), limits[1].get("slack_voltage_V")
-        return "" if same_within(a, b, within) else "pull-in at %s, slack at %s V" % (a, b)
-    if kinds[0] == "slack":
-        between, lost = slack_between(other["points"]), limits[0].get("slack_voltage_V")
-        last = other["points"][-1]["voltage_V"]
-        low, high = between if between else (last, limits[1].get("pull_in_voltage_V") or 0)
-        reached = mine["points"][-1]["voltage_V"] if lost is None else lost
-        found = high > 0 and (1 - within) * low <= reached and (
-            lost is None or reached <= (1 + within) * high)
-        return "" if found else "slack at %s V, of the other %s" % (lost, between)
+        if kinds[j] == "pull_in":  # the flat film goes on, a membrane thins at once
+            return "" if lost[i][0] <= (1 + within) * ends[j] else "slack at %s, pull-in at %s V" % (
+                lost[i], ends[j])
+        return "" if lost[j] and overlap(*lost, within) else "slack at %s, %s V" % tuple(lost)
+    if any(l and e and l[0] < e for l, e in zip(lost, ends)):
+        return None
+    if all(ends):
+        return "" if same_within(*ends, within) else "pull-in at %s, %s V" % tuple(ends)
     return "" if kinds[0] == kinds[1] else "%s, %s" % tuple(kinds)
 
 

@@ -139,7 +139,8 @@ static const struct settings *settings_of(const struct dea_design *design)
       DEA_NUMBER_COLUMN(key "_phase_rad", "rad", "deg", 57.29577951308232, "phase " head,          \
                         "against the excitation")
 
-enum { BEFORE = 3 }; // columns before the motions
+enum { MONITOR = 2, BEFORE }; // columns before the motions
+enum { X = BEFORE + 2 * DEA_OBSERVED_X, Z = BEFORE + 2 * DEA_OBSERVED_Z };
 
 /* In the order of enum dea_observed. */
 static const struct dea_result_column monitor_columns[] = {
@@ -287,14 +288,14 @@ static dea_status line_create(struct dea_context *ctx, size_t count, struct line
 static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const struct line *line,
                            const struct dea_series *look)
 {
-  double turns = 0, before = 0;
   for (int p = 0; p < 2; p++) {
+    double before = 0;
     struct dea_series *series;
     DEA_TRY(ctx, dea_panel_add_as(ctx, &plot->panels[p], line->count, look, &series));
     series->title[0] = p == 0 ? series->title[0] : '\0';
     for (size_t i = 0; i < line->count; i++) {
-      double phase = line->phase_rad[i];
-      turns += i == 0 ? (phase < 0 ? 1 : 0) : round((before - phase) / (2 * pi)) - turns;
+      double phase = line->phase_rad[i]; // the first is drawn from -90 to 270 degrees
+      double turns = i == 0 ? (phase < -0.5 * pi ? 1 : 0) : round((before - phase) / (2 * pi));
       before = phase + 2 * pi * turns;
       series->values[i] = line->frequency_Hz[i];
       series->values[line->count + i] = p == 0 ? 1e9 * line->amplitude_m[i] : before * 180 / pi;
@@ -358,7 +359,8 @@ static void set_limits(struct dea_panel *panel, bool amplitude)
 }
 
 /* Of two panels with lines. */
-static void finish(struct dea_plot *plot, double ripple_V)
+/* axis: of the displacement, 0: it is told elsewhere. */
+static void finish(struct dea_plot *plot, double ripple_V, char axis)
 {
   plot->panel_count = 2;
   for (int p = 0; p < 2; p++) {
@@ -369,8 +371,12 @@ static void finish(struct dea_plot *plot, double ripple_V)
     panel->logarithmic_x = p == 1;
     panel->y_step = p == 1 ? 90 : 0;
   }
-  snprintf(plot->panels[0].y_label, sizeof plot->panels[0].y_label, "Amplitude for %.4g V (nm)",
-           ripple_V);
+  char along[32] = "";
+  if (axis != 0) {
+    snprintf(along, sizeof along, " of {/:Italic %c}", axis);
+  }
+  snprintf(plot->panels[0].y_label, sizeof plot->panels[0].y_label, "Amplitude%s for %.4g V (nm)",
+           along, ripple_V);
   snprintf(plot->panels[1].y_label, sizeof plot->panels[1].y_label, "Phase (degrees)");
   plot->panels[0].key = "top left samplen 2";
   plot->second_height = 0.7;
@@ -397,37 +403,55 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
       DEA_TRY(ctx, add_curve(ctx, plot, &result->curves[i]));
     }
   }
-  finish(plot, ripple_of(result));
+  finish(plot, ripple_of(result), 0);
   return DEA_OK;
 }
 
-/* z of the monitor in a row, in all rows of its name and bias; nothing for one without z. */
-static dea_status add_monitor(struct dea_context *ctx, struct dea_plot *plot,
-                              const struct dea_result_table *table, size_t row,
-                              enum dea_colour colour, enum dea_series_style style)
+static const double least_share = 1e-4; // of the largest amplitude: less is not drawn
+
+/* Column of the amplitude that is largest anywhere, of x, y and z; *largest: it, at least 0. */
+static size_t main_column(const struct dea_result_table *table, double *largest)
 {
-  enum { MONITOR = 2, Z = BEFORE + 2 * DEA_OBSERVED_Z };
+  size_t column = Z;
+  *largest = 0;
+  for (size_t c = X; c <= Z; c += 2) {
+    for (size_t i = 0; i < table->row_count; i++) {
+      double amplitude = dea_result_table_cell(table, i, c)->number;
+      if (amplitude > *largest) { // not NAN
+        *largest = amplitude;
+        column = c;
+      }
+    }
+  }
+  return column;
+}
+
+/* A motion of the monitor in a row, in all rows of its name and bias; nothing for one that has none
+ * of at least that much. */
+static dea_status add_monitor(struct dea_context *ctx, struct dea_plot *plot,
+                              const struct dea_result_table *table, size_t row, size_t column,
+                              double least, enum dea_colour colour, enum dea_series_style style)
+{
   double bias_V = dea_result_table_cell(table, row, 0)->number;
   const char *name = dea_result_table_cell(table, row, MONITOR)->text;
   struct dea_series look = {.style = style, .colour = colour};
   char title[DEA_LABEL_SIZE];
   struct line line;
-  if (isnan(dea_result_table_cell(table, row, Z)->number)) {
-    return DEA_OK;
-  }
   snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * bias_V, name);
   dea_label_escape(title, look.title, sizeof look.title);
   DEA_TRY(ctx, line_create(ctx, table->row_count, &line));
   line.count = 0;
+  double most = 0;
   for (size_t i = row; i < table->row_count; i++) {
     if (dea_result_table_cell(table, i, 0)->number == bias_V &&
         strcmp(dea_result_table_cell(table, i, MONITOR)->text, name) == 0) {
       line.frequency_Hz[line.count] = dea_result_table_cell(table, i, 1)->number;
-      line.amplitude_m[line.count] = dea_result_table_cell(table, i, Z)->number;
-      line.phase_rad[line.count++] = dea_result_table_cell(table, i, Z + 1)->number;
+      most = fmax(most, dea_result_table_cell(table, i, column)->number); // not of NAN
+      line.amplitude_m[line.count] = dea_result_table_cell(table, i, column)->number;
+      line.phase_rad[line.count++] = dea_result_table_cell(table, i, column + 1)->number;
     }
   }
-  dea_status status = add_line(ctx, plot, &line, &look);
+  dea_status status = most > least ? add_line(ctx, plot, &line, &look) : DEA_OK;
   dea_free(ctx, line.frequency_Hz);
   return status;
 }
@@ -437,13 +461,16 @@ static dea_status build_monitors(struct dea_context *ctx, const struct dea_resul
                                  struct dea_plot *plot)
 {
   static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_THIN};
+  size_t column = Z;
   for (size_t t = 0; t < result->table_count; t++) {
     const struct dea_result_table *table = &result->tables[t];
     size_t bias = 0, monitor = 0;
+    double largest;
     if (strcmp(table->type.study, study_name) != 0 ||
         strcmp(table->type.name, monitors.name) != 0) {
       continue;
     }
+    column = main_column(table, &largest);
     for (size_t i = 0; i < table->row_count; i++) {
       double V = dea_result_table_cell(table, i, 0)->number;
       bool first = i == 0 || dea_result_table_cell(table, i - 1, 0)->number != V;
@@ -451,12 +478,13 @@ static dea_status build_monitors(struct dea_context *ctx, const struct dea_resul
       monitor = first ? 0 : monitor + 1;
       double lowest_Hz = dea_result_table_cell(table, i - monitor, 1)->number;
       if (dea_result_table_cell(table, i, 1)->number == lowest_Hz) {
-        DEA_TRY(ctx, add_monitor(ctx, plot, table, i, (enum dea_colour)(bias % COLOURS),
+        DEA_TRY(ctx, add_monitor(ctx, plot, table, i, column, least_share * largest,
+                                 (enum dea_colour)(bias % COLOURS),
                                  styles[monitor % (sizeof styles / sizeof styles[0])]));
       }
     }
   }
-  finish(plot, ripple_of(result));
+  finish(plot, ripple_of(result), "xyz"[(column - X) / 2]);
   return DEA_OK;
 }
 
@@ -471,7 +499,7 @@ static const struct dea_figure figures[] = {
         .name = "bode_monitors",
         .study = study_name,
         .caption = "displacement of the monitors that a small AC excitation of the voltage makes, "
-                   "and its phase",
+                   "along the axis that they move along most, and its phase",
         .build = build_monitors,
     },
 };
