@@ -302,6 +302,18 @@ struct line {
   int number; // of the name: its colour
 };
 
+/* The rows of the first point, which have every name once. */
+static size_t names_of(const struct dea_result_table *table)
+{
+  size_t count = 0;
+  while (count < table->row_count &&
+         (count == 0 || strcmp(dea_result_table_cell(table, count, 1)->text,
+                               dea_result_table_cell(table, 0, 1)->text) != 0)) {
+    count++;
+  }
+  return count;
+}
+
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct line *line)
 {
@@ -324,7 +336,9 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
   char title[DEA_LABEL_SIZE];
   snprintf(title, sizeof title, "%.60s%s", line->name, line->suffix);
   dea_label_escape(title, series->title, sizeof series->title);
-  series->style = line->style;
+  bool several = line->style == DEA_LINE && names_of(table) > 1; // told apart in grey by markers
+  series->style = several ? DEA_LINE_MARKED : line->style;
+  series->marker = line->number;
   series->colour = colours[(size_t)line->number % (sizeof colours / sizeof colours[0])];
   for (size_t i = 0, k = 0; i < table->row_count; i++) {
     if (strcmp(dea_result_table_cell(table, i, 1)->text, line->name) == 0) {
@@ -335,18 +349,6 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
     }
   }
   return DEA_OK;
-}
-
-/* The rows of the first point, which have every name once. */
-static size_t names_of(const struct dea_result_table *table)
-{
-  size_t count = 0;
-  while (count < table->row_count &&
-         (count == 0 || strcmp(dea_result_table_cell(table, count, 1)->text,
-                               dea_result_table_cell(table, 0, 1)->text) != 0)) {
-    count++;
-  }
-  return count;
 }
 
 /* Adds the column of that key for all names of a table of all models; of: the table's type. */
