@@ -22,6 +22,7 @@ done
 dea examples frdea-4 >my.yaml
 dea check my.yaml >/dev/null
 dea run my.yaml --model lumped --model 3d --set 'compute.voltage={to: 4 kV, step: 2 kV}' -o my.run >run.txt
+dea plot my.run --format png >/dev/null
 for file in displacement.svg displacement.png; do
   [ -s "my.run/figures/$file" ] || fail "no figure $file"
 done
