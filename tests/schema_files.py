@@ -126,6 +126,19 @@ def check_refused(root, cases):
     return wrong == 0 and done >= 43
 
 
+def check_lists(root):
+    """Members of lists of numbers are numbers, without what stands around them in the example."""
+    data = yaml.load((root / "examples/explore/spread.yaml").read_text(), Loader)
+    validator = schema(root, "explore")
+    wrong = 0
+    for member, good in ((0.8, True), ("0.8", False), ("0.8 [0.8]", False), (1.5, False)):
+        if validator.is_valid({**data, "correlations": [member]}) != good:
+            print(f"correlations: [{member!r}] is {'refused' if good else 'accepted'}")
+            wrong += 1
+    return wrong == 0
+
+
 ROOT = pathlib.Path(sys.argv[1])
 GOOD = check_shipped(ROOT)
-sys.exit(0 if check_refused(ROOT, pathlib.Path(sys.argv[2])) and GOOD else 1)
+LISTS = check_lists(ROOT)
+sys.exit(0 if check_refused(ROOT, pathlib.Path(sys.argv[2])) and GOOD and LISTS else 1)

@@ -51,7 +51,7 @@ ReturnToService=2
 SlurmdTimeout=5
 SchedulerParameters=sched_interval=1,requeue_delay=1
 NodeName=$host NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
-PartitionName=all Nodes=ALL Default=YES State=UP MaxTime=60
+PartitionName=all Nodes=ALL Default=YES State=UP MaxTime=INFINITE
 EOF
 export SLURM_CONF="$folder/slurm.conf"
 munged --force --socket="$folder/munge.sock" --key-file="$folder/key" \
@@ -109,6 +109,9 @@ done
 rows=$(tail -n +2 out/cases.csv | wc -l)
 twice=$(cat out/part-* | grep -v '^#' | grep . | cut -d, -f1 | sort | uniq -d | wc -l)
 echo "done before the node failed: $done_before; in the table: $rows; twice: $twice"
+echo "parts $(cat out/part-* | wc -c) bytes, $(find out -name 'part-*' | wc -l) files;" \
+  "cases.csv $(wc -c <out/cases.csv), cases.h5 $(wc -c <out/cases.h5) bytes;" \
+  "with a reason: $(awk -F, '$NF != ""' out/cases.csv | wc -l)"
 if [ "$rows" -ne "$samples" ] || [ "$twice" -ne 0 ]; then
   squeue || :
   sinfo || :

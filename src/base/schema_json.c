@@ -124,14 +124,15 @@ static json_t *measured_json(struct maker *maker, const struct dea_field *field)
   return json_pack("{s:o}", "allOf", all);
 }
 
-/* The unit of an example such as "50 %", "" for a bare number. */
-static const char *example_unit(const struct dea_field *field)
+/* The unit of an example such as "50 %" or "[0.5 %, 1 %]", "" for a bare number. */
+static void example_unit(const struct dea_field *field, char out[NAME_SIZE])
 {
   const char *end = "";
   if (field->example != NULL) {
-    dea_text_to_double(field->example, &end);
+    dea_text_to_double(field->example + strspn(field->example, "["), &end);
   }
-  return end + strspn(end, " ");
+  end += strspn(end, " ");
+  snprintf(out, NAME_SIZE, "%.*s", (int)strcspn(end, ",]"), end);
 }
 
 static json_t *bare_json(const struct dea_field *field)
@@ -156,7 +157,8 @@ static json_t *number_json(struct maker *maker, const struct dea_field *field)
   if (strcmp(field->unit, "1") != 0) {
     return measured_json(maker, field);
   }
-  const char *unit = example_unit(field);
+  char unit[NAME_SIZE];
+  example_unit(field, unit);
   if (*unit == '\0') {
     return bare_json(field);
   }

@@ -137,13 +137,19 @@ static const struct dea_field file_fields[] = {
      .kind = DEA_FIELD_RECORD,
      .offset = AT(variables),
      .record = &variable_record,
-     .required = true,
      .list_min = 1,
      .list_max = DEA_DEVICE_PARAMS_MAX,
      .element_size = sizeof(struct dea_explore_variable),
      .count_offset = AT(variable_count),
+     .absent_text = "those of from_fit",
      .doc = "numbers of the design that change",
      .example = "[{name: film.thickness, values: [80 um, 100 um]}]"},
+    DEA_LABEL_ROW(
+        "from_fit", AT(from_fit), "device.fit",
+        "folder that dea fit has written, or its fit.json, counted from the folder of this "
+        "file: the parameters that were fitted are variables too, with the values, "
+        "standard uncertainties and correlations of the fit",
+        .absent_text = "none"),
     DEA_NUMBER_ROW(
         "correlations", AT(correlations), "1", "[0.8]",
         "of the variables, 2 with 1, 3 with 1, 3 with 2, ..., as dea fit writes them: of "
@@ -215,6 +221,23 @@ const struct dea_record dea_explore_record = {
     "file", "designs that differ in some values, and what is asked of them", file_fields,
     COUNT(file_fields)};
 
+dea_status dea_explore_correlations_check(struct dea_context *ctx,
+                                          const struct dea_explore_file *file)
+{
+  const int plan = file->plan.value;
+  DEA_TRY(ctx, dea_correlations_check(ctx, file->correlations, file->correlation_count,
+                                      file->variable_count, "variable"));
+  if (file->correlation_count > 0 && file->objective_count == 0 &&
+      (plan == DEA_PLAN_GRID || plan == DEA_PLAN_INDICES)) {
+    return dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
+                           "correlations are of samples: plan: %s",
+                           plan == DEA_PLAN_GRID ? "sobol, not grid"
+                                                 : "sobol; indices are of variables that are "
+                                                   "independent of each other");
+  }
+  return DEA_OK;
+}
+
 static dea_status check(struct dea_context *ctx, const void *user)
 {
   const struct dea_explore_file *file = user;
@@ -226,18 +249,17 @@ static dea_status check(struct dea_context *ctx, const void *user)
   }
   DEA_TRY(ctx, dea_fit_names_check(ctx, file->variables, file->variable_count,
                                    sizeof file->variables[0], "variable"));
-  DEA_TRY(ctx, dea_correlations_check(ctx, file->correlations, file->correlation_count,
-                                      file->variable_count, "variable"));
-  const int plan = file->plan.value;
-  if (file->correlation_count > 0 && file->objective_count == 0 &&
-      (plan == DEA_PLAN_GRID || plan == DEA_PLAN_INDICES)) {
-    return dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
-                           "correlations are of samples: plan: %s",
-                           plan == DEA_PLAN_GRID ? "sobol, not grid"
-                                                 : "sobol; indices are of variables that are "
-                                                   "independent of each other");
+  if (file->from_fit.text[0] != '\0') { // which the design has a say in: from_fit.c
+    return file->correlation_count == 0
+               ? DEA_OK
+               : dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
+                                 "correlations are those of from_fit");
   }
-  return DEA_OK;
+  if (file->variable_count == 0) {
+    const struct dea_location top = {file->head.file, 1, 1};
+    return dea_finding_add(ctx, DEA_ERROR, top, "variables: say what changes (or from_fit)");
+  }
+  return dea_explore_correlations_check(ctx, file);
 }
 
 dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,

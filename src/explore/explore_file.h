@@ -66,6 +66,7 @@ struct dea_explore_file {
   size_t quantity_count;
   struct dea_explore_variable variables[DEA_DEVICE_PARAMS_MAX];
   size_t variable_count;
+  struct dea_label from_fit; // folder of a fit, whose parameters are variables too
   struct dea_quantity correlations[DEA_EXPLORE_PAIRS_MAX]; // 2 with 1, 3 with 1, 3 with 2, ...
   size_t correlation_count;                                // 0: none correlate
   struct dea_choice plan;                                  // enum dea_plan_kind
@@ -87,6 +88,9 @@ extern const struct dea_record dea_explore_record;
  * failure. */
 dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
                                  struct dea_explore_file **out);
+/* Findings where numbers cannot have the file's correlations, or its plan has none. */
+dea_status dea_explore_correlations_check(struct dea_context *ctx,
+                                          const struct dea_explore_file *file);
 void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file);
 
 #endif

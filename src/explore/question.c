@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/write_file.h"
+#include "explore/from_fit.h"
 #include "result/columns.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
@@ -458,6 +459,7 @@ static dea_status resolve_file(struct dea_question *question)
   DEA_TRY(ctx, find_model(question));
   DEA_TRY(ctx, read_design(question));
   DEA_TRY(ctx, take_quantities(question));
+  DEA_TRY(ctx, dea_from_fit_take(ctx, question->design, question->device, question->file));
   DEA_TRY(ctx, take_variables(question));
   for (size_t i = 0; i < question->file->limit_count; i++) {
     DEA_TRY(ctx, take_limit(question, &question->file->limits[i]));
