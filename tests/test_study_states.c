@@ -1,5 +1,6 @@
 /* Study "states" with a model of two wells, whose states are roots of a cubic. */
 #include "design_text.h"
+#include "output/figure.h"
 #include "result/result.h"
 #include "study/study.h"
 #include "testing.h"
@@ -12,11 +13,13 @@
 /* One place with energy E0 (x^4/4 - a x^2/2 - b x), a = V/kV - 1, and x its displacement over a
  * length: one state below V = 1.5 kV, two from there on, with a third, unstable one between. */
 static const double length_m = 1e-4, energy_J = 1e-6;
-static double b = 0.05;
+static double b = 0.05, membrane_ends_V = INFINITY;
+static bool without_centre; // as a device of the general form
 
 struct dea_model {
   double voltage_V, x, kept[2];
   double shift_V; // a finer mesh is as the coarsest one at that much less
+  bool membrane;  // its centre moves by a third of the root
 };
 
 static double a_of(double voltage_V)
@@ -53,6 +56,7 @@ static dea_status create(struct dea_context *context, const struct dea_device *d
   *out = dea_alloc(context, 1, sizeof **out);
   if (*out != NULL) {
     (*out)->shift_V = settings->refinement > 1 ? 500 * (settings->refinement - 1) : 0;
+    (*out)->membrane = settings->film == DEA_FILM_MEMBRANE;
   }
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
@@ -68,15 +72,23 @@ static void report(const struct dea_model *m, struct dea_load_point *out)
   out->voltage_V = m->voltage_V;
   out->centre_z_m = out->highest_z_m = out->lowest_z_m = length_m * m->x;
   out->energy_J = energy_of(m->voltage_V - m->shift_V, m->x);
+  if (without_centre) {
+    out->centre_z_m = NAN;
+    out->highest_z_m = fmax(0, out->highest_z_m);
+    out->lowest_z_m = fmin(0, out->lowest_z_m);
+  }
 }
 
 static dea_status solve(struct dea_context *context, struct dea_model *m, double voltage_V,
                         struct dea_load_point *out)
 {
-  (void)context;
   m->voltage_V = voltage_V;
+  if (m->membrane && voltage_V > membrane_ends_V) {
+    return dea_fail(context, DEA_E_DOMAIN, "it thins without limit");
+  }
   m->x = descend(m, m->x);
   report(m, out);
+  out->centre_z_m *= m->membrane ? 1.0 / 3 : 1;
   return DEA_OK;
 }
 
@@ -297,6 +309,65 @@ static void test_finer_meshes(void **state)
   end(&r);
 }
 
+/* The film as a membrane at the voltages of the search, on each mesh as far as it goes; it is no
+ * state. Not where the design does not want it. */
+static void test_relaxed(void **state)
+{
+  (void)state;
+  struct ran r = run("{voltage: [2 kV, 3 kV], push: [300 um], refinement: [2]}");
+  const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "relaxed");
+  assert_non_null(t);
+  assert_int_equal(t->row_count, 4);
+  for (size_t i = 0; i < 4; i++) {
+    double V = i % 2 == 0 ? 2000 : 3000;
+    assert_close(number(t, i, "voltage_V"), V, 0, 0);
+    assert_close(number(t, i, "refinement"), i < 2 ? 1 : 2, 0, 0);
+    assert_close(number(t, i, "centre_z_m"), length_m / 3 * root(V - (i < 2 ? 0 : 500), 0), 0,
+                 1e-12);
+  }
+  assert_close(number(r.bands, 0, "states"), 2, 0, 0);
+  end(&r);
+  membrane_ends_V = 2500;
+  r = run("{voltage: [2 kV, 3 kV], modes: 0}");
+  membrane_ends_V = INFINITY;
+  t = dea_result_find_table(r.result, "wells", "states", "relaxed");
+  assert_int_equal(t->row_count, 1);
+  assert_int_equal(r.found->row_count, 2);
+  size_t count;
+  const struct dea_finding *said = dea_finding_get(ctx, &count);
+  assert_true(count > 0 && strstr(said[count - 1].text, "it thins without limit") != NULL);
+  end(&r);
+  r = run("{voltage: [2 kV, 3 kV], modes: 0, relaxed: no}");
+  assert_null(dea_result_find_table(r.result, "wells", "states", "relaxed"));
+  end(&r);
+}
+
+/* A device without a centre is drawn by its farthest place. */
+static void test_figure_without_centre(void **state)
+{
+  (void)state;
+  without_centre = true;
+  struct ran r = run("{voltage: [3 kV], push: [300 um], modes: 1, relaxed: no}");
+  without_centre = false;
+  struct dea_plot *plot;
+  assert_int_equal(dea_plot_create(ctx, "states", "", &plot), DEA_OK);
+  const struct dea_figure *figure;
+  size_t at = 0;
+  while ((figure = dea_figure_get(at)) != NULL && strcmp(figure->name, "states") != 0) {
+    at++;
+  }
+  assert_non_null(figure);
+  assert_int_equal(figure->build(ctx, r.result, plot), DEA_OK);
+  const struct dea_panel *panel = &plot->panels[0];
+  assert_int_equal(panel->series_count, 2);
+  for (int i = 0; i < 2; i++) { // x, y of the one point
+    assert_close(panel->series[i].values[1], 1e6 * length_m * root(3000, 2 * i), 0, 1e-6);
+  }
+  assert_non_null(strstr(panel->y_label, "Farthest place"));
+  dea_plot_destroy(ctx, plot);
+  end(&r);
+}
+
 /* Without the ability the states of the design's mesh are all; meshes have to rise. */
 static void test_no_finer_meshes(void **state)
 {
@@ -350,10 +421,15 @@ static void test_not_able(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_two_wells),       cmocka_unit_test(test_bands),
-      cmocka_unit_test(test_nothing_found),   cmocka_unit_test(test_finer_meshes),
-      cmocka_unit_test(test_no_finer_meshes), cmocka_unit_test(test_mirrored),
+      cmocka_unit_test(test_two_wells),
+      cmocka_unit_test(test_bands),
+      cmocka_unit_test(test_nothing_found),
+      cmocka_unit_test(test_finer_meshes),
+      cmocka_unit_test(test_no_finer_meshes),
+      cmocka_unit_test(test_mirrored),
       cmocka_unit_test(test_not_able),
+      cmocka_unit_test(test_relaxed),
+      cmocka_unit_test(test_figure_without_centre),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -25,7 +25,10 @@ struct settings {
   struct dea_quantity refinements[MESHES_MAX];          // rising; none: states stay on their mesh
   size_t voltage_count, push_count, refinement_count;
   struct dea_quantity modes, most, apart_m;
+  struct dea_choice relaxed; // 1: the mean shape of a film that wrinkles freely too
 };
+
+static const char *const no_yes[] = {"no", "yes", NULL};
 
 #define AT(member) offsetof(struct settings, member)
 
@@ -77,6 +80,13 @@ static const struct dea_field fields[] = {
     DEA_STUDY_REFINEMENT_FIELD(
         "finer meshes that each state is carried to, as in compute.solid.refinement, rising",
         "[1.5, 2, 3]", .absent_text = "none", .list_min = 1),
+    {.key = "relaxed",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(relaxed),
+     .choices = no_yes,
+     .default_text = "yes",
+     .doc = "mean shape of a film that wrinkles freely (a membrane), beside the states",
+     .example = "no"},
 };
 
 static const struct dea_record record = {
@@ -982,6 +992,95 @@ static int compare_numbers(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
+// Relaxed film -----------------------------------------------------------------------------------
+
+static const struct dea_result_column relaxed_columns[] = {
+    KV("voltage_V", "V", "voltage"),
+    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
+    SHAPE,
+    FLAGS,
+};
+static const struct dea_result_table_type relaxed_table = {
+    .study = study_name,
+    .name = "relaxed",
+    .title = "mean of a film that wrinkles freely",
+    .where = ALL,
+    .columns = relaxed_columns,
+    .column_count = COUNT(relaxed_columns)};
+
+/* Rows of one mesh, as far as its model goes. */
+static dea_status put_relaxed_mesh(struct search *s, const struct dea_model_settings *settings,
+                                   struct dea_result_table *table)
+{
+  struct dea_model *model = NULL;
+  dea_status status = s->type->create(s->ctx, s->result->device, settings, &model);
+  for (size_t level = 0; level < s->level_count && status == DEA_OK; level++) {
+    struct dea_load_point p;
+    char flags[DEA_FLAGS_SIZE];
+    status = s->type->solve(s->ctx, model, s->voltages_V[level], &p);
+    if (status == DEA_OK) {
+      const struct dea_result_table_value row[] = {
+          {.number = p.voltage_V},
+          {.number = fmax(1, settings->refinement)},
+          {.number = p.centre_z_m},
+          {.number = p.fibre_tip_z_m},
+          {.number = p.electrode_edge_u_m},
+          {.number = p.highest_z_m},
+          {.number = p.lowest_z_m},
+          {.text = dea_flags_text(dea_load_point_flags(&p), flags)}};
+      status = dea_result_table_add_row(s->ctx, table, row);
+    }
+  }
+  if (model != NULL) {
+    s->type->destroy(s->ctx, model);
+  }
+  return status;
+}
+
+/* Whether the film can wrinkle freely, and has tension to lose. A disc's electrodes of a thickness
+ * are bonded to it; without pre-stretch it is slack at any voltage. */
+static bool has_relaxed(const struct search *s, const struct dea_model_settings *settings)
+{
+  const struct dea_device *device = s->result->device;
+  return s->settings->relaxed.value != 0 && settings->film == DEA_FILM_SOLID &&
+         settings->field == DEA_FIELD_THIN &&
+         (device->general || (device->pre_stretch > 1 && device->electrode_thickness_m == 0));
+}
+
+/* The tension field at the voltages of the search, on the design's mesh and the finer ones. Where
+ * it ends there are no more rows, and a note says why. */
+static dea_status put_relaxed(struct search *s)
+{
+  struct dea_model_settings settings = dea_model_settings_of(s->result->design);
+  struct dea_result_table *table;
+  if (!has_relaxed(s, &settings)) {
+    return DEA_OK;
+  }
+  settings.film = DEA_FILM_MEMBRANE;
+  settings.domain = s->result->device->general ? DEA_DOMAIN_DISC : settings.domain; // of the states
+  DEA_TRY(s->ctx,
+          dea_result_add_table(s->ctx, s->result, &relaxed_table, s->type->name, 0, &table));
+  for (size_t m = 0; m <= s->settings->refinement_count; m++) {
+    settings.refinement = m > 0 ? s->settings->refinements[m - 1].si : settings.refinement;
+    dea_status status = put_relaxed_mesh(s, &settings, table);
+    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+      return status;
+    }
+    if (status != DEA_OK) {
+      char why[256];
+      snprintf(why, sizeof why, "%s", dea_context_message(s->ctx));
+      dea_context_clear(s->ctx);
+      DEA_TRY(s->ctx, dea_finding_add(s->ctx, DEA_NOTE, (struct dea_location){0},
+                                      "model %s: no more of the film that wrinkles freely: %s",
+                                      s->type->name, why));
+    }
+  }
+  return DEA_OK;
+}
+
+// Run
+// ------------------------------------------------------------------------------------------------
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
@@ -1007,6 +1106,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (s.level_count > 0 && status != DEA_E_MEMORY) {
     dea_status put = put_result(&s);
     status = status == DEA_OK ? put : status;
+    status = status == DEA_OK ? put_relaxed(&s) : status;
     status = status == DEA_OK ? refine(&s) : status;
   }
   free_search(&s);
@@ -1045,6 +1145,12 @@ static double lowest_at(const struct dea_result *result, double voltage_V)
   return lowest_J;
 }
 
+/* A device of the general form has no centre: then the place that is farthest out of the plane. */
+static double height(double centre_z_m, double highest_z_m, double lowest_z_m)
+{
+  return !isnan(centre_z_m) ? centre_z_m : highest_z_m >= -lowest_z_m ? highest_z_m : lowest_z_m;
+}
+
 /* A number against the voltage, a line with a marker at each point for each branch. */
 static dea_status add_branches(struct dea_context *ctx, struct dea_panel *panel,
                                const struct dea_result *result, bool energy)
@@ -1066,7 +1172,36 @@ static dea_status add_branches(struct dea_context *ctx, struct dea_panel *panel,
       const struct dea_load_point *p = &curve->points[k];
       series->values[k] = 1e-3 * p->voltage_V;
       series->values[curve->count + k] =
-          1e6 * (energy ? p->energy_J - lowest_at(result, p->voltage_V) : p->centre_z_m);
+          1e6 * (energy ? p->energy_J - lowest_at(result, p->voltage_V)
+                        : height(p->centre_z_m, p->highest_z_m, p->lowest_z_m));
+    }
+  }
+  return DEA_OK;
+}
+
+/* The height of the film that wrinkles freely, on the first mesh, dashed. */
+static dea_status add_relaxed(struct dea_context *ctx, struct dea_panel *panel,
+                              const struct dea_result *result)
+{
+  for (size_t t = 0; t < result->table_count; t++) {
+    const struct dea_result_table *table = &result->tables[t];
+    struct dea_series *series,
+        look = {.title = "mean (?)", .style = DEA_DASHED, .colour = DEA_GREY};
+    size_t count = 0;
+    if (strcmp(table->type.study, study_name) != 0 ||
+        strcmp(table->type.name, relaxed_table.name) != 0) {
+      continue;
+    }
+    while (count < table->row_count && dea_result_table_number(table, count, "refinement", 0) ==
+                                           dea_result_table_number(table, 0, "refinement", 0)) {
+      count++;
+    }
+    DEA_TRY(ctx, dea_panel_add_as(ctx, panel, count, &look, &series));
+    for (size_t k = 0; k < count; k++) {
+      series->values[k] = 1e-3 * dea_result_table_number(table, k, "voltage_V", 0);
+      series->values[count + k] = 1e6 * height(dea_result_table_number(table, k, "centre_z_m", 0),
+                                               dea_result_table_number(table, k, "highest_z_m", 0),
+                                               dea_result_table_number(table, k, "lowest_z_m", 0));
     }
   }
   return DEA_OK;
@@ -1085,14 +1220,27 @@ static double first_V(const struct dea_result *result)
   return first;
 }
 
+static bool has_centre(const struct dea_result *result)
+{
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_curve *curve = &result->variants[i].curve;
+    if (strcmp(curve->kind, study_name) == 0 && curve->count > 0) {
+      return !isnan(curve->points[0].centre_z_m);
+    }
+  }
+  return false;
+}
+
 static dea_status build_states(struct dea_context *ctx, const struct dea_result *result,
                                struct dea_plot *plot)
 {
   struct dea_panel *panels = plot->panels;
   plot->panel_count = 2;
   DEA_TRY(ctx, add_branches(ctx, &panels[0], result, false));
+  DEA_TRY(ctx, add_relaxed(ctx, &panels[0], result));
   DEA_TRY(ctx, add_branches(ctx, &panels[1], result, true));
-  snprintf(panels[0].y_label, DEA_LABEL_SIZE, "Centre {/:Italic z} (\302\265m)");
+  snprintf(panels[0].y_label, DEA_LABEL_SIZE, "%s {/:Italic z} (\302\265m)",
+           has_centre(result) ? "Centre" : "Farthest place");
   snprintf(panels[1].y_label, DEA_LABEL_SIZE, "Energy above the lowest (\302\265J)");
   for (size_t p = 0; p < plot->panel_count; p++) {
     dea_panel_voltage_axis(&panels[p]);
@@ -1138,8 +1286,10 @@ static const struct dea_figure figures[] = {
     {
         .name = "states",
         .study = study_name,
-        .caption = "centre and energy of the stable states that were found; one line where each "
-                   "leads to the other (?: not to be trusted at its highest voltage)",
+        .caption =
+            "centre, or the place farthest out of the plane, and energy of the stable states "
+            "that were found; dashed: mean of a film that wrinkles freely; one line where each "
+            "leads to the other (?: not to be trusted at its highest voltage)",
         .build = build_states,
     },
     {
