@@ -156,13 +156,17 @@ static dea_status add_limit(struct dea_context *ctx, const struct dea_model_type
 }
 
 /* Where the prediction ends, as a warning: also for a reader of the notes alone. */
-static dea_status say_trust(struct dea_context *ctx, const struct dea_curve *curve)
+static dea_status say_trust(struct dea_context *ctx, const struct dea_model_type *type,
+                            const struct dea_curve *curve)
 {
   struct dea_text text = {.ctx = ctx};
   struct dea_trust trust = dea_curve_trust(curve);
   dea_status status = DEA_OK;
   if ((trust.doubts | trust.dangers | trust.limits) != 0) {
     dea_trust_text(&trust, &text);
+    if ((trust.doubts >> DEA_FLAG_SLACK & 1u) != 0 && type->push != NULL) {
+      dea_text_add(&text, " (--study states looks for them, and for their mean)");
+    }
     status = text.failed ? DEA_E_MEMORY
                          : dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                                            "model %s: %s", curve->model, dea_text_get(&text));
@@ -192,7 +196,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
       dea_progress(ctx, what, i + 1, total);
     }
   }
-  DEA_TRY(ctx, say_trust(ctx, curve));
+  DEA_TRY(ctx, say_trust(ctx, type, curve));
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
     DEA_TRY(ctx, add_limit(ctx, type, model, curve));
