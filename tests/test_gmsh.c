@@ -130,6 +130,43 @@ static void test_shapes(void **state)
   dea_plane_mesh_destroy(ctx, mesh);
 }
 
+/* A wide strip from the electrode's edge outwards, whose end leaves a crescent within it, .1 mm
+ * thick. With an end that touches the electrode in a point nothing can be done: what is said
+ * names both. */
+static void test_crescent(void **state)
+{
+  (void)state;
+  if (!has_gmsh()) {
+    skip();
+  }
+  for (int i = 0; i < 2; i++) {
+    double x = i == 0 ? 3.65e-3 : 3.75e-3;
+    const struct dea_vertex wide_vertex[] = {{.x_m = x, .y_m = -1e-3},
+                                             {.x_m = 14e-3, .y_m = -1e-3},
+                                             {.x_m = 14e-3, .y_m = 1e-3},
+                                             {.x_m = x, .y_m = 1e-3}};
+    const struct dea_contour wide = {wide_vertex, 4, true};
+    const struct dea_gmsh_shape crescent[] = {{"film", film_contours, 1, 0},
+                                              {"electrode", &electrode, 1, 0.5e-3},
+                                              {"wide", &wide, 1, 0.5e-3}};
+    struct dea_gmsh_plan other = plan;
+    other.shapes = crescent;
+    other.curve_count = 0;
+    struct dea_plane_mesh *mesh;
+    dea_status status = dea_gmsh_mesh(ctx, &other, &mesh);
+    if (i == 0) {
+      assert_int_equal(status, DEA_OK);
+      assert_true(dea_plane_mesh_smallest_jacobian(mesh, NULL) > 0.05);
+      assert_close(area_within(mesh, "electrode"), pi * a * a, 1e-3, 0);
+      assert_close(area_within(mesh, "wide"), 10.35e-3 * 2e-3, 1e-6, 0);
+    } else {
+      assert_int_equal(status, DEA_E_TOOL);
+      assert_non_null(strstr(dea_context_message(ctx), "by edges of 'electrode', 'wide', is too"));
+    }
+    dea_plane_mesh_destroy(ctx, mesh);
+  }
+}
+
 // Faults -----------------------------------------------------------------------------------------
 
 /* A gmsh that is a shell script. */
@@ -179,7 +216,7 @@ static void test_faults_of_gmsh(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes), cmocka_unit_test(test_crescent),
                                      cmocka_unit_test(test_faults_of_gmsh)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -51,12 +51,14 @@ static double distance_to(const struct dea_gmsh_shape *shape, const double x[2])
 /* Ways to quadrilaterals, each for where the one before it leaves triangles or bad elements. Tried
  * with Gmsh 4.8.4: blossom is best where it works; its full-quad form leaves slivers here and
  * there; triangles of twice the size, divided in three, work where arcs are fine enough that no
- * triangle has two sides on one, with more elements for the same. curvature: elements to a full
- * turn. */
+ * triangle has two sides on one, with more elements for the same; where a thin crescent is left
+ * between an arc and another edge, elements have to be as short as it is thin. curvature: elements
+ * to a full turn. */
 static const struct way {
   int recombine, algorithm, subdivision, curvature;
   double size;
-} ways[] = {{1, 1, 0, 12, 1}, {1, 3, 0, 12, 1}, {0, 1, 1, 20, 2}};
+} ways[] = {
+    {1, 1, 0, 12, 1}, {1, 3, 0, 12, 1}, {0, 1, 1, 20, 2}, {0, 1, 1, 40, 1}, {0, 1, 1, 80, 1}};
 enum { WAYS = sizeof ways / sizeof ways[0] };
 static const double good_jacobian = 0.2; // smallest Jacobian with which another way is not tried
 
@@ -328,6 +330,62 @@ static dea_status run_gmsh(struct dea_context *ctx, const struct dea_gmsh_plan *
   return explain(ctx, end, number, limit_s, said);
 }
 
+static void middle_of(const struct dea_plane_mesh *mesh, size_t e, double out[2])
+{
+  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
+  out[0] = out[1] = 0;
+  for (size_t n = 0; n < per_quad; n++) {
+    const double *x = mesh->x + 2 * mesh->quads[e * per_quad + n];
+    out[0] += x[0] / (double)per_quad;
+    out[1] += x[1] / (double)per_quad;
+  }
+}
+
+/* Names of the shapes whose edges are as near to an element as it is long. */
+static void name_near(const struct dea_gmsh_plan *plan, const struct dea_plane_mesh *mesh, size_t e,
+                      struct dea_text *out)
+{
+  const double *first =
+      mesh->x + 2 * mesh->quads[e * (size_t)((mesh->order + 1) * (mesh->order + 1))];
+  double middle[2];
+  middle_of(mesh, e, middle);
+  double length_m = 2 * hypot(first[0] - middle[0], first[1] - middle[1]);
+  const char *before = "edges of ";
+  bool cut = plan->curve_count > 0; // shapes: they have the edges of a sector, too
+  const struct dea_gmsh_shape *shapes = cut ? plan->curves : plan->shapes;
+  for (size_t i = 0; i < (cut ? plan->curve_count : plan->shape_count); i++) {
+    if (distance_to(&shapes[i], middle) <= length_m) {
+      dea_text_add(out, "%s'%s'", before, shapes[i].name);
+      before = ", ";
+    }
+  }
+  if (before[0] == 'e') {
+    dea_text_add(out, "no edge");
+  }
+}
+
+/* DEA_E_DESIGN for elements that are too bad to use, with where and between what. */
+static dea_status check_quality(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                                const struct dea_plane_mesh *mesh)
+{
+  size_t worst = 0;
+  double least = dea_plane_mesh_smallest_jacobian(mesh, &worst), middle[2];
+  if (least >= DEA_MSH_JACOBIAN_MIN) {
+    return DEA_OK;
+  }
+  struct dea_text near_it = {.ctx = ctx};
+  middle_of(mesh, worst, middle);
+  name_near(plan, mesh, worst, &near_it);
+  dea_status status = dea_fail(
+      ctx, DEA_E_DESIGN,
+      "an element near (%.4g, %.4g) mm, by %s, is too bad: its smallest Jacobian is %.3g "
+      "of the mean one, at least %g is wanted; where edges touch or meet at a small angle, "
+      "part them or let shapes overlap by more",
+      mm * middle[0], mm * middle[1], dea_text_get(&near_it), least, DEA_MSH_JACOBIAN_MIN);
+  dea_text_free(&near_it);
+  return status;
+}
+
 static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
                           const struct way *way, const char *folder, struct dea_plane_mesh **out)
 {
@@ -362,6 +420,9 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   if (status == DEA_OK) {
     status = dea_msh_parse(ctx, text, NULL, unit_m, out);
   }
+  if (status == DEA_OK) {
+    status = check_quality(ctx, plan, *out);
+  }
   dea_free(ctx, text);
   dea_free(ctx, mesh);
   return status;
@@ -394,14 +455,25 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
     return dea_fail(ctx, DEA_E_IO, "cannot make the folder %s: %s", folder, strerror(errno));
   }
   dea_status status = DEA_E_DESIGN;
-  for (size_t i = 0; i < WAYS && status == DEA_E_DESIGN; i++) {
-    status = mesh_in(ctx, plan, &ways[i], folder, out);
-    if (status == DEA_OK && i + 1 < WAYS &&
-        dea_plane_mesh_smallest_jacobian(*out, NULL) < good_jacobian) {
+  double best = -INFINITY;
+  for (size_t i = 0; i < WAYS && status == DEA_E_DESIGN && best < good_jacobian; i++) {
+    struct dea_plane_mesh *mesh = NULL;
+    status = mesh_in(ctx, plan, &ways[i], folder, &mesh);
+    double jacobian = status == DEA_OK ? dea_plane_mesh_smallest_jacobian(mesh, NULL) : -INFINITY;
+    if (jacobian > best) {
       dea_plane_mesh_destroy(ctx, *out);
-      *out = NULL;
-      status = DEA_E_DESIGN;
+      *out = mesh;
+      mesh = NULL;
+      best = jacobian;
     }
+    dea_plane_mesh_destroy(ctx, mesh);
+    status = status == DEA_OK ? DEA_E_DESIGN : status; // perhaps the next one is better
+  }
+  if (status == DEA_E_DESIGN && *out != NULL) {
+    status = DEA_OK;
+  } else {
+    dea_plane_mesh_destroy(ctx, *out);
+    *out = NULL;
   }
   remove_folder(folder);
   if (status == DEA_E_DESIGN) {
@@ -413,17 +485,6 @@ static dea_status mesh_all(struct dea_context *ctx, const struct dea_gmsh_plan *
 }
 
 // Shapes of the elements --------------------------------------------------------------------------
-
-static void middle_of(const struct dea_plane_mesh *mesh, size_t e, double out[2])
-{
-  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
-  out[0] = out[1] = 0;
-  for (size_t n = 0; n < per_quad; n++) {
-    const double *x = mesh->x + 2 * mesh->quads[e * per_quad + n];
-    out[0] += x[0] / (double)per_quad;
-    out[1] += x[1] / (double)per_quad;
-  }
-}
 
 /* Keeps the elements in shapes, with their regions; closes the gaps in the numbers of nodes.
  * number: [node_count] of mesh. */

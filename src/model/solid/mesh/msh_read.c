@@ -866,8 +866,7 @@ static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh *
   dea_status status = fill(r, &s, unit_m, &places, *out);
   dea_places_release(r->ctx, &places);
   DEA_TRY(r->ctx, status);
-  DEA_TRY(r->ctx, check_quality(r, *out));
-  return DEA_OK;
+  return r->file != NULL ? check_quality(r, *out) : DEA_OK;
 }
 
 dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *name, double unit_m,

@@ -16,8 +16,8 @@
 dea_status dea_msh_read(struct dea_context *ctx, const char *file, double unit_m,
                         struct dea_plane_mesh **out);
 
-/* The same of a text, which findings call `name`; NULL: faults are in the
- * message of the context only. */
+/* The same of a text, which findings call `name`; NULL: faults are in the message of the context
+ * only, and how bad an element may be is left to the caller. */
 dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *name, double unit_m,
                          struct dea_plane_mesh **out);
 
