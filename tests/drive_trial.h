@@ -49,7 +49,7 @@ static inline void trial_open(struct trial *t, const char *text, const struct fa
 static inline void trial_play(struct trial *t, bool sensor)
 {
   struct dea_instrument *all[2] = {&t->daq->common, &t->sensor.common};
-  struct dea_drive_bench bench = {all, sensor ? 2 : 1, 0.005, t->stall_s, NULL, 0};
+  struct dea_drive_bench bench = {all, sensor ? 2 : 1, 0.005, t->stall_s, NULL, NULL, 0};
   unlink(in_folder("drive.h5"));
   dea_context_set_interrupt(ctx, &t->flag);
   t->status = dea_drive_play(ctx, t->protocol, &bench, in_folder("drive.h5"), &t->report);

@@ -259,7 +259,7 @@ static void test_reader_apart_from_the_player(void **state)
     t.daq->script.ahead_put = 0;
     t.daq->puts = 1; // of nothing: it reads 0 V on its own clock
     struct dea_instrument *all[2] = {&player->common, &t.daq->common};
-    struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, 0};
+    struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, NULL, 0};
     unlink(in_folder("drive.h5"));
     t.protocol->safety.voltage_error_V.si = 1e5;
     t.status = dea_drive_play(ctx, t.protocol, &bench, in_folder("drive.h5"), &t.report);
@@ -301,7 +301,7 @@ static void play_without_memory(struct dea_context *context)
 {
   struct trial *t = memory_trial;
   struct dea_instrument *all[2] = {&t->daq->common, &t->sensor.common};
-  struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, 0};
+  struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, NULL, 0};
   fake_daq_open(t->protocol, &fake_good, &t->flag, t->daq);
   fake_sensor_open(t->daq, &t->sensor);
   unlink(in_folder("memory.h5"));
@@ -342,7 +342,7 @@ static void test_benches_that_cannot_play(void **state)
   trial_open(&t, SQUARE CHANNELS, &fake_good);
   fake_daq_open(t.protocol, &fake_good, &t.flag, second);
   struct dea_instrument *all[2] = {&t.daq->common, &second->common};
-  struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, 0};
+  struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, NULL, 0};
   static const struct {
     unsigned first, second;
     const char *why;

@@ -140,24 +140,6 @@ static void test_stall_is_no_jump(void **state)
   supply_stop(&s);
 }
 
-/* Kills all children of a process. */
-static void kill_children(pid_t parent)
-{
-  char path[64];
-  int child;
-  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
-  FILE *file = fopen(path, "r");
-  if (file == NULL) {
-    skip(); // a kernel without that list
-  }
-  size_t killed = 0;
-  while (fscanf(file, "%d", &child) == 1) {
-    killed += kill(child, SIGKILL) == 0;
-  }
-  fclose(file);
-  assert_int_equal(killed, 1);
-}
-
 /* The computer dies, and the guard with it: the supply's own watchdog is fed while all is well,
  * disarmed at the end, and switches off when nobody feeds it. */
 static void test_watchdog_of_the_supply(void **state)
@@ -176,7 +158,7 @@ static void test_watchdog_of_the_supply(void **state)
   pid_t child = supply_arm("dead.h5");
   assert_true(supply_reaches(&s, 1000, 10));
   kill(child, SIGSTOP); // it must not notice
-  kill_children(child);
+  supply_kill_guard(child);
   kill(child, SIGKILL);
   assert_int_equal(supply_wait(child, 5), -SIGKILL);
   double took_s = comes_down(&s, 10);
@@ -233,13 +215,33 @@ static void test_neighbour(void **state)
   }
 }
 
+/* Asked for by somebody while it plays: it ends along its ramp, and then the supply is looked at.
+ */
+static void test_zero_while_it_plays(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  pid_t child = supply_arm("z.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  int code = supply_run_dea(zero, 30);
+  assert_true(code == 0 && supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  (void)supply_highest(&s);
+  assert_int_equal(supply_wait(child, 5), 130);
+  dea_clock_wait(1);
+  assert_true(supply_highest(&s) <= supply_zero_V);
+  supply_stop(&s);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_killed),           cmocka_unit_test(test_one_supply_one_program),
       cmocka_unit_test(test_interrupted),      cmocka_unit_test(test_stopped),
       cmocka_unit_test(test_stall_is_no_jump), cmocka_unit_test(test_watchdog_of_the_supply),
-      cmocka_unit_test(test_neighbour),
+      cmocka_unit_test(test_neighbour),        cmocka_unit_test(test_zero_while_it_plays),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

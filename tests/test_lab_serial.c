@@ -272,6 +272,24 @@ static void test_optoncdt_faults(void **state)
   end(&d);
 }
 
+/* A line is one program's, whatever name it has. */
+static void test_line_in_use(void **state)
+{
+  (void)state;
+  char in_use[64];
+  struct bench b = {0}, second = {0};
+  assert_int_equal(begin(&b, keyence, keyence_run), DEA_OK);
+  snprintf(second.text, sizeof second.text, keyence, b.line.device);
+  snprintf(in_use, sizeof in_use, "is in use by process %ld (test_lab_serial)", (long)getpid());
+  assert_message(emulator_open(ctx, &second.protocol, second.text, &second.instrument),
+                 DEA_E_INSTRUMENT, in_use);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 4, 0, 0), DEA_OK); // undisturbed
+  emulator_close(ctx, b.instrument);
+  b.instrument = NULL;
+  assert_int_equal(emulator_open(ctx, &second.protocol, second.text, &b.instrument), DEA_OK);
+  end(&b);
+}
+
 static void test_wrong_keys(void **state)
 {
   (void)state;
@@ -322,9 +340,10 @@ static void test_asking(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_asking),   cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_keyence),  cmocka_unit_test(test_keyence_faults),
-      cmocka_unit_test(test_optoncdt), cmocka_unit_test(test_optoncdt_faults),
+      cmocka_unit_test(test_asking),      cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_keyence),     cmocka_unit_test(test_keyence_faults),
+      cmocka_unit_test(test_optoncdt),    cmocka_unit_test(test_optoncdt_faults),
+      cmocka_unit_test(test_line_in_use),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

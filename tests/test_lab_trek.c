@@ -112,7 +112,7 @@ static void play(enum lie lie, struct trek *t, struct dea_drive_report *report, 
                      .generator = &generator,
                      .lie = lie};
   struct dea_instrument *all[2] = {player, &t->common};
-  struct dea_drive_bench bench = {all, 2, 0.3, 3, NULL, 0};
+  struct dea_drive_bench bench = {all, 2, 0.3, 3, NULL, NULL, 0};
   unlink(in_folder("trek.h5"));
   *status = dea_drive_play(ctx, protocol, &bench, in_folder("trek.h5"), report);
   trek_follow(t);

@@ -32,10 +32,12 @@ static void roles_text(unsigned roles, char out[96])
              {DEA_READS_INPUTS, "reads the channels"},
              {DEA_SENDS_PROFILES, "sends profiles"},
              {DEA_GIVES_READINGS, "gives readings"}};
+  size_t length = 0; // of all of them: 66
   out[0] = '\0';
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     if ((roles & all[i].role) != 0) {
-      strcat(strcat(out, out[0] != '\0' ? ", " : ""), all[i].text);
+      length +=
+          (size_t)snprintf(out + length, 96 - length, "%s%s", length > 0 ? ", " : "", all[i].text);
     }
   }
 }
@@ -409,8 +411,8 @@ static const struct cli_option options[] = {
     {"sim", 0, CLI_FLAG, NULL, "play on a simulated bench, a model of the design with noise",
      CLI_AT(simulate), .or_before = true},
     {"zero", 0, CLI_FLAG, NULL,
-     "bring the output of the protocol's supply to 0 V, and read it back", CLI_AT(zero),
-     .or_before = true},
+     "end what drives the protocol's supply, bring its output to 0 V, and read it back",
+     CLI_AT(zero), .or_before = true},
     {"export", 0, CLI_FOLDER, "DIR",
      "write the waveform, and scripts for MATLAB and Python that play it and record on a computer "
      "with NI-DAQmx, into DIR",

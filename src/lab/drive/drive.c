@@ -46,12 +46,13 @@ struct armed {
   char left[DEA_SUPPLY_LEFT_SIZE]; // what it leaves behind should it end now
 };
 
-/* Finds and locks the supply. */
+/* Finds and locks the supply; wait_s: for who brings it to 0 V, how long another program that has
+ * it is waited for; NAN: for who arms it. */
 static dea_status find_supply(struct dea_context *ctx, const struct dea_protocol *protocol,
-                              const char *folder, struct armed *armed)
+                              const char *folder, double wait_s, struct armed *armed)
 {
   char address[DEA_INSTRUMENT_ADDRESS_SIZE] = "";
-  *armed = (struct armed){.supply.file = -1};
+  *armed = (struct armed){.supply = {.file = -1, .ask = -1}};
   for (size_t i = 0; i < protocol->instrument_count && address[0] == '\0'; i++) {
     armed->section = &protocol->instruments[i];
     DEA_TRY(ctx, dea_instrument_address(ctx, armed->section, protocol, address));
@@ -60,13 +61,14 @@ static dea_status find_supply(struct dea_context *ctx, const struct dea_protocol
     armed->section = NULL; // which the instruments themselves will say
     return DEA_OK;
   }
-  return dea_supply_open(ctx, folder, address, &armed->supply);
+  return isnan(wait_s) ? dea_supply_open(ctx, folder, address, &armed->supply)
+                       : dea_supply_ask(ctx, folder, address, wait_s, &armed->supply);
 }
 
 static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protocol,
                       const struct dea_drive_options *options, struct armed *armed)
 {
-  DEA_TRY(ctx, find_supply(ctx, protocol, options->state_folder, armed));
+  DEA_TRY(ctx, find_supply(ctx, protocol, options->state_folder, NAN, armed));
   if (armed->section == NULL) {
     return DEA_OK;
   }
@@ -125,6 +127,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_protocol *protoc
                                     settle_s + (isfinite(plan->rise_s) ? 2 * plan->rise_s : 0),
                                     stall_s,
                                     armed->guard,
+                                    &armed->supply,
                                     plan->capacitance_F};
     status = dea_drive_play(ctx, protocol, &bench, options->file, out);
   } else {
@@ -144,7 +147,7 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
                          const struct dea_drive_options *options, struct dea_drive_report *out)
 {
   struct dea_protocol_plan plan;
-  struct armed armed = {.supply.file = -1};
+  struct armed armed = {.supply = {.file = -1, .ask = -1}};
   *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
   DEA_TRY(ctx, dea_protocol_check(ctx, protocol, &plan));
   dea_status status = options->simulate ? DEA_OK : arm(ctx, protocol, options, &armed);
@@ -158,20 +161,35 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
+/* How long a program that was asked to end may take, or the guard of one that has died: an attempt
+ * of it waits for the line, and reads back. */
+static double longest_end_s(const struct dea_protocol *protocol)
+{
+  double zero_s = protocol->safety.zero_time_s.si;
+  return protocol->safety.guard_time_s.si + protocol->safety.longest_ramp_s.si + 3 * zero_s + 1;
+}
+
 dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
                           const char *state_folder, bool checked, struct dea_zero *out)
 {
   struct armed armed;
-  char known[DEA_ZERO_TEXT_SIZE];
+  char known[DEA_ZERO_TEXT_SIZE], driven[512] = "";
   *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
-  dea_status locked = find_supply(ctx, protocol, state_folder, &armed);
-  if (locked != DEA_OK && locked != DEA_E_INTERLOCK) { // that another program has it is no reason
-    return dea_fail_chain(ctx, locked, __func__, __FILE__, __LINE__);
+  dea_status status = find_supply(ctx, protocol, state_folder, longest_end_s(protocol), &armed);
+  if (status == DEA_E_INTERLOCK) { // no reason not to command 0 V
+    snprintf(driven, sizeof driven, "%s, and did not end; ", dea_context_message(ctx));
+    dea_context_clear(ctx);
+  } else if (status != DEA_OK) {
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  dea_status status =
-      armed.section != NULL
-          ? dea_instrument_zero(ctx, armed.section, protocol, checked ? "" : armed.supply.mark, out)
-          : dea_fail(ctx, DEA_E_INSTRUMENT, "%s names no instrument that plays", protocol->file);
+  const struct dea_instrument_past past = {checked ? "" : armed.supply.mark, 0,
+                                           driven[0] == '\0' ? protocol->safety.zero_time_s.si : 0};
+  status = armed.section != NULL ? dea_instrument_zero(ctx, armed.section, protocol, &past, out)
+                                 : dea_fail(ctx, DEA_E_INSTRUMENT,
+                                            "%s names no instrument that plays", protocol->file);
+  if (driven[0] != '\0' && out->state != DEA_ZERO_NONE) {
+    out->state = DEA_ZERO_UNKNOWN; // what was read back says nothing of what that one will set
+  }
   out->volts *= protocol->amplifier.gain.si;
   dea_zero_text(*out, known);
   bool clean = armed.supply.left[0] == '\0';
@@ -179,9 +197,9 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
       (out->state == DEA_ZERO_READ_BACK || (checked && out->state == DEA_ZERO_COMMANDED))) {
     status = dea_supply_leave(ctx, &armed.supply, "");
   } else if (status == DEA_OK && (out->state == DEA_ZERO_UNKNOWN || !clean)) {
-    status =
-        dea_fail(ctx, DEA_E_INSTRUMENT, "the output is %s: switch the supply off and look at it%s",
-                 known, clean ? "" : "; then --zero --checked says that you have");
+    status = dea_fail(ctx, DEA_E_INSTRUMENT,
+                      "%sthe output is %s: switch the supply off and look at it%s", driven, known,
+                      clean ? "" : "; then --zero --checked says that you have");
   }
   dea_supply_close(&armed.supply);
   return status;

@@ -68,6 +68,7 @@ struct loop {
   double started_s, lost_reader_s; // by the computer's clock
   double stall_s;
   struct dea_guard *guard;
+  const struct dea_supply *supply;
   bool ending;       // a fault came
   dea_status status; // of it
   struct dea_drive_report *report;
@@ -488,6 +489,9 @@ static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
     if (interrupt != NULL && *interrupt != 0 && !loop->output.over) { // else there is all of it
       end_early(loop, DEA_E_INTERRUPTED, "interrupted");
     }
+    if (loop->supply != NULL && !loop->ending && dea_supply_is_asked(loop->supply)) {
+      end_early(loop, DEA_E_INTERRUPTED, "another program (dea drive --zero) asked for 0 V");
+    }
     bool more = has_room(loop);
     if (more) {
       put_block(loop);
@@ -701,7 +705,8 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
                       .protocol = protocol,
                       .report = out,
                       .stall_s = bench->stall_s,
-                      .guard = bench->guard};
+                      .guard = bench->guard,
+                      .supply = bench->supply};
   *out = (struct dea_drive_report){.largest_current_A = NAN, .zero.volts = NAN};
   loop.last_frame_s = -INFINITY;
   dea_status status = set_sources(&loop, bench);

@@ -12,8 +12,9 @@ struct dea_drive_bench {
   size_t count;
   double settle_s; // of the amplifier after a jump
   double stall_s;  // an instrument that reads the inputs and gives nothing for so long has failed
-  struct dea_guard *guard; // NULL: none; lent
-  double capacitance_F;    // of the film; 0 or NAN: not known
+  struct dea_guard *guard;         // NULL: none; lent
+  const struct dea_supply *supply; // that somebody else may ask for; NULL: none; lent
+  double capacitance_F;            // of the film; 0 or NAN: not known
 };
 
 /* Plays the protocol and records it in `file`, which must not exist. Every instrument is stopped

@@ -37,11 +37,11 @@ struct dea_guard {
 // The guard's side -------------------------------------------------------------------------------
 
 /* Nothing of the program's is kept open: what waits for its end must not wait for the guard. */
-static void let_go(int pipe, int supply)
+static void let_go(int pipe, const struct dea_supply *supply)
 {
   long most = sysconf(_SC_OPEN_MAX);
   for (int file = 0; file < (most > 0 && most < 65536 ? (int)most : 65536); file++) {
-    if (file != pipe && file != supply) {
+    if (file != pipe && file != supply->file && file != supply->ask) {
       close(file);
     }
   }
@@ -91,10 +91,11 @@ static void guard(const struct dea_protocol *protocol,
                   const struct dea_protocol_instrument *section, struct dea_supply supply,
                   struct signs *signs, int pipe)
 {
+  const struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si};
   struct dea_context *ctx;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
   char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE];
-  let_go(pipe, supply.file);
+  let_go(pipe, &supply);
   if (wait_for_end(pipe, signs)) {
     return;
   }
@@ -105,16 +106,20 @@ static void guard(const struct dea_protocol *protocol,
   if (dea_context_create(NULL, &ctx) != DEA_OK) {
     return;
   }
-  for (double until_s = dea_clock_s() + longest_s;
-       zero.state == DEA_ZERO_UNKNOWN && dea_clock_s() < until_s;) {
-    if (dea_instrument_zero(ctx, section, protocol, supply.mark, &zero) != DEA_OK) {
+  for (double until_s = dea_clock_s() + longest_s; dea_clock_s() < until_s;) {
+    if (dea_instrument_zero(ctx, section, protocol, &past, &zero) != DEA_OK) {
       zero.state = DEA_ZERO_UNKNOWN;
     }
     zero.volts *= protocol->amplifier.gain.si;
     dea_zero_text(zero, known);
     snprintf(text, sizeof text, "the program that drove it died; the output is %s", known);
     (void)dea_supply_leave(ctx, &supply, zero.state == DEA_ZERO_READ_BACK ? "" : text);
-    dea_clock_wait(zero.state == DEA_ZERO_UNKNOWN ? again_s : 0);
+    if (zero.state != DEA_ZERO_UNKNOWN ||
+        (dea_supply_is_asked(&supply) &&
+         (!dea_supply_give(&supply, until_s - dea_clock_s()) || supply.left[0] == '\0'))) {
+      break; // done, or somebody else has done it
+    }
+    dea_clock_wait(again_s);
   }
   dea_context_destroy(ctx);
 }

@@ -1,6 +1,7 @@
 #define _DEFAULT_SOURCE // flock, pread, pwrite, fsync
 #include "lab/drive/supply.h"
 
+#include "base/clock.h"
 #include "base/write_file.h"
 
 #include <ctype.h>
@@ -12,6 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
+static const double poll_s = 0.01;
+
 static dea_status cannot(struct dea_context *ctx, const char *what, const struct dea_supply *supply)
 {
   return dea_fail(ctx, DEA_E_IO,
@@ -20,13 +23,11 @@ static dea_status cannot(struct dea_context *ctx, const char *what, const struct
                   what, supply->path, strerror(errno));
 }
 
-dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const char *address,
-                           struct dea_supply *out)
+/* Opens both files, and locks nothing. folder: not NULL. */
+static dea_status open_files(struct dea_context *ctx, const char *folder, const char *address,
+                             struct dea_supply *out)
 {
-  *out = (struct dea_supply){.file = -1};
-  if (folder == NULL) {
-    return DEA_OK;
-  }
+  char ask[sizeof out->path + 8];
   int length = snprintf(out->path, sizeof out->path, "%s/%s", folder, address);
   if (length < 0 || (size_t)length >= sizeof out->path) {
     errno = ENAMETOOLONG;
@@ -36,24 +37,107 @@ dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const ch
     *c = isalnum((unsigned char)*c) || *c == '.' ? *c : '-';
   }
   DEA_TRY(ctx, dea_folder_make(ctx, folder));
-  int file = open(out->path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (file < 0) {
-    return cannot(ctx, "open", out);
+  snprintf(ask, sizeof ask, "%s.asked", out->path);
+  out->file = open(out->path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  out->ask = out->file < 0 ? -1 : open(ask, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (out->ask < 0) {
+    dea_status status = cannot(ctx, "open", out);
+    dea_supply_close(out);
+    return status;
   }
+  return DEA_OK;
+}
+
+static void read_left(struct dea_supply *supply)
+{
   char text[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE];
-  ssize_t got = pread(file, text, sizeof text - 1, 0);
+  ssize_t got = pread(supply->file, text, sizeof text - 1, 0);
   text[got > 0 ? got : 0] = '\0';
   const char *second = text + strcspn(text, "\n");
-  snprintf(out->left, sizeof out->left, "%.*s", (int)(second - text), text);
+  snprintf(supply->left, sizeof supply->left, "%.*s", (int)(second - text), text);
   second += *second != '\0';
-  snprintf(out->mark, sizeof out->mark, "%.*s", (int)strcspn(second, "\n"), second);
-  if (flock(file, LOCK_EX | LOCK_NB) != 0) {
-    close(file);
-    return dea_fail(ctx, DEA_E_INTERLOCK, "another program drives this supply (%s): %s", address,
-                    out->left[0] != '\0' ? out->left : "it has just begun");
+  snprintf(supply->mark, sizeof supply->mark, "%.*s", (int)strcspn(second, "\n"), second);
+}
+
+/* Tries until the time is over. */
+static bool lock(int file, double until_s)
+{
+  while (flock(file, LOCK_EX | LOCK_NB) != 0) {
+    if (dea_clock_s() >= until_s) {
+      return false;
+    }
+    dea_clock_wait(poll_s);
   }
-  out->file = file;
+  return true;
+}
+
+static dea_status is_driven(struct dea_context *ctx, const char *address,
+                            const struct dea_supply *supply)
+{
+  return dea_fail(ctx, DEA_E_INTERLOCK, "another program drives this supply (%s): %s", address,
+                  supply->left[0] != '\0' ? supply->left : "it has just begun");
+}
+
+dea_status dea_supply_open(struct dea_context *ctx, const char *folder, const char *address,
+                           struct dea_supply *out)
+{
+  *out = (struct dea_supply){.file = -1, .ask = -1};
+  if (folder == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, open_files(ctx, folder, address, out));
+  bool locked = lock(out->file, 0);
+  read_left(out);
+  if (!locked) {
+    dea_supply_close(out);
+    return is_driven(ctx, address, out);
+  }
   return DEA_OK;
+}
+
+dea_status dea_supply_ask(struct dea_context *ctx, const char *folder, const char *address,
+                          double wait_s, struct dea_supply *out)
+{
+  double until_s = dea_clock_s() + wait_s;
+  *out = (struct dea_supply){.file = -1, .ask = -1};
+  if (folder == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, open_files(ctx, folder, address, out));
+  bool locked = lock(out->ask, until_s) && lock(out->file, until_s);
+  read_left(out);
+  if (!locked) {
+    close(out->file); // which nobody may write but who has it
+    out->file = -1;
+    return is_driven(ctx, address, out);
+  }
+  return DEA_OK;
+}
+
+bool dea_supply_is_asked(const struct dea_supply *supply)
+{
+  if (supply->ask < 0) {
+    return false;
+  }
+  if (flock(supply->ask, LOCK_SH | LOCK_NB) != 0) {
+    return errno == EWOULDBLOCK;
+  }
+  flock(supply->ask, LOCK_UN);
+  return false;
+}
+
+bool dea_supply_give(struct dea_supply *supply, double within_s)
+{
+  double until_s = dea_clock_s() + within_s;
+  flock(supply->file, LOCK_UN);
+  while (dea_supply_is_asked(supply) && dea_clock_s() < until_s) {
+    dea_clock_wait(poll_s);
+  }
+  if (!lock(supply->file, until_s)) {
+    return false;
+  }
+  read_left(supply);
+  return true;
 }
 
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text)
@@ -82,6 +166,9 @@ void dea_supply_close(struct dea_supply *supply)
 {
   if (supply->file >= 0) {
     close(supply->file);
-    supply->file = -1;
   }
+  if (supply->ask >= 0) {
+    close(supply->ask);
+  }
+  supply->file = supply->ask = -1;
 }

@@ -116,15 +116,15 @@ dea_status dea_instrument_address(struct dea_context *ctx,
 
 dea_status dea_instrument_zero(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
-                               const struct dea_protocol *protocol, const char *mark,
-                               struct dea_zero *out)
+                               const struct dea_protocol *protocol,
+                               const struct dea_instrument_past *past, struct dea_zero *out)
 {
   const struct dea_instrument_type *type;
   void *raw;
   *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
   DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
   if (type->zero != NULL) {
-    *out = type->zero(ctx, raw, protocol, mark);
+    *out = type->zero(ctx, raw, protocol, past);
   }
   dea_free(ctx, raw);
   return DEA_OK;

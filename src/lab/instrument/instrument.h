@@ -52,6 +52,13 @@ struct dea_instrument {
   char mark[DEA_INSTRUMENT_MARK_SIZE];
 };
 
+/* What is known of an instrument that is not open, of the time when it was. */
+struct dea_instrument_past {
+  const char *mark; // as above; "": whatever has its address and, where there is one, its name
+  long program;     // process that may still have its line, but plays nothing any more; 0: none
+  double wait_s;    // how long its line is waited for where another program has it
+};
+
 struct dea_instrument_type {
   const char *name;                // "sim"
   const struct dea_record *record; // its keys, "kind" among them
@@ -90,11 +97,11 @@ struct dea_instrument_type {
   /* What it plays through, without the kind; NULL with `zero`. */
   void (*address)(const void *raw, char *out, size_t size);
   /* The same as stop for one that is not open, by a connection of its own over which nothing else
-   * is sent. mark: of the instrument while it was open; what has another one is told 0 V too, and
-   * not believed. "": whatever has its address and, where the section says one, its name. NULL when
-   * it never plays. */
+   * is sent. What has another mark is told 0 V too, and not believed; nor is one whose line another
+   * program has, as that may go on. NULL when it never plays. */
   struct dea_zero (*zero)(struct dea_context *ctx, const void *raw,
-                          const struct dea_protocol *protocol, const char *mark);
+                          const struct dea_protocol *protocol,
+                          const struct dea_instrument_past *past);
   void (*close)(struct dea_context *ctx, struct dea_instrument *instrument);
 };
 
@@ -111,12 +118,12 @@ dea_status dea_instrument_open(struct dea_context *ctx,
 /* Stops it. What the context holds of a failure stays, and no interruption shortens it. */
 struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrument *instrument);
 /* Brings the output of a section's instrument to 0 V, without opening the instrument otherwise.
- * mark: as dea_instrument_type.zero. A warning says where another one answers at its address.
+ * A warning says where another one answers at its address, or another program has its line.
  * DEA_ZERO_NONE for one that plays nothing. */
 dea_status dea_instrument_zero(struct dea_context *ctx,
                                const struct dea_protocol_instrument *section,
-                               const struct dea_protocol *protocol, const char *mark,
-                               struct dea_zero *out);
+                               const struct dea_protocol *protocol,
+                               const struct dea_instrument_past *past, struct dea_zero *out);
 /* Name of the supply or device that a section plays through, "scpi 192.168.1.20 5025"; "" for one
  * that plays nothing. */
 enum { DEA_INSTRUMENT_ADDRESS_SIZE = 200 };

@@ -321,9 +321,10 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *data,
-                            const struct dea_protocol *protocol, const char *mark)
+                            const struct dea_protocol *protocol,
+                            const struct dea_instrument_past *past)
 {
-  (void)mark; // its name is of the device, and stays with it
+  (void)past; // its name is of the device, and stays with it
   const struct dea_daq_raw *raw = data;
   struct dea_zero result = {DEA_ZERO_UNKNOWN, NAN};
   struct comedi *c = dea_alloc(ctx, 1, sizeof *c);

@@ -225,9 +225,10 @@ static dea_status load(struct dea_context *ctx, const struct dea_daq_raw *raw, s
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *data,
-                            const struct dea_protocol *protocol, const char *mark)
+                            const struct dea_protocol *protocol,
+                            const struct dea_instrument_past *past)
 {
-  (void)mark; // its name is of the device, and stays with it
+  (void)past; // its name is of the device, and stays with it
   struct nidaqmx n = {.protocol = protocol};
   bool good = load(ctx, data, &n) == DEA_OK && set_zero(ctx, &n) == DEA_OK;
   return (struct dea_zero){good ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};

@@ -121,9 +121,10 @@ static dea_status open_it(struct dea_context *ctx, const void *raw,
 }
 
 static struct dea_zero zero(struct dea_context *ctx, const void *raw,
-                            const struct dea_protocol *protocol, const char *mark)
+                            const struct dea_protocol *protocol,
+                            const struct dea_instrument_past *past)
 {
-  return dea_line_supply_zero(ctx, &language, raw, protocol, mark);
+  return dea_line_supply_zero(ctx, &language, raw, protocol, past);
 }
 
 const struct dea_instrument_type dea_instrument_ochvps = {

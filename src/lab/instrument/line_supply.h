@@ -116,7 +116,7 @@ void dea_line_supply_address(const void *raw, char *out, size_t size);
 struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
                                      const struct dea_line_supply_language *language,
                                      const void *raw, const struct dea_protocol *protocol,
-                                     const char *mark);
+                                     const struct dea_instrument_past *past);
 void dea_line_supply_close(struct dea_context *ctx, struct dea_instrument *instrument);
 
 /* The members of a kind's type that all of them share. */

@@ -5,7 +5,9 @@
  * `behind`. Nothing that it says is believed but behind a new answer to `sync`. Where that does not
  * come all begins anew on another connection, until the time is over. Where the line itself has
  * gone, or somebody else had opened it, what answers at its name may be another supply: it is told
- * 0 V too, which hurts nobody, but only one with the mark of this one is believed. */
+ * 0 V too, which hurts nobody, but only one with the mark of this one is believed. Where another
+ * program has the line it is waited for; one that keeps it may set another voltage a moment later,
+ * and may have taken any answer: then 0 V is commanded, and nothing is believed. */
 #include "base/clock.h"
 #include "lab/instrument/line_supply.h"
 #include "lab/instrument/serial.h"
@@ -25,9 +27,9 @@ struct zeroing {
   const void *named; // of the kind, with the name that it must have; NULL: not looked at
   const struct dea_protocol *protocol;
   double until_s;
-  bool doubted;     // another supply may have the line's name
-  bool told;        // that another one may be there
-  const char *mark; // of the supply that was used; "": nothing tells it from others
+  bool doubted;                    // another supply may have the line's name
+  bool told;                       // that another one may be there
+  struct dea_instrument_past past; // of the supply that was used
 };
 
 static double wait_until(const struct zeroing *z)
@@ -120,7 +122,7 @@ static bool is_same(struct dea_context *ctx, struct zeroing *z)
 {
   char line[DEA_INSTRUMENT_MARK_SIZE];
   const char *answer = line;
-  if (!z->doubted || z->mark[0] == '\0') {
+  if (!z->doubted || z->past.mark[0] == '\0') {
     return !z->doubted;
   }
   if (z->language->mark == NULL) {
@@ -130,24 +132,43 @@ static bool is_same(struct dea_context *ctx, struct zeroing *z)
              answer == NULL) {
     return false;
   }
-  bool same = strcmp(answer, z->mark) == 0;
+  bool same = strcmp(answer, z->past.mark) == 0;
   if (!same) {
     tell(ctx, z, answer);
   }
   return same;
 }
 
+/* Says that another program has the line, too: once, as nothing else can be done then. */
+static void tell_of_other(struct dea_context *ctx, const struct dea_socket *line, long holder)
+{
+  char text[DEA_SERIAL_HOLDER_SIZE];
+  dea_serial_holder_text(holder, text);
+  (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                        "%s is in use by %s, which may set another voltage: it was told 0 V, and "
+                        "nothing that it says is believed; end that one",
+                        line->name, text);
+}
+
 /* On connections of its own, until one has said something or the time is over. */
 static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
 {
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_serial_turn turn = {.wait_s = z->past.wait_s, .program = z->past.program};
   bool told = false;
   while (!told && dea_clock_s() < z->until_s) {
     struct dea_line_link link = {.socket.descriptor = -1};
+    double began_s = dea_clock_s();
     z->link = &link;
-    if (dea_serial_open(ctx, z->language->what, z->raw->device.text, (int)z->raw->baud.si, 0,
-                        &link.socket) == DEA_OK) {
-      told = command_zero(ctx, z) && is_same(ctx, z) && read_back(ctx, z, &zero);
+    if (dea_serial_open_in_turn(ctx, z->language->what, z->raw->device.text, (int)z->raw->baud.si,
+                                0, &turn, &link.socket) == DEA_OK) {
+      double waited_s = dea_clock_s() - began_s;
+      z->until_s += waited_s; // its time begins with its turn
+      turn.wait_s -= waited_s;
+      told = command_zero(ctx, z) && (turn.beside || (is_same(ctx, z) && read_back(ctx, z, &zero)));
+      if (turn.beside) {
+        tell_of_other(ctx, &link.socket, turn.holder);
+      }
       dea_socket_close(&link.socket);
     }
     z->link = NULL;
@@ -167,7 +188,7 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
                       .raw = &s->raw,
                       .protocol = s->protocol,
                       .until_s = dea_clock_s() + s->protocol->safety.zero_time_s.si,
-                      .mark = s->base.mark};
+                      .past = {s->base.mark, 0, s->protocol->safety.zero_time_s.si}};
   bool told = false;
   if (s->link.socket.descriptor >= 0) {
     const char *answer;
@@ -186,14 +207,14 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
 struct dea_zero dea_line_supply_zero(struct dea_context *ctx,
                                      const struct dea_line_supply_language *language,
                                      const void *data, const struct dea_protocol *protocol,
-                                     const char *mark)
+                                     const struct dea_instrument_past *past)
 {
   struct zeroing z = {.language = language,
                       .raw = data,
                       .named = data,
                       .protocol = protocol,
                       .until_s = dea_clock_s() + protocol->safety.zero_time_s.si,
-                      .doubted = mark[0] != '\0',
-                      .mark = mark};
+                      .doubted = past->mark[0] != '\0',
+                      .past = *past};
   return zero_anew(ctx, &z);
 }

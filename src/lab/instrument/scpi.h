@@ -93,6 +93,7 @@ dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
 /* Of the instrument's type. */
 struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *instrument);
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *raw,
-                              const struct dea_protocol *protocol, const char *mark);
+                              const struct dea_protocol *protocol,
+                              const struct dea_instrument_past *past);
 
 #endif

@@ -187,10 +187,11 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
 }
 
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,
-                              const struct dea_protocol *protocol, const char *mark)
+                              const struct dea_protocol *protocol,
+                              const struct dea_instrument_past *past)
 {
   const struct dea_scpi_raw *raw = data;
-  struct meant m = {raw, protocol, mark, false};
+  struct meant m = {raw, protocol, past->mark, false};
   return raw->output.origin == DEA_ABSENT
              ? (struct dea_zero){DEA_ZERO_NONE, NAN}
              : zero_anew(ctx, &m, dea_clock_s() + protocol->safety.zero_time_s.si);

@@ -1,14 +1,21 @@
-#define _DEFAULT_SOURCE // cfmakeraw, the faster of the speeds
+#define _DEFAULT_SOURCE // cfmakeraw, the faster of the speeds, flock, major
 #include "lab/instrument/serial.h"
+
+#include "base/clock.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <termios.h>
 #include <unistd.h>
+
+static const double poll_s = 0.02;
 
 const char *const dea_serial_parities[] = {"none", "even", "odd", NULL};
 
@@ -38,12 +45,85 @@ static int set_up(int descriptor, speed_t speed, int parity)
   return 0;
 }
 
-dea_status dea_serial_open(struct dea_context *ctx, const char *what, const char *device, int baud,
-                           int parity, struct dea_socket *out)
+/* The process of a line of /proc/locks that is a lock of a file; 0: it is of another, or of a kind
+ * that is not used here. "1: FLOCK  ADVISORY  WRITE 4711 00:15:3 0 EOF" */
+static long holder_in(const char *text, const struct stat *file)
+{
+  char wanted[64];
+  snprintf(wanted, sizeof wanted, " %02x:%02x:%ju ", major(file->st_dev), minor(file->st_dev),
+           (uintmax_t)file->st_ino);
+  const char *found = strstr(text, wanted);
+  if (found == NULL || strstr(text, ": FLOCK ") == NULL) {
+    return 0;
+  }
+  while (found > text && found[-1] != ' ') {
+    found--;
+  }
+  return strtol(found, NULL, 10);
+}
+
+/* The process that has a line locked; 0: none, or the system does not say. */
+static long holder_of(int descriptor)
+{
+  char text[256];
+  long found = 0;
+  struct stat s;
+  FILE *locks = fstat(descriptor, &s) == 0 ? fopen("/proc/locks", "r") : NULL;
+  while (locks != NULL && found == 0 && fgets(text, sizeof text, locks) != NULL) {
+    found = holder_in(text, &s);
+  }
+  if (locks != NULL) {
+    fclose(locks);
+  }
+  return found;
+}
+
+void dea_serial_holder_text(long holder, char out[DEA_SERIAL_HOLDER_SIZE])
+{
+  char path[64], name[32] = "";
+  snprintf(path, sizeof path, "/proc/%ld/comm", holder);
+  FILE *file = holder > 0 ? fopen(path, "r") : NULL;
+  if (file != NULL && fgets(name, sizeof name, file) != NULL) {
+    name[strcspn(name, "\n")] = '\0';
+  }
+  if (file != NULL) {
+    fclose(file);
+  }
+  snprintf(out, DEA_SERIAL_HOLDER_SIZE, holder > 0 ? "process %ld%s%s%s" : "another program",
+           holder, name[0] != '\0' ? " (" : "", name, name[0] != '\0' ? ")" : "");
+}
+
+/* Waits for its turn; 0, or EWOULDBLOCK: somebody else has it, and no turn was asked for. */
+static int lock(int descriptor, struct dea_serial_turn *turn)
+{
+  double until_s = dea_clock_s() + (turn != NULL ? turn->wait_s : 0);
+  while (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK && errno != EINTR) {
+      return 0; // a system without such locks
+    }
+    if (turn == NULL) {
+      return EWOULDBLOCK;
+    }
+    turn->holder = holder_of(descriptor);
+    // who may go beside one must not be kept out by a system that does not say who has it
+    turn->beside = turn->program == 0 || (turn->holder != 0 && turn->holder != turn->program);
+    if (!turn->beside || dea_clock_s() >= until_s) {
+      return 0;
+    }
+    dea_clock_wait(poll_s);
+  }
+  if (turn != NULL) {
+    turn->beside = false;
+    turn->holder = 0;
+  }
+  return 0;
+}
+
+static dea_status open_line(struct dea_context *ctx, const char *device, int baud, int parity,
+                            struct dea_serial_turn *turn, struct dea_socket *out)
 {
   size_t i = 0;
-  out->descriptor = -1;
-  snprintf(out->name, sizeof out->name, "%.40s at %.250s", what, device);
+  char holder[DEA_SERIAL_HOLDER_SIZE];
   while (i < sizeof speeds / sizeof speeds[0] && speeds[i].baud != baud) {
     i++;
   }
@@ -53,7 +133,13 @@ dea_status dea_serial_open(struct dea_context *ctx, const char *what, const char
                     baud);
   }
   int descriptor = open(device, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  int error = descriptor < 0 ? errno : set_up(descriptor, speeds[i].speed, parity);
+  int error = descriptor < 0 ? errno : 0;
+  if (error == 0 && lock(descriptor, turn) != 0) {
+    dea_serial_holder_text(holder_of(descriptor), holder);
+    close(descriptor);
+    return dea_fail(ctx, DEA_E_INSTRUMENT, "%s is in use by %s: end that first", out->name, holder);
+  }
+  error = error == 0 ? set_up(descriptor, speeds[i].speed, parity) : error;
   if (error == 0) {
     out->descriptor = descriptor;
     return DEA_OK;
@@ -65,6 +151,21 @@ dea_status dea_serial_open(struct dea_context *ctx, const char *what, const char
                   error == ENOTTY ? "it is no serial line" : strerror(error),
                   error == EACCES ? "be a member of the group that owns it (dialout)"
                                   : "look at its cable and at the device's name in /dev");
+}
+
+dea_status dea_serial_open_in_turn(struct dea_context *ctx, const char *what, const char *device,
+                                   int baud, int parity, struct dea_serial_turn *turn,
+                                   struct dea_socket *out)
+{
+  out->descriptor = -1;
+  snprintf(out->name, sizeof out->name, "%.40s at %.250s", what, device);
+  return open_line(ctx, device, baud, parity, turn, out);
+}
+
+dea_status dea_serial_open(struct dea_context *ctx, const char *what, const char *device, int baud,
+                           int parity, struct dea_socket *out)
+{
+  return dea_serial_open_in_turn(ctx, what, device, baud, parity, NULL, out);
 }
 
 void dea_serial_mark(const struct dea_socket *line, char *out, size_t size)
