@@ -1,11 +1,18 @@
-/* base: context, arena, text. */
+/* base: context, arena, text, what a schema prints, places for files. */
+#define _GNU_SOURCE // mkdtemp
 #include "base/arena.h"
+#include "base/file.h"
+#include "base/schema.h"
 #include "base/text.h"
+#include "base/write_file.h"
 #include "failing_allocator.h"
 #include "testing.h"
 
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void test_fail_keeps_message_and_chain(void **state)
 {
@@ -122,6 +129,62 @@ static void test_arena_refuses_overflow(void **state)
   dea_context_destroy(ctx);
 }
 
+/* What a schema prints: of kinds that are known here each with its own keys, of others nothing. */
+static void test_schema_prints_kinds(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  static const struct dea_field of_one[] = {{.key = "height", .doc = "of it", .example = "1"}},
+                                of_other[] = {{.key = "slope", .doc = "of it", .example = "1"}};
+  static const struct dea_record one = {"one", "the first", of_one, 1},
+                                 other = {"other", "the second", of_other, 1};
+  static const struct dea_record *const kinds[] = {&one, &other, NULL};
+  static const struct dea_field fields[] = {
+      {.key = "plain", .doc = "has none", .example = "1"},
+      {.key = "shape", .kind = DEA_FIELD_SECTION, .doc = "of two kinds", .kinds = kinds},
+      {.key = "away",
+       .kind = DEA_FIELD_SECTION,
+       .doc = "listed elsewhere",
+       .kinds = kinds,
+       .kinds_elsewhere = true}};
+  static const struct dea_record all = {"all", "all of it", fields, 3};
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  struct dea_text out = {.ctx = ctx};
+  dea_schema_print_text(&all, &out);
+  const char *text = dea_text_get(&out);
+  assert_non_null(strstr(text, "shape(one).height"));
+  assert_non_null(strstr(text, "shape(other).slope"));
+  assert_null(strstr(text, "away(one)"));
+  assert_non_null(strstr(text, "plain"));
+  dea_text_free(&out);
+  dea_context_destroy(ctx);
+}
+
+/* A file is in the way until it may be replaced; a folder stays. */
+static void test_way_for_a_file(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  char here[] = "way-XXXXXX", name[64];
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  assert_non_null(mkdtemp(here));
+  assert_int_equal(dea_path_make_way(ctx, here, "a", false), DEA_OK);
+  snprintf(name, sizeof name, "%s/a", here);
+  FILE *file = fopen(name, "w");
+  assert_int_equal(fclose(file), 0);
+  assert_int_equal(dea_path_make_way(ctx, here, "a", false), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "is there already"));
+  assert_true(dea_path_exists(name));
+  assert_int_equal(dea_path_make_way(ctx, here, "a", true), DEA_OK);
+  assert_false(dea_path_exists(name));
+  assert_int_equal(dea_folder_make(ctx, name), DEA_OK);
+  assert_int_equal(dea_path_make_way(ctx, here, "a", false), DEA_OK);
+  assert_int_equal(dea_path_make_way(ctx, here, "a", true), DEA_OK);
+  assert_true(dea_path_is_folder(name));
+  assert_true(rmdir(name) == 0 && rmdir(here) == 0);
+  dea_context_destroy(ctx);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -132,6 +195,8 @@ int main(void)
       cmocka_unit_test(test_text_grows),
       cmocka_unit_test(test_arena_gives_and_frees_all),
       cmocka_unit_test(test_arena_refuses_overflow),
+      cmocka_unit_test(test_schema_prints_kinds),
+      cmocka_unit_test(test_way_for_a_file),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

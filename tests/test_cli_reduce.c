@@ -206,6 +206,34 @@ static void test_history_keeps_edges(void **state)
   signal_free(&r);
 }
 
+/* The axis of a recording that did not begin at 0. */
+static void test_history_from_its_begin(void **state)
+{
+  (void)state;
+  char path[600];
+  const struct dea_plot_format none = {.width_m = 85e-3};
+  struct dea_recording r = bench();
+  struct dea_reduction *reduction;
+  for (size_t c = 0; c < r.channel_count; c++) {
+    r.channels[c].start_s += 3.5;
+  }
+  for (size_t f = 0; f < r.profiles.count; f++) {
+    r.profiles.time_s[f] += 3.5;
+  }
+  snprintf(path, sizeof path, "%s/later", command_folder);
+  assert_int_equal(dea_reduce(own, &r, NULL, &reduction), DEA_OK);
+  assert_int_equal(dea_reduction_folder(own, path, true), DEA_OK);
+  assert_int_equal(dea_reduction_write(own, &r, reduction, "test", &none, path), DEA_OK);
+  command_read("later/history.gp", command_out);
+  const char *range = strstr(command_out, "set xrange [");
+  assert_non_null(range);
+  char *end;
+  assert_close(strtod(range + strlen("set xrange ["), &end), 3.5, 0, 0.05); // a stretch
+  assert_close(strtod(end + 1, NULL), 28.5, 0, 0.05);
+  dea_reduction_destroy(own, reduction);
+  signal_free(&r);
+}
+
 static struct dea_recording kept;
 static char kept_folder[600];
 
@@ -245,6 +273,7 @@ int main(void)
       cmocka_unit_test(test_design_and_folder),
       cmocka_unit_test(test_errors),
       cmocka_unit_test(test_history_keeps_edges),
+      cmocka_unit_test(test_history_from_its_begin),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, write_bench, remove_bench);

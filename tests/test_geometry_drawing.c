@@ -261,6 +261,39 @@ static void expect_svg_fault(const char *text, const char *message)
   dea_drawing_destroy(drawing);
 }
 
+/* The unit is known where a side has a length and the view box says how many units it is. */
+static void test_svg_units(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *root;
+    double unit_mm;
+    bool known;
+  } cases[] = {{"width='50mm' height='50mm' viewBox='0 0 100 100'", 0.5, true},
+               {"width='50mm' viewBox='0 0 100 100'", 0.5, true},
+               {"height='50mm' viewBox='0 0 100 100'", 0.5, true},
+               {"height='50mm' viewBox='0 -5 100 100'", 0.5, true},
+               {"width='50mm' height='20mm' viewBox='0 0 100 100'", 0.2, true},
+               {"width='5mm' height='5mm' viewBox='0 0 0.5 0.5'", 10, true},
+               {"width='50mm' height='50mm'", 25.4 / 96, false},
+               {"width='50mm' height='50mm' viewBox='0 0 0 0'", 25.4 / 96, false},
+               {"width='50' height='50' viewBox='0 0 100 100'", 0.5 * 25.4 / 96, false},
+               {"viewBox='0 0 100 100'", 25.4 / 96, false}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "<svg xmlns='http://www.w3.org/2000/svg' %s><g id='a'><circle r='10'/></g></svg>",
+             cases[i].root);
+    dea_finding_clear(ctx);
+    struct dea_drawing *drawing = read_svg(text);
+    assert_close(drawing->unit_m, 1e-3 * cases[i].unit_mm, 1e-12, 0);
+    if (drawing->unit_is_known != cases[i].known) {
+      fail_msg("%s: %s", cases[i].root, drawing->unit_is_known ? "known" : "not known");
+    }
+    dea_drawing_destroy(drawing);
+  }
+}
+
 static void test_svg_faults(void **state)
 {
   (void)state;
@@ -357,7 +390,8 @@ int main(void)
       cmocka_unit_test(test_dxf_entities), cmocka_unit_test(test_units),
       cmocka_unit_test(test_dxf_faults),   cmocka_unit_test(test_svg_elements),
       cmocka_unit_test(test_svg_curves),   cmocka_unit_test(test_svg_faults),
-      cmocka_unit_test(test_round_trip),   cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_svg_units),    cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
 }

@@ -380,6 +380,31 @@ static void read_once(struct dea_context *own)
   read_again(own, "run.tdms");
 }
 
+/* Names of channels are kept up to 511 bytes, which is more than any of them should have. */
+static void test_long_names(void **state)
+{
+  (void)state;
+  for (int letters = 509; letters < 514; letters++) {
+    char name[640], wanted[600];
+    memset(wanted, 'n', sizeof wanted);
+    wanted[letters] = '\0';
+    snprintf(name, sizeof name, "/'g'/'%s'", wanted);
+    wanted[letters < 511 ? letters : 511] = '\0';
+    begin_file();
+    begin_segment(METADATA | NEW_LIST | RAW);
+    put(1, 4);
+    put_object(name, 10, 2, 0);
+    begin_raw();
+    put_double(1);
+    put_double(2);
+    end_segment();
+    struct dea_table *table = read_bytes("long.tdms", bytes, length);
+    assert_int_equal(table->column_count, 1);
+    assert_string_equal(table->columns[0].name, wanted);
+    dea_table_destroy(ctx, table);
+  }
+}
+
 static void test_memory(void **state)
 {
   (void)state;
@@ -393,7 +418,7 @@ int main(void)
       cmocka_unit_test(test_types),    cmocka_unit_test(test_times_and_texts),
       cmocka_unit_test(test_crashed),  cmocka_unit_test(test_scales),
       cmocka_unit_test(test_refused),  cmocka_unit_test(test_cuts),
-      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_memory),   cmocka_unit_test(test_long_names),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

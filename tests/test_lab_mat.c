@@ -91,6 +91,91 @@ static void test_no_place(void **state)
   }
 }
 
+static dea_status read_back(const char *name, size_t *columns)
+{
+  struct dea_table *table;
+  dea_finding_clear(ctx);
+  dea_context_clear(ctx);
+  dea_status status = dea_table_read(ctx, in_folder(name), NULL, &table);
+  *columns = status == DEA_OK ? table->column_count : 0;
+  if (status == DEA_OK) {
+    dea_table_destroy(ctx, table);
+  }
+  return status;
+}
+
+/* The first `most` bytes of a file, and one more where `more` says so, under another name. */
+static void copy_as(const char *from, const char *to, size_t most, const char *more)
+{
+  char bytes[8192];
+  FILE *file = fopen(in_folder(from), "rb");
+  assert_non_null(file);
+  size_t n = fread(bytes, 1, most, file);
+  fclose(file);
+  file = fopen(in_folder(to), "wb");
+  assert_true(fwrite(bytes, 1, n, file) == n && fputs(more, file) >= 0);
+  fclose(file);
+}
+
+/* Known by their first bytes, whatever their name; version 4 by its name. */
+static void test_recognised(void **state)
+{
+  (void)state;
+  size_t columns;
+  const struct dea_mat_variable variables[] = {{.name = "t", .values = values, .count = 20},
+                                               {.name = "v", .values = values, .count = 20}};
+  fill();
+  for (enum dea_mat_version v = DEA_MAT_5; v <= DEA_MAT_73; v++) {
+    assert_int_equal(dea_mat_write(ctx, in_folder("a.mat"), variables, 2, v), DEA_OK);
+    copy_as("a.mat", "a.dat", 8192, "");
+    assert_int_equal(read_back("a.dat", &columns), DEA_OK);
+    assert_int_equal(columns, 2);
+  }
+  // a text with the mark's place, or the first word, is none
+  FILE *text = fopen(in_folder("marked.csv"), "w");
+  fprintf(text, "%-125s,IMAGE\n", "MATRIX of voltages"); // "IM" at byte 126
+  fprintf(text, "1,2\n3,4\n");
+  fclose(text);
+  assert_int_equal(read_back("marked.csv", &columns), DEA_OK);
+  assert_int_equal(columns, 2);
+  text = fopen(in_folder("word.csv"), "w");
+  fprintf(text, "MATLAB v,%-150s\n1,2\n3,4\n", "b");
+  fclose(text);
+  assert_int_equal(read_back("word.csv", &columns), DEA_OK);
+  assert_int_equal(columns, 2);
+  static const unsigned char four[] = {0, 0, 0,   0,  2, 0, 0, 0,   1, 0, 0, 0, 0,
+                                       0, 0, 0,   2,  0, 0, 0, 'a', 0, 0, 0, 0, 0,
+                                       0, 0, 240, 63, 0, 0, 0, 0,   0, 0, 0, 64};
+  FILE *old = fopen(in_folder("old.mat"), "wb"); // a = [1; 2] of version 4
+  assert_int_equal(fwrite(four, 1, sizeof four, old), sizeof four);
+  fclose(old);
+  assert_int_equal(read_back("old.mat", &columns), DEA_OK);
+  assert_int_equal(columns, 1);
+  copy_as("old.mat", "cut.mat", sizeof four - 1, "");
+  assert_int_equal(read_back("cut.mat", &columns), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "is longer than the file"));
+}
+
+/* libmatio takes what is cut off for the end of the file. */
+static void test_cut_off(void **state)
+{
+  (void)state;
+  size_t columns;
+  const struct dea_mat_variable variables[] = {{.name = "t", .values = values, .count = 20},
+                                               {.name = "v", .values = values, .count = 20}};
+  assert_int_equal(dea_mat_write(ctx, in_folder("five.mat"), variables, 2, DEA_MAT_5), DEA_OK);
+  struct stat s;
+  assert_int_equal(stat(in_folder("five.mat"), &s), 0);
+  copy_as("five.mat", "cut.mat", (size_t)s.st_size - 1, "");
+  assert_int_equal(read_back("cut.mat", &columns), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "is longer than the file"));
+  copy_as("five.mat", "more.mat", (size_t)s.st_size, "12345678");
+  assert_int_equal(read_back("more.mat", &columns), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "is cut off or damaged"));
+  copy_as("five.mat", "first.mat", 128, ""); // nothing but the head
+  assert_int_not_equal(read_back("first.mat", &columns), DEA_OK);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -98,6 +183,8 @@ int main(void)
       cmocka_unit_test(test_same_bytes),
       cmocka_unit_test(test_names),
       cmocka_unit_test(test_too_large),
+      cmocka_unit_test(test_recognised),
+      cmocka_unit_test(test_cut_off),
       cmocka_unit_test(test_no_place),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

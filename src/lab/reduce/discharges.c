@@ -48,9 +48,6 @@ static dea_status add(struct search *s, struct dea_discharge discharge)
 /* Value of another channel at a sample of the current; NAN outside. */
 static double at_sample(const struct search *s, const struct dea_channel *channel, size_t i)
 {
-  if (channel == s->current) {
-    return channel->values[i];
-  }
   size_t k = dea_channel_index(channel, dea_channel_time(s->current, i));
   return k < channel->count ? channel->values[k] : NAN;
 }
