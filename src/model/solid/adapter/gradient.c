@@ -7,31 +7,96 @@
 #include <math.h>
 #include <string.h>
 
-double *dea_gradient_extreme(enum dea_film_extreme which, struct dea_load_point *point)
+// The film
+// -----------------------------------------------------------------------------------------
+
+static const char *const extremes[DEA_FILM_EXTREMES] = {
+    [DEA_FILM_FIELD] = "true_field_V_per_m",
+    [DEA_FILM_MARGIN] = "breakdown_margin",
+    [DEA_FILM_TENSION] = "min_tension_N_per_m",
+};
+
+void dea_gradient_places_find(const struct dea_gradient_film *film, struct dea_gradient_places *out)
 {
-  double *const all[DEA_FILM_EXTREMES] = {
-      [DEA_FILM_FIELD] = &point->true_field_V_per_m,
-      [DEA_FILM_MARGIN] = &point->breakdown_margin,
-      [DEA_FILM_TENSION] = &point->min_tension_N_per_m,
-  };
-  return all[which];
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    out->known[i] =
+        dea_solid_extreme_find(film->solid, film->films, (enum dea_film_extreme)i, &out->at[i]);
+  }
 }
 
-bool dea_gradient_extreme_of(int column, enum dea_film_extreme *out)
+dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gradient_film *film,
+                                   const struct dea_gradient_places *places, int column,
+                                   double *out, double *pressures, bool *known)
 {
-  static const char *const keys[DEA_FILM_EXTREMES] = {
-      [DEA_FILM_FIELD] = "true_field_V_per_m",
-      [DEA_FILM_MARGIN] = "breakdown_margin",
-      [DEA_FILM_TENSION] = "min_tension_N_per_m",
-  };
-  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
-    if (column == dea_point_column_find(keys[i])) {
-      *out = (enum dea_film_extreme)i;
+  const char *key = dea_point_columns[column].key;
+  int extreme = 0;
+  while (extreme < DEA_FILM_EXTREMES && strcmp(key, extremes[extreme]) != 0) {
+    extreme++;
+  }
+  if (extreme < DEA_FILM_EXTREMES) {
+    *known = places->known[extreme];
+    if (*known) {
+      dea_solid_extreme_slope(film->solid, film->films, (enum dea_film_extreme)extreme,
+                              &places->at[extreme], out, pressures);
+    }
+  } else if (strcmp(key, "capacitance_F") == 0) {
+    DEA_TRY(ctx, dea_solid_capacitance_slope(ctx, film->solid, out, known));
+    for (size_t i = 0; i < film->solid->problem.dofs; i++) {
+      out[i] *= film->copies;
+    }
+  } else { // forces of the energy are 0
+    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0;
+  }
+  return DEA_OK;
+}
+
+static bool asks(const struct dea_gradient_ask *ask, const char *key)
+{
+  for (size_t i = 0; i < ask->column_count; i++) {
+    if (strcmp(dea_point_columns[ask->columns[i]].key, key) == 0) {
       return true;
     }
   }
   return false;
 }
+
+dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradient_film *film,
+                                const struct dea_gradient_places *places,
+                                const struct dea_gradient_ask *ask, double voltage_V,
+                                struct dea_load_point *out)
+{
+  double *const values[DEA_FILM_EXTREMES] = {
+      [DEA_FILM_FIELD] = &out->true_field_V_per_m,
+      [DEA_FILM_MARGIN] = &out->breakdown_margin,
+      [DEA_FILM_TENSION] = &out->min_tension_N_per_m,
+  };
+  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
+    if (places->known[i]) {
+      *values[i] = dea_solid_extreme_at(film->solid, film->films, (enum dea_film_extreme)i,
+                                        &places->at[i], voltage_V);
+    }
+  }
+  if (asks(ask, "capacitance_F")) {
+    DEA_TRY(ctx, dea_solid_capacitance_wide(ctx, film->solid, &out->capacitance_F));
+    out->capacitance_F *= film->copies;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradient_ask *ask,
+                                    double *u, double *multipliers, double *energy_J)
+{
+  double *own = s->state.multiplier;
+  if (!asks(ask, "energy_J")) {
+    return DEA_OK;
+  }
+  s->state.multiplier = multipliers;
+  dea_status status = dea_solid_energy(s, u, 0, energy_J);
+  s->state.multiplier = own;
+  return status;
+}
+
+// Gradients ---------------------------------------------------------------------------------------
 
 struct work {
   const struct dea_gradient_owner *owner;

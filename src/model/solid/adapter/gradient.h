@@ -31,9 +31,34 @@ struct dea_gradient_owner {
                       struct dea_load_point *out);
 };
 
-/* Whether a column of load points is an extreme of the film, and where a point has it; lent. */
-bool dea_gradient_extreme_of(int column, enum dea_film_extreme *out);
-double *dea_gradient_extreme(enum dea_film_extreme which, struct dea_load_point *point);
+/* The film of a solid, which every owner asks the same of. All lent. */
+struct dea_gradient_film {
+  struct dea_solid *solid;
+  const struct dea_solid_film_data *films; // [constituent_count]
+  double copies;                           // of the solid in the device
+};
+/* Where the film's extremes are at the equilibrium: those of a changed device are taken there. */
+struct dea_gradient_places {
+  struct dea_film_place at[DEA_FILM_EXTREMES];
+  bool known[DEA_FILM_EXTREMES];
+};
+void dea_gradient_places_find(const struct dea_gradient_film *film,
+                              struct dea_gradient_places *out);
+
+/* `slope` above for what all solids know alike: extremes of the film, capacitance, energy and
+ * nominal field; *known false for every other column. */
+dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gradient_film *film,
+                                   const struct dea_gradient_places *places, int column,
+                                   double *out, double *pressures, bool *known);
+/* Extremes and, where it is asked for, capacitance of the film as it is now. */
+dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradient_film *film,
+                                const struct dea_gradient_places *places,
+                                const struct dea_gradient_ask *ask, double voltage_V,
+                                struct dea_load_point *out);
+/* Energy without voltage at the unknowns of rest, which are the owner's: u [dofs], followers of
+ * bodies are moved, and multipliers. Left as it is where no energy is asked for. */
+dea_status dea_gradient_rest_energy(struct dea_solid *solid, const struct dea_gradient_ask *ask,
+                                    double *u, double *multipliers, double *energy_J);
 
 /* `gradient` of struct dea_model_type. */
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,

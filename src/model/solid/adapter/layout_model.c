@@ -905,8 +905,7 @@ struct variant {
   double *force, *own_V;            // [dofs], [channels] as they were
   double *rest;                     // [dofs] u at rest, room
   enum dea_observed *motion;        // [monitor_count of the question]
-  struct dea_film_place place[DEA_FILM_EXTREMES];
-  bool placed[DEA_FILM_EXTREMES];
+  struct dea_gradient_places places;
   const struct dea_gradient_ask *ask;
 };
 
@@ -957,7 +956,9 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
   }
   const struct dea_solid_problem *p = &model->solid->problem;
   for (size_t i = 0; i < p->load_count; i++) { // they stand where a solve would bring them
-    memcpy(p->loads[i].now, p->loads[i].goal, p->loads[i].parameter_count * sizeof(double));
+    if (p->loads[i].parameter_count > 0) {
+      memcpy(p->loads[i].now, p->loads[i].goal, p->loads[i].parameter_count * sizeof(double));
+    }
   }
   return DEA_OK;
 }
@@ -1037,34 +1038,24 @@ static void weigh_height(const struct dea_model *model, double sign, double *wei
   weight[3 * at[1] + 2] += 0.5;
 }
 
+static struct dea_gradient_film film_of(const struct dea_model *model)
+{
+  return (struct dea_gradient_film){
+      .solid = model->solid, .films = model->films, .copies = model->copies};
+}
+
 static dea_status slope(struct dea_context *ctx, void *self, int column, double *out,
                         double *pressures, bool *known)
 {
   struct dea_model *model = self;
-  struct dea_solid *s = model->solid;
   const char *key = dea_point_columns[column].key;
-  enum dea_film_extreme which;
-  *known = true;
+  const struct dea_gradient_film film = film_of(model);
   if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
     weigh_height(model, strcmp(key, "highest_z_m") == 0 ? 1 : -1, out);
-  } else if (dea_gradient_extreme_of(column, &which)) {
-    *known = model->variant->placed[which];
-    if (*known) {
-      dea_solid_extreme_slope(s, model->films, which, &model->variant->place[which], out,
-                              pressures);
-    }
-  } else if (strcmp(key, "capacitance_F") == 0) {
-    double capacitance_F;
-    DEA_TRY(ctx, dea_solid_capacitance_wide(ctx, s, &capacitance_F));
-    *known = !isnan(capacitance_F);
-    if (*known) {
-      DEA_TRY(ctx, dea_solid_capacitance_slope(ctx, s, out));
-    }
-    for (size_t i = 0; i < s->problem.dofs; i++) {
-      out[i] *= model->copies;
-    }
-  } else { // forces of the energy are 0
-    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0;
+    *known = true;
+  } else {
+    DEA_TRY(ctx, dea_gradient_film_slope(ctx, &film, &model->variant->places, column, out,
+                                         pressures, known));
   }
   return DEA_OK;
 }
@@ -1094,48 +1085,21 @@ static dea_status take_monitors(struct dea_context *ctx, void *self, double *out
   return DEA_OK;
 }
 
-/* Energy of the changed device without voltage, at its own unknowns. */
-static dea_status rest_energy(struct dea_model *model, double *out)
-{
-  struct dea_solid *s = model->solid;
-  double *multiplier = s->state.multiplier, *rest = model->variant->rest;
-  memcpy(rest, model->rest, s->problem.dofs * sizeof *rest); // followers of bodies are moved
-  s->state.multiplier = model->rest + s->problem.dofs;
-  dea_status status = dea_solid_energy(s, rest, 0, out);
-  s->state.multiplier = multiplier;
-  return status;
-}
-
-static bool is_asked(const struct variant *v, const char *key)
-{
-  for (size_t i = 0; i < v->ask->column_count; i++) {
-    if (strcmp(dea_point_columns[v->ask->columns[i]].key, key) == 0) {
-      return true;
-    }
-  }
-  return false;
-}
-
 static dea_status variant_point(struct dea_context *ctx, void *self, double voltage_V,
                                 double energy_J, struct dea_load_point *out)
 {
   struct dea_model *model = self;
   const struct variant *v = model->variant;
-  dea_status status = DEA_OK;
+  const struct dea_gradient_film film = film_of(model);
+  double *rest = v->rest; // room: followers of bodies are moved
+  memcpy(rest, model->rest, model->solid->problem.dofs * sizeof *rest);
   model->at.report.energy_J = energy_J;
-  if (is_asked(v, "energy_J")) {
-    status = rest_energy(model, &model->at.rest_energy_J);
-  }
+  dea_status status =
+      dea_gradient_rest_energy(model->solid, v->ask, rest, model->rest + model->solid->problem.dofs,
+                               &model->at.rest_energy_J);
   describe(model, voltage_V, out);
-  for (int i = 0; i < DEA_FILM_EXTREMES; i++) { // where they are without the change
-    if (v->placed[i]) {
-      *dea_gradient_extreme((enum dea_film_extreme)i, out) = dea_solid_extreme_at(
-          model->solid, model->films, (enum dea_film_extreme)i, &v->place[i], voltage_V);
-    }
-  }
-  if (status == DEA_OK && is_asked(v, "capacitance_F")) {
-    status = dea_solid_capacitance_wide(ctx, model->solid, &out->capacitance_F);
-    out->capacitance_F *= model->copies;
+  if (status == DEA_OK) {
+    status = dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out);
   }
   return status == DEA_OK
              ? DEA_OK
@@ -1170,9 +1134,8 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
                                            .enter = enter,
                                            .leave = leave,
                                            .point = variant_point};
-  for (int i = 0; i < DEA_FILM_EXTREMES; i++) {
-    v->placed[i] = dea_solid_extreme_find(s, model->films, (enum dea_film_extreme)i, &v->place[i]);
-  }
+  const struct dea_gradient_film film = film_of(model);
+  dea_gradient_places_find(&film, &v->places);
   memcpy(v->force, s->state.force, s->problem.dofs * sizeof *v->force);
   memcpy(v->own_V, s->state.own_V, (s->problem.channel_count + 1) * sizeof *v->own_V);
   v->problem = s->problem;

@@ -240,12 +240,14 @@ void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_f
   }
 }
 
-dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *s, double *out)
+dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *s, double *out,
+                                       bool *known)
 {
   const struct dea_solid_problem *p = &s->problem;
   double squares[2], energy;
   memset(out, 0, p->dofs * sizeof *out);
-  if (squares_about(s, wide_step_V_per_m, squares) == 0) {
+  *known = squares_about(s, wide_step_V_per_m, squares) > 0 && !dea_solid_has_own_voltages(s);
+  if (!*known) {
     return DEA_OK;
   }
   for (int i = 0; i < 2; i++) { // C = 2 (E(V0) - E(V1)) / (V1^2 - V0^2)

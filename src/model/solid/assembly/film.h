@@ -48,11 +48,11 @@ double dea_solid_extreme_at(const struct dea_solid *solid, const struct dea_soli
 void dea_solid_extreme_slope(const struct dea_solid *solid, const struct dea_solid_film_data *films,
                              enum dea_film_extreme which, const struct dea_film_place *place,
                              double *out, double *pressures);
-/* The capacitance with less rounding, for differences, and its slope by the unknowns, out [dofs].
- */
+/* The capacitance with less rounding, for differences, and its slope by the unknowns, out [dofs];
+ * *known: false where it is NAN. */
 dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *solid,
                                       double *capacitance_F);
 dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *solid,
-                                       double *out);
+                                       double *out, bool *known);
 
 #endif
