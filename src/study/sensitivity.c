@@ -46,24 +46,32 @@ static const char *const quantities[] = {
     "breakdown_margin", "min_tension_N_per_m", "capacitance_F",      "energy_J"};
 enum { QUANTITIES = COUNT(quantities), FIELD = 3, CAPACITANCE = 6 };
 
+/* Columns that tables share. */
+#define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage")
+#define NAMED(its_key, its_title, its_meaning)                                                     \
+  {                                                                                                \
+    .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
+  }
+#define ELASTICITY(its_key, its_title)                                                             \
+  {                                                                                                \
+    .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
+  }
+#define SLOPE                                                                                      \
+  {                                                                                                \
+    .key = "slope", .title = "slope", .meaning = "of the quantity by the number, SI units of both" \
+  }
+
 static const struct dea_result_column slope_columns[] = {
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage"},
-    {.key = "number", .kind = DEA_CELL_TEXT, .title = "number", .meaning = "of the design"},
+    VOLTAGE,
+    NAMED("number", "number", "of the design"),
     {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
-    {.key = "number_unit", .kind = DEA_CELL_TEXT, .title = "unit", .meaning = "of the number"},
+    NAMED("number_unit", "unit", "of the number"),
     {.key = "quantity",
      .kind = DEA_CELL_QUANTITY,
      .title = "quantity",
      .meaning = "of load points"},
     {.key = "value", .kind = DEA_CELL_VALUE, .title = "quantity's value", .meaning = "there"},
-    {.key = "slope",
-     .title = "slope",
-     .meaning = "of the quantity by the number, SI units of both"},
+    SLOPE,
     {.key = "elasticity",
      .title = "per cent by one per cent",
      .meaning = "d ln(quantity) / d ln(number)"},
@@ -80,19 +88,10 @@ static const struct dea_result_table_type slope_table = {.study = study_name,
                                                          .columns = slope_columns,
                                                          .column_count = COUNT(slope_columns)};
 
-#define ELASTICITY(its_key, its_title)                                                             \
-  {                                                                                                \
-    .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
-  }
 static const struct dea_result_column matter_columns[] = {
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage"},
-    {.key = "number", .kind = DEA_CELL_TEXT, .title = "1 % of", .meaning = "of the design"},
-    {.key = "number_text", .kind = DEA_CELL_TEXT, .title = "value", .meaning = "of the number"},
+    VOLTAGE,
+    NAMED("number", "1 % of", "of the design"),
+    NAMED("number_text", "value", "of the number"),
     ELASTICITY("fibre_tip_z_m", "z tip, %"),
     ELASTICITY("centre_z_m", "z centre, %"),
     ELASTICITY("electrode_edge_u_m", "u edge, %"),
@@ -118,25 +117,14 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .column_count = COUNT(matter_columns)};
 
 /* Of the general form: monitors' main motions are quantities too, which go by their names. */
-#define NAMED(its_key, its_title, its_meaning)                                                     \
-  {                                                                                                \
-    .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
-  }
 static const struct dea_result_column part_slope_columns[] = {
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage"},
+    VOLTAGE,
     NAMED("number", "number", "of the design"),
     {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
     NAMED("number_unit", "unit", "of the number"),
     NAMED("quantity", "quantity", "of load points, or of a monitor: middle.z_m"),
     {.key = "value", .title = "quantity's value", .meaning = "there, in SI"},
-    {.key = "slope",
-     .title = "slope",
-     .meaning = "of the quantity by the number, SI units of both"},
+    SLOPE,
     {.key = "elasticity",
      .title = "per cent by one per cent",
      .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
@@ -150,12 +138,7 @@ static const struct dea_result_table_type part_slope_table = {
     .column_count = COUNT(part_slope_columns)};
 
 static const struct dea_result_column part_matter_columns[] = {
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage"},
+    VOLTAGE,
     NAMED("quantity", "quantity", "that the rows are sorted by: main motion of a monitor"),
     NAMED("number", "1 % of", "of the design"),
     NAMED("number_text", "value", "of the number"),
@@ -243,27 +226,6 @@ static void write_number(double value, const char *unit, char *out, size_t size)
   snprintf(out, size, "%.5g %.20s", value, unit);
 }
 
-static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
-                             struct dea_result_table *table)
-{
-  for (size_t i = 0; i < stop->number_count; i++) {
-    const struct dea_design_number *number = &stop->numbers[i];
-    for (size_t k = 0; k < QUANTITIES; k++) {
-      const struct dea_result_table_value row[] = {
-          {.number = stop->voltage_V},      {.text = number->key},
-          {.number = number->value},        {.text = number->unit},
-          {.number = stop->columns[k]},     {.number = value_of(stop, k)},
-          {.number = slope_of(stop, i, k)}, {.number = elasticity(stop, i, k)},
-          {.number = number->tolerance},    {.number = slope_of(stop, i, k) * number->tolerance},
-      };
-      if (!isnan(slope_of(stop, i, k))) {
-        DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
-      }
-    }
-  }
-  return DEA_OK;
-}
-
 static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              size_t i, struct dea_result_table *table)
 {
@@ -326,25 +288,29 @@ static void name_of(const struct stop *stop, size_t quantity, char *out, size_t 
   }
 }
 
-static dea_status put_part_slopes(struct dea_context *ctx, const struct stop *stop,
-                                  struct dea_result_table *table)
+/* All slopes; the table of the general form has no columns of tolerances, the last two. */
+static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
+                             struct dea_result_table *table)
 {
   char name[80];
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
+    const double slope = slope_of(stop, n, k);
     name_of(stop, k, name, sizeof name);
     const struct dea_result_table_value row[] = {
         {.number = stop->voltage_V},
         {.text = number->key},
         {.number = number->value},
         {.text = number->unit},
-        {.text = name},
+        {.number = k < QUANTITIES ? (double)stop->columns[k] : NAN, .text = name},
         {.number = value_of(stop, k)},
-        {.number = slope_of(stop, n, k)},
+        {.number = slope},
         {.number = elasticity(stop, n, k)},
+        {.number = number->tolerance},
+        {.number = slope * number->tolerance},
     };
-    if (!isnan(slope_of(stop, n, k))) {
+    if (!isnan(slope)) {
       DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
     }
   }
@@ -438,7 +404,7 @@ static dea_status put_part_stop(struct dea_context *ctx, const char *model, cons
     DEA_TRY(ctx, put_sorted(ctx, stop, k, put_part_matter, table));
   }
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_slope_table, model, &table));
-  DEA_TRY(ctx, put_part_slopes(ctx, stop, table));
+  DEA_TRY(ctx, put_slopes(ctx, stop, table));
   return DEA_OK;
 }
 
