@@ -199,6 +199,52 @@ static const struct dea_indenter tips[] = {
      .half_length_m = INFINITY},
 };
 
+/* The tangent at pressures alone, after they have taken over the penalty, is that of before; and
+ * those that a small step predicts are those after it, but for its square. */
+static void check_prediction(const struct dea_solid_load *load)
+{
+  static struct dea_load_piece piece;
+  enum { ROOM = 400 };
+  static double K[ROOM][27 * 27], before[ROOM], after[ROOM], predicted[ROOM];
+  size_t count = load->multiplier_count, dofs = 3 * grid->node_count, touching = 0;
+  double *step = calloc(dofs, sizeof *step);
+  assert_true(step != NULL && count < ROOM);
+  for (size_t p = 0; p < load->piece_count; p++) {
+    assert_int_equal(load->evaluate(load->self, p, u, DEA_TANGENT, &piece), DEA_OK);
+    memcpy(K[p], piece.K, sizeof K[p]);
+  }
+  load->update(load->self, u);
+  for (size_t p = 0; p < load->piece_count; p++) {
+    assert_int_equal(load->evaluate(load->self, p, u, DEA_TANGENT_PREDICTED, &piece), DEA_OK);
+    for (int i = 0; i < 9 * piece.node_count * piece.node_count; i++) {
+      assert_close(piece.K[i], K[p][i], 0, 1e-12);
+    }
+  }
+  for (size_t i = 0; i < dofs; i++) {
+    step[i] = 1e-5 * sin((double)i);
+  }
+  memcpy(before, load->multiplier, count * sizeof *before);
+  load->predict(load->self, u, step, 1);
+  memcpy(predicted, load->multiplier, count * sizeof *predicted);
+  memcpy(load->multiplier, before, count * sizeof *before);
+  load->predict(load->self, u, step, 0.5);
+  for (size_t i = 0; i < count; i++) {
+    assert_close(load->multiplier[i], 0.5 * (before[i] + predicted[i]), 0, 1e-12);
+    load->multiplier[i] = before[i];
+  }
+  for (size_t i = 0; i < dofs; i++) {
+    u[i] += step[i];
+  }
+  load->update(load->self, u);
+  memcpy(after, load->multiplier, count * sizeof *after);
+  for (size_t i = 0; i < count; i++) {
+    assert_close(predicted[i], after[i], 0, 1e-7);
+    touching += fabs(after[i] - before[i]) > 1e-5;
+  }
+  assert_true(touching > 0);
+  free(step);
+}
+
 /* Pressed about 0.2 into the top, with pressures there already. */
 static void test_derivatives_of_contact(void **state)
 {
@@ -217,6 +263,7 @@ static void test_derivatives_of_contact(void **state)
     assert_true(load.update(load.self, u) > 1);
     assert_true(dea_contact_area(contact) > 0.1);
     check_derivatives(&load);
+    check_prediction(&load);
     dea_contact_destroy(ctx, contact);
   }
   dea_surface_destroy(ctx, surface);

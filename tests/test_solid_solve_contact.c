@@ -210,11 +210,52 @@ static void test_flat_punch_on_film(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
+/* A sphere that comes deeper touches more of the film, and its normals turn: pressures that move
+ * with the steps of Newton's method need neither shifts nor rounds of their own. */
+static void test_sphere_on_film(void **state)
+{
+  (void)state;
+  struct dea_constituent film = {.law = dea_law_find("yeoh"),
+                                 .param = {178.4e3, -6e3, 4.2e3},
+                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                 .kappa_Pa = 4e7,
+                                 .thickness_m = film_h};
+  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = 4, .edge = 2e-4};
+  struct dea_grid *grid;
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
+  struct dea_solid *solid = block_solid(ctx, grid, 2, &film, disc_held);
+  struct dea_surface *top;
+  struct dea_contact *contact;
+  struct dea_solid_report report;
+  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, NULL, NULL, &top), DEA_OK);
+  const double touch_m = 0.5 * film_h + punch_m;
+  const struct dea_contact_options options = {
+      .tip = {.shape = DEA_INDENTER_SPHERE, .radius_m = punch_m},
+      .place_m = {0, 0, touch_m},
+      .stiffness_Pa_per_m = 1e10};
+  assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
+  const struct dea_solid_load load = dea_contact_load(contact);
+  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  dea_solid_settings_of(solid)->follow_part = 2; // never
+  for (int i = 0; i < 5; i++) {
+    dea_contact_move(contact, (const double[3]){0, 0, touch_m - 50e-6 * i});
+    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
+    assert_true(i < 2 || (report.shifted == 0 && report.factorisations <= 12));
+  }
+  check_gaps(top, contact, &options.tip, dea_solid_displacement(solid), 1e-9);
+  dea_solid_destroy(ctx, solid);
+  dea_contact_destroy(ctx, contact);
+  dea_surface_destroy(ctx, top);
+  dea_grid_destroy(ctx, grid);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_hertz),
       cmocka_unit_test(test_flat_punch_on_film),
+      cmocka_unit_test(test_sphere_on_film),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -1,4 +1,7 @@
 #include "model/solid/adapter/indent.h"
+
+#include "model/solid/assembly/controls.h"
+#include "model/solid/equilibrium/approach.h"
 #include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
@@ -95,24 +98,78 @@ void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent)
   }
 }
 
+/* Two equilibria on the way, and their depths: where the solid is, and the one before. */
+struct way {
+  struct dea_solid_stand last, before; // before.state NULL: none
+  double last_m, before_m;
+};
+
+/* Where the solid is becomes the last one. */
+static dea_status keep_last(struct dea_context *ctx, struct dea_solid *s, double depth_m,
+                            struct way *way)
+{
+  dea_solid_stand_free(&way->before);
+  way->before = way->last;
+  way->before_m = way->last_m;
+  way->last_m = depth_m;
+  DEA_TRY(ctx, dea_solid_stand_keep(ctx, s, &way->last));
+  return DEA_OK;
+}
+
+/* From the last state as far straight on from the one before as the tip goes: there the surface is
+ * about where the tip will be. From the last state itself the tip would lie in the film, and the
+ * factor that is there has other normals. */
+static void go_straight_on(struct dea_solid *s, const struct way *way, double depth_m)
+{
+  const struct dea_load_steps *steps = &s->work.load_steps;
+  const double *last = way->last.state, *before = way->before.state;
+  double share = before != NULL ? (depth_m - way->last_m) / (way->last_m - way->before_m) : 0;
+  for (size_t i = 0; i < steps->state_count && share > 0; i++) {
+    steps->keep[i] = last[i] + share * (last[i] - before[i]);
+  }
+  dea_solid_state_set(s, share > 0 ? steps->keep : last);
+  s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+}
+
+/* One step of the tip, from the last state where it fails from the one ahead. */
+static dea_status move_on(struct dea_context *ctx, struct dea_indent *indent, struct dea_solid *s,
+                          double voltage_V, double depth_m, struct way *way,
+                          struct dea_solid_report *report)
+{
+  double z_m = indent->touch_z_m - (indent->from_fibre_side ? depth_m : -depth_m);
+  DEA_TRY(ctx, keep_last(ctx, s, indent->depth_m, way));
+  dea_contact_move(indent->contact, (const double[3]){0, 0, z_m});
+  go_straight_on(s, way, depth_m);
+  dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
+  if (dea_solid_may_shorten(status) && way->before.state != NULL) {
+    dea_context_clear(ctx);
+    dea_solid_stand_again(s, &way->last);
+    status = dea_load_steps_solve(ctx, s, voltage_V, report);
+  }
+  if (status == DEA_OK) {
+    indent->depth_m = depth_m;
+  }
+  return status;
+}
+
 dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
                            struct dea_solid *solid, double voltage_V, double depth_m,
                            struct dea_solid_report *report)
 {
-  double sign = indent->from_fibre_side ? 1 : -1, step = first_step_m;
+  struct way way = {0};
+  double step = first_step_m;
+  dea_status status = DEA_OK;
   do { // also where it is there already: the film may not be
-    double way = depth_m - indent->depth_m;
-    double next = fabs(way) <= 1.2 * step ? depth_m : indent->depth_m + copysign(step, way);
-    const double place_m[3] = {0, 0, indent->touch_z_m - sign * next};
-    if (dea_solid_any(dea_interrupted(ctx))) {
-      return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while pressing");
-    }
-    dea_contact_move(indent->contact, place_m);
-    DEA_TRY(ctx, dea_load_steps_solve(ctx, solid, voltage_V, report));
-    indent->depth_m = next;
+    double left = depth_m - indent->depth_m;
+    double next = fabs(left) <= 1.2 * step ? depth_m : indent->depth_m + copysign(step, left);
+    status = dea_solid_any(dea_interrupted(ctx))
+                 ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while pressing")
+                 : move_on(ctx, indent, solid, voltage_V, next, &way, report);
     step = fmin(growth * step, largest_step_m);
-  } while (indent->depth_m != depth_m);
-  return DEA_OK;
+  } while (status == DEA_OK && indent->depth_m != depth_m);
+  dea_solid_stand_free(&way.last);
+  dea_solid_stand_free(&way.before);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 double dea_indent_force(const struct dea_indent *indent, const double *u)

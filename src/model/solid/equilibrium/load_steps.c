@@ -333,6 +333,19 @@ static void set_share(struct dea_solid *s, double way)
   dea_solid_controls_set(s, path->at);
 }
 
+/* Whether something that touches the solid is about to move. */
+static bool moves_contact(const struct dea_solid *s)
+{
+  bool moves = false;
+  for (size_t k = 0; k < s->problem.load_count; k++) {
+    const struct dea_solid_load *load = &s->problem.loads[k];
+    for (size_t i = 0; i < load->parameter_count && load->predict != NULL; i++) {
+      moves = moves || load->now[i] != load->goal[i];
+    }
+  }
+  return moves;
+}
+
 /* The equilibrium a share of the way to the goal; the solid stays as it was when it fails. */
 static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, double way,
                                  struct dea_solid_report *report)
@@ -340,6 +353,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   struct dea_load_steps *path = &s->work.load_steps;
   const double *next = path->at;
   dea_solid_state_get(s, path->keep);
+  s->found.factor_fits = s->found.factor_fits && !moves_contact(s); // normals turn with the tip
   set_share(s, way);
   dea_status status = DEA_OK;
   if (dea_solid_controls_increment(s, next)) {

@@ -176,9 +176,15 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
 static dea_status take_step(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
                             double share, bool stresses)
 {
+  bool pressures = d->shift_Pa <= s->problem.modulus_Pa;
   if (!d->strict) {
-    DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->work.step, share, stresses,
-                                   d->shift_Pa <= s->problem.modulus_Pa));
+    DEA_TRY(ctx, dea_solid_predict(ctx, s, d->voltage_V, s->work.step, share, stresses, pressures));
+  }
+  for (size_t k = 0; k < s->problem.load_count && pressures && !d->strict; k++) {
+    const struct dea_solid_load *load = &s->problem.loads[k];
+    if (load->predict != NULL) {
+      load->predict(load->self, s->state.u, s->work.step, share);
+    }
   }
   memcpy(s->state.u, s->work.trial, s->problem.dofs * sizeof *s->state.u);
   return DEA_OK;
@@ -248,15 +254,17 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   const struct dea_solid_settings *o = &s->settings;
   struct dea_solid_report *report = d->report;
   bool chord = d->chord || d->start;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : DEA_TANGENT,
-                                  &report->energy_J));
+  bool plain = d->strict || s->problem.field != NULL; // as predicted stresses
+  enum dea_eval_order tangent = plain ? DEA_TANGENT : DEA_TANGENT_PREDICTED;
+  DEA_TRY(ctx,
+          dea_solid_assemble(ctx, s, d->voltage_V, chord ? DEA_FORCE : tangent, &report->energy_J));
   double size = norm(s, s->work.g);
   report->residual = size / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   report->theta_max = dea_solid_theta_max(s);
   if (d->chord && (d->chords == o->chords || !(size < o->chord_rate * d->norm_before)) &&
       !(report->residual < o->residual)) {
     d->chord = false;
-    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, DEA_TANGENT, &report->energy_J));
+    DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, tangent, &report->energy_J));
   }
   d->norm_before = size;
   return DEA_OK;

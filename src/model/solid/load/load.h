@@ -38,6 +38,9 @@ struct dea_solid_load {
   size_t multiplier_count;
   double *multiplier;
   double (*update)(void *self, const double *u);
+  /* Moves them as a share of a step of Newton's method from u does, before u moves; NULL: such a
+   * step leaves them. */
+  void (*predict)(void *self, const double *u, const double *step, double share);
 };
 
 #endif

@@ -97,12 +97,13 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
     double n[3], H[9], w = c->weight[at], p = c->pressure[at];
     double gap = gap_at(c, piece, q, u, n, level >= DEA_TANGENT ? H : NULL);
     double push = fmax(p - k * gap, 0); // NAN becomes 0 here: u is checked by the elements
+    double bends = level == DEA_TANGENT_PREDICTED ? p : push;
     out->energy_J += w * (push * push - p * p) / (2 * k);
     any = any || push > 0 || p != 0;
     for (int i = 0; i < 3 && push > 0; i++) {
       out->g[3 * q + i] -= w * push * n[i];
       for (int j = 0; j < 3 && level >= DEA_TANGENT; j++) {
-        out->K[(3 * q + i) * dofs + 3 * q + j] += w * (k * n[i] * n[j] - push * H[3 * i + j]);
+        out->K[(3 * q + i) * dofs + 3 * q + j] += w * (k * n[i] * n[j] - bends * H[3 * i + j]);
       }
     }
   }
@@ -128,6 +129,21 @@ static double update(void *self, const double *u)
   }
   double gap_error = largest / (c->stiffness * gap_none * c->tip.radius_m);
   return whole > 0 ? fmin(gap_error, way / (c->tolerance * whole)) : gap_error;
+}
+
+/* A step takes the gap away where the surface touches: p - k (g + n . step), docs/theory/loads.md.
+ */
+static void predict(void *self, const double *u, const double *step, double share)
+{
+  struct dea_contact *c = self;
+  size_t points = (size_t)c->shape.points;
+  for (size_t at = 0; at < c->surface->face_count * points; at++) {
+    size_t face = at / points, point = at % points;
+    const double *s = step + 3 * c->surface->nodes[face * DEA_FACE_NODES_MAX + point];
+    double p = c->pressure[at], n[3], gap = gap_at(c, face, (int)point, u, n, NULL);
+    double left = gap + n[0] * s[0] + n[1] * s[1] + n[2] * s[2];
+    c->pressure[at] = p > c->stiffness * gap ? fmax(p - share * c->stiffness * left, 0) : 0;
+  }
 }
 
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3])
@@ -166,5 +182,6 @@ struct dea_solid_load dea_contact_load(struct dea_contact *contact)
                                  .multiplier_count =
                                      contact->surface->face_count * (size_t)contact->shape.points,
                                  .multiplier = contact->pressure,
-                                 .update = update};
+                                 .update = update,
+                                 .predict = predict};
 }

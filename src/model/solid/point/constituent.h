@@ -12,8 +12,9 @@
 #include "material/material.h"
 #include "material/point.h"
 
-/* How much of an energy is wanted; each level has those before it. */
-enum dea_eval_order { DEA_ENERGY, DEA_FORCE, DEA_TANGENT };
+/* How much of an energy is wanted; each level has those before it. DEA_TANGENT_PREDICTED: of a load
+ * with multipliers the tangent at these alone, without what the penalty adds to them. */
+enum dea_eval_order { DEA_ENERGY, DEA_FORCE, DEA_TANGENT, DEA_TANGENT_PREDICTED };
 
 /* What a part of an actuator is, for what is told of it. */
 enum dea_part { DEA_PART_FILM, DEA_PART_ELECTRODE, DEA_PART_GLUE, DEA_PART_FIBRE };
