@@ -81,6 +81,34 @@ static void test_parts(void **state)
   }
 }
 
+/* Monitors by their names, and what each has. */
+static void test_monitors(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *design, *quantity, *message;
+  } cases[] = {
+      {"devices/diaphragm", "middle.turn_x_rad",
+       "mine.yaml:5:14: error: 'middle.turn_x_rad' is no quantity: of 'middle' there are x_m, y_m, "
+       "z_m"},
+      {"devices/diaphragm", "midle.z_m", "the design has no monitor 'midle'"},
+      {"devices/diaphragm", "energy_J, energy_J", "mine.yaml:5:24: error: energy_J is there twice"},
+      {"devices/diaphragm", "middle.z_m", "mine.yaml:5:14: error: model lumped knows no monitors"},
+      {"devices/diaphragm", "capacitanc_F", "did you mean 'capacitance_F'?"},
+      {"frdea-4", "middle.z_m", "'middle.z_m' is no quantity"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[1000];
+    snprintf(text, sizeof text,
+             "dea_explore: 1\nname: seen\ndesign: " DEA_SOURCE_DIR
+             "/examples/%s.yaml\nmodel: lumped\nquantities: [%s]\n"
+             "variables: [{name: pre_stretch, values: [1.2]}]\n",
+             cases[i].design, cases[i].quantity);
+    command_write("mine.yaml", text);
+    command_expect("sweep mine.yaml --force", 3, cases[i].message);
+  }
+}
+
 /* Number of lines of a file that hold a text. */
 static int lines_with(const char *name, const char *text)
 {
@@ -227,6 +255,6 @@ int main(void)
       cmocka_unit_test(test_errors),   cmocka_unit_test(test_grid),
       cmocka_unit_test(test_killed),   cmocka_unit_test(test_interrupted),
       cmocka_unit_test(test_optimise), cmocka_unit_test(test_page),
-      cmocka_unit_test(test_parts)};
+      cmocka_unit_test(test_parts),    cmocka_unit_test(test_monitors)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -109,11 +109,83 @@ static void test_parts(void **state)
   assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);
 }
 
+static const char cone[] =
+    "dea: 1\ntitle: cone\nshapes:\n  - {name: film, kind: circle, radius: 20 mm}\n"
+    "  - {name: hub, kind: circle, radius: 5 mm}\n"
+    "  - {name: active, kind: difference, of: [film, hub]}\n"
+    "  - {name: ring, kind: ring, inner_radius: 6 mm, outer_radius: 12 mm}\n"
+    "plies: [{name: film, shape: film, material: elastosil-2030, thickness: 100 um, pre_stretch: "
+    "1.2}]\n"
+    "electrodes:\n  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+    "  - {ply: film, side: top, shape: active, channel: drive}\n"
+    "supports: [{edge: film}]\nbodies: [{name: hub, shape: hub, free: [z], force_z: 50 mN}]\n"
+    "monitors: [{name: hub, body: hub}, {name: ring, shape: ring}]\n"
+    "compute: {models: [3d], voltage: {values: [2 kV, 3 kV]}, solid: {film: membrane}}\n";
+
+/* What monitors show as quantities, beside the table of dea run; as objective and limit of a search
+ * by the model's gradients, which ends where the limit is. */
+static void test_monitors(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  static const char head[] = "dea_explore: 1\nname: seen\ndesign: cone.yaml\nmodel: 3d\n"
+                             "quantities: [hub.z_m, ring.z_m, ring.area_stretch]\n";
+  char text[1200];
+  double hub[2], ring[2], area[2], best, wanted[3];
+  command_write("cone.yaml", cone);
+  snprintf(
+      text, sizeof text,
+      "%svoltages: [2 kV, 3 kV]\nvariables: [{name: plies.film.thickness, values: [100 um]}]\n",
+      head);
+  command_write("seen.yaml", text);
+  const int code = command_run("sweep seen.yaml -j 1 -q");
+  if (code == 2) { // a build without model 3d
+    skip();
+  }
+  assert_int_equal(code, 0);
+  command_read("seen.sweep/cases.csv", bytes);
+  assert_contains(bytes,
+                  ",hub.z_m@2000 (m),ring.z_m@2000 (m),ring.area_stretch@2000 (1),hub.z_m@3");
+  assert_int_equal(sscanf(strchr(bytes, '\n'), "\n%*d,%*[^,],%*f,%lf,%lf,%lf,%lf,%lf,%lf", &hub[0],
+                          &ring[0], &area[0], &hub[1], &ring[1], &area[1]),
+                   6);
+  assert_int_equal(command_run("run cone.yaml --study sweep -q -o seen.run"), 0);
+  command_read("seen.run/3d_sweep_monitors.csv", bytes);
+  const char *of_hub = strstr(bytes, "\n3,hub,"), *of_ring = strstr(bytes, "\n3,ring,");
+  assert_true(of_hub != NULL && of_ring != NULL);
+  assert_int_equal(sscanf(of_hub, "\n3,hub,%*f,%*f,%lf", &wanted[0]), 1);
+  assert_int_equal(sscanf(of_ring, "\n3,ring,%*f,%*f,%lf,,,,,%*f,%*f,%lf", &wanted[1], &wanted[2]),
+                   2);
+  assert_close(1e6 * hub[1], wanted[0], 1e-6, 0);
+  assert_close(1e6 * ring[1], wanted[1], 1e-6, 0);
+  assert_close(area[1], wanted[2], 1e-8, 0);
+  assert_true(hub[0] < hub[1] && ring[0] < ring[1] && area[0] < area[1]);
+  snprintf(text, sizeof text,
+           "%svoltages: [3 kV]\nobjectives: [{quantity: hub.z_m}]\nstarts: 1\n"
+           "limits: [{quantity: ring.z_m, below: 0.35 mm}]\n"
+           "variables: [{name: plies.film.thickness, low: 80 um, high: 130 um}]\n",
+           head);
+  command_write("seen.yaml", text);
+  assert_int_equal(command_run("optimise seen.yaml -j 1 -q"), 0);
+  assert_contains(command_out, "gradients: of the model\n");
+  command_read("seen.optimise/best.yaml", bytes);
+  assert_int_equal(sscanf(strstr(bytes, "hub.z_m = "), "hub.z_m = %lf", &best), 1);
+  assert_true(best > hub[1]);
+  command_write("best.yaml", bytes);
+  assert_int_equal(command_run("run best.yaml --study sweep -q -o best.run"), 0);
+  command_read("best.run/3d_sweep_monitors.csv", bytes);
+  of_ring = strstr(bytes, "\n3,ring,");
+  assert_non_null(of_ring);
+  assert_int_equal(sscanf(of_ring, "\n3,ring,%*f,%*f,%lf", &wanted[1]), 1);
+  assert_close(wanted[1], 350, 1e-3, 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_neighbours),
       cmocka_unit_test(test_parts),
+      cmocka_unit_test(test_monitors),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

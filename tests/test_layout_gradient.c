@@ -51,8 +51,9 @@ struct at {
   struct dea_device *device;
   double voltage_V;
   size_t monitors[MONITORS], monitor_count;
-  enum dea_observed motion[MONITORS]; // found by the first that observes
-  bool found;
+  enum dea_observed motion[MONITORS]; // asked for, or found by the first that observes
+  bool asked, found;
+  size_t numbers_max; // that are checked; 0: all
 };
 
 /* Quantities of a device that is solved by itself, out [WIDTH]. */
@@ -72,8 +73,9 @@ static void solve(struct at *at, const struct dea_device *device, double voltage
     out[k] = dea_point_get(&point, dea_point_column_find(keys[k]));
   }
   for (size_t m = 0; m < at->monitor_count; m++) {
-    at->motion[m] = at->found ? at->motion[m] : dea_observed_main(seen.monitor[m]);
-    out[KEYS + m] = seen.monitor[m][at->motion[m]];
+    const double *values = seen.monitor[at->monitors[m]];
+    at->motion[m] = at->found || at->asked ? at->motion[m] : dea_observed_main(values);
+    out[KEYS + m] = values[at->motion[m]];
   }
   at->found = true;
   if (keep != NULL) {
@@ -133,10 +135,12 @@ static size_t check(struct at *at)
   struct dea_model *model;
   assert_int_equal(dea_device_build(ctx, at->design, &at->device), DEA_OK);
   dea_design_numbers(at->design, at->device, at->voltage_V, numbers, &count);
-  at->monitor_count = at->device->layout->monitor_count;
-  assert_in_range(at->monitor_count, 1, MONITORS);
-  for (size_t m = 0; m < at->monitor_count; m++) {
-    at->monitors[m] = m;
+  if (!at->asked) {
+    at->monitor_count = at->device->layout->monitor_count;
+    assert_in_range(at->monitor_count, 1, MONITORS);
+    for (size_t m = 0; m < at->monitor_count; m++) {
+      at->monitors[m] = m;
+    }
   }
   for (int k = 0; k < KEYS; k++) {
     columns[k] = dea_point_column_find(keys[k]);
@@ -153,7 +157,8 @@ static size_t check(struct at *at)
                                           .columns = columns,
                                           .column_count = KEYS,
                                           .monitors = at->monitors,
-                                          .monitor_count = at->monitor_count};
+                                          .monitor_count = at->monitor_count,
+                                          .motions = at->asked ? at->motion : NULL};
   const size_t width = KEYS + at->monitor_count;
   double *slopes = dea_alloc(ctx, count * width, sizeof *slopes);
   assert_non_null(slopes);
@@ -161,7 +166,7 @@ static size_t check(struct at *at)
     fail_msg("%s", dea_context_message(ctx));
   }
   ask.type->destroy(ctx, model);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < count && (at->numbers_max == 0 || i < at->numbers_max); i++) {
     check_number(at, &numbers[i], base, slopes + i * width);
   }
   dea_free(ctx, slopes);
@@ -197,6 +202,21 @@ static void test_two_plies_under_pressure(void **state)
   assert_int_equal(check(&at), 13);
 }
 
+/* Motions that are asked for by name: how high a region is in the mean, and its area. */
+static void test_region(void **state)
+{
+  (void)state;
+  struct at at = {.voltage_V = 3e3,
+                  .monitors = {1, 1},
+                  .monitor_count = 2,
+                  .motion = {DEA_OBSERVED_Z, DEA_OBSERVED_AREA_STRETCH},
+                  .asked = true,
+                  .numbers_max = 3};
+  assert_int_equal(
+      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  check(&at);
+}
+
 /* Shapes and supports: the mesh of the device does not follow. */
 static void test_what_cannot_follow(void **state)
 {
@@ -222,7 +242,7 @@ static void test_what_cannot_follow(void **state)
     assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
     const struct dea_design_change change = {
         {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6};
-    const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0};
+    const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
     assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
     assert_true(isnan(slope));
     dea_device_destroy(ctx, device);
@@ -238,6 +258,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_two_plies_under_pressure),
+      cmocka_unit_test(test_region),
       cmocka_unit_test(test_what_cannot_follow),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -122,7 +122,7 @@ find_slopes(const struct state *at, const struct dea_model_settings *settings, d
     }
     changes[i].width = 2 * share;
   }
-  const struct dea_gradient_ask ask = {changes, NUMBERS, columns, KEYS, NULL, 0};
+  const struct dea_gradient_ask ask = {changes, NUMBERS, columns, KEYS, NULL, 0, NULL};
   if (solid->gradient(ctx, model, &ask, out[0]) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
@@ -228,7 +228,7 @@ static void test_mesh_that_cannot_follow(void **state)
   solve(&at, NULL, &settings, &model);
   const struct dea_design_change change = {
       {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1};
-  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0};
+  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
   assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
   assert_true(isnan(slope));
   solid->destroy(ctx, model);

@@ -20,8 +20,7 @@ static void print_optimum(const struct dea_question *question, const struct dea_
     printf("  %-28s %s\n", question->params[j].param.name, text);
   }
   for (size_t k = 0; k < question->file->objective_count; k++) {
-    const struct dea_column *column =
-        &dea_point_columns[question->quantities[question->objectives[k]]];
+    const struct dea_column *column = &question->quantities[question->objectives[k]].shown;
     const bool most = question->file->objectives[k].goal.value == DEA_MOST; // f is the least
     printf("  %-28s %.6g %s\n", column->key, column->factor * (most ? -1 : 1) * best->f[k],
            column->display_unit);

@@ -215,8 +215,7 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
   dea_text_add(&text, "# Written by dea %s optimise: the best of %s for %s.\n", DEA_VERSION,
                dea_path_name(question->path), dea_path_name(question->file->head.file));
   for (size_t k = 0; k < question->file->objective_count; k++) {
-    const struct dea_column *column =
-        &dea_point_columns[question->quantities[question->objectives[k]]];
+    const struct dea_column *column = &question->quantities[question->objectives[k]].shown;
     dea_text_add(&text, "#   %s = %.8g %s at %.6g V, model %s\n", column->key,
                  sign_of(question, k) * best->f[k], column->si_unit,
                  question->voltages_V[question->voltage_count - 1], question->model.type->name);
@@ -236,8 +235,7 @@ static dea_status write_front(const struct work *w)
     dea_text_add(&out, ",%s (%s)", question->params[j].param.name, question->params[j].param.unit);
   }
   for (size_t k = 0; k < 2; k++) {
-    const struct dea_column *column =
-        &dea_point_columns[question->quantities[question->objectives[k]]];
+    const struct dea_column *column = &question->quantities[question->objectives[k]].shown;
     dea_text_add(&out, ",%s (%s)", column->key, column->si_unit);
   }
   dea_text_add(&out, "\n");
@@ -287,7 +285,7 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
 {
   const struct dea_question *question = w->question;
   const size_t count = dea_store_count(w->store);
-  const struct dea_column *y = &dea_point_columns[question->quantities[question->objectives[of_y]]];
+  const struct dea_column *y = &question->quantities[question->objectives[of_y]].shown;
   struct dea_series *beyond, *within, *line;
   const size_t points = of_x < 0 ? count : w->report->count;
   double best = INFINITY;
@@ -298,7 +296,7 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
   dea_figure_label(y, panel->y_label, sizeof panel->y_label);
   snprintf(panel->x_label, sizeof panel->x_label, "Evaluations");
   const struct dea_column *x =
-      of_x < 0 ? NULL : &dea_point_columns[question->quantities[question->objectives[of_x]]];
+      of_x < 0 ? NULL : &question->quantities[question->objectives[of_x]].shown;
   if (x != NULL) {
     dea_figure_label(x, panel->x_label, sizeof panel->x_label);
   }

@@ -130,7 +130,9 @@ static const struct dea_field file_fields[] = {
      .element_size = sizeof(struct dea_label),
      .count_offset = AT(quantity_count),
      .required = true,
-     .doc = "keys of the quantities that are kept, as dea compare --quantity has them; force_N: "
+     .doc = "keys of the quantities that are kept, as dea compare --quantity has them, and "
+            "MONITOR.KEY "
+            "of what a monitor shows (plate.turn_y_rad); force_N: "
             "with the tip of compute.force held at its first depth",
      .example = "[centre_z_m, breakdown_margin]"},
     {.key = "variables",

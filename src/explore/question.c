@@ -86,6 +86,11 @@ static dea_status take_id(void *user, const struct dea_design *design,
   struct dea_question *question = user;
   struct dea_text text = {.ctx = question->model.ctx};
   char hash[65];
+  for (size_t k = 0; k < question->voltage_count; k++) { // those of another device
+    for (size_t i = 0; i < question->quantity_count; i++) {
+      question->seen[k][i] = NAN;
+    }
+  }
   resolve(question, design, device, &text);
   dea_sha256_hex(dea_text_get(&text), text.length, hash);
   snprintf(question->id, sizeof question->id, "%.16s", hash);
@@ -104,7 +109,7 @@ static dea_status take_hash(struct dea_question *question)
                  question->params[j].state);
   }
   for (size_t i = 0; i < question->quantity_count; i++) {
-    dea_text_add(&text, "quantity %s\n", dea_point_columns[question->quantities[i]].key);
+    dea_text_add(&text, "quantity %s\n", question->quantities[i].key);
   }
   dea_sha256_hex(dea_text_get(&text), text.length, question->hash);
   dea_text_add(&text, "gradients\n");
@@ -168,14 +173,36 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
                ->points[question->model.groups[dea_question_is_held(question, i) ? 1 : 0].first +
                         k];
       double *q = &io->q[k * count + i];
-      *q = dea_point_get(point, question->quantities[i]);
+      *q = question->quantities[i].column >= 0
+               ? dea_point_get(point, question->quantities[i].column)
+               : question->seen[k][i];
       if (isnan(*q) && io->why[0] == '\0') {
         snprintf(io->why, sizeof io->why, "the model knows no %s of this design",
-                 dea_point_columns[question->quantities[i]].key);
+                 question->quantities[i].key);
       }
     }
   }
   return DEA_OK;
+}
+
+/* Keeps what monitors show at a stop. */
+static dea_status stand(void *user, struct dea_model *model, const struct dea_design *design,
+                        const struct dea_device *device, size_t stop)
+{
+  struct dea_question *question = user;
+  struct dea_context *ctx = question->model.ctx;
+  struct dea_observation observed = {.monitor_count = 0};
+  (void)design;
+  for (size_t i = 0; i < question->quantity_count && stop < question->voltage_count; i++) {
+    const struct dea_explored *quantity = &question->quantities[i];
+    if (quantity->column < 0) {
+      if (observed.monitor_count == 0) {
+        DEA_TRY(ctx, dea_model_observe(ctx, question->model.type, model, &observed));
+      }
+      question->seen[stop][i] = observed.monitor[quantity->monitor][quantity->observed];
+    }
+  }
+  return question->stood != NULL ? question->stood(question, model, device, stop) : DEA_OK;
 }
 
 /* Groups of voltages: the film that moves freely, and where a force is asked for with a tip. */
@@ -192,6 +219,7 @@ static dea_status prepare_model(struct dea_question *question)
   model->params = question->params;
   model->param_count = question->variable_count;
   model->built = take_id;
+  model->stood = stand;
   model->user = question;
   question->memory.ctx = question->ctx;
   model->voltage_V = dea_arena_alloc(&question->memory, count, sizeof *model->voltage_V);
@@ -263,20 +291,22 @@ static dea_status read_design(struct dea_question *question)
 static dea_status take_quantities(struct dea_question *question)
 {
   const struct dea_explore_file *file = question->file;
-  const char *keys[DEA_LOAD_POINT_COLUMNS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    keys[c] = dea_point_columns[c].key;
-  }
   for (size_t i = 0; i < file->quantity_count; i++) {
-    const int column = dea_point_column_find(file->quantities[i].text);
-    if (column < 0) {
-      DEA_TRY(question->ctx, add_unknown(question->ctx, &file->quantities[i], "quantity", keys,
-                                         DEA_LOAD_POINT_COLUMNS));
-    } else if (dea_question_quantity(question, keys[column]) >= 0) {
+    struct dea_explored *out = &question->quantities[question->quantity_count];
+    const bool twice = dea_question_quantity(question, file->quantities[i].text) >= 0;
+    bool good;
+    DEA_TRY(question->ctx,
+            dea_explored_find(question->ctx, question->device, &file->quantities[i], out, &good));
+    if (twice) {
       DEA_TRY(question->ctx, dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,
-                                             "%s is there twice", keys[column]));
-    } else {
-      question->quantities[question->quantity_count++] = column;
+                                             "%s is there twice", out->key));
+    } else if (good && out->column < 0 && question->model.type != NULL &&
+               question->model.type->observe == NULL) {
+      DEA_TRY(question->ctx,
+              dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,
+                              "model %s knows no monitors", question->model.type->name));
+    } else if (good) {
+      question->quantity_count++;
     }
   }
   return DEA_OK;
@@ -417,7 +447,7 @@ static dea_status take_limit(struct dea_question *question, const struct dea_exp
     return dea_finding_add(ctx, DEA_ERROR, text->quantity.location,
                            "'%.60s' is none of the quantities of this file", text->quantity.text);
   }
-  const struct dea_column *column = &dea_point_columns[question->quantities[limit->column]];
+  const struct dea_column *column = &question->quantities[limit->column].shown;
   struct dea_device_param number = {.state = "", .param = {.unit = column->si_unit}};
   snprintf(number.param.name, sizeof number.param.name, "%.39s", column->key);
   if (text->above.text[0] != '\0') {
@@ -532,7 +562,7 @@ bool dea_variable_range(const struct dea_variable *variable, double *low, double
 int dea_question_quantity(const struct dea_question *question, const char *key)
 {
   for (size_t i = 0; i < question->quantity_count; i++) {
-    if (strcmp(dea_point_columns[question->quantities[i]].key, key) == 0) {
+    if (strcmp(question->quantities[i].key, key) == 0) {
       return (int)i;
     }
   }
@@ -542,13 +572,13 @@ int dea_question_quantity(const struct dea_question *question, const char *key)
 bool dea_question_is_held(const struct dea_question *question, size_t quantity)
 {
   return question->model.group_count > 1 &&
-         strcmp(dea_point_columns[question->quantities[quantity]].key, "force_N") == 0;
+         strcmp(question->quantities[quantity].key, "force_N") == 0;
 }
 
 void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size)
 {
   const size_t count = question->quantity_count;
-  const char *key = dea_point_columns[question->quantities[i % count]].key;
+  const char *key = question->quantities[i % count].key;
   if (question->voltage_count == 1) {
     snprintf(out, size, "%s", key);
   } else {

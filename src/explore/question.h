@@ -6,6 +6,7 @@
 #include "base/arena.h"
 #include "explore/evaluator.h"
 #include "explore/explore_file.h"
+#include "explore/quantity.h"
 #include "job/device_fit_model.h"
 
 /* A variable: values, or a range, or a distribution. */
@@ -34,7 +35,7 @@ struct dea_question {
   size_t variable_count;
   double voltages_V[DEA_EXPLORE_VOLTAGES_MAX];
   size_t voltage_count;
-  int quantities[DEA_EXPLORE_QUANTITIES_MAX]; // columns of load points
+  struct dea_explored quantities[DEA_EXPLORE_QUANTITIES_MAX];
   size_t quantity_count;
   struct dea_limit limits[DEA_EXPLORE_LIMITS_MAX];
   size_t limit_count;
@@ -46,9 +47,13 @@ struct dea_question {
   struct dea_device_param params[DEA_CASE_PARAMS_MAX];
   struct dea_device_model model;
   struct dea_load_point *points;
+  double seen[DEA_EXPLORE_VOLTAGES_MAX][DEA_EXPLORE_QUANTITIES_MAX]; // of monitors
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
   struct dea_case *now; // what is evaluated, while slopes are taken too
+  /* Told of each stop of these, as of struct dea_device_model; NULL: nobody. */
+  dea_status (*stood)(struct dea_question *question, struct dea_model *model,
+                      const struct dea_device *device, size_t stop);
 };
 
 /* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything

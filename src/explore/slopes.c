@@ -15,25 +15,48 @@ struct sides {
   size_t count;                         // of changes
 };
 
-/* What an objective or a limit is of, at one stop. */
-static size_t wanted_columns(const struct dea_question *question, bool held, size_t *quantity,
-                             int *columns)
+/* What slopes are asked of, at one stop: columns of load points, then motions of monitors. */
+struct wanted {
+  size_t quantity[DEA_EXPLORE_QUANTITIES_MAX]; // of each
+  int columns[DEA_EXPLORE_QUANTITIES_MAX];
+  size_t monitors[DEA_EXPLORE_QUANTITIES_MAX];
+  enum dea_observed motions[DEA_EXPLORE_QUANTITIES_MAX];
+  size_t column_count, monitor_count;
+};
+
+/* Whether an objective or a limit is of a quantity. */
+static bool is_wanted(const struct dea_question *question, size_t i)
 {
-  size_t count = 0;
-  for (size_t i = 0; i < question->quantity_count; i++) {
-    bool wanted = false;
-    for (size_t k = 0; k < question->file->objective_count; k++) {
-      wanted = wanted || question->objectives[k] == (int)i;
-    }
-    for (size_t l = 0; l < question->limit_count; l++) {
-      wanted = wanted || question->limits[l].column == (int)i;
-    }
-    if (wanted && dea_question_is_held(question, i) == held) {
-      quantity[count] = i;
-      columns[count++] = question->quantities[i];
+  bool wanted = false;
+  for (size_t k = 0; k < question->file->objective_count; k++) {
+    wanted = wanted || question->objectives[k] == (int)i;
+  }
+  for (size_t l = 0; l < question->limit_count; l++) {
+    wanted = wanted || question->limits[l].column == (int)i;
+  }
+  return wanted;
+}
+
+static struct wanted find_wanted(const struct dea_question *question, bool held)
+{
+  struct wanted out = {.column_count = 0};
+  for (int of_monitors = 0; of_monitors < 2; of_monitors++) {
+    for (size_t i = 0; i < question->quantity_count; i++) {
+      const struct dea_explored *quantity = &question->quantities[i];
+      if (!is_wanted(question, i) || dea_question_is_held(question, i) != held ||
+          (quantity->column < 0) != (of_monitors == 1)) {
+        continue;
+      }
+      out.quantity[out.column_count + out.monitor_count] = i;
+      if (of_monitors == 1) {
+        out.monitors[out.monitor_count] = quantity->monitor;
+        out.motions[out.monitor_count++] = quantity->observed;
+      } else {
+        out.columns[out.column_count++] = quantity->column;
+      }
     }
   }
-  return count;
+  return out;
 }
 
 /* The device with variable j moved by `by`. *device: NULL where it cannot be. */
@@ -81,11 +104,12 @@ static dea_status add_change(struct dea_context *ctx, const struct dea_question 
 static dea_status find(struct dea_context *ctx, const struct dea_question *question,
                        struct dea_model *model, const struct sides *sides, bool held)
 {
-  size_t quantity[DEA_EXPLORE_QUANTITIES_MAX];
-  int columns[DEA_EXPLORE_QUANTITIES_MAX];
+  const struct wanted wanted = find_wanted(question, held);
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
-  const size_t count = wanted_columns(question, held, quantity, columns);
-  const struct dea_gradient_ask ask = {sides->changes, sides->count, columns, count, NULL, 0};
+  const size_t count = wanted.column_count + wanted.monitor_count;
+  const struct dea_gradient_ask ask = {sides->changes,      sides->count,    wanted.columns,
+                                       wanted.column_count, wanted.monitors, wanted.monitor_count,
+                                       wanted.motions};
   if (count == 0) {
     return DEA_OK;
   }
@@ -100,7 +124,8 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   const size_t n = question->variable_count;
   for (size_t c = 0; c < sides->count; c++) {
     for (size_t i = 0; i < count; i++) {
-      const size_t value = (question->voltage_count - 1) * question->quantity_count + quantity[i];
+      const size_t value =
+          (question->voltage_count - 1) * question->quantity_count + wanted.quantity[i];
       question->now->q[question->evaluator.value_count + value * n + sides->variable[c]] =
           slopes[c * count + i];
     }
@@ -108,15 +133,13 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   return DEA_OK;
 }
 
-static dea_status take(void *user, struct dea_model *model, const struct dea_design *design,
+static dea_status take(struct dea_question *question, struct dea_model *model,
                        const struct dea_device *device, size_t stop)
 {
-  struct dea_question *question = user;
   struct dea_context *ctx = question->model.ctx;
   const size_t last = question->voltage_count - 1;
   struct sides sides = {.count = 0};
   dea_status status = DEA_OK;
-  (void)design;
   if (stop != last && stop != question->voltage_count + last) {
     return DEA_OK;
   }
@@ -139,9 +162,9 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
 {
   struct dea_question *question = user;
   question->now = io;
-  question->model.stood = take;
+  question->stood = take;
   const dea_status status = question->evaluator.evaluate(question, ctx, io);
-  question->model.stood = NULL;
+  question->stood = NULL;
   question->now = NULL;
   return status;
 }

@@ -34,7 +34,7 @@ static dea_status fill_panel(const struct dea_question *question, const struct d
                              size_t i, struct dea_panel *panel)
 {
   const size_t n = question->voltage_count;
-  const struct dea_column *column = &dea_point_columns[question->quantities[i]];
+  const struct dea_column *column = &question->quantities[i].shown;
   struct dea_series *series[KINDS];
   DEA_TRY(question->ctx, add_series(question->ctx, panel, n, series));
   for (size_t v = 0; v < n; v++) {
@@ -58,8 +58,7 @@ dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_
   const char *list[DEA_EXPLORE_QUANTITIES_MAX];
   for (size_t i = 0; i < question->quantity_count; i++) {
     struct dea_plot *plot;
-    snprintf(names[i], sizeof names[i], "band_%.50s",
-             dea_point_columns[question->quantities[i]].key);
+    snprintf(names[i], sizeof names[i], "band_%.50s", question->quantities[i].key);
     list[i] = names[i];
     DEA_TRY(question->ctx, dea_plot_create(question->ctx, names[i],
                                            "median of the samples, and where 68 and 95 % of them "

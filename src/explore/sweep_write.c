@@ -27,7 +27,7 @@ static const struct dea_case *case_of(const struct work *w, size_t i)
 static const char *unit_of(const struct work *w, size_t value)
 {
   const size_t i = value % w->question->quantity_count;
-  return dea_point_columns[w->question->quantities[i]].si_unit;
+  return w->question->quantities[i].shown.si_unit;
 }
 
 static void add_field(struct dea_text *out, double value)
@@ -83,10 +83,11 @@ static void put_column(struct h5 *h, const struct work *w, hid_t group, size_t r
     }
   }
   if (value >= 0) {
-    const int of = w->question->quantities[(size_t)value % w->question->quantity_count];
+    const struct dea_column *of =
+        &w->question->quantities[(size_t)value % w->question->quantity_count].shown;
     dea_question_value_name(w->question, (size_t)value, name, sizeof name);
-    dea_h5_put_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
-                     dea_point_columns[of].si_unit, dea_point_columns[of].meaning);
+    dea_h5_put_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column, of->si_unit,
+                     of->meaning);
   } else {
     const struct dea_device_param *of = &w->question->params[param];
     dea_h5_put_array(h, group, of->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
@@ -215,7 +216,7 @@ static dea_status write_limits(const struct work *w)
       crossed += done != NULL && !(dea_limit_margin(w->question, limit, done->q) >= 0) ? 1U : 0U;
     }
     const double share = (double)crossed / (double)n;
-    dea_text_add(&out, "%s", dea_point_columns[w->question->quantities[limit->column]].key);
+    dea_text_add(&out, "%s", w->question->quantities[limit->column].key);
     add_field(&out, limit->above);
     add_field(&out, limit->below);
     dea_text_add(&out, ",%zu,%zu", n, crossed);

@@ -117,8 +117,8 @@ struct dea_design_change {
   double voltage_V[2];
   double width;
 };
-/* Slopes that are wanted: of columns of load points (result/columns.h), then of the main motion
- * (dea_observed_main) of monitors of the layout, by changes. All lent. */
+/* Slopes that are wanted: of columns of load points (result/columns.h), then of a motion of
+ * monitors of the layout, by changes. All lent. */
 struct dea_gradient_ask {
   const struct dea_design_change *changes; // [change_count]
   size_t change_count;
@@ -126,6 +126,7 @@ struct dea_gradient_ask {
   size_t column_count;
   const size_t *monitors; // [monitor_count]
   size_t monitor_count;
+  const enum dea_observed *motions; // [monitor_count]; NULL: the main ones (dea_observed_main)
 };
 
 /* How many quantities that are. */

@@ -222,9 +222,9 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
     status = make_changes(ctx, ask, &all);
   }
   if (status == DEA_OK) {
-    const struct dea_gradient_ask question = {all.changes,   ask->number_count,
-                                              ask->columns,  ask->column_count,
-                                              ask->monitors, ask->monitor_count};
+    const struct dea_gradient_ask question = {
+        all.changes,   ask->number_count,  ask->columns, ask->column_count,
+        ask->monitors, ask->monitor_count, ask->motions};
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
   for (size_t i = 0; all.devices != NULL && ask->device->general && i < 2 * ask->number_count;

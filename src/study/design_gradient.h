@@ -46,8 +46,9 @@ struct dea_design_gradient {
   size_t number_count;
   const int *columns; // [column_count] of load points
   size_t column_count;
-  const size_t *monitors; // [monitor_count] of the layout, their main motions
+  const size_t *monitors; // [monitor_count] of the layout
   size_t monitor_count;
+  const enum dea_observed *motions; // [monitor_count] of them; NULL: the main ones
 };
 
 /* slopes [number_count][column_count + monitor_count], SI of the quantity by SI of the number: NAN

@@ -117,10 +117,10 @@ static dea_status answer(struct dea_context *ctx, struct work *w)
   }
   for (size_t i = 0; i < w->ask->monitor_count; i++) {
     const size_t at = w->ask->column_count + i;
-    w->known[at] = w->owner->monitor_slope != NULL;
-    if (w->known[at]) {
-      DEA_TRY(ctx, w->owner->monitor_slope(ctx, w->owner->model, w->ask->monitors[i],
-                                           dea_adjoint_slope(w->adjoint, at)));
+    w->known[at] = false;
+    if (w->owner->monitor_slope != NULL) {
+      DEA_TRY(ctx, w->owner->monitor_slope(ctx, w->owner->model, i,
+                                           dea_adjoint_slope(w->adjoint, at), &w->known[at]));
     }
   }
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, w->known));

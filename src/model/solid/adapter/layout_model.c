@@ -1060,16 +1060,14 @@ static dea_status slope(struct dea_context *ctx, void *self, int column, double 
   return DEA_OK;
 }
 
-static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t monitor, double *out)
+static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t i, double *out,
+                                bool *known)
 {
   struct dea_model *model = self;
   const struct variant *v = model->variant;
-  size_t i = 0;
   (void)ctx;
-  while (v->ask->monitors[i] != monitor) {
-    i++;
-  }
-  dea_observer_gradient(model->observer, model->solid, monitor, v->motion[i], out);
+  *known =
+      dea_observer_gradient(model->observer, model->solid, v->ask->monitors[i], v->motion[i], out);
   return DEA_OK;
 }
 
@@ -1107,14 +1105,15 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
 }
 
 /* The motion of each monitor that its slope is of. */
-static dea_status find_mains(struct dea_context *ctx, struct dea_model *model)
+static dea_status find_asked_motions(struct dea_context *ctx, struct dea_model *model)
 {
   const struct variant *v = model->variant;
   struct dea_observation seen;
   if (v->ask->monitor_count > 0) {
     DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
     for (size_t i = 0; i < v->ask->monitor_count; i++) {
-      v->motion[i] = dea_observed_main(seen.monitor[v->ask->monitors[i]]);
+      v->motion[i] = v->ask->motions != NULL ? v->ask->motions[i]
+                                             : dea_observed_main(seen.monitor[v->ask->monitors[i]]);
     }
   }
   return DEA_OK;
@@ -1141,7 +1140,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
   v->problem = s->problem;
   v->ask = ask;
   v->own = *model;
-  DEA_TRY(ctx, find_mains(ctx, model));
+  DEA_TRY(ctx, find_asked_motions(ctx, model));
   DEA_TRY(ctx, dea_gradient_find(ctx, &owner, ask, out));
   return DEA_OK;
 }

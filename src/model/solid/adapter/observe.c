@@ -552,26 +552,88 @@ static double gradient_of_region(const struct dea_layout_mesh *mesh,
   return area;
 }
 
-void dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
+/* Of a region's mean displacement along x, y or z, over the copies of the sector. Returns the area
+ * that the mean is over. */
+static double gradient_of_mean(const struct dea_layout_mesh *mesh,
+                               const struct dea_layout_monitor *m, enum dea_observed motion,
+                               double *weight)
+{
+  const struct dea_grid *grid = mesh->grid;
+  size_t points = (size_t)grid->order + 1, copies = dea_layout_sector_copies(&mesh->sector);
+  int per = (grid->order + 1) * (grid->order + 1);
+  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], share[3] = {0}, area = 0;
+  for (size_t k = 0; k < copies; k++) {
+    for (int i = 0; i < 3; i++) { // along which a displacement of the sector lies in a copy
+      double axis[3] = {i == 0, i == 1, i == 2};
+      if (k > 0) {
+        struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, k);
+        dea_layout_sector_turn(&copy, axis, axis);
+      }
+      share[i] += axis[motion - DEA_OBSERVED_X] / (double)copies;
+    }
+  }
+  dea_gauss_rule(points, place, part);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *face[2];
+    faces(grid, e, &face[0], &face[1]);
+    for (size_t p = 0; p < points * points && (size_t)grid->ply[e] == m->ply &&
+                       dea_layout_mesh_within(mesh, e, m->region);
+         p++) {
+      const double at[2] = {place[p % points], place[p / points]};
+      double value[PLANE_MAX], slope[PLANE_MAX][2], X[4] = {0};
+      basis(grid->order, at, value, slope);
+      for (int i = 0; i < 4 * per; i++) {
+        X[i % 4] += slope[i / 4][i % 2] * grid->X[3 * face[0][i / 4] + i / 2 % 2];
+      }
+      double dA = (X[0] * X[3] - X[1] * X[2]) * part[p % points] * part[p / points];
+      area += dA;
+      for (int i = 0; i < 3 * per; i++) {
+        weight[3 * face[0][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
+        weight[3 * face[1][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
+      }
+    }
+  }
+  return area;
+}
+
+static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed motion)
+{
+  const bool shift = motion <= DEA_OBSERVED_Z;
+  return kind == DEA_MONITOR_POINT    ? shift
+         : kind == DEA_MONITOR_LINE   ? motion == DEA_OBSERVED_STRETCH
+         : kind == DEA_MONITOR_REGION ? shift || motion == DEA_OBSERVED_AREA_STRETCH
+                                      : motion <= DEA_OBSERVED_TURN_Z;
+}
+
+bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, double *weight)
 {
   const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
   size_t count = 3 * o->mesh->grid->node_count;
   memset(weight, 0, count * sizeof *weight);
+  if (!knows_gradient(m->kind, motion)) {
+    return false;
+  }
   switch (m->kind) {
   case DEA_MONITOR_POINT:
   case DEA_MONITOR_LINE:
     gradient_of_probes(o, solid, monitor, motion, weight);
     break;
   case DEA_MONITOR_REGION: {
-    double area = gradient_of_region(o->mesh, m, dea_solid_displacement(solid), weight);
+    double area = motion == DEA_OBSERVED_AREA_STRETCH
+                      ? gradient_of_region(o->mesh, m, dea_solid_displacement(solid), weight)
+                      : gradient_of_mean(o->mesh, m, motion, weight);
     for (size_t i = 0; i < count; i++) {
       weight[i] /= area;
     }
     break;
   }
-  case DEA_MONITOR_BODY:
-    weight[3 * solid->problem.bodies[m->body].node + (size_t)motion] = 1;
+  case DEA_MONITOR_BODY: {
+    const struct dea_solid_body *body = &solid->problem.bodies[m->body];
+    weight[3 * body->node + (size_t)motion] =
+        motion < DEA_OBSERVED_TURN_X ? 1 : 1 / body->length_m; // turns are unknowns times that
     break;
   }
+  }
+  return true;
 }

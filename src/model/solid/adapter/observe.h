@@ -25,9 +25,10 @@ void dea_observer_set_currents(struct dea_observer *observer, const double *curr
 dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *observer,
                                       struct dea_solid *solid, const double *v, double *out);
 
-/* How a motion of a monitor, that of dea_observed_main, changes with each displacement, from where
- * the solid is: weight [3 node_count]. */
-void dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
+/* How a motion of a monitor changes with each displacement, from where the solid is: weight
+ * [3 node_count]. false: that is not known of this motion (mean stretches of a region along x and
+ * y, forces). */
+bool dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, double *weight);
 
 #endif

@@ -1,0 +1,24 @@
+/* What is kept of a design: a column of load points, or what a monitor of a device made of plies
+ * shows. */
+#ifndef DEA_EXPLORE_QUANTITY_H
+#define DEA_EXPLORE_QUANTITY_H
+
+#include "base/value.h"
+#include "device/device.h"
+#include "result/columns.h"
+#include "result/observation.h"
+
+struct dea_explored {
+  struct dea_column shown;    // its key and header are the texts below
+  char key[80], header[80];   // "centre_z_m", "plate.turn_y_rad"
+  int column;                 // of load points; -1: of a monitor
+  size_t monitor;             // of the layout
+  enum dea_observed observed; // of that monitor
+};
+
+/* Finds a quantity by its key, KEY or MONITOR.KEY. *good: false after a finding at its place. The
+ * texts that `shown` lends are those of *out, which stays where it is. */
+dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *device,
+                             const struct dea_label *label, struct dea_explored *out, bool *good);
+
+#endif
