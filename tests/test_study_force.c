@@ -10,6 +10,8 @@ struct dea_model {
   int presses;
 };
 
+static int created; // models
+
 static const double k = 50, c = 5e6, b = 2e-9;
 
 static double force(const struct dea_model *model)
@@ -24,6 +26,7 @@ static dea_status create(struct dea_context *context, const struct dea_device *d
   (void)settings;
   (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
+  created++;
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
@@ -59,6 +62,22 @@ static dea_status indent(struct dea_context *context, struct dea_model *model,
   model->depth_m = depth_m;
   model->presses++;
   return report(model, out);
+}
+
+static dea_status save(struct dea_context *context, struct dea_model *model, struct dea_state *out)
+{
+  *out = (struct dea_state){0};
+  return dea_state_add_numbers(context, out, "voltage", &model->voltage_V, 1);
+}
+
+static dea_status load(struct dea_context *context, struct dea_model *model,
+                       const struct dea_state *state)
+{
+  (void)context;
+  const double *voltage_V = dea_state_find(state, "voltage", 1);
+  assert_true(voltage_V != NULL && *voltage_V == 0 && model->depth_m > 0);
+  model->voltage_V = *voltage_V;
+  return DEA_OK;
 }
 
 static const struct dea_model_type spring = {.name = "spring",
@@ -139,10 +158,50 @@ static void test_nothing_asked(void **state)
   dea_design_destroy(ctx, design);
 }
 
+/* A tip goes on from the depth before where the next one is deeper; the numbers are those of a
+ * model of each depth's own. */
+static void test_deeper(void **state)
+{
+  (void)state;
+  static const struct dea_override sets[] = {
+      {"compute.voltage", "{from: 0 kV, to: 2 kV, step: 1 kV}"},
+      {"compute.force", "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, 2 mm, 3 mm, 2 mm], "
+                        "preload: [180 mN]}"}};
+  static const char *const name = "force";
+  struct dea_model_type types[2] = {spring, spring};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *results[2];
+  types[1].save = save;
+  types[1].load = load;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  for (int i = 0; i < 2; i++) {
+    created = 0;
+    assert_int_equal(dea_result_create(ctx, design, device, &results[i]), DEA_OK);
+    assert_int_equal(dea_study_run(ctx, &types[i], &name, 1, results[i]), DEA_OK);
+    assert_int_equal(created, i == 0 ? 5 : 3); // from rest: 1 mm, 2 mm after 3, the preload
+  }
+  const struct dea_curve *each = dea_result_find(results[0], "spring", "force");
+  const struct dea_curve *on = dea_result_find(results[1], "spring", "force");
+  assert_true(each->count == 15 && on->count == 15);
+  for (size_t i = 0; i < on->count; i++) {
+    assert_close(on->points[i].force_N, each->points[i].force_N, 1e-12, 1e-15);
+    assert_close(on->points[i].tip_depth_m, each->points[i].tip_depth_m, 1e-12, 0);
+  }
+  dea_result_destroy(ctx, results[0]);
+  dea_result_destroy(ctx, results[1]);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_depths_and_preloads),
+      cmocka_unit_test(test_deeper),
       cmocka_unit_test(test_nothing_asked),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -1,7 +1,8 @@
 /* Study "force": a rigid tip is brought to a depth, or pressed until it feels a preload, at 0 V; it
  * is held there while the voltage goes through the sweep. Depth after depth that gives force
  * against voltage at fixed depths and force against depth at fixed voltages: the actuator's load
- * lines. */
+ * lines. To a deeper depth the tip goes on from the one before, at 0 V again; otherwise from rest.
+ */
 #include "study/force.h"
 #include "base/schema.h"
 #include "study/study.h"
@@ -195,26 +196,72 @@ dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type
   return DEA_OK;
 }
 
-/* One stop: press at 0 V, then all voltages. */
-static dea_status load_line(struct dea_context *ctx, const struct dea_model_type *type,
-                            const struct dea_result *result, size_t stop, struct dea_curve *curve)
+/* A model that goes from stop to stop, and where it was last pressed to at 0 V. */
+struct press {
+  const struct dea_model_type *type;
+  const struct dea_result *result;
+  struct dea_model *model; // NULL: none yet
+  struct dea_state at;     // what it was at 0 V, where it is kept
+  bool kept;
+};
+
+/* Whether a stop is a depth beyond that of the stop before, which the tip comes by anyway. */
+static bool goes_deeper(const struct dea_design *design, size_t stop)
 {
-  const struct dea_design *design = result->design;
-  struct dea_model *model;
-  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
-  dea_status status = dea_force_indent(ctx, type, model, design, stop);
-  if (status == DEA_OK) {
-    status = dea_study_take_points(ctx, type, model, design->compute.voltages_V,
-                                   design->compute.voltage_count, curve);
+  const struct settings *force = settings_of(design);
+  return stop > 0 && stop < force->depth_count &&
+         force->depths_m[stop].si > force->depths_m[stop - 1].si;
+}
+
+/* The model at 0 V, at rest or where the stop before has pressed it to. */
+static dea_status ready(struct dea_context *ctx, struct press *p, size_t stop)
+{
+  const struct dea_result *result = p->result;
+  bool kept = p->kept && goes_deeper(result->design, stop);
+  dea_status status = kept ? dea_model_load(ctx, p->type, p->model, &p->at) : DEA_OK;
+  dea_state_free_values(ctx, &p->at);
+  p->kept = false;
+  if (!kept && p->model != NULL) {
+    p->type->destroy(ctx, p->model);
+    p->model = NULL;
   }
-  type->destroy(ctx, model);
+  if (!kept) {
+    status = dea_model_create(ctx, p->type, result->design, result->device, &p->model);
+  }
   return status;
+}
+
+/* Keeps where the tip is pressed to if the next stop goes on from there. */
+static dea_status keep_pressed(struct dea_context *ctx, struct press *p, size_t stop)
+{
+  struct dea_state now = {0};
+  if (p->type->load == NULL || !goes_deeper(p->result->design, stop + 1)) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_model_save(ctx, p->type, p->model, &now));
+  DEA_TRY(ctx, dea_state_copy_values(ctx, &now, &p->at));
+  p->kept = true;
+  return DEA_OK;
+}
+
+/* One stop: press at 0 V, then all voltages. */
+static dea_status load_line(struct dea_context *ctx, struct press *p, size_t stop,
+                            struct dea_curve *curve)
+{
+  const struct dea_design *design = p->result->design;
+  DEA_TRY(ctx, ready(ctx, p, stop));
+  DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, stop));
+  DEA_TRY(ctx, keep_pressed(ctx, p, stop));
+  DEA_TRY(ctx, dea_study_take_points(ctx, p->type, p->model, design->compute.voltages_V,
+                                     design->compute.voltage_count, curve));
+  return DEA_OK;
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
-  (void)model; // none: each depth starts from rest
+  (void)model; // none: it has no tip
+  struct press press = {.type = type, .result = result};
   size_t stops = dea_force_stops(result->design);
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
@@ -225,10 +272,14 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   snprintf(what, sizeof what, "%s force", type->name);
   dea_status status = DEA_OK;
   for (size_t i = 0; i < stops && status == DEA_OK; i++) {
-    status = load_line(ctx, type, result, i, curve);
+    status = load_line(ctx, &press, i, curve);
     if (status == DEA_OK) {
       dea_progress(ctx, what, i + 1, stops);
     }
+  }
+  dea_state_free_values(ctx, &press.at);
+  if (press.model != NULL) {
+    type->destroy(ctx, press.model);
   }
   DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
   return DEA_OK;
