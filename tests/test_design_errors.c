@@ -326,6 +326,35 @@ static void test_materials(void **state)
   }
 }
 
+/* Gent's law ends where I1 - 3 = jm: at a pre-stretch of 1.5 that is 2 1.5^2 + 1.5^-4 - 3 = 1.6975.
+ * A film and electrodes that lie beyond are refused where the pre-stretch stands. */
+#define GENT(jm, film, electrode)                                                                  \
+  "dea: 1\nfilm: {thickness: 100 um, material: " film "}\npre_stretch: 1.5\n"                      \
+  "frame: {inner_radius: 15 mm}\n"                                                                 \
+  "electrodes: {radius: 3.75 mm stretched, thickness: 5 um, material: " electrode                  \
+  "}\n" FILM_MATERIAL "  - {name: locks, kind: elastomer, laws: [{id: g, law: gent, "              \
+  "parameters: {mu: 9 kPa, jm: " jm "}, source: s}], permittivity: [{id: p, at_rest: 3, source: "  \
+  "s}]}\n"
+
+static void test_law_that_ends_before_the_pre_stretch(void **state)
+{
+  (void)state;
+  static const struct wanted film[] = {{3, 14, "ends before the pre-stretch 1.5 of the film"}},
+                             layer[] = {{3, 14, "before the pre-stretch 1.5 of the electrodes"}};
+  struct dea_design *design;
+  struct dea_device *device;
+  check_errors(GENT("1.697", "locks", "film"), film, 1);
+  check_errors(GENT("1.697", "film", "locks"), layer, 1);
+  static const char *const reach[] = {GENT("1.698", "locks", "film"),
+                                      GENT("1.698", "film", "locks")};
+  for (int i = 0; i < 2; i++) {
+    dea_finding_clear(ctx);
+    assert_int_equal(read_and_build(ctx, reach[i], NULL, 0, &design, &device), DEA_OK);
+    dea_device_destroy(ctx, device);
+    dea_design_destroy(ctx, design);
+  }
+}
+
 static void test_film_without_law_or_permittivity(void **state)
 {
   (void)state;
@@ -379,6 +408,7 @@ int main(void)
       TEST(test_number_of_errors_is_bounded),
       TEST(test_geometry),
       TEST(test_materials),
+      TEST(test_law_that_ends_before_the_pre_stretch),
       TEST(test_film_without_law_or_permittivity),
       TEST(test_bad_overrides),
   };

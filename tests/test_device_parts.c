@@ -9,6 +9,11 @@
 
 /* A design of which a line each can be replaced. */
 enum line { SHAPES = 2, PLIES, ELECTRODES, SUPPORTS, MORE, LINES };
+// a film that ends at a pre-stretch of about 2 in one direction
+#define LOCKS                                                                                      \
+  "  - {name: locks, kind: elastomer, laws: [{id: g, law: gent, parameters: {mu: 9 kPa, jm: "      \
+  "1.8}, "                                                                                         \
+  "source: s}]}\n"
 #define THREE_SHAPES                                                                               \
   "shapes: [{name: film, kind: rectangle, width: 40 mm, height: 10 mm}, "                          \
   "{name: active, kind: rectangle, width: 30 mm, height: 8 mm}, "                                  \
@@ -32,7 +37,7 @@ static const char *write_design(enum line which, const char *text)
     used +=
         (size_t)snprintf(all + used, sizeof all - used, "%s\n", i == (int)which ? text : usual[i]);
   }
-  snprintf(all + used, sizeof all - used, "%s", FILM_MATERIAL);
+  snprintf(all + used, sizeof all - used, "%s", FILM_MATERIAL LOCKS);
   return all;
 }
 
@@ -176,6 +181,11 @@ static const struct {
     {SHAPES, THREE_SHAPES ", {name: a, kind: oval}]", "there is no shape 'oval'", "oval"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: circle, radius: 2 mm, diameter: 4 mm}]",
      "unknown key 'diameter'", "diameter"},
+    // materials
+    {PLIES,
+     "plies: [{name: lower, shape: film, material: film, thickness: 1 um}, {name: upper, shape: "
+     "film, material: locks, thickness: 1 um, pre_stretch: [1.2, 2]}]",
+     "ends before the pre-stretch 2 of ply 'upper'", "1.2, 2]"},
     // shapes
     {SHAPES, THREE_SHAPES ", {name: a, kind: union, of: [a]}]", "is made of itself", "a]}"},
     {SHAPES,

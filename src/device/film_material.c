@@ -1,5 +1,6 @@
 /* Materials by name, and what a dielectric needs of its own. */
 #include "device/generator.h"
+#include "material/plane.h"
 
 #include <math.h>
 #include <string.h>
@@ -41,6 +42,21 @@ static dea_status note_breakdown(struct dea_context *ctx, const struct dea_gener
                            material->name, 1e-6 * material->breakdown.at_rest_V_per_m, l_pre);
   }
   return DEA_OK;
+}
+
+dea_status dea_generator_check_reach(struct dea_context *ctx, const struct dea_material *material,
+                                     const char *what, const double *pre_stretch,
+                                     struct dea_location place)
+{
+  struct dea_plane plane;
+  if (dea_plane_elastic(material, pre_stretch[0], pre_stretch[1], &plane) != DEA_E_DOMAIN) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_ERROR, place,
+                         "the law '%s' (%s) of '%s' ends before the pre-stretch %g of %s: take a "
+                         "smaller pre-stretch, or parameters that reach further",
+                         material->law->name, material->law_id, material->name,
+                         fmax(pre_stretch[0], pre_stretch[1]), what);
 }
 
 dea_status dea_generator_check_film(struct dea_context *ctx, const struct dea_generator_film *film)

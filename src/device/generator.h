@@ -45,6 +45,11 @@ struct dea_generator_film {
 };
 /* Adds findings where a material cannot be that of a dielectric, and on what is not known of it. */
 dea_status dea_generator_check_film(struct dea_context *ctx, const struct dea_generator_film *film);
+/* Adds an error where the material's law ends before the stretches in the plane [2] in which the
+ * part `what` ("the film") lies. */
+dea_status dea_generator_check_reach(struct dea_context *ctx, const struct dea_material *material,
+                                     const char *what, const double *pre_stretch,
+                                     struct dea_location place);
 /* The same on what matters when it is driven. */
 dea_status dea_generator_check_film_in_time(struct dea_context *ctx,
                                             const struct dea_design *design,

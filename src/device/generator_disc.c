@@ -29,6 +29,8 @@ static dea_status build_film(struct dea_context *ctx, const struct dea_design *d
   DEA_TRY(ctx, dea_generator_material(ctx, design, &design->film.material, &choice, &device->film));
   dea_device_fit_breakdown(device);
   DEA_TRY(ctx, dea_generator_check_film(ctx, &film));
+  DEA_TRY(ctx, dea_generator_check_reach(ctx, film.material, film.what, pre_stretch,
+                                         film.pre_stretch_place));
   return dea_generator_check_film_in_time(ctx, design, &film);
 }
 
@@ -49,7 +51,11 @@ static dea_status build_electrode(struct dea_context *ctx, const struct dea_desi
                            named ? "'" : "", named ? device->electrode.name : "none is given",
                            named ? "' has neither" : "");
   }
-  return DEA_OK;
+  const double pre_stretch[2] = {device->pre_stretch, device->pre_stretch};
+  return device->electrode_thickness_m > 0
+             ? dea_generator_check_reach(ctx, &device->electrode, "the electrodes", pre_stretch,
+                                         design->pre_stretch.location)
+             : DEA_OK;
 }
 
 static dea_status build_fibre(struct dea_context *ctx, const struct dea_design *design,

@@ -7,6 +7,7 @@
 #include "material/plane.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 struct maker {
@@ -77,6 +78,17 @@ static dea_status resolve_ply(const struct maker *m, const struct dea_parts_ply 
   return DEA_OK;
 }
 
+/* A ply as it lies: stretched by its pre-stretch. */
+static dea_status check_reach(struct maker *m, const struct dea_parts_ply *from,
+                              const struct dea_layout_ply *ply)
+{
+  char what[80];
+  struct dea_location place =
+      from->pre_stretch_count > 0 ? from->pre_stretch[0].location : from->name.location;
+  snprintf(what, sizeof what, "ply '%.60s'", ply->name);
+  return dea_generator_check_reach(m->ctx, &ply->material, what, ply->pre_stretch, place);
+}
+
 static dea_status add_plies(struct maker *m)
 {
   struct dea_layout *l = m->out;
@@ -98,6 +110,7 @@ static dea_status add_plies(struct maker *m)
     to->location = from->name.location;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, resolve_ply(m, from, &to->material));
+    DEA_TRY(m->ctx, check_reach(m, from, to));
     dea_breakdown_specialise(to->thickness_unstretched_m, 0, &to->material.breakdown);
   }
   return DEA_OK;
