@@ -150,6 +150,31 @@ static void test_voltage_beyond_any_equilibrium(void **state)
   clear();
 }
 
+/* A descent that has lost its way - the forces stay as large as those of the elements - is given up
+ * after `lost` iterations out of balance, well before all of its iterations are used up. */
+static void test_divergence_is_seen(void **state)
+{
+  (void)state;
+  struct dea_constituent layer = film();
+  dea_constituent_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  static const int held[] = {7, 0};
+  struct dea_solid_settings early = dea_solid_settings_default();
+  struct dea_solid_report all, few;
+  assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
+  assert_int_equal(dea_load_steps_solve_within(ctx, solid, 400e3, 1, &all), DEA_E_NOT_CONVERGED);
+  clear();
+  early.lost = early.approach_lost;
+  settings = &early;
+  assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
+  assert_int_equal(dea_load_steps_solve_within(ctx, solid, 400e3, 1, &few), DEA_E_NOT_CONVERGED);
+  settings = NULL;
+  expect("iterations in a row are out of balance");
+  print_message("%d iterations, %d in all\n", few.iterations, all.iterations);
+  assert_true(2 * few.iterations < all.iterations);
+  clear();
+}
+
 #if defined __SANITIZE_ADDRESS__ // by the sanitizer, of gcc or clang
 #define ADDRESS_SPACE_IS_TAKEN
 #elif defined __has_feature
@@ -278,6 +303,7 @@ int main(void)
       cmocka_unit_test(test_inverted_element),
       cmocka_unit_test(test_law_that_ends),
       cmocka_unit_test(test_voltage_beyond_any_equilibrium),
+      cmocka_unit_test(test_divergence_is_seen),
       cmocka_unit_test(test_settings),
       cmocka_unit_test(test_interrupted),
       cmocka_unit_test(test_memory_that_runs_out),

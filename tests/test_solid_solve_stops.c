@@ -77,6 +77,32 @@ static void test_pull_in_agrees_with_the_exact_disc(void **state)
   assert_close(far.point.voltage_V, near.point.voltage_V, 1e-5, 0);
 }
 
+/* A coupled field has no path: load steps close in on the limit point, which their states tell from
+ * a failure (docs/theory/stops.md). What the edges of the electrodes pull is a few thicknesses
+ * wide. */
+static void test_pull_in_of_a_coupled_field(void **state)
+{
+  (void)state;
+  static const struct dea_model_settings coupled = {.film = DEA_FILM_SOLID,
+                                                    .field = DEA_FIELD_COUPLED,
+                                                    .order = 1,
+                                                    .order_z = 1},
+                                         thin = {.film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
+  struct dea_device device =
+      disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 30e-6, 1.2, 2.6e-3, 15.5e-3);
+  device.film.permittivity.at_rest = 4.8;
+  struct dea_event traced, closed;
+  double at_V;
+  assert_int_equal(sweep(&dea_solid_module, &device, &thin, 360, 2, &at_V, &traced),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(sweep(&dea_solid_module, &device, &coupled, 360, 2, &at_V, &closed),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_close(at_V, 180, 0, 1e-9);
+  assert_int_equal(closed.kind, DEA_EVENT_PULL_IN);
+  assert_close(closed.point.voltage_V, traced.point.voltage_V, 5e-3, 0);
+  assert_close(closed.point.electrode_stretch - 1, traced.point.electrode_stretch - 1, 5e-2, 0);
+}
+
 /* A membrane that goes slack close to its pull-in (random design 1): the path has a corner there,
  * and a load step that begins before it ends in a state that only the end of the law holds. */
 static void test_membrane_does_not_leap_over_pull_in(void **state)
@@ -187,6 +213,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_path_beside_load_steps),
       cmocka_unit_test(test_pull_in_agrees_with_the_exact_disc),
+      cmocka_unit_test(test_pull_in_of_a_coupled_field),
       cmocka_unit_test(test_membrane_does_not_leap_over_pull_in),
       cmocka_unit_test(test_loss_of_tension_is_located),
       cmocka_unit_test(test_rest_under_stiff_electrodes),

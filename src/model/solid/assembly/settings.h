@@ -17,6 +17,9 @@
   X(double, theta, 1e-7, "1", "projected J - 1 left at an equilibrium")                            \
   X(int, iterations, 80, "1", "iterations of one minimum")                                         \
   X(int, iterations_free, 50, "1", "those that may go up in energy; then pressures are fixed")     \
+  X(int, lost, 80, "1", "of them in a row out of balance, which end it")                           \
+  X(double, lost_residual, 0.3, "of the sum of element forces", "forces left there, at least")     \
+  X(int, stuck, 3, "1", "shifted steps in a row below `step`, which end it")                       \
   X(int, rounds, 30, "1", "minima with multipliers that follow")                                   \
   X(int, rounds_worse, 4, "1", "of them in a row that violate the constraints more")               \
   X(int, chords, 8, "1", "steps in a row with one factor")                                         \
@@ -45,6 +48,7 @@
   X(int, approach_rounds, 12, "1", "times that load steps go on from a point of the path")         \
   X(int, approach_iterations, 25, "1",                                                             \
     "of one minimum of a taut film, before the path is followed")                                  \
+  X(int, approach_lost, 12, "1", "`lost` on the way to a voltage")                                 \
   X(int, approach_points, 40, "1", "points of the path on the way to a voltage")                   \
   X(double, approach_unit, 0.1, "of the displacement on the way", "counts as much as all of it")   \
   X(double, approach_step, 0.5, "of the way or of that displacement", "first step on it")          \

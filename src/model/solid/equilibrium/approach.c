@@ -6,6 +6,7 @@
 #include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* One search for the cause, and where it starts. */
@@ -17,7 +18,8 @@ struct search {
   void *user;
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
-  bool went_on;   // the solid is at a stable equilibrium further on
+  struct dea_solid_stand limit; // where the path turns back, once that is known
+  bool went_on;                 // the solid is at a stable equilibrium further on
   bool looks;     // it is known where the solid goes, and only asked what is on the way
   bool stuck;     // the path could not be followed to its end; where it looks the solid stays there
   double reached; // share of the way of the last point of the path
@@ -52,6 +54,8 @@ static dea_status take_stop(struct dea_context *ctx, const struct search *a,
   DEA_TRY(ctx, status);
   a->stop->voltage_V = at->voltage_V;
   a->stop->way = at->load;
+  dea_solid_state_get(a->s, a->limit.state);
+  dea_solid_controls_get(a->s, a->limit.controls);
   DEA_TRY(ctx, a->points(ctx, a->user, kind));
   return DEA_OK;
 }
@@ -139,20 +143,35 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   return status;
 }
 
+/* A taut film is solved in a few iterations, or not at all. */
+static void take_fewer_iterations(struct dea_solid_settings *o)
+{
+  o->iterations = o->approach_iterations < o->iterations ? o->approach_iterations : o->iterations;
+  o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
+}
+
 /* Load steps, few and long ones, that end after fewer iterations where the film is taut. */
 static dea_status try_steps(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
 {
   struct dea_solid_settings *o = &a->s->settings;
-  const int iterations = o->iterations, iterations_free = o->iterations_free;
-  if (taut && o->approach_iterations < iterations) {
-    o->iterations = o->approach_iterations;
-    o->iterations_free = iterations_free < o->iterations ? iterations_free : o->iterations;
+  const struct dea_solid_settings own = *o;
+  if (taut) {
+    take_fewer_iterations(o);
   }
   dea_status status =
       dea_load_steps_solve_within(ctx, a->s, voltage_V, o->approach_part, a->report);
-  o->iterations = iterations;
-  o->iterations_free = iterations_free;
+  *o = own;
   return status;
+}
+
+/* Controls a share of the way: the square of the voltage, and all others, in proportion. */
+static void set_between(const struct dea_solid *s, const double *from, const double *goal,
+                        double share, double *out)
+{
+  for (size_t i = 1; i < s->work.load_steps.control_count; i++) {
+    out[i] = from[i] + share * (goal[i] - from[i]);
+  }
+  out[0] = sqrt((1 - share) * from[0] * from[0] + share * goal[0] * goal[0]);
 }
 
 static dea_status end_at_limit(struct dea_context *ctx, const struct search *a)
@@ -160,12 +179,23 @@ static dea_status end_at_limit(struct dea_context *ctx, const struct search *a)
   return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV", 1e-3 * a->stop->voltage_V);
 }
 
+/* Down in energy from the limit point, a little beyond it, and on to the voltage. */
+static dea_status descend_from_limit(struct dea_context *ctx, struct search *a, double voltage_V)
+{
+  struct dea_solid *s = a->s;
+  const double least = s->settings.load_step_least;
+  dea_solid_stand_again(s, &a->limit);
+  set_between(s, a->from, a->goal, fmin(a->stop->way + least, 1), a->limit.controls);
+  DEA_TRY(ctx, dea_load_steps_solve_to(ctx, s, a->limit.controls, a->report));
+  DEA_TRY(ctx, dea_load_steps_solve_within(ctx, s, voltage_V, least, a->report));
+  return DEA_OK;
+}
+
 /* The limit point of a film that has lost its tension may be that of one wave or pit of it, beyond
- * which it leaps to another shape: all that load steps can. */
+ * which it leaps to another shape. */
 static dea_status leap(struct dea_context *ctx, struct search *a, double voltage_V)
 {
-  dea_status status =
-      dea_load_steps_solve_within(ctx, a->s, voltage_V, a->s->settings.load_step_least, a->report);
+  dea_status status = descend_from_limit(ctx, a, voltage_V);
   if (status == DEA_OK) {
     a->report->snapped = true;
     *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
@@ -174,7 +204,134 @@ static dea_status leap(struct dea_context *ctx, struct search *a, double voltage
     return status;
   }
   dea_context_clear(ctx);
+  dea_solid_state_set(a->s, a->state);
+  dea_solid_controls_set(a->s, a->from);
+  a->s->found.factor_fits = a->s->found.predicted_fits = false;
   return end_at_limit(ctx, a);
+}
+
+// Closing in on where load steps end, of a path that cannot be followed
+// -----------------------------
+
+/* The last three equilibria on the way. */
+struct nearing {
+  int count;
+  double at[3];    // shares of the way
+  double moved[2]; // how far the nodes went between them
+};
+
+static void take_near(struct nearing *n, double at, double moved)
+{
+  if (n->count == 3) {
+    n->at[0] = n->at[1];
+    n->at[1] = n->at[2];
+    n->moved[0] = n->moved[1];
+    n->count = 2;
+  }
+  n->at[n->count] = at;
+  n->moved[n->count - 1] = moved;
+  n->count++;
+}
+
+/* Whether the motion between them is rather that to a limit point at `end` of the way, u = u_c - c
+ * sqrt(end - w), than a steady one (docs/theory/stops.md). */
+static bool nears_limit(const struct nearing *n, double end)
+{
+  if (n->count < 3) {
+    return false;
+  }
+  double root[3];
+  for (int i = 0; i < 3; i++) {
+    root[i] = sqrt(end - n->at[i]);
+  }
+  double faster = n->moved[1] / (n->at[2] - n->at[1]) * (n->at[1] - n->at[0]) / n->moved[0];
+  return faster > 0.5 * (1 + (root[0] + root[1]) / (root[1] + root[2]));
+}
+
+/* One load step to a share of the way from a->from; *there: it has found a stable state, which
+ * *last then is too. */
+static dea_status step_near(struct dea_context *ctx, struct search *a, double share,
+                            struct dea_solid_stand *last, struct nearing *near, bool *there)
+{
+  struct dea_solid *s = a->s;
+  struct dea_solid_report report = {0};
+  set_between(s, a->from, a->goal, share, a->limit.controls);
+  dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
+  *there = status == DEA_OK && report.unstable_modes == 0;
+  if (!*there) {
+    dea_solid_stand_again(s, last);
+    if (dea_solid_may_shorten(status)) {
+      dea_context_clear(ctx);
+      status = DEA_OK;
+    }
+    return status;
+  }
+  report.snapped |= a->report->snapped;
+  *a->report = report;
+  take_near(near, share, dea_solid_moved_m(s, last));
+  dea_solid_state_get(s, last->state);
+  dea_solid_controls_get(s, last->controls);
+  return a->points(ctx, a->user, DEA_STOP_UNKNOWN);
+}
+
+/* From the last equilibrium that load steps have found on, halving what is left, until the state
+ * on one side and the failure on the other are `leap_way` apart; then to the goal, where nothing
+ * has failed. *there: it is reached. */
+static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
+                           bool *there)
+{
+  struct nearing near = {.count = 1};
+  double low = 0, high = 1;
+  bool found;
+  *there = false;
+  while (high - low > a->s->settings.leap_way) {
+    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    double next = 0.5 * (low + high);
+    DEA_TRY(ctx, step_near(ctx, a, next, last, &near, &found));
+    low = found ? next : low;
+    high = found ? high : next;
+  }
+  if (high == 1) {
+    return step_near(ctx, a, 1, last, &near, there);
+  }
+  if (nears_limit(&near, high)) {
+    *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), low, 0};
+    return a->points(ctx, a->user, DEA_STOP_LIMIT);
+  }
+  return DEA_OK;
+}
+
+/* All that load steps can, where the path says nothing. A taut film that they leave without an
+ * equilibrium has a limit point there, or the cause is not known. */
+static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double voltage_V,
+                               bool taut)
+{
+  struct dea_solid *s = a->s;
+  const struct dea_solid_settings own = s->settings;
+  char why[160];
+  bool there = false;
+  dea_status status =
+      dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.approach_part_least, a->report);
+  if (status != DEA_E_NOT_CONVERGED || !taut) {
+    return status;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  dea_context_clear(ctx);
+  struct dea_solid_stand last;
+  dea_status closed = dea_solid_stand_keep(ctx, s, &last);
+  dea_solid_controls_get(s, a->from);
+  dea_solid_controls_goal(s, voltage_V, a->goal);
+  take_fewer_iterations(&s->settings);
+  if (closed == DEA_OK) {
+    closed = close_in(ctx, a, &last, &there);
+  }
+  s->settings = own;
+  dea_solid_stand_free(&last);
+  DEA_TRY(ctx, closed);
+  if (a->stop->kind == DEA_STOP_LIMIT) {
+    return end_at_limit(ctx, a);
+  }
+  return there ? DEA_OK : dea_fail(ctx, status, "%s", why);
 }
 
 /* Long load steps and the path in turn; where the path says nothing, all that load steps can. */
@@ -195,9 +352,7 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
       break;
     }
   }
-  DEA_TRY(ctx, dea_load_steps_solve_within(ctx, a->s, voltage_V, a->s->settings.approach_part_least,
-                                           a->report));
-  return DEA_OK;
+  return end_by_steps(ctx, a, voltage_V, taut);
 }
 
 dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
@@ -213,8 +368,15 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
   a.goal = dea_arena_alloc(&memory, s->work.load_steps.control_count, sizeof *a.goal);
   dea_status status = dea_solid_agree(ctx, memory.failed ? DEA_E_MEMORY : DEA_OK);
   if (status == DEA_OK) {
-    status = go(ctx, &a, voltage_V, taut);
+    status = dea_solid_stand_keep(ctx, s, &a.limit);
   }
+  if (status == DEA_OK) {
+    const int lost = s->settings.lost;
+    s->settings.lost = s->settings.approach_lost;
+    status = go(ctx, &a, voltage_V, taut);
+    s->settings.lost = lost;
+  }
+  dea_solid_stand_free(&a.limit);
   dea_arena_free(&memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
@@ -256,16 +418,6 @@ void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at
   dea_solid_state_set(s, at->state);
   dea_solid_controls_set(s, at->controls);
   s->found.factor_fits = s->found.predicted_fits = false;
-}
-
-/* Controls a share of the way: the square of the voltage, and all others, in proportion. */
-static void set_between(const struct dea_solid *s, const double *from, const double *goal,
-                        double share, double *out)
-{
-  for (size_t i = 1; i < s->work.load_steps.control_count; i++) {
-    out[i] = from[i] + share * (goal[i] - from[i]);
-  }
-  out[0] = sqrt((1 - share) * from[0] * from[0] + share * goal[0] * goal[0]);
 }
 
 /* The solid on its side of a leap: near, which it leaps from, and far, where it leaps to. */
@@ -371,12 +523,16 @@ static dea_status search_back(struct dea_context *ctx, struct search *a, bool le
   a->from = room.controls;
   a->goal = now->controls;
   if (status == DEA_OK) {
+    status = dea_solid_stand_keep(ctx, a->s, &a->limit);
+  }
+  if (status == DEA_OK) {
     dea_solid_stand_again(a->s, from);
     status = a->s->problem.field == NULL ? search_path(ctx, a) : DEA_OK;
   }
   if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && (a->stuck || leapt)) {
     status = find_leap(ctx, a, from->controls, now);
   }
+  dea_solid_stand_free(&a->limit);
   dea_solid_stand_free(&room);
   return status;
 }

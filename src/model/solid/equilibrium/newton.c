@@ -19,6 +19,8 @@ struct newton {
   bool strict;        // the energy falls at fixed pressures
   int chords;         // in a row
   int unresolved;     // steps in a row whose change of the energy rounding hides
+  int lost;           // iterates in a row whose forces are far out of balance
+  int stuck;          // shifted steps in a row that are too small to matter
   struct dea_solid_report *report;
 };
 
@@ -230,6 +232,9 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
       *done = !start && there == 0 && largest(s, s->work.step) < o->step * s->problem.length_m;
+      d->stuck = there > 0 && share * largest(s, s->work.step) < o->step * s->problem.length_m
+                     ? d->stuck + 1
+                     : 0;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
       DEA_TRY(ctx, take_step(ctx, s, d, share, !*done));
       if (start) {
@@ -288,6 +293,26 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
   return DEA_OK;
 }
 
+/* Whether iterations lead to no equilibrium any more (docs/theory/branches.md): the forces stay as
+ * large as those of the elements, of which none holds another one's balance, or the energy falls
+ * along no step that is longer than rounding. */
+static dea_status heed_divergence(struct dea_context *ctx, const struct dea_solid *s,
+                                  struct newton *d)
+{
+  const struct dea_solid_settings *o = &s->settings;
+  d->lost = d->report->residual > o->lost_residual ? d->lost + 1 : 0;
+  if (d->lost >= o->lost) {
+    return dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                    "no equilibrium is near: %d iterations in a row are out of balance (residual "
+                    "%.1e)",
+                    d->lost, d->report->residual);
+  }
+  return d->stuck < o->stuck
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no step lowers the energy (residual %.1e)",
+                        d->report->residual);
+}
+
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
                               struct dea_solid_report *report)
 {
@@ -309,6 +334,7 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
       return dea_solid_count_unstable(
           ctx, s, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits, report);
     }
+    DEA_TRY(ctx, heed_divergence(ctx, s, &d));
     if (d.chord) {
       DEA_TRY(ctx, chord_step(ctx, s, &d));
     } else {
