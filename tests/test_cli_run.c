@@ -183,6 +183,38 @@ static void test_pull_in_keeps_what_was_computed(void **state)
   json_decref(root);
 }
 
+/* Without pre-stretch the film has no tension at rest and less under a voltage: the pull-in of a
+ * flat one is marked wherever it is said, and only there. */
+static void test_pull_in_of_a_slack_film(void **state)
+{
+  (void)state;
+  static const char words[] = "pull-in of a slack film: not predictive";
+  command_write("soft.yaml", soft_disc);
+  for (int slack = 0; slack < 2; slack++) {
+    char arguments[120];
+    snprintf(arguments, sizeof arguments,
+             "run soft.yaml -m axisymmetric --study sweep --set pre_stretch=%s -o out --force",
+             slack ? "1" : "1.3");
+    assert_int_equal(command_run(arguments), 4);
+    const char *event = strstr(command_out, ": pull-in");
+    assert_non_null(event);
+    assert_int_equal(strncmp(event + 2, words, strlen(words)) == 0, slack);
+    const char *stopped = strstr(command_out, "stopped, pull_in: ");
+    assert_non_null(stopped);
+    assert_int_equal(strstr(stopped, words) != NULL, slack);
+    assert_int_equal(strstr(command_err, words) != NULL, slack);
+    strcat(arguments, " --json");
+    assert_int_equal(command_run(arguments), 4);
+    json_t *root = json_loads(command_out, 0, NULL);
+    assert_non_null(root);
+    const json_t *mark = json_object_get(json_object_get(root, "limits"), "pull_in_of_slack_film");
+    assert_true(slack ? json_is_true(mark) : json_is_false(mark));
+    assert_int_equal(strstr(json_string_value(json_object_get(root, "stopped")), words) != NULL,
+                     slack);
+    json_decref(root);
+  }
+}
+
 /* Several files: the first with the others beside it; --set holds for all of them. */
 static void test_several_designs(void **state)
 {
@@ -349,6 +381,7 @@ int main(void)
       cmocka_unit_test(test_run_folder),
       cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),
       cmocka_unit_test(test_pull_in_keeps_what_was_computed),
+      cmocka_unit_test(test_pull_in_of_a_slack_film),
       cmocka_unit_test(test_several_designs),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),

@@ -161,7 +161,8 @@ static void print_breakdown(const struct dea_load_point *p, const struct dea_bre
   puts(")");
 }
 
-static void print_event(const struct dea_event *event, const struct dea_breakdown *film)
+/* slack: of a film without tension. */
+static void print_event(const struct dea_event *event, const struct dea_breakdown *film, bool slack)
 {
   const struct dea_load_point *p = &event->point;
   printf("  at %.4g kV", 1e-3 * p->voltage_V);
@@ -171,7 +172,7 @@ static void print_event(const struct dea_event *event, const struct dea_breakdow
   fputs(": ", stdout);
   switch (event->kind) {
   case DEA_EVENT_PULL_IN:
-    puts("pull-in");
+    puts(slack ? "pull-in of a slack film: not predictive" : "pull-in");
     break;
   case DEA_EVENT_SNAP_BACK:
     puts("snap-back");
@@ -261,7 +262,7 @@ static void print_model(const struct dea_result *result, const char *model)
   }
   const struct dea_curve *limits = path != NULL ? path : sweep;
   for (size_t i = 0; i < limits->event_count; i++) {
-    print_event(&limits->events[i], &result->device->film.breakdown);
+    print_event(&limits->events[i], &result->device->film.breakdown, dea_curve_is_slack(limits));
   }
   if (sweep != NULL && dea_verdict_of(sweep->status)[0] != '\0') {
     printf("  stopped, %s: %s\n", dea_verdict_of(sweep->status), sweep->stopped);

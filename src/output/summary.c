@@ -24,6 +24,9 @@ static json_t *limits_json(const struct dea_curve *path)
       dea_json_put(object, key, event->point.electrode_stretch);
     }
   }
+  if (dea_curve_first_event(path, DEA_EVENT_PULL_IN) != NULL) {
+    json_object_set_new(object, "pull_in_of_slack_film", json_boolean(dea_curve_is_slack(path)));
+  }
   return object;
 }
 

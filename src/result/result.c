@@ -220,6 +220,20 @@ dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_s
   return status;
 }
 
+bool dea_curve_is_slack(const struct dea_curve *curve)
+{
+  static const double tension_none = 1e-6; // [N/m] below: rounding of a film free of stress
+  size_t known = 0;
+  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
+    double tension = curve->points[i].min_tension_N_per_m;
+    if (tension > tension_none) {
+      return false;
+    }
+    known += isnan(tension) ? 0 : 1;
+  }
+  return known > 0;
+}
+
 const char *dea_verdict_of(dea_status status)
 {
   switch (status) {

@@ -155,6 +155,18 @@ static dea_status add_limit(struct dea_context *ctx, const struct dea_model_type
   return limit != NULL ? dea_curve_add_event(ctx, curve, limit) : DEA_OK;
 }
 
+/* Says of a pull-in that it is one of a film without tension, which would not stay flat. */
+static dea_status say_slack_pull_in(struct dea_context *ctx, const struct dea_curve *curve,
+                                    dea_status status)
+{
+  char why[sizeof curve->stopped];
+  if (status != DEA_E_NO_EQUILIBRIUM || !dea_curve_is_slack(curve)) {
+    return status;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  return dea_fail(ctx, status, "pull-in of a slack film: not predictive (%s)", why);
+}
+
 /* Where the prediction ends, as a warning: also for a reader of the notes alone. */
 static dea_status say_trust(struct dea_context *ctx, const struct dea_model_type *type,
                             const struct dea_curve *curve)
@@ -197,6 +209,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     }
   }
   DEA_TRY(ctx, say_trust(ctx, type, curve));
+  status = say_slack_pull_in(ctx, curve, status);
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
     DEA_TRY(ctx, add_limit(ctx, type, model, curve));
