@@ -1,11 +1,13 @@
-#define _POSIX_C_SOURCE 200809L // setenv
+#define _DEFAULT_SOURCE // setenv, MAP_ANONYMOUS
 #include "model/solid/assembly/ranks.h"
 
+#include <lapacke.h>
 #include <slepcsys.h>
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 static int rank_count(void)
 {
@@ -41,6 +43,24 @@ static PetscErrorCode give_code(MPI_Comm comm, int line, const char *function, c
   return swapped ? PETSC_ERR_MEM : code;
 }
 
+/* At its first call OpenBLAS maps a work space of 128 MiB (BUFFER_SIZE of x86-64, 32 << 22), which
+ * it keeps, and where there is no room for it it asks again without end. So it is asked for here,
+ * once it is known that there is room. */
+static dea_status start_blas(struct dea_context *ctx)
+{
+  static const size_t work_space = (size_t)128 << 20;
+  double matrix[] = {2, 1, 1, 1, 2, 1, 1, 1, 2}, values[3];
+  // not malloc, which under Open MPI keeps what it is given back
+  void *room = mmap(NULL, work_space, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (room == MAP_FAILED) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory: the work space of BLAS has no room");
+  }
+  munmap(room, work_space);
+  return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 3, matrix, 3, values) == 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_MEMORY, "out of memory: LAPACK cannot be started");
+}
+
 dea_status dea_solid_start(struct dea_context *ctx)
 {
   // the signals are the caller's: an interrupt has to keep the points that are there
@@ -60,6 +80,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
     return dea_fail(ctx, DEA_E_TOOL, "SLEPc could not be started");
   }
   PetscPushErrorHandler(give_code, NULL);
+  DEA_TRY(ctx, dea_solid_agree(ctx, start_blas(ctx)));
   if (rank_count() > 1 &&
       atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
     return dea_fail(ctx, DEA_E_TOOL, "PETSc's end could not be arranged");
