@@ -222,6 +222,28 @@ static void test_matlab_ends_at_zero(void **state)
   check_edited(OCTAVE);
 }
 
+/* What a protocol calls things stays a text within quotes, in both languages. */
+static void test_quotes_in_names(void **state)
+{
+  (void)state;
+  command_write("quotes.yaml",
+                "dea-protocol: 1\n"
+                "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: 1, frequency: 1 Hz}\n"
+                "amplifier: {gain: 1000, max_voltage: 5 kV, output: \"a'b\\\\c d\"}\n"
+                "rate: 1 kHz\n"
+                "channels:\n"
+                "  - {name: \"x'y\\\\\", quantity: voltage, input: \"ai0'\", range: 10 V, "
+                "per_volt: 1 kV}\n");
+  assert_int_equal(command_run("drive quotes.yaml --force --export ex"), 0);
+  command_read("ex/play_nidaqmx.py", command_out);
+  assert_contains(command_out, "OUTPUT = 'a b c d'\n");
+  assert_contains(command_out, "\"title\": 'x y  voltage (kV)',");
+  assert_contains(command_out, "\"terminal\": 'ai0 ',");
+  command_read("ex/play_matlab.m", command_out);
+  assert_contains(command_out, "'a b c d'");
+  assert_null(strstr(command_out, "a'b"));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -230,6 +252,7 @@ int main(void)
       cmocka_unit_test(test_python_ends_at_zero),
       cmocka_unit_test(test_matlab),
       cmocka_unit_test(test_matlab_ends_at_zero),
+      cmocka_unit_test(test_quotes_in_names),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }
