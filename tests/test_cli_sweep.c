@@ -51,7 +51,14 @@ static void test_errors(void **state)
   expect(three, "plan: sobol\ncorrelations: [0.9]", "1 correlations where 3 variables have 3");
   expect(three, "plan: indices\ncorrelations: [0, 0, 0.9]", "correlations are of samples");
   write_file(good, "");
-  assert_int_equal(command_run("sweep mine.yaml --shard 3/2"), 2);
+  static const char *const shards[] = {"3/2", "0/2", "1/-8", "' 1/8'",          "1/8x",
+                                       "1",   "1/",  "+1/8", "1234567/12345678"};
+  for (size_t i = 0; i < sizeof shards / sizeof shards[0]; i++) {
+    char line[64];
+    snprintf(line, sizeof line, "sweep mine.yaml --shard %s", shards[i]);
+    assert_int_equal(command_run(line), 2);
+    assert_contains(command_err, "is no part of parts such as 2/8");
+  }
   assert_int_equal(command_run("sweep mine.yaml -j 0"), 2);
 }
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Changes one place of the source at a time and looks whether a test notices.
 
-    mutants.py [--known] [--sample 20 --seed 1 [--in src/lab/reduce]...] [--build FOLDER] [--jobs 2]
+    mutants.py [--known] [--sample 20 --seed 1] [--in src/lab/reduce]... [--build FOLDER] [--jobs 2]
                [--cmake OPTION]...
 
 --known    every change of each line of KNOWN, lines that changes once survived in
+--in       only files whose names begin so
 --sample   so many changes of lines drawn from the files that OWN_TESTS names
 
 The source is copied into FOLDER (a temporary one, kept where it is named) and built there without
@@ -171,7 +172,7 @@ class Copy:
     def noticed_by(self, tests):
         """The first test that fails; None: none does."""
         for name in tests:
-            if self.run([os.path.join(self.build, "tests", "test_" + name)], 120) != 0:
+            if self.run([os.path.join(self.build, "tests", "test_" + name)], 300) != 0:
                 return name
         return None
 
@@ -195,9 +196,11 @@ def try_change(copy, path, number, new):
             f.write(text)
 
 
-def known_changes(root):
+def known_changes(root, inside):
     out = []
     for path, holds in KNOWN:
+        if not path.startswith(tuple(inside)):
+            continue
         lines = open(os.path.join(root, path)).read().split("\n")
         at = [i for i, line in enumerate(lines) if holds in line]
         if not at:
@@ -229,7 +232,7 @@ def main():
     p.add_argument("--cmake", action="append", default=[], help="one more option: --cmake=-DX=Y")
     a = p.parse_args()
     root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    changes = known_changes(root) if a.known else []
+    changes = known_changes(root, a.inside or ["src"]) if a.known else []
     changes += drawn_changes(root, a.sample, a.seed, a.inside or ["src"])
     copy = Copy(root, a.build or tempfile.mkdtemp(prefix="dea-mutants-"), a.jobs, a.cmake)
     tests = sorted({t for path, _, _, _ in changes for t in tests_of(path)})

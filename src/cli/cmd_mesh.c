@@ -64,7 +64,7 @@ static void print_layout(const struct request *request, const struct dea_layout_
     cli_print_json(json_pack(
         "{s:I, s:I, s:I, s:I, s:f}", "elements", (json_int_t)grid->element_count, "flat_elements",
         (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
-        (json_int_t)(3 * grid->node_count), "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
+        3 * (json_int_t)grid->node_count, "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
     return;
   }
   size_t copies = dea_layout_sector_copies(&mesh->sector);

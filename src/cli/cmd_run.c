@@ -63,6 +63,7 @@ static dea_status choose_models(struct dea_cli *cli, const struct request *reque
   for (size_t i = 0; i < job->model_count; i++) {
     const struct dea_label *label = &design->compute.models[i];
     const struct dea_location option = {.file = "--model"};
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): as many were given as are counted
     job->models[i] = given ? cli_model_find(cli, request->models.at[i], option)
                            : cli_model_find(cli, label->text, label->location);
     bad = bad || job->models[i] == NULL;

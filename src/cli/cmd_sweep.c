@@ -6,6 +6,7 @@
 #include "explore/sweep.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -17,13 +18,26 @@ struct request {
   struct dea_plot_format format; // of the figures
 };
 
+/* A number of up to 6 digits; *text goes behind it. */
+static bool take_number(const char **text, size_t *out)
+{
+  size_t digits = strspn(*text, "0123456789");
+  if (digits == 0 || digits > 6) {
+    return false;
+  }
+  *out = strtoul(*text, NULL, 10);
+  *text += digits;
+  return true;
+}
+
 static int take_shard(struct dea_cli *cli, const struct dea_command *command,
                       const struct cli_option *option, const char *text, void *target)
 {
   struct dea_shard *shard = target;
-  int used = 0;
-  if (sscanf(text, "%6zu/%6zu%n", &shard->part, &shard->parts, &used) != 2 || text[used] != '\0' ||
-      shard->part < 1 || shard->part > shard->parts) {
+  const char *rest = text;
+  bool good = take_number(&rest, &shard->part) && *rest++ == '/' &&
+              take_number(&rest, &shard->parts) && *rest == '\0';
+  if (!good || shard->part < 1 || shard->part > shard->parts) {
     return cli_usage_error(cli, command, "--%s: '%.20s' is no part of parts such as 2/8",
                            option->name, text);
   }
