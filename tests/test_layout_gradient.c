@@ -14,7 +14,7 @@
 
 static const char *const keys[] = {"highest_z_m",         "true_field_V_per_m", "breakdown_margin",
                                    "min_tension_N_per_m", "capacitance_F",      "energy_J"};
-enum { KEYS = sizeof keys / sizeof keys[0], MONITORS = 2, WIDTH = KEYS + MONITORS };
+enum { KEYS = sizeof keys / sizeof keys[0], TENSION = 3, MONITORS = 2, WIDTH = KEYS + MONITORS };
 
 /* A device with all that has numbers: a hub with a mass, a force and a spring, its own voltages. */
 static const char cone[] = "dea: 1\n"
@@ -217,6 +217,54 @@ static void test_region(void **state)
   check(&at);
 }
 
+/* A bender without pre-stretch, whose principal membrane forces are nearly equal: the remainder of
+ * the smaller one falls as the square of the change. */
+static void test_tension_of_a_bender(void **state)
+{
+  (void)state;
+  static const char bender[] =
+      "dea: 1\n"
+      "title: bender\n"
+      "shapes:\n"
+      "  - {name: strip, kind: rectangle, x: 4 mm, width: 8 mm, height: 4 mm}\n"
+      "  - {name: root, kind: rectangle, width: 1 mm, height: 5 mm}\n"
+      "plies:\n"
+      "  - {name: passive, shape: strip, material: elastosil-2030, thickness: 200 um}\n"
+      "  - {name: film, shape: strip, material: elastosil-2030, thickness: 200 um}\n"
+      "electrodes:\n"
+      "  - {ply: film, side: bottom, shape: strip, channel: ground}\n"
+      "  - {ply: film, side: top, shape: strip, channel: drive}\n"
+      "supports:\n"
+      "  - {edge: strip, within: root}\n"
+      "monitors:\n"
+      "  - {name: tip, at: [8 mm, 0 mm], ply: film}\n"
+      "compute:\n"
+      "  voltage: {to: 0.5 kV, step: 0.5 kV}\n";
+  static const double shares[] = {1e-2, 1e-3, 1e-4};
+  struct at at = {.voltage_V = 500};
+  struct dea_model *model;
+  double base[WIDTH], moved[WIDTH], slope, left[3];
+  assert_int_equal(
+      dea_design_read_memory(ctx, "bender.yaml", bender, strlen(bender), NULL, 0, &at.design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  solve(&at, at.device, at.voltage_V, base, &model);
+  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
+  const int column = dea_point_column_find(keys[TENSION]);
+  const struct dea_design_change change = {
+      {at.device, at.device}, {at.voltage_V * (1 - 1e-5), at.voltage_V * (1 + 1e-5)}, 2e-5};
+  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
+  assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
+  type->destroy(ctx, model);
+  for (int n = 0; n < 3; n++) {
+    solve(&at, at.device, at.voltage_V * (1 + shares[n]), moved, NULL);
+    left[n] = (moved[TENSION] - base[TENSION] - slope * shares[n]) / base[TENSION];
+    assert_close(left[n], left[0] * pow(shares[n] / shares[0], 2), 0.1, 1e-9);
+  }
+  dea_device_destroy(ctx, at.device);
+  dea_design_destroy(ctx, at.design);
+}
+
 /* Shapes and supports: the mesh of the device does not follow. */
 static void test_what_cannot_follow(void **state)
 {
@@ -259,6 +307,7 @@ int main(void)
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_two_plies_under_pressure),
       cmocka_unit_test(test_region),
+      cmocka_unit_test(test_tension_of_a_bender),
       cmocka_unit_test(test_what_cannot_follow),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

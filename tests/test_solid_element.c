@@ -190,6 +190,8 @@ static void check_patch(struct sample *s)
   assert_close(volume, at.volume_m3, 1e-12, 0);
   for (int p = 0; p < state.count; p++) {
     assert_close(state.area[p], 1 / F[8], 1e-9, 0);
+    const double *T = state.force[p];
+    assert_close(state.tension[p], 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]), 1e-9, 0);
   }
   assert_int_equal(recovered.nodes, s->element->nodes);
   for (int a = 0; a < recovered.nodes; a++) {

@@ -154,53 +154,69 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
 
 // Slopes -----------------------------------------------------------------------------------------
 
-/* A film's quantity at its points in the plane, out [DEA_HEX_GAUSS_MAX]; returns their number, 0
- * where it is not defined. */
-static int values_of(const struct dea_solid *s, const struct dea_solid_film_data *films,
-                     enum dea_film_extreme which, size_t e, double voltage_V, double *out)
+/* The film's surface at its points in the plane; false where it is not defined. */
+static bool surface_of(const struct dea_solid *s, size_t e, double voltage_V,
+                       struct dea_element_input *in, struct dea_membrane_state *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  const struct dea_solid_film_data *data = &films[s->problem.constituent_of[e]];
   struct dea_solid_element_place at;
-  struct dea_element_input in;
-  struct dea_membrane_state film;
-  dea_solid_element_input(s, e, s->state.u, voltage_V, &at, &in);
-  if (element->type->membrane_state(element, &in, &film) != DEA_OK) {
-    return 0;
-  }
-  for (int p = 0; p < film.count; p++) {
-    double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
-    double stretch = data->pre_stretch * sqrt(film.area[p]);
-    out[p] = which == DEA_FILM_FIELD    ? field
-             : which == DEA_FILM_MARGIN ? 1 - field / dea_breakdown_field(data->material, stretch)
-                                        : film.tension[p];
-  }
-  return film.count;
+  dea_solid_element_input(s, e, s->state.u, voltage_V, &at, in);
+  return element->type->membrane_state(element, in, out) == DEA_OK;
+}
+
+static double quantity_of(const struct dea_element_input *in, const struct dea_membrane_state *film,
+                          const struct dea_solid_film_data *data, enum dea_film_extreme which,
+                          int p, const double direction[2])
+{
+  const double field = fabs(in->voltage_V) / in->constituent->thickness_m * film->area[p];
+  const double stretch = data->pre_stretch * sqrt(film->area[p]), *T = film->force[p];
+  return which == DEA_FILM_FIELD ? field
+         : which == DEA_FILM_MARGIN
+             ? 1 - field / dea_breakdown_field(data->material, stretch)
+             : T[0] * direction[0] * direction[0] + T[1] * direction[1] * direction[1] +
+                   2 * T[2] * direction[0] * direction[1];
+}
+
+/* Direction of the smaller principal force. */
+static void find_direction(const double T[3], double out[2])
+{
+  const double angle = 0.5 * atan2(-T[2], 0.5 * (T[1] - T[0]));
+  out[0] = cos(angle);
+  out[1] = sin(angle);
 }
 
 double dea_solid_extreme_at(const struct dea_solid *s, const struct dea_solid_film_data *films,
                             enum dea_film_extreme which, const struct dea_film_place *place,
                             double voltage_V)
 {
-  double values[DEA_HEX_GAUSS_MAX];
-  int count = values_of(s, films, which, place->element, voltage_V, values);
-  return place->point < count ? values[place->point] : NAN;
+  struct dea_element_input in;
+  struct dea_membrane_state film;
+  return surface_of(s, place->element, voltage_V, &in, &film)
+             ? quantity_of(&in, &film, &films[s->problem.constituent_of[place->element]], which,
+                           place->point, place->direction)
+             : NAN;
 }
 
 bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_data *films,
                             enum dea_film_extreme which, struct dea_film_place *out)
 {
-  double sign = which == DEA_FILM_FIELD ? 1 : -1, best = -INFINITY, values[DEA_HEX_GAUSS_MAX];
-  *out = (struct dea_film_place){0, 0};
+  const double sign = which == DEA_FILM_FIELD ? 1 : -1;
+  double best = -INFINITY;
+  struct dea_element_input in;
+  struct dea_membrane_state film;
+  *out = (struct dea_film_place){.element = 0};
   for (size_t e = 0; e < s->problem.grid->element_count; e++) { // all ranks all of them
-    bool film = dea_solid_constituent(s, e)->permittivity_F_per_m > 0 &&
-                films[s->problem.constituent_of[e]].material != NULL &&
-                (which == DEA_FILM_TENSION || s->problem.active[e]);
-    int count = film ? values_of(s, films, which, e, s->state.voltage_V, values) : 0;
-    for (int p = 0; p < count; p++) {
-      if (sign * values[p] > best) { // not where it is unknown
-        best = sign * values[p];
-        *out = (struct dea_film_place){e, p};
+    const struct dea_solid_film_data *data = &films[s->problem.constituent_of[e]];
+    bool asked = dea_solid_constituent(s, e)->permittivity_F_per_m > 0 && data->material != NULL &&
+                 (which == DEA_FILM_TENSION || s->problem.active[e]);
+    asked = asked && surface_of(s, e, s->state.voltage_V, &in, &film);
+    for (int p = 0; asked && p < film.count; p++) {
+      struct dea_film_place place = {.element = e, .point = p};
+      find_direction(film.force[p], place.direction);
+      double value = sign * quantity_of(&in, &film, data, which, p, place.direction);
+      if (value > best) { // not where it is unknown
+        best = value;
+        *out = place;
       }
     }
   }

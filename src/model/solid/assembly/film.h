@@ -31,15 +31,18 @@ dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_solid_fi
 
 enum dea_film_extreme { DEA_FILM_FIELD, DEA_FILM_MARGIN, DEA_FILM_TENSION, DEA_FILM_EXTREMES };
 
-/* Where an extreme is: an element and a point in its plane. */
+/* Where an extreme is: an element, a point in its plane, and of the tension the direction in which
+ * it is least, on the basis of dea_membrane_force. */
 struct dea_film_place {
   size_t element;
   int point;
+  double direction[2]; // of length 1
 };
 /* That of the last equilibrium; false where there is none. All ranks get the same. */
 bool dea_solid_extreme_find(struct dea_solid *solid, const struct dea_solid_film_data *films,
                             enum dea_film_extreme which, struct dea_film_place *out);
-/* Its quantity at a place, at a voltage; NAN where it is not defined. */
+/* Its quantity at a place, at a voltage; NAN where it is not defined. Of the tension the one in
+ * that direction, which has the same slope as the least one and is as smooth as stresses are. */
 double dea_solid_extreme_at(const struct dea_solid *solid, const struct dea_solid_film_data *films,
                             enum dea_film_extreme which, const struct dea_film_place *place,
                             double voltage_V);

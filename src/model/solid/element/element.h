@@ -65,8 +65,9 @@ struct dea_element_result {
 /* The film as a surface at the points in its plane, means through the thickness. */
 struct dea_membrane_state {
   int count;
-  double area[DEA_HEX_GAUSS_MAX];    // |F_1 x F_2|, current over reference area
-  double tension[DEA_HEX_GAUSS_MAX]; // smaller principal force per current length [N/m]
+  double area[DEA_HEX_GAUSS_MAX];     // |F_1 x F_2|, current over reference area
+  double tension[DEA_HEX_GAUSS_MAX];  // smaller principal force per current length [N/m]
+  double force[DEA_HEX_GAUSS_MAX][3]; // all of it, 11 22 12 as dea_membrane_force has it
 };
 
 /* At the Gauss points: C = F^T F and its inverse (11 22 33 23 13 12), and reference volume. */

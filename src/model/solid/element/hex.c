@@ -4,6 +4,7 @@
 #include "base/quadrature.h"
 #include "model/solid/element/fit.h"
 #include "model/solid/element/hex_tensor.h"
+#include "model/solid/point/membrane_point.h"
 #include "model/solid/point/viscous.h"
 
 #include <math.h>
@@ -513,37 +514,6 @@ dea_status dea_hex_metric(const struct dea_element *element,
 
 /* ---- after a solve ---- */
 
-/* Smaller principal value of the membrane force N_iJ (per reference length) in the current tangent
- * plane: T = N F^T / |F_1 x F_2| on an orthonormal basis of that plane. */
-static double smaller_tension(const double N[6], const double F[9], double area)
-{
-  double e[2][3], length = sqrt(F[0] * F[0] + F[3] * F[3] + F[6] * F[6]), along = 0, rest = 0;
-  for (int i = 0; i < 3; i++) {
-    e[0][i] = F[3 * i] / length;
-    along += e[0][i] * F[3 * i + 1];
-  }
-  for (int i = 0; i < 3; i++) {
-    e[1][i] = F[3 * i + 1] - along * e[0][i];
-    rest += e[1][i] * e[1][i];
-  }
-  double T[2][2] = {{0, 0}, {0, 0}};
-  for (int i = 0; i < 3; i++) {
-    e[1][i] /= sqrt(rest);
-  }
-  for (int a = 0; a < 2; a++) {
-    for (int b = 0; b < 2; b++) {
-      for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-          double NF = N[2 * i] * F[3 * j] + N[2 * i + 1] * F[3 * j + 1];
-          T[a][b] += e[a][i] * NF * e[b][j] / area;
-        }
-      }
-    }
-  }
-  double shear = 0.5 * (T[0][1] + T[1][0]), half = 0.5 * (T[0][0] - T[1][1]);
-  return 0.5 * (T[0][0] + T[1][1]) - sqrt(half * half + shear * shear);
-}
-
 dea_status dea_hex_membrane_state(const struct dea_element *element,
                                   const struct dea_element_input *in,
                                   struct dea_membrane_state *out)
@@ -590,7 +560,10 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
     double normal[3] = {F[3] * F[7] - F[6] * F[4], F[6] * F[1] - F[0] * F[7],
                         F[0] * F[4] - F[3] * F[1]};
     out->area[p] = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    out->tension[p] = smaller_tension(N, F, out->area[p]);
+    const double plane[6] = {F[0], F[1], F[3], F[4], F[6], F[7]};
+    double *T = out->force[p];
+    dea_membrane_force(N, plane, out->area[p], T);
+    out->tension[p] = 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
   }
   return status;
 }

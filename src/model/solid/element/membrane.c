@@ -180,6 +180,10 @@ static dea_status membrane_state(const struct dea_element *element,
     dea_viscous_add_flat(constituent, q, F, &point);
     out->area[q] = point.area;
     out->tension[q] = constituent->thickness_m * point.tension_Pa[1];
+    dea_membrane_force(point.P, F, point.area, out->force[q]);
+    for (int i = 0; i < 3; i++) {
+      out->force[q][i] *= constituent->thickness_m;
+    }
   }
   return DEA_OK;
 }

@@ -209,3 +209,33 @@ dea_status dea_membrane_point(const struct dea_constituent *constituent, const d
   }
   return DEA_OK;
 }
+
+void dea_membrane_force(const double P[6], const double F[6], double area, double out[3])
+{
+  double e[2][3], along = 0, length = 0, rest = 0, T[2][2] = {{0, 0}, {0, 0}};
+  for (int i = 0; i < 3; i++) {
+    length += F[2 * i] * F[2 * i];
+  }
+  for (int i = 0; i < 3; i++) {
+    e[0][i] = F[2 * i] / sqrt(length);
+    along += e[0][i] * F[2 * i + 1];
+  }
+  for (int i = 0; i < 3; i++) {
+    e[1][i] = F[2 * i + 1] - along * e[0][i];
+    rest += e[1][i] * e[1][i];
+  }
+  for (int i = 0; i < 3; i++) {
+    e[1][i] /= sqrt(rest);
+  }
+  for (int a = 0; a < 4; a++) {
+    for (int i = 0; i < 3; i++) {
+      for (int j = 0; j < 3; j++) {
+        double PF = P[2 * i] * F[2 * j] + P[2 * i + 1] * F[2 * j + 1];
+        T[a / 2][a % 2] += e[a / 2][i] * PF * e[a % 2][j] / area;
+      }
+    }
+  }
+  out[0] = T[0][0];
+  out[1] = T[1][1];
+  out[2] = 0.5 * (T[0][1] + T[1][0]);
+}

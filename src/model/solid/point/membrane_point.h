@@ -33,4 +33,9 @@ struct dea_membrane_point {
 dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
                               double field_V_per_m, struct dea_membrane_point *out);
 
+/* Membrane force P F^T / area on an orthonormal basis of the current tangent plane, of which the
+ * first vector is along F_1. P: per reference length [3][2], F: of the plane [3][2], area: |F_1 x
+ * F_2|. out: 11 22 12. */
+void dea_membrane_force(const double P[6], const double F[6], double area, double out[3]);
+
 #endif
