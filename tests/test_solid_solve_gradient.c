@@ -78,8 +78,26 @@ static struct state changed(const struct state *from, int i, double share)
 
 static const char *const keys[] = {"centre_z_m",         "fibre_tip_z_m",    "electrode_edge_u_m",
                                    "true_field_V_per_m", "breakdown_margin", "min_tension_N_per_m",
-                                   "capacitance_F",      "energy_J"};
-enum { KEYS = sizeof keys / sizeof keys[0] };
+                                   "capacitance_F",      "energy_J",         "frequency_Hz"};
+enum { KEYS = sizeof keys / sizeof keys[0], FREQUENCY = KEYS - 1 };
+
+/* A device has a frequency where its densities are known. */
+static int key_count(const struct state *at)
+{
+  return at->device.film.density_kg_per_m3 > 0 ? KEYS : FREQUENCY;
+}
+
+/* The lowest of a model at its last point. */
+static double frequency_of(struct dea_model *model, const struct dea_load_point *point)
+{
+  struct dea_load_point mode;
+  struct dea_field_mesh *shapes;
+  if (solid->modes(ctx, model, point, 1, &mode, &shapes) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  dea_field_mesh_destroy(ctx, shapes);
+  return mode.frequency_Hz;
+}
 
 static struct dea_load_point solve(const struct state *at, const struct dea_device *mesh_of,
                                    const struct dea_model_settings *settings,
@@ -93,6 +111,9 @@ static struct dea_load_point solve(const struct state *at, const struct dea_devi
       solid->solve(ctx, model, at->voltage_V, &point) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
+  if (key_count(at) > FREQUENCY) {
+    point.frequency_Hz = frequency_of(model, &point);
+  }
   if (keep != NULL) {
     *keep = model;
   } else {
@@ -101,9 +122,9 @@ static struct dea_load_point solve(const struct state *at, const struct dea_devi
   return point;
 }
 
-/* Slopes by the logarithms of all numbers, out [NUMBERS][KEYS], and where they are of. */
-static struct dea_load_point
-find_slopes(const struct state *at, const struct dea_model_settings *settings, double (*out)[KEYS])
+/* Slopes by the logarithms of all numbers, out [NUMBERS][key_count], and where they are of. */
+static struct dea_load_point find_slopes(const struct state *at,
+                                         const struct dea_model_settings *settings, double *out)
 {
   const double share = 1e-5;
   struct dea_model *model = NULL;
@@ -122,8 +143,9 @@ find_slopes(const struct state *at, const struct dea_model_settings *settings, d
     }
     changes[i].width = 2 * share;
   }
-  const struct dea_gradient_ask ask = {changes, NUMBERS, columns, KEYS, NULL, 0, NULL};
-  if (solid->gradient(ctx, model, &ask, out[0]) != DEA_OK) {
+  const struct dea_gradient_ask ask = {changes, NUMBERS, columns, (size_t)key_count(at),
+                                       NULL,    0,       NULL};
+  if (solid->gradient(ctx, model, &ask, out) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   solid->destroy(ctx, model);
@@ -139,10 +161,11 @@ static double remainder_of(const struct dea_load_point *base, const struct dea_l
   return (dea_point_get(moved, column) - from - slope * share) / from;
 }
 
-/* What the solver leaves of a quantity: of the tension more, it has the pressures. */
+/* What the solver leaves of a quantity: of the tension more, it has the pressures, and of the
+ * frequency, that of the eigenvalues. */
 static double floor_of(int k)
 {
-  return strcmp(keys[k], "min_tension_N_per_m") == 0 ? 1e-8 : 2e-10;
+  return strcmp(keys[k], "min_tension_N_per_m") == 0 || k == FREQUENCY ? 1e-8 : 2e-10;
 }
 
 /* Of a slope: what differences of residuals over 1e-5 of a number leave, rounding of 1e-11 over
@@ -154,16 +177,17 @@ static const double slope_accuracy = 5e-6;
 static void check(const struct state *at, const struct dea_model_settings *settings,
                   const double *shares, size_t count, size_t from)
 {
-  double slopes[NUMBERS][KEYS], left[SHARES_MAX];
+  double slopes[NUMBERS * KEYS], left[SHARES_MAX];
+  const int width = key_count(at);
   struct dea_load_point base = find_slopes(at, settings, slopes), moved[SHARES_MAX];
   for (int i = 0; i < NUMBERS; i++) {
     for (size_t n = 0; n < count; n++) {
       struct state there = changed(at, i, shares[n]);
       moved[n] = solve(&there, &at->device, settings, NULL);
     }
-    for (int k = 0; k < KEYS; k++) {
+    for (int k = 0; k < width; k++) {
       for (size_t n = 0; n < count; n++) {
-        left[n] = remainder_of(&base, &moved[n], k, slopes[i][k], shares[n]);
+        left[n] = remainder_of(&base, &moved[n], k, slopes[i * width + k], shares[n]);
       }
       for (size_t n = 0; n < count; n++) {
         const double wanted = left[from] * pow(shares[n] / shares[from], 2);
@@ -188,6 +212,15 @@ static struct state star(void)
   return at;
 }
 
+/* It has a mass. */
+static struct state heavy_star(void)
+{
+  struct state at = star();
+  at.device.film.density_kg_per_m3 = 1080;
+  at.device.fibre.density_kg_per_m3 = 1390;
+  return at;
+}
+
 /* Four decades of the change, eight of the remainder. */
 static void test_four_decades(void **state)
 {
@@ -198,17 +231,34 @@ static void test_four_decades(void **state)
   check(&at, &settings, shares, 5, 1);
 }
 
-/* Its weight is a dead load that changes with the device. */
+/* Its weight is a dead load that changes with the device, and so does its lowest frequency. */
 static void test_membrane_with_weight(void **state)
 {
   (void)state;
   static const double shares[] = {3e-3, 3e-4};
-  struct state at = star();
+  struct state at = heavy_star();
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
   at.device.gravity = DEA_GRAVITY_FIBRES_UP;
-  at.device.film.density_kg_per_m3 = 1080;
-  at.device.fibre.density_kg_per_m3 = 1390;
   check(&at, &settings, shares, 2, 0);
+}
+
+/* With all lengths and the voltage s times as large a device vibrates at 1/s of its frequency. */
+static void test_frequency_of_all_lengths(void **state)
+{
+  (void)state;
+  static const int lengths[] = {VOLTAGE, THICKNESS, ELECTRODE,       FRAME, TIP,
+                                WIDTH,   TIP_WIDTH, FIBRE_THICKNESS, GLUE};
+  static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
+  struct state at = heavy_star();
+  for (int f = 0; f < 2; f++) {
+    double slopes[NUMBERS * KEYS], sum = 0;
+    const struct dea_model_settings settings = {.film = films[f]};
+    const double base_Hz = find_slopes(&at, &settings, slopes).frequency_Hz;
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+      sum += slopes[lengths[i] * KEYS + FREQUENCY] / base_Hz;
+    }
+    assert_close(sum, -1, 1e-4, 0);
+  }
 }
 
 /* A change of the order of the parts: the tip comes to lie off the electrode. */
@@ -239,6 +289,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_four_decades),
       cmocka_unit_test(test_membrane_with_weight),
+      cmocka_unit_test(test_frequency_of_all_lengths),
       cmocka_unit_test(test_mesh_that_cannot_follow),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -3,6 +3,7 @@
 #include "base/schema.h"
 #include "result/columns.h"
 #include "study/design_gradient.h"
+#include "study/modal.h"
 #include "study/observe.h"
 #include "study/study.h"
 
@@ -31,7 +32,9 @@ static const struct dea_field fields[] = {
 static const struct dea_record record = {
     study_name,
     "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
-    "displacements, field, tension, capacitance and energy by the numbers of the design",
+    "displacements, field, tension, capacitance and energy by the numbers of the design; with "
+    "study "
+    "modal also of the lowest frequency",
     fields, COUNT(fields)};
 
 static const struct dea_design_section section = {
@@ -42,9 +45,10 @@ static const struct dea_design_section section = {
 /* Quantities that are asked for, in the order of the columns below; the first that a model knows is
  * what the table is sorted by. */
 static const char *const quantities[] = {
-    "fibre_tip_z_m",    "centre_z_m",          "electrode_edge_u_m", "true_field_V_per_m",
-    "breakdown_margin", "min_tension_N_per_m", "capacitance_F",      "energy_J"};
-enum { QUANTITIES = COUNT(quantities), FIELD = 3, CAPACITANCE = 6 };
+    "fibre_tip_z_m",      "centre_z_m",       "electrode_edge_u_m",
+    "true_field_V_per_m", "breakdown_margin", "min_tension_N_per_m",
+    "capacitance_F",      "energy_J",         "frequency_Hz"};
+enum { QUANTITIES = COUNT(quantities), FIELD = 3, CAPACITANCE = 6, FREQUENCY = 8 };
 
 /* Columns that tables share. */
 #define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage")
@@ -100,6 +104,7 @@ static const struct dea_result_column matter_columns[] = {
     ELASTICITY("min_tension_N_per_m", "tension, %"),
     ELASTICITY("capacitance_F", "capacitance, %"),
     ELASTICITY("energy_J", "energy, %"),
+    ELASTICITY("frequency_Hz", "frequency, %"),
     {.key = "tolerance_text",
      .kind = DEA_CELL_TEXT,
      .title = "tolerance",
@@ -148,6 +153,7 @@ static const struct dea_result_column part_matter_columns[] = {
     ELASTICITY("min_tension_N_per_m", "tension, %"),
     ELASTICITY("capacitance_F", "capacitance, %"),
     ELASTICITY("energy_J", "energy, %"),
+    ELASTICITY("frequency_Hz", "frequency, %"),
 };
 static const struct dea_result_table_type part_matter_table = {.study = study_name,
                                                                .name = "matters",
@@ -175,8 +181,15 @@ struct stop {
   double *motion_value;      // [width - QUANTITIES]
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
-  double *slopes; // [number_count][width]
+  bool vibrates;  // the frequency is one of the quantities that are asked for
+  double *slopes; // [number_count][asked_of]
 };
+
+/* How many quantities slopes are asked of. */
+static size_t asked_of(const struct stop *stop)
+{
+  return stop->vibrates ? stop->width : stop->width - 1;
+}
 
 static double value_of(const struct stop *stop, size_t quantity)
 {
@@ -186,7 +199,11 @@ static double value_of(const struct stop *stop, size_t quantity)
 
 static double slope_of(const struct stop *stop, size_t number, size_t quantity)
 {
-  return stop->slopes[number * stop->width + quantity];
+  if (quantity == FREQUENCY && !stop->vibrates) {
+    return NAN;
+  }
+  const size_t at = quantity > FREQUENCY && !stop->vibrates ? quantity - 1 : quantity;
+  return stop->slopes[number * asked_of(stop) + at];
 }
 
 static double elasticity(const struct stop *stop, size_t number, size_t quantity)
@@ -363,6 +380,22 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   return DEA_OK;
 }
 
+/* The lowest mode, of a design with study modal. */
+static dea_status find_frequency(struct dea_context *ctx, const struct dea_model_type *type,
+                                 struct dea_model *model, const struct dea_result *result,
+                                 struct stop *stop)
+{
+  struct dea_load_point mode;
+  struct dea_field_mesh *shapes;
+  stop->vibrates = type->modes != NULL && dea_modal_asked(result->design);
+  if (stop->vibrates) {
+    DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, 1, &mode, &shapes));
+    dea_field_mesh_destroy(ctx, shapes);
+    stop->point.frequency_Hz = mode.frequency_Hz;
+  }
+  return DEA_OK;
+}
+
 static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_result *result,
                             struct stop *stop)
@@ -373,8 +406,9 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
     stop->columns[k] = dea_point_column_find(quantities[k]);
   }
   DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
+  DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
   stop->slopes =
-      dea_arena_alloc(&stop->memory, stop->number_count * stop->width, sizeof *stop->slopes);
+      dea_arena_alloc(&stop->memory, stop->number_count * asked_of(stop), sizeof *stop->slopes);
   DEA_TRY(ctx, dea_arena_status(&stop->memory));
   const struct dea_design_gradient ask = {.type = type,
                                           .model = model,
@@ -384,7 +418,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
                                           .numbers = stop->numbers,
                                           .number_count = stop->number_count,
                                           .columns = stop->columns,
-                                          .column_count = QUANTITIES,
+                                          .column_count = stop->vibrates ? QUANTITIES : FREQUENCY,
                                           .monitors = stop->monitors,
                                           .monitor_count = stop->width - QUANTITIES};
   DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, stop->slopes));

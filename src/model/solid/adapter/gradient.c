@@ -2,6 +2,7 @@
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/equilibrium/adjoint.h"
+#include "model/solid/equilibrium/modes.h"
 #include "result/columns.h"
 
 #include <math.h>
@@ -98,6 +99,16 @@ dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradie
 
 // Gradients ---------------------------------------------------------------------------------------
 
+/* The lowest mode of small motions, whose frequency is asked for. */
+struct mode {
+  bool known;
+  double *v, *pressure;   // [dofs], [pressures]: its motion, v . Mv = 1, and kappa M^-1 B^T v
+  double square, rate;    // omega^2; slope of the frequency by it
+  double step;            // of v, in differences
+  double *u, *multiplier; // of the equilibrium
+  double *gain, *motion;  // [pressures], [dofs] room
+};
+
 struct work {
   const struct dea_gradient_owner *owner;
   const struct dea_gradient_ask *ask;
@@ -105,15 +116,142 @@ struct work {
   bool *known;    // [dea_gradient_width] there is an answer
   double *side;   // [2][dea_gradient_width]
   double *motion; // [monitor_count]
+  struct mode mode;
 };
+
+// The lowest mode ---------------------------------------------------------------------------------
+
+static bool is_frequency(int column)
+{
+  return strcmp(dea_point_columns[column].key, "frequency_Hz") == 0;
+}
+
+bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask)
+{
+  return asks(ask, "frequency_Hz");
+}
+
+/* The mode by itself; without a slope where two have the same frequency. */
+static dea_status find_mode(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+{
+  static const double apart = 1e-4, pi = 3.14159265358979323846;
+  struct dea_solid *s = w->owner->solid;
+  struct mode *m = &w->mode;
+  const size_t dofs = s->problem.dofs, pressures = dea_solid_pressure_count(s);
+  double squares[2];
+  m->v = dea_arena_alloc(memory, 2 * dofs, sizeof(double)); // the second one is only compared
+  m->u = dea_arena_alloc(memory, dofs, sizeof(double));
+  m->motion = dea_arena_alloc(memory, dofs, sizeof(double));
+  m->pressure = dea_arena_alloc(memory, pressures, sizeof(double));
+  m->multiplier = dea_arena_alloc(memory, pressures, sizeof(double));
+  m->gain = dea_arena_alloc(memory, pressures, sizeof(double));
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
+  DEA_TRY(ctx, dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_MASS, 2, squares, m->v));
+  m->known = fabs(squares[1] - squares[0]) > apart * fabs(squares[0]) && squares[0] != 0;
+  m->square = squares[0];
+  m->rate = 1 / (4 * pi * sqrt(fabs(squares[0])));
+  if (!m->known) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                            "model 3d: no gradient of the frequency: the two lowest modes have "
+                            "the same one (a sector of the device has only one of them)"));
+  }
+  memcpy(m->u, s->state.u, dofs * sizeof(double));
+  memcpy(m->multiplier, s->state.multiplier, pressures * sizeof(double));
+  return DEA_OK;
+}
+
+/* Its pressures, and how far differences go: a share of the thickness of the thinnest film. */
+static void prepare_mode(struct work *w)
+{
+  static const double share = 0.02;
+  const struct dea_solid *s = w->owner->solid;
+  struct mode *m = &w->mode;
+  double thinnest_m = INFINITY, largest = 0;
+  for (size_t e = 0; e < s->problem.grid->element_count; e++) {
+    const struct dea_constituent *film = dea_solid_constituent(s, e);
+    thinnest_m = film->permittivity_F_per_m > 0 ? fmin(thinnest_m, film->thickness_m) : thinnest_m;
+  }
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    largest = fmax(largest, fabs(m->v[i]));
+  }
+  m->step = share * thinnest_m / largest;
+  dea_adjoint_mode_pressures(w->adjoint, m->v, m->pressure);
+}
+
+/* Residuals at the equilibrium moved by `steps` along the mode. */
+static dea_status assemble_along(struct dea_context *ctx, struct work *w, double voltage_V,
+                                 double steps)
+{
+  struct dea_solid *s = w->owner->solid;
+  const struct mode *m = &w->mode;
+  double energy_J;
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    s->state.u[i] = m->u[i] + steps * m->step * m->v[i];
+  }
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    s->state.multiplier[i] = m->multiplier[i] + steps * m->step * m->pressure[i];
+  }
+  dea_status status = dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J);
+  memcpy(s->state.u, m->u, s->problem.dofs * sizeof(double));
+  memcpy(s->state.multiplier, m->multiplier, dea_solid_pressure_count(s) * sizeof(double));
+  return status;
+}
+
+/* Slopes of the frequency by the unknowns: second differences of the residuals along the mode. */
+static dea_status mode_slope(struct dea_context *ctx, struct work *w, double *out,
+                             double *pressures)
+{
+  const struct dea_solid *s = w->owner->solid;
+  const struct mode *m = &w->mode;
+  for (int side = -1; side <= 1; side++) {
+    const double times = (side == 0 ? -2 : 1) * m->rate / (m->step * m->step);
+    DEA_TRY(ctx, assemble_along(ctx, w, w->owner->voltage_V, side));
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      out[i] += times * s->work.g[i];
+    }
+    dea_adjoint_add_constraints(w->adjoint, times, pressures);
+  }
+  return DEA_OK;
+}
+
+/* omega^2 of a changed device with the mode as it is, less omega^2 of its mass: what the frequency
+ * changes by there, but for a constant. */
+static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
+{
+  struct dea_solid *s = w->owner->solid;
+  const struct mode *m = &w->mode;
+  double square = 0, pressed;
+  memset(m->gain, 0, dea_solid_pressure_count(s) * sizeof(double));
+  for (int side = -1; side <= 1; side += 2) {
+    const double times = side / (2 * m->step);
+    DEA_TRY(ctx, assemble_along(ctx, w, voltage_V, side));
+    square += times * dea_solid_dot(s, m->v, s->work.g);
+    for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+      m->gain[i] += times * s->state.theta[i];
+    }
+  }
+  DEA_TRY(ctx, dea_adjoint_volume_product(ctx, w->adjoint, m->pressure, m->gain, &pressed));
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, m->v, m->motion));
+  *out = m->rate * (square + pressed - m->square * dea_solid_dot(s, m->v, m->motion));
+  return DEA_OK;
+}
+
+// All of it ---------------------------------------------------------------------------------------
 
 /* The answers of all quantities. */
 static dea_status answer(struct dea_context *ctx, struct work *w)
 {
   for (size_t i = 0; i < w->ask->column_count; i++) {
-    DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i],
-                                 dea_adjoint_slope(w->adjoint, i),
-                                 dea_adjoint_pressure_slope(w->adjoint, i), &w->known[i]));
+    double *out = dea_adjoint_slope(w->adjoint, i);
+    double *pressures = dea_adjoint_pressure_slope(w->adjoint, i);
+    if (is_frequency(w->ask->columns[i])) {
+      w->known[i] = w->mode.known;
+      DEA_TRY(ctx, w->known[i] ? mode_slope(ctx, w, out, pressures) : DEA_OK);
+    } else {
+      DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], out, pressures,
+                                   &w->known[i]));
+    }
   }
   for (size_t i = 0; i < w->ask->monitor_count; i++) {
     const size_t at = w->ask->column_count + i;
@@ -139,6 +277,9 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
     out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
   }
   DEA_TRY(ctx, w->owner->point(ctx, w->owner->model, voltage_V, energy_J, &point));
+  if (w->mode.known) {
+    DEA_TRY(ctx, mode_at(ctx, w, voltage_V, &point.frequency_Hz));
+  }
   for (size_t i = 0; i < w->ask->column_count; i++) {
     out[i] += dea_point_get(&point, w->ask->columns[i]);
   }
@@ -204,10 +345,16 @@ dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
+  if (status == DEA_OK && dea_gradient_asks_mode(ask)) { // first: it needs a factor of its own
+    status = find_mode(ctx, &w, &memory);
+  }
   if (status == DEA_OK) {
     status = dea_adjoint_create(ctx, s, dea_gradient_width(ask), &w.adjoint);
   }
   if (status == DEA_OK) {
+    if (w.mode.known) {
+      prepare_mode(&w);
+    }
     status = find(ctx, &w, out);
   }
   s->found.force_largest_N = force_N; // scales and reactions are those of the equilibrium again

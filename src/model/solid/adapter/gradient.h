@@ -61,7 +61,10 @@ dea_status dea_gradient_film_at(struct dea_context *ctx, const struct dea_gradie
 dea_status dea_gradient_rest_energy(struct dea_solid *solid, const struct dea_gradient_ask *ask,
                                     double *u, double *multipliers, double *energy_J);
 
-/* `gradient` of struct dea_model_type. */
+/* Whether it is asked for the frequency of the lowest mode, which needs a mass. */
+bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask);
+
+/* `gradient` of struct dea_model_type. The frequency is this file's own. */
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
                              const struct dea_gradient_ask *ask, double *out);
 

@@ -1155,6 +1155,9 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "model 3d knows no gradients where a body or a pressure has been moved");
   }
+  if (dea_gradient_asks_mode(ask)) {
+    DEA_TRY(ctx, check_densities(ctx, model->layout));
+  }
   struct variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
   double *values = dea_arena_alloc(&memory, 2 * p->dofs, sizeof *values);
   double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);

@@ -583,6 +583,9 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "model 3d knows no gradients with a tip or a coupled field yet");
   }
+  if (dea_gradient_asks_mode(ask)) {
+    DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
+  }
   model->variant = dea_arena_alloc(&memory, 1, sizeof *model->variant);
   double *force = dea_arena_alloc(&memory, 2 * model->solid->problem.dofs, sizeof *force);
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));

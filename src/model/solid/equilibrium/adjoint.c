@@ -35,6 +35,7 @@ struct dea_adjoint {
   double *before, *largest;      // size of the last left, largest nu
   size_t *open;                  // numbers of those that are not there yet
   double *theta;                 // [pressures] L^T theta of the last assembly
+  double *room;                  // of one element: b and L of another problem
   double stiff;                  // kappa of the factor over that of the solid
   int solutions;
   bool factorised;
@@ -82,6 +83,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
     *pressures[i] = dea_arena_alloc(&a->memory, a->count * a->pressures, sizeof(double));
   }
   a->theta = dea_arena_alloc(&a->memory, a->pressures, sizeof(double));
+  a->room = dea_arena_alloc(&a->memory, most * (DEA_HEX_DOFS_MAX + most), sizeof(double));
   a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
   a->largest = dea_arena_alloc(&a->memory, a->count, sizeof(double));
   a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
@@ -355,6 +357,80 @@ double dea_adjoint_product(const struct dea_adjoint *a, size_t number)
     sum += nu[i] * a->theta[i];
   }
   return sum;
+}
+
+// Modes ------------------------------------------------------------------------------------------
+
+void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, double *out)
+{
+  const struct dea_solid_problem *p = &a->s->problem;
+  size_t most = most_of(a);
+  for (size_t k = 0; k < p->own_count && most > 0; k++) {
+    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
+    const double *L = a->L + k * most * most;
+    for (size_t m = 0; m < count; m++) {
+      for (size_t c = 0; c <= m; c++) {
+        out[e * most + m] += times * L[m * count + c] * a->theta[e * most + c];
+      }
+    }
+  }
+}
+
+void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, double *out)
+{
+  const struct dea_solid_problem *p = &a->s->problem;
+  size_t most = most_of(a);
+  double own[DEA_HEX_DOFS_MAX];
+  memset(out, 0, a->pressures * sizeof *out);
+  for (size_t k = 0; k < p->own_count && most > 0; k++) {
+    size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
+    const double *b = a->b + k * most * DEA_HEX_DOFS_MAX, *L = a->L + k * most * most;
+    const double kappa_Pa = a->s->settings.bulk_stiff * dea_solid_bulk_modulus(a->s, e);
+    size_t dofs = 3 * (size_t)dea_solid_gather(a->s, e, v, own);
+    for (size_t m = count; m-- > 0 && L[0] > 0;) { // L^T out = kappa b v
+      double sum = 0;
+      for (size_t i = 0; i < dofs; i++) {
+        sum += kappa_Pa * b[m * dofs + i] * own[i];
+      }
+      for (size_t c = m + 1; c < count; c++) {
+        sum -= L[c * count + m] * out[e * most + c];
+      }
+      out[e * most + m] = sum / L[m * count + m];
+    }
+  }
+  dea_solid_sum(out, a->pressures);
+}
+
+dea_status dea_adjoint_volume_product(struct dea_context *ctx, struct dea_adjoint *a,
+                                      const double *p, const double *x, double *out)
+{
+  const struct dea_solid *s = a->s;
+  size_t most = most_of(a);
+  double *L = a->room + most * DEA_HEX_DOFS_MAX;
+  dea_status status = DEA_OK;
+  *out = 0;
+  for (size_t k = 0; k < s->problem.own_count && most > 0 && status == DEA_OK; k++) {
+    size_t e = s->problem.own[k], count = (size_t)dea_solid_element(s, e)->pressures;
+    const struct dea_element *element = dea_solid_element(s, e);
+    const double kappa_Pa = s->settings.bulk_stiff * dea_solid_bulk_modulus(s, e);
+    struct dea_solid_element_place place;
+    struct dea_element_input in;
+    if (element->type->constraint == NULL || !(kappa_Pa > 0)) {
+      continue;
+    }
+    dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+    status = element->type->constraint(element, &in, a->room, L);
+    for (size_t c = 0; c < count; c++) {
+      double left = 0, right = 0;
+      for (size_t m = c; m < count; m++) { // L^T p, L^T (x - p / kappa)
+        left += L[m * count + c] * p[e * most + m];
+        right += L[m * count + c] * (x[e * most + m] - p[e * most + m] / kappa_Pa);
+      }
+      *out += left * right;
+    }
+  }
+  dea_solid_sum(out, 1);
+  return dea_solid_agree(ctx, status);
 }
 
 int dea_adjoint_solutions(const struct dea_adjoint *a)

@@ -33,6 +33,16 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *adj
                                 double voltage_V, double *energy_J);
 /* lambda . R + mu . C of the last assembly. */
 double dea_adjoint_product(const struct dea_adjoint *adjoint, size_t number);
+/* The constraints C of the last assembly of the problem that the answers are of, added `times`
+ * times to out [elements][pressures]. */
+void dea_adjoint_add_constraints(const struct dea_adjoint *adjoint, double times, double *out);
+/* Pressures with which the solid as good as incompressible answers a motion v, out
+ * [elements][pressures]: kappa M^-1 B^T v. */
+void dea_adjoint_mode_pressures(const struct dea_adjoint *adjoint, const double *v, double *out);
+/* Of a problem that is now under the solid, the integral of pressures p times (x - p / kappa),
+ * kappa as there. p, x: [elements][pressures]. */
+dea_status dea_adjoint_volume_product(struct dea_context *ctx, struct dea_adjoint *adjoint,
+                                      const double *p, const double *x, double *out);
 /* Solutions with the factor that all answers took, and whether it is a new one. */
 int dea_adjoint_solutions(const struct dea_adjoint *adjoint);
 bool dea_adjoint_factorised(const struct dea_adjoint *adjoint);
