@@ -217,6 +217,22 @@ static void test_region(void **state)
   check(&at);
 }
 
+/* A plate turned and pulled aside by one of four electrodes. */
+static void test_tilt(void **state)
+{
+  (void)state;
+  struct at at = {.voltage_V = 3e3,
+                  .monitor_count = 2,
+                  .motion = {DEA_OBSERVED_TURN_Y, DEA_OBSERVED_X},
+                  .asked = true,
+                  .numbers_max = 2};
+  const struct dea_override membrane = {"compute.solid.film", "membrane"};
+  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/quadrants.yaml",
+                                   &membrane, 1, &at.design),
+                   DEA_OK);
+  check(&at);
+}
+
 /* A bender without pre-stretch, whose principal membrane forces are nearly equal: the remainder of
  * the smaller one falls as the square of the change. */
 static void test_tension_of_a_bender(void **state)
@@ -307,6 +323,7 @@ int main(void)
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_two_plies_under_pressure),
       cmocka_unit_test(test_region),
+      cmocka_unit_test(test_tilt),
       cmocka_unit_test(test_tension_of_a_bender),
       cmocka_unit_test(test_what_cannot_follow),
   };

@@ -210,8 +210,7 @@ static dea_status leap(struct dea_context *ctx, struct search *a, double voltage
   return end_at_limit(ctx, a);
 }
 
-// Closing in on where load steps end, of a path that cannot be followed
-// -----------------------------
+// Closing in on where load steps end, of a path that cannot be followed ---------------------------
 
 /* The last three equilibria on the way. */
 struct nearing {
