@@ -160,25 +160,49 @@ static void check_one_factor(struct dea_solid *solid, struct dea_contact *contac
   assert_close(force[0][2], force[1][2], 1e-4, 0);
 }
 
+/* A quarter of a pre-stretched film that a tip touches from above. */
+struct pressed {
+  struct dea_constituent film;
+  struct dea_grid *grid;
+  struct dea_solid *solid;
+  struct dea_surface *top;
+  struct dea_contact *contact;
+};
+
+/* fine: elements along an eighth of the circle under the tip. */
+static void press_on_film(size_t fine, const struct dea_contact_options *options,
+                          struct pressed *out)
+{
+  *out = (struct pressed){.film = {.law = dea_law_find("yeoh"),
+                                   .param = {178.4e3, -6e3, 4.2e3},
+                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                   .kappa_Pa = 4e7,
+                                   .thickness_m = film_h}};
+  assert_int_equal(dea_constituent_relax(&out->film), DEA_OK);
+  const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = fine, .edge = 2e-4};
+  assert_int_equal(dea_grid_quarter(ctx, &quarter, &out->grid), DEA_OK);
+  out->solid = block_solid(ctx, out->grid, 2, &out->film, disc_held);
+  assert_int_equal(dea_surface_create(ctx, out->grid, DEA_FACE_TOP, NULL, NULL, &out->top), DEA_OK);
+  assert_int_equal(dea_contact_create(ctx, out->top, options, &out->contact), DEA_OK);
+  const struct dea_solid_load load = dea_contact_load(out->contact);
+  assert_int_equal(dea_solid_add_load(ctx, out->solid, &load), DEA_OK);
+}
+
+static void release(struct pressed *p)
+{
+  dea_solid_destroy(ctx, p->solid);
+  dea_contact_destroy(ctx, p->contact);
+  dea_surface_destroy(ctx, p->top);
+  dea_grid_destroy(ctx, p->grid);
+}
+
 /* A membrane under tension T on a rigid disc of radius a, clamped at b: F = 2 pi T d / ln(b/a)
  * while d is small. The force is the slope of the energy, and a tip that has gone leaves none. */
 static void test_flat_punch_on_film(void **state)
 {
   (void)state;
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {178.4e3, -6e3, 4.2e3},
-                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                 .kappa_Pa = 4e7,
-                                 .thickness_m = film_h};
-  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
-  const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = 2, .edge = 2e-4};
-  struct dea_grid *grid;
-  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-  struct dea_solid *solid = block_solid(ctx, grid, 2, &film, disc_held);
-  struct dea_surface *top;
-  struct dea_contact *contact;
+  struct pressed film;
   struct dea_solid_report report;
-  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, NULL, NULL, &top), DEA_OK);
   const double edge = 1e-4, tension = 797.745e3 * film_h;
   const struct dea_contact_options options = {.tip = {.shape = DEA_INDENTER_FLAT,
                                                       .radius_m = punch_m + edge,
@@ -186,28 +210,23 @@ static void test_flat_punch_on_film(void **state)
                                                       .axis = {0, 0, 1}},
                                               .place_m = {0, 0, 0.5 * film_h},
                                               .stiffness_Pa_per_m = 1e11};
-  assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
-  const struct dea_solid_load load = dea_contact_load(contact);
-  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
+  press_on_film(2, &options, &film);
   double energy[4], force[4][3];
   for (int i = 0; i < 4; i++) {
     double d = 25e-6 * i;
-    dea_contact_move(contact, (const double[3]){0, 0, 0.5 * film_h - d});
-    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-    dea_contact_force(contact, dea_solid_displacement(solid), force[i]);
+    dea_contact_move(film.contact, (const double[3]){0, 0, 0.5 * film_h - d});
+    assert_int_equal(dea_load_steps_solve(ctx, film.solid, 0, &report), DEA_OK);
+    dea_contact_force(film.contact, dea_solid_displacement(film.solid), force[i]);
     energy[i] = report.energy_J;
     assert_close(4 * force[i][2], 2 * pi * tension * d / log(frame_m / punch_m), 5e-3, 1e-12);
   }
   assert_close(force[2][2], (energy[3] - energy[1]) / 50e-6, 1e-3, 0);
-  check_one_factor(solid, contact);
-  dea_contact_move(contact, (const double[3]){0, 0, film_h});
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  dea_contact_force(contact, dea_solid_displacement(solid), force[0]);
+  check_one_factor(film.solid, film.contact);
+  dea_contact_move(film.contact, (const double[3]){0, 0, film_h});
+  assert_int_equal(dea_load_steps_solve(ctx, film.solid, 0, &report), DEA_OK);
+  dea_contact_force(film.contact, dea_solid_displacement(film.solid), force[0]);
   assert_close(force[0][2], 0, 0, 0);
-  dea_solid_destroy(ctx, solid);
-  dea_contact_destroy(ctx, contact);
-  dea_surface_destroy(ctx, top);
-  dea_grid_destroy(ctx, grid);
+  release(&film);
 }
 
 /* A sphere that comes deeper touches more of the film, and its normals turn: pressures that move
@@ -215,39 +234,22 @@ static void test_flat_punch_on_film(void **state)
 static void test_sphere_on_film(void **state)
 {
   (void)state;
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {178.4e3, -6e3, 4.2e3},
-                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                 .kappa_Pa = 4e7,
-                                 .thickness_m = film_h};
-  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
-  const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = 4, .edge = 2e-4};
-  struct dea_grid *grid;
-  assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
-  struct dea_solid *solid = block_solid(ctx, grid, 2, &film, disc_held);
-  struct dea_surface *top;
-  struct dea_contact *contact;
+  struct pressed film;
   struct dea_solid_report report;
-  assert_int_equal(dea_surface_create(ctx, grid, DEA_FACE_TOP, NULL, NULL, &top), DEA_OK);
   const double touch_m = 0.5 * film_h + punch_m;
   const struct dea_contact_options options = {
       .tip = {.shape = DEA_INDENTER_SPHERE, .radius_m = punch_m},
       .place_m = {0, 0, touch_m},
       .stiffness_Pa_per_m = 1e10};
-  assert_int_equal(dea_contact_create(ctx, top, &options, &contact), DEA_OK);
-  const struct dea_solid_load load = dea_contact_load(contact);
-  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
-  dea_solid_settings_of(solid)->follow_part = 2; // never
+  press_on_film(4, &options, &film);
+  dea_solid_settings_of(film.solid)->follow_part = 2; // never
   for (int i = 0; i < 5; i++) {
-    dea_contact_move(contact, (const double[3]){0, 0, touch_m - 50e-6 * i});
-    assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
+    dea_contact_move(film.contact, (const double[3]){0, 0, touch_m - 50e-6 * i});
+    assert_int_equal(dea_load_steps_solve(ctx, film.solid, 0, &report), DEA_OK);
     assert_true(i < 2 || (report.shifted == 0 && report.factorisations <= 12));
   }
-  check_gaps(top, contact, &options.tip, dea_solid_displacement(solid), 1e-9);
-  dea_solid_destroy(ctx, solid);
-  dea_contact_destroy(ctx, contact);
-  dea_surface_destroy(ctx, top);
-  dea_grid_destroy(ctx, grid);
+  check_gaps(film.top, film.contact, &options.tip, dea_solid_displacement(film.solid), 1e-9);
+  release(&film);
 }
 
 int main(void)

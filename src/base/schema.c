@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+const char *const dea_no_yes[] = {"no", "yes", NULL};
+
 enum { MESSAGE_SIZE = 800, KEYS_MAX = 48 };
 
 /* A section being read: node is NULL when it is absent and only defaults apply. */

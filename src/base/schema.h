@@ -68,6 +68,9 @@ struct dea_field {
   const char *elsewhere;
 };
 
+/* Choices of a key that is on (1) or off. */
+extern const char *const dea_no_yes[];
+
 /* Rows of a table; what else there is to say of a field comes last, by its member. */
 #define DEA_LABEL_ROW(name, at, sample, text, ...)                                                 \
   {                                                                                                \

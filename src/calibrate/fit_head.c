@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-const char *const dea_fit_no_yes[] = {"no", "yes", NULL};
-
 dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name)
 {
   return strlen(name->text) < DEA_NAME_SIZE && strpbrk(name->text, "/\\ \t:#'\"") == NULL

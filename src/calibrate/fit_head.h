@@ -62,10 +62,9 @@ struct dea_fit_parameter_text {
 #define DEA_FIT_FIXED_FIELD                                                                        \
   {                                                                                                \
     .key = "fixed", .kind = DEA_FIELD_CHOICE,                                                      \
-    .offset = offsetof(struct dea_fit_parameter_text, fixed), .choices = dea_fit_no_yes,           \
+    .offset = offsetof(struct dea_fit_parameter_text, fixed), .choices = dea_no_yes,               \
     .default_text = "no", .doc = "whether it keeps its start", .example = "yes"                    \
   }
-extern const char *const dea_fit_no_yes[];
 
 /* Whether a file has a key, by which the kinds of fit files are told apart: `design` of a device,
  * `breakdown` of breakdown tests, `life` of life tests, none of a material. Status as of reading.

@@ -39,7 +39,7 @@ static const struct dea_field specimen_fields[] = {
     {.key = "failed",
      .kind = DEA_FIELD_CHOICE,
      .offset = OF(failed),
-     .choices = dea_fit_no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc = "of a given life whether it ended by a failure; of recordings whether the specimen "
             "failed at their end where no criterion says so",
@@ -91,7 +91,7 @@ static const struct dea_field fields[] = {
     {.key = "at_breakdown",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(breakdown),
-     .choices = dea_fit_no_yes,
+     .choices = dea_no_yes,
      .default_text = "yes",
      .doc = "whether a breakdown is a failure",
      .example = "no"},

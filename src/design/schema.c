@@ -117,8 +117,6 @@ static const struct dea_field electrode_fields[] = {
      .example = "10 um"},
 };
 
-static const char *const no_yes[] = {"no", "yes", NULL};
-
 static const struct dea_field voltage_fields[] = {
     {.key = "from",
      .kind = DEA_FIELD_NUMBER,
@@ -154,7 +152,7 @@ static const struct dea_field voltage_fields[] = {
     {.key = "back",
      .kind = DEA_FIELD_CHOICE,
      .offset = RAW(back),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc = "whether the sweep goes back the same way: snap-through shows as hysteresis",
      .example = "yes"},

@@ -42,7 +42,6 @@ static const struct dea_field adapt_fields[] = {
 static const struct dea_record adapt_record = {
     "adapt", "refinement until a monitor is exact enough", adapt_fields,
     sizeof adapt_fields / sizeof adapt_fields[0]};
-static const char *const no_yes[] = {"no", "yes", NULL};
 
 static const struct dea_field fields[] = {
     {.key = "film",
@@ -129,7 +128,7 @@ static const struct dea_field fields[] = {
     {.key = "path",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(path),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc = "whether study path follows model 3d too: all of its equilibrium path from 0 V to the "
             "highest voltage, through limit points and bifurcations",

@@ -24,16 +24,22 @@ static bool has(enum dea_layout_monitor_kind kind, int observed)
   }
 }
 
+dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
+                               const char *what, const char *const names[], size_t count)
+{
+  const char *nearest = dea_nearest_name(label->text, names, count);
+  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s' is no %s%s%s%s", label->text,
+                         what, nearest != NULL ? "; did you mean '" : "",
+                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+}
+
 static dea_status no_quantity(struct dea_context *ctx, const struct dea_label *label)
 {
   const char *keys[DEA_LOAD_POINT_COLUMNS];
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     keys[c] = dea_point_columns[c].key;
   }
-  const char *nearest = dea_nearest_name(label->text, keys, DEA_LOAD_POINT_COLUMNS);
-  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s' is no quantity%s%s%s",
-                         label->text, nearest != NULL ? "; did you mean '" : "",
-                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+  return dea_explore_unknown(ctx, label, "quantity", keys, DEA_LOAD_POINT_COLUMNS);
 }
 
 /* What a monitor does have. */

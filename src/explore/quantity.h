@@ -8,6 +8,10 @@
 #include "result/columns.h"
 #include "result/observation.h"
 
+/* Says that a name of the file is none of `what` [count], with the nearest of them. */
+dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
+                               const char *what, const char *const names[], size_t count);
+
 struct dea_explored {
   struct dea_column shown;    // its key and header are the texts below
   char key[80], header[80];   // "centre_z_m", "plate.turn_y_rad"

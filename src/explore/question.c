@@ -241,15 +241,6 @@ static dea_status prepare_model(struct dea_question *question)
 
 // What is asked -----------------------------------------------------------------------------------
 
-static dea_status add_unknown(struct dea_context *ctx, const struct dea_label *label,
-                              const char *what, const char *const names[], size_t count)
-{
-  const char *nearest = dea_nearest_name(label->text, names, count);
-  return dea_finding_add(ctx, DEA_ERROR, label->location, "'%.60s' is no %s%s%s%s", label->text,
-                         what, nearest != NULL ? "; did you mean '" : "",
-                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
-}
-
 static dea_status find_model(struct dea_question *question)
 {
   const struct dea_label *label = &question->file->model;
@@ -260,8 +251,9 @@ static dea_status find_model(struct dea_question *question)
   for (; n < count && n < 16; n++) {
     names[n] = all[n]->name;
   }
-  return question->model.type != NULL ? DEA_OK
-                                      : add_unknown(question->ctx, label, "model", names, n);
+  return question->model.type != NULL
+             ? DEA_OK
+             : dea_explore_unknown(question->ctx, label, "model", names, n);
 }
 
 static dea_status read_design(struct dea_question *question)

@@ -273,8 +273,6 @@ static const struct dea_field branch_fields[] = {
 static const struct dea_record branch_record = {"branch", "spring and dashpot in series",
                                                 branch_fields, COUNT(branch_fields)};
 
-static const char *const no_yes[] = {"no", "yes", NULL};
-
 static const struct dea_field viscosity_fields[] = {
     ID_FIELD(struct dea_viscosity_set, "set"),
     {.key = "branches",
@@ -291,7 +289,7 @@ static const struct dea_field viscosity_fields[] = {
     {.key = "assumed",
      .kind = DEA_FIELD_CHOICE,
      .offset = offsetof(struct dea_viscosity_set, assumed),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc = "whether the numbers are plausible rather than measured; runs then say so",
      .example = "yes"},

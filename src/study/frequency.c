@@ -358,8 +358,7 @@ static void set_limits(struct dea_panel *panel, bool amplitude)
   panel->y_max = amplitude ? high * 1.5 : 90 * ceil(high / 90 + 0.05);
 }
 
-/* Of two panels with lines. */
-/* axis: of the displacement, 0: it is told elsewhere. */
+/* Of two panels with lines. axis: of the displacement, 0: it is told elsewhere. */
 static void finish(struct dea_plot *plot, double ripple_V, char axis)
 {
   plot->panel_count = 2;

@@ -33,7 +33,6 @@ struct settings {
 #define AT(member) offsetof(struct settings, member)
 
 static const char *const directions[] = {"x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
-static const char *const no_yes[] = {"no", "yes", NULL};
 
 #define ENDS(which, begin, end, in, what, first, last)                                             \
   {.key = begin,                                                                                   \
@@ -80,7 +79,7 @@ static const struct dea_field fields[] = {
     {.key = "back",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(back),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc = "whether each line goes back the same way: snapping shows as hysteresis",
      .example = "yes"},

@@ -28,8 +28,6 @@ struct settings {
   struct dea_choice relaxed; // 1: the mean shape of a film that wrinkles freely too
 };
 
-static const char *const no_yes[] = {"no", "yes", NULL};
-
 #define AT(member) offsetof(struct settings, member)
 
 static const struct dea_field fields[] = {
@@ -83,7 +81,7 @@ static const struct dea_field fields[] = {
     {.key = "relaxed",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(relaxed),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "yes",
      .doc = "mean shape of a film that wrinkles freely (a membrane), beside the states",
      .example = "no"},
@@ -687,6 +685,12 @@ enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };
       UM("electrode_edge_u_m", "edge", "radial displacement of the electrode's edge"),             \
       UM("highest_z_m", "highest", "largest displacement out of the plane"),                       \
       UM("lowest_z_m", "lowest", "smallest displacement out of the plane")
+#define SHAPE_OF(p)                                                                                \
+  {.number = (p)->centre_z_m}, {.number = (p)->fibre_tip_z_m},                                     \
+      {.number = (p)->electrode_edge_u_m}, {.number = (p)->highest_z_m},                           \
+  {                                                                                                \
+    .number = (p)->lowest_z_m                                                                      \
+  }
 #define FLAGS                                                                                      \
   {                                                                                                \
     .key = "flags", .kind = DEA_CELL_TEXT, .title = "flags",                                       \
@@ -813,11 +817,7 @@ static dea_status put_state_row(const struct search *s, const struct state *stat
       {.text = name},
       {.number = p->energy_J},
       {.number = p->energy_J - lowest_J},
-      {.number = p->centre_z_m},
-      {.number = p->fibre_tip_z_m},
-      {.number = p->electrode_edge_u_m},
-      {.number = p->highest_z_m},
-      {.number = p->lowest_z_m},
+      SHAPE_OF(p),
       {.number = p->unstable_modes},
       {.number = state->stiffness_N_per_m4},
       {.text = dea_flags_text(dea_load_point_flags(p), flags)},
@@ -898,11 +898,7 @@ static dea_status put_mesh_row(const struct search *s, size_t i, const struct fi
       {.text = same},
       {.number = p->energy_J},
       {.number = p->energy_J - lowest_J},
-      {.number = p->centre_z_m},
-      {.number = p->fibre_tip_z_m},
-      {.number = p->electrode_edge_u_m},
-      {.number = p->highest_z_m},
-      {.number = p->lowest_z_m},
+      SHAPE_OF(p),
       {.text = flags}};
   return dea_result_table_add_row(s->ctx, table, row);
 }
@@ -1022,11 +1018,7 @@ static dea_status put_relaxed_mesh(struct search *s, const struct dea_model_sett
       const struct dea_result_table_value row[] = {
           {.number = p.voltage_V},
           {.number = fmax(1, settings->refinement)},
-          {.number = p.centre_z_m},
-          {.number = p.fibre_tip_z_m},
-          {.number = p.electrode_edge_u_m},
-          {.number = p.highest_z_m},
-          {.number = p.lowest_z_m},
+          SHAPE_OF(&p),
           {.text = dea_flags_text(dea_load_point_flags(&p), flags)}};
       status = dea_result_table_add_row(s->ctx, table, row);
     }
@@ -1078,8 +1070,7 @@ static dea_status put_relaxed(struct search *s)
   return DEA_OK;
 }
 
-// Run
-// ------------------------------------------------------------------------------------------------
+// Run ---------------------------------------------------------------------------------------------
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)

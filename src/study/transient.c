@@ -29,8 +29,6 @@ struct settings {
   struct dea_quantity rho_inf;        // spectral radius of generalised alpha
 };
 
-static const char *const no_yes[] = {"no", "yes", NULL};
-
 static const struct dea_field fields[] = {
     {.key = "until",
      .kind = DEA_FIELD_NUMBER,
@@ -71,7 +69,7 @@ static const struct dea_field fields[] = {
      .alias = "press",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(indent),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc =
          "whether the tip of compute.force is pressed in first, to its first depth or preload, and "
@@ -80,7 +78,7 @@ static const struct dea_field fields[] = {
     {.key = "inertia",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(inertia),
-     .choices = no_yes,
+     .choices = dea_no_yes,
      .default_text = "no",
      .doc = "whether mass matters; without, each moment is an equilibrium",
      .example = "yes"},

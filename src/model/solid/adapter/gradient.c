@@ -8,8 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-// The film
-// -----------------------------------------------------------------------------------------
+// The film ----------------------------------------------------------------------------------------
 
 static const char *const extremes[DEA_FILM_EXTREMES] = {
     [DEA_FILM_FIELD] = "true_field_V_per_m",

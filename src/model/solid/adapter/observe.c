@@ -483,12 +483,12 @@ static void gradient_of_probes(struct dea_observer *o, struct dea_solid *solid, 
   }
 }
 
-/* Gradients of the nodal basis at a point of an element in the plane, its area by local
- * coordinates, and those of the deformed middle surface dx/dX. */
+/* The nodal basis and its gradients at a point of an element in the plane, its area by local
+ * coordinates, and the gradients of the deformed middle surface dx/dX. */
 static double slopes_of(const struct dea_grid *grid, const int *const face[2], const double at[2],
-                        const double *u, double (*slope)[2], double F[3][2])
+                        const double *u, double *value, double (*slope)[2], double F[3][2])
 {
-  double value[PLANE_MAX], X[2][2] = {{0}};
+  double X[2][2] = {{0}};
   int per = (grid->order + 1) * (grid->order + 1);
   basis(grid->order, at, value, slope);
   for (int n = 0; n < per; n++) {
@@ -511,67 +511,61 @@ static double slopes_of(const struct dea_grid *grid, const int *const face[2], c
   return det;
 }
 
-/* Of a region's mean area stretch J = sqrt(det C), C = F^T F: dJ = J C^-1 : F^T dF. Returns the
- * area that the means are over. */
-static double gradient_of_region(const struct dea_layout_mesh *mesh,
-                                 const struct dea_layout_monitor *m, const double *u,
-                                 double *weight)
+/* Adds to the nodes of an element what the area stretch J = sqrt(det C), C = F^T F, at a point of
+ * the area dA changes by: dJ = J C^-1 : F^T dF. */
+static void add_area_stretch(const int *const face[2], int nodes, double dA, double (*slope)[2],
+                             double F[3][2], double *weight)
 {
-  const struct dea_grid *grid = mesh->grid;
-  size_t points = (size_t)grid->order + 1;
-  int per = (grid->order + 1) * (grid->order + 1);
-  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], area = 0;
-  dea_gauss_rule(points, place, part);
-  for (size_t e = 0; e < grid->element_count; e++) {
-    const int *face[2];
-    faces(grid, e, &face[0], &face[1]);
-    for (size_t p = 0; p < points * points && (size_t)grid->ply[e] == m->ply &&
-                       dea_layout_mesh_within(mesh, e, m->region);
-         p++) {
-      const double at[2] = {place[p % points], place[p / points]};
-      double slope[PLANE_MAX][2], F[3][2], C[3] = {0};
-      double dA = slopes_of(grid, face, at, u, slope, F) * part[p % points] * part[p / points];
-      for (int i = 0; i < 3; i++) {
-        C[0] += F[i][0] * F[i][0];
-        C[1] += F[i][1] * F[i][1];
-        C[2] += F[i][0] * F[i][1];
-      }
-      double J = sqrt(C[0] * C[1] - C[2] * C[2]);
-      area += dA;
-      for (int n = 0; n < per; n++) { // C^-1 slope times J
-        const double *d = slope[n];
-        const double c[2] = {(C[1] * d[0] - C[2] * d[1]) / J, (C[0] * d[1] - C[2] * d[0]) / J};
-        for (int i = 0; i < 3; i++) {
-          double amount = 0.5 * dA * (F[i][0] * c[0] + F[i][1] * c[1]);
-          weight[3 * face[0][n] + i] += amount;
-          weight[3 * face[1][n] + i] += amount;
-        }
-      }
+  double C[3] = {0};
+  for (int i = 0; i < 3; i++) {
+    C[0] += F[i][0] * F[i][0];
+    C[1] += F[i][1] * F[i][1];
+    C[2] += F[i][0] * F[i][1];
+  }
+  double J = sqrt(C[0] * C[1] - C[2] * C[2]);
+  for (int n = 0; n < nodes; n++) { // C^-1 slope times J
+    const double *d = slope[n];
+    const double c[2] = {(C[1] * d[0] - C[2] * d[1]) / J, (C[0] * d[1] - C[2] * d[0]) / J};
+    for (int i = 0; i < 3; i++) {
+      double amount = 0.5 * dA * (F[i][0] * c[0] + F[i][1] * c[1]);
+      weight[3 * face[0][n] + i] += amount;
+      weight[3 * face[1][n] + i] += amount;
     }
   }
-  return area;
 }
 
-/* Of a region's mean displacement along x, y or z, over the copies of the sector. Returns the area
- * that the mean is over. */
-static double gradient_of_mean(const struct dea_layout_mesh *mesh,
-                               const struct dea_layout_monitor *m, enum dea_observed motion,
-                               double *weight)
+/* How much of a displacement of the sector lies along x, y or z in the mean over its copies. */
+static void share_of_copies(const struct dea_layout_sector *sector, enum dea_observed motion,
+                            double share[3])
 {
-  const struct dea_grid *grid = mesh->grid;
-  size_t points = (size_t)grid->order + 1, copies = dea_layout_sector_copies(&mesh->sector);
-  int per = (grid->order + 1) * (grid->order + 1);
-  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], share[3] = {0}, area = 0;
+  size_t copies = dea_layout_sector_copies(sector);
+  memset(share, 0, 3 * sizeof *share);
   for (size_t k = 0; k < copies; k++) {
-    for (int i = 0; i < 3; i++) { // along which a displacement of the sector lies in a copy
+    for (int i = 0; i < 3; i++) {
       double axis[3] = {i == 0, i == 1, i == 2};
       if (k > 0) {
-        struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, k);
+        struct dea_motion copy = dea_layout_sector_copy(sector, k);
         dea_layout_sector_turn(&copy, axis, axis);
       }
       share[i] += axis[motion - DEA_OBSERVED_X] / (double)copies;
     }
   }
+}
+
+/* Of a region's mean area stretch, or of its mean displacement along x, y or z. Returns the area
+ * that the means are over. */
+static double gradient_of_region(const struct dea_layout_mesh *mesh,
+                                 const struct dea_layout_monitor *m, enum dea_observed motion,
+                                 const double *u, double *weight)
+{
+  const struct dea_grid *grid = mesh->grid;
+  size_t points = (size_t)grid->order + 1;
+  int per = (grid->order + 1) * (grid->order + 1);
+  bool shift = motion <= DEA_OBSERVED_Z;
+  double place[DEA_HEX_LINE_MAX], part[DEA_HEX_LINE_MAX], share[3], area = 0;
+  if (shift) {
+    share_of_copies(&mesh->sector, motion, share);
+  }
   dea_gauss_rule(points, place, part);
   for (size_t e = 0; e < grid->element_count; e++) {
     const int *face[2];
@@ -580,14 +574,14 @@ static double gradient_of_mean(const struct dea_layout_mesh *mesh,
                        dea_layout_mesh_within(mesh, e, m->region);
          p++) {
       const double at[2] = {place[p % points], place[p / points]};
-      double value[PLANE_MAX], slope[PLANE_MAX][2], X[4] = {0};
-      basis(grid->order, at, value, slope);
-      for (int i = 0; i < 4 * per; i++) {
-        X[i % 4] += slope[i / 4][i % 2] * grid->X[3 * face[0][i / 4] + i / 2 % 2];
-      }
-      double dA = (X[0] * X[3] - X[1] * X[2]) * part[p % points] * part[p / points];
+      double value[PLANE_MAX], slope[PLANE_MAX][2], F[3][2];
+      double dA =
+          slopes_of(grid, face, at, u, value, slope, F) * part[p % points] * part[p / points];
       area += dA;
-      for (int i = 0; i < 3 * per; i++) {
+      if (!shift) {
+        add_area_stretch(face, per, dA, slope, F, weight);
+      }
+      for (int i = 0; i < 3 * per && shift; i++) {
         weight[3 * face[0][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
         weight[3 * face[1][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
       }
@@ -620,9 +614,7 @@ bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size
     gradient_of_probes(o, solid, monitor, motion, weight);
     break;
   case DEA_MONITOR_REGION: {
-    double area = motion == DEA_OBSERVED_AREA_STRETCH
-                      ? gradient_of_region(o->mesh, m, dea_solid_displacement(solid), weight)
-                      : gradient_of_mean(o->mesh, m, motion, weight);
+    double area = gradient_of_region(o->mesh, m, motion, dea_solid_displacement(solid), weight);
     for (size_t i = 0; i < count; i++) {
       weight[i] /= area;
     }

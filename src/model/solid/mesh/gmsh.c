@@ -330,17 +330,6 @@ static dea_status run_gmsh(struct dea_context *ctx, const struct dea_gmsh_plan *
   return explain(ctx, end, number, limit_s, said);
 }
 
-static void middle_of(const struct dea_plane_mesh *mesh, size_t e, double out[2])
-{
-  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
-  out[0] = out[1] = 0;
-  for (size_t n = 0; n < per_quad; n++) {
-    const double *x = mesh->x + 2 * mesh->quads[e * per_quad + n];
-    out[0] += x[0] / (double)per_quad;
-    out[1] += x[1] / (double)per_quad;
-  }
-}
-
 /* Names of the shapes whose edges are as near to an element as it is long. */
 static void name_near(const struct dea_gmsh_plan *plan, const struct dea_plane_mesh *mesh, size_t e,
                       struct dea_text *out)
@@ -348,7 +337,7 @@ static void name_near(const struct dea_gmsh_plan *plan, const struct dea_plane_m
   const double *first =
       mesh->x + 2 * mesh->quads[e * (size_t)((mesh->order + 1) * (mesh->order + 1))];
   double middle[2];
-  middle_of(mesh, e, middle);
+  dea_plane_mesh_middle(mesh, e, middle);
   double length_m = 2 * hypot(first[0] - middle[0], first[1] - middle[1]);
   const char *before = "edges of ";
   bool cut = plan->curve_count > 0; // shapes: they have the edges of a sector, too
@@ -374,7 +363,7 @@ static dea_status check_quality(struct dea_context *ctx, const struct dea_gmsh_p
     return DEA_OK;
   }
   struct dea_text near_it = {.ctx = ctx};
-  middle_of(mesh, worst, middle);
+  dea_plane_mesh_middle(mesh, worst, middle);
   name_near(plan, mesh, worst, &near_it);
   dea_status status = dea_fail(
       ctx, DEA_E_DESIGN,
@@ -495,7 +484,7 @@ static dea_status take_elements(struct dea_context *ctx, const struct dea_gmsh_p
   for (size_t e = 0; e < mesh->quad_count; e++) {
     bool inside = false;
     double x[2];
-    middle_of(mesh, e, x);
+    dea_plane_mesh_middle(mesh, e, x);
     for (size_t i = 0; i < plan->shape_count; i++) {
       within[i] = is_inside(&plan->shapes[i], x);
       inside = inside || within[i] != 0;

@@ -831,16 +831,12 @@ static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
 
 static dea_status check_quality(struct reader *r, const struct dea_plane_mesh *mesh)
 {
-  size_t worst = 0, per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
-  double least = dea_plane_mesh_smallest_jacobian(mesh, &worst), middle[2] = {0, 0};
+  size_t worst = 0;
+  double least = dea_plane_mesh_smallest_jacobian(mesh, &worst), middle[2];
   if (least >= DEA_MSH_JACOBIAN_MIN) {
     return DEA_OK;
   }
-  for (size_t n = 0; n < per_quad; n++) {
-    const double *x = mesh->x + 2 * mesh->quads[worst * per_quad + n];
-    middle[0] += x[0] / (double)per_quad;
-    middle[1] += x[1] / (double)per_quad;
-  }
+  dea_plane_mesh_middle(mesh, worst, middle);
   return fault(r, 0,
                "the quadrilateral at (%.4g, %.4g) mm is too bad to use: its smallest Jacobian is "
                "%.3g of the mean one, at least %g is wanted",

@@ -122,3 +122,14 @@ size_t dea_plane_mesh_curve(const struct dea_plane_mesh *mesh, const char *name)
 {
   return find(mesh->curve, mesh->curve_count, name);
 }
+
+void dea_plane_mesh_middle(const struct dea_plane_mesh *mesh, size_t e, double out[2])
+{
+  size_t per_quad = (size_t)((mesh->order + 1) * (mesh->order + 1));
+  out[0] = out[1] = 0;
+  for (size_t n = 0; n < per_quad; n++) {
+    const double *x = mesh->x + 2 * mesh->quads[e * per_quad + n];
+    out[0] += x[0] / (double)per_quad;
+    out[1] += x[1] / (double)per_quad;
+  }
+}

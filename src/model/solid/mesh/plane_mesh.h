@@ -46,6 +46,8 @@ dea_status dea_plane_mesh_region(struct dea_context *ctx, struct dea_plane_mesh 
 /* Takes groups, regions, curves and edges away. */
 void dea_plane_mesh_forget_names(struct dea_context *ctx, struct dea_plane_mesh *mesh);
 
+/* Mean of an element's nodes. */
+void dea_plane_mesh_middle(const struct dea_plane_mesh *mesh, size_t e, double out[2]);
 /* Least of all elements' smallest Jacobian (at the nodes) over the mean one of the element: 1 for a
  * parallelogram, 0 or less for an element that is folded. worst: the element; may be NULL. */
 double dea_plane_mesh_smallest_jacobian(const struct dea_plane_mesh *mesh, size_t *worst);
