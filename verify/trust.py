@@ -1,0 +1,226 @@
+"""Page docs/verification/trust.md: what the estimated errors of model 3d are worth, on designs of many
+kinds. Arguments: the command, the source tree; --small: two of them; --keep FOLDER: runs that
+are there are not made again."""
+
+import csv
+import math
+import os
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+DEA, ROOT = sys.argv[1], pathlib.Path(sys.argv[2])
+SMALL = "--small" in sys.argv
+FOLDER = tempfile.TemporaryDirectory(prefix="dea-trust-")
+WORK = pathlib.Path(sys.argv[sys.argv.index("--keep") + 1] if "--keep" in sys.argv else FOLDER.name)
+WITHIN = (0.5, 2)
+HEAD = """# What the estimated errors are worth
+
+Made by `scripts/verify trust`; not to be edited. {count} designs: [frdea-4.yaml](../../examples/frdea-4.yaml) and what is
+changed of it, [plain-disc.yaml](../../examples/plain-disc.yaml), devices of `examples/devices/`; each at half the voltage and at
+the voltage that is written, with the default mesh, whose run estimates its error ([theory](../theory/trust.md)).
+
+* **Found** is the error of the default mesh (elements of order 2, one through the film) against a limit: that of it, of the
+  same mesh with elements of order 3 in all directions, and of that with half the size in all directions (two through the film).
+  At the edges of fibres, where the stress is singular, errors go with size / order^2 to a power p (twice the rate for the order;
+  Babuska and Suri 1987). p is what the three values show (column order, at half the voltage and at the voltage), taken
+  between 1 and 2: an incompressible film that is bonded along an edge of something stiff has stresses of 1/sqrt(r) there, that
+  is p = 1. `none`: the changes do not fall, `-`: they are not monotone; p is 1 then, and the limit less certain.
+* **Effectivity**: estimated over found, of root mean squares over both voltages of errors over the quantity, so that an error
+  that passes through zero at one voltage does not make it. In brackets and not counted: both below {negligible:g} % of the quantity.
+* Values in um (stretches: 1) at the voltage, errors in % of the value.
+
+| design | kV | quantity | default mesh | limit | order | found (%) | estimated (%) | effectivity |
+|---|---|---|---|---|---|---|---|---|"""
+# The default mesh and two finer ones: order of the elements (all three directions) and elements in a length (in
+# the plane and through the film). The error at a singular edge goes with SIZE = length / order^2.
+MESHES = ((2, 1), (3, 1), (3, 2))
+SIZE = [1 / (order**2 * elements) for order, elements in MESHES]
+ORDERS = (1, 2)  # that are believed; LEAST_SEEN: below it no order is seen
+LEAST_SEEN = 0.1
+HALVED = (1, 2, 4)  # elements in a length of another way to the limit
+SMALLEST = 1e-2  # um; of what moves less nothing is said
+NEGLIGIBLE = 2e-3  # of the quantity: an error that is found and estimated to be smaller is not counted
+TOLERATED = (0.25, 4)  # of the small form
+DISC = ("z centre (um)", "z fibre tip (um)", "u electrode edge (um)")
+SHORT = {"z centre (um)": "centre", "z fibre tip (um)": "fibre tip", "u electrode edge (um)": "edge"}
+# name, largest voltage [kV], design, what is changed of it
+DESIGNS = [
+    ("as built", 4, "frdea-4", {}),
+    ("no fibres", 3, "plain-disc", {}),
+    ("two electrodes (membrane)", 4, "devices/two-electrodes", {"compute.solid.film": "membrane"}),
+    ("as built, high", 5, "frdea-4", {}),
+    ("two fibres", 4, "frdea-4", {"fibres.count": 2}),
+    ("three fibres", 3, "frdea-4", {"fibres.count": 3}),
+    ("six fibres", 3, "frdea-4", {"fibres.count": 6}),
+    ("eight fibres", 3, "frdea-4", {"fibres.count": 8}),
+    ("pre-stretch 1.2", 3.5, "frdea-4", {"pre_stretch": 1.2}),
+    ("pre-stretch 1.2, high", 5, "frdea-4", {"pre_stretch": 1.2}),
+    ("pre-stretch 1.3", 3, "frdea-4", {"pre_stretch": 1.3}),
+    ("pre-stretch 2", 3, "frdea-4", {"pre_stretch": 2}),
+    ("film of 50 um", 1.6, "frdea-4", {"film.thickness": "50 um"}),
+    ("film of 200 um", 5, "frdea-4", {"film.thickness": "200 um"}),
+    ("fibre 50 um thick", 3, "frdea-4", {"fibres.thickness": "50 um"}),
+    ("fibre 200 um thick", 3, "frdea-4", {"fibres.thickness": "200 um"}),
+    ("fibre 1 mm wide", 3, "frdea-4", {"fibres.width": "1 mm"}),
+    ("fibre 3 mm wide", 3, "frdea-4", {"fibres.width": "3 mm"}),
+    ("overlap 1 mm", 3, "frdea-4", {"fibres.overlap": "1 mm stretched"}),
+    ("gap of 0.5 mm", 3, "frdea-4", {"fibres.overlap": "-0.5 mm stretched"}),
+    ("hinged at the frame", 3, "frdea-4", {"fibres.outer_end": "hinged"}),
+    ("electrodes of 8 mm", 3, "frdea-4", {"electrodes.diameter": "8 mm unstretched"}),
+    ("no fibres, pre-stretch 1.1", 3, "plain-disc", {"pre_stretch": 1.1}),
+    ("electrodes, solid film", 4, "devices/two-electrodes", {"compute.solid.film": "solid"}),
+    ("pure shear (membrane)", 4, "devices/pure-shear", {}),
+    ("diaphragm", 4, "devices/diaphragm", {}),
+]
+if SMALL:
+    DESIGNS = [d for d in DESIGNS if d[0] in ("three fibres", "hinged at the frame")]
+
+
+def sweep(name, kV, design, sets, order, elements):
+    """Runs half the voltage and the voltage; returns the run's folder."""
+    folder = WORK / f"{'-'.join(re.findall('[a-z0-9.]+', name))}-{kV:g}kV-{order}-{elements}"
+    if (folder / "summary.json").exists():
+        return folder
+    keys = sets | {
+        "compute.voltage": f"{{from: {kV / 2} kV, to: {kV} kV, step: {kV / 2} kV}}",
+        "compute.solid.order": order,
+        "compute.solid.order_z": order,
+        "compute.solid.elements_z": elements,
+        "compute.solid.refinement": 1 + math.log2(elements),
+    }
+    words = [DEA, "run", ROOT / "examples" / f"{design}.yaml", "--model", "3d", "--study", "sweep", "--no-figures"]
+    words += ["--force", "--quiet", "-o", folder] + [w for k, v in keys.items() for w in ("--set", f"{k}={v}")]
+    one = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    done = subprocess.run(words, env=os.environ | one, capture_output=True, text=True, check=False)
+    if not (folder / "summary.json").exists():
+        sys.exit(f"{name}, order {order}, {elements}: {done.stderr}")
+    return folder
+
+
+def rows_of(path):
+    with open(path, encoding="utf-8") as table:
+        return list(csv.DictReader(table))
+
+
+def number(row, key):
+    return float(row.get(key) or "nan")
+
+
+def read(folder):
+    """Values and estimated errors {quantity: {kV: (value, error)}} of a run, and {kV: flags}."""
+    flags, out = {number(r, "V (kV)"): r["flags"] for r in rows_of(folder / "3d_sweep.csv")}, {}
+    if not (folder / "3d_sweep_monitors.csv").exists():
+        for r in rows_of(folder / "3d_sweep.csv"):
+            for q in DISC:
+                if not math.isnan(number(r, q)):
+                    out.setdefault(SHORT[q], {})[number(r, "V (kV)")] = (number(r, q), number(r, "error of " + q))
+        return out, flags
+    table = rows_of(folder / "3d_sweep_monitors.csv")
+    for monitor in dict.fromkeys(r["monitor"] for r in table):
+        mine = [r for r in table if r["monitor"] == monitor]
+        for keys, error in ((("x (um)", "y (um)", "z (um)"), "error (um)"),
+                            (("stretch", "area stretch"), "stretch error")):
+            if all(math.isnan(number(r, error)) for r in mine):
+                continue
+            key = max(keys, key=lambda k, last=mine[-1]: -1 if math.isnan(number(last, k)) else abs(number(last, k)))
+            out[monitor + ("" if error == "error (um)" else ", stretch")] = {
+                number(r, "V (kV)"): (number(r, key), number(r, error)) for r in mine}
+    return out, flags
+
+
+def extrapolate(f, size=SIZE):
+    """The limit of three values, and the order that they show; NAN where they are not monotone."""
+    first, second = f[1] - f[0], f[2] - f[1]
+    seen = math.nan
+    if first * second > 0:
+        def ratio(p):
+            return (size[0] ** p - size[1] ** p) / (size[1] ** p - size[2] ** p)
+        low, high = LEAST_SEEN / 10, 8.0
+        for _ in range(60):
+            seen = (low + high) / 2
+            low, high = (seen, high) if ratio(seen) < first / second else (low, seen)
+    p = min(max(seen, ORDERS[0]), ORDERS[1]) if not math.isnan(seen) else ORDERS[0]
+    return f[2] + second * size[2] ** p / (size[1] ** p - size[2] ** p), seen
+
+
+def design_rows(name, kV, design, sets):
+    """Per quantity: [(kV, value, limit, order, estimated)] and the flags at each voltage."""
+    runs = [read(sweep(name, kV, design, sets, order, elements)) for order, elements in MESHES]
+    out = {}
+    for quantity, at in runs[0][0].items():
+        for V, (value, error) in at.items():
+            values = [run[0].get(quantity, {}).get(V, (math.nan,))[0] for run in runs]
+            if not any(math.isnan(v) for v in values):
+                out.setdefault(quantity, []).append((V, value, *extrapolate(values), error))
+    return out, runs[0][1]
+
+
+def effectivity(states):
+    """Root mean squares over the voltages of errors over the quantity, found and estimated."""
+    known = [s for s in states if s[4] > 0 and abs(s[1]) > SMALLEST]
+    if not known:
+        return None
+    found = sum(((s[2] - s[1]) / s[2]) ** 2 for s in known) / len(known)
+    return math.sqrt(found), math.sqrt(sum((s[4] / s[2]) ** 2 for s in known) / len(known))
+
+
+def print_row(name, kV, quantity, states, tally):
+    relative = effectivity(states)
+    if relative is None:
+        return
+    found, estimated = relative
+    counted = max(relative) > NEGLIGIBLE
+    if counted:
+        tally.setdefault(quantity if quantity in SHORT.values() else "of plies", []).append(estimated / found)
+    digits = ".5f" if "stretch" in quantity else ".3f"
+    orders = ", ".join("-" if math.isnan(s[3]) else "none" if s[3] < LEAST_SEEN else f"{s[3]:.1f}" for s in states)
+    print(f"| {name} | {kV:g} | {quantity} | {states[-1][1]:{digits}} | {states[-1][2]:{digits}} | {orders} "
+          f"| {100 * found:.3f} | {100 * estimated:.3f} | "
+          + (f"{estimated / found:.2f} |" if counted else f"({estimated / found:.2f}) |"), flush=True)
+
+
+def main():
+    print(HEAD.format(count=len(DESIGNS), negligible=100 * NEGLIGIBLE))
+    tally = {}
+    for design in DESIGNS:
+        per, _ = design_rows(*design)
+        for quantity, states in per.items():
+            print_row(design[0], design[1], quantity, states, tally)
+    print()
+    for quantity, ratios in tally.items():
+        within = sum(WITHIN[0] <= r <= WITHIN[1] for r in ratios)
+        print(f"* {quantity}: {len(ratios)} counted, effectivity from {min(ratios):.2f} to {max(ratios):.2f}, median "
+              f"{statistics.median(ratios):.2f}; {within} between {WITHIN[0]:g} and {WITHIN[1]:g}, "
+              f"{sum(r > WITHIN[1] for r in ratios)} above, {sum(r < WITHIN[0] for r in ratios)} below.")
+    every = [r for ratios in tally.values() for r in ratios]
+    within = sum(WITHIN[0] <= r <= WITHIN[1] for r in every)
+    print(f"* all: {within} of {len(every)} between {WITHIN[0]:g} and {WITHIN[1]:g}, median {statistics.median(every):.2f}.")
+    if not SMALL:
+        check_reference()
+    if SMALL and not (every and all(TOLERATED[0] <= r <= TOLERATED[1] for r in every)):
+        sys.exit("effectivities are out of tolerance")
+
+
+def check_reference():
+    """The limit of as built by elements of order 2 that are halved twice in all directions."""
+    name, kV, design, sets = DESIGNS[0]
+    first = design_rows(name, kV, design, sets)[0]
+    runs = [read(sweep(name, kV, design, sets, 2, elements))[0] for elements in HALVED]
+    print("\nThe limit itself, of " + name + ", beside one that shares nothing with it but the default mesh: elements of "
+          "order 2,\nhalved twice in the plane and through the film.\n")
+    print("| quantity | V (kV) | default mesh | limit | order | halved twice | its limit | order | found errors' ratio |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for quantity, states in first.items():
+        for V, value, limit, seen, _ in states:
+            values = [run[quantity][V][0] for run in runs]
+            other, order = extrapolate(values, [1 / n for n in HALVED])
+            print(f"| {quantity} | {V:g} | {value:.4f} | {limit:.4f} | {seen:.2f} | {values[-1]:.4f} | {other:.4f} | "
+                  f"{order:.2f} | {(limit - value) / (other - value):.2f} |")
+
+
+if __name__ == "__main__":
+    main()
