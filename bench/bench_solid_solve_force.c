@@ -3,24 +3,11 @@
  *
  *   bench_solid_solve_force [DEPTHS [HIGHEST]]     default: "[0 mm, 0.5 mm, 1 mm, 2 mm]" "8 kV"
  */
-#include "bench.h"
+#include "bench_factorisations.h"
 #include "design/design.h"
 #include "model/model.h"
-#include "model/solid/assembly/ranks.h"
 #include "study/design_file.h"
 #include "study/study.h"
-
-#include <petscsys.h>
-
-static double factorisations(void)
-{
-  PetscLogEvent event;
-  PetscEventPerfInfo info = {0};
-  return PetscLogEventGetId("MatCholFctrNum", &event) == 0 &&
-                 PetscLogEventGetPerfInfo(0, event, &info) == 0
-             ? info.count
-             : -1;
-}
 
 int main(int argc, char **argv)
 {
@@ -39,11 +26,10 @@ int main(int argc, char **argv)
   bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", sets, 2, &design), ctx);
   bench_need(dea_device_build(ctx, design, &device), ctx);
   bench_need(dea_result_create(ctx, design, device, &result), ctx);
-  bench_need(dea_solid_start(ctx), ctx);
-  PetscLogDefaultBegin();
+  bench_count_factorisations(ctx);
   double start = bench_processor_s();
   bench_need(dea_study_run(ctx, type, &name, 1, result), ctx);
-  double time = bench_processor_s() - start, count = factorisations();
+  double time = bench_processor_s() - start, count = bench_factorisations();
   const struct dea_curve *curve = dea_result_find(result, "3d", name);
   bench_print("force.time", time, "s");
   bench_print("force.equilibria", (double)curve->count, "1");

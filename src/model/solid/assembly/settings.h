@@ -24,7 +24,7 @@
   X(int, rounds_worse, 4, "1", "of them in a row that violate the constraints more")               \
   X(int, chords, 8, "1", "steps in a row with one factor")                                         \
   X(double, chord_rate, 0.2, "of the residual before", "at which an old factor is good enough")    \
-  X(int, follow_steps, 12, "1", "with the factor of the last equilibrium, at first")               \
+  X(int, follow_steps, 30, "1", "with the factor of the last equilibrium, at first")               \
   X(double, follow_rate, 0.6, "of the first step", "later ones, at most")                          \
   X(double, follow_accuracy, 1e-8, "of the first step", "last step")                               \
   X(double, follow_on_the_way, 1e-3, "of the first step",                                          \
