@@ -109,6 +109,45 @@ static void test_parts(void **state)
   assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);
 }
 
+/* The force on a tip as a limit of a search by the model's gradients, by a number of the film and
+ * one of the tip, which ends where the limit is; and what matters to that force. */
+static void test_force(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  double force_mN;
+  command_write("tip.yaml",
+                "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.5\n"
+                "frame: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+                "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
+                "compute: {models: [3d], voltage: {values: [3 kV]}, solid: {film: membrane},\n"
+                "  force: {depth: [0.5 mm], indenter: sphere}}\n");
+  command_write("pressed.yaml",
+                "dea_explore: 1\nname: pressed\ndesign: tip.yaml\nmodel: 3d\nvoltages: [3 kV]\n"
+                "quantities: [electrode_edge_u_m, force_N]\nmethod: slsqp\nstarts: 1\n"
+                "evaluations: 12\ntolerance: 1e-4\nobjectives: [{quantity: electrode_edge_u_m}]\n"
+                "limits: [{quantity: force_N, above: 25 mN}]\nvariables:\n"
+                "  - {name: film.thickness, low: 80 um, high: 120 um, start: 100 um}\n"
+                "  - {name: compute.force.radius, low: 1.2 mm, high: 1.6 mm, start: 1.3 mm}\n");
+  const int code = command_run("optimise pressed.yaml -j 1 -q");
+  if (code == 2) { // a build without model 3d
+    skip();
+  }
+  assert_int_equal(code, 0);
+  assert_contains(command_out, "gradients: of the model\n");
+  command_read("pressed.optimise/best.yaml", bytes);
+  command_write("stiff.yaml", bytes);
+  assert_int_equal(command_run("run stiff.yaml --study force -q -o stiff.run"), 0);
+  command_read("stiff.run/3d_force.csv", bytes);
+  assert_int_equal(sscanf(strchr(bytes, '\n'), "\n3,%*f,%*f,%*f,%*f,%*f,%*f,%*f,%lf", &force_mN),
+                   1);
+  assert_close(force_mN, 25, 1e-3, 0);
+  assert_int_equal(command_run("run tip.yaml --study sensitivity -q -o tip.run"), 0);
+  command_read("tip.run/3d_sensitivity_slopes.csv", bytes);
+  assert_contains(bytes, "\n3,compute.force.depth,0.0005,m,force,");
+  assert_contains(bytes, "\n3,film.thickness,0.0001,m,force,");
+}
+
 static const char cone[] =
     "dea: 1\ntitle: cone\nshapes:\n  - {name: film, kind: circle, radius: 20 mm}\n"
     "  - {name: hub, kind: circle, radius: 5 mm}\n"
@@ -185,6 +224,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_neighbours),
       cmocka_unit_test(test_parts),
+      cmocka_unit_test(test_force),
       cmocka_unit_test(test_monitors),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

@@ -267,8 +267,10 @@ static void test_tension_of_a_bender(void **state)
   solve(&at, at.device, at.voltage_V, base, &model);
   const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
   const int column = dea_point_column_find(keys[TENSION]);
-  const struct dea_design_change change = {
-      {at.device, at.device}, {at.voltage_V * (1 - 1e-5), at.voltage_V * (1 + 1e-5)}, 2e-5};
+  const struct dea_design_change change = {{at.device, at.device},
+                                           {at.voltage_V * (1 - 1e-5), at.voltage_V * (1 + 1e-5)},
+                                           2e-5,
+                                           {NULL, NULL}};
   const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
   assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
   type->destroy(ctx, model);
@@ -305,7 +307,7 @@ static void test_what_cannot_follow(void **state)
         dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), all[i], 1, &design), DEA_OK);
     assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
     const struct dea_design_change change = {
-        {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6};
+        {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6, {NULL, NULL}};
     const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
     assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
     assert_true(isnan(slope));

@@ -32,17 +32,22 @@ enum {
   FIBRE_MODULUS,
   GLUE,
   GLUE_MODULUS,
+  OF_DEVICE,
+  DEPTH = OF_DEVICE, // these two of a tip
+  TIP_SIZE,
   NUMBERS,
-  SHARES_MAX = 5
+  SHARES_MAX = 5,
+  ROUNDS = 3
 };
 static const char *const names[NUMBERS] = {
-    "voltage",     "thickness",       "modulus",       "stiffening", "permittivity",
-    "pre-stretch", "electrode",       "frame",         "tip",        "width",
-    "tip width",   "fibre thickness", "fibre modulus", "glue",       "glue modulus"};
+    "voltage",       "thickness", "modulus",      "stiffening", "permittivity",   "pre-stretch",
+    "electrode",     "frame",     "tip",          "width",      "tip width",      "fibre thickness",
+    "fibre modulus", "glue",      "glue modulus", "depth",      "size of the tip"};
 
 struct state {
   struct dea_device device;
   double voltage_V;
+  struct dea_pressed pressed; // radius 0: nothing
 };
 
 static double *number_of(struct state *s, int i)
@@ -61,7 +66,9 @@ static double *number_of(struct state *s, int i)
                                 &s->device.fibre_thickness_m,
                                 &s->device.fibre.young_modulus_Pa,
                                 &s->device.bond_thickness_m,
-                                &s->device.bond_modulus_Pa};
+                                &s->device.bond_modulus_Pa,
+                                &s->pressed.depth_m,
+                                &s->pressed.tip.radius_m};
   return all[i];
 }
 
@@ -78,13 +85,33 @@ static struct state changed(const struct state *from, int i, double share)
 
 static const char *const keys[] = {"centre_z_m",         "fibre_tip_z_m",    "electrode_edge_u_m",
                                    "true_field_V_per_m", "breakdown_margin", "min_tension_N_per_m",
-                                   "capacitance_F",      "energy_J",         "frequency_Hz"};
-enum { KEYS = sizeof keys / sizeof keys[0], FREQUENCY = KEYS - 1 };
+                                   "capacitance_F",      "energy_J"};
+enum { COMMON = sizeof keys / sizeof keys[0], FREQUENCY = COMMON, FORCE = COMMON, KEYS };
+
+static bool is_pressed(const struct state *at)
+{
+  return at->pressed.tip.radius_m > 0;
+}
 
 /* A device has a frequency where its densities are known. */
+static bool vibrates(const struct state *at)
+{
+  return at->device.film.density_kg_per_m3 > 0;
+}
+
 static int key_count(const struct state *at)
 {
-  return at->device.film.density_kg_per_m3 > 0 ? KEYS : FREQUENCY;
+  return is_pressed(at) || vibrates(at) ? KEYS : COMMON;
+}
+
+static const char *key_of(const struct state *at, int k)
+{
+  return k < COMMON ? keys[k] : is_pressed(at) ? "force_N" : "frequency_Hz";
+}
+
+static int number_count(const struct state *at)
+{
+  return is_pressed(at) ? NUMBERS : OF_DEVICE;
 }
 
 /* The lowest of a model at its last point. */
@@ -108,10 +135,17 @@ static struct dea_load_point solve(const struct state *at, const struct dea_devi
   struct dea_load_point point = dea_load_point_empty();
   own.mesh_of = mesh_of;
   if (solid->create(ctx, &at->device, &own, &model) != DEA_OK ||
+      (is_pressed(at) &&
+       solid->indent(ctx, model, &at->pressed.tip, at->pressed.depth_m, &point) != DEA_OK) ||
       solid->solve(ctx, model, at->voltage_V, &point) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
-  if (key_count(at) > FREQUENCY) {
+  for (int i = 0; i < ROUNDS && is_pressed(at); i++) { // beyond what the contact's tolerance asks
+    if (solid->indent(ctx, model, &at->pressed.tip, at->pressed.depth_m, &point) != DEA_OK) {
+      fail_msg("%s", dea_context_message(ctx));
+    }
+  }
+  if (vibrates(at)) {
     point.frequency_Hz = frequency_of(model, &point);
   }
   if (keep != NULL) {
@@ -132,19 +166,20 @@ static struct dea_load_point find_slopes(const struct state *at,
   struct dea_design_change changes[NUMBERS];
   int columns[KEYS];
   struct dea_load_point base = solve(at, NULL, settings, &model);
-  for (int k = 0; k < KEYS; k++) {
-    columns[k] = dea_point_column_find(keys[k]);
+  for (int k = 0; k < key_count(at); k++) {
+    columns[k] = dea_point_column_find(key_of(at, k));
   }
-  for (int i = 0; i < NUMBERS; i++) {
+  for (int i = 0; i < number_count(at); i++) {
     for (int k = 0; k < 2; k++) {
       sides[2 * i + k] = changed(at, i, k == 0 ? -share : share);
       changes[i].device[k] = &sides[2 * i + k].device;
       changes[i].voltage_V[k] = sides[2 * i + k].voltage_V;
+      changes[i].pressed[k] = is_pressed(at) ? &sides[2 * i + k].pressed : NULL;
     }
     changes[i].width = 2 * share;
   }
-  const struct dea_gradient_ask ask = {changes, NUMBERS, columns, (size_t)key_count(at),
-                                       NULL,    0,       NULL};
+  const struct dea_gradient_ask ask = {
+      changes, (size_t)number_count(at), columns, (size_t)key_count(at), NULL, 0, NULL};
   if (solid->gradient(ctx, model, &ask, out) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
@@ -154,57 +189,69 @@ static struct dea_load_point find_slopes(const struct state *at,
 
 /* What is left of the change of a quantity after its slope, over the quantity. */
 static double remainder_of(const struct dea_load_point *base, const struct dea_load_point *moved,
-                           int k, double slope, double share)
+                           const char *key, double slope, double share)
 {
-  int column = dea_point_column_find(keys[k]);
+  int column = dea_point_column_find(key);
   double from = dea_point_get(base, column);
   return (dea_point_get(moved, column) - from - slope * share) / from;
 }
 
 /* What the solver leaves of a quantity: of the tension more, it has the pressures, and of the
  * frequency, that of the eigenvalues. */
-static double floor_of(int k)
+static double floor_of(const char *key)
 {
-  return strcmp(keys[k], "min_tension_N_per_m") == 0 || k == FREQUENCY ? 1e-8 : 2e-10;
+  return strcmp(key, "min_tension_N_per_m") == 0 || strcmp(key, "frequency_Hz") == 0 ? 1e-8 : 2e-10;
 }
 
 /* Of a slope: what differences of residuals over 1e-5 of a number leave, rounding of 1e-11 over
  * that (docs/theory/gradients.md). */
 static const double slope_accuracy = 5e-6;
 
-/* The remainder falls as the square of the change: shares [count] from the largest on, each
- * compared with what the one at `from` leads to expect. */
-static void check(const struct state *at, const struct dea_model_settings *settings,
-                  const double *shares, size_t count, size_t from)
+/* The remainder falls as the square of the change of these numbers [number_count]: shares [count]
+ * from the largest on, each compared with what the one at `from` leads to expect. */
+static void check_some(const struct state *at, const struct dea_model_settings *settings,
+                       const int *numbers, int number_count, const double *shares, size_t count,
+                       size_t from)
 {
   double slopes[NUMBERS * KEYS], left[SHARES_MAX];
   const int width = key_count(at);
   struct dea_load_point base = find_slopes(at, settings, slopes), moved[SHARES_MAX];
-  for (int i = 0; i < NUMBERS; i++) {
+  for (int a = 0; a < number_count; a++) {
+    const int i = numbers[a];
     for (size_t n = 0; n < count; n++) {
       struct state there = changed(at, i, shares[n]);
       moved[n] = solve(&there, &at->device, settings, NULL);
     }
     for (int k = 0; k < width; k++) {
+      const char *key = key_of(at, k);
       for (size_t n = 0; n < count; n++) {
-        left[n] = remainder_of(&base, &moved[n], k, slopes[i * width + k], shares[n]);
+        left[n] = remainder_of(&base, &moved[n], key, slopes[i * width + k], shares[n]);
       }
       for (size_t n = 0; n < count; n++) {
         const double wanted = left[from] * pow(shares[n] / shares[from], 2);
         const double part = n < from ? 1 : 0.2; // of a large change the third power is seen
         if (!(fabs(left[n] - wanted) <=
-              part * fabs(wanted) + slope_accuracy * shares[n] + floor_of(k))) {
-          fail_msg("%s by %s at %.0e: %.3e, not %.3e", keys[k], names[i], shares[n], left[n],
-                   wanted);
+              part * fabs(wanted) + slope_accuracy * shares[n] + floor_of(key))) {
+          fail_msg("%s by %s at %.0e: %.3e, not %.3e", key, names[i], shares[n], left[n], wanted);
         }
       }
     }
   }
 }
 
+static void check(const struct state *at, const struct dea_model_settings *settings,
+                  const double *shares, size_t count, size_t from)
+{
+  int all[NUMBERS];
+  for (int i = 0; i < NUMBERS; i++) {
+    all[i] = i;
+  }
+  check_some(at, settings, all, number_count(at), shares, count, from);
+}
+
 static struct state star(void)
 {
-  struct state at = {test_star(4), 3e3};
+  struct state at = {.device = test_star(4), .voltage_V = 3e3};
   at.device.fibre_tip_radius_m = 3.2e-3;
   at.device.fibre_tip_width_m = 1e-3;
   at.device.bond_thickness_m = 50e-6;
@@ -277,11 +324,69 @@ static void test_mesh_that_cannot_follow(void **state)
   }
   solve(&at, NULL, &settings, &model);
   const struct dea_design_change change = {
-      {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1};
+      {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1, {NULL, NULL}};
   const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
   assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
   assert_true(isnan(slope));
   solid->destroy(ctx, model);
+}
+
+/* ---- a tip ---- */
+
+/* Its middle stands where the tip holds it. The points in touch are the same at all changes. */
+static struct state pressed_star(enum dea_probe_shape shape)
+{
+  struct state at = star();
+  at.voltage_V = 2.5e3; // the model goes there in as many steps for all changes
+  at.pressed = (struct dea_pressed){{shape, 1.5e-3, 0.2e-3, true}, 0.5e-3};
+  return at;
+}
+
+/* Numbers of every kind, four decades of the change. */
+static void test_force_of_a_tip(void **state)
+{
+  (void)state;
+  static const double shares[] = {1e-1, 1e-3, 1e-5};
+  static const int numbers[] = {VOLTAGE, THICKNESS, PRE_STRETCH, FIBRE_THICKNESS, DEPTH};
+  const struct state at = pressed_star(DEA_PROBE_SPHERE);
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  check_some(&at, &settings, numbers, sizeof numbers / sizeof numbers[0], shares, 3, 1);
+}
+
+static void test_force_of_a_flat_tip(void **state)
+{
+  (void)state;
+  static const double shares[] = {1e-2, 1e-4};
+  static const int numbers[] = {THICKNESS, DEPTH};
+  const struct state at = pressed_star(DEA_PROBE_FLAT);
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  check_some(&at, &settings, numbers, 2, shares, 2, 0);
+}
+
+/* Of a solid film, laws that slopes obey: with all lengths and the voltage s times as large the
+ * force is s^2 times as large; the energy at a voltage rises with the depth by the force; and, the
+ * charge being the energy's slope by the voltage, the force falls with the voltage as the charge
+ * rises with the depth. */
+static void test_laws_of_the_force(void **state)
+{
+  (void)state;
+  enum { CAPACITANCE = 6, ENERGY = 7 };
+  static const double shares[] = {1e-2, 1e-4};
+  static const int numbers[] = {ELECTRODE, DEPTH, TIP_SIZE},
+                   lengths[] = {VOLTAGE,   THICKNESS, ELECTRODE,       FRAME, TIP,     WIDTH,
+                                TIP_WIDTH, GLUE,      FIBRE_THICKNESS, DEPTH, TIP_SIZE};
+  const struct state at = pressed_star(DEA_PROBE_SPHERE);
+  const struct dea_model_settings settings = {0};
+  double slopes[NUMBERS * KEYS], sum = 0;
+  const struct dea_load_point base = find_slopes(&at, &settings, slopes);
+  for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+    sum += slopes[lengths[i] * KEYS + FORCE] / base.force_N;
+  }
+  assert_close(sum, 2, 1e-5, 0);
+  assert_close(slopes[DEPTH * KEYS + ENERGY], base.force_N * at.pressed.depth_m, 1e-5, 0);
+  assert_close(slopes[VOLTAGE * KEYS + FORCE] * at.pressed.depth_m,
+               -slopes[DEPTH * KEYS + CAPACITANCE] * at.voltage_V * at.voltage_V, 1e-4, 0);
+  check_some(&at, &settings, numbers, 3, shares, 2, 0);
 }
 
 int main(void)
@@ -291,6 +396,9 @@ int main(void)
       cmocka_unit_test(test_membrane_with_weight),
       cmocka_unit_test(test_frequency_of_all_lengths),
       cmocka_unit_test(test_mesh_that_cannot_follow),
+      cmocka_unit_test(test_force_of_a_tip),
+      cmocka_unit_test(test_force_of_a_flat_tip),
+      cmocka_unit_test(test_laws_of_the_force),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

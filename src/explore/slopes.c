@@ -1,6 +1,7 @@
 #include "explore/slopes.h"
 
 #include "result/columns.h"
+#include "study/force.h"
 
 #include <math.h>
 
@@ -10,6 +11,7 @@ static const double step = 1e-5; // of a number or of its range, to either side
 struct sides {
   struct dea_design *design[2 * DEA_CASE_PARAMS_MAX];
   struct dea_device *device[2 * DEA_CASE_PARAMS_MAX];
+  struct dea_pressed pressed[2 * DEA_CASE_PARAMS_MAX]; // of each design
   struct dea_design_change changes[DEA_CASE_PARAMS_MAX];
   size_t variable[DEA_CASE_PARAMS_MAX]; // of each change
   size_t count;                         // of changes
@@ -94,6 +96,11 @@ static dea_status add_change(struct dea_context *ctx, const struct dea_question 
                        &sides->device[n]));
     change->device[k] = sides->device[n] != NULL ? sides->device[n] : device;
     change->width += sides->device[n] != NULL ? step * size : 0;
+    if (sides->device[n] != NULL) {
+      sides->pressed[n] = (struct dea_pressed){dea_force_indenter(sides->design[n]),
+                                               dea_force_first_depth_m(sides->design[n])};
+      change->pressed[k] = &sides->pressed[n];
+    }
   }
   if (change->width > 0) {
     sides->variable[sides->count++] = j;

@@ -110,12 +110,19 @@ struct dea_time_options {
   double rho_inf; // spectral radius of generalised alpha at high frequencies, 0 to 1
 };
 
+/* A tip and how far it is pressed beyond touching the flat film. */
+struct dea_pressed {
+  struct dea_probe tip;
+  double depth_m;
+};
+
 /* A small change of one number p of a design: devices and voltages at p - width/2 and p + width/2,
  * in the unit of p. */
 struct dea_design_change {
   const struct dea_device *device[2];
   double voltage_V[2];
   double width;
+  const struct dea_pressed *pressed[2]; // of a model with a tip; NULL: as it stands
 };
 /* Slopes that are wanted: of columns of load points (result/columns.h), then of a motion of
  * monitors of the layout, by changes. All lent. */

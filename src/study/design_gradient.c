@@ -158,13 +158,36 @@ void dea_design_numbers(const struct dea_design *design, const struct dea_device
   add_materials(device, out, count);
 }
 
+void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number *out,
+                     size_t *count)
+{
+  static const struct {
+    const char *key;
+    size_t offset;
+  } all[] = {{"compute.force.depth", offsetof(struct dea_pressed, depth_m)},
+             {"compute.force.radius", offsetof(struct dea_pressed, tip.radius_m)},
+             {"compute.force.edge_radius", offsetof(struct dea_pressed, tip.edge_radius_m)}};
+  const size_t used = pressed->tip.shape == DEA_PROBE_FLAT ? 3 : 2;
+  for (size_t i = 0; i < used; i++) {
+    struct dea_design_number number = {.unit = "m",
+                                       .tolerance = NAN,
+                                       .of = DEA_NUMBER_OF_TIP,
+                                       .offset = all[i].offset,
+                                       .scale = 1};
+    snprintf(number.key, sizeof number.key, "%s", all[i].key);
+    memcpy(&number.value, (const char *)pressed + number.offset, sizeof number.value);
+    add_number(out, count, &number);
+  }
+}
+
 // Changed devices --------------------------------------------------------------------------------
 
 /* Room for changed devices. */
 struct changed {
   struct dea_arena memory; // of all, and of what devices of the general form are built from
   struct dea_design *scratch;
-  struct dea_device *devices; // [2 number_count]; those of the general form own their layouts
+  struct dea_device *devices;  // [2 number_count]; those of the general form own their layouts
+  struct dea_pressed *pressed; // [2 number_count]
   struct dea_design_change *changes; // [number_count]
 };
 
@@ -195,13 +218,19 @@ static dea_status make_changes(struct dea_context *ctx, const struct dea_design_
   double share = ask->type->gradient != NULL ? step_at_state : step_anew;
   for (size_t i = 0; i < ask->number_count; i++) {
     const struct dea_design_number *number = &ask->numbers[i];
-    bool voltage = strcmp(number->key, "voltage") == 0;
+    const bool voltage = strcmp(number->key, "voltage") == 0;
+    const bool of_tip = number->of == DEA_NUMBER_OF_TIP;
     for (size_t k = 0; k < 2; k++) {
       double value = number->value * (1 + (k == 0 ? -share : share));
-      if (!voltage) {
+      if (of_tip) {
+        struct dea_pressed *pressed = &all->pressed[2 * i + k];
+        *pressed = *ask->pressed;
+        memcpy((char *)pressed + number->offset, &value, sizeof value);
+        all->changes[i].pressed[k] = pressed;
+      } else if (!voltage) {
         DEA_TRY(ctx, change(ctx, ask, number, value, all, &all->devices[2 * i + k]));
       }
-      all->changes[i].device[k] = voltage ? ask->device : &all->devices[2 * i + k];
+      all->changes[i].device[k] = voltage || of_tip ? ask->device : &all->devices[2 * i + k];
       all->changes[i].voltage_V[k] = voltage ? value : ask->voltage_V;
     }
     all->changes[i].width = 2 * share * number->value;
@@ -215,6 +244,7 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
   struct changed all = {.memory = {.ctx = ctx}};
   const struct dea_model_settings settings = dea_model_settings_of(ask->design);
   all.devices = dea_arena_alloc(&all.memory, 2 * ask->number_count, sizeof *all.devices);
+  all.pressed = dea_arena_alloc(&all.memory, 2 * ask->number_count, sizeof *all.pressed);
   all.scratch = dea_arena_alloc(&all.memory, 1, sizeof *all.scratch);
   all.changes = dea_arena_alloc(&all.memory, ask->number_count, sizeof *all.changes);
   dea_status status = dea_arena_status(&all.memory);

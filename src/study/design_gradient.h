@@ -13,6 +13,7 @@ enum dea_number_of {
   DEA_NUMBER_OF_DESIGN, // in a struct dea_design
   DEA_NUMBER_OF_PART,   // in an item of a list of struct dea_parts (part_numbers.h)
   DEA_NUMBER_OF_PLY,    // in the material of a ply of the layout
+  DEA_NUMBER_OF_TIP,    // in a struct dea_pressed
 };
 
 /* One number: a key of the design file with a value ("film.thickness"), "voltage", or one of a
@@ -35,6 +36,11 @@ struct dea_design_number {
 void dea_design_numbers(const struct dea_design *design, const struct dea_device *device,
                         double voltage_V, struct dea_design_number *out, size_t *count);
 
+/* Those of the tip that a model is pressed by, but those that are 0: "compute.force.depth", which
+ * is here where it stands, and its radii; added to out [DEA_NUMBERS_MAX]. */
+void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number *out,
+                     size_t *count);
+
 /* What is asked of a model that stands at a voltage. All lent. */
 struct dea_design_gradient {
   const struct dea_model_type *type;
@@ -42,6 +48,7 @@ struct dea_design_gradient {
   const struct dea_design *design;
   const struct dea_device *device;
   double voltage_V;
+  const struct dea_pressed *pressed;       // the tip of the model; NULL: it has none
   const struct dea_design_number *numbers; // [number_count]
   size_t number_count;
   const int *columns; // [column_count] of load points

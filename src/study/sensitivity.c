@@ -3,6 +3,7 @@
 #include "base/schema.h"
 #include "result/columns.h"
 #include "study/design_gradient.h"
+#include "study/force.h"
 #include "study/modal.h"
 #include "study/observe.h"
 #include "study/study.h"
@@ -33,8 +34,9 @@ static const struct dea_record record = {
     study_name,
     "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
     "displacements, field, tension, capacitance and energy by the numbers of the design; with "
-    "study "
-    "modal also of the lowest frequency",
+    "study modal also of the lowest frequency, with study force also of the force on the tip, at "
+    "each of "
+    "its stops",
     fields, COUNT(fields)};
 
 static const struct dea_design_section section = {
@@ -44,14 +46,23 @@ static const struct dea_design_section section = {
 
 /* Quantities that are asked for, in the order of the columns below; the first that a model knows is
  * what the table is sorted by. */
-static const char *const quantities[] = {
-    "fibre_tip_z_m",      "centre_z_m",       "electrode_edge_u_m",
-    "true_field_V_per_m", "breakdown_margin", "min_tension_N_per_m",
-    "capacitance_F",      "energy_J",         "frequency_Hz"};
-enum { QUANTITIES = COUNT(quantities), FIELD = 3, CAPACITANCE = 6, FREQUENCY = 8 };
+static const char *const quantities[] = {"force_N",
+                                         "fibre_tip_z_m",
+                                         "centre_z_m",
+                                         "electrode_edge_u_m",
+                                         "true_field_V_per_m",
+                                         "breakdown_margin",
+                                         "min_tension_N_per_m",
+                                         "capacitance_F",
+                                         "energy_J",
+                                         "frequency_Hz"};
+enum { QUANTITIES = COUNT(quantities), FORCE = 0, FIELD = 4, CAPACITANCE = 7, FREQUENCY = 9 };
 
 /* Columns that tables share. */
 #define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage")
+#define TIP_DEPTH                                                                                  \
+  DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "tip depth",                                    \
+                    "of a film that a tip is pressed into")
 #define NAMED(its_key, its_title, its_meaning)                                                     \
   {                                                                                                \
     .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
@@ -84,6 +95,7 @@ static const struct dea_result_column slope_columns[] = {
      .kind = DEA_CELL_VALUE,
      .title = "change by tolerance",
      .meaning = "of the quantity"},
+    TIP_DEPTH,
 };
 static const struct dea_result_table_type slope_table = {.study = study_name,
                                                          .name = "slopes",
@@ -94,8 +106,10 @@ static const struct dea_result_table_type slope_table = {.study = study_name,
 
 static const struct dea_result_column matter_columns[] = {
     VOLTAGE,
+    TIP_DEPTH,
     NAMED("number", "1 % of", "of the design"),
     NAMED("number_text", "value", "of the number"),
+    ELASTICITY("force_N", "force, %"),
     ELASTICITY("fibre_tip_z_m", "z tip, %"),
     ELASTICITY("centre_z_m", "z centre, %"),
     ELASTICITY("electrode_edge_u_m", "u edge, %"),
@@ -181,8 +195,10 @@ struct stop {
   double *motion_value;      // [width - QUANTITIES]
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
-  bool vibrates;  // the frequency is one of the quantities that are asked for
-  double *slopes; // [number_count][asked_of]
+  bool is_pressed;
+  struct dea_pressed pressed; // by this tip
+  bool vibrates;              // the frequency is one of the quantities that are asked for
+  double *slopes;             // [number_count][asked_of]
 };
 
 /* How many quantities slopes are asked of. */
@@ -193,13 +209,16 @@ static size_t asked_of(const struct stop *stop)
 
 static double value_of(const struct stop *stop, size_t quantity)
 {
+  if (quantity == FORCE && !stop->is_pressed) { // a bound, where a model knows one
+    return NAN;
+  }
   return quantity < QUANTITIES ? dea_point_get(&stop->point, stop->columns[quantity])
                                : stop->motion_value[quantity - QUANTITIES];
 }
 
 static double slope_of(const struct stop *stop, size_t number, size_t quantity)
 {
-  if (quantity == FREQUENCY && !stop->vibrates) {
+  if ((quantity == FREQUENCY && !stop->vibrates) || (quantity == FORCE && !stop->is_pressed)) {
     return NAN;
   }
   const size_t at = quantity > FREQUENCY && !stop->vibrates ? quantity - 1 : quantity;
@@ -232,8 +251,13 @@ static void write_number(double value, const char *unit, char *out, size_t size)
   static const struct {
     const char *unit, *shown;
     double least, factor;
-  } scales[] = {{"m", " mm", 0.9995e-3, 1e3}, {"m", " um", 0, 1e6},    {"Pa", " MPa", 1e6, 1e-6},
-                {"Pa", " kPa", 1e3, 1e-3},    {"V", " kV", 1e3, 1e-3}, {"1", "", 0, 1}};
+  } scales[] = {{"m", " mm", 0.9995e-3, 1e3},
+                {"m", " um", 0, 1e6},
+                {"N", " mN", 0, 1e3},
+                {"Pa", " MPa", 1e6, 1e-6},
+                {"Pa", " kPa", 1e3, 1e-3},
+                {"V", " kV", 1e3, 1e-3},
+                {"1", "", 0, 1}};
   for (size_t i = 0; i < COUNT(scales); i++) {
     if (strcmp(unit, scales[i].unit) == 0 && fabs(value) >= scales[i].least) {
       snprintf(out, size, "%.5g%s", scales[i].factor * value, scales[i].shown);
@@ -243,14 +267,19 @@ static void write_number(double value, const char *unit, char *out, size_t size)
   snprintf(out, size, "%.5g %.20s", value, unit);
 }
 
+static double depth_of(const struct stop *stop)
+{
+  return stop->is_pressed ? stop->pressed.depth_m : NAN;
+}
+
 static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
-  struct dea_result_table_value row[COUNT(matter_columns)] = {{.number = stop->voltage_V},
-                                                              {.text = number->key}};
+  struct dea_result_table_value row[COUNT(matter_columns)] = {
+      {.number = stop->voltage_V}, {.number = depth_of(stop)}, {.text = number->key}};
   char value[48], tolerance[48] = "", change[48] = "";
-  size_t n = 2;
+  size_t n = 3;
   write_number(number->value, number->unit, value, sizeof value);
   row[n++].text = value;
   for (size_t k = 0; k < QUANTITIES; k++) {
@@ -305,7 +334,8 @@ static void name_of(const struct stop *stop, size_t quantity, char *out, size_t 
   }
 }
 
-/* All slopes; the table of the general form has no columns of tolerances, the last two. */
+/* All slopes; the table of the general form has no columns of tolerances and tips, the last ones.
+ */
 static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
@@ -326,6 +356,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
         {.number = elasticity(stop, n, k)},
         {.number = number->tolerance},
         {.number = slope * number->tolerance},
+        {.number = depth_of(stop)},
     };
     if (!isnan(slope)) {
       DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
@@ -387,7 +418,7 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
 {
   struct dea_load_point mode;
   struct dea_field_mesh *shapes;
-  stop->vibrates = type->modes != NULL && dea_modal_asked(result->design);
+  stop->vibrates = type->modes != NULL && !stop->is_pressed && dea_modal_asked(result->design);
   if (stop->vibrates) {
     DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, 1, &mode, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
@@ -402,6 +433,9 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
 {
   dea_design_numbers(result->design, result->device, stop->voltage_V, stop->numbers,
                      &stop->number_count);
+  if (stop->is_pressed) {
+    dea_tip_numbers(&stop->pressed, stop->numbers, &stop->number_count);
+  }
   for (size_t k = 0; k < QUANTITIES; k++) {
     stop->columns[k] = dea_point_column_find(quantities[k]);
   }
@@ -415,6 +449,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
                                           .design = result->design,
                                           .device = result->device,
                                           .voltage_V = stop->voltage_V,
+                                          .pressed = stop->is_pressed ? &stop->pressed : NULL,
                                           .numbers = stop->numbers,
                                           .number_count = stop->number_count,
                                           .columns = stop->columns,
@@ -458,11 +493,11 @@ static dea_status put_stop(struct dea_context *ctx, const char *model, const str
   return DEA_OK;
 }
 
-static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
-                       struct dea_model *model, const struct dea_load_point *at, size_t number,
-                       struct dea_result *result, struct dea_curve *curve)
+/* What matters where the model is. tip: that it is pressed by, NULL: none. */
+static dea_status look(struct dea_context *ctx, const struct dea_model_type *type,
+                       struct dea_model *model, const struct dea_load_point *at,
+                       const struct dea_probe *tip, struct dea_result *result)
 {
-  (void)number;
   struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
   if (stop == NULL) {
     return DEA_E_MEMORY;
@@ -470,11 +505,42 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   stop->memory.ctx = ctx;
   stop->voltage_V = at->voltage_V;
   stop->point = *at;
-  dea_status status = dea_curve_add_point(ctx, curve, at);
-  status = status == DEA_OK ? find_stop(ctx, type, model, result, stop) : status;
+  stop->is_pressed = tip != NULL;
+  if (tip != NULL) {
+    stop->pressed = (struct dea_pressed){*tip, at->tip_depth_m};
+  }
+  dea_status status = find_stop(ctx, type, model, result, stop);
   status = status == DEA_OK ? put_stop(ctx, type->name, stop, result) : status;
   dea_arena_free(&stop->memory);
   dea_free(ctx, stop);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
+                       struct dea_model *model, const struct dea_load_point *at, size_t number,
+                       struct dea_result *result, struct dea_curve *curve)
+{
+  (void)number;
+  DEA_TRY(ctx, dea_curve_add_point(ctx, curve, at));
+  DEA_TRY(ctx, look(ctx, type, model, at, NULL, result));
+  return DEA_OK;
+}
+
+/* A stop of study force: pressed at 0 V, then all voltages. */
+static dea_status press(struct dea_context *ctx, const struct dea_model_type *type,
+                        struct dea_result *result, size_t number, const double *voltages_V,
+                        size_t count)
+{
+  const struct dea_probe tip = dea_force_indenter(result->design);
+  struct dea_load_point at;
+  struct dea_model *model;
+  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
+  dea_status status = dea_force_indent(ctx, type, model, result->design, number);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    status = type->solve(ctx, model, voltages_V[i], &at);
+    status = status == DEA_OK ? look(ctx, type, model, &at, &tip, result) : status;
+  }
+  type->destroy(ctx, model);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
@@ -490,6 +556,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                      : 1;
   DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, false, voltages_V, count,
                                       take));
+  for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
+    DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
+  }
   return DEA_OK;
 }
 

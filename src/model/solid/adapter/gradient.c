@@ -296,7 +296,7 @@ static dea_status difference(struct dea_context *ctx, struct work *w,
                              const struct dea_design_change *change)
 {
   for (int k = 0; k < 2; k++) {
-    dea_status status = w->owner->enter(ctx, w->owner->model, change->device[k]);
+    dea_status status = w->owner->enter(ctx, w->owner->model, change, k);
     if (status == DEA_OK) {
       status =
           evaluate(ctx, w, change->voltage_V[k], w->side + (size_t)k * dea_gradient_width(w->ask));

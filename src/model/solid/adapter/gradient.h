@@ -13,7 +13,8 @@ struct dea_gradient_owner {
   void *model;
   double voltage_V;
   /* out [dofs], pressures [elements][pressures], 0 before: slope of a column of load points by the
-   * unknowns at the equilibrium; *known false: the model has none. */
+   * unknowns at the equilibrium, behind the pressures by the multipliers of loads; *known false:
+   * the model has none. */
   dea_status (*slope)(struct dea_context *ctx, void *model, int column, double *out,
                       double *pressures, bool *known);
   /* The same of the motion of monitor i of the question, out [dofs]; and the motions of all that
@@ -22,9 +23,10 @@ struct dea_gradient_owner {
   dea_status (*monitor_slope)(struct dea_context *ctx, void *model, size_t i, double *out,
                               bool *known);
   dea_status (*monitors)(struct dea_context *ctx, void *model, double *out);
-  /* Puts mesh, constituents and loads of a changed device under the solid, whose unknowns stay.
+  /* Puts mesh, constituents and loads of one side of a change under the solid, whose unknowns stay.
    * DEA_E_ARGUMENT and DEA_E_UNSUPPORTED where the mesh cannot follow. */
-  dea_status (*enter)(struct dea_context *ctx, void *model, const struct dea_device *device);
+  dea_status (*enter)(struct dea_context *ctx, void *model, const struct dea_design_change *change,
+                      int side);
   /* And back, also after a failure of `enter`. */
   void (*leave)(struct dea_context *ctx, void *model);
   /* Quantities of the changed device at these unknowns; energy_J: of the solid there. */

@@ -5,6 +5,7 @@
 #include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Penalty of the contact: the answer does not depend on it; some modulus over a tenth of the film's
  * thickness settles in few rounds. */
@@ -35,14 +36,16 @@ static bool select_face(const void *self, int region, int ply, const double midd
   return ply == (covered == DEA_FIBRE_DISC_TOP ? DEA_FIBRE_DISC_BOTTOM : DEA_FIBRE_DISC_FILM);
 }
 
+/* The contact with a probe at a depth. */
 static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *actuator,
-                          const struct dea_grid *grid, struct dea_solid *solid,
-                          const struct dea_probe *probe, struct dea_indent *indent)
+                          const struct dea_grid *grid, const struct dea_pressed *pressed,
+                          double penalty_Pa_per_m, struct dea_indent *indent)
 {
   static const enum dea_indenter_shape shapes[] = {[DEA_PROBE_SPHERE] = DEA_INDENTER_SPHERE,
                                                    [DEA_PROBE_FLAT] = DEA_INDENTER_FLAT,
                                                    [DEA_PROBE_CYLINDER] = DEA_INDENTER_CYLINDER};
   const struct dea_fibre_disc *p = &actuator->plate;
+  const struct dea_probe *probe = &pressed->tip;
   const struct choice choice = {actuator, probe->from_fibre_side};
   double sign = probe->from_fibre_side ? 1 : -1;
   double face = p->membrane ? 0 : 0.5 * p->film_thickness + p->electrode_thickness;
@@ -53,23 +56,21 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *ac
               .axis = {0, 0, sign},
               .edge_radius_m = fmin(probe->edge_radius_m, probe->radius_m),
               .half_length_m = INFINITY},
-      .stiffness_Pa_per_m = stiffness_Pa_per_m,
+      .stiffness_Pa_per_m = penalty_Pa_per_m,
   };
   if (probe->shape == DEA_PROBE_CYLINDER) {
     options.tip.axis[0] = 1;
     options.tip.axis[2] = 0;
   }
-  indent->from_fibre_side = probe->from_fibre_side;
+  indent->probe = *probe;
   indent->touch_z_m = sign * (face + (round ? probe->radius_m : 0));
-  indent->depth_m = -1e-3 * probe->radius_m;
+  indent->depth_m = pressed->depth_m;
   indent->copies = dea_actuator_copies(actuator);
   options.place_m[2] = indent->touch_z_m - sign * indent->depth_m;
   DEA_TRY(ctx,
           dea_surface_create(ctx, grid, probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
                              select_face, &choice, &indent->surface));
   DEA_TRY(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
-  const struct dea_solid_load load = dea_contact_load(indent->contact);
-  DEA_TRY(ctx, dea_solid_add_load(ctx, solid, &load));
   return DEA_OK;
 }
 
@@ -77,11 +78,16 @@ dea_status dea_indent_create(struct dea_context *ctx, const struct dea_actuator 
                              const struct dea_grid *grid, struct dea_solid *solid,
                              const struct dea_probe *probe, struct dea_indent **out)
 {
+  const struct dea_pressed pressed = {*probe, -1e-3 * probe->radius_m};
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = prepare(ctx, actuator, grid, solid, probe, *out);
+  dea_status status = prepare(ctx, actuator, grid, &pressed, stiffness_Pa_per_m, *out);
+  if (status == DEA_OK) {
+    const struct dea_solid_load load = dea_contact_load((*out)->contact);
+    status = dea_solid_add_load(ctx, solid, &load);
+  }
   if (status != DEA_OK) { // a load that was added is the last thing that can fail
     dea_indent_destroy(ctx, *out);
     *out = NULL;
@@ -97,6 +103,52 @@ void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent)
     dea_free(ctx, indent);
   }
 }
+
+// Gradients ---------------------------------------------------------------------------------------
+
+/* One contact in place of another among the loads. */
+static void replace(struct dea_solid *s, const struct dea_contact *old, struct dea_contact *with)
+{
+  for (size_t k = 0; k < s->problem.load_count; k++) {
+    if (s->problem.loads[k].self == old) {
+      s->problem.loads[k] = dea_contact_load(with);
+    }
+  }
+}
+
+dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_actuator *actuator,
+                                     const struct dea_grid *grid, struct dea_solid *solid,
+                                     const struct dea_pressed *pressed,
+                                     const struct dea_indent *other, struct dea_indent **out)
+{
+  static const double none = 0x1p-100; // of the penalty: its k g is no pressure of the state
+  *out = dea_alloc(ctx, 1, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = prepare(ctx, actuator, grid, pressed, none * stiffness_Pa_per_m, *out);
+  if (status != DEA_OK) {
+    dea_indent_destroy(ctx, *out);
+    *out = NULL;
+    return status;
+  }
+  const struct dea_solid_load load = dea_contact_load((*out)->contact);
+  memcpy(load.multiplier, dea_contact_pressure(other->contact),
+         load.multiplier_count * sizeof *load.multiplier);
+  replace(solid, other->contact, (*out)->contact);
+  return DEA_OK;
+}
+
+void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,
+                            const struct dea_indent *other, struct dea_indent *variant)
+{
+  if (variant != NULL) {
+    replace(solid, variant->contact, other->contact);
+    dea_indent_destroy(ctx, variant);
+  }
+}
+
+// Moving ------------------------------------------------------------------------------------------
 
 /* Two equilibria on the way, and their depths: where the solid is, and the one before. */
 struct way {
@@ -136,7 +188,7 @@ static dea_status move_on(struct dea_context *ctx, struct dea_indent *indent, st
                           double voltage_V, double depth_m, struct way *way,
                           struct dea_solid_report *report)
 {
-  double z_m = indent->touch_z_m - (indent->from_fibre_side ? depth_m : -depth_m);
+  double z_m = indent->touch_z_m - (indent->probe.from_fibre_side ? depth_m : -depth_m);
   DEA_TRY(ctx, keep_last(ctx, s, indent->depth_m, way));
   dea_contact_move(indent->contact, (const double[3]){0, 0, z_m});
   go_straight_on(s, way, depth_m);
@@ -176,5 +228,12 @@ double dea_indent_force(const struct dea_indent *indent, const double *u)
 {
   double force_N[3];
   dea_contact_force(indent->contact, u, force_N);
-  return indent->copies * (indent->from_fibre_side ? force_N[2] : -force_N[2]);
+  return indent->copies * (indent->probe.from_fibre_side ? force_N[2] : -force_N[2]);
+}
+
+void dea_indent_force_slope(const struct dea_indent *indent, const double *u, double *by_u,
+                            double *by_pressure)
+{
+  const double sign = indent->probe.from_fibre_side ? 1 : -1;
+  dea_contact_force_slope(indent->contact, u, 2, sign * indent->copies, by_u, by_pressure);
 }

@@ -8,9 +8,9 @@
 #include "model/solid/load/loads.h"
 
 struct dea_indent {
+  struct dea_probe probe;
   struct dea_surface *surface;
   struct dea_contact *contact;
-  bool from_fibre_side;
   double touch_z_m; // of the tip's place when it touches the flat film
   double depth_m;   // where it is
   double copies;    // of the domain in the actuator
@@ -30,5 +30,19 @@ dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
 
 /* Force of the whole actuator on the probe, away from the film [N]. u: displacements. */
 double dea_indent_force(const struct dea_indent *indent, const double *u);
+/* Its slopes as dea_contact_force_slope has them, added. */
+void dea_indent_force_slope(const struct dea_indent *indent, const double *u, double *by_u,
+                            double *by_pressure);
+
+/* The same points in touch with the same pressures on a changed actuator and its mesh, whose faces
+ * are those of the other, by a probe at a depth: for gradients, without a penalty of its own
+ * (docs/theory/gradients.md). Takes the place of the other among the solid's loads until
+ * dea_indent_end_variant, which destroys it. */
+dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_actuator *actuator,
+                                     const struct dea_grid *grid, struct dea_solid *solid,
+                                     const struct dea_pressed *pressed,
+                                     const struct dea_indent *other, struct dea_indent **out);
+void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,
+                            const struct dea_indent *other, struct dea_indent *variant);
 
 #endif

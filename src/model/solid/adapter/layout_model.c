@@ -963,9 +963,11 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
-static dea_status enter(struct dea_context *ctx, void *self, const struct dea_device *device)
+static dea_status enter(struct dea_context *ctx, void *self, const struct dea_design_change *change,
+                        int side)
 {
   struct dea_model *model = self;
+  const struct dea_device *device = change->device[side];
   struct variant *v = model->variant;
   struct dea_solid *s = v->own.solid;
   if (device->layout == v->own.layout) {

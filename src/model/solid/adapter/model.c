@@ -348,6 +348,14 @@ static void describe(const struct dea_model *model, double voltage_V, struct dea
       dea_actuator_copies(&model->actuator) * (model->at.report.energy_J - model->at.rest_energy_J);
 }
 
+static void describe_tip(const struct dea_model *model, struct dea_load_point *out)
+{
+  if (model->indent != NULL) {
+    out->tip_depth_m = model->indent->depth_m;
+    out->force_N = dea_indent_force(model->indent, dea_solid_displacement(model->solid));
+  }
+}
+
 static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
                          struct dea_load_point *out)
 {
@@ -373,10 +381,7 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   out->told |= (unsigned)model->at.left_a_state << DEA_FLAG_STATES;
   out->told |= (unsigned)model->actuator.plate.membrane << DEA_FLAG_PREVIEW;
   out->capacitance_F = copies * capacitance_F;
-  if (model->indent != NULL) {
-    out->tip_depth_m = model->indent->depth_m;
-    out->force_N = dea_indent_force(model->indent, dea_solid_displacement(model->solid));
-  }
+  describe_tip(model, out);
   out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
   DEA_TRY(ctx, report_errors(ctx, model, out));
@@ -427,6 +432,7 @@ struct variant {
   const struct dea_constituent *constituents; // as they were
   struct dea_gradient_places places;
   const struct dea_gradient_ask *ask;
+  struct dea_indent *indent; // of the changed device; NULL: none
 };
 
 /* The film's node that is highest, sign 1, or lowest, -1. */
@@ -471,6 +477,11 @@ static dea_status slope(struct dea_context *ctx, void *self, int column, double 
     }
   } else if (strcmp(key, "highest_z_m") == 0 || strcmp(key, "lowest_z_m") == 0) {
     weigh_height(model, strcmp(key, "highest_z_m") == 0 ? 1 : -1, out);
+  } else if (strcmp(key, "force_N") == 0 && model->indent != NULL) { // the only load
+    dea_indent_force_slope(model->indent, dea_solid_displacement(model->solid), out,
+                           pressures + dea_solid_pressure_count(model->solid));
+  } else if (strcmp(key, "tip_depth_m") == 0) { // of no unknown
+    *known = model->indent != NULL;
   } else {
     DEA_TRY(ctx, dea_gradient_film_slope(ctx, &film, &model->variant->places, column, out,
                                          pressures, known));
@@ -484,11 +495,15 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
   struct dea_model *model = self;
   const struct variant *v = model->variant;
   const struct dea_gradient_film film = film_of(model);
+  struct dea_solid *s = model->solid;
+  const size_t loads = s->problem.load_count;
   model->at.report.energy_J = energy_J;
-  dea_status status =
-      dea_gradient_rest_energy(model->solid, v->ask, model->rest,
-                               model->rest + model->solid->problem.dofs, &model->at.rest_energy_J);
+  s->problem.load_count = 0; // the tip: it is not there at rest
+  dea_status status = dea_gradient_rest_energy(
+      s, v->ask, model->rest, model->rest + s->problem.dofs, &model->at.rest_energy_J);
+  s->problem.load_count = loads;
   describe(model, voltage_V, out);
+  describe_tip(model, out);
   if (status == DEA_OK) {
     status = dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out);
   }
@@ -516,14 +531,12 @@ static dea_status change_weight(struct dea_context *ctx, struct dea_model *model
   return DEA_OK;
 }
 
-static dea_status enter(struct dea_context *ctx, void *self, const struct dea_device *device)
+/* Mesh and constituents of a changed device. */
+static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
+                               const struct dea_device *device)
 {
-  struct dea_model *model = self;
   struct variant *v = model->variant;
   struct dea_model_settings settings = v->own.actuator.settings;
-  if (device == v->own.device) {
-    return DEA_OK;
-  }
   settings.mesh_of = settings.mesh_of != NULL ? settings.mesh_of : v->own.device;
   model->device = device;
   DEA_TRY(ctx, dea_actuator_create(ctx, device, &settings, &model->actuator));
@@ -539,11 +552,32 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
   return DEA_OK;
 }
 
+static dea_status enter(struct dea_context *ctx, void *self, const struct dea_design_change *change,
+                        int side)
+{
+  struct dea_model *model = self;
+  struct variant *v = model->variant;
+  if (change->device[side] != v->own.device) {
+    DEA_TRY(ctx, enter_device(ctx, model, change->device[side]));
+  }
+  if (model->indent != NULL) {
+    const struct dea_pressed own = {model->indent->probe, model->indent->depth_m};
+    const struct dea_pressed *pressed =
+        change->pressed[side] != NULL ? change->pressed[side] : &own;
+    DEA_TRY(ctx, dea_indent_create_variant(ctx, &model->actuator, model->grid, model->solid,
+                                           pressed, v->own.indent, &v->indent));
+    model->indent = v->indent;
+  }
+  return DEA_OK;
+}
+
 static void leave(struct dea_context *ctx, void *self)
 {
   struct dea_model *model = self;
   struct variant *v = model->variant;
   struct dea_solid *s = model->solid;
+  dea_indent_end_variant(ctx, s, v->own.indent, v->indent);
+  v->indent = NULL;
   dea_grid_destroy(ctx, v->grid);
   v->grid = NULL;
   *model = v->own;
@@ -579,9 +613,12 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 {
   struct dea_arena memory = {.ctx = ctx};
   dea_standing_end_history(ctx, &model->at);
-  if (model->indent != NULL || model->actuator.settings.field == DEA_FIELD_COUPLED) {
+  if (model->actuator.settings.field == DEA_FIELD_COUPLED) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no gradients with a coupled field yet");
+  }
+  if (model->indent != NULL && dea_gradient_asks_mode(ask)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "model 3d knows no gradients with a tip or a coupled field yet");
+                    "model 3d knows no gradients of a frequency with a tip pressed in");
   }
   if (dea_gradient_asks_mode(ask)) {
     DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));

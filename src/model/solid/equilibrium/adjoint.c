@@ -16,25 +16,42 @@
  *
  * in which nu is less by kappa b lambda than with A in place of K,
  * and nu is found by conjugate gradients on b K^-1 b^T, which kappa makes nearly the unit matrix
- * over kappa: few steps, each a solution with the factor. */
+ * over kappa: few steps, each a solution with the factor.
+ *
+ * Constraints of loads that hold, those of points in contact, are rows of b beside those of the
+ * elements: b = C_u / sqrt(w), L = sqrt(w), and the stiffness of their penalty for kappa. */
 
 static const double settled = 1e-7; // change of nu that is left, of the largest nu
-enum { STEPS = 40 };
+enum { STEPS = 200 };
+
+/* The row of a load's multiplier. */
+struct row {
+  size_t node;
+  double b[3], root; // root: L, 0 where the constraint is not held
+  double stiffness;
+};
+
+/* Multipliers of elements and of loads are in other units, and each settles by itself. */
+enum { OF_ELEMENTS, OF_LOADS, KINDS };
 
 struct dea_adjoint {
   struct dea_arena memory; // of the arrays
   struct dea_solid *s;
-  size_t dofs, pressures, count; // of u, of all multipliers, of answers
+  size_t dofs, pressures, count; // of u, of multipliers of elements, of answers
+  size_t all;                    // multipliers, those of loads behind the others
+  bool touches;                  // one of these is held
+  struct row *row;               // [all - pressures]
   double *b, *L;                 // of each own element, see dea_element_type.constraint
   double *lambda;                // [count][dofs]
-  double *nu;                    // [count][pressures]
+  double *nu;                    // [count][all]
   /* of each answer, [count] times; right and way of those that are not there yet, one by one */
   double *right, *way;           // [dofs] of the slopes at first, way: K^-1 b^T towards
-  double *pull;                  // [pressures] Q_p
-  double *left, *towards, *gain; // [pressures] of b lambda, direction of a step, b way
-  double *before, *largest;      // size of the last left, largest nu
+  double *pull;                  // [all] Q_p
+  double *left, *towards, *gain; // [all] of b lambda, direction of a step, b way
+  double *before;                // size of the last left
+  double (*largest)[KINDS];      // largest nu
   size_t *open;                  // numbers of those that are not there yet
-  double *theta;                 // [pressures] L^T theta of the last assembly
+  double *theta;                 // [all] L^T theta of the last assembly, of loads C / L
   double *room;                  // of one element: b and L of another problem
   double stiff;                  // kappa of the factor over that of the solid
   int solutions;
@@ -65,6 +82,35 @@ static dea_status find_constraints(struct dea_context *ctx, struct dea_adjoint *
   return dea_solid_agree(ctx, status);
 }
 
+/* Rows of the constraints of loads. */
+static void find_rows(struct dea_adjoint *a)
+{
+  const struct dea_solid_problem *p = &a->s->problem;
+  struct row *row = a->row;
+  for (size_t k = 0; k < p->load_count; k++) {
+    const struct dea_solid_load *load = &p->loads[k];
+    for (size_t i = 0; i < load->multiplier_count; i++, row++) {
+      struct dea_load_constraint c;
+      load->constraint(load->self, i, a->s->state.u, &c);
+      *row = (struct row){.node = (size_t)c.node, .stiffness = c.stiffness};
+      row->root = c.held ? sqrt(c.weight) : 0;
+      for (int j = 0; j < 3 && row->root > 0; j++) {
+        row->b[j] = c.slope[j] / row->root;
+      }
+      a->touches = a->touches || row->root > 0;
+    }
+  }
+}
+
+static size_t multipliers_of_loads(const struct dea_solid *s)
+{
+  size_t count = 0;
+  for (size_t k = 0; k < s->problem.load_count; k++) {
+    count += s->problem.loads[k].multiplier_count;
+  }
+  return count;
+}
+
 static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
 {
   struct dea_solid *s = a->s;
@@ -72,24 +118,28 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   size_t own = s->problem.own_count, most = most_of(a);
   a->dofs = s->problem.dofs;
   a->pressures = dea_solid_pressure_count(s);
+  a->all = a->pressures + multipliers_of_loads(s);
+  a->row = dea_arena_alloc(&a->memory, a->all - a->pressures, sizeof *a->row);
   a->b = dea_arena_alloc(&a->memory, own * most * DEA_HEX_DOFS_MAX, sizeof(double));
   a->L = dea_arena_alloc(&a->memory, own * most * most, sizeof(double));
   a->lambda = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  a->nu = dea_arena_alloc(&a->memory, a->count * a->pressures, sizeof(double));
+  a->nu = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
   a->right = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
   a->way = dea_arena_alloc(&a->memory, a->count * a->dofs, sizeof(double));
-  double **const pressures[] = {&a->pull, &a->left, &a->towards, &a->gain};
-  for (size_t i = 0; i < sizeof pressures / sizeof pressures[0]; i++) {
-    *pressures[i] = dea_arena_alloc(&a->memory, a->count * a->pressures, sizeof(double));
+  double **const each[] = {&a->pull, &a->left, &a->towards, &a->gain};
+  for (size_t i = 0; i < sizeof each / sizeof each[0]; i++) {
+    *each[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
   }
-  a->theta = dea_arena_alloc(&a->memory, a->pressures, sizeof(double));
+  a->theta = dea_arena_alloc(&a->memory, a->all, sizeof(double));
   a->room = dea_arena_alloc(&a->memory, most * (DEA_HEX_DOFS_MAX + most), sizeof(double));
   a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
-  a->largest = dea_arena_alloc(&a->memory, a->count, sizeof(double));
+  a->largest = dea_arena_alloc(&a->memory, a->count, sizeof *a->largest);
   a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&a->memory)));
-  // of the state before the last step, which was a 1e-8 of the way, or of this one
-  a->factorised = !(s->found.factor_fits || s->found.stiff_factor_fits);
+  find_rows(a);
+  // of the state before the last step, which was a 1e-8 of the way, or of this one; other points
+  // may have been in touch then
+  a->factorised = a->touches || !(s->found.factor_fits || s->found.stiff_factor_fits);
   if (a->factorised) { // K at a finite kappa may have a negative pivot
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
@@ -143,16 +193,22 @@ static void push(struct dea_adjoint *a, const double *nu, double *out)
     }
   }
   dea_solid_sum(out, a->dofs);
+  for (size_t i = a->pressures; i < a->all; i++) {
+    const struct row *row = &a->row[i - a->pressures];
+    for (size_t j = 0; j < 3; j++) {
+      out[3 * row->node + j] += nu[i] * row->b[j];
+    }
+  }
 }
 
-/* out [pressures] = b v. */
+/* out [all] = b v. */
 static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
 {
   struct dea_solid *s = a->s;
   const struct dea_solid_problem *p = &s->problem;
   size_t most = most_of(a);
   double own[DEA_HEX_DOFS_MAX];
-  memset(out, 0, a->pressures * sizeof *out);
+  memset(out, 0, a->all * sizeof *out);
   for (size_t k = 0; k < p->own_count && most > 0; k++) {
     size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
     const double *b = a->b + k * most * DEA_HEX_DOFS_MAX;
@@ -164,11 +220,22 @@ static void squeeze(const struct dea_adjoint *a, const double *v, double *out)
     }
   }
   dea_solid_sum(out, a->pressures);
+  for (size_t i = a->pressures; i < a->all; i++) {
+    const struct row *row = &a->row[i - a->pressures];
+    const double *at = v + 3 * row->node;
+    out[i] = row->b[0] * at[0] + row->b[1] * at[1] + row->b[2] * at[2];
+  }
 }
 
-static double kappa_of(const struct dea_adjoint *a, size_t pressure)
+static double kappa_of(const struct dea_adjoint *a, size_t i)
 {
-  return a->stiff * dea_solid_bulk_modulus(a->s, pressure / most_of(a));
+  return i < a->pressures ? a->stiff * dea_solid_bulk_modulus(a->s, i / most_of(a))
+                          : a->row[i - a->pressures].stiffness;
+}
+
+static int kind_of(const struct dea_adjoint *a, size_t i)
+{
+  return i < a->pressures ? OF_ELEMENTS : OF_LOADS;
 }
 
 /* out [count][dofs] = K^-1 right, without what is held. */
@@ -182,17 +249,17 @@ static dea_status solve(struct dea_context *ctx, struct dea_adjoint *a, size_t c
   return DEA_OK;
 }
 
-/* left . kappa left, what is left of the second equation of an answer; *change: the largest kappa
+/* left . kappa left, what is left of the second equation of an answer; change: the largest kappa
  * left. */
-static double size_of(const struct dea_adjoint *a, size_t number, double *change)
+static double size_of(const struct dea_adjoint *a, size_t number, double change[KINDS])
 {
-  const double *left = a->left + number * a->pressures;
+  const double *left = a->left + number * a->all;
   double sum = 0;
-  *change = 0;
-  for (size_t i = 0; i < a->pressures; i++) {
-    double z = kappa_of(a, i) * left[i];
+  change[OF_ELEMENTS] = change[OF_LOADS] = 0;
+  for (size_t i = 0; i < a->all; i++) {
+    double z = kappa_of(a, i) * left[i], *most = &change[kind_of(a, i)];
     sum += left[i] * z;
-    *change = fmax(*change, fabs(z));
+    *most = fmax(*most, fabs(z));
   }
   return sum;
 }
@@ -201,9 +268,9 @@ static double size_of(const struct dea_adjoint *a, size_t number, double *change
 static void take_pressures(struct dea_adjoint *a, size_t number)
 {
   const struct dea_solid_problem *p = &a->s->problem;
-  const double *pull = a->pull + number * a->pressures;
+  const double *pull = a->pull + number * a->all;
   size_t most = most_of(a);
-  double *sum = a->gain, *left = a->left + number * a->pressures;
+  double *sum = a->gain, *left = a->left + number * a->all;
   memset(sum, 0, a->pressures * sizeof *sum);
   for (size_t k = 0; k < p->own_count && most > 0; k++) {
     size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
@@ -220,6 +287,10 @@ static void take_pressures(struct dea_adjoint *a, size_t number)
   for (size_t i = 0; i < a->pressures; i++) {
     left[i] -= sum[i];
   }
+  for (size_t i = a->pressures; i < a->all; i++) {
+    const double root = a->row[i - a->pressures].root;
+    left[i] -= root > 0 ? pull[i] / root : 0;
+  }
 }
 
 /* The first lambda of all that is wanted, with what it leaves. */
@@ -232,7 +303,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t c
   for (size_t k = 0; k < count; k++) {
     const size_t n = a->open[k];
     memcpy(a->lambda + n * a->dofs, a->way + k * a->dofs, a->dofs * sizeof(double));
-    squeeze(a, a->lambda + n * a->dofs, a->left + n * a->pressures);
+    squeeze(a, a->lambda + n * a->dofs, a->left + n * a->all);
     take_pressures(a, n);
   }
   return DEA_OK;
@@ -241,9 +312,9 @@ static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t c
 /* A takes its share of nu from K. */
 static void end(struct dea_adjoint *a, size_t number)
 {
-  double *nu = a->nu + number * a->pressures, *gain = a->gain;
+  double *nu = a->nu + number * a->all, *gain = a->gain;
   squeeze(a, a->lambda + number * a->dofs, gain);
-  for (size_t i = 0; i < a->pressures; i++) {
+  for (size_t i = 0; i < a->all; i++) {
     nu[i] += kappa_of(a, i) * gain[i];
   }
 }
@@ -254,14 +325,15 @@ static size_t aim(struct dea_adjoint *a, size_t count)
   size_t open = 0;
   for (size_t k = 0; k < count; k++) {
     const size_t n = a->open[k];
-    double *towards = a->towards + n * a->pressures, change;
-    const double *left = a->left + n * a->pressures;
-    const double size = size_of(a, n, &change);
-    if (!(change > settled * a->largest[n])) {
+    double *towards = a->towards + n * a->all, change[KINDS];
+    const double *left = a->left + n * a->all, *largest = a->largest[n];
+    const double size = size_of(a, n, change);
+    if (!(change[OF_ELEMENTS] > settled * largest[OF_ELEMENTS]) &&
+        !(change[OF_LOADS] > settled * largest[OF_LOADS])) {
       end(a, n);
       continue;
     }
-    for (size_t i = 0; i < a->pressures; i++) {
+    for (size_t i = 0; i < a->all; i++) {
       towards[i] =
           kappa_of(a, i) * left[i] + (a->before[n] != 0 ? size / a->before[n] : 0) * towards[i];
     }
@@ -275,18 +347,19 @@ static size_t aim(struct dea_adjoint *a, size_t count)
 /* One step of conjugate gradients of an answer along its direction, of which way is K^-1 b^T. */
 static void step(struct dea_adjoint *a, size_t number, const double *way)
 {
-  double *towards = a->towards + number * a->pressures, *left = a->left + number * a->pressures,
-         *nu = a->nu + number * a->pressures, *lambda = a->lambda + number * a->dofs;
+  double *towards = a->towards + number * a->all, *left = a->left + number * a->all,
+         *nu = a->nu + number * a->all, *lambda = a->lambda + number * a->dofs;
   double product = 0;
   squeeze(a, way, a->gain);
-  for (size_t i = 0; i < a->pressures; i++) {
+  for (size_t i = 0; i < a->all; i++) {
     product += towards[i] * a->gain[i];
   }
   const double length = product != 0 ? a->before[number] / product : 0;
-  for (size_t i = 0; i < a->pressures; i++) {
+  for (size_t i = 0; i < a->all; i++) {
+    double *largest = &a->largest[number][kind_of(a, i)];
     nu[i] += length * towards[i];
     left[i] -= length * a->gain[i];
-    a->largest[number] = fmax(a->largest[number], fabs(nu[i]));
+    *largest = fmax(*largest, fabs(nu[i]));
   }
   for (size_t i = 0; i < a->dofs; i++) {
     lambda[i] -= length * way[i];
@@ -300,7 +373,7 @@ double *dea_adjoint_slope(struct dea_adjoint *a, size_t number)
 
 double *dea_adjoint_pressure_slope(struct dea_adjoint *a, size_t number)
 {
-  return a->pull + number * a->pressures;
+  return a->pull + number * a->all;
 }
 
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, const bool *wanted)
@@ -324,6 +397,24 @@ dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, con
              : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
 }
 
+/* Constraints of the loads that are now under the solid. */
+static void evaluate_rows(struct dea_adjoint *a)
+{
+  const struct dea_solid_problem *p = &a->s->problem;
+  const struct row *row = a->row;
+  double *theta = a->theta + a->pressures;
+  for (size_t k = 0; k < p->load_count; k++) {
+    const struct dea_solid_load *load = &p->loads[k];
+    for (size_t i = 0; i < load->multiplier_count; i++, row++, theta++) {
+      struct dea_load_constraint c;
+      if (row->root > 0) {
+        load->constraint(load->self, i, a->s->state.u, &c);
+        *theta = c.value / row->root;
+      }
+    }
+  }
+}
+
 dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, double voltage_V,
                                 double *energy_J)
 {
@@ -335,7 +426,7 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, 
   dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy_J);
   dea_solid_scale_bulk_modulus(s, 1 / none);
   DEA_TRY(ctx, status);
-  memset(a->theta, 0, a->pressures * sizeof *a->theta);
+  memset(a->theta, 0, a->all * sizeof *a->theta);
   for (size_t k = 0; k < p->own_count && most > 0; k++) {
     size_t e = p->own[k], count = (size_t)dea_solid_element(s, e)->pressures;
     const double *L = a->L + k * most * most;
@@ -346,14 +437,15 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, 
     }
   }
   dea_solid_sum(a->theta, a->pressures);
+  evaluate_rows(a);
   return DEA_OK;
 }
 
 double dea_adjoint_product(const struct dea_adjoint *a, size_t number)
 {
-  const double *lambda = a->lambda + number * a->dofs, *nu = a->nu + number * a->pressures;
+  const double *lambda = a->lambda + number * a->dofs, *nu = a->nu + number * a->all;
   double sum = dea_solid_dot(a->s, lambda, a->s->work.g);
-  for (size_t i = 0; i < a->pressures; i++) {
+  for (size_t i = 0; i < a->all; i++) {
     sum += nu[i] * a->theta[i];
   }
   return sum;

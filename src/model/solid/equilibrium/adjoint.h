@@ -3,8 +3,8 @@
  *
  *   A lambda + B mu = Q_u,   B^T lambda = Q_p,
  *
- * with the tangent A, the slope B of the constraints J = 1 at the solid's state, and the slopes of
- * a quantity Q by displacements and pressures. */
+ * with the tangent A, the slope B of the constraints J = 1 and of those that loads hold at the
+ * solid's state, and the slopes of a quantity Q by displacements and pressures. */
 #ifndef DEA_MODEL_SOLID_EQUILIBRIUM_ADJOINT_H
 #define DEA_MODEL_SOLID_EQUILIBRIUM_ADJOINT_H
 
@@ -12,15 +12,16 @@
 
 struct dea_adjoint;
 
-/* Room for `count` answers. The factor is that of the solid's last equilibrium where there is one,
- * else the tangent is factorised at its state. solid: lent, outlives the answers, and where it is
- * when they are solved. out: owned by the caller, NULL on failure. */
+/* Room for `count` answers. The factor is that of the solid's last equilibrium where there is one
+ * and no constraint of a load is held, else the tangent is factorised at its state. solid: lent,
+ * outlives the answers, and where it is when they are solved. out: owned by the caller, NULL on
+ * failure. */
 dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, size_t count,
                               struct dea_adjoint **out);
 void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *adjoint);
 
 /* Where slopes of a quantity go before dea_adjoint_solve, 0 at first: by u [dofs] and by the
- * multipliers [elements][pressures]. */
+ * multipliers [elements][pressures], then those of each load. */
 double *dea_adjoint_slope(struct dea_adjoint *adjoint, size_t number);
 double *dea_adjoint_pressure_slope(struct dea_adjoint *adjoint, size_t number);
 /* The answers to all of them, [count] wanted, each once. DEA_E_NOT_CONVERGED where the constraints

@@ -17,6 +17,16 @@ struct dea_load_piece {
   double K[DEA_PIECE_DOFS_MAX * DEA_PIECE_DOFS_MAX]; // [3 node_count][3 node_count], symmetric
 };
 
+/* The constraint C of a multiplier p, of one node: the energy has p C and, of the penalty k,
+ * k C^2 / (2 w). */
+struct dea_load_constraint {
+  bool held; // false: the energy has neither at this state
+  int node;
+  double value, slope[3]; // C, and by the displacement of the node
+  double weight;          // w
+  double stiffness;       // k
+};
+
 struct dea_solid_load {
   void *self; // lent, outlives the solid
   size_t piece_count;
@@ -41,6 +51,8 @@ struct dea_solid_load {
   /* Moves them as a share of a step of Newton's method from u does, before u moves; NULL: such a
    * step leaves them. */
   void (*predict)(void *self, const double *u, const double *step, double share);
+  /* The constraint of multiplier i at u; needed where there are multipliers. */
+  void (*constraint)(const void *self, size_t i, const double *u, struct dea_load_constraint *out);
 };
 
 #endif

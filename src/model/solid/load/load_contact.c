@@ -98,7 +98,8 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
     double gap = gap_at(c, piece, q, u, n, level >= DEA_TANGENT ? H : NULL);
     double push = fmax(p - k * gap, 0); // NAN becomes 0 here: u is checked by the elements
     double bends = level == DEA_TANGENT_PREDICTED ? p : push;
-    out->energy_J += w * (push * push - p * p) / (2 * k);
+    // (push^2 - p^2) / (2 k), without the difference where k is small
+    out->energy_J -= w * (push > 0 ? gap * (p + push) / 2 : p * p / (2 * k));
     any = any || push > 0 || p != 0;
     for (int i = 0; i < 3 && push > 0; i++) {
       out->g[3 * q + i] -= w * push * n[i];
@@ -146,6 +147,40 @@ static void predict(void *self, const double *u, const double *step, double shar
   }
 }
 
+/* C = -w g: the pressure keeps the gap closed. */
+static void constraint(const void *self, size_t at, const double *u,
+                       struct dea_load_constraint *out)
+{
+  const struct dea_contact *c = self;
+  size_t points = (size_t)c->shape.points;
+  double n[3], gap = gap_at(c, at / points, (int)(at % points), u, n, NULL), w = c->weight[at];
+  *out = (struct dea_load_constraint){
+      .held = c->pressure[at] > c->stiffness * gap,
+      .node = c->surface->nodes[at / points * DEA_FACE_NODES_MAX + at % points],
+      .value = -w * gap,
+      .slope = {-w * n[0], -w * n[1], -w * n[2]},
+      .weight = w,
+      .stiffness = c->stiffness};
+}
+
+void dea_contact_force_slope(const struct dea_contact *contact, const double *u, int component,
+                             double factor, double *by_u, double *by_pressure)
+{
+  size_t points = (size_t)contact->shape.points;
+  for (size_t at = 0; at < contact->surface->face_count * points; at++) {
+    double n[3], H[9], w = factor * contact->weight[at], p = contact->pressure[at];
+    size_t face = at / points, point = at % points;
+    if (p > 0) {
+      double *by = by_u + 3 * (size_t)contact->surface->nodes[face * DEA_FACE_NODES_MAX + point];
+      gap_at(contact, face, (int)point, u, n, H);
+      by_pressure[at] -= w * n[component];
+      for (int j = 0; j < 3; j++) {
+        by[j] -= w * p * H[3 * component + j];
+      }
+    }
+  }
+}
+
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3])
 {
   size_t points = (size_t)contact->shape.points;
@@ -183,5 +218,6 @@ struct dea_solid_load dea_contact_load(struct dea_contact *contact)
                                      contact->surface->face_count * (size_t)contact->shape.points,
                                  .multiplier = contact->pressure,
                                  .update = update,
-                                 .predict = predict};
+                                 .predict = predict,
+                                 .constraint = constraint};
 }

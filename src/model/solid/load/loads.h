@@ -96,6 +96,10 @@ void dea_contact_move(struct dea_contact *contact, const double place_m[3]);
 void dea_contact_place(const struct dea_contact *contact, double place_m[3]);
 /* Of the surface on the tip at the last equilibrium, u: its displacements. */
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3]);
+/* Adds `factor` times the slopes of a component of that force: by u [node_count][3], and by the
+ * pressures, as dea_contact_pressure has them, of those that there are. */
+void dea_contact_force_slope(const struct dea_contact *contact, const double *u, int component,
+                             double factor, double *by_u, double *by_pressure);
 /* Reference area in contact [m^2]. */
 double dea_contact_area(const struct dea_contact *contact);
 /* Contact pressures per reference area [face_count][points], at the nodes of each face of the
