@@ -43,9 +43,12 @@ struct supply_line {
 struct supply {
   // set before the start
   double slew_V_per_s, delay_s;
-  bool one_client; // others wait until it has gone
-  int serial;      // of what it says of itself
-  int port;        // 0: any
+  bool one_client;    // others wait until it has gone
+  int serial;         // of what it says of itself
+  int port;           // 0: any
+  bool deaf;          // to what would set it: it is operated at its front
+  const char *behind; // its measured voltage, which is in kV then: "E3", " kV"; NULL: in V
+  bool comma;         // a decimal one
   // of the test
   pthread_t thread;
   pthread_mutex_t lock;
@@ -99,6 +102,9 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
   char text[64];
   s->commands++;
   const char *word = strncmp(line->text, "C1:", 3) == 0 ? line->text + 3 : line->text;
+  if (s->deaf && strchr(word, '?') == NULL) {
+    return;
+  }
   if (sscanf(word, "VOLT %lf", &s->set_V) == 1 || sscanf(word, "BSWV OFST,%lf", &s->set_V) == 1) {
     return;
   }
@@ -114,7 +120,11 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
   } else if (strcmp(line->text, "SYST:ERR?") == 0) {
     supply_answer(s, line->client, "0,\"No error\"");
   } else if (strcmp(line->text, "MEAS:VOLT?") == 0) {
-    snprintf(text, sizeof text, "%.3f", s->volts);
+    snprintf(text, sizeof text, "%.3f%s", s->volts * (s->behind != NULL ? 1e-3 : 1),
+             s->behind != NULL ? s->behind : "");
+    if (s->comma) {
+      *strchr(text, '.') = ',';
+    }
     supply_answer(s, line->client, text);
   } else if (strcmp(line->text, "WDOG ON") == 0 || strcmp(line->text, "WDOG FEED") == 0) {
     s->fed_s = dea_clock_s();

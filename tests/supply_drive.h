@@ -20,6 +20,8 @@ static const char *supply_safety = ", guard_time: 2 s";
 
 /* Longer times than usual, as the machine may be busy. Writes p.yaml: a triangle of 0 to 2 kV,
  * `seconds` cycles of 1 s. more: keys of the supply. */
+static const char *supply_host = "127.0.0.1";
+
 static inline void supply_protocol(const struct supply *s, int seconds, const char *more)
 {
   char text[2048];
@@ -30,10 +32,10 @@ static inline void supply_protocol(const struct supply *s, int seconds, const ch
            "rate: 100 Hz\n"
            "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s%s}\n"
            "instruments:\n"
-           "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON],\n"
+           "  - {kind: scpi, address: %s, port: %d, timeout: 1 s, setup: [OUTP ON],\n"
            "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF,\n"
            "     queue: 1 s, behind: 1 s%s}\n",
-           seconds, supply_zero_V, supply_safety, s->port, more);
+           seconds, supply_zero_V, supply_safety, supply_host, s->port, more);
   command_write("p.yaml", text);
 }
 
@@ -93,8 +95,8 @@ static inline int supply_run_dea(const char *const *arguments, double within_s)
   return supply_wait(supply_begin(arguments), within_s);
 }
 
-/* Kills the one child of a program that drives: its guard. */
-static inline void supply_kill_guard(pid_t parent)
+/* Sends a signal to the one child of a program that drives: its guard. */
+static inline void supply_signal_guard(pid_t parent, int number)
 {
   char path[64];
   int child;
@@ -103,12 +105,17 @@ static inline void supply_kill_guard(pid_t parent)
   if (file == NULL) {
     skip(); // a kernel without that list
   }
-  size_t killed = 0;
+  size_t sent = 0;
   while (fscanf(file, "%d", &child) == 1) {
-    killed += kill(child, SIGKILL) == 0;
+    sent += kill(child, number) == 0;
   }
   fclose(file);
-  assert_int_equal(killed, 1);
+  assert_int_equal(sent, 1);
+}
+
+static inline void supply_kill_guard(pid_t parent)
+{
+  supply_signal_guard(parent, SIGKILL);
 }
 
 /* What dea says of the output, from the line of its report. */

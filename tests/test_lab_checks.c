@@ -221,6 +221,10 @@ static void test_interlocks_cannot_be_switched_off(void **state)
        "refused: the largest jump takes 0.8 s by the amplifier's limits, and twice as long the "
        "voltage would not be watched",
        2, 57},
+      {TRIPS("at_zero: 10 kV") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "refused: 10000 V would be called 0 V; at most 100 V are, 60 V or 1 % of what the amplifier "
+       "gives",
+       2, 19},
       {"dea-protocol: 1\ndesign: design.yaml\n" PROTOCOL_AMPLIFIER
        "safety: {largest_field: 400 V/um}\n" CHANNELS "waveform: {kind: constant, voltage: 8 kV}\n",
        "refused: safety.largest_field of 400 V/um allows", 4, 25},
@@ -261,6 +265,7 @@ static void test_interlocks_at_their_bounds(void **state)
       TRIPS("trip_time: 0 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
       TRIPS("trip_time: 31 ms") AMPLIFIER("40 mA") CHANNELS PLAYS_8_KV,
       TRIPS("trip_current: 9.5 mA") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+      TRIPS("at_zero: 100 V") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
       TRIPS("voltage_error: 3999 V") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
       "dea-protocol: 1\nrate: 10 Hz\n" AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
       PROTOCOL_HEAD CHANNELS "waveform: {kind: constant, voltage: 8 kV}\n",

@@ -66,6 +66,35 @@ static void test_one_supply_one_program(void **state)
   supply_stop(&s);
 }
 
+static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
+
+/* By another name, of which nothing is kept: neither driven beside the first one, nor said to be at
+ * 0 V when it was told that. */
+static void test_two_names_of_one_supply(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  pid_t first = supply_arm("first.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  supply_host = "localhost";
+  supply_protocol(&s, 5, SUPPLY_MEASURES);
+  assert_int_equal(supply_wait(supply_arm("second.h5"), 10), 6);
+  assert_contains(command_err, "is driven by another program on this computer");
+  assert_true(supply_reaches(&s, 1500, 10)); // and the first one plays on
+  int code = supply_run_dea(zero, 20);
+  assert_true(code == 6 && !supply_said_zero());
+  supply_host = "127.0.0.1";
+  kill(first, SIGINT);
+  (void)supply_wait(first, 20);
+  supply_protocol(&s, 5, SUPPLY_MEASURES);
+  assert_int_equal(supply_run_dea(zero, 20), 0);
+  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  supply_stop(&s);
+}
+
 /* The guard is not in the way of a clean end, nor of Ctrl-C of a terminal. */
 static void test_interrupted(void **state)
 {
@@ -140,6 +169,26 @@ static void test_stall_is_no_jump(void **state)
   supply_stop(&s);
 }
 
+/* A guard that is killed or stopped guards nothing: that ends the measurement, along the ramp. */
+static void test_guard_that_is_gone(void **state)
+{
+  (void)state;
+  static const int signals[] = {SIGKILL, SIGSTOP};
+  static struct supply s;
+  for (size_t i = 0; i < 2; i++) {
+    s = (struct supply){0};
+    supply_start(&s);
+    supply_protocol(&s, 20, SUPPLY_MEASURES);
+    pid_t child = supply_arm("gone.h5");
+    assert_true(supply_reaches(&s, 1000, 10));
+    supply_signal_guard(child, signals[i]);
+    assert_int_equal(supply_wait(child, 15), 6);
+    assert_contains(command_err, "the guard of the output was killed, or is stopped");
+    assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+    supply_stop(&s);
+  }
+}
+
 /* The computer dies, and the guard with it: the supply's own watchdog is fed while all is well,
  * disarmed at the end, and switches off when nobody feeds it. */
 static void test_watchdog_of_the_supply(void **state)
@@ -177,8 +226,6 @@ static void swap(struct supply *there, struct supply *next)
   next->port = there->port;
   supply_start(next);
 }
-
-static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
 
 /* The address is another supply's all at once, which is at 0 V: that says nothing of this one, not
  * to the program, nor to `--zero`, nor to the guard of one that was killed. */
@@ -238,10 +285,16 @@ static void test_zero_while_it_plays(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_killed),           cmocka_unit_test(test_one_supply_one_program),
-      cmocka_unit_test(test_interrupted),      cmocka_unit_test(test_stopped),
-      cmocka_unit_test(test_stall_is_no_jump), cmocka_unit_test(test_watchdog_of_the_supply),
-      cmocka_unit_test(test_neighbour),        cmocka_unit_test(test_zero_while_it_plays),
+      cmocka_unit_test(test_killed),
+      cmocka_unit_test(test_one_supply_one_program),
+      cmocka_unit_test(test_two_names_of_one_supply),
+      cmocka_unit_test(test_interrupted),
+      cmocka_unit_test(test_stopped),
+      cmocka_unit_test(test_stall_is_no_jump),
+      cmocka_unit_test(test_watchdog_of_the_supply),
+      cmocka_unit_test(test_neighbour),
+      cmocka_unit_test(test_zero_while_it_plays),
+      cmocka_unit_test(test_guard_that_is_gone),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

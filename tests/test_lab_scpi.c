@@ -1,11 +1,24 @@
 // SCPI instruments against an emulator on the loopback interface.
-#define _POSIX_C_SOURCE 200809L // sockets
+#define _GNU_SOURCE // sockets, syscall
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "lab/instrument/line_reader.h"
 #include "lab/instrument/scpi_parse.h"
 
 #include "message_fixture.h"
+
+#include <sys/syscall.h>
+#include <time.h>
+
+/* The system's clocks, of which one alone goes on while a computer sleeps. */
+static atomic_int slept_s;
+
+int clock_gettime(clockid_t clock, struct timespec *out)
+{
+  long result = syscall(SYS_clock_gettime, clock, out);
+  out->tv_sec += clock == CLOCK_BOOTTIME ? atomic_load(&slept_s) : 0;
+  return (int)result;
+}
 
 /* How the emulated instrument behaves. */
 struct behaviour {
@@ -122,6 +135,10 @@ static void test_numbers(void **state)
                {"-", NAN, false},
                {"12:30:01", NAN, false},
                {"1.2.3", NAN, false},
+               {"0,123", NAN, false}, // one number or two?
+               {"-2,5E+03", NAN, false},
+               {"1, 2", 1, true},
+               {"1.5,2", 1.5, true},
                {"#15hello", NAN, false}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     double value = 0;
@@ -129,6 +146,22 @@ static void test_numbers(void **state)
     if (good != cases[i].good ||
         (good && !(value == cases[i].value) && !(isnan(value) && isnan(cases[i].value)))) {
       fail_msg("'%s' gave %d, %g", cases[i].text, good, value);
+    }
+  }
+  static const struct {
+    const char *text;
+    double in_V, in_kV; // NAN: no voltage
+  } voltages[] = {{"2.000", 2, 2},       {" -0 ", 0, 0},          {"1.5E+03V", 1500, NAN},
+                  {"+2 VDC,3", 2, NAN},  {"2.00 kV", NAN, 2},     {"2KVDC", NAN, 2},
+                  {"2.000,0.001", 2, 2}, {"2,000E+03", NAN, NAN}, {"2.0 E+03", NAN, NAN},
+                  {"2.0D+03", NAN, NAN}, {"2 mV", NAN, NAN},      {"2 MV", NAN, NAN},
+                  {"2 ?", NAN, NAN},     {"2 V?", NAN, NAN},      {"9.91E37", NAN, NAN},
+                  {"1e308", NAN, NAN},   {"", NAN, NAN}};
+  for (size_t i = 0; i < 2 * sizeof voltages / sizeof voltages[0]; i++) {
+    double value = NAN, wanted = i % 2 == 0 ? voltages[i / 2].in_V : voltages[i / 2].in_kV;
+    bool good = dea_scpi_voltage(voltages[i / 2].text, i % 2 == 0, i % 2 == 1, &value);
+    if (good != !isnan(wanted) || (good && value != wanted)) {
+      fail_msg("'%s' gave %d, %g", voltages[i / 2].text, good, value);
     }
   }
   const char *text;
@@ -374,6 +407,17 @@ static void test_wrong_keys(void **state)
       {"kind: scpi\naddress: x\noutput: \"C1:BSWV OFST,%g\"\nsetup: [\"c1:bswv hlev, -2.5V\"]\n",
        "sets the output"},
       {"kind: scpi\naddress: x\noutput: VOLT %g\nat_stop: [VOLT 1]\n", "'VOLT 1' sets the output"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nsetup: [VOLT MAX]\n", "sets the output"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nsetup: ['SOUR:VOLT:LEV:IMM 5']\n", "sets the"},
+      {"kind: scpi\naddress: x\noutput: 'VOLT:LEV %g'\nsetup: ['VOLT:AMPL 5']\n", "sets the"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nsetup: [VOLT UP]\n", "sets the output"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nsetup: ['*RCL 1']\n", "sets the output"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nsetup: ['APPL P25V, 5, 1']\n", "sets the output"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nsetup: [\"OUTP ON\\nVOLT 5\"]\n", "is one line"},
+      {"kind: scpi\naddress: x\noutput: VOLT %g\nmeasure: \"V?\\rVOLT 5\"\n", "is one line"},
+      {"kind: scpi\naddress: x\noutput: \"VOLT 5\\nVOLT %g\"\n", "must have one %g"},
+      {"kind: scpi\naddress: x\nreadings: [{name: a, query: b}]\nsetup: [OUTP ON, VOLT 5E3]\n",
+       "'VOLT 5E3' sets a voltage, and this instrument has no 'output'"},
       {"kind: scpi\nadress: x\noutput: VOLT %g\n", "did you mean 'address'?"},
       {"kind: scpi\naddress: x\nport: 70000\noutput: VOLT %g\n", "port"},
       {"kind: scpi\naddress: x\nreadings: [{name: a, query: b}, {name: a, query: c}]\n",
@@ -392,6 +436,48 @@ static void test_wrong_keys(void **state)
     }
   }
   dea_finding_clear(ctx);
+}
+
+/* What sets no voltage may be said: words of a generator, ranges, questions. */
+static void test_harmless_commands(void **state)
+{
+  (void)state;
+  static const char *const harmless[] = {"VOLT 0",         "VOLT? MAX", "MEAS:VOLT?",
+                                         "VOLT:RANG 1000", "OUTP ON",   "*RST",
+                                         "VOLT:PROT 5000", "VOLT",      "APPL?"};
+  for (size_t i = 0; i < sizeof harmless / sizeof harmless[0]; i++) {
+    assert_false(dea_scpi_sets_output(harmless[i], "SOUR:VOLT %g"));
+  }
+  assert_false(dea_scpi_sets_output("C1:BSWV WVTP,DC,OFST,0", "C1:BSWV OFST,%g"));
+  assert_true(dea_scpi_configures("CONF:VOLT:DC 10") && dea_scpi_configures(":sens:volt 10"));
+  assert_false(dea_scpi_configures("CONF:VOLT;VOLT 5") || dea_scpi_configures("SOUR:VOLT 5"));
+}
+
+/* The computer's lid was closed for an hour: what is due by then is not caught up with. */
+static void test_computer_that_slept(void **state)
+{
+  (void)state;
+  static const char plays[] = "kind: scpi\naddress: 127.0.0.1\nport: %d\noutput: VOLT %%g\n";
+  static struct bench b;
+  double volts[20] = {0}, held_V = NAN;
+  memset(&b, 0, sizeof b);
+  b.protocol.rate_Hz.si = 100;
+  b.protocol.safety.zero_time_s.si = 2;
+  b.protocol.amplifier.control_V.si = 10;
+  b.protocol.amplifier.highest_V.si = 10;
+  b.protocol.amplifier.gain.si = 1;
+  for (size_t i = 0; i < 20; i++) {
+    volts[i] = 0.5 * (double)i;
+  }
+  assert_int_equal(begin(&b, &usual, plays), DEA_OK);
+  assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 20), DEA_OK);
+  atomic_store(&slept_s, 3600);
+  const struct dea_sink nothing = {0};
+  assert_message(b.instrument->type->get(ctx, b.instrument, 0, &nothing), DEA_E_INTERLOCK,
+                 "the computer was away for 3.6e+03 s, longer than the queue");
+  assert_int_equal(b.instrument->type->hold(ctx, b.instrument, &held_V), DEA_OK);
+  assert_true(held_V < 9);
+  end(&b);
 }
 
 /* A generator of Siglent or BK before an amplifier, set as a direct voltage: what it gets are
@@ -466,12 +552,20 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_numbers),        cmocka_unit_test(test_reads),
-      cmocka_unit_test(test_plays),          cmocka_unit_test(test_makes_no_sense),
-      cmocka_unit_test(test_speaks_unasked), cmocka_unit_test(test_goes_silent),
-      cmocka_unit_test(test_hangs_up),       cmocka_unit_test(test_not_there),
-      cmocka_unit_test(test_refuses),        cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_memory),         cmocka_unit_test(test_changes_its_unit),
+      cmocka_unit_test(test_numbers),
+      cmocka_unit_test(test_reads),
+      cmocka_unit_test(test_plays),
+      cmocka_unit_test(test_makes_no_sense),
+      cmocka_unit_test(test_harmless_commands),
+      cmocka_unit_test(test_computer_that_slept),
+      cmocka_unit_test(test_speaks_unasked),
+      cmocka_unit_test(test_goes_silent),
+      cmocka_unit_test(test_hangs_up),
+      cmocka_unit_test(test_not_there),
+      cmocka_unit_test(test_refuses),
+      cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_changes_its_unit),
       cmocka_unit_test(test_generator),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

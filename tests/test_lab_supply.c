@@ -6,6 +6,7 @@
 
 #include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 static const char address[] = "scpi 127.0.0.1 5025";
@@ -161,6 +162,37 @@ static void test_given_away(void **state)
   dea_supply_close(&one);
 }
 
+/* On a disk that is full what stood there still says that the supply was not left at 0 V. */
+static void test_full_disk(void **state)
+{
+  (void)state;
+  struct dea_supply supply;
+  struct rlimit before, none;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+  assert_int_equal(dea_supply_leave(ctx, &supply, "armed, and a longer text than the next"),
+                   DEA_OK);
+  none = before;
+  none.rlim_cur = 0;
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &none), 0);
+  dea_status status = dea_supply_leave(ctx, &supply, "its output was not known to be at 0 V");
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+  assert_int_equal(status, DEA_E_IO);
+  dea_supply_close(&supply);
+  dea_context_clear(ctx);
+  assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+  assert_non_null(strstr(supply.left, "armed, and a longer text"));
+  // a shorter text leaves nothing of a longer one
+  assert_int_equal(dea_supply_leave(ctx, &supply, "short"), DEA_OK);
+  dea_supply_close(&supply);
+  assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+  assert_true(strncmp(supply.left, "short (", 7) == 0 && strstr(supply.left, "text") == NULL);
+  assert_int_equal(dea_supply_leave(ctx, &supply, ""), DEA_OK);
+  dea_supply_close(&supply);
+  signal(SIGXFSZ, handler);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -169,6 +201,7 @@ int main(void)
       cmocka_unit_test(test_supplies_are_apart),
       cmocka_unit_test(test_asked_for),
       cmocka_unit_test(test_given_away),
+      cmocka_unit_test(test_full_disk),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -110,6 +110,30 @@ static void test_without_measure(void **state)
   supply_stop(&s);
 }
 
+/* One that does not obey, and answers its 2 kV in words that begin with "2". */
+static void test_other_words_for_volts(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *behind;
+    bool comma;
+  } words[] = {{" kV", false}, {"E+03", true}, {" E+03", false}, {" V", true}};
+  static struct supply s;
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    s = (struct supply){.deaf = true,
+                        .on = true,
+                        .set_V = 2000,
+                        .behind = words[i].behind,
+                        .comma = words[i].comma};
+    supply_start(&s);
+    supply_protocol(&s, 1, SUPPLY_MEASURES);
+    assert_true(supply_reaches(&s, 1900, 10));
+    int code = supply_run_dea(zero, 20);
+    assert_true(code == 6 && !supply_said_zero() && supply_volts(&s) > 1900);
+    supply_stop(&s);
+  }
+}
+
 static void test_checked_by_somebody(void **state)
 {
   (void)state;
@@ -133,7 +157,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_slow_supply),         cmocka_unit_test(test_hung_supply),
       cmocka_unit_test(test_other_faults),        cmocka_unit_test(test_without_measure),
-      cmocka_unit_test(test_checked_by_somebody),
+      cmocka_unit_test(test_checked_by_somebody), cmocka_unit_test(test_other_words_for_volts),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

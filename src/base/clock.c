@@ -6,7 +6,11 @@
 double dea_clock_s(void)
 {
   struct timespec now;
+#ifdef CLOCK_BOOTTIME // of Linux: goes on while the computer sleeps
+  clock_gettime(CLOCK_BOOTTIME, &now);
+#else
   clock_gettime(CLOCK_MONOTONIC, &now);
+#endif
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 

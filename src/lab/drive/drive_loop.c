@@ -95,10 +95,17 @@ static void end_early(struct loop *loop, dea_status status, const char *format, 
 
 static void resume(struct loop *loop, double volts);
 
-/* A sign of life. False: the guard has taken over, and nothing is played any more. */
+/* A sign of life. False: the guard has taken over, and nothing is played any more. Without a guard
+ * only the ramp is. */
 static bool is_guarded(struct loop *loop)
 {
-  if (dea_guard_beat(loop->guard)) {
+  enum dea_guard_state state = dea_guard_beat(loop->guard);
+  if (state == DEA_GUARD_GONE) {
+    end_early(loop, DEA_E_INSTRUMENT,
+              "the guard of the output was killed, or is stopped: nobody would bring the output to "
+              "0 V if this program died");
+  }
+  if (state != DEA_GUARD_TAKEN) {
     return true;
   }
   loop->player->failed = true;

@@ -17,12 +17,15 @@
 #include <unistd.h>
 
 static const double again_s = 0.2, longest_s = 600; // between attempts, and for all of them
+static const double silent_least_s = 1;             // that the guard may be, on a busy computer
+static const double last_s = 2; // for its end, once it was told that all is done
 static const char clean_end = 'E';
 enum { poll_ms = 50 };
 
 /* In memory of both. */
 struct signs {
-  atomic_uint beats, limit_ms; // the second 0: none
+  atomic_uint beats, limit_ms; // of the program; the second 0: none
+  atomic_uint turns;           // of the guard
   atomic_bool taken;           // the guard has begun to bring the output to 0 V
   atomic_bool known;           // the mark is there
   char mark[DEA_INSTRUMENT_MARK_SIZE];
@@ -30,8 +33,11 @@ struct signs {
 
 struct dea_guard {
   struct signs *signs;
-  int pipe; // written at the clean end; closed by the system when the program dies
-  pid_t process;
+  int pipe;      // written at the clean end; closed by the system when the program dies
+  pid_t process; // 0: it has ended
+  // what was seen of it
+  unsigned turns;
+  double turned_s, silent_s; // when this was looked at last, and how long it did not change
 };
 
 // The guard's side -------------------------------------------------------------------------------
@@ -62,13 +68,14 @@ static void let_go(int pipe, const struct dea_supply *supply)
 
 /* Waits for the end. True: the clean one. Time in which this process itself did not run counts for
  * little: the other one may not have run either. */
-static bool wait_for_end(int pipe, const struct signs *signs)
+static bool wait_for_end(int pipe, struct signs *signs)
 {
   unsigned beats = atomic_load(&signs->beats);
   double turned_s = dea_clock_s(), silent_s = 0;
   for (;;) {
     struct pollfd entry = {.fd = pipe, .events = POLLIN};
     char byte = 0;
+    atomic_fetch_add(&signs->turns, 1);
     if (poll(&entry, 1, poll_ms) > 0) {
       ssize_t got = read(pipe, &byte, 1);
       if (got >= 0 || (errno != EINTR && errno != EAGAIN)) {
@@ -143,7 +150,7 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
     return dea_fail(ctx, DEA_E_INSTRUMENT, "the guard of the output cannot be made: %s",
                     strerror(errno));
   }
-  *made = (struct dea_guard){signs, ends[1], 0};
+  *made = (struct dea_guard){.signs = signs, .pipe = ends[1], .turned_s = dea_clock_s()};
   fcntl(ends[1], F_SETFD, FD_CLOEXEC);
   made->process = fork();
   if (made->process == 0) {
@@ -180,13 +187,47 @@ void dea_guard_limit(struct dea_guard *guard, double silence_s)
   }
 }
 
-bool dea_guard_beat(struct dea_guard *guard)
+/* Of a silence counts what this process has seen of it, as on the other side. */
+static bool is_silent(struct dea_guard *guard)
+{
+  double now_s = dea_clock_s(), limit_s = 1e-3 * atomic_load(&guard->signs->limit_ms);
+  unsigned turns = atomic_load(&guard->signs->turns);
+  bool alive = turns != guard->turns || limit_s == 0;
+  guard->silent_s = alive ? 0 : guard->silent_s + fmin(now_s - guard->turned_s, 2e-3 * poll_ms);
+  guard->turned_s = now_s;
+  guard->turns = turns;
+  return guard->silent_s > fmax(limit_s, silent_least_s);
+}
+
+/* Waits for its end, at most so long, and then ends it: a guard that is stopped would never. One
+ * that takes over is left alone: it ends by itself. */
+static void reap(struct dea_guard *guard, double within_s)
+{
+  double until_s = dea_clock_s() + within_s;
+  while (!atomic_load(&guard->signs->taken) && waitpid(guard->process, NULL, WNOHANG) == 0) {
+    if (dea_clock_s() > until_s) {
+      kill(guard->process, SIGKILL);
+    }
+    dea_clock_wait(again_s / 100);
+  }
+  guard->process = 0;
+}
+
+enum dea_guard_state dea_guard_beat(struct dea_guard *guard)
 {
   if (guard == NULL) {
-    return true;
+    return DEA_GUARD_WATCHES;
   }
   atomic_fetch_add(&guard->signs->beats, 1);
-  return !atomic_load(&guard->signs->taken);
+  if (atomic_load(&guard->signs->taken)) {
+    return DEA_GUARD_TAKEN;
+  }
+  if (guard->process != 0 && waitpid(guard->process, NULL, WNOHANG) != 0) {
+    guard->process = 0;
+  } else if (guard->process != 0 && is_silent(guard)) {
+    reap(guard, 0);
+  }
+  return guard->process != 0 ? DEA_GUARD_WATCHES : DEA_GUARD_GONE;
 }
 
 void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard)
@@ -199,9 +240,8 @@ void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard)
   (void)!write(guard->pipe, &clean_end, 1);
   sigaction(SIGPIPE, &before, NULL);
   close(guard->pipe);
-  if (!atomic_load(&guard->signs->taken)) { // else it has still to do, and ends by itself
-    while (waitpid(guard->process, NULL, 0) < 0 && errno == EINTR) {
-    }
+  if (guard->process != 0) {
+    reap(guard, last_s);
   }
   munmap(guard->signs, sizeof *guard->signs);
   dea_free(ctx, guard);

@@ -9,6 +9,12 @@
 
 struct dea_guard; // NULL: none
 
+enum dea_guard_state {
+  DEA_GUARD_WATCHES,
+  DEA_GUARD_TAKEN, // it has taken over: nothing may be played
+  DEA_GUARD_GONE   // it was killed, or gave no sign of life itself: nobody would bring it to 0 V
+};
+
 /* Forks it, before any instrument is open. section: of the instrument that plays. supply: that it
  * writes what it has done into. out: owned by the caller (dea_guard_end), NULL on failure. */
 dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
@@ -19,8 +25,9 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
 void dea_guard_know(struct dea_guard *guard, const char mark[DEA_INSTRUMENT_MARK_SIZE]);
 /* From here on no two signs of life may be farther apart; 0: it waits for the end only. */
 void dea_guard_limit(struct dea_guard *guard, double silence_s);
-/* A sign of life. False once the guard has taken over: nothing may be played then. */
-bool dea_guard_beat(struct dea_guard *guard);
+/* A sign of life, and whether the guard gives one: it is gone when it has ended, or was silent for
+ * as long as the program may be, 1 s at least. Of no guard: it watches. */
+enum dea_guard_state dea_guard_beat(struct dea_guard *guard);
 /* The program has done all that can be done: the guard goes. */
 void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard);
 

@@ -154,9 +154,9 @@ dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, 
   int length = snprintf(line, sizeof line, "%.180s (%s)\n%s%s", text, stamp, supply->mark,
                         supply->mark[0] != '\0' ? "\n" : "");
   length = text[0] != '\0' ? length : 0;
-  if (ftruncate(supply->file, 0) != 0 ||
-      pwrite(supply->file, line, (size_t)length, 0) != (ssize_t)length ||
-      fsync(supply->file) != 0) {
+  // over what stood there, which stays on a disk that is full: an empty file would say "at 0 V"
+  if (pwrite(supply->file, line, (size_t)length, 0) != (ssize_t)length ||
+      ftruncate(supply->file, length) != 0 || fsync(supply->file) != 0) {
     return cannot(ctx, "write", supply);
   }
   return DEA_OK;

@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L // close
 /* Instrument "scpi": what speaks SCPI on a TCP port, such as an electrometer, a force display or
  * a laboratory supply. Its readings are queries, asked one after the other at their interval; its
  * output is a command with a number in it, sent by the computer's clock. */
@@ -7,6 +8,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct dea_field reading_fields[] = {
     DEA_INSTRUMENT_LABEL(struct dea_scpi_raw_reading, name, "name", "name of its channel",
@@ -88,7 +90,7 @@ static const struct dea_field fields[] = {
     DEA_INSTRUMENT_TIME(struct dea_scpi_raw, queue_s, "queue",
                         "of the output that is held ready; a computer that is away for longer ends "
                         "the measurement",
-                        "0.25 s", 60),
+                        "0.25 s", 5),
     DEA_INSTRUMENT_LABEL(struct dea_scpi_raw, output_off, "output_off",
                          "command that switches its output off, before it is set to 0 V at the end",
                          "OUTP OFF", .absent_text = "it is only set to 0 V"),
@@ -108,7 +110,7 @@ static const struct dea_field fields[] = {
     DEA_INSTRUMENT_TIME(struct dea_scpi_raw, behind_s, "behind",
                         "longest time that a voltage may take to be confirmed; longer ends the "
                         "measurement",
-                        "0.5 s", 60),
+                        "0.5 s", 5),
     {.key = "watchdog",
      .kind = DEA_FIELD_RECORD,
      .record = &watchdog_record,
@@ -117,15 +119,26 @@ static const struct dea_field fields[] = {
 const struct dea_record dea_instrument_scpi_record = {
     "scpi", "answers or plays by SCPI on a TCP port", fields, DEA_INSTRUMENT_COUNT(fields)};
 
-/* A voltage that a command sets by itself has passed no check. */
+/* A voltage that a command sets by itself has passed no check. Of one that plays nothing it is that
+ * of a source, which may be the supply by another name. */
 static dea_status check_command(const struct dea_reader *reader, const struct dea_scpi_raw *raw,
                                 const struct dea_label *command)
 {
-  return !dea_scpi_sets_output(command->text, raw->output.text)
-             ? DEA_OK
-             : dea_schema_error(reader, command->location,
-                                "refused: '%.60s' sets the output, which only the sequence may do",
-                                command->text);
+  bool plays = raw->output.origin != DEA_ABSENT;
+  if (!dea_scpi_is_one_line(command->text)) {
+    return dea_schema_error(reader, command->location,
+                            "refused: one command is one line, and this one has a line's end or "
+                            "another control character in it");
+  }
+  if (!dea_scpi_sets_output(command->text, plays ? raw->output.text : "SOUR:VOLT %g") ||
+      (!plays && dea_scpi_configures(command->text))) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, command->location,
+                          plays ? "refused: '%.60s' sets the output, which only the sequence may do"
+                                : "refused: '%.60s' sets a voltage, and this instrument has no "
+                                  "'output': only a sequence may",
+                          command->text);
 }
 
 static dea_status check_commands(const struct dea_reader *reader, const struct dea_scpi_raw *raw)
@@ -158,28 +171,27 @@ static dea_status check(const struct dea_reader *reader, const void *data,
     DEA_TRY(reader->ctx, dea_instrument_check_reading(reader, protocol, &r->name, &sketch));
     dea_instrument_add_reading(&sketch, &r->name, &r->quantity, &r->unit);
   }
-  if (raw->output.origin == DEA_ABSENT) {
-    return raw->reading_count > 0
-               ? DEA_OK
-               : dea_schema_error(reader, raw->kind.location,
-                                  "it neither reads nor plays: write 'readings' or 'output'");
-  }
-  if (!dea_protocol_factor_is_known(protocol, raw->output_factor.si)) {
-    DEA_TRY(reader->ctx,
-            dea_schema_error(reader, raw->output_factor.location,
-                             "refused: output_factor is 1 where the control voltage is sent in V, "
-                             "and %g or %g (by the amplifier's gain) where its output is sent in V "
-                             "or in kV, not %g",
-                             protocol->amplifier.gain.si, 1e-3 * protocol->amplifier.gain.si,
-                             raw->output_factor.si));
-  }
-  if (!dea_scpi_output_is_plain(raw->output.text)) {
+  bool plays = raw->output.origin != DEA_ABSENT;
+  if (plays && !dea_scpi_output_is_plain(raw->output.text)) {
     return dea_schema_error(reader, raw->output.location,
                             "the output's command must have one %%g where the number goes, alone "
                             "between blanks or commas, and no second command; write for example "
                             "'SOUR:VOLT %%g'");
   }
-  return check_commands(reader, raw);
+  DEA_TRY(reader->ctx, check_commands(reader, raw));
+  if (!plays && raw->reading_count == 0) {
+    return dea_schema_error(reader, raw->kind.location,
+                            "it neither reads nor plays: write 'readings' or 'output'");
+  }
+  if (plays && !dea_protocol_factor_is_known(protocol, raw->output_factor.si)) {
+    return dea_schema_error(reader, raw->output_factor.location,
+                            "refused: output_factor is 1 where the control voltage is sent in V, "
+                            "and %g or %g (by the amplifier's gain) where its output is sent in V "
+                            "or in kV, not %g",
+                            protocol->amplifier.gain.si, 1e-3 * protocol->amplifier.gain.si,
+                            raw->output_factor.si);
+  }
+  return DEA_OK;
 }
 
 /* Whether it took its setup: looks at its error queue, which was empty before. */
@@ -240,8 +252,24 @@ static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   dea_socket_close(&s->link.socket);
+  if (s->claim >= 0) {
+    close(s->claim);
+  }
   dea_timed_end(ctx, &s->output);
   dea_free(ctx, s);
+}
+
+/* A supply may have several names, and take several connections. */
+static dea_status claim(struct dea_context *ctx, struct dea_scpi *s)
+{
+  if ((s->base.roles & DEA_PLAYS_OUTPUT) == 0 || dea_socket_claim(&s->link.socket, &s->claim)) {
+    return DEA_OK;
+  }
+  dea_socket_close(&s->link.socket); // what is set there is not ours
+  return dea_fail(ctx, DEA_E_INSTRUMENT,
+                  "%s is driven by another program on this computer, by this or another name: end "
+                  "that first",
+                  s->name);
 }
 
 static dea_status open_it(struct dea_context *ctx, const void *data,
@@ -261,7 +289,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   }
   s->protocol = protocol;
   s->start_s = NAN;
-  s->link.socket.descriptor = -1;
+  s->link.socket.descriptor = s->claim = -1;
   dea_status status = DEA_OK;
   if ((s->base.roles & DEA_PLAYS_OUTPUT) != 0) {
     status = dea_scpi_output_begin(ctx, s);
@@ -271,7 +299,8 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   }
   if (status == DEA_OK) {
     snprintf(s->name, sizeof s->name, "%s", s->link.socket.name);
-    status = set_up(ctx, s);
+    status = claim(ctx, s);
+    status = status == DEA_OK ? set_up(ctx, s) : status;
   }
   if (status != DEA_OK) {
     struct dea_zero zero = {DEA_ZERO_NONE, NAN};

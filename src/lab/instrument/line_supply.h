@@ -40,10 +40,10 @@ struct dea_line_supply_raw {
       DEA_INSTRUMENT_TIME(raw, line.queue_s, "queue",                                              \
                           "of the output that is held ready; a computer that is away for longer "  \
                           "ends the measurement",                                                  \
-                          "0.25 s", 60),                                                           \
+                          "0.25 s", 5),                                                            \
       DEA_INSTRUMENT_TIME(raw, line.behind_s, "behind",                                            \
                           "longest time that an answer may take; longer ends the measurement",     \
-                          "0.5 s", 60)
+                          "0.5 s", 5)
 
 struct dea_line_supply;
 

@@ -53,6 +53,7 @@ struct dea_scpi {
   bool broken; // a response made no sense: which question the next one belongs to is not known
   struct dea_timed_output output;
   double fed_s; // when the watchdog was fed last
+  int claim;    // of what it plays through; -1: none
 };
 
 dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,
@@ -75,6 +76,10 @@ void dea_scpi_output_command(const struct dea_scpi_raw *raw, double volts,
                              char out[DEA_SCPI_COMMAND_SIZE]);
 /* Whether a response confirms that what was sent before is done. */
 bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *response);
+/* The control voltage [V] of a response to `measure`; false when it is none. Its unit, where it has
+ * one, must be that in which the output is set. */
+bool dea_scpi_measured(const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
+                       const char *response, double *volts);
 dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s);
 /* Sets 0 V before anything is played and looks whether it is there. */
 dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s);

@@ -28,6 +28,18 @@ bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *response)
   return strcmp(raw->confirm.text, "*OPC?") == 0 ? number && value == 1 : response[0] != '\0';
 }
 
+bool dea_scpi_measured(const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
+                       const char *response, double *volts)
+{
+  double V_of_one = protocol->amplifier.gain.si / raw->output_factor.si, value;
+  bool in_V = raw->output_factor.si == 1 || fabs(V_of_one - 1) < 1e-6;
+  if (!dea_scpi_voltage(response, in_V, fabs(V_of_one - 1000) < 1e-3, &value)) {
+    return false;
+  }
+  *volts = value / raw->output_factor.si;
+  return true;
+}
+
 // What is set ------------------------------------------------------------------------------------
 
 static dea_status ask(struct dea_context *ctx, struct dea_scpi *s, enum dea_scpi_question what,
@@ -50,6 +62,13 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_scpi *s, doub
   return ask(ctx, s, DEA_SCPI_CONFIRM, s->raw.confirm.text);
 }
 
+static dea_status no_sense(struct dea_context *ctx, const struct dea_scpi *s, const char *question,
+                           const char *response)
+{
+  return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.60s' to '%.60s', which makes no sense",
+                  s->name, response, question);
+}
+
 dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s)
 {
   const struct dea_scpi_raw *raw = &s->raw;
@@ -65,7 +84,7 @@ dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s)
 dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
 {
   const char *response;
-  double timeout_s = s->raw.timeout_s.si, value, gain = s->protocol->amplifier.gain.si;
+  double timeout_s = s->raw.timeout_s.si, volts;
   char command[DEA_SCPI_COMMAND_SIZE];
   dea_scpi_output_command(&s->raw, 0, command);
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, timeout_s, command));
@@ -83,16 +102,19 @@ dea_status dea_scpi_output_open(struct dea_context *ctx, struct dea_scpi *s)
                            s->name);
   }
   DEA_TRY(ctx, dea_scpi_ask(ctx, &s->link, timeout_s, s->raw.measure.text, &response));
-  if (response == NULL || !dea_scpi_number(response, &value) || isnan(value)) {
+  if (response == NULL) {
     return dea_scpi_no_response(ctx, s, s->raw.measure.text, timeout_s);
   }
-  value *= gain / s->raw.output_factor.si;
-  return fabs(value) <= s->protocol->safety.at_zero_V.si
+  if (!dea_scpi_measured(&s->raw, s->protocol, response, &volts)) {
+    return no_sense(ctx, s, s->raw.measure.text, response);
+  }
+  volts *= s->protocol->amplifier.gain.si;
+  return fabs(volts) <= s->protocol->safety.at_zero_V.si
              ? DEA_OK
              : dea_fail(ctx, DEA_E_INTERLOCK,
                         "%s measures %.4g V at its output before anything is played; look at what "
                         "is connected to it",
-                        s->name, value);
+                        s->name, volts);
 }
 
 dea_status dea_scpi_output_start(struct dea_context *ctx, struct dea_scpi *s)
@@ -214,16 +236,15 @@ static dea_status check_measured(struct dea_context *ctx, struct dea_scpi *s, do
 dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
                                     const char *response)
 {
-  double value;
+  double volts;
   bool confirms = s->asked == DEA_SCPI_CONFIRM;
   s->asked = DEA_SCPI_NOTHING;
   if (confirms && dea_scpi_confirms(&s->raw, response)) {
     return DEA_OK;
   }
-  if (!confirms && dea_scpi_number(response, &value) && !isnan(value)) {
-    return check_measured(ctx, s, value / s->raw.output_factor.si);
+  if (!confirms && dea_scpi_measured(&s->raw, s->protocol, response, &volts)) {
+    return check_measured(ctx, s, volts);
   }
   s->broken = true;
-  return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.60s' to '%.60s', which makes no sense",
-                  s->name, response, confirms ? s->raw.confirm.text : s->raw.measure.text);
+  return no_sense(ctx, s, confirms ? s->raw.confirm.text : s->raw.measure.text, response);
 }

@@ -8,7 +8,8 @@
 
 static const double not_a_value = 9.8e37; // what SCPI keeps for that begins at 9.9e37
 
-bool dea_scpi_number(const char *response, double *value)
+/* A number at the begin of a text, and where it ends. */
+static bool read_number(const char *response, double *value, const char **behind)
 {
   const char *end;
   response += strspn(response, " \t");
@@ -20,7 +21,49 @@ bool dea_scpi_number(const char *response, double *value)
     return false; // nothing, or a date, a time, a version
   }
   *value = fabs(number) < not_a_value ? number : NAN;
+  *behind = end;
   return true;
+}
+
+static bool same_letters(const char *a, const char *b, size_t length)
+{
+  for (size_t i = 0; i < length; i++) {
+    if (a[i] == '\0' || tolower((unsigned char)a[i]) != tolower((unsigned char)b[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Whether a comma behind a number may be its decimal one: digits alone before and behind it. */
+static bool may_be_decimal(const char *response, const char *behind)
+{
+  response += strspn(response, " \t+-");
+  return *behind == ',' && isdigit((unsigned char)behind[1]) &&
+         response + strspn(response, "0123456789") == behind;
+}
+
+bool dea_scpi_number(const char *response, double *value)
+{
+  const char *behind;
+  return read_number(response, value, &behind) && !may_be_decimal(response, behind);
+}
+
+bool dea_scpi_voltage(const char *response, bool in_V, bool in_kV, double *value)
+{
+  const char *at;
+  if (!read_number(response, value, &at) || isnan(*value) || may_be_decimal(response, at)) {
+    return false;
+  }
+  at += strspn(at, " \t");
+  bool kilo = (at[0] == 'k' || at[0] == 'K') && (at[1] == 'V' || at[1] == 'v');
+  bool unit = kilo || at[0] == 'V' || at[0] == 'v';
+  if (unit) {
+    at += kilo ? 2 : 1;
+    at += same_letters(at, "DC", 2) ? 2 : 0;
+  }
+  at += strspn(at, " \t");
+  return (*at == '\0' || *at == ',' || *at == ';') && (!unit || (kilo ? in_kV : in_V));
 }
 
 void dea_scpi_suffix(const char *response, char out[DEA_SCPI_SUFFIX_SIZE])
@@ -54,36 +97,51 @@ bool dea_scpi_error(const char *response, int *code, const char **text)
 bool dea_scpi_output_is_plain(const char *output)
 {
   const char *hole = strchr(output, '%');
-  return hole != NULL && hole > output && hole[1] == 'g' && strchr(hole + 1, '%') == NULL &&
-         strchr(" ,", hole[-1]) != NULL && strchr(",", hole[2]) != NULL &&
-         strchr(output, ';') == NULL;
+  return hole != NULL && dea_scpi_is_one_line(output) && hole > output && hole[1] == 'g' &&
+         strchr(hole + 1, '%') == NULL && strchr(" ,", hole[-1]) != NULL &&
+         strchr(",", hole[2]) != NULL && strchr(output, ';') == NULL;
 }
 
-static bool same_letters(const char *a, const char *b, size_t length)
+/* Whether a value is something other than 0: a number, or a word such as MAX, UP, DEF. */
+static bool is_not_zero(const char *value)
 {
-  for (size_t i = 0; i < length; i++) {
-    if (a[i] == '\0' || tolower((unsigned char)a[i]) != tolower((unsigned char)b[i])) {
-      return false;
-    }
-  }
-  return true;
+  double number;
+  const char *behind;
+  value += strspn(value, " \t");
+  return *value != '\0' && strchr(",;", *value) == NULL &&
+         !(read_number(value, &number, &behind) && number == 0); // NAN is no 0
 }
 
 static bool has_number(const char *text)
 {
   double value;
-  return dea_scpi_number(text, &value) && value != 0; // NAN is one too
+  const char *behind;
+  return read_number(text, &value, &behind) && value != 0; // NAN is one too
 }
 
-/* The last mnemonic of a header "SOUR:VOLT" that has `length` bytes; *count: letters of it. */
+/* The last mnemonic of a header "SOUR:VOLT" that has `length` bytes; *count: letters of it. Those
+ * that SCPI lets go at the end, [:LEVel][:IMMediate][:AMPLitude], are let go. */
 static const char *last_mnemonic(const char *header, size_t length, size_t *count)
 {
-  size_t start = length;
-  while (start > 0 && header[start - 1] != ':') {
-    start--;
+  static const char *const optional[] = {"LEV", "IMM", "AMPL"};
+  for (bool more = true; more;) {
+    size_t start = length;
+    while (start > 0 && header[start - 1] != ':') {
+      start--;
+    }
+    more = false;
+    for (size_t i = 0; i < sizeof optional / sizeof optional[0] && start > 1; i++) {
+      size_t letters = strlen(optional[i]);
+      more =
+          more || (length - start >= letters && same_letters(header + start, optional[i], letters));
+    }
+    if (!more) {
+      *count = length - start < 4 ? length - start : 4;
+      return header + start;
+    }
+    length = start - 1;
   }
-  *count = length - start < 4 ? length - start : 4;
-  return header + start;
+  return header;
 }
 
 /* Whether one of the values of a command, behind blanks or commas, is a number. */
@@ -104,16 +162,25 @@ static bool sets(const char *command, const char *output)
 {
   size_t before = (size_t)(strchr(output, '%') - output), count, wanted;
   size_t header = strcspn(command, " \t;"), other = strcspn(output, " \t");
+  if (memchr(command, '?', header) != NULL) {
+    return false;
+  }
+  if (same_letters(command, "*RCL", 4)) { // what was stored may have any voltage
+    return true;
+  }
+  if (same_letters(command, "APPL", 4)) { // all at once
+    return has_any_number(command + header);
+  }
   const char *mine = last_mnemonic(command, header, &count);
   const char *set = last_mnemonic(output, other, &wanted);
   if (same_letters(command, output, before)) {
-    return has_number(command + before);
+    return is_not_zero(command + before);
   }
   if (count != wanted || !same_letters(mine, set, wanted)) {
     return false;
   }
   // "BSWV OFST,%g": it may be called by other words too, "BSWV WVTP,DC,OFST,5", "BSWV HLEV,5"
-  return other + 1 == before ? has_number(command + header) : has_any_number(command + header);
+  return other + 1 == before ? is_not_zero(command + header) : has_any_number(command + header);
 }
 
 bool dea_scpi_sets_output(const char *command, const char *output)
@@ -125,4 +192,19 @@ bool dea_scpi_sets_output(const char *command, const char *output)
     }
   }
   return false;
+}
+
+bool dea_scpi_configures(const char *command)
+{
+  command += strspn(command, ": \t");
+  return strchr(command, ';') == NULL &&
+         (same_letters(command, "CONF", 4) || same_letters(command, "SENS", 4));
+}
+
+bool dea_scpi_is_one_line(const char *command)
+{
+  while (*command != '\0' && (*command == '\t' || !iscntrl((unsigned char)*command))) {
+    command++;
+  }
+  return *command == '\0';
 }

@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L // close
 /* How a supply that speaks SCPI is brought to 0 V, and what is known of it then.
  *
  * Its output is switched off, then set to 0 V, then synchronised, and its voltage is read back
@@ -5,13 +6,15 @@
  * answer that does not come or makes no sense leaves it open to which question the next one
  * belongs: nothing more is believed of that connection, and all begins anew on another one. There
  * another instrument may have the address: it is told 0 V too, which hurts nobody, but only what
- * says of itself (*IDN?) what the one said that was used is believed. */
+ * says of itself (*IDN?) what the one said that was used is believed. Nor is anything of one that
+ * another program drives, which knows it by another name: it may set a voltage a moment later. */
 #include "lab/instrument/scpi.h"
 
 #include "base/clock.h"
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 /* What is meant. */
 struct meant {
@@ -19,6 +22,7 @@ struct meant {
   const struct dea_protocol *protocol;
   const char *mark; // what it said of itself; "": it was not asked
   bool told;        // that another one may be there
+  bool alone;       // no other program may have it: it has it itself, or is the guard of one
 };
 
 static const double poll_s = 0.05, again_s = 0.1;
@@ -71,17 +75,17 @@ static bool read_back(struct dea_context *ctx, struct dea_line_link *link,
   double since_s = NAN;
   for (;;) {
     const char *answer;
-    double asked_s = dea_clock_s(), value, wait_s = fmax(share * (until_s - asked_s), poll_s);
+    double asked_s = dea_clock_s(), volts, wait_s = fmax(share * (until_s - asked_s), poll_s);
     bool off = false;
     if (asked_s >= until_s) {
       return true;
     }
     if (dea_scpi_ask(ctx, link, wait_s, raw->measure.text, &answer) != DEA_OK || answer == NULL ||
-        !dea_scpi_number(answer, &value) || isnan(value) ||
+        !dea_scpi_measured(raw, protocol, answer, &volts) ||
         !ask_off(ctx, link, raw, wait_s, &off)) {
       return false;
     }
-    zero->volts = value / raw->output_factor.si;
+    zero->volts = volts;
     if (!off || fabs(zero->volts * protocol->amplifier.gain.si) > protocol->safety.at_zero_V.si) {
       since_s = NAN;
     } else if (isnan(since_s)) {
@@ -133,15 +137,31 @@ static bool find_out(struct dea_context *ctx, struct dea_line_link *link, struct
   return read_back(ctx, link, raw, m->protocol, until_s, zero);
 }
 
+/* Whether another program drives what is at the other end, which is said. */
+static bool is_driven(struct dea_context *ctx, const struct dea_socket *connection)
+{
+  int claim;
+  if (dea_socket_claim(connection, &claim)) {
+    close(claim);
+    return false;
+  }
+  (void)dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                        "%s is driven by another program on this computer, by another name: it was "
+                        "told 0 V, and nothing that it says is believed; end that one",
+                        connection->name);
+  return true;
+}
+
 /* On connections of its own, until one has said something or the time is over. */
 static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, double until_s)
 {
   const struct dea_scpi_raw *raw = m->raw;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
-  bool told = false;
+  bool told = false, driven = false;
   for (double left_s = until_s - dea_clock_s(); left_s > 0 && !told;) {
     struct dea_line_link link;
     if (dea_scpi_connect(ctx, raw, left_s, &link) == DEA_OK) {
+      driven = driven || (!m->alone && is_driven(ctx, &link.socket));
       command_zero(&link, raw);
       told = find_out(ctx, &link, m, true, until_s, &zero);
       command_end(&link, raw, zero.state != DEA_ZERO_UNKNOWN);
@@ -152,6 +172,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, doubl
       dea_clock_wait(fmin(again_s, left_s));
     }
   }
+  zero.state = driven ? DEA_ZERO_UNKNOWN : zero.state;
   return zero;
 }
 
@@ -160,7 +181,7 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
   double now_s = dea_clock_s(), until_s = now_s + s->protocol->safety.zero_time_s.si;
-  struct meant m = {&s->raw, s->protocol, s->base.mark, false};
+  struct meant m = {&s->raw, s->protocol, s->base.mark, false, true};
   bool told = false;
   if ((s->base.roles & DEA_PLAYS_OUTPUT) == 0) {
     command_end(&s->link, &s->raw, true);
@@ -191,7 +212,7 @@ struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,
                               const struct dea_instrument_past *past)
 {
   const struct dea_scpi_raw *raw = data;
-  struct meant m = {raw, protocol, past->mark, false};
+  struct meant m = {raw, protocol, past->mark, false, past->program != 0};
   return raw->output.origin == DEA_ABSENT
              ? (struct dea_zero){DEA_ZERO_NONE, NAN}
              : zero_anew(ctx, &m, dea_clock_s() + protocol->safety.zero_time_s.si);

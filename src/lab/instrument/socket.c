@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L // sockets, poll, MSG_NOSIGNAL
+#define _GNU_SOURCE // sockets, poll, MSG_NOSIGNAL, NI_MAXHOST
 #include "lab/instrument/socket.h"
 
 #include "base/clock.h"
@@ -9,9 +9,11 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 static const char *const advice =
@@ -151,6 +153,32 @@ bool dea_socket_is_lost(const struct dea_socket *connection)
   struct pollfd entry = {.fd = connection->descriptor};
   return connection->descriptor < 0 ||
          (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0);
+}
+
+bool dea_socket_claim(const struct dea_socket *connection, int *claim)
+{
+  struct sockaddr_storage peer;
+  socklen_t size = sizeof peer;
+  struct sockaddr_un name = {.sun_family = AF_UNIX}; // without a file: its name begins with NUL
+  char host[NI_MAXHOST], port[NI_MAXSERV];
+  *claim = -1;
+  if (getpeername(connection->descriptor, (struct sockaddr *)&peer, &size) != 0 ||
+      getnameinfo((struct sockaddr *)&peer, size, host, sizeof host, port, sizeof port,
+                  NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return false;
+  }
+  int length =
+      snprintf(name.sun_path + 1, sizeof name.sun_path - 1, "dea supply %.60s %.8s", host, port);
+  socklen_t used = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1 + (size_t)length);
+  int made = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (made < 0 || bind(made, (struct sockaddr *)&name, used) != 0) {
+    if (made >= 0) {
+      close(made);
+    }
+    return false;
+  }
+  *claim = made;
+  return true;
 }
 
 void dea_socket_close(struct dea_socket *connection)

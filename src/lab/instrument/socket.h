@@ -30,6 +30,12 @@ void dea_socket_write_if_possible(const struct dea_socket *connection, const voi
                                   size_t length);
 /* Whether the other end has gone, as far as is known without sending; a closed one has. */
 bool dea_socket_is_lost(const struct dea_socket *connection);
+/* Claims what a connection leads to, by its number and port, for this computer: whatever name it
+ * was called by, one program at a time has it. false: another one does, or nobody can know. *claim:
+ * to be closed like a file by whoever has it (the system does it for a program that dies), -1 on
+ * failure.
+ */
+bool dea_socket_claim(const struct dea_socket *connection, int *claim);
 /* A closed one is fine. */
 void dea_socket_close(struct dea_socket *connection);
 

@@ -3,10 +3,15 @@
 #include <math.h>
 
 enum { DEVIATIONS_MAX = 2 };
+static const double measure_at_least_s =
+    1; // an output that can be read back is, however seldom it is recorded
 
 dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *o)
 {
   o->clock_s = o->waiting_s = NAN;
+  if (isfinite(o->measure_interval_s)) {
+    o->measure_interval_s = fmin(o->measure_interval_s, measure_at_least_s);
+  }
   o->room = (size_t)(o->queue_s * o->rate_Hz) + 1;
   o->queue = dea_alloc(ctx, o->room, sizeof *o->queue);
   return o->queue != NULL ? DEA_OK : DEA_E_MEMORY;

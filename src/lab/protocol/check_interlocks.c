@@ -10,6 +10,8 @@ static const double below_limit = 0.95;    // of the amplifier's current: its mo
 static const double least_of_range = 1e-3; // of an input's range, above its noise
 static const double blind_longest_s = 1;   // that the voltage may settle unwatched
 static const double error_much = 0.5;      // of the largest voltage
+static const double zero_most_V = 60;      // that may be touched, as direct voltage (IEC 61140)
+static const double zero_share = 0.01;     // of the amplifier's range: errors of its monitor
 
 static size_t count_inputs(const struct dea_protocol *protocol, enum dea_channel_kind kind)
 {
@@ -125,6 +127,20 @@ static dea_status check_voltage_error(struct dea_context *ctx, const struct dea_
                          all ? "nothing" : "half of it");
 }
 
+/* What is read back and still called 0 V. */
+static dea_status check_at_zero(struct dea_context *ctx, const struct dea_protocol *protocol)
+{
+  const struct dea_quantity *zero = &protocol->safety.at_zero_V;
+  double range_V = fmax(protocol->amplifier.highest_V.si, -protocol->amplifier.lowest_V.si);
+  double most_V = fmax(zero_most_V, zero_share * range_V);
+  return zero->si <= most_V
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_ERROR, zero->location,
+                               "refused: %g V would be called 0 V; at most %g V are, %g V or %g %% "
+                               "of what the amplifier gives",
+                               zero->si, most_V, zero_most_V, 100 * zero_share);
+}
+
 /* While the amplifier may still be on its way its voltage is not compared. */
 static dea_status check_settling(struct dea_context *ctx, const struct dea_protocol *protocol,
                                  const struct dea_protocol_plan *plan)
@@ -158,5 +174,6 @@ dea_status dea_protocol_check_interlocks(struct dea_context *ctx,
   DEA_TRY(ctx, check_trip_time(ctx, protocol, largest_V));
   DEA_TRY(ctx, check_trip_current(ctx, protocol));
   DEA_TRY(ctx, check_voltage_error(ctx, protocol, largest_V));
+  DEA_TRY(ctx, check_at_zero(ctx, protocol));
   return check_settling(ctx, protocol, plan);
 }
