@@ -24,8 +24,10 @@ struct fake_script {
   size_t at_a_time;                    // samples handed over by a call of get
   unsigned idle;                       // calls of get of which all but one bring nothing
   bool inputs;                         // it reads them
+  long leak_from;                      // sample from which the current is 0.2 mA; 0: never
 };
-static const struct fake_script fake_good = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 37, 1, true};
+static const struct fake_script fake_good = {-1, -1, -1, -1, -1, -1,   -1,
+                                             -1, -1, -1, 37, 1,  true, 0};
 
 struct fake_daq {
   struct dea_instrument common;
@@ -40,6 +42,7 @@ struct fake_sensor {
   struct dea_instrument common;
   const struct fake_daq *daq; // whose clock it has
   size_t frames, starts, stops;
+  double value;                             // of its reading; NAN: none. 0: the usual one
   long fail_start, fail_frame, wrong_frame; // frames at which it fails, or has no time
   double x_m[3];
 };
@@ -81,7 +84,9 @@ static inline void fake_read(const struct fake_daq *daq, size_t i, double *volts
   const struct fake_script *s = &daq->script;
   const double before = i > 0 && i <= daq->put ? daq->out[i - 1] : 0;
   const double all[3] = {s->voltage_from >= 0 && (long)i >= s->voltage_from ? before + 1 : before,
-                         s->current_from >= 0 && (long)i >= s->current_from ? 2.5 : 0.02,
+                         s->current_from >= 0 && (long)i >= s->current_from ? 2.5
+                         : s->leak_from > 0 && (long)i >= s->leak_from      ? 0.2
+                                                                            : 0.02,
                          1e-3 * (double)i};
   bool lost = (long)i >= s->missing_from && (long)i < s->missing_to;
   for (size_t k = 0; k < daq->inputs; k++) {
@@ -154,7 +159,7 @@ static inline dea_status fake_sensor_get(struct dea_context *context,
     }
     bool wrong = (long)sensor->frames++ == sensor->wrong_frame;
     sink->profile(sink->user, wrong ? 0 : time_s, z_m);
-    sink->reading(sink->user, 0, time_s, 300 + time_s);
+    sink->reading(sink->user, 0, time_s, sensor->value != 0 ? sensor->value : 300 + time_s);
   }
   return DEA_OK;
 }

@@ -221,6 +221,10 @@ static void test_interlocks_cannot_be_switched_off(void **state)
        "refused: the largest jump takes 0.8 s by the amplifier's limits, and twice as long the "
        "voltage would not be watched",
        2, 57},
+      {TRIPS("leak_least: 201 uA") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
+       "refused: a leakage current that rises by 201 uA would be no rise; at most 200 uA may be "
+       "none, 20 % of safety.trip_current",
+       2, 22},
       {TRIPS("at_zero: 10 kV") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
        "refused: 10000 V would be called 0 V; at most 100 V are, 60 V or 1 % of what the amplifier "
        "gives",
@@ -239,6 +243,9 @@ static void test_interlocks_cannot_be_switched_off(void **state)
       {"trip_current: 1000 A", "trip_current must be at most 1 A"},
       {"trip_count: 101", "trip_count must be at most 100"},
       {"trip_count: 0", "trip_count must be at least 1"},
+      {"leak_rise: 500 %", "leak_rise must be at most 4"},
+      {"leak_time: 61 s", "leak_time must be at most 60 s"},
+      {"readback_error: 21 %", "readback_error must be at most 0.2"},
   };
   for (size_t i = 0; i < sizeof out_of_range / sizeof out_of_range[0]; i++) {
     char text[512];

@@ -4,7 +4,21 @@
 #define _GNU_SOURCE
 #include "drive_trial.h"
 
+#include <stdatomic.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
+
+/* A clock on which more time passes with every look at it. */
+static atomic_long hurries_ns, hurried_ns;
+
+int clock_gettime(clockid_t clock, struct timespec *out)
+{
+  long result = syscall(SYS_clock_gettime, clock, out);
+  long long ns = out->tv_nsec + (atomic_fetch_add(&hurried_ns, atomic_load(&hurries_ns)));
+  out->tv_sec += (time_t)(ns / 1000000000);
+  out->tv_nsec = (long)(ns % 1000000000);
+  return (int)result;
+}
 
 // What is played ---------------------------------------------------------------------------------
 
@@ -333,6 +347,78 @@ static void test_frames_without_time_are_counted(void **state)
   trial_close(&t);
 }
 
+/* What is noticed while it plays stands in the recording, and in its copy; a leakage current that
+ * rises ends it, ten times below trip_current. */
+static void test_leak_that_rises(void **state)
+{
+  (void)state;
+  static const char text[] =
+      "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
+      "safety: {ramp: 20 kV/s, trip_current: 2 mA, voltage_error: 300 V, leak_time: 0.5 s}\n"
+      "rate: 1 kHz\n"
+      "waveform: {kind: square, high: 2 kV, frequency: 10 Hz, cycles: 150}\n" CHANNELS;
+  struct fake_script script = fake_good;
+  struct trial t;
+  script.leak_from = 11000;
+  trial_open(&t, text, &script);
+  trial_play(&t, true);
+  assert_int_equal(t.status, DEA_E_INTERLOCK);
+  assert_non_null(strstr(t.report.ended, "the leakage current has risen to 200 uA, above 40 uA"));
+  if (!(t.report.played_s > 11.5 && t.report.played_s < 13)) {
+    fail_msg("%g s: %s", t.report.played_s, t.report.ended);
+  }
+  assert_non_null(find_finding(ctx, DEA_NOTE, "'current' has a base line: up to 20 uA"));
+  assert_non_null(find_finding(ctx, DEA_WARNING, "'current' has risen to 200 uA, above 40 uA"));
+  trial_read(&t);
+  for (int k = 0; k < 2; k++) { // and its copy
+    const struct dea_recording *r = t.recording;
+    assert_int_equal(r->event_count, 2);
+    assert_true(r->events[0].kind == DEA_NOTICED_LEARNED && r->events[0].time_s < 11);
+    assert_true(r->events[1].kind == DEA_NOTICED_LEAK_ROSE && r->events[1].time_s > 11);
+    assert_close(r->events[1].value, 2e-4, 1e-12, 0);
+    assert_close(r->events[1].limit, 4e-5, 1e-12, 0);
+    assert_string_equal(r->channels[r->events[1].channel].name, "current");
+    struct dea_recording *copy;
+    unlink(in_folder("copy.h5"));
+    assert_int_equal(dea_recording_write(ctx, r, in_folder("copy.h5")), DEA_OK);
+    assert_int_equal(dea_recording_read(ctx, in_folder("copy.h5"), &copy), DEA_OK);
+    dea_recording_destroy(ctx, t.recording);
+    t.recording = copy;
+  }
+  trial_close(&t);
+}
+
+/* A current that an instrument reads has no value any more: said after 10 s, the ramp after 60 s.
+ */
+static void test_reading_without_values(void **state)
+{
+  (void)state;
+  static const double values[] = {NAN, 1e-6};
+  for (int k = 0; k < 2; k++) {
+    struct trial t;
+    trial_open(&t, SQUARE CHANNELS, &fake_good);
+    t.sensor.common.readings[0].kind = DEA_CHANNEL_CURRENT;
+    t.sensor.common.readings[0].unit[0] = '\0';
+    t.sensor.value = values[k];
+    t.stall_s = 1e9;
+    atomic_store(&hurries_ns, 100000000);
+    trial_play(&t, true);
+    atomic_store(&hurries_ns, 0);
+    trial_read(&t);
+    if (k == 0) {
+      assert_int_equal(t.status, DEA_E_INTERLOCK);
+      assert_non_null(strstr(t.report.ended, "reading 'temperature' has given no value for 60 s"));
+      assert_true(t.recording->event_count == 1);
+      assert_true(t.recording->events[0].kind == DEA_NOTICED_SILENT);
+      assert_true(t.recording->events[0].value >= 10 && t.recording->events[0].value < 20);
+      check_ramp(t.daq);
+    } else {
+      assert_true(t.status == DEA_OK && t.recording->event_count == 0);
+    }
+    trial_close(&t);
+  }
+}
+
 static void test_benches_that_cannot_play(void **state)
 {
   (void)state;
@@ -384,6 +470,8 @@ int main(void)
       cmocka_unit_test(test_full_disk_ramps_down),
       cmocka_unit_test(test_out_of_memory),
       cmocka_unit_test(test_frames_without_time_are_counted),
+      cmocka_unit_test(test_leak_that_rises),
+      cmocka_unit_test(test_reading_without_values),
       cmocka_unit_test(test_benches_that_cannot_play),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -284,6 +284,31 @@ static void test_voltage_above_the_cap(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
+/* Less than voltage_error, for 5 s: half of the time at 2 kV, half at rest. */
+static void test_read_back_that_is_off(void **state)
+{
+  (void)state;
+  static const double shares[] = {0.93, 1.07, 0.96, 1.04};
+  static struct dea_drive_watch w;
+  struct dea_protocol *p = good_protocol(ctx, WATCHED);
+  for (size_t k = 0; k < 4; k++) {
+    char why[DEA_WHY_ENDED_SIZE] = "";
+    long i = 0;
+    dea_drive_watch_start(&w, p, 0.002, 0);
+    for (bool good = true; good && i < 30000; i++) {
+      double asked_V = i / 500 % 2 == 0 ? 2000 : 0, values[2] = {shares[k] * asked_V, 0};
+      good = dea_drive_watch_sample(&w, asked_V, values, why);
+    }
+    assert_true(k < 2 ? i >= 9500 && i < 10600 : i == 30000);
+    if (k < 2) {
+      assert_non_null(strstr(why, "off by more than safety.readback_error of 5 % for 5 s"));
+      assert_true(w.event_count == 1 && w.events[0].kind == DEA_NOTICED_READ_BACK &&
+                  !w.contradicted);
+    }
+  }
+  dea_protocol_destroy(ctx, p);
+}
+
 static void test_run_checks_first(void **state)
 {
   (void)state;
@@ -312,6 +337,7 @@ int main(void)
       cmocka_unit_test(test_charging_is_no_arc),
       cmocka_unit_test(test_examples_do_not_trip),
       cmocka_unit_test(test_voltage_above_the_cap),
+      cmocka_unit_test(test_read_back_that_is_off),
       cmocka_unit_test(test_run_checks_first),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -4,6 +4,7 @@
 #include "failing_allocator.h"
 #include "lab/instrument/line_reader.h"
 #include "lab/instrument/scpi_parse.h"
+#include "lab/instrument/timed_output.h"
 
 #include "message_fixture.h"
 
@@ -480,6 +481,47 @@ static void test_computer_that_slept(void **state)
   end(&b);
 }
 
+/* A supply that plays a triangle of 0 to 2 kV and is measured every 0.2 s; when it is off, by its
+ * verdict. The measured voltage is `share` of the one of late_s before, and at most most_V. */
+static double off_at(double frequency_Hz, double share, double late_s, double most_V)
+{
+  struct dea_timed_output o = {.behind_s = 0.5, .rate_Hz = 100};
+  dea_timed_start(&o, 0);
+  for (int i = 1; i < 6000; i++) { // every 20 ms
+    double time_s = 0.02 * i, past_s = fmax(time_s - late_s, 0);
+    double volts =
+        2000 * (1 - fabs(2 * (frequency_Hz * time_s - floor(frequency_Hz * time_s)) - 1));
+    double past_V =
+        2000 * (1 - fabs(2 * (frequency_Hz * past_s - floor(frequency_Hz * past_s)) - 1));
+    dea_timed_sent(&o, volts, time_s);
+    if (i % 10 == 0) {
+      o.measured_s = time_s;
+      if (dea_timed_measured(&o, fmin(share * past_V, most_V), 1e9, 0.05, 20) == DEA_TIMED_OFF) {
+        return time_s;
+      }
+    }
+  }
+  return (double)INFINITY;
+}
+
+/* Off by more than 5 % for 5 s, also where only the top of a triangle is cut off, which
+ * voltage_error does not see; late by less than half of `behind` is fine. */
+static void test_read_back_that_is_off(void **state)
+{
+  (void)state;
+  for (double frequency_Hz = 0.02; frequency_Hz < 1; frequency_Hz *= 5) {
+    assert_true(isinf(off_at(frequency_Hz, 1, 0, INFINITY)));
+    assert_true(isinf(off_at(frequency_Hz, 1, 0.1, INFINITY)));
+    assert_true(isinf(off_at(frequency_Hz, 1.04, 0, INFINITY)));
+    double low_s = off_at(frequency_Hz, 0.7, 0, INFINITY);
+    double high_s = off_at(frequency_Hz, 1.3, 0, INFINITY),
+           cut_s = off_at(frequency_Hz, 1, 0, 1000);
+    print_message("%g Hz: off after %g, %g, %g s\n", frequency_Hz, low_s, high_s, cut_s);
+    assert_true(low_s >= 5 && low_s < 25 && high_s >= 5 && high_s < 25 && cut_s > 5 && cut_s < 60);
+  }
+  assert_true(off_at(0.02, 0.92, 0, INFINITY) < 30);
+}
+
 /* A generator of Siglent or BK before an amplifier, set as a direct voltage: what it gets are
  * numbers in its own words, and off comes before 0 V. */
 static void test_generator(void **state)
@@ -554,6 +596,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_numbers),
       cmocka_unit_test(test_reads),
+      cmocka_unit_test(test_read_back_that_is_off),
       cmocka_unit_test(test_plays),
       cmocka_unit_test(test_makes_no_sense),
       cmocka_unit_test(test_harmless_commands),

@@ -126,7 +126,14 @@ static void print_text(const struct dea_recording *recording)
     printf(" in %zu step%s, %.4g to %.4g kV", steps, steps == 1 ? "" : "s", 1e-3 * lowest,
            1e-3 * highest);
   }
-  printf("\n%-14s %s\n", "protocol", recording->protocol != NULL ? "inside" : "none");
+  putchar('\n');
+  for (size_t i = 0; i < recording->event_count; i++) {
+    const struct dea_recorded_event *event = &recording->events[i];
+    char text[DEA_NOTICED_TEXT_SIZE];
+    dea_noticed_text(event, recording->channels[event->channel].name, text);
+    printf("%-14s %.6g s: %s\n", i == 0 ? "events" : "", event->time_s, text);
+  }
+  printf("%-14s %s\n", "protocol", recording->protocol != NULL ? "inside" : "none");
   printf("%-14s %s\n", "design",
          recording->design == NULL        ? "none"
          : recording->design_name != NULL ? recording->design_name
@@ -159,6 +166,7 @@ static json_t *json_of_channel(const struct dea_channel *channel)
 static void print_json(const struct dea_recording *recording)
 {
   json_t *json = json_object(), *channels = json_array(), *cycles = json_array();
+  json_t *events = json_array();
   dea_json_put_text(json, "title", recording->title);
   json_object_set_new(json, "complete", json_boolean(recording->complete));
   dea_json_put_text(json, "ended", recording->ended);
@@ -188,6 +196,18 @@ static void print_json(const struct dea_recording *recording)
     json_array_append_new(cycles, object);
   }
   json_object_set_new(json, "cycles", cycles);
+  for (size_t i = 0; i < recording->event_count; i++) {
+    const struct dea_recorded_event *event = &recording->events[i];
+    char text[DEA_NOTICED_TEXT_SIZE];
+    json_t *object = json_object();
+    dea_noticed_text(event, recording->channels[event->channel].name, text);
+    dea_json_put(object, "time_s", event->time_s);
+    dea_json_put_text(object, "text", text);
+    dea_json_put(object, "value", event->value);
+    dea_json_put(object, "limit", event->limit);
+    json_array_append_new(events, object);
+  }
+  json_object_set_new(json, "events", events);
   dea_json_put_text(json, "design_name", recording->design_name);
   json_t *provenance =
       recording->provenance != NULL ? json_loads(recording->provenance, 0, NULL) : NULL;

@@ -21,7 +21,9 @@ static const double monitor_s = 0.02;      // mean of a voltage channel that sho
 // of what waits to be written: so much of all samples, and numbers beside them
 static const double queue_s = 2;
 static const size_t queue_least = 1 << 19;
-static const double rounding = 1e-6; // of a sample's distance to the next
+enum { events_told_most = 50 };
+static const double silent_warn_s = 10, silent_most_s = 60; // that a watched reading may be
+static const double rounding = 1e-6;                        // of a sample's distance to the next
 
 struct loop;
 /* Who gives what arrives. */
@@ -30,7 +32,9 @@ struct source {
   struct dea_instrument *instrument;
   size_t first_channel; // of its readings
   double last_s[DEA_CHANNELS_MAX];
-  double heard_s; // when samples or frames came last, by the computer's clock
+  double value_s[DEA_CHANNELS_MAX]; // when a reading had a value last, by the computer's clock
+  bool silent[DEA_CHANNELS_MAX];    // that it has none was said
+  double heard_s;                   // when samples or frames came last, by the computer's clock
   bool failed;
 };
 
@@ -69,6 +73,7 @@ struct loop {
   double stall_s;
   struct dea_guard *guard;
   const struct dea_supply *supply;
+  size_t told;       // events among what is said
   bool ending;       // a fault came
   dea_status status; // of it
   struct dea_drive_report *report;
@@ -177,6 +182,20 @@ static double record_sample(struct loop *loop, const double *values)
   return asked_V;
 }
 
+/* Into the recording, and among what is said at the end. */
+static void take_event(struct loop *loop, const struct dea_recorded_event *event, const char *name)
+{
+  char text[DEA_NOTICED_TEXT_SIZE];
+  bool good = event->kind == DEA_NOTICED_LEARNED;
+  dea_noticed_text(event, name, text);
+  check_recorder(loop, dea_writer_add_event(loop->ctx, loop->writer, event));
+  if (loop->told++ < events_told_most) {
+    check_recorder(loop,
+                   dea_finding_add(loop->ctx, good ? DEA_NOTE : DEA_WARNING,
+                                   (struct dea_location){0}, "at %.6g s: %s", event->time_s, text));
+  }
+}
+
 static void take_sample(struct loop *loop, const double *volts)
 {
   char why[DEA_WHY_ENDED_SIZE];
@@ -188,7 +207,13 @@ static void take_sample(struct loop *loop, const double *volts)
   }
   double asked_V = record_sample(loop, values);
   loop->got++;
-  if (!dea_drive_watch_sample(&loop->watch, asked_V, values, why)) {
+  bool good = dea_drive_watch_sample(&loop->watch, asked_V, values, why);
+  for (size_t i = 0; i < loop->watch.event_count && !loop->ending; i++) {
+    struct dea_recorded_event event = loop->watch.events[i];
+    const char *name = loop->protocol->inputs[event.channel++].name.text; // 0: the asked voltage
+    take_event(loop, &event, name);
+  }
+  if (!good) {
     end_early(loop, DEA_E_INTERLOCK, "%s", why);
   }
 }
@@ -296,6 +321,10 @@ static dea_status take_reading(void *user, size_t reading, double time_s, double
     return DEA_OK;
   }
   source->last_s[reading] = time_s;
+  if (isfinite(value)) {
+    source->value_s[reading] = dea_clock_s();
+    source->silent[reading] = false;
+  }
   if (is_behind_end(loop, time_s)) {
     return DEA_OK;
   }
@@ -321,6 +350,33 @@ static void check_heard(struct loop *loop, struct source *source, double longest
   if (source != NULL && !source->failed && dea_clock_s() - source->heard_s > longest_s) {
     dea_fail(loop->ctx, DEA_E_INSTRUMENT, "no %s has come for %.3g s", what, longest_s);
     instrument_failed(loop, source);
+  }
+}
+
+/* A current or voltage that an instrument reads and that has no value (an overflow, nonsense) is
+ * not watched by anybody any more. */
+static void check_values(struct loop *loop, struct source *source)
+{
+  const struct dea_instrument *instrument = source->instrument;
+  double now_s = dea_clock_s();
+  for (size_t i = 0; i < instrument->reading_count && !source->failed; i++) {
+    const struct dea_instrument_reading *reading = &instrument->readings[i];
+    double silent_s = now_s - source->value_s[i];
+    if ((reading->kind != DEA_CHANNEL_CURRENT && reading->kind != DEA_CHANNEL_VOLTAGE) ||
+        silent_s < silent_warn_s || loop->ending) {
+      continue;
+    }
+    if (!source->silent[i]) {
+      source->silent[i] = true;
+      take_event(loop,
+                 &(struct dea_recorded_event){now_s - loop->started_s, DEA_NOTICED_SILENT,
+                                              source->first_channel + i, silent_s, silent_most_s},
+                 reading->name);
+    }
+    if (silent_s >= silent_most_s) {
+      end_early(loop, DEA_E_INTERLOCK, "reading '%.60s' has given no value for %.3g s",
+                reading->name, silent_most_s);
+    }
   }
 }
 
@@ -383,6 +439,9 @@ static void get_all(struct loop *loop, double timeout_s)
     if (&loop->sources[i] != waited) {
       get_from(loop, &loop->sources[i], 0);
     }
+  }
+  for (size_t i = 0; i < loop->count; i++) {
+    check_values(loop, &loop->sources[i]);
   }
   record_asked(loop);
   record_columns(loop);
@@ -535,6 +594,9 @@ static void start_all(struct loop *loop)
   for (size_t i = 0; i < loop->count && !loop->ending; i++) { // the one that plays comes last
     struct source *source = &loop->sources[i];
     source->heard_s = dea_clock_s();
+    for (size_t r = 0; r < DEA_CHANNELS_MAX; r++) {
+      source->value_s[r] = source->heard_s;
+    }
     if (source->instrument->type->start(loop->ctx, source->instrument) != DEA_OK) {
       instrument_failed(loop, source);
     }

@@ -4,7 +4,10 @@
 #include <stdio.h>
 
 static const double blind_s = 0.5;
-static const double cap_margin = 0.1; // above the largest voltage, for errors of the monitor
+static const double off_most_s = 5;    // that a voltage may be off by readback_error
+static const double off_forgets = 0.1; // of a second, for each in which it is not
+static const double off_from = 0.2;    // of the largest voltage, from which on it is looked at
+static const double cap_margin = 0.1;  // above the largest voltage, for errors of the monitor
 
 static size_t samples_of(double time_s, double rate_Hz)
 {
@@ -57,11 +60,16 @@ void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_proto
   watch->lasting = samples_of(protocol->safety.trip_time_s.si, rate_Hz);
   watch->blind = samples_of(blind_s, rate_Hz);
   watch->window = samples_of(settle_s, rate_Hz) + 1; // a sample may show what was asked before it
+  for (size_t i = 0; i < protocol->step_count; i++) {
+    watch->largest_V = fmax(watch->largest_V, fabs(protocol->steps[i].lowest_V));
+    watch->largest_V = fmax(watch->largest_V, fabs(protocol->steps[i].highest_V));
+  }
   dea_protocol_cap(protocol, &watch->cap_V[0], &watch->cap_V[1]);
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_arc_limits limits =
         find_arc_limits(protocol, &protocol->inputs[i], settle_s, capacitance_F);
     dea_arc_watch_start(&watch->arcs[i], &limits);
+    dea_leak_watch_start(&watch->leaks[i], protocol);
   }
 }
 
@@ -136,6 +144,65 @@ static bool check_voltage(struct dea_drive_watch *watch, size_t i, double asked_
   return false;
 }
 
+static void add_event(struct dea_drive_watch *watch, enum dea_noticed_kind kind, size_t input,
+                      double value, double limit)
+{
+  if (watch->event_count < DEA_WATCH_EVENTS_MAX) {
+    watch->events[watch->event_count++] = (struct dea_recorded_event){
+        watch->sample / watch->protocol->rate_Hz.si, kind, input, value, limit};
+  }
+}
+
+/* Off by less than voltage_error, and for long: what stands still on the way between two voltages,
+ * or near 0 V, is not looked at. */
+static bool check_readback(struct dea_drive_watch *watch, size_t i, double asked_V,
+                           double voltage_V, char why[DEA_WHY_ENDED_SIZE])
+{
+  double lowest_V = fmin(watch->lowest_V[0], watch->lowest_V[1]);
+  double highest_V = fmax(watch->highest_V[0], watch->highest_V[1]);
+  double share = watch->protocol->safety.readback_error.si;
+  double nearest_V = lowest_V * highest_V > 0 ? fmin(fabs(lowest_V), fabs(highest_V)) : 0;
+  if (nearest_V < off_from * watch->largest_V || nearest_V == 0) {
+    return true;
+  }
+  double most_V =
+      fmax(share * fmax(fabs(lowest_V), fabs(highest_V)), watch->protocol->safety.at_zero_V.si);
+  bool off = voltage_V < lowest_V - most_V || voltage_V > highest_V + most_V;
+  double sample_s = 1 / watch->protocol->rate_Hz.si;
+  watch->off_s[i] = fmax(0, watch->off_s[i] + (off ? sample_s : -off_forgets * sample_s));
+  if (watch->off_s[i] < off_most_s) {
+    return true;
+  }
+  add_event(watch, DEA_NOTICED_READ_BACK, i, voltage_V, asked_V);
+  snprintf(why, DEA_WHY_ENDED_SIZE,
+           "the voltage read back is %.4g kV where %.4g kV is asked, off by more than "
+           "safety.readback_error of %.3g %% for %g s",
+           1e-3 * voltage_V, 1e-3 * asked_V, 100 * share, off_most_s);
+  return false;
+}
+
+static bool check_leak(struct dea_drive_watch *watch, size_t i, double asked_V, double current_A,
+                       char why[DEA_WHY_ENDED_SIZE])
+{
+  static const enum dea_noticed_kind kinds[] = {[DEA_LEAK_LEARNED] = DEA_NOTICED_LEARNED,
+                                                [DEA_LEAK_SCATTER] = DEA_NOTICED_SCATTER,
+                                                [DEA_LEAK_DRIFTED] = DEA_NOTICED_DRIFTED,
+                                                [DEA_LEAK_ROSE] = DEA_NOTICED_LEAK_ROSE};
+  struct dea_leak_watch *leak = &watch->leaks[i];
+  double time_s = watch->sample / watch->protocol->rate_Hz.si;
+  enum dea_leak_event event = dea_leak_watch_sample(leak, time_s, asked_V, current_A);
+  if (event == DEA_LEAK_NOTHING) {
+    return true;
+  }
+  add_event(watch, kinds[event], i, leak->value_A, leak->limit_A);
+  snprintf(
+      why, DEA_WHY_ENDED_SIZE,
+      "the leakage current has risen to %.4g uA, above %.4g uA, which its base line of earlier "
+      "equal cycles and safety.leak_rise allow, for %.3g s (safety.leak_time)",
+      1e6 * leak->value_A, 1e6 * leak->limit_A, watch->protocol->safety.leak_time_s.si);
+  return event != DEA_LEAK_ROSE;
+}
+
 static bool check_missing(struct dea_drive_watch *watch, size_t i, char why[DEA_WHY_ENDED_SIZE])
 {
   if (++watch->missing[i] < watch->blind) {
@@ -152,6 +219,7 @@ bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const
   bool good = true;
   double change_V = asked_V - watch->asked_V;
   watch->asked_V = asked_V;
+  watch->event_count = 0;
   follow(watch, asked_V);
   for (size_t i = 0; i < watch->protocol->input_count && good; i++) {
     int kind = watch->protocol->inputs[i].kind.value;
@@ -166,8 +234,11 @@ bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const
       continue;
     }
     watch->missing[i] = 0;
-    good = kind == DEA_CHANNEL_CURRENT ? check_current(watch, i, values[i], why)
-                                       : check_voltage(watch, i, asked_V, values[i], why);
+    good = kind == DEA_CHANNEL_CURRENT ? check_current(watch, i, values[i], why) &&
+                                             check_leak(watch, i, asked_V, values[i], why)
+                                       : check_voltage(watch, i, asked_V, values[i], why) &&
+                                             check_readback(watch, i, asked_V, values[i], why);
   }
+  watch->sample++;
   return good;
 }

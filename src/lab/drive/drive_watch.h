@@ -3,9 +3,11 @@
 #define DEA_LAB_DRIVE_DRIVE_WATCH_H
 
 #include "lab/drive/arc_watch.h"
+#include "lab/drive/leak_watch.h"
 #include "lab/protocol/protocol.h"
+#include "lab/recording/recording.h"
 
-enum { DEA_WHY_ENDED_SIZE = 256 };
+enum { DEA_WHY_ENDED_SIZE = 256, DEA_WATCH_EVENTS_MAX = 2 * DEA_PROTOCOL_INPUTS_MAX };
 
 struct dea_drive_watch {
   const struct dea_protocol *protocol; // lent
@@ -19,7 +21,13 @@ struct dea_drive_watch {
   double largest_current_A;                           // by amount; NAN: none came
   struct dea_arc_watch arcs[DEA_PROTOCOL_INPUTS_MAX]; // of the currents
   double asked_V;                                     // of the last sample
-  double cap_V[2];   // lowest and highest voltage that may be measured at all
+  double cap_V[2]; // lowest and highest voltage that may be measured at all
+  struct dea_leak_watch leaks[DEA_PROTOCOL_INPUTS_MAX]; // of the currents
+  double off_s[DEA_PROTOCOL_INPUTS_MAX]; // for how long a voltage has been off by a share of it
+  double sample;                         // number of the next one
+  double largest_V;                      // of the sequence
+  struct dea_recorded_event events[DEA_WATCH_EVENTS_MAX]; // of the last sample; channel: of inputs
+  size_t event_count;
   bool contradicted; // a voltage channel did not show what was asked: it may be the channel
 };
 

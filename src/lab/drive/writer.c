@@ -11,7 +11,7 @@
 static const double sync_s = 0.2; // between two waits for the disk, while there is more to write
 
 enum { ITEMS = 16384, MESSAGE_SIZE = 512, HELD_MAX = 256 };
-enum kind { SAMPLES, READING, FRAME, CYCLE };
+enum kind { SAMPLES, READING, FRAME, CYCLE, EVENT };
 
 /* Numbers of the queue, one after the other. */
 struct item {
@@ -51,6 +51,10 @@ static dea_status write_item(struct dea_writer *w, const struct item *item, cons
     return dea_recorder_add_timed(w->recorder, item->channel, &numbers[0], &numbers[1], 1);
   case FRAME:
     return dea_recorder_add_profile(w->recorder, numbers[0], numbers + 1);
+  case EVENT:
+    return dea_recorder_add_event(
+        w->recorder, &(struct dea_recorded_event){numbers[0], (enum dea_noticed_kind)numbers[1],
+                                                  item->channel, numbers[2], numbers[3]});
   default:
     w->held[w->held_count++] = (struct dea_recorded_cycle){.step = (size_t)numbers[0],
                                                            .number = (size_t)numbers[1],
@@ -224,6 +228,21 @@ dea_status dea_writer_add_cycle(struct dea_context *ctx, struct dea_writer *writ
   to[2] = cycle->start_s;
   to[3] = cycle->end_s;
   to[4] = cycle->level_V;
+  hand_over(writer);
+  return DEA_OK;
+}
+
+dea_status dea_writer_add_event(struct dea_context *ctx, struct dea_writer *writer,
+                                const struct dea_recorded_event *event)
+{
+  double *to = take_room(ctx, writer, EVENT, event->channel, 4);
+  if (to == NULL) {
+    return dea_context_status(ctx);
+  }
+  to[0] = event->time_s;
+  to[1] = (double)event->kind;
+  to[2] = event->value;
+  to[3] = event->limit;
   hand_over(writer);
   return DEA_OK;
 }

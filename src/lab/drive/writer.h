@@ -21,6 +21,8 @@ dea_status dea_writer_add_timed(struct dea_context *ctx, struct dea_writer *writ
                                 double time_s, double value);
 dea_status dea_writer_add_profile(struct dea_context *ctx, struct dea_writer *writer, double time_s,
                                   const double *z_m, size_t points);
+dea_status dea_writer_add_event(struct dea_context *ctx, struct dea_writer *writer,
+                                const struct dea_recorded_event *event);
 dea_status dea_writer_add_cycle(struct dea_context *ctx, struct dea_writer *writer,
                                 const struct dea_recorded_cycle *cycle);
 /* Waits until all is written, and ends the recording; NULL is fine. output, ended: as of a

@@ -323,12 +323,19 @@ static dea_status take_voltage(struct dea_context *ctx, struct dea_line_supply *
     s->pending[s->pending_count].time_s = 0.5 * (s->asked_s + dea_clock_s()) - s->start_s;
     s->pending[s->pending_count++].volts = volts;
   }
-  return dea_timed_measured(&s->output, volts / gain, error_V / gain)
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_INSTRUMENT,
-                        "%s measures %.4g kV where %.4g kV was set, more than "
-                        "safety.voltage_error of %.4g V away",
-                        s->link.socket.name, 1e-3 * volts, 1e-3 * (double)s->set_V, error_V);
+  double share = s->protocol->safety.readback_error.si;
+  switch (dea_timed_measured(&s->output, volts / gain, error_V / gain, share,
+                             s->protocol->safety.at_zero_V.si / gain)) {
+  case DEA_TIMED_FOLLOWS:
+    return DEA_OK;
+  case DEA_TIMED_OFF:
+    return dea_timed_off(ctx, s->link.socket.name, volts, (double)s->set_V, share);
+  default:
+    return dea_fail(ctx, DEA_E_INSTRUMENT,
+                    "%s measures %.4g kV where %.4g kV was set, more than "
+                    "safety.voltage_error of %.4g V away",
+                    s->link.socket.name, 1e-3 * volts, 1e-3 * (double)s->set_V, error_V);
+  }
 }
 
 static dea_status take(struct dea_context *ctx, struct dea_line_supply *s, const char *answer)

@@ -224,13 +224,19 @@ static dea_status check_measured(struct dea_context *ctx, struct dea_scpi *s, do
 {
   double gain = s->protocol->amplifier.gain.si;
   double error_V = s->protocol->safety.voltage_error_V.si / gain;
-  return dea_timed_measured(&s->output, volts, error_V)
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_INSTRUMENT,
-                        "%s measures %.4g kV where %.4g kV was set, more than "
-                        "safety.voltage_error of %.4g V away",
-                        s->name, 1e-3 * gain * volts, 1e-3 * gain * s->output.sent_V,
-                        gain * error_V);
+  double share = s->protocol->safety.readback_error.si;
+  switch (dea_timed_measured(&s->output, volts, error_V, share,
+                             s->protocol->safety.at_zero_V.si / gain)) {
+  case DEA_TIMED_FOLLOWS:
+    return DEA_OK;
+  case DEA_TIMED_OFF:
+    return dea_timed_off(ctx, s->name, gain * volts, gain * s->output.sent_V, share);
+  default:
+    return dea_fail(ctx, DEA_E_INSTRUMENT,
+                    "%s measures %.4g kV where %.4g kV was set, more than "
+                    "safety.voltage_error of %.4g V away",
+                    s->name, 1e-3 * gain * volts, 1e-3 * gain * s->output.sent_V, gain * error_V);
+  }
 }
 
 dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,

@@ -3,8 +3,10 @@
 #include <math.h>
 
 enum { DEVIATIONS_MAX = 2 };
-static const double measure_at_least_s =
-    1; // an output that can be read back is, however seldom it is recorded
+static const double off_most_s = 5, off_forgets = 0.1; // as of lab/drive/drive_watch.c
+static const double off_from = 0.2;
+// an output that can be read back is, however seldom that is recorded
+static const double measure_at_least_s = 1;
 
 dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *o)
 {
@@ -25,7 +27,7 @@ void dea_timed_end(struct dea_context *ctx, struct dea_timed_output *o)
 
 void dea_timed_start(struct dea_timed_output *o, double now_s)
 {
-  o->turned_s = o->clock_s = o->window_s = o->measured_s = now_s;
+  o->turned_s = o->clock_s = o->window_s = o->measured_s = o->times_s = o->looked_s = now_s;
 }
 
 bool dea_timed_plays(const struct dea_timed_output *o)
@@ -116,6 +118,21 @@ enum dea_timed_action dea_timed_next(struct dea_timed_output *o, double now_s, d
   return DEA_TIMED_NOTHING;
 }
 
+/* What stands there, and what is sent, counts for the newest of the shorter times. */
+static void follow(struct dea_timed_output *o, double volts, double now_s)
+{
+  for (int i = 0; i < DEA_TIMED_TIMES && now_s - o->times_s >= 0.125 * o->behind_s; i++) {
+    for (int k = DEA_TIMED_TIMES - 1; k > 0; k--) {
+      o->lows_V[k] = o->lows_V[k - 1];
+      o->highs_V[k] = o->highs_V[k - 1];
+    }
+    o->lows_V[0] = o->highs_V[0] = o->sent_V;
+    o->times_s = i + 1 < DEA_TIMED_TIMES ? o->times_s + 0.125 * o->behind_s : now_s;
+  }
+  o->lows_V[0] = fmin(o->lows_V[0], volts);
+  o->highs_V[0] = fmax(o->highs_V[0], volts);
+}
+
 void dea_timed_sent(struct dea_timed_output *o, double volts, double now_s)
 {
   if (!(now_s - o->window_s < o->behind_s)) {
@@ -124,6 +141,8 @@ void dea_timed_sent(struct dea_timed_output *o, double volts, double now_s)
     o->lowest_V[0] = o->highest_V[0] = o->sent_V;
     o->window_s = now_s;
   }
+  follow(o, volts, now_s);
+  o->largest_V = fmax(o->largest_V, fabs(volts));
   o->lowest_V[0] = fmin(o->lowest_V[0], volts);
   o->highest_V[0] = fmax(o->highest_V[0], volts);
   o->sent_V = volts;
@@ -141,16 +160,50 @@ double dea_timed_hold(struct dea_timed_output *o, double now_s)
   return o->sent_V;
 }
 
-bool dea_timed_measured(struct dea_timed_output *o, double volts, double error_V)
+/* Near 0 V, and on the way from one sign to the other, nothing is looked at. */
+static bool is_off(struct dea_timed_output *o, double volts, double share, double least_V)
+{
+  double since_s = fmin(o->measured_s - o->looked_s, 2 * measure_at_least_s);
+  double lowest_V = INFINITY, highest_V = -INFINITY;
+  follow(o, o->sent_V, o->measured_s); // when it was asked for
+  o->looked_s = o->measured_s;
+  for (int i = 0; i < DEA_TIMED_TIMES; i++) {
+    lowest_V = fmin(lowest_V, o->lows_V[i]);
+    highest_V = fmax(highest_V, o->highs_V[i]);
+  }
+  double nearest_V = lowest_V * highest_V > 0 ? fmin(fabs(lowest_V), fabs(highest_V)) : 0;
+  if (nearest_V == 0 || nearest_V < off_from * o->largest_V) {
+    return false;
+  }
+  double most_V = fmax(share * fmax(fabs(lowest_V), fabs(highest_V)), least_V);
+  bool off = volts < lowest_V - most_V || volts > highest_V + most_V;
+  o->off_s = fmax(0, o->off_s + (off ? since_s : -off_forgets * since_s));
+  return o->off_s >= off_most_s;
+}
+
+enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *o, double volts, double error_V,
+                                          double share, double least_V)
 {
   double lowest_V = fmin(o->lowest_V[0], o->lowest_V[1]);
   double highest_V = fmax(o->highest_V[0], o->highest_V[1]);
   bool wrong = volts < lowest_V - error_V || volts > highest_V + error_V;
   o->deviations = wrong ? o->deviations + 1 : 0;
-  return o->deviations < DEVIATIONS_MAX;
+  if (o->deviations >= DEVIATIONS_MAX) {
+    return DEA_TIMED_WRONG;
+  }
+  return is_off(o, volts, share, least_V) ? DEA_TIMED_OFF : DEA_TIMED_FOLLOWS;
 }
 
 bool dea_timed_contradicted(const struct dea_timed_output *o)
 {
   return o->deviations > 0;
+}
+
+dea_status dea_timed_off(struct dea_context *ctx, const char *name, double measured_V, double set_V,
+                         double share)
+{
+  return dea_fail(ctx, DEA_E_INTERLOCK,
+                  "%s measures %.4g kV where %.4g kV was set, off by more than "
+                  "safety.readback_error of %.3g %% for %g s",
+                  name, 1e-3 * measured_V, 1e-3 * set_V, 100 * share, off_most_s);
 }

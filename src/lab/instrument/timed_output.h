@@ -18,6 +18,8 @@ enum dea_timed_action {
   DEA_TIMED_SEND     // send wanted_V, then note it
 };
 
+enum { DEA_TIMED_TIMES = 5 };
+
 /* Zero-initialised: it plays nothing. */
 struct dea_timed_output {
   double *queue; // [room], a ring; owned. NULL: it plays nothing
@@ -34,7 +36,13 @@ struct dea_timed_output {
   double lowest_V[2], highest_V[2]; // sent in this window and the one before
   double window_s;                  // when this window began; each is `behind` long
   size_t deviations;                // measured voltages in a row that were none of these
-  double turned_s;                  // when it was played last
+  /* The same of a few shorter times, the newest first, for what is off by less. */
+  double lows_V[DEA_TIMED_TIMES], highs_V[DEA_TIMED_TIMES];
+  double times_s;   // when the newest of them began
+  double largest_V; // that was sent, by amount
+  double looked_s;  // when what was measured was compared last
+  double off_s;     // for how long what was measured has been off by a share of it
+  double turned_s;  // when it was played last
 };
 
 /* Makes the queue; the times are set before. */
@@ -59,9 +67,20 @@ enum dea_timed_action dea_timed_next(struct dea_timed_output *output, double now
 void dea_timed_sent(struct dea_timed_output *output, double volts, double now_s);
 /* After a stall: drops the queue; the voltage where the output stands. */
 double dea_timed_hold(struct dea_timed_output *output, double now_s);
-/* False once two measured voltages in a row were more than error_V from all that was sent within
- * `behind`: one may be taken while it moves. */
-bool dea_timed_measured(struct dea_timed_output *output, double volts, double error_V);
+enum dea_timed_verdict {
+  DEA_TIMED_FOLLOWS,
+  DEA_TIMED_WRONG, // two in a row were more than error_V from all that was sent within `behind`:
+                   // one may be taken while it moves
+  DEA_TIMED_OFF // for 5 s off by more than a share, and more than least_V, from all that was sent
+                // within half of that
+};
+/* A measured voltage. */
+enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *output, double volts,
+                                          double error_V, double share, double least_V);
+/* Says so: DEA_E_INTERLOCK, after which the output goes to 0 V along the ramp. Voltages of the
+ * output. */
+dea_status dea_timed_off(struct dea_context *ctx, const char *name, double measured_V, double set_V,
+                         double share);
 /* Whether the last measured voltage was one of these: either the output or what measures it is
  * wrong, and nobody knows which. What it measures then says nothing of 0 V. */
 bool dea_timed_contradicted(const struct dea_timed_output *output);

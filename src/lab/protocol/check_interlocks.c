@@ -11,6 +11,7 @@ static const double least_of_range = 1e-3; // of an input's range, above its noi
 static const double blind_longest_s = 1;   // that the voltage may settle unwatched
 static const double error_much = 0.5;      // of the largest voltage
 static const double zero_most_V = 60;      // that may be touched, as direct voltage (IEC 61140)
+static const double leak_share = 0.2;      // of trip_current
 static const double zero_share = 0.01;     // of the amplifier's range: errors of its monitor
 
 static size_t count_inputs(const struct dea_protocol *protocol, enum dea_channel_kind kind)
@@ -127,6 +128,43 @@ static dea_status check_voltage_error(struct dea_context *ctx, const struct dea_
                          all ? "nothing" : "half of it");
 }
 
+/* Says of which steps the leakage current has none. */
+static dea_status note_base_lines(struct dea_context *ctx, const struct dea_protocol *protocol)
+{
+  size_t without = 0, first = 0;
+  char step[DEA_STEP_NAME_SIZE];
+  for (size_t i = protocol->step_count; i-- > 0;) {
+    bool none = isinf(dea_protocol_learning_s(&protocol->steps[i]));
+    without += none;
+    first = none ? i : first;
+  }
+  if (without == 0) {
+    return DEA_OK;
+  }
+  dea_protocol_step_name(protocol, first, step);
+  return dea_finding_add(ctx, DEA_NOTE, protocol->safety.trip_current_A.location,
+                         "the leakage current has no base line in %zu of %zu steps (%s): it is "
+                         "learned from %d equal cycles of %d s or more; there trip_current alone "
+                         "guards the film",
+                         without, protocol->step_count, step, DEA_LEAK_VISITS, DEA_LEAK_VISIT_S);
+}
+
+/* A rise that is none may not reach the fixed limit. */
+static dea_status check_leak(struct dea_context *ctx, const struct dea_protocol *protocol)
+{
+  const struct dea_quantity *least = &protocol->safety.leak_least_A;
+  double most_A = leak_share * protocol->safety.trip_current_A.si;
+  if (count_inputs(protocol, DEA_CHANNEL_CURRENT) > 0) {
+    DEA_TRY(ctx, note_base_lines(ctx, protocol));
+  }
+  return least->origin == DEA_ABSENT || least->si <= most_A
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_ERROR, least->location,
+                               "refused: a leakage current that rises by %.4g uA would be no rise; "
+                               "at most %.4g uA may be none, %g %% of safety.trip_current",
+                               1e6 * least->si, 1e6 * most_A, 100 * leak_share);
+}
+
 /* What is read back and still called 0 V. */
 static dea_status check_at_zero(struct dea_context *ctx, const struct dea_protocol *protocol)
 {
@@ -175,5 +213,6 @@ dea_status dea_protocol_check_interlocks(struct dea_context *ctx,
   DEA_TRY(ctx, check_trip_current(ctx, protocol));
   DEA_TRY(ctx, check_voltage_error(ctx, protocol, largest_V));
   DEA_TRY(ctx, check_at_zero(ctx, protocol));
+  DEA_TRY(ctx, check_leak(ctx, protocol));
   return check_settling(ctx, protocol, plan);
 }

@@ -81,6 +81,9 @@ struct dea_protocol {
     struct dea_quantity trip_current_A, trip_time_s; // a current above it for that long ends it
     struct dea_quantity trip_count;             // of excursions above it in 10 s that end it too
     struct dea_quantity voltage_error_V;        // largest |measured - asked| once settled
+    struct dea_quantity readback_error;         // the same as a share of it, for 5 s
+    struct dea_quantity leak_rise, leak_time_s; // above the base line: a share of it, for how long
+    struct dea_quantity leak_least_A;           // below it a rise is none
     struct dea_quantity ramp_V_per_s;           // to 0 V, when it ends early
     struct dea_quantity at_zero_V, zero_time_s; // what is 0 V, read back, and by when
     struct dea_quantity guard_time_s;           // without a sign of life, for the guard
@@ -142,6 +145,15 @@ size_t dea_protocol_cycles(const struct dea_protocol *protocol);
  * without cycles (a chirp) is one cycle. */
 bool dea_protocol_cycle(const struct dea_protocol *protocol, size_t number,
                         struct dea_recorded_cycle *out);
+
+/* How long the equal cycles of a step are: of its waveform, or its repetitions; of a voltage that
+ * stays 10 s. NAN: nothing in it repeats. */
+double dea_protocol_period_s(const struct dea_protocol_step *step);
+/* A base line of the leakage current is learned from the first so many passes of a cycle, or of
+ * several cycles where they are shorter than that. */
+enum { DEA_LEAK_VISITS = 8, DEA_LEAK_VISIT_S = 1 };
+/* How long that takes about; INFINITY: the step ends before. */
+double dea_protocol_learning_s(const struct dea_protocol_step *step);
 
 /* What the checks found out, for `dea drive` to print. NAN: not known. */
 struct dea_protocol_plan {

@@ -105,6 +105,20 @@ static const struct dea_field safety_fields[] = {
         "difference of measured and asked voltage that ends the measurement when it lasts; "
         "needs a channel of the voltage",
         .above_min = true, .max = 1e6, .default_text = "200 V"),
+    DEA_NUMBER_ROW("readback_error", AT(safety.readback_error), "1", "5 %",
+                   "share of the asked voltage by which the measured one may be off for 5 s",
+                   .min = 0.01, .max = 0.2, .default_text = "5 %"),
+    DEA_NUMBER_ROW(
+        "leak_rise", AT(safety.leak_rise), "1", "100 %",
+        "rise of the leakage current that ends the measurement when it lasts, as a share "
+        "of its base line, that of earlier equal cycles",
+        .min = 0.1, .max = 4, .default_text = "100 %"),
+    DEA_NUMBER_ROW("leak_time", AT(safety.leak_time_s), "s", "5 s",
+                   "how long it has to last, of the time under voltage", .min = 0.5, .max = 60,
+                   .default_text = "5 s"),
+    DEA_NUMBER_ROW("leak_least", AT(safety.leak_least_A), "A", "10 uA",
+                   "rise of the leakage current that is none yet; at most a fifth of trip_current",
+                   .above_min = true, .max = 1, .absent_text = "a hundredth of trip_current"),
     DEA_NUMBER_ROW("ramp", AT(safety.ramp_V_per_s), "V/s", "5 kV/s",
                    "how fast the voltage goes to 0 V when the measurement ends early",
                    .above_min = true, .max = 1e12, .default_text = "5 kV/s"),

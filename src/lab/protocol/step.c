@@ -1,9 +1,14 @@
-/* How a step of the sequence is called in messages, and where the file says it. */
+/* How a step of the sequence is called in messages, where the file says it, and what repeats in it.
+ */
 #include "lab/protocol/check.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+enum { CYCLES_LOOKED_AT = 1000 };
+static const double section_s = 10; // of a voltage that stays
+static const double rounding = 1e-9;
 
 void dea_protocol_step_name(const struct dea_protocol *protocol, size_t step,
                             char out[DEA_STEP_NAME_SIZE])
@@ -33,4 +38,34 @@ struct dea_location dea_protocol_voltage_location(const struct dea_protocol *pro
     }
   }
   return location;
+}
+
+double dea_protocol_period_s(const struct dea_protocol_step *step)
+{
+  const struct dea_waveform *w = step->waveform;
+  struct dea_wave_cycle first, next;
+  if (step->lowest_V == step->highest_V) {
+    return section_s;
+  }
+  double end_s = 0;
+  bool equal = dea_waveform_cycle(w, 0, &first) && first.start_s == 0;
+  for (size_t i = 0; equal && i < step->cycles && i < CYCLES_LOOKED_AT; i++) {
+    double error_s = rounding * w->end_s;
+    equal = dea_waveform_cycle(w, i, &next) && fabs(next.start_s - end_s) <= error_s &&
+            fabs(next.end_s - next.start_s - first.end_s) <= error_s &&
+            next.level_V == first.level_V;
+    end_s = next.end_s;
+  }
+  if (equal && step->cycles > 1) {
+    return first.end_s;
+  }
+  return step->repeat.si > 1 ? w->end_s : (double)NAN;
+}
+
+double dea_protocol_learning_s(const struct dea_protocol_step *step)
+{
+  double period_s = dea_protocol_period_s(step), length_s = step->repeat.si * step->waveform->end_s;
+  // a visit ends with the first cycle that ends a second after it began
+  double learned_s = (DEA_LEAK_VISITS + 1) * period_s * fmax(1, ceil(DEA_LEAK_VISIT_S / period_s));
+  return learned_s < length_s ? learned_s : (double)INFINITY; // INFINITY for NAN
 }

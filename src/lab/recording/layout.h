@@ -8,12 +8,18 @@
  *                       lowest, highest where the range is known
  *     values [n]        and, where interval_s is 0, time [n]
  *   profiles            x_m [points], time_s [n], z_m [n][points]
- *   cycles [n][5]       step, number, start_s, end_s, level_V */
+ *   cycles [n][5]       step, number, start_s, end_s, level_V
+ *   events [n][5]       time_s, kind, channel, value, limit; older files have none */
 #ifndef DEA_LAB_RECORDING_LAYOUT_H
 #define DEA_LAB_RECORDING_LAYOUT_H
 
 #define DEA_RECORDING_FORMAT "dea recording"
-enum { DEA_RECORDING_VERSION = 1, DEA_STATE_SIZE = 512, DEA_CYCLE_WIDTH = 5 };
+enum {
+  DEA_RECORDING_VERSION = 1,
+  DEA_STATE_SIZE = 512,
+  DEA_CYCLE_WIDTH = 5,
+  DEA_NOTICED_WIDTH = 5
+};
 
 /* What `state` says. */
 #define DEA_STATE_RUNNING "running"

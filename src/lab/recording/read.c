@@ -205,6 +205,31 @@ static void get_cycles(struct h5 *h, hid_t file, struct dea_recording *recording
   dea_free(h->ctx, rows);
 }
 
+/* Older files have none. A row that makes no sense, or was never written, ends them. */
+static void get_events(struct h5 *h, hid_t file, struct dea_recording *recording)
+{
+  double *rows = NULL;
+  size_t count = 0;
+  bool cut = false;
+  if (h->status == DEA_OK && dea_h5_has(h, file, "events")) {
+    dea_series_read(h, file, "events", DEA_NOTICED_WIDTH, &rows, &count, &cut);
+  }
+  if (h->status == DEA_OK && count > 0) {
+    recording->events = dea_alloc(h->ctx, count, sizeof *recording->events);
+    h->status = recording->events != NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    const double *row = rows + i * DEA_NOTICED_WIDTH;
+    if (!isfinite(row[0]) || !(row[1] >= 1 && row[1] < DEA_NOTICED_KINDS) ||
+        !(row[2] >= 0 && row[2] < (double)recording->channel_count)) {
+      break;
+    }
+    recording->events[recording->event_count++] = (struct dea_recorded_event){
+        row[0], (enum dea_noticed_kind)row[1], (size_t)row[2], row[3], row[4]};
+  }
+  dea_free(h->ctx, rows);
+}
+
 // The whole --------------------------------------------------------------------------------------
 
 /* Channels on one clock end together; only a killed program leaves some of them longer. */
@@ -263,6 +288,7 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
   get_cycles(h, file, recording, &cut); // before the samples: a program may be adding to both
   get_channels(h, file, recording, &cut);
   get_profiles(h, file, &recording->profiles, &cut);
+  get_events(h, file, recording);
   char *title = dea_h5_get_long_text(h, file, "title");
   if (title != NULL) {
     dea_free(h->ctx, recording->title);

@@ -27,7 +27,7 @@ struct dea_recorder {
   hid_t file;
   struct recorded_channel channels[DEA_CHANNELS_MAX];
   size_t channel_count;
-  struct dea_recorded_series frame_time, frames, cycles;
+  struct dea_recorded_series frame_time, frames, cycles, events;
   double last_frame_s;
   char output[DEA_OUTPUT_SIZE]; // what is known of it at the end
   double flush_s, flushed_s;    // longest time between flushes, time of the last one
@@ -250,6 +250,8 @@ static void make_objects(struct h5 *h, struct dea_recorder *recorder,
   make_profiles(h, file, options);
   dea_series_make(h, file, "cycles", DEA_CYCLE_WIDTH, 1024, "1",
                   "completed cycles: step, number in it, start (s), end (s), level (V)");
+  dea_series_make(h, file, "events", DEA_NOTICED_WIDTH, 64, "1",
+                  "what the watches noticed: time (s), kind, channel, value, limit");
   set_text(h, recorder, "state", DEA_STATE_RUNNING);
   set_text(h, recorder, "output", "");
   if (h->status == DEA_OK && H5Fflush(file, H5F_SCOPE_GLOBAL) < 0) {
@@ -274,6 +276,7 @@ static void make_objects(struct h5 *h, struct dea_recorder *recorder,
     dea_h5_close(profiles);
   }
   dea_series_open(h, file, "cycles", DEA_CYCLE_WIDTH, 1024, &recorder->cycles);
+  dea_series_open(h, file, "events", DEA_NOTICED_WIDTH, 64, &recorder->events);
 }
 
 static void close_all(struct dea_recorder *recorder)
@@ -286,6 +289,7 @@ static void close_all(struct dea_recorder *recorder)
   dea_series_close(ctx, &recorder->frame_time);
   dea_series_close(ctx, &recorder->frames);
   dea_series_close(ctx, &recorder->cycles);
+  dea_series_close(ctx, &recorder->events);
   dea_h5_close(recorder->file);
 }
 
@@ -309,7 +313,7 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   for (size_t c = 0; c < DEA_CHANNELS_MAX; c++) {
     recorder->channels[c] = (struct recorded_channel){.values = none, .time = none};
   }
-  recorder->frame_time = recorder->frames = recorder->cycles = none;
+  recorder->frame_time = recorder->frames = recorder->cycles = recorder->events = none;
   recorder->last_frame_s = -INFINITY;
   recorder->flush_s = options->flush_s > 0 ? options->flush_s : 0.2;
   recorder->flushed_s = dea_clock_s();
@@ -455,6 +459,18 @@ dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
   flush_samples(&h, recorder);
   dea_series_add(&h, &recorder->cycles, row, 1);
   dea_series_flush(&h, &recorder->cycles);
+  return end(recorder, &h);
+}
+
+dea_status dea_recorder_add_event(struct dea_recorder *recorder,
+                                  const struct dea_recorded_event *event)
+{
+  const double row[DEA_NOTICED_WIDTH] = {event->time_s, (double)event->kind, (double)event->channel,
+                                         event->value, event->limit};
+  struct h5 h;
+  begin(recorder, &h);
+  dea_series_add(&h, &recorder->events, row, 1);
+  dea_series_flush(&h, &recorder->events);
   return end(recorder, &h);
 }
 

@@ -50,6 +50,9 @@ dea_status dea_recorder_add_profile(struct dea_recorder *recorder, double time_s
 /* Appends a completed cycle and flushes everything: from here on it survives. */
 dea_status dea_recorder_add_cycle(struct dea_recorder *recorder,
                                   const struct dea_recorded_cycle *cycle);
+/* Appends what a watch noticed, and flushes that. */
+dea_status dea_recorder_add_event(struct dea_recorder *recorder,
+                                  const struct dea_recorded_event *event);
 /* Flushes the samples and waits until all that was flushed is on the disk, so that it survives the
  * computer too. A cycle is to be added after its samples were waited for: of what nobody has waited
  * for, a failing computer may keep any part. */

@@ -1,6 +1,7 @@
 /* A recording in memory. */
 #include "lab/recording/recording.h"
 
+#include <stdio.h>
 #include <string.h>
 
 dea_status dea_recording_create(struct dea_context *ctx, struct dea_recording **out)
@@ -32,6 +33,7 @@ void dea_recording_destroy(struct dea_context *ctx, struct dea_recording *record
   dea_free(ctx, recording->profiles.time_s);
   dea_free(ctx, recording->profiles.z_m);
   dea_free(ctx, recording->cycles);
+  dea_free(ctx, recording->events);
   dea_free(ctx, recording->title);
   dea_free(ctx, recording->protocol);
   dea_free(ctx, recording->design);
@@ -74,4 +76,39 @@ size_t dea_channel_index(const struct dea_channel *channel, double time_s)
     }
   }
   return low;
+}
+
+void dea_noticed_text(const struct dea_recorded_event *event, const char *channel,
+                      char out[DEA_NOTICED_TEXT_SIZE])
+{
+  double value = event->value, limit = event->limit;
+  size_t size = DEA_NOTICED_TEXT_SIZE;
+  switch (event->kind) {
+  case DEA_NOTICED_LEARNED:
+    snprintf(out, size, "'%.60s' has a base line: up to %.4g uA; above %.4g uA is a rise", channel,
+             1e6 * value, 1e6 * limit);
+    break;
+  case DEA_NOTICED_SCATTER:
+    snprintf(out, size,
+             "'%.60s' has no base line: with %.4g uA and its scatter in equal cycles a rise would "
+             "begin at %.4g uA, above the fixed limit, which alone is left",
+             channel, 1e6 * value, 1e6 * limit);
+    break;
+  case DEA_NOTICED_DRIFTED:
+    snprintf(out, size,
+             "'%.60s': the base line has risen to %.4g uA, as far as it may; above %.4g uA it ends",
+             channel, 1e6 * value, 1e6 * limit);
+    break;
+  case DEA_NOTICED_LEAK_ROSE:
+    snprintf(out, size, "'%.60s' has risen to %.4g uA, above %.4g uA", channel, 1e6 * value,
+             1e6 * limit);
+    break;
+  case DEA_NOTICED_READ_BACK:
+    snprintf(out, size, "'%.60s' reads back %.4g kV where %.4g kV is asked", channel, 1e-3 * value,
+             1e-3 * limit);
+    break;
+  default:
+    snprintf(out, size, "'%.60s' has given no value for %.3g s; for %.3g s it ends", channel, value,
+             limit);
+  }
 }

@@ -57,6 +57,27 @@ struct dea_profiles {
   double *z_m;    // [count][points], upwards; NAN: no valid point
 };
 
+/* What the watches of a drive noticed. Numbers of files: none of them changes its meaning. */
+enum dea_noticed_kind {
+  DEA_NOTICED_LEARNED = 1, // base lines of the leakage current: the largest, and the largest limit
+  DEA_NOTICED_SCATTER = 2, // there is none to be learned: what it is, and what it would allow
+  DEA_NOTICED_DRIFTED = 3, // its base line has come to its end: what it is, and its limit
+  DEA_NOTICED_LEAK_ROSE = 4, // what was measured, and its limit; it ended the measurement
+  DEA_NOTICED_READ_BACK = 5, // voltage measured, and asked for; it ended the measurement
+  DEA_NOTICED_SILENT = 6     // a reading without a value: seconds, and how many end the measurement
+};
+enum { DEA_NOTICED_KINDS = 7 };
+struct dea_recorded_event {
+  double time_s;
+  enum dea_noticed_kind kind;
+  size_t channel; // number of it in the recording
+  double value, limit;
+};
+enum { DEA_NOTICED_TEXT_SIZE = 320 };
+/* As a sentence. channel: its name. */
+void dea_noticed_text(const struct dea_recorded_event *event, const char *channel,
+                      char out[DEA_NOTICED_TEXT_SIZE]);
+
 /* A cycle that was played to its end. */
 struct dea_recorded_cycle {
   size_t step, number;   // of the protocol's sequence, and within that step, both from 0
@@ -77,6 +98,8 @@ struct dea_recording {
   struct dea_profiles profiles; // count 0 without
   struct dea_recorded_cycle *cycles;
   size_t cycle_count;
+  struct dea_recorded_event *events;
+  size_t event_count;
 };
 
 /* An empty one; owned by the caller, NULL on failure. */

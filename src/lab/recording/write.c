@@ -21,6 +21,9 @@ static dea_status add_all(struct dea_recorder *recorder, const struct dea_record
   for (size_t i = 0; i < recording->cycle_count && status == DEA_OK; i++) {
     status = dea_recorder_add_cycle(recorder, &recording->cycles[i]);
   }
+  for (size_t i = 0; i < recording->event_count && status == DEA_OK; i++) {
+    status = dea_recorder_add_event(recorder, &recording->events[i]);
+  }
   return status;
 }
 
