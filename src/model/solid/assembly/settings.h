@@ -49,7 +49,7 @@
   X(int, approach_iterations, 25, "1",                                                             \
     "of one minimum of a taut film, before the path is followed")                                  \
   X(int, approach_lost, 12, "1", "`lost` on the way to a voltage")                                 \
-  X(int, approach_points, 40, "1", "points of the path on the way to a voltage")                   \
+  X(int, approach_points, 40, "1", "points of the path on the way, twice that where it bends")     \
   X(double, approach_unit, 0.1, "of the displacement on the way", "counts as much as all of it")   \
   X(double, approach_step, 0.5, "of the way or of that displacement", "first step on it")          \
   X(double, approach_step_most, 4, "of the way or of that displacement", "longest step")           \
@@ -76,6 +76,8 @@
   X(double, path_bulk, 16, "1", "power of 2, factor of kappa on the way")                          \
   X(double, path_difference, 1e-5, "1", "of tau, for the force by tau")                            \
   X(int, path_iterations, 15, "1", "of the corrector")                                             \
+  X(double, path_fall, 0.3, "of the residual before",                                              \
+    "where it falls less, stresses are not predicted")                                             \
   X(int, path_hidden, 3, "1", "steps in a row that rounding hides")                                \
   /* ---- paths: limit points and bifurcations ---- */                                             \
   X(int, critical_rounds, 20, "1", "of regula falsi")                                              \

@@ -83,10 +83,14 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
 static dea_status follow(struct dea_context *ctx, struct search *a,
                          struct dea_solid_continuation *path)
 {
+  static const double bent = 0.75; // slope over the first one, towards a limit point
   struct dea_continuation_point at = {0};
-  for (int i = 0; i < a->s->settings.approach_points; i++) {
+  const int points = a->s->settings.approach_points;
+  double first = 0;
+  for (int i = 0; i < (at.slope < bent * first ? 2 : 1) * points; i++) {
     DEA_TRY(ctx, dea_solid_continuation_step(ctx, path, &at));
     a->reached = at.load;
+    first = i == 0 ? at.slope : first;
     if (at.passed == DEA_CONTINUATION_LIMIT) {
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
       return DEA_OK;

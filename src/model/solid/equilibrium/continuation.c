@@ -165,14 +165,31 @@ static dea_status bordered_step(struct dea_context *ctx, struct dea_solid_contin
   return DEA_OK;
 }
 
-/* One iteration, unless *there: it is at an equilibrium in the plane. *small: the step was;
- * *hidden: from the energy, by rounding. */
+/* The longest share of the step, of 1, 1/2, 1/4 and 1/8, that turns no element inside out; the last
+ * where all do. */
+static double share_with_energy(struct dea_solid *s)
+{
+  double share = 1, energy;
+  for (;; share /= 2) {
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      s->work.trial[i] = s->state.u[i] + share * s->work.step[i];
+    }
+    if (dea_solid_energy(s, s->work.trial, s->state.voltage_V, &energy) == DEA_OK || share < 0.2) {
+      return share;
+    }
+  }
+}
+
+/* One iteration, unless *there: it is at an equilibrium in the plane. *residual: that of the
+ * iteration before, then of this one; *small: the step was; *hidden: from the energy, by rounding.
+ * Where the residual does not fall, the stresses that a linear step leads to are not those of its
+ * end, and the tangent takes those that there are. */
 static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continuation *t,
                                double *residual, bool *there, bool *small, bool *hidden)
 {
   struct dea_solid *s = t->s;
   const struct dea_solid_settings *o = &s->settings;
-  double dtau = 0, size = 0;
+  double dtau = 0, size = 0, before = *residual;
   int negative;
   DEA_TRY(ctx, force_rate(ctx, t));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
@@ -187,13 +204,15 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
   *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->work.g, s->work.step));
-  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, 1, true, true));
+  double share = share_with_energy(s);
+  bool stresses = *residual < o->path_fall * before;
+  DEA_TRY(ctx, dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, share, stresses, true));
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    s->state.u[i] += s->work.step[i];
+    s->state.u[i] += share * s->work.step[i];
     size = fmax(size, fabs(s->work.step[i]));
   }
   *small = constrained && size < o->path_step * s->problem.length_m;
-  DEA_TRY(ctx, set_load(ctx, t, t->load + dtau));
+  DEA_TRY(ctx, set_load(ctx, t, t->load + share * dtau));
   return DEA_OK;
 }
 
@@ -203,7 +222,7 @@ static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation
                           int *iterations)
 {
   const struct dea_solid_settings *o = &t->s->settings;
-  double residual = 0;
+  double residual = INFINITY;
   int in_a_row = 0; // hidden steps
   for (*iterations = 1; *iterations <= o->path_iterations; ++*iterations) {
     bool there = false, small = false, hidden = false;
@@ -695,6 +714,9 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
   }
   dea_free(ctx, b.way);
   if (status != DEA_OK) {
+    dea_solid_state_set(t->s, t->last.state);
+    t->s->found.predicted_fits = t->s->found.factor_fits = false;
+    set_load(NULL, t, t->last.load); // where it was
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   t->located = t->event;
