@@ -224,6 +224,28 @@ static void test_what_does_not_repeat(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
+/* The paper's staircase of 15 cycles at each voltage: each has its base line, and the next voltage,
+ * at which more leaks, is no rise; ten times as much in the middle of the last ones is. */
+static void test_staircase(void **state)
+{
+  (void)state;
+  static const char stairs[] =
+      BENCH "waveform: {kind: staircase, values: [0.5 kV, 1 kV, 2 kV], frequency: 0.5 Hz, cycles: "
+            "15}\n";
+  struct film film = healthy;
+  struct outcome out = play(stairs, &film, 90);
+  assert_true(isnan(out.end_s) && out.learned_s < 20);
+  film.step_s = 78;
+  film.lasts_s = 1e9;
+  film.step = 10;
+  out = play(stairs, &film, 100);
+  assert_true(out.end_s > 82 && out.end_s < 90);
+  struct dea_protocol *p = good_protocol(ctx, stairs);
+  assert_close(dea_protocol_period_s(&p->steps[0]), 2, 1e-12, 0);
+  assert_close(dea_protocol_learning_s(&p->steps[0]), 18, 1e-12, 0);
+  dea_protocol_destroy(ctx, p);
+}
+
 /* The watch of a drive: what it notices, and that the fixed limit holds before and after. */
 static void test_fixed_limit_stays(void **state)
 {
@@ -274,10 +296,15 @@ static void test_weeks(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_healthy_films),          cmocka_unit_test(test_step),
-      cmocka_unit_test(test_leak_that_grows),        cmocka_unit_test(test_drift_hides_no_fault),
-      cmocka_unit_test(test_learning_on_a_bad_film), cmocka_unit_test(test_what_does_not_repeat),
-      cmocka_unit_test(test_fixed_limit_stays),      cmocka_unit_test(test_weeks),
+      cmocka_unit_test(test_healthy_films),
+      cmocka_unit_test(test_step),
+      cmocka_unit_test(test_leak_that_grows),
+      cmocka_unit_test(test_drift_hides_no_fault),
+      cmocka_unit_test(test_learning_on_a_bad_film),
+      cmocka_unit_test(test_what_does_not_repeat),
+      cmocka_unit_test(test_staircase),
+      cmocka_unit_test(test_fixed_limit_stays),
+      cmocka_unit_test(test_weeks),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

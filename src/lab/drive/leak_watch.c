@@ -16,7 +16,8 @@ static const double rounding = 1e-9;
 
 void dea_leak_watch_start(struct dea_leak_watch *watch, const struct dea_protocol *protocol)
 {
-  *watch = (struct dea_leak_watch){.protocol = protocol, .step = SIZE_MAX, .last_s = NAN};
+  *watch = (struct dea_leak_watch){
+      .protocol = protocol, .step = SIZE_MAX, .last_s = NAN, .cycle = NAN, .level_V = NAN};
 }
 
 /* A step begins: nothing is known of its cycles. */
@@ -50,6 +51,24 @@ static bool find_step(struct dea_leak_watch *watch, double time_s, double *local
   }
   *local_s = time_s - p->steps[step].start_s;
   return *local_s >= 0 && *local_s < p->steps[step].repeat.si * p->steps[step].waveform->end_s;
+}
+
+/* Cycles of another level are not equal to those before: all begins anew. */
+static void find_level(struct dea_leak_watch *watch, double in_s)
+{
+  const struct dea_waveform *waveform = watch->protocol->steps[watch->step].waveform;
+  double cycle = floor(in_s / watch->period_s);
+  struct dea_wave_cycle found;
+  if (watch->part_count == 1 || watch->period_s == waveform->end_s || cycle == watch->cycle ||
+      !dea_waveform_cycle(waveform, (size_t)cycle, &found)) {
+    return;
+  }
+  if (watch->level_V != found.level_V && !isnan(watch->level_V)) {
+    begin_step(watch, watch->step);
+  }
+  watch->cycle = cycle;
+  watch->level_V = found.level_V;
+  watch->largest_V = fabs(found.level_V);
 }
 
 static int compare(const void *a, const void *b)
@@ -196,14 +215,17 @@ enum dea_leak_event dea_leak_watch_sample(struct dea_leak_watch *watch, double t
   double local_s, value_A, spent_s;
   double since_s = isnan(watch->last_s) ? 0 : fmin(time_s - watch->last_s, visit_s);
   bool plays = find_step(watch, time_s, &local_s);
+  // a repetition begins anew, as the times of its cycles are found
+  double length_s = watch->protocol->steps[watch->step].waveform->end_s;
+  double in_s = watch->part_count > 1 ? fmod(local_s, length_s) : local_s;
+  if (plays && !isnan(watch->period_s)) {
+    find_level(watch, in_s);
+  }
   watch->last_s = time_s;
   if (!plays || isnan(watch->period_s) || isnan(current_A) ||
       fabs(asked_V) < under_voltage * watch->largest_V) {
     return DEA_LEAK_NOTHING;
   }
-  // a repetition begins anew, as the times of its cycles are found
-  double length_s = watch->protocol->steps[watch->step].waveform->end_s;
-  double in_s = watch->part_count > 1 ? fmod(local_s, length_s) : local_s;
   double pass = floor(in_s / watch->period_s), phase = in_s / watch->period_s - pass;
   pass += floor(local_s / length_s) * ceil(length_s / watch->period_s);
   size_t at = (size_t)(phase * (double)watch->part_count);

@@ -39,6 +39,7 @@ struct dea_leak_watch {
   size_t step;                         // that is watched; SIZE_MAX: none yet
   double period_s;                     // of its equal cycles; NAN: nothing in it repeats
   double largest_V;                    // of it
+  double cycle, level_V;               // number of the cycle of the waveform, and its level
   size_t part_count, learned, active;
   struct dea_leak_part parts[DEA_LEAK_PARTS_MAX];
   double last_s;  // of the last sample
