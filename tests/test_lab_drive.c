@@ -309,6 +309,37 @@ static void test_full_disk_ramps_down(void **state)
   signal(SIGXFSZ, handler);
 }
 
+static void fill_the_disk(void)
+{
+  struct rlimit small;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &small), 0);
+  small.rlim_cur = 1;
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+}
+
+/* The disk is full when the ramp begins: it goes on to 0 V, and what came first is told first. */
+static void test_disk_that_fills_in_the_ramp(void **state)
+{
+  (void)state;
+  struct rlimit before;
+  struct fake_script script = fake_good;
+  struct trial t;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  script.interrupt_put = 8;
+  script.on_interrupt = fill_the_disk;
+  trial_open(&t, SQUARE CHANNELS, &script);
+  trial_play(&t, true);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+  assert_int_equal(t.status, DEA_E_INTERRUPTED);
+  assert_true(t.report.zero.state == DEA_ZERO_READ_BACK);
+  assert_string_equal(t.report.ended, "interrupted");
+  assert_non_null(find_finding(ctx, DEA_WARNING, "cannot write"));
+  assert_true(check_ramp(t.daq) < LENGTH);
+  trial_close(&t);
+  signal(SIGXFSZ, handler);
+}
+
 static struct trial *memory_trial;
 
 static void play_without_memory(struct dea_context *context)
@@ -468,6 +499,7 @@ int main(void)
       cmocka_unit_test(test_failed_start),
       cmocka_unit_test(test_reader_apart_from_the_player),
       cmocka_unit_test(test_full_disk_ramps_down),
+      cmocka_unit_test(test_disk_that_fills_in_the_ramp),
       cmocka_unit_test(test_out_of_memory),
       cmocka_unit_test(test_frames_without_time_are_counted),
       cmocka_unit_test(test_leak_that_rises),

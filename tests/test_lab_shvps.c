@@ -29,9 +29,8 @@ static void test_plays(void **state)
     shvps_begin(&s);
     shvps_protocol(&s, 2, 1, SHVPS_PATIENT ", channel: supply, name: bench");
     pid_t child = shvps_arm("good.h5");
-    bool reached = line_supply_reaches(&s, 1900, 10);
-    int code = supply_wait(child, 20);
-    if (code != 0 || !reached) {
+    int code = supply_wait(child, 30);
+    if (code != 0) {
       fail_msg("%d\n%s%s", code, command_out, command_err);
     }
     assert_true(supply_said_zero());
