@@ -275,13 +275,18 @@ static void test_fibres_that_just_touch_are_good(void **state)
 static void test_taper_and_free_end(void **state)
 {
   (void)state;
-  const struct dea_override sets[] = {
-      {"fibres.width", "3 mm"},         {"fibres.tip_width", "1 mm"},
-      {"fibres.outer_end", "free"},     {"fibres.outer_gap", "2 mm unstretched"},
-      {"compute.solid.domain", "disc"}, {"compute.solid.refinement", "2.5"},
-      {"compute.solid.side", "fibres"}, {"compute.solid.order", "3"},
-      {"compute.solid.order_z", "1"},   {"compute.solid.elements_z", "3"}};
-  read_good(GOOD_DESIGN, sets, 10);
+  const struct dea_override sets[] = {{"fibres.width", "3 mm"},
+                                      {"fibres.tip_width", "1 mm"},
+                                      {"fibres.outer_end", "free"},
+                                      {"fibres.outer_gap", "2 mm unstretched"},
+                                      {"compute.solid.domain", "disc"},
+                                      {"compute.solid.refinement", "2.5"},
+                                      {"compute.solid.side", "fibres"},
+                                      {"compute.solid.order", "3"},
+                                      {"compute.solid.order_z", "1"},
+                                      {"compute.solid.elements_z", "3"},
+                                      {"compute.solid.tip_refinement", "3.5"}};
+  read_good(GOOD_DESIGN, sets, 11);
   assert_close(device->fibre_width_m, 3e-3, 1e-14, 0);
   assert_close(device->fibre_tip_width_m, 1e-3, 1e-14, 0);
   assert_close(device->fibre_outer_gap_m, 3e-3, 1e-14, 0);
@@ -290,6 +295,7 @@ static void test_taper_and_free_end(void **state)
   assert_int_equal(settings.film, DEA_FILM_SOLID);
   assert_int_equal(settings.buckling_branch, DEA_BRANCH_FIBRES);
   assert_close(settings.refinement, 2.5, 0, 0);
+  assert_close(settings.tip_refinement, 3.5, 0, 0);
   assert_int_equal(settings.order, 3);
   assert_int_equal(settings.order_z, 1);
   assert_int_equal(settings.elements_z, 3);

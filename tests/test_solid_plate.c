@@ -439,11 +439,43 @@ static void test_each_allocation(void **state)
   assert_true(failing_each(make_plate) > 8);
 }
 
+/* Nodes on the axis of a fibre, in the middle of the film, between two radii. */
+static int nodes_between(const struct dea_fibre_disc *p, double from, double to)
+{
+  struct dea_grid *grid;
+  int count = 0;
+  assert_int_equal(dea_fibre_disc_create(ctx, p, &grid), DEA_OK);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    count += fabs(X[1]) < 1e-12 && fabs(X[2]) < 1e-12 && X[0] > from && X[0] < to;
+  }
+  dea_grid_destroy(ctx, grid);
+  return count;
+}
+
+/* Finer inside the circles of electrode and tips, whatever their order, and as before beyond. */
+static void test_finer_at_tips(void **state)
+{
+  (void)state;
+  static const int fibres[] = {1, 3, 4, 8};
+  static const double overlap[] = {-1e-3, 0, 0.75e-3};
+  for (int i = 0; i < 12; i++) {
+    struct dea_fibre_disc p = plate(fibres[i % 4], overlap[i / 4], 1e-3), finer = p;
+    double edge = fmax(a, p.tip_radius);
+    finer.finer_at_tips = 3;
+    check(&finer, 1e-4);
+    assert_true(nodes_between(&finer, 0.6 * a, edge) > 2 * nodes_between(&p, 0.6 * a, edge));
+    assert_true(nodes_between(&finer, 2 * a, b) <= nodes_between(&p, 2 * a, b) + 2);
+    finer.sectors = 2;
+    check(&finer, 1e-4);
+  }
+}
+
 static void test_graded_cuts(void **state)
 {
   (void)state;
   double cuts[101];
-  size_t n = dea_cuts_graded(1, 0.01, 0.02, 0.1, 100, cuts);
+  size_t n = dea_cuts_graded(1, 0.01, 0.02, 2, 0.1, 100, cuts);
   assert_true(n > 10 && n < 25);
   assert_close(cuts[0], 0, 0, 0);
   assert_close(cuts[n], 1, 0, 0);
@@ -454,15 +486,22 @@ static void test_graded_cuts(void **state)
     assert_true(width > 0 && width < 0.101);
     assert_true(i == 0 || fabs(log2(width / (cuts[i] - cuts[i - 1]))) < 1.1);
   }
-  assert_int_equal(dea_cuts_graded(1, 2, 2, 2, 100, cuts), 1);
-  assert_int_equal(dea_cuts_graded(1, 1e-3, 1e-3, 1e-3, 100, cuts), 0);
-  assert_int_equal(dea_cuts_graded(1, 0, 0.02, 0.1, 100, cuts), 0);
-  assert_int_equal(dea_cuts_graded(1, 0.01, 0, 0.1, 100, cuts), 0);
+  n = dea_cuts_graded(1, 0.01, 0.1, 1.2, 0.1, 100, cuts);
+  for (size_t i = 1; i < n; i++) {
+    double growth = (cuts[i + 1] - cuts[i]) / (cuts[i] - cuts[i - 1]);
+    assert_true(growth < 1.22 && (growth > 1.15 || cuts[i] > 0.3));
+  }
+  assert_int_equal(dea_cuts_graded(1, 2, 2, 2, 2, 100, cuts), 1);
+  assert_int_equal(dea_cuts_graded(1, 0.01, 0.02, 1, 0.1, 100, cuts), 0);
+  assert_int_equal(dea_cuts_graded(1, 1e-3, 1e-3, 2, 1e-3, 100, cuts), 0);
+  assert_int_equal(dea_cuts_graded(1, 0, 0.02, 2, 0.1, 100, cuts), 0);
+  assert_int_equal(dea_cuts_graded(1, 0.01, 0, 2, 0.1, 100, cuts), 0);
 }
 
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_finer_at_tips),
       cmocka_unit_test(test_graded_cuts),
       cmocka_unit_test(test_sectors_of_all_counts),
       cmocka_unit_test(test_whole_discs),

@@ -14,7 +14,8 @@
  * length: one state below V = 1.5 kV, two from there on, with a third, unstable one between. */
 static const double length_m = 1e-4, energy_J = 1e-6;
 static double b = 0.05, membrane_ends_V = INFINITY;
-static bool without_centre; // as a device of the general form
+static bool without_centre;  // as a device of the general form
+static bool refined_at_tips; // of the last model
 
 struct dea_model {
   double voltage_V, x, kept[2];
@@ -55,7 +56,9 @@ static dea_status create(struct dea_context *context, const struct dea_device *d
   (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   if (*out != NULL) {
-    (*out)->shift_V = settings->refinement > 1 ? 500 * (settings->refinement - 1) : 0;
+    double finest = fmax(settings->refinement, settings->tip_refinement);
+    (*out)->shift_V = finest > 1 ? 500 * (finest - 1) : 0;
+    refined_at_tips = settings->tip_refinement > settings->refinement;
     (*out)->membrane = settings->film == DEA_FILM_MEMBRANE;
   }
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
@@ -309,6 +312,33 @@ static void test_finer_meshes(void **state)
   end(&r);
 }
 
+/* Finer at the fibre tips only: the same meshes by another number, which the design may begin with.
+ */
+static void test_finer_tips(void **state)
+{
+  (void)state;
+  struct ran r = run("{voltage: [3 kV], push: [300 um], refinement: [2], refined: tips}");
+  const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "meshes");
+  assert_int_equal(t->row_count, 4);
+  assert_true(refined_at_tips);
+  for (size_t i = 1; i < 4; i += 2) {
+    assert_close(number(t, i, "refinement"), 2, 0, 0);
+    assert_close(number(t, i, "centre_z_m") / length_m, root(2500, i == 1 ? 0 : 2), 0, 1e-9);
+  }
+  end(&r);
+  const struct dea_override sets[] = {{"compute.solid.tip_refinement", "2.5"},
+                                      {"compute.states", "{refinement: [2.5], refined: tips}"}};
+  struct dea_design *design;
+  struct dea_device *device;
+  size_t count;
+  assert_int_equal(read_and_build(ctx, GOOD_DESIGN, sets, 2, &design, &device), DEA_E_DESIGN);
+  const struct dea_finding *found = dea_finding_get(ctx, &count);
+  assert_true(count > 0);
+  assert_non_null(strstr(found[count - 1].text, "2.5 after 2.5, but each mesh"));
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
 /* The film as a membrane at the voltages of the search, on each mesh as far as it goes; it is no
  * state. Not where the design does not want it. */
 static void test_relaxed(void **state)
@@ -421,15 +451,11 @@ static void test_not_able(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_two_wells),
-      cmocka_unit_test(test_bands),
-      cmocka_unit_test(test_nothing_found),
-      cmocka_unit_test(test_finer_meshes),
-      cmocka_unit_test(test_no_finer_meshes),
-      cmocka_unit_test(test_mirrored),
-      cmocka_unit_test(test_not_able),
-      cmocka_unit_test(test_relaxed),
-      cmocka_unit_test(test_figure_without_centre),
+      cmocka_unit_test(test_two_wells),       cmocka_unit_test(test_bands),
+      cmocka_unit_test(test_nothing_found),   cmocka_unit_test(test_finer_meshes),
+      cmocka_unit_test(test_no_finer_meshes), cmocka_unit_test(test_finer_tips),
+      cmocka_unit_test(test_mirrored),        cmocka_unit_test(test_not_able),
+      cmocka_unit_test(test_relaxed),         cmocka_unit_test(test_figure_without_centre),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -5,9 +5,12 @@
 
 #include "design/design.h"
 #include "model/model.h"
+#include "result/convergence.h"
 #include "result/result.h"
 #include "study/design_file.h"
 #include "study/study.h"
+
+#include <math.h>
 
 extern const struct dea_model_type dea_solid_module;
 extern const struct dea_study dea_study_states;
@@ -106,50 +109,117 @@ static void arms(void)
 
 /* ---- as built ---- */
 
-/* Energies above the lowest state of the same mesh, and shapes, from mesh to mesh. */
-static void print_meshes(const struct found *found)
+/* Letter of the state of a row, on that mesh too. */
+static bool stays(const struct found *meshes, size_t row)
 {
-  const struct found meshes = {.table =
-                                   dea_result_find_table(found->result, "3d", "states", "meshes")};
-  puts("\n## On finer meshes\n\nEach state carried from mesh to mesh. A letter after an arrow: the "
-       "state that it is there; lost: it came to no\nequilibrium, by itself or along its "
-       "branch.\n\n| V (kV) | state | refinement | unknowns | energy (uJ) | above the lowest | "
-       "centre "
-       "(um) | fibre tip | edge | highest | lowest "
-       "|\n|---|---|---|---|---|---|---|---|---|---|---|");
-  for (size_t i = 0; i < meshes.table->row_count; i++) {
-    const char *state = text(&meshes, i, "state"), *is = text(&meshes, i, "is");
-    bool same = strcmp(state, is) == 0;
-    printf("| %.2f | %s%s%s | %g | %.0f ", 1e-3 * number(&meshes, i, "voltage_V"), state,
-           same ? "" : " > ", same ? "" : is, number(&meshes, i, "refinement"),
-           number(&meshes, i, "unknowns"));
+  return strcmp(text(meshes, row, "state"), text(meshes, row, "is")) == 0;
+}
+
+/* Energies above the lowest state of the same mesh, and shapes, from mesh to mesh. */
+static void print_meshes(const struct found *meshes)
+{
+  puts("| V (kV) | state | refinement | unknowns | energy (uJ) | above the lowest | centre (um) | "
+       "fibre tip | edge | highest | lowest |\n|---|---|---|---|---|---|---|---|---|---|---|");
+  for (size_t i = 0; i < meshes->table->row_count; i++) {
+    const char *is = text(meshes, i, "is");
+    printf("| %.2f | %s%s%s | %g | %.0f ", 1e-3 * number(meshes, i, "voltage_V"),
+           text(meshes, i, "state"), stays(meshes, i) ? "" : " > ", stays(meshes, i) ? "" : is,
+           number(meshes, i, "refinement"), number(meshes, i, "unknowns"));
     if (strcmp(is, "-") == 0) {
       puts("| lost | | | | | | |");
     } else {
       printf("| %.4f | %.4f | %.1f | %.1f | %.2f | %+.1f | %+.1f |\n",
-             1e6 * number(&meshes, i, "energy_J"), 1e6 * number(&meshes, i, "above_J"),
-             1e6 * number(&meshes, i, "centre_z_m"), 1e6 * number(&meshes, i, "fibre_tip_z_m"),
-             1e6 * number(&meshes, i, "electrode_edge_u_m"),
-             1e6 * number(&meshes, i, "highest_z_m"), 1e6 * number(&meshes, i, "lowest_z_m"));
+             1e6 * number(meshes, i, "energy_J"), 1e6 * number(meshes, i, "above_J"),
+             1e6 * number(meshes, i, "centre_z_m"), 1e6 * number(meshes, i, "fibre_tip_z_m"),
+             1e6 * number(meshes, i, "electrode_edge_u_m"), 1e6 * number(meshes, i, "highest_z_m"),
+             1e6 * number(meshes, i, "lowest_z_m"));
     }
+  }
+}
+
+/* Rows of a table of meshes come state by state, each on all of them. */
+enum { MESHES = 5 };
+
+/* A number of a state on the last three meshes, and what the last one is off by. of: the first row
+ * of a state from which it counts; none: it stands for itself. */
+static const size_t none = (size_t)-1;
+
+static void print_limit(const struct found *meshes, size_t first, size_t of, const char *key)
+{
+  double refinement[MESHES], values[MESHES], errors[MESHES], order, limit;
+  size_t count = 0;
+  for (size_t m = 0; m < MESHES; m++) {
+    if (stays(meshes, first + m) && (of == none || stays(meshes, of + m))) {
+      refinement[count] = number(meshes, first + m, "refinement");
+      values[count++] =
+          1e6 * (number(meshes, first + m, key) - (of == none ? 0 : number(meshes, of + m, key)));
+    }
+  }
+  if (count < 3) {
+    printf("| - ");
+    return;
+  }
+  bool observed =
+      dea_richardson(refinement, values, count, &order, &limit, errors) == DEA_ORDER_OBSERVED;
+  printf("| %.3f, %.3f, %.3f +- %.3f%s ", values[count - 3], values[count - 2], values[count - 1],
+         errors[count - 1] * fabs(observed ? limit : values[count - 1]), observed ? "" : "*");
+}
+
+static void print_limits(const struct found *meshes)
+{
+  puts("\n| V (kV) | state | above the lowest (uJ) | centre (um) | fibre tip | edge | lowest "
+       "|\n|---|---|---|---|---|---|---|");
+  for (size_t first = 0, lowest = 0; first < meshes->table->row_count; first += MESHES) {
+    if (first == 0 || number(meshes, first, "voltage_V") != number(meshes, lowest, "voltage_V")) {
+      lowest = first;
+    }
+    if (!stays(meshes, first + MESHES - 1)) {
+      continue;
+    }
+    printf("| %.2f | %s ", 1e-3 * number(meshes, first, "voltage_V"), text(meshes, first, "state"));
+    print_limit(meshes, first, lowest, "energy_J");
+    static const char *const keys[] = {"centre_z_m", "fibre_tip_z_m", "electrode_edge_u_m",
+                                       "lowest_z_m"};
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++) {
+      print_limit(meshes, first, none, keys[k]);
+    }
+    puts("|");
   }
 }
 
 static void as_built(void)
 {
   static const struct dea_override sets[] = {
-      {"compute.states",
-       "{voltage: [7 kV, 7.25 kV, 7.5 kV, 7.75 kV, 8 kV], modes: 3, push: [200 um, "
-       "400 um], refinement: [1.25, 1.5, 2]}"}};
+      {"compute.states", "{voltage: [7 kV, 7.25 kV, 7.5 kV, 7.75 kV, 8 kV], modes: 3, push: [200 "
+                         "um, 400 um], relaxed: no}"}};
   puts("## As built\n\nOn the default mesh.\n\n| V (kV) | state | energy (uJ) | above the lowest | "
        "centre (um) | fibre tip | edge | highest | lowest | reached | leads up to | down to "
        "|\n|---|---|---|---|---|---|---|---|---|---|---|---|");
   struct found found = find(sets, sizeof sets / sizeof sets[0]);
   print_rows(&found);
   puts("\nA letter is a branch. A dent goes to one side, a state with a highest and a lowest place "
-       "of "
-       "like size has waves.");
-  print_meshes(&found);
+       "of like size has waves.\n");
+  release(&found);
+}
+
+static void finer(void)
+{
+  static const struct dea_override sets[] = {
+      {"compute.states", "{voltage: [7 kV, 7.5 kV, 8 kV], modes: 3, push: [200 um, 400 um], "
+                         "refined: tips, refinement: [1.5, 2, 2.5, 3], relaxed: no}"}};
+  puts(
+      "## On meshes that are finer where the film is slack\n\nStates at three voltages, each "
+      "carried from mesh to mesh (`compute.states: {refined: tips}`). A letter after an arrow: the "
+      "state that\nit is there; lost: it came to no equilibrium, by itself or along its "
+      "branch.\n");
+  struct found found = find(sets, sizeof sets / sizeof sets[0]);
+  const struct found meshes = {.table =
+                                   dea_result_find_table(found.result, "3d", "states", "meshes")};
+  print_meshes(&meshes);
+  puts("\nHow that goes on: of the last three meshes the first value and the two steps from it, "
+       "then the last value and its estimated error\n(as study `convergence` has it), of the "
+       "energy above the state first listed and of the shape.");
+  print_limits(&meshes);
   release(&found);
 }
 
@@ -164,6 +234,7 @@ int main(int argc, char **argv)
   arms();
   if (!small) {
     as_built();
+    finer();
   }
   dea_context_destroy(ctx);
   return verify_end();

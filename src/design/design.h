@@ -148,6 +148,7 @@ struct dea_design {
       struct dea_quantity order, order_z; // of the elements, in the plane and through the thickness
       struct dea_quantity elements_z;     // through the film
       struct dea_quantity refinement;     // 1: the coarsest mesh; one more halves all sizes
+      struct dea_quantity tip_refinement; // where fibre tips end
       struct {                            // meshes by the estimated error of a monitor
         bool asked;
         struct dea_label monitor; // its name

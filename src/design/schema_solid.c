@@ -72,6 +72,17 @@ static const struct dea_field fields[] = {
      .doc = "fineness of the mesh: 1 is within 1 to 3 % at a fibre tip, each one more halves all "
             "sizes in the plane",
      .example = "1.5"},
+    {.key = "tip_refinement",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(tip_refinement),
+     .unit = "1",
+     .min = 1,
+     .max = 6,
+     .absent_text = "as refinement",
+     .doc =
+         "the same inside the circles of the electrode's edge and the fibre tips, where the film "
+         "goes slack first, where that is finer; elements also grow slower there (of a disc)",
+     .example = "2.5"},
     {.key = "adapt",
      .kind = DEA_FIELD_RECORD,
      .record = &adapt_record,

@@ -26,6 +26,7 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
       .field = (enum dea_solid_electrostatics)design->compute.solid.field.value,
       .buckling_branch = (enum dea_buckling_branch)design->compute.solid.buckling_branch.value,
       .refinement = design->compute.solid.refinement.si,
+      .tip_refinement = design->compute.solid.tip_refinement.si,
       .order = (int)design->compute.solid.order.si,
       .order_z = (int)design->compute.solid.order_z.si,
       .elements_z = (int)design->compute.solid.elements_z.si,

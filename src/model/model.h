@@ -33,6 +33,7 @@ struct dea_model_settings {
   enum dea_solid_electrostatics field;      // where it comes from
   enum dea_buckling_branch buckling_branch; // side that a slack film goes to
   double refinement;                        // of the mesh; up to 1: the coarsest
+  double tip_refinement;                    // where fibre tips end on a disc; 0: no other
   int order;                                // of the elements in the plane, 1 to 3; 0: 2
   int order_z;                              // through the thickness of a layer, the same
   int elements_z;           // through the film of a disc, or a ply that does not say; 0: 1

@@ -25,8 +25,12 @@ struct settings {
   struct dea_quantity refinements[MESHES_MAX];          // rising; none: states stay on their mesh
   size_t voltage_count, push_count, refinement_count;
   struct dea_quantity modes, most, apart_m;
+  struct dea_choice refined; // enum refined
   struct dea_choice relaxed; // 1: the mean shape of a film that wrinkles freely too
 };
+
+enum refined { REFINED_ALL, REFINED_TIPS };
+static const char *const parts[] = {"all", "tips", NULL}; // in the order of enum refined
 
 #define AT(member) offsetof(struct settings, member)
 
@@ -78,6 +82,13 @@ static const struct dea_field fields[] = {
     DEA_STUDY_REFINEMENT_FIELD(
         "finer meshes that each state is carried to, as in compute.solid.refinement, rising",
         "[1.5, 2, 3]", .absent_text = "none", .list_min = 1),
+    {.key = "refined",
+     .kind = DEA_FIELD_CHOICE,
+     .offset = AT(refined),
+     .choices = parts,
+     .default_text = "all",
+     .doc = "what the finer meshes refine: all of it, or what compute.solid.tip_refinement does",
+     .example = "tips"},
     {.key = "relaxed",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(relaxed),
@@ -93,12 +104,30 @@ static const struct dea_record record = {
     "of a slack film at voltages (3d)",
     fields, COUNT(fields)};
 
+/* Refinement of a model's mesh as the finer ones count it. */
+static double refinement_of(const struct settings *settings, const struct dea_model_settings *model)
+{
+  double all = fmax(1, model->refinement);
+  return settings->refined.value == REFINED_TIPS ? fmax(all, model->tip_refinement) : all;
+}
+
+static void refine_model(const struct settings *settings, double refinement,
+                         struct dea_model_settings *model)
+{
+  if (settings->refined.value == REFINED_TIPS) {
+    model->tip_refinement = refinement;
+  } else {
+    model->refinement = refinement;
+  }
+}
+
 /* Each mesh is finer than the one before, the first one than the design's. */
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_settings *given)
 {
   const struct settings *settings = given->values;
-  return dea_study_rising(ctx, fmax(1, design->compute.solid.refinement.si), settings->refinements,
+  const struct dea_model_settings model = dea_model_settings_of(design);
+  return dea_study_rising(ctx, refinement_of(settings, &model), settings->refinements,
                           settings->refinement_count);
 }
 
@@ -558,7 +587,8 @@ static dea_status carry_all(struct search *s, struct finer *before, struct finer
 static dea_status make_mesh(struct search *s, double refinement, struct finer *mesh)
 {
   struct dea_model_settings settings = dea_model_settings_of(s->result->design);
-  settings.refinement = mesh->refinement = refinement;
+  refine_model(s->settings, refinement, &settings);
+  mesh->refinement = refinement;
   mesh->carried = dea_alloc(s->ctx, s->count, sizeof *mesh->carried);
   if (mesh->carried == NULL) {
     return DEA_E_MEMORY;
@@ -873,6 +903,7 @@ static dea_status put_mesh_row(const struct search *s, size_t i, const struct fi
 {
   const struct dea_load_point unknown = dea_load_point_empty();
   const struct state *state = &s->states[i];
+  const struct dea_model_settings settings = dea_model_settings_of(s->result->design);
   struct dea_model_size size = {0};
   int is = mesh != NULL ? mesh->carried[i].is : (int)i;
   const struct dea_load_point *p = is == NONE     ? &unknown
@@ -892,8 +923,7 @@ static dea_status put_mesh_row(const struct search *s, size_t i, const struct fi
   const struct dea_result_table_value row[] = {
       {.number = state->point.voltage_V},
       {.text = name},
-      {.number = mesh != NULL ? mesh->refinement
-                              : fmax(1, dea_model_settings_of(s->result->design).refinement)},
+      {.number = mesh != NULL ? mesh->refinement : refinement_of(s->settings, &settings)},
       {.number = (double)size.unknowns},
       {.text = same},
       {.number = p->energy_J},
@@ -1017,7 +1047,7 @@ static dea_status put_relaxed_mesh(struct search *s, const struct dea_model_sett
     if (status == DEA_OK) {
       const struct dea_result_table_value row[] = {
           {.number = p.voltage_V},
-          {.number = fmax(1, settings->refinement)},
+          {.number = refinement_of(s->settings, settings)},
           SHAPE_OF(&p),
           {.text = dea_flags_text(dea_load_point_flags(&p), flags)}};
       status = dea_result_table_add_row(s->ctx, table, row);
@@ -1053,7 +1083,9 @@ static dea_status put_relaxed(struct search *s)
   DEA_TRY(s->ctx,
           dea_result_add_table(s->ctx, s->result, &relaxed_table, s->type->name, 0, &table));
   for (size_t m = 0; m <= s->settings->refinement_count; m++) {
-    settings.refinement = m > 0 ? s->settings->refinements[m - 1].si : settings.refinement;
+    if (m > 0) {
+      refine_model(s->settings, s->settings->refinements[m - 1].si, &settings);
+    }
     dea_status status = put_relaxed_mesh(s, &settings, table);
     if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
       return status;

@@ -37,6 +37,7 @@ dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_de
       .size = size_share * a * finer,
       .edge = (d->fibre_count > 0 ? 1 : 4) * edge_share * a * finer,
       .beside = beside_share * a * finer,
+      .finer_at_tips = exp2(settings->tip_refinement - fmax(1, settings->refinement)),
   };
   if (settings->field == DEA_FIELD_COUPLED && out->through > 1 &&
       out->through <= DEA_FIBRE_DISC_THROUGH_MAX) { // elements at the edge as wide as thick

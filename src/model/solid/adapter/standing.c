@@ -2,6 +2,7 @@
 
 #include "model/solid/adapter/state.h"
 #include "model/solid/assembly/problem.h"
+#include "model/solid/equilibrium/carry.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
@@ -261,7 +262,7 @@ dea_status dea_standing_carry(struct dea_context *ctx, struct dea_standing *stan
   }
   dea_status status = dea_grid_transfer(ctx, other->problem.grid, other->state.u, grid, u);
   if (status == DEA_OK) {
-    status = dea_solid_push_to(ctx, owner->solid, from->voltage_V, u, &standing->report, found);
+    status = dea_solid_carry(ctx, owner->solid, from->voltage_V, u, &standing->report, found);
   }
   dea_free(ctx, u);
   DEA_TRY(ctx, status);

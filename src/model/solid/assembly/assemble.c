@@ -382,7 +382,8 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   }
   status = dea_solid_agree(ctx, status);
   if (level >= DEA_TANGENT) {
-    DEA_TRY(ctx, dea_solid_end_matrix(ctx, s->work.K));
+    DEA_TRY(ctx, status == DEA_OK ? dea_solid_end_matrix(ctx, s->work.K)
+                                  : dea_solid_stop_matrix(ctx, s->work.K));
   }
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, collect(ctx, s, level, energy));

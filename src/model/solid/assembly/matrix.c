@@ -224,6 +224,13 @@ dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A)
   return DEA_OK;
 }
 
+dea_status dea_solid_stop_matrix(struct dea_context *ctx, Mat A)
+{
+  DEA_PETSC(ctx, MatAssemblyBegin(A, MAT_FLUSH_ASSEMBLY));
+  DEA_PETSC(ctx, MatAssemblyEnd(A, MAT_FLUSH_ASSEMBLY));
+  return DEA_OK;
+}
+
 dea_status dea_solid_add_matrix(struct dea_context *ctx, Mat A, double factor, Mat B)
 {
   int ranks;

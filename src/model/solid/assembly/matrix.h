@@ -35,6 +35,8 @@ void dea_solid_release_held(const struct dea_solid *s, double *v);
 /* Ends what was added to A, which has to be done after a failure too: else its next zeroing fails.
  */
 dea_status dea_solid_end_matrix(struct dea_context *ctx, Mat A);
+/* The same in the middle of adding: A keeps room for what did not come any more. */
+dea_status dea_solid_stop_matrix(struct dea_context *ctx, Mat A);
 /* A += factor B; both have the pattern of K. */
 dea_status dea_solid_add_matrix(struct dea_context *ctx, Mat A, double factor, Mat B);
 /* A += amount times what is the same for the three components of the displacement, made of a matrix

@@ -286,34 +286,6 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
   return status;
 }
 
-dea_status dea_solid_push_to(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                             const double *displacement_m, struct dea_solid_report *report,
-                             bool *found)
-{
-  struct dea_load_steps *path = &s->work.load_steps;
-  size_t moves = 3 * s->problem.grid->node_count;
-  *found = false;
-  DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  double *push = dea_alloc(ctx, moves, sizeof *push);
-  double *before = dea_alloc(ctx, path->control_count, sizeof *before);
-  dea_status status = dea_solid_agree(ctx, push != NULL && before != NULL ? DEA_OK : DEA_E_MEMORY);
-  if (status == DEA_OK) {
-    for (size_t i = 0; i < moves; i++) {
-      push[i] = displacement_m[i] - s->state.u[i];
-    }
-    dea_solid_controls_get(s, before);
-    dea_solid_controls_goal(s, voltage_V, path->controls_goal);
-    dea_solid_controls_set(s, path->controls_goal);
-    status = dea_solid_push(ctx, s, push, NULL, NULL, report, found);
-    if (!*found) {
-      dea_solid_controls_set(s, before);
-    }
-  }
-  dea_free(ctx, push);
-  dea_free(ctx, before);
-  return status;
-}
-
 /* ---- to the next voltage and loads ---- */
 
 void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)

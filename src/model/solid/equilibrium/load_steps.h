@@ -37,12 +37,6 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *solid, cons
                           bool (*accept)(const void *self, const double *displacement_m),
                           const void *self, struct dea_solid_report *report, bool *found);
 
-/* The same at a voltage, with the loads that are asked for: from displacement_m [node_count][3], of
- * whatever origin. Where that finds none the voltage and loads too are as they were. */
-dea_status dea_solid_push_to(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                             const double *displacement_m, struct dea_solid_report *report,
-                             bool *found);
-
 /* Whether solves stay at an unstable equilibrium that they have found; at first they leave it. */
 void dea_solid_accept_unstable(struct dea_solid *solid, bool stay);
 

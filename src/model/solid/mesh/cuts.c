@@ -1,28 +1,32 @@
-/* Widths w, 2 w, 4 w, ... begin at x_k = (2^k - 1) w: elements are 1 wide in the measure
- * dn = dx / h with h(x) = ln 2 (x + w), and a line has as many of them as it is long in that
- * measure. h is the least of that from either end and of the widest. */
+/* Widths w, q w, q^2 w, ... begin at x_k = (q^k - 1) w / (q - 1): elements are 1 wide in the
+ * measure dn = dx / h with h(x) = ln q (x + w / (q - 1)), and a line has as many of them as it is
+ * long in that measure. h is the least of that from either end and of the widest. */
 #include "model/solid/mesh/cuts.h"
 
 #include <math.h>
 
-static double width_at(double x, double length, double first, double last, double widest)
+struct grading {
+  double length, first, last, growth, widest;
+};
+
+static double width_at(const struct grading *g, double x)
 {
-  static const double ln2 = 0.69314718055994531;
-  return fmin(widest, ln2 * fmin(x + first, length - x + last));
+  double from_first = x + g->first / (g->growth - 1);
+  double from_last = g->length - x + g->last / (g->growth - 1);
+  return fmin(g->widest, log(g->growth) * fmin(from_first, from_last));
 }
 
 /* Goes along the line in parts of `part` of an element by the midpoint rule, and returns its length
  * in elements. With cuts the line is cut at each whole number of elements of `unit`. */
-static double walk(double length, double first, double last, double widest, double unit,
-                   size_t count, double *cuts)
+static double walk(const struct grading *g, double unit, size_t count, double *cuts)
 {
   static const double part = 0.01;
-  double x = 0, n = 0;
+  double x = 0, n = 0, length = g->length;
   size_t next = 1;
   while (x < length * (1 - 1e-12)) {
-    double step = part * width_at(x, length, first, last, widest);
-    step = fmin(part * width_at(x + 0.5 * step, length, first, last, widest), length - x);
-    double gain = step / width_at(x + 0.5 * step, length, first, last, widest);
+    double step = part * width_at(g, x);
+    step = fmin(part * width_at(g, x + 0.5 * step), length - x);
+    double gain = step / width_at(g, x + 0.5 * step);
     for (; cuts != NULL && next < count && n + gain >= (double)next * unit; next++) {
       cuts[next] = (x + step * ((double)next * unit - n) / gain) / length;
     }
@@ -32,19 +36,20 @@ static double walk(double length, double first, double last, double widest, doub
   return n;
 }
 
-size_t dea_cuts_graded(double length, double first, double last, double widest, size_t max,
-                       double *cuts)
+size_t dea_cuts_graded(double length, double first, double last, double growth, double widest,
+                       size_t max, double *cuts)
 {
-  if (!(length / widest < (double)max && first > 0 && last > 0)) {
+  const struct grading grading = {length, first, last, growth, widest};
+  if (!(length / widest < (double)max && first > 0 && last > 0 && growth > 1)) {
     return 0;
   }
-  double elements = walk(length, first, last, widest, 1, 0, NULL);
+  double elements = walk(&grading, 1, 0, NULL);
   if (!(elements < (double)max)) {
     return 0;
   }
   size_t count = elements > 1 ? (size_t)ceil(elements - 0.05) : 1;
   cuts[0] = 0;
-  walk(length, first, last, widest, elements / (double)count, count, cuts);
+  walk(&grading, elements / (double)count, count, cuts);
   cuts[count] = 1;
   return count;
 }

@@ -47,6 +47,7 @@ struct lines {
   double alpha;
   size_t across;              // elements across half a fibre, 0 without fibres
   size_t count;               // elements between the first line and the last
+  double wider;               // beside a fibre: the last over the first of them, its logarithm
   double circle[CIRCLES_MAX]; // radii, ascending: the last is the frame
   size_t circle_count;
 };
@@ -70,6 +71,19 @@ static double fibre_angle(const struct dea_fibre_disc *p, double radius)
   return atan2(y1 + t * dy, x1 + t * dx);
 }
 
+/* Share of the angle beside a fibre up to a line, counted from its edge: even or growing by the
+ * same factor from element to element, and even within each. */
+static double part_beside(const struct lines *lines, double l)
+{
+  double count = (double)(lines->count - lines->across), whole = floor(l);
+  if (!(lines->wider > 0)) {
+    return l / count;
+  }
+  double low = expm1(lines->wider * whole / count),
+         high = expm1(lines->wider * (whole + 1) / count);
+  return (low + (l - whole) * (high - low)) / expm1(lines->wider);
+}
+
 /* Angle at which the line l crosses the circle of that radius. */
 static double line_angle(const struct lines *lines, double l, double radius)
 {
@@ -78,7 +92,7 @@ static double line_angle(const struct lines *lines, double l, double radius)
   if (l <= across && lines->across > 0) { // equal parts of the width
     return asin(sin(edge) * l / across);
   }
-  return edge + (lines->alpha - edge) * (l - across) / ((double)lines->count - across);
+  return edge + (lines->alpha - edge) * part_beside(lines, l - across);
 }
 
 /* The place itself. */
@@ -140,22 +154,36 @@ static size_t share(double length, double size)
                                          : 1;
 }
 
+static double finer_at_tips(const struct dea_fibre_disc *p)
+{
+  return p->fibres > 0 && p->finer_at_tips > 1 ? p->finer_at_tips : 1;
+}
+
+/* Elements beside a fibre in a length, of one size or growing from one that is `finer`. */
+static size_t share_beside(double length, double size, double finer)
+{
+  return share(length, finer > 1 ? size * (1 - 1 / finer) / log(finer) : size);
+}
+
 static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_disc *p,
                                struct lines *out)
 {
   DEA_TRY(ctx, check_disc(ctx, p));
   *out = (struct lines){.plate = p, .alpha = dea_fibre_disc_angle(p) / p->sectors};
-  double a = p->electrode_radius, rest = out->alpha;
+  double a = p->electrode_radius, rest = out->alpha, finer = finer_at_tips(p);
   add_circle(out, a);
   add_circle(out, p->frame_radius);
   if (p->fibres > 0) {
     add_circle(out, p->tip_radius);
     add_circle(out, p->outer_radius);
     double width = fmax(p->tip_width, p->outer_width);
-    out->across = share(0.5 * width, 0.5 * p->size); // fibres are stiff and bend: half the size
+    // fibres are stiff and bend: half the size
+    out->across = share(0.5 * width, 0.5 * p->size / finer);
     rest -= fibre_angle(p, a);
   }
-  out->count = out->across + share(rest * a, p->fibres > 0 && p->beside > 0 ? p->beside : p->size);
+  out->wider = log(finer);
+  out->count = out->across +
+               share_beside(rest * a, p->fibres > 0 && p->beside > 0 ? p->beside : p->size, finer);
   size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
   out->count = out->count < least ? least : out->count;
   if (out->count > DEA_FIBRE_DISC_LINE_MAX) {
@@ -287,15 +315,26 @@ static dea_status too_many(struct dea_context *ctx)
 /* Size of elements at a circle: fine where something ends there. */
 static double size_at(const struct dea_fibre_disc *p, double radius)
 {
-  double close = same * p->frame_radius;
+  double close = same * p->frame_radius, edge = fmin(p->edge, p->size);
   bool electrode = fabs(radius - p->electrode_radius) < close;
+  bool tip = p->fibres > 0 && fabs(radius - p->tip_radius) < close;
+  bool outer_end =
+      p->fibres > 0 && fabs(radius - p->outer_radius) < close && radius < p->frame_radius - close;
   if (electrode && p->fringe > 0) {
-    return fmin(p->fringe, fmin(p->edge, p->size));
+    edge = fmin(p->fringe, edge);
   }
-  bool end =
-      electrode || (p->fibres > 0 && fabs(radius - p->tip_radius) < close) ||
-      (p->fibres > 0 && fabs(radius - p->outer_radius) < close && radius < p->frame_radius - close);
-  return end ? fmin(p->edge, p->size) : 2 * p->size;
+  return electrode || tip ? edge / finer_at_tips(p) : outer_end ? edge : 2 * p->size;
+}
+
+/* Cuts between two circles of which the inner has elements of that size; the number of them. */
+static size_t cut_between(const struct dea_fibre_disc *p, double inner, double outer, double first,
+                          double *cuts)
+{
+  double close = same * p->frame_radius, tip = p->fibres > 0 ? p->tip_radius : 0;
+  double finer = outer < fmax(p->electrode_radius, tip) + close ? finer_at_tips(p) : 1;
+  double widest = outer < p->electrode_radius + close ? p->size : 2 * p->size;
+  return dea_cuts_graded(outer - inner, first, size_at(p, outer), exp2(1 / finer), widest / finer,
+                         DEA_FIBRE_DISC_LINE_MAX, cuts);
 }
 
 /* Between the circles i and i + 1: a block across the fibre and one between fibres. */
@@ -305,9 +344,7 @@ static dea_status add_polars(struct dea_context *ctx, struct builder *b, size_t 
   const struct dea_fibre_disc *p = b->cuts.plate;
   double inner = b->cuts.circle[i], outer = b->cuts.circle[i + 1], close = same * p->frame_radius;
   bool electrode = outer < p->electrode_radius + close;
-  size_t count =
-      dea_cuts_graded(outer - inner, size_at(p, inner), size_at(p, outer),
-                      electrode ? p->size : 2 * p->size, DEA_FIBRE_DISC_LINE_MAX, b->radial[i]);
+  size_t count = cut_between(p, inner, outer, size_at(p, inner), b->radial[i]);
   if (count == 0) {
     return too_many(ctx);
   }
@@ -351,6 +388,18 @@ static void add_wedge(struct builder *b, size_t from, size_t to, size_t along, d
             DEA_FIBRE_DISC_ELECTRODE);
 }
 
+/* The line of a wedge that its corner is on: that in the middle by number or, where lines are not
+ * evenly apart, by angle. */
+static size_t middle_line(const struct lines *lines)
+{
+  size_t line = lines->count - lines->count / 2;
+  while (lines->wider > 0 && line + 1 < lines->count &&
+         line_angle(lines, (double)line + 0.5, lines->circle[0]) < 0.5 * lines->alpha) {
+    line++;
+  }
+  return line;
+}
+
 /* Everything inside the first circle, which is that of the electrodes or of the tips on them. */
 static dea_status add_inside(struct dea_context *ctx, struct builder *b)
 {
@@ -360,13 +409,12 @@ static dea_status add_inside(struct dea_context *ctx, struct builder *b)
   bool one = lines->alpha <= 0.51 * pi;
   double part = fmin(1, lines->alpha / (one ? 1 : 2) / (0.25 * pi));
   double rho = 0.55 * b->lines.circle[0] * part;
-  size_t count = dea_cuts_graded(first - 0.55 * first * part, p->size, size_at(p, first), p->size,
-                                 DEA_FIBRE_DISC_LINE_MAX, cuts);
+  size_t count = cut_between(p, 0.55 * first * part, first, p->size / finer_at_tips(p), cuts);
   if (count == 0) {
     return too_many(ctx);
   }
   if (one) {
-    add_wedge(b, 0, lines->count, lines->count / 2, rho, cuts, count);
+    add_wedge(b, 0, lines->count, lines->count - middle_line(lines), rho, cuts, count);
     return DEA_OK;
   }
   size_t half = 2; // the line nearest to half the angle; two lines at least on both sides
@@ -510,6 +558,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *pl
   }
   b->lines.across = b->cuts.across;
   b->lines.count = b->cuts.count;
+  b->lines.wider = b->cuts.wider;
   DEA_TRY(ctx, add_inside(ctx, b));
   for (size_t i = 0; i + 1 < b->lines.circle_count; i++) {
     DEA_TRY(ctx, add_polars(ctx, b, i));

@@ -30,6 +30,9 @@ struct dea_fibre_disc {
       edge; // of elements at the electrode edge and the ends of fibres; about doubling from there
   double fringe; // at the electrode edge instead of `edge`, where that is larger; 0: none
   double beside; // of elements between two fibres, along the electrode edge; 0: size
+  /* Inside the circle of the electrode's edge and of the tips, and across and next to fibres, all
+   * sizes are so many times smaller, and grow that much slower; 0 or 1: none are. */
+  double finer_at_tips;
 };
 
 /* Bits of an element's region: inside the electrode circle, under a fibre. */

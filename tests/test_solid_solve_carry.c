@@ -1,0 +1,253 @@
+/* States carried to a mesh: elements that are inverted there are turned back, held components and
+ * stiff parts stay, and the state that is found is the one that was carried: a film between clamps
+ * that has buckled under voltage, on either side, against the closed form. */
+// ctest: solid
+#include "failing_allocator.h"
+#include "solid_block.h"
+
+#include "model/solid/equilibrium/carry.h"
+#include "model/solid/equilibrium/load_steps.h"
+#include "solid_fixture.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Units: mu = eps = 1. */
+static struct block strip = {{1, 0.1, 0.01}, {16, 1, 1}, 3, 2};
+static struct dea_grid *grid;
+static struct dea_solid *solid;
+static double *u;
+
+static bool all_active(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)region;
+  (void)ply;
+  return true;
+}
+
+static int clamped_in_plane_strain(const void *self, const double X[3])
+{
+  const struct block *block = self;
+  return 2 | (X[0] < 1e-9 || X[0] > block->size[0] - 1e-9 ? 7 : 0);
+}
+
+/* The second constituent is of the same law, and `stiff` times as stiff. */
+static double stiff = 1;
+static int iterations; // of a descent; 0: as many as by default
+
+static int second_half(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)ply;
+  return region;
+}
+
+static dea_status try(struct dea_context *with)
+{
+  struct dea_solid_settings settings = dea_solid_settings_default();
+  struct dea_constituent layers[2];
+  for (int i = 0; i < 2; i++) {
+    layers[i] = dea_constituent_bonded((const double[]){2, 0});
+    dea_constituent_set_law(&layers[i], dea_law_find("neo-hookean"),
+                            (const double[]){i == 0 ? 1 : stiff});
+    layers[i].kappa_Pa = 100;
+    layers[i].permittivity_F_per_m = 1;
+    layers[i].thickness_m = strip.size[2];
+    assert_int_equal(dea_constituent_relax(&layers[i]), DEA_OK);
+  }
+  settings.iterations = iterations > 0 ? iterations : settings.iterations;
+  const struct dea_solid_options options = {.order_z = strip.order_z,
+                                            .constituent_count = 2,
+                                            .constituents = layers,
+                                            .constituent_of = second_half,
+                                            .active = all_active,
+                                            .held = clamped_in_plane_strain,
+                                            .self = &strip,
+                                            .settings = &settings};
+  return dea_solid_create(with, grid, &options, &solid);
+}
+
+static void create(void)
+{
+  grid = block_grid(ctx, &strip);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    grid->region[e] = grid->X[3 * (size_t)grid->nodes[e * DEA_HEX_NODES_MAX]] > 0.499;
+  }
+  assert_int_equal(try(ctx), DEA_OK);
+  u = calloc(3 * grid->node_count, sizeof *u);
+  assert_non_null(u);
+}
+
+static void destroy(void)
+{
+  free(u);
+  dea_solid_destroy(ctx, solid);
+  dea_grid_destroy(ctx, grid);
+}
+
+/* Plate of an incompressible solid: the voltage at which it buckles (test_solid_solve_trace.c). */
+static double critical_V(void)
+{
+  const double pi = acos(-1), h = strip.size[2];
+  return sqrt(4 * pi * pi / 3) * h * h;
+}
+
+/* The buckled shape, in thicknesses, of lines that stay normal to it. */
+static void bend(double amplitude)
+{
+  const double pi = acos(-1), h = strip.size[2];
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n;
+    u[3 * n] = -amplitude * h * pi * sin(2 * pi * X[0]) * (X[2] - 0.5 * h);
+    u[3 * n + 2] = amplitude * h * 0.5 * (1 - cos(2 * pi * X[0]));
+  }
+}
+
+/* Takes the nodes at one place beyond those at the next. */
+static void crease(double x)
+{
+  const double element = 1.0 / 16;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    u[3 * n] += fabs(grid->X[3 * n] - x) < 1e-9 ? 1.2 * element : 0;
+  }
+}
+
+/* Whether nothing is found from there as it is. */
+static bool is_lost(void)
+{
+  struct dea_solid_report report = {0};
+  bool found;
+  assert_int_equal(dea_solid_push(ctx, solid, u, NULL, NULL, &report, &found), DEA_OK);
+  return !found;
+}
+
+static double middle_z(void)
+{
+  const double X[3] = {0.5, 0, 0.5 * strip.size[2]};
+  return dea_solid_displacement(solid)[3 * dea_grid_nearest(grid, X) + 2];
+}
+
+/* From a shape with inverted elements, from which as it is nothing is found, to the branch of its
+ * side, A^2 = (4/3) h^2 (r - 1) of a plate whose voltage to buckle is a percent off at most
+ * (test_solid_solve_trace.c). (The first that the solid is asked for is an assembly that fails: K
+ * has to keep its room.) */
+static void test_either_side(void **state)
+{
+  (void)state;
+  const double h = strip.size[2], r = 1.8, voltage_V = sqrt(r) * critical_V();
+  struct dea_solid_report report = {0};
+  bool found;
+  create();
+  for (int side = 1; side >= -1; side -= 2) {
+    bend(side * 0.8);
+    crease(0.25);
+    crease(0.6875);
+    assert_true(is_lost());
+    if (dea_solid_carry(ctx, solid, voltage_V, u, &report, &found) != DEA_OK) {
+      fail_msg("%s", dea_context_message(ctx));
+    }
+    assert_true(found);
+    assert_int_equal(report.unstable_modes, 0);
+    assert_close(dea_solid_voltage(solid), voltage_V, 1e-12, 0);
+    assert_true(side * middle_z() > 0);
+    assert_close(pow(middle_z() / h, 2), 4.0 / 3 * (r - 1), 0.01 * r / (r - 1), 0);
+  }
+  destroy();
+}
+
+/* Few iterations are not enough for a shape that is far from balance, but for one that is held near
+ * to it until it has come into balance. */
+static void test_held(void **state)
+{
+  (void)state;
+  const double h = strip.size[2], r = 1.8, voltage_V = sqrt(r) * critical_V();
+  struct dea_solid_report report = {0};
+  bool found;
+  iterations = 30;
+  create();
+  iterations = 0;
+  bend(0.8);
+  crease(0.25);
+  assert_int_equal(dea_solid_carry(ctx, solid, voltage_V, u, &report, &found), DEA_OK);
+  assert_true(found);
+  assert_close(pow(middle_z() / h, 2), 4.0 / 3 * (r - 1), 0.01 * r / (r - 1), 0);
+  destroy();
+}
+
+/* Only nodes around the crease move, none that is held or of the stiff half. */
+static void test_what_moves(void **state)
+{
+  (void)state;
+  size_t left;
+  stiff = 100;
+  create();
+  bend(0.8);
+  crease(0.25);
+  double *before = malloc(3 * grid->node_count * sizeof *before);
+  assert_non_null(before);
+  memcpy(before, u, 3 * grid->node_count * sizeof *before);
+  assert_int_equal(dea_solid_untangle(ctx, solid, u, &left), DEA_OK);
+  assert_int_equal(left, 0);
+  size_t moved = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    const double *X = grid->X + 3 * n, *a = u + 3 * n, *b = before + 3 * n;
+    bool still = a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+    moved += !still;
+    assert_true(still || (X[0] > 1e-9 && X[0] < 0.499));
+    assert_true(a[1] == b[1]);
+  }
+  assert_true(moved > 0);
+  // where only stiff elements are inverted nothing can be done, and nothing is
+  bend(0.8);
+  crease(0.75);
+  memcpy(before, u, 3 * grid->node_count * sizeof *before);
+  bool found;
+  struct dea_solid_report report = {0};
+  assert_int_equal(dea_solid_carry(ctx, solid, critical_V(), u, &report, &found), DEA_OK);
+  assert_false(found);
+  assert_close(dea_solid_voltage(solid), 0, 0, 0);
+  assert_close(middle_z(), 0, 0, 0);
+  free(before);
+  stiff = 1;
+  destroy();
+}
+
+static void carry_it(struct dea_context *failing)
+{
+  struct dea_solid_report report = {0};
+  bool found;
+  solid = NULL;
+  dea_status status = try(failing);
+  if (status == DEA_OK) {
+    status = dea_solid_carry(failing, solid, critical_V(), u, &report, &found);
+  }
+  failing_check(failing, status);
+  dea_solid_destroy(failing, solid);
+}
+
+static void test_each_allocation(void **state)
+{
+  (void)state;
+  const struct block fine = strip;
+  strip.count[0] = 8;
+  strip.order = 2;
+  create();
+  bend(0.3);
+  dea_solid_destroy(ctx, solid);
+  assert_true(failing_each(carry_it) > 20);
+  solid = NULL;
+  destroy();
+  strip = fine;
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_either_side),
+      cmocka_unit_test(test_held),
+      cmocka_unit_test(test_what_moves),
+      cmocka_unit_test(test_each_allocation),
+  };
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
+}
