@@ -381,6 +381,32 @@ static void test_breakdown_and_discharges(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
+/* Some minutes of a life test by ten samples a second: each is a jump of 50 V, which the
+ * amplifier's current charges in some 100 ns, and a film that stays whole; one that lives for 1000
+ * s under voltage does not.
+ */
+static void test_slow_wave(void **state)
+{
+  (void)state;
+#define LIFE(end)                                                                                  \
+  HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 10 mA}\nrate: 10 Hz\n"          \
+       "waveform: {kind: triangle, high: 2.5 kV, low: 0 V, frequency: 0.1 Hz, cycles: 60}\n"       \
+       "sim: {" QUIET ", profile_points: 0" end "}\n"
+  static const char *const lives[] = {LIFE(""), LIFE(", breakdown_time: 200 s")};
+  for (int k = 0; k < 2; k++) {
+    struct dea_protocol *p = bench_protocol(lives[k]);
+    struct record r;
+    size_t whole = 0;
+    played(p, 1000, &r);
+    while (whole < r.samples && value(p, &r, whole, 1) < 1e-4) {
+      whole++;
+    }
+    assert_true(k == 0 ? whole == 6000 : whole > 2000 && whole < 2050);
+    free_record(&r);
+    dea_protocol_destroy(ctx, p);
+  }
+}
+
 /* In real time it takes as long as the protocol. */
 static void test_real_pace(void **state)
 {
@@ -468,6 +494,7 @@ int main(void)
       cmocka_unit_test(test_seeds),
       cmocka_unit_test(test_limits),
       cmocka_unit_test(test_breakdown_and_discharges),
+      cmocka_unit_test(test_slow_wave),
       cmocka_unit_test(test_real_pace),
       cmocka_unit_test(test_errors),
       cmocka_unit_test(test_memory),
