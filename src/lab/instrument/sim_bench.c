@@ -72,8 +72,8 @@ static void break_down(struct dea_sim_bench *b)
 /* Goes on for some time while the source goes straight to a voltage. */
 static dea_status follow(struct dea_sim_bench *b, double length_s, double end_V)
 {
-  // of the length: then there is nothing to be followed. A jump of some volts is charged in ns, and the
-  // end of that is found in ever shorter steps; of an interval of 0.1 s this is 0.1 ps
+  // of the length: then there is nothing to be followed. A jump of some volts is charged in ns, and
+  // the end of that is found in ever shorter steps; of an interval of 0.1 s this is 0.1 ps
   static const double shortest = 1e-12;
   double left_s = length_s;
   while (left_s > 0 && !b->state.broken) {
