@@ -63,7 +63,7 @@ static void measure(struct dea_context *ctx, const struct dea_design *design,
   struct dea_model_settings settings = dea_model_settings_of(design);
   settings.refinement = refinement;
   double step = step_of(ctx, device, &settings, &model);
-  dea_design_numbers(design, device, 1e3 * KV, numbers, &count);
+  bench_need(dea_design_numbers(ctx, design, device, 1e3 * KV, numbers, &count), ctx);
   for (int i = 0; i < QUANTITIES; i++) {
     columns[i] = dea_point_column_find(keys[i]);
   }

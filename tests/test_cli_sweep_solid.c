@@ -85,7 +85,7 @@ static void test_neighbours(void **state)
   }
 }
 
-/* A device made of plies: by a ply's thickness with the model's gradients, by a shape without. */
+/* A device made of plies: by a thickness and by a shape with the model's gradients. */
 static void test_parts(void **state)
 {
   (void)state;
@@ -103,7 +103,7 @@ static void test_parts(void **state)
   }
   assert_int_equal(code, 0);
   assert_contains(command_out, "plies.film.thickness");
-  assert_contains(command_out, "by differences of shapes.active.radius");
+  assert_contains(command_out, "gradients: of the model\n");
   const char *margin = strstr(command_out, "breakdown_margin");
   assert_true(margin == NULL || strtod(margin + 16, NULL) > 0.499);
   assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);

@@ -106,7 +106,7 @@ static void check(const char *model, double floor)
                                     .numbers = numbers,
                                     .columns = columns,
                                     .column_count = KEYS};
-  dea_design_numbers(design, device, ask.voltage_V, numbers, &count);
+  assert_int_equal(dea_design_numbers(ctx, design, device, ask.voltage_V, numbers, &count), DEA_OK);
   assert_true(count >= 10);
   ask.number_count = count;
   solve(type, device, ask.voltage_V, &base, &ask.model);

@@ -77,6 +77,19 @@ struct dea_contour dea_region_contour(const struct dea_region *region, size_t i)
   return (struct dea_contour){region->vertex + first, region->end[i] - first, true};
 }
 
+bool dea_region_same(const struct dea_region *a, const struct dea_region *b)
+{
+  bool same = a->contour_count == b->contour_count && a->vertex_count == b->vertex_count;
+  for (size_t i = 0; i < a->contour_count && same; i++) {
+    same = a->end[i] == b->end[i];
+  }
+  for (size_t i = 0; i < a->vertex_count && same; i++) {
+    const struct dea_vertex *v = &a->vertex[i], *w = &b->vertex[i];
+    same = v->x_m == w->x_m && v->y_m == w->y_m && v->bulge == w->bulge;
+  }
+  return same;
+}
+
 double dea_region_area_m2(const struct dea_region *region)
 {
   double area = 0;

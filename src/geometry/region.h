@@ -34,6 +34,9 @@ void dea_region_free(struct dea_region *region);
 /* A contour, 0 <= i < contour_count; lent until the region changes. */
 struct dea_contour dea_region_contour(const struct dea_region *region, size_t i);
 
+/* Whether two have the very same vertices. */
+bool dea_region_same(const struct dea_region *a, const struct dea_region *b);
+
 double dea_region_area_m2(const struct dea_region *region);
 /* Centroid of the area; NAN of an empty region. */
 void dea_region_centroid_m(const struct dea_region *region, double out[2]);

@@ -118,7 +118,7 @@ struct dea_pressed {
 };
 
 /* A small change of one number p of a design: devices and voltages at p - width/2 and p + width/2,
- * in the unit of p. */
+ * in the unit of p. A device is NULL where there is none with that number, and so no slope. */
 struct dea_design_change {
   const struct dea_device *device[2];
   double voltage_V[2];

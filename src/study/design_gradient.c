@@ -138,8 +138,9 @@ static void add_key(const struct dea_design *design, const struct dea_record *re
   }
 }
 
-void dea_design_numbers(const struct dea_design *design, const struct dea_device *device,
-                        double voltage_V, struct dea_design_number *out, size_t *count)
+dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_device *device, double voltage_V,
+                              struct dea_design_number *out, size_t *count)
 {
   struct dea_design_schema schema;
   const struct dea_design_sections none = {0};
@@ -148,14 +149,14 @@ void dea_design_numbers(const struct dea_design *design, const struct dea_device
   *count = 0;
   add_number(out, count, &voltage);
   if (device->general) {
-    dea_part_numbers(design, device, out, count);
-    return;
+    return dea_part_numbers(ctx, design, device, false, out, count);
   }
   dea_design_schema_fill(&none, &schema);
   for (size_t i = 0; i < design->values.count; i++) {
     add_key(design, &schema.disc.record, &design->values.items[i], out, count);
   }
   add_materials(device, out, count);
+  return DEA_OK;
 }
 
 void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number *out,
@@ -191,7 +192,7 @@ struct changed {
   struct dea_design_change *changes; // [number_count]
 };
 
-/* The device with a value in place of the design's. */
+/* The device with a value in place of the design's. DEA_E_DESIGN: there is none. */
 static dea_status change(struct dea_context *ctx, const struct dea_design_gradient *ask,
                          const struct dea_design_number *number, double value, struct changed *all,
                          struct dea_device *out)
@@ -212,28 +213,50 @@ static dea_status change(struct dea_context *ctx, const struct dea_design_gradie
   return DEA_OK;
 }
 
+/* One side of a change of a number; false in *there where no device is like that. */
+static dea_status make_side(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                            size_t i, size_t side, double value, struct changed *all, bool *there)
+{
+  const struct dea_design_number *number = &ask->numbers[i];
+  struct dea_design_change *out = &all->changes[i];
+  out->device[side] = ask->device;
+  out->voltage_V[side] = ask->voltage_V;
+  *there = true;
+  if (number->of == DEA_NUMBER_OF_TIP) {
+    struct dea_pressed *pressed = &all->pressed[2 * i + side];
+    *pressed = *ask->pressed;
+    memcpy((char *)pressed + number->offset, &value, sizeof value);
+    out->pressed[side] = pressed;
+  } else if (strcmp(number->key, "voltage") == 0) {
+    out->voltage_V[side] = value;
+  } else {
+    const dea_status status = change(ctx, ask, number, value, all, &all->devices[2 * i + side]);
+    *there = status == DEA_OK;
+    DEA_TRY(ctx, status == DEA_E_DESIGN ? DEA_OK : status);
+    out->device[side] = *there ? &all->devices[2 * i + side] : ask->device;
+  }
+  return DEA_OK;
+}
+
+/* To both sides, or to the one where there is a device: a monitor may stand at the edge of its ply,
+ * which cannot be shorter. */
 static dea_status make_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                struct changed *all)
 {
   double share = ask->type->gradient != NULL ? step_at_state : step_anew;
   for (size_t i = 0; i < ask->number_count; i++) {
     const struct dea_design_number *number = &ask->numbers[i];
-    const bool voltage = strcmp(number->key, "voltage") == 0;
-    const bool of_tip = number->of == DEA_NUMBER_OF_TIP;
+    const double step = share * (number->reach > 0 ? number->reach : number->value);
+    size_t sides = 0;
     for (size_t k = 0; k < 2; k++) {
-      double value = number->value * (1 + (k == 0 ? -share : share));
-      if (of_tip) {
-        struct dea_pressed *pressed = &all->pressed[2 * i + k];
-        *pressed = *ask->pressed;
-        memcpy((char *)pressed + number->offset, &value, sizeof value);
-        all->changes[i].pressed[k] = pressed;
-      } else if (!voltage) {
-        DEA_TRY(ctx, change(ctx, ask, number, value, all, &all->devices[2 * i + k]));
-      }
-      all->changes[i].device[k] = voltage || of_tip ? ask->device : &all->devices[2 * i + k];
-      all->changes[i].voltage_V[k] = voltage ? value : ask->voltage_V;
+      bool there;
+      DEA_TRY(ctx, make_side(ctx, ask, i, k, number->value + (k == 0 ? -step : step), all, &there));
+      sides += there ? 1 : 0;
     }
-    all->changes[i].width = 2 * share * number->value;
+    all->changes[i].width = (double)sides * step;
+    if (sides == 0) {
+      all->changes[i].device[0] = NULL;
+    }
   }
   return DEA_OK;
 }
@@ -315,7 +338,7 @@ dea_status dea_design_gradient_at(struct dea_context *ctx, const struct dea_mode
                                     .number_count = key_count,
                                     .columns = columns,
                                     .column_count = column_count};
-  dea_design_numbers(design, device, voltage_V, all, &count);
+  DEA_TRY(ctx, dea_design_numbers(ctx, design, device, voltage_V, all, &count));
   DEA_TRY(ctx, choose(ctx, all, count, keys, key_count, chosen));
   DEA_TRY(ctx, dea_model_create(ctx, ask.type, design, device, &ask.model));
   dea_status status = solve_and_find(ctx, &ask, values, slopes);

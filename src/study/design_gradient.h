@@ -29,12 +29,15 @@ struct dea_design_number {
   size_t list, item; // of a part: list and place in it; of a ply: its place
   size_t offset;     // there; "voltage": not used
   double scale;      // what is kept over the value
+  double reach;      // what small changes are shares of; 0: the value, which then is not 0
 };
 
 /* All numbers of a design that its device depends on, but those that are 0; of the general form
- * without those of shapes and of what is held. out: [DEA_NUMBERS_MAX]. */
-void dea_design_numbers(const struct dea_design *design, const struct dea_device *device,
-                        double voltage_V, struct dea_design_number *out, size_t *count);
+ * without those of what is held, and with places of shapes that the file says to be 0. out:
+ * [DEA_NUMBERS_MAX]. */
+dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_device *device, double voltage_V,
+                              struct dea_design_number *out, size_t *count);
 
 /* Those of the tip that a model is pressed by, but those that are 0: "compute.force.depth", which
  * is here where it stands, and its radii; added to out [DEA_NUMBERS_MAX]. */

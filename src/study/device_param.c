@@ -38,18 +38,20 @@ static dea_status unknown_part(struct dea_context *ctx,
   if (numbers == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_part_numbers(source->design, source->device, numbers, &count);
+  dea_status status = dea_part_numbers(ctx, source->design, source->device, false, numbers, &count);
   for (size_t i = 0; i < count; i++) {
     known[i] = numbers[i].key;
   }
   const char *nearest = dea_nearest_name(name->text, known, count);
-  const dea_status status =
-      dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
-                      why != NULL ? why
-                                  : "is no number of a part of the design (plies.NAME.thickness, "
-                                    "shapes.NAME.radius)",
-                      nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-                      nearest != NULL ? "'?" : "");
+  if (status == DEA_OK) {
+    status =
+        dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s' %s%s%s%s", name->text,
+                        why != NULL ? why
+                                    : "is no number of a part of the design (plies.NAME.thickness, "
+                                      "shapes.NAME.radius)",
+                        nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+                        nearest != NULL ? "'?" : "");
+  }
   dea_free(ctx, numbers);
   return status;
 }
@@ -146,34 +148,6 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   return DEA_OK;
 }
 
-/* "shapes.NAME.PARAMETER" of a shape of the file, its value and unit; false: there is none. */
-static bool find_shape(const struct dea_parts *parts, const char *key, double *value,
-                       const char **unit)
-{
-  static const char prefix[] = "shapes.";
-  const char *dot = strrchr(key, '.');
-  if (strncmp(key, prefix, strlen(prefix)) != 0 || dot < key + strlen(prefix)) {
-    return false;
-  }
-  const char *name = key + strlen(prefix);
-  const size_t length = (size_t)(dot - name);
-  for (size_t i = 0; i < parts->shape_count; i++) {
-    const struct dea_parts_shape *shape = &parts->shapes[i];
-    const bool same = strlen(shape->name.text) == length &&
-                      memcmp(shape->name.text, name, length) == 0 &&
-                      shape->make == DEA_MAKE_PRIMITIVE;
-    for (size_t k = 0; same && k < shape->type->count; k++) {
-      const struct dea_shape_parameter *parameter = &shape->type->parameter[k];
-      if (strcmp(parameter->name, dot + 1) == 0 && shape->value[k].origin != DEA_ABSENT) {
-        *value = shape->value[k].si;
-        *unit = parameter->unit == DEA_SHAPE_ANGLE ? "radian" : "m";
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 /* A key of a design of the general form: of a part, as --set has it, or of a shape. */
 static dea_status from_part(struct dea_context *ctx, const struct dea_device_param_source *source,
                             const struct dea_label *name, struct dea_device_param *out, bool *good)
@@ -183,9 +157,9 @@ static dea_status from_part(struct dea_context *ctx, const struct dea_device_par
   if (numbers == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_part_numbers(source->design, source->device, numbers, &count);
-  *good = find_shape(source->design->parts, name->text, &out->designed, &out->param.unit);
-  for (size_t i = 0; i < count && !*good; i++) {
+  dea_status status = dea_part_numbers(ctx, source->design, source->device, true, numbers, &count);
+  *good = false;
+  for (size_t i = 0; i < count && status == DEA_OK && !*good; i++) {
     if (numbers[i].of == DEA_NUMBER_OF_PART && strchr(numbers[i].key, '[') == NULL &&
         strcmp(numbers[i].key, name->text) == 0) {
       out->designed = numbers[i].value;
@@ -197,7 +171,7 @@ static dea_status from_part(struct dea_context *ctx, const struct dea_device_par
   out->kind = DEA_DEVICE_KEY;
   out->param.low = -INFINITY; // the file's reader says what cannot be
   out->param.high = INFINITY;
-  return *good ? DEA_OK : dea_device_param_unknown(ctx, source, name, NULL);
+  return *good || status != DEA_OK ? status : dea_device_param_unknown(ctx, source, name, NULL);
 }
 
 /* "film.branch.1.modulus": the first of the film's branches. */

@@ -25,9 +25,10 @@ static const struct list {
     LIST("bodies", dea_parts_body, bodies, body_count, offsetof(struct dea_parts_body, name)),
     LIST("springs", dea_parts_spring, springs, spring_count, NAMELESS),
     LIST("pressures", dea_parts_pressure, pressures, pressure_count, NAMELESS),
+    LIST("shapes", dea_parts_shape, shapes, shape_count, offsetof(struct dea_parts_shape, name)),
 #undef LIST
 };
-enum { LISTS = sizeof lists / sizeof lists[0] };
+enum { LISTS = sizeof lists / sizeof lists[0], SHAPES = LISTS - 1 }; // these go by their kinds
 
 static const struct dea_record *record_of(const struct list *list)
 {
@@ -41,7 +42,8 @@ static const struct dea_record *record_of(const struct list *list)
 static void add(struct dea_design_number *out, size_t *count,
                 const struct dea_design_number *number)
 {
-  if (*count < DEA_NUMBERS_MAX && number->value != 0 && !isnan(number->value)) {
+  if (*count < DEA_NUMBERS_MAX && (number->value != 0 || number->reach > 0) &&
+      !isnan(number->value)) {
     out[(*count)++] = *number;
   }
 }
@@ -55,10 +57,12 @@ static bool is_held(const struct list *list, const char *key)
          (strncmp(key, "move_", 5) == 0 || strncmp(key, "turn_", 5) == 0);
 }
 
-/* The numbers of a field of an item: one, or those of its list. */
-static void add_field(const struct list *list, size_t at, size_t item, const char *base,
-                      const struct dea_field *field, struct dea_design_number *out, size_t *count)
+/* The numbers of a field of an item: one, or those of its list. size_m: of a shape; 0: of none. */
+static void add_field(size_t at, size_t item, const char *base, const struct dea_field *field,
+                      double size_m, struct dea_design_number *out, size_t *count)
 {
+  static const double reach = 0.1; // of its size or of a radian, where a shape's number is smaller
+  const struct list *list = &lists[at];
   size_t own = 1;
   char name[DEA_NAME_SIZE];
   if (!dea_field_varies(field) || is_held(list, field->key)) {
@@ -84,6 +88,9 @@ static void add_field(const struct list *list, size_t at, size_t item, const cha
                                        .item = item,
                                        .offset = offset + offsetof(struct dea_quantity, si),
                                        .scale = 1};
+    if (at == SHAPES) {
+      number.reach = fmax(fabs(number.value), reach * (strcmp(field->unit, "m") == 0 ? size_m : 1));
+    }
     snprintf(number.key, sizeof number.key, "%.42s.%.18s", name, field->key);
     if (own > 1) {
       const size_t length = strlen(number.key);
@@ -131,10 +138,55 @@ static void add_ply(const struct dea_layout *layout, size_t i, struct dea_design
   }
 }
 
-void dea_part_numbers(const struct dea_design *design, const struct dea_device *device,
-                      struct dea_design_number *out, size_t *count)
+// Shapes -----------------------------------------------------------------------------------------
+
+static const struct dea_record *record_of_shape(const struct dea_shape_schema *schema,
+                                                const struct dea_parts_shape *shape)
 {
-  for (size_t l = 0; l < LISTS; l++) {
+  size_t kind = 0;
+  while (schema->make[kind] != shape->make ||
+         (shape->make == DEA_MAKE_PRIMITIVE && schema->type[kind] != shape->type)) {
+    kind++;
+  }
+  return &schema->record[kind];
+}
+
+/* Whether a field of a shape is one that the file says nothing of, and so 0. */
+static bool is_default(const struct dea_parts_shape *shape, const struct dea_field *field)
+{
+  const struct dea_quantity *value = (const void *)((const char *)shape + field->offset);
+  return value->origin == DEA_DEFAULT && value->si == 0;
+}
+
+static dea_status add_shapes(struct dea_context *ctx, const struct dea_parts *parts,
+                             const struct dea_device *device, bool all,
+                             struct dea_design_number *out, size_t *count)
+{
+  struct dea_shape_schema *schema = dea_alloc(ctx, 1, sizeof *schema);
+  if (schema == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_shape_schema_fill(schema);
+  for (size_t i = 0; i < parts->shape_count; i++) {
+    const struct dea_parts_shape *shape = &parts->shapes[i];
+    const struct dea_record *record = record_of_shape(schema, shape);
+    const double size_m = dea_region_size_m(&device->layout->regions[i].region);
+    for (size_t f = 0; f < record->field_count; f++) {
+      const struct dea_field *field = &record->fields[f];
+      if (dea_field_varies(field) && (all || field->list_max > 0 || !is_default(shape, field))) {
+        add_field(SHAPES, i, (const char *)shape, field, size_m, out, count);
+      }
+    }
+  }
+  dea_free(ctx, schema);
+  return DEA_OK;
+}
+
+dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *design,
+                            const struct dea_device *device, bool all,
+                            struct dea_design_number *out, size_t *count)
+{
+  for (size_t l = 0; l < SHAPES; l++) {
     const struct list *list = &lists[l];
     const struct dea_record *record = record_of(list);
     const char *items;
@@ -143,13 +195,15 @@ void dea_part_numbers(const struct dea_design *design, const struct dea_device *
     memcpy(&item_count, (const char *)design->parts + list->count, sizeof item_count);
     for (size_t i = 0; i < item_count; i++) {
       for (size_t f = 0; f < record->field_count; f++) {
-        add_field(list, l, i, items + i * list->size, &record->fields[f], out, count);
+        add_field(l, i, items + i * list->size, &record->fields[f], 0, out, count);
       }
     }
   }
   for (size_t i = 0; i < device->layout->ply_count; i++) {
     add_ply(device->layout, i, out, count);
   }
+  DEA_TRY(ctx, add_shapes(ctx, design->parts, device, all, out, count));
+  return DEA_OK;
 }
 
 // Changed devices --------------------------------------------------------------------------------

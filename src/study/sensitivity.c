@@ -431,8 +431,8 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
                             struct dea_model *model, const struct dea_result *result,
                             struct stop *stop)
 {
-  dea_design_numbers(result->design, result->device, stop->voltage_V, stop->numbers,
-                     &stop->number_count);
+  DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V,
+                                  stop->numbers, &stop->number_count));
   if (stop->is_pressed) {
     dea_tip_numbers(&stop->pressed, stop->numbers, &stop->number_count);
   }

@@ -17,9 +17,9 @@ static const double near_share = 1e-6; // of the size of all: a node on a bounda
 
 // Plane ------------------------------------------------------------------------------------------
 
-/* What is meshed: regions with parts in them. */
-static void mark_used(const struct dea_layout *l, bool *used)
+void dea_layout_mesh_used(const struct dea_layout *l, bool *used)
 {
+  memset(used, 0, l->region_count * sizeof *used);
   for (size_t i = 0; i < l->ply_count; i++) {
     used[l->plies[i].region] = true;
   }
@@ -213,7 +213,7 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   bool *used = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *used);
   mesh->group = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *mesh->group);
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
-  mark_used(l, used);
+  dea_layout_mesh_used(l, used);
   for (size_t i = 0; i < l->region_count; i++) {
     mesh->group[i] = used[i] ? 0 : DEA_LAYOUT_NONE;
   }
@@ -402,44 +402,20 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
   return DEA_OK;
 }
 
-static bool same_region(const struct dea_region *a, const struct dea_region *b)
-{
-  bool same = a->contour_count == b->contour_count && a->vertex_count == b->vertex_count;
-  for (size_t i = 0; i < a->contour_count && same; i++) {
-    same = a->end[i] == b->end[i];
-  }
-  for (size_t i = 0; i < a->vertex_count && same; i++) {
-    const struct dea_vertex *v = &a->vertex[i], *w = &b->vertex[i];
-    same = v->x_m == w->x_m && v->y_m == w->y_m && v->bulge == w->bulge;
-  }
-  return same;
-}
-
-/* Whether all shapes are where they were. */
-static bool same_regions(const struct dea_layout *a, const struct dea_layout *b)
-{
-  bool same = a->region_count == b->region_count;
-  for (size_t i = 0; i < a->region_count && same; i++) {
-    same = same_region(&a->regions[i].region, &b->regions[i].region);
-  }
-  return same;
-}
-
 dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea_layout *layout,
                                        const struct dea_model_settings *settings,
                                        const struct dea_layout_mesh *like,
+                                       struct dea_plane_mesh *plane, struct dea_arena *memory,
                                        struct dea_layout_mesh *out)
 {
-  *out = (struct dea_layout_mesh){.memory = {.ctx = ctx},
+  *out = (struct dea_layout_mesh){.memory = *memory,
                                   .layout = layout,
                                   .membrane = like->membrane,
                                   .sector = like->sector,
-                                  .plane = like->plane,
+                                  .plane = plane,
                                   .like = true,
                                   .group = like->group};
-  if (!same_regions(layout, like->layout) || layout->ply_count != like->layout->ply_count) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a change of shapes");
-  }
+  *memory = (struct dea_arena){.ctx = ctx};
   dea_status status = fill(ctx, settings, out);
   const size_t used = like->grid->element_count * DEA_HEX_NODES_MAX;
   if (status == DEA_OK &&

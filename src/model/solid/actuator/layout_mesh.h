@@ -18,7 +18,7 @@ struct dea_layout_mesh {
   bool membrane;                   // dielectric plies are surfaces
   struct dea_layout_sector sector; // what is meshed of the layout; its fold is 0: the whole
   struct dea_plane_mesh *plane;    // its groups are regions of the layout; owned
-  bool like;                       // no: plane and group are those of another one
+  bool like;                       // yes: plane and group are those of another one, or made of it
   size_t *group; // [region_count of the layout] group of a region; DEA_LAYOUT_NONE: not meshed,
                  // also what lies in other copies of the sector only
   bool *present; // [region_count of the plane][ply_count]
@@ -33,13 +33,17 @@ struct dea_layout_mesh {
 dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layout *layout,
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out);
-/* The mesh of another layout on the plane mesh of `like`, which outlives it, where the layouts
- * differ in numbers of their parts only, such as thicknesses: the same nodes and elements, other
- * heights. DEA_E_ARGUMENT, with the reason, where it cannot be that. */
+/* What mesh_follow.h makes: the mesh of another layout with as many regions and plies as that of
+ * `like`, which outlives it, on a plane mesh with the elements of that one. memory: of the plane
+ * mesh; it becomes the mesh's. DEA_E_ARGUMENT where other elements come of it. */
 dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea_layout *layout,
                                        const struct dea_model_settings *settings,
                                        const struct dea_layout_mesh *like,
+                                       struct dea_plane_mesh *plane, struct dea_arena *memory,
                                        struct dea_layout_mesh *out);
+/* Marks what is meshed of a layout, all of it taken: regions with parts in them. used:
+ * [region_count]. */
+void dea_layout_mesh_used(const struct dea_layout *layout, bool *used);
 void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh);
 
 /* Whether an element lies in a region of the layout. */

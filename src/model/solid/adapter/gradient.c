@@ -316,7 +316,8 @@ static dea_status find(struct dea_context *ctx, struct work *w, double *out)
     size_t errors = dea_finding_trial_begin(ctx);
     dea_status status = difference(ctx, w, &w->ask->changes[c]);
     dea_finding_trial_end(ctx, errors);
-    bool follows = status != DEA_E_ARGUMENT && status != DEA_E_UNSUPPORTED;
+    bool follows =
+        status != DEA_E_ARGUMENT && status != DEA_E_UNSUPPORTED && status != DEA_E_DESIGN;
     if (!follows) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                    "model 3d: no gradient by one of the numbers: %s",

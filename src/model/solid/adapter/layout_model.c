@@ -2,6 +2,7 @@
 #include "base/module.h"
 #include "model/make.h"
 #include "model/solid/actuator/constituent_of_material.h"
+#include "model/solid/actuator/mesh_follow.h"
 #include "model/solid/adapter/adapt.h"
 #include "model/solid/adapter/fields.h"
 #include "model/solid/adapter/gradient.h"
@@ -36,7 +37,8 @@ struct dea_model {
   struct dea_model_settings settings;
   struct dea_adapt_pass *passes; // [pass_count] that led to its mesh; NULL: none
   size_t pass_count;
-  struct dea_arena memory; // of all arrays
+  struct dea_arena memory;     // of all arrays
+  struct dea_layout_mesh like; // of another device, that its mesh was moved from; empty: none
   struct dea_layout_mesh mesh;
   struct dea_constituent *constituents; // [ply_count]
   struct dea_solid_film_data *films;    // [ply_count]
@@ -67,6 +69,19 @@ struct dea_model {
   double *answers;          // of the last response, as in model/model.h
   double *answer;           // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
   struct marks marks;       // of saved states, made by the first
+};
+
+/* What a changed device takes the place of. Mesh, constituents and loads of the changed device are
+ * those of a solid of its own, of which nothing is solved. */
+struct variant {
+  struct dea_model own;             // as it was
+  struct dea_solid_problem problem; // as it was
+  struct dea_solid *solid;          // of the changed device; NULL: there is none
+  double *force, *own_V;            // [dofs], [channels] as they were
+  double *rest;                     // [dofs] u at rest, room
+  enum dea_observed *motion;        // [monitor_count of the question]
+  struct dea_gradient_places places;
+  const struct dea_gradient_ask *ask;
 };
 
 // Materials --------------------------------------------------------------------------------------
@@ -231,7 +246,9 @@ static dea_status add_body(struct dea_context *ctx, struct dea_model *model, siz
   memcpy(X + 3, X, 3 * sizeof *X);
   DEA_TRY(ctx, dea_grid_add_nodes(ctx, grid, 2, X, &model->bodies[i].node));
   model->bodies[i].held = ALL_COMPONENTS & ~((body->free | body->moved) & keeps);
-  model->bodies[i].length_m = length;
+  // unknowns of a turn stay in the same unit when slopes are taken
+  model->bodies[i].length_m =
+      model->variant != NULL ? model->variant->own.bodies[i].length_m : length;
   return DEA_OK;
 }
 
@@ -614,6 +631,19 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
+/* A mesh of its own, or that of another device. */
+static dea_status make_mesh(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_device *of = model->settings.mesh_of;
+  if (of == NULL || of->layout == model->layout) {
+    DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, &model->settings, &model->mesh));
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_layout_mesh_create(ctx, of->layout, &model->settings, &model->like));
+  DEA_TRY(ctx, dea_mesh_follow(ctx, model->layout, &model->settings, &model->like, &model->mesh));
+  return DEA_OK;
+}
+
 static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
@@ -631,7 +661,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
       dea_arena_alloc(&model->memory, device->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
                       sizeof *model->answer);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
-  DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, settings, &model->mesh));
+  DEA_TRY(ctx, make_mesh(ctx, model));
   model->copies = (double)dea_layout_sector_copies(&model->mesh.sector);
   model->near_m = dea_layout_mesh_near_m(&model->mesh);
   DEA_TRY(ctx, say_mesh(ctx, model));
@@ -671,6 +701,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   dea_free(ctx, model->passes);
   dea_solid_destroy(ctx, model->solid);
   free_parts(ctx, model);
+  dea_layout_mesh_free(ctx, &model->like);
   dea_free(ctx, model);
 }
 
@@ -896,19 +927,6 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
 
 // Slopes (docs/theory/gradients.md) ---------------------------------------------------------------
 
-/* What a changed device takes the place of. Mesh, constituents and loads of the changed device are
- * those of a solid of its own, of which nothing is solved. */
-struct variant {
-  struct dea_model own;             // as it was
-  struct dea_solid_problem problem; // as it was
-  struct dea_solid *solid;          // of the changed device; NULL: there is none
-  double *force, *own_V;            // [dofs], [channels] as they were
-  double *rest;                     // [dofs] u at rest, room
-  enum dea_observed *motion;        // [monitor_count of the question]
-  struct dea_gradient_places places;
-  const struct dea_gradient_ask *ask;
-};
-
 static bool same_hold(const struct dea_layout_support *a, const struct dea_layout_support *b)
 {
   return a->region == b->region && a->edge == b->edge && a->within == b->within &&
@@ -937,15 +955,30 @@ static bool same_supports(const struct dea_layout *a, const struct dea_layout *b
   return same;
 }
 
+/* Whether nodes are held and follow bodies as before: unknowns at which slopes are taken stay. */
+static dea_status check_held(struct dea_context *ctx, struct dea_model *model)
+{
+  const struct dea_model *own = &model->variant->own;
+  const struct dea_solid_problem *a = &own->solid->problem, *b = &model->solid->problem;
+  DEA_TRY(ctx, hold_supports(ctx, model, true));
+  const bool same =
+      a->dofs == b->dofs && memcmp(a->held, b->held, a->dofs) == 0 &&
+      memcmp(own->follows, model->follows, model->mesh_node_count * sizeof *model->follows) == 0;
+  return same ? DEA_OK
+              : dea_fail(ctx, DEA_E_ARGUMENT,
+                         "the mesh cannot follow: supports and bodies would hold other nodes");
+}
+
 /* Mesh, constituents and loads of a changed device, with a solid that has them. */
 static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_model *own = &model->variant->own;
   DEA_TRY(ctx, make_plies(ctx, model));
-  DEA_TRY(ctx, dea_layout_mesh_create_like(ctx, model->layout, &model->settings, &own->mesh,
-                                           &model->mesh));
+  DEA_TRY(ctx, dea_mesh_follow(ctx, model->layout, &model->settings, &own->mesh, &model->mesh));
   DEA_TRY(ctx, fill_constituents(ctx, model));
   DEA_TRY(ctx, make_solid(ctx, model));
+  DEA_TRY(ctx, check_held(ctx, model));
+  DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
   find_thinnest(model);
   set_pressures(model, 1);
   DEA_TRY(ctx, set_weight(ctx, model));
@@ -970,6 +1003,9 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
   const struct dea_device *device = change->device[side];
   struct variant *v = model->variant;
   struct dea_solid *s = v->own.solid;
+  if (device == NULL) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "there is no device with a number a little beside it");
+  }
   if (device->layout == v->own.layout) {
     return DEA_OK;
   }
@@ -977,6 +1013,7 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
   model->memory = (struct dea_arena){.ctx = ctx};
   model->mesh = (struct dea_layout_mesh){.memory = {.ctx = ctx}};
   model->solid = NULL;
+  model->observer = NULL;
   model->springs = NULL;
   model->pressures = NULL;
   model->surfaces = NULL;
@@ -1006,6 +1043,7 @@ static void leave(struct dea_context *ctx, void *self)
   struct variant *v = model->variant;
   struct dea_solid *s = v->own.solid;
   if (model->layout != v->own.layout) {
+    dea_observer_destroy(ctx, model->observer);
     dea_solid_destroy(ctx, v->solid);
     v->solid = NULL;
     free_parts(ctx, model);
