@@ -93,8 +93,8 @@ static void create(enum dea_solid_field_kind field, struct dea_grid **grid,
   for (int i = 0; i < 2; i++) {
     double length = parts[i].to_m - parts[i].from_m, fine = plies[0].thickness_m;
     double wide = i == 0 ? 2 * h_m : 4 * h_m;
-    size_t count = dea_cuts_graded(length, i == 0 ? wide : fine, i == 0 ? fine : wide, length / 20,
-                                   ALONG_MAX, cuts[i]);
+    size_t count = dea_cuts_graded(length, i == 0 ? wide : fine, i == 0 ? fine : wide, 2,
+                                   length / 20, ALONG_MAX, cuts[i]);
     blocks[i] = (struct dea_block){map_part, &parts[i], cuts[i], one, count, 1, i};
   }
   const struct dea_solid_options options = {.order_z = 2,

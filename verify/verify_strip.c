@@ -81,8 +81,8 @@ static void make_grid(struct strip *s)
   struct dea_ply plies[HALVINGS_MAX + 2];
   struct dea_block blocks[PARTS];
   for (int k = 0; k < PARTS; k++) {
-    size_t count =
-        dea_cuts_graded(parts[k].length, ends[k][0], ends[k][1], largest_m, CUTS_MAX, s->cuts[k]);
+    size_t count = dea_cuts_graded(parts[k].length, ends[k][0], ends[k][1], 2, largest_m, CUTS_MAX,
+                                   s->cuts[k]);
     blocks[k] = (struct dea_block){map_part, &parts[k], s->cuts[k], across, count, 1, k};
   }
   size_t ply_count = fill_sheets(s, plies);
