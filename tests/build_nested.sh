@@ -13,8 +13,15 @@ cmake -G Ninja -S "$source" -B "$build" -DDEA_LONG_TESTS=OFF -DDEA_BUILD_BENCH=O
   -DDEA_BUILD_VERIFY=OFF -DDEA_TEST_LABELS="$labels" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DCMAKE_C_FLAGS_RELWITHDEBINFO="-O1 -g1" "$@"
 cmake --build "$build"
+case "$*" in *--coverage*) find "$build" -name "*.gcda" -delete ;; esac
 # Every allocation is failed in turn by some tests, so a failed one must come back as NULL. clang-14
 # does not know where glibc 2.36 keeps the thread-local storage of modules, and its search for leaks
 # may crash there if it follows that.
 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1:intercept_tls_get_addr=0 UBSAN_OPTIONS=print_stacktrace=1 \
   ctest --test-dir "$build" -L "$labels" -LE "$without" --output-on-failure -j "$(nproc)"
+case "$*" in
+*--coverage*) # lines and branches by folder, for whoever reads the log
+  python3 "$source/verify/coverage.py" --build "$build" --files 0 >"$build/coverage.txt"
+  cat "$build/coverage.txt"
+  ;;
+esac

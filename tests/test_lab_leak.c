@@ -102,6 +102,32 @@ static const struct {
 enum { WAVES = sizeof waves / sizeof waves[0] };
 static const struct film healthy = {100e-12, 50, 3, 0, 1e9, 0, 1, 3};
 
+/* What is learned, in numbers: the lower quartile of 10 to 20 uA, and the median 3 of what their
+ * differences (2, -1, 4, -2, 7, -6, 2) are away from their median, 2. */
+static void test_what_is_learned(void **state)
+{
+  (void)state;
+  static const double visits_uA[] = {10, 12, 11, 15, 13, 20, 14, 16, 16};
+  static struct dea_leak_watch watch;
+  struct dea_protocol *p = good_protocol(ctx, STAYS);
+  size_t learned = 0;
+  dea_leak_watch_start(&watch, p);
+  for (int i = 0; i < 8100; i++) { // -2 kV; sections of 10 s
+    enum dea_leak_event event =
+        dea_leak_watch_sample(&watch, 0.01 * i, -2000, -1e-6 * visits_uA[i / 1000]);
+    assert_true(event == DEA_LEAK_NOTHING || event == DEA_LEAK_LEARNED);
+    if (event == DEA_LEAK_LEARNED) {
+      learned++; // one of some 97 values of a section lies across its end: 1 % of 7 uA
+      assert_close(0.01 * i, 80, 0, 0.2);
+      assert_close(watch.value_A, 11.5e-6, 2e-3, 0);
+      assert_close(watch.parts[0].scatter_A, 1.4826 * 3e-6 / sqrt(2), 0.03, 0);
+      assert_close(watch.limit_A, 11.5e-6 + 6 * 1.4826 * 3e-6 / sqrt(2), 0.03, 0);
+    }
+  }
+  assert_int_equal(learned, 1);
+  dea_protocol_destroy(ctx, p);
+}
+
 /* Charging, spikes at jumps, noise, and a slow rise by half: no fault. */
 static void test_healthy_films(void **state)
 {
@@ -244,6 +270,11 @@ static void test_staircase(void **state)
   assert_close(dea_protocol_period_s(&p->steps[0]), 2, 1e-12, 0);
   assert_close(dea_protocol_learning_s(&p->steps[0]), 18, 1e-12, 0);
   dea_protocol_destroy(ctx, p);
+  p = good_protocol(ctx,
+                    BENCH "waveform: {kind: staircase, values: [1 kV, 2 kV], frequency: 0.5 Hz, "
+                          "cycles: 9}\n");
+  assert_true(isinf(dea_protocol_learning_s(&p->steps[0]))); // 18 s at each
+  dea_protocol_destroy(ctx, p);
 }
 
 /* The watch of a drive: what it notices, and that the fixed limit holds before and after. */
@@ -296,6 +327,7 @@ static void test_weeks(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_what_is_learned),
       cmocka_unit_test(test_healthy_films),
       cmocka_unit_test(test_step),
       cmocka_unit_test(test_leak_that_grows),

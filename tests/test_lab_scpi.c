@@ -449,6 +449,7 @@ static void test_harmless_commands(void **state)
   for (size_t i = 0; i < sizeof harmless / sizeof harmless[0]; i++) {
     assert_false(dea_scpi_sets_output(harmless[i], "SOUR:VOLT %g"));
   }
+  assert_true(dea_scpi_sets_output("VOLT 5", ":SOUR:VOLT %g"));
   assert_false(dea_scpi_sets_output("C1:BSWV WVTP,DC,OFST,0", "C1:BSWV OFST,%g"));
   assert_true(dea_scpi_configures("CONF:VOLT:DC 10") && dea_scpi_configures(":sens:volt 10"));
   assert_false(dea_scpi_configures("CONF:VOLT;VOLT 5") || dea_scpi_configures("SOUR:VOLT 5"));
@@ -479,6 +480,30 @@ static void test_computer_that_slept(void **state)
   assert_int_equal(b.instrument->type->hold(ctx, b.instrument, &held_V), DEA_OK);
   assert_true(held_V < 9);
   end(&b);
+}
+
+/* A supply that took nothing for 0.4 s, while the program waited for it: what became due meanwhile
+ * is as late as after a stall. */
+static void test_late_samples(void **state)
+{
+  (void)state;
+  static const double volts[] = {0, 1, 2, 3, 4};
+  struct dea_timed_output o = {.rate_Hz = 100, .queue_s = 0.25, .behind_s = 1};
+  assert_int_equal(dea_timed_begin(ctx, &o), DEA_OK);
+  assert_int_equal(dea_timed_put(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
+  dea_timed_start(&o, 0);
+  assert_int_equal(dea_timed_take(ctx, &o, 0.011), DEA_OK); // two of them
+  o.turned_s = 0.2;
+  assert_int_equal(dea_timed_take(ctx, &o, 0.021 + 0.2), DEA_OK); // 0.2 s late
+  o = (struct dea_timed_output){
+      .rate_Hz = 100, .queue_s = 0.25, .behind_s = 1, .queue = o.queue, .room = o.room};
+  o.clock_s = o.waiting_s = NAN;
+  assert_int_equal(dea_timed_put(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
+  dea_timed_start(&o, 0);
+  assert_int_equal(dea_timed_take(ctx, &o, 0.011), DEA_OK);
+  o.turned_s = 0.42;
+  assert_message(dea_timed_take(ctx, &o, 0.42), DEA_E_INTERLOCK, "longer than the queue");
+  dea_timed_end(ctx, &o);
 }
 
 /* A supply that plays a triangle of 0 to 2 kV and is measured every 0.2 s; when it is off, by its
@@ -520,6 +545,9 @@ static void test_read_back_that_is_off(void **state)
     assert_true(low_s >= 5 && low_s < 25 && high_s >= 5 && high_s < 25 && cut_s > 5 && cut_s < 60);
   }
   assert_true(off_at(0.02, 0.92, 0, INFINITY) < 30);
+  assert_message(
+      dea_timed_off(ctx, "it", 1000, 2000, 0.05), DEA_E_INTERLOCK,
+      "it measures 1 kV where 2 kV was set, off by more than safety.readback_error of 5 %");
 }
 
 /* A generator of Siglent or BK before an amplifier, set as a direct voltage: what it gets are
@@ -597,6 +625,7 @@ int main(void)
       cmocka_unit_test(test_numbers),
       cmocka_unit_test(test_reads),
       cmocka_unit_test(test_read_back_that_is_off),
+      cmocka_unit_test(test_late_samples),
       cmocka_unit_test(test_plays),
       cmocka_unit_test(test_makes_no_sense),
       cmocka_unit_test(test_harmless_commands),

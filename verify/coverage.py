@@ -105,14 +105,17 @@ def main():
     found = sources(os.path.abspath(a.build))
     if not found:
         sys.exit("no .gcno below %s/src: it was not built with --coverage" % a.build)
-    text = table(found) + "\n\nMost lines that no test of the selection reaches:\n\n" + \
-        least(found, a.files) + "\n"
+    text = table(found) + "\n"
+    if a.files > 0:
+        text += "\nMost lines that no test of the selection reaches:\n\n" + \
+            least(found, a.files) + "\n"
     print(text)
     if a.write:
         with open(os.path.join(ROOT, "docs/verification/coverage.md"), "w") as file:
             file.write("# What the tests reach\n\nLines and branches of `src/` that `ctest %s` reaches, "
-                       "by folder; written by `scripts/coverage\n--write`. Counted by gcov without "
-                       "optimisation; programs that a test kills count nothing, so that\n`lab/drive` "
+                       "by folder; written by\n`verify/coverage.py --write` (of `scripts/coverage`, or "
+                       "of `build/nested/gcc`, which CI builds with sanitizers\nand with little "
+                       "optimisation, so that its branches are some more). Programs that a test kills count nothing, so that\n`lab/drive` "
                        "is reached more than it says. The tests of supplies (`-L supply`) and of the 3D "
                        "solver\n(`-L solid`) are in this only where the selection has them. A line that "
                        "is reached is not one whose\nresult is checked: that is what "
