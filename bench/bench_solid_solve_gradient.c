@@ -1,6 +1,8 @@
 /* What gradients of model 3d cost beside a load step of 1 kV (docs/theory/gradients.md): what all
- * of them share, each quantity, and each number of the design. The paper's actuator with four
- * fibres. Times are the processor's: other work on the machine counts less. */
+ * of them share, each quantity, and each number of the design; the
+ * same of the lowest frequency, with the search for its mode. The paper's actuator with four
+ * fibres, a sector, whose lowest mode is single. Times are the processor's: other work on the
+ * machine counts less. */
 #include "bench.h"
 #include "model/model.h"
 #include "result/columns.h"
@@ -53,6 +55,17 @@ static double step_of(struct dea_context *ctx, const struct dea_device *device,
   return best;
 }
 
+/* That of the frequency, with its mode and factor; by the first numbers. */
+static double time_of_frequency(struct dea_context *ctx, struct dea_design_gradient *ask,
+                                size_t numbers)
+{
+  const int frequency = dea_point_column_find("frequency_Hz"), *columns = ask->columns;
+  ask->columns = &frequency;
+  const double out = time_of(ctx, ask, numbers, 1);
+  ask->columns = columns;
+  return out;
+}
+
 static void measure(struct dea_context *ctx, const struct dea_design *design,
                     const struct dea_device *device, double refinement)
 {
@@ -75,7 +88,8 @@ static void measure(struct dea_context *ctx, const struct dea_design *design,
                                     .numbers = numbers,
                                     .columns = columns};
   double shared = time_of(ctx, &ask, 0, 0), all = time_of(ctx, &ask, 0, QUANTITIES),
-         whole = time_of(ctx, &ask, count, QUANTITIES);
+         whole = time_of(ctx, &ask, count, QUANTITIES), mode = time_of_frequency(ctx, &ask, 0),
+         by_all = time_of_frequency(ctx, &ask, count);
   const struct {
     const char *what;
     double value;
@@ -85,7 +99,9 @@ static void measure(struct dea_context *ctx, const struct dea_design *design,
                  {"quantity_over_step", (all - shared) / QUANTITIES / step, "1"},
                  {"number_over_step", (whole - all) / (double)count / step, "1"},
                  {"numbers", (double)count, "1"},
-                 {"all_over_step", whole / step, "1"}};
+                 {"all_over_step", whole / step, "1"},
+                 {"frequency_over_step", mode / step, "1"},
+                 {"frequency_number_over_step", (by_all - mode) / (double)count / step, "1"}};
   for (size_t i = 0; i < sizeof figures / sizeof figures[0]; i++) {
     char name[80];
     snprintf(name, sizeof name, "solid_solve_gradient.refinement_%g.%s", refinement,
