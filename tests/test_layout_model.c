@@ -2,6 +2,7 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
+#include "model/solid/actuator/layout_mesh.h"
 
 #include "layout_device.h"
 
@@ -94,6 +95,38 @@ static void test_pure_shear(void **state)
     assert_close(point.lowest_z_m, point.highest_z_m, 0, 1e-12);
   }
   dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* The mesh ends where a support does: a held part of an edge is as long as it was drawn, on any
+ * mesh. */
+static void test_end_of_a_support(void **state)
+{
+  (void)state;
+  const double a = 10e-3, end_m = 3.7e-3;
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  add_rectangle(device, "film", 0, 0, a, a);
+  const size_t part = add_rectangle(device, "part", -1e-3, -1e-3, 1e-3 + end_m, 2e-3);
+  add_film(device, 0, 1, 1);
+  l->supports[l->support_count++] =
+      (struct dea_layout_support){.region = 0, .edge = true, .within = part, .components = 7};
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
+  struct dea_layout_mesh mesh;
+  assert_int_equal(dea_layout_mesh_create(ctx, l, &settings, &mesh), DEA_OK);
+  bool *marked = dea_alloc(ctx, mesh.plane->node_count, sizeof *marked);
+  assert_non_null(marked);
+  assert_true(dea_layout_mesh_mark(&mesh, 0, true, part, marked) > 2);
+  double last[2] = {0};
+  for (size_t n = 0; n < mesh.plane->node_count; n++) {
+    for (int i = 0; i < 2 && marked[n]; i++) {
+      last[i] = fmax(last[i], mesh.plane->x[2 * n + (size_t)i]);
+    }
+  }
+  assert_close(last[0], end_m, 0, 1e-9);
+  assert_close(last[1], 1e-3, 0, 1e-9);
+  dea_free(ctx, marked);
+  dea_layout_mesh_free(ctx, &mesh);
   dea_device_destroy(ctx, device);
 }
 
@@ -438,6 +471,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_pure_shear),
+      cmocka_unit_test(test_end_of_a_support),
       cmocka_unit_test(test_release_of_a_bilayer),
       cmocka_unit_test(test_pre_stretch_at_an_angle),
       cmocka_unit_test(test_release_at_an_angle),

@@ -379,6 +379,45 @@ static void test_fringe(void **state)
   }
 }
 
+/* Where fibres begin at the electrode's edge, a coupled field that is resolved elsewhere is not:
+ * that is told, and of fibres that begin elsewhere it is not. */
+static void test_coupled_tips(void **state)
+{
+  static const double overlaps[] = {0, 1e-3};
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    const struct dea_model_settings settings = {
+        .film = DEA_FILM_SOLID, .field = DEA_FIELD_COUPLED, .elements_z = 6};
+    struct dea_device device = test_star(4);
+    device.fibre_tip_radius_m = device.electrode_radius_m - overlaps[i];
+    struct dea_model *model;
+    dea_finding_clear(ctx);
+    assert_int_equal(solid->create(ctx, &device, &settings, &model), DEA_OK);
+    bool told = find_finding(ctx, DEA_WARNING, "begin where the electrode ends") != NULL;
+    assert_true(told == (overlaps[i] == 0));
+    solid->destroy(ctx, model);
+  }
+}
+
+/* One element between a fibre and the middle to the next one: that errors are not seen across it is
+ * said. */
+static void test_one_element_between_fibres(void **state)
+{
+  (void)state;
+  for (int fibres = 4; fibres <= 8; fibres += 4) {
+    struct dea_device device = test_star(fibres);
+    for (int refinement = 1; refinement <= 2; refinement++) {
+      const struct dea_model_settings settings = {.film = DEA_FILM_SOLID, .refinement = refinement};
+      struct dea_model *model;
+      dea_finding_clear(ctx);
+      assert_int_equal(solid->create(ctx, &device, &settings, &model), DEA_OK);
+      bool told = find_finding(ctx, DEA_NOTE, "there is one element, across which") != NULL;
+      assert_true(told == (fibres == 8 && refinement == 1));
+      solid->destroy(ctx, model);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -390,6 +429,8 @@ int main(void)
       cmocka_unit_test(test_profile),
       cmocka_unit_test(test_capacitance_of_the_whole),
       cmocka_unit_test(test_fringe),
+      cmocka_unit_test(test_coupled_tips),
+      cmocka_unit_test(test_one_element_between_fibres),
       cmocka_unit_test(test_charge),
       cmocka_unit_test(test_number_of_fibres),
       cmocka_unit_test(test_kinds_of_fibres),

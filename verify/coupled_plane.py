@@ -10,19 +10,19 @@ the pressure linear and discontinuous. Energy of the film, per volume of the str
 with E = -grad(phi) and the field that does not pass the film's free faces; "thin": E = V/h under the
 electrode and nothing else. Stresses are derived by hand, tangents by complex steps.
 
-    python3 verify/coupled_plane.py [elements through the film, even]
+    python3 verify/coupled_plane.py [--gap G] [elements through the film, even, as 4,8,12] [voltages]
 
-prints for some voltages the tip's lift and the excess of the capacitance at rest.
+prints the tip's lift, the place of the lower electrode's edge and the excess of the capacitance at rest. --gap:
+the plate begins G times the film's thickness behind the electrode's edge.
 """
 import sys
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg import solve_banded
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse.linalg import splu
 
 MM = 1e-3
-LENGTH = {"a": 3.75 * MM, "b": 15 * MM, "t": 0.1 * MM}
+LENGTH = {"a": 3.75 * MM, "b": 15 * MM, "t": 0.1 * MM, "gap": 0.0}
 L = 1.5                                     # pre-stretch
 H = 0.1 * MM / L**2
 YEOH = (178.4e3, -6e3, 4.2e3)
@@ -51,7 +51,7 @@ def graded(length, first, last, widest, ratio=1.6):
 def through_film(count):
     """Cuts of the film, finer towards both faces by a factor of about 2 an element."""
     half = count // 2
-    size = 2.0 ** np.minimum(np.arange(half), 5)
+    size = 2.0 ** np.arange(half)
     cuts = np.concatenate([[0], np.cumsum(size)]) / size.sum() * 0.5
     return (np.concatenate([cuts, 1 - cuts[-2::-1]]) - 0.5) * H
 
@@ -63,7 +63,11 @@ class Mesh:
         a, b = LENGTH["a"], LENGTH["b"]
         film = through_film(count)
         fine = film[1] - film[0]
-        x = np.concatenate([graded(a, 20 * H, fine, a / 15), (a + graded(b - a, fine, 40 * H, b / 40))[1:]])
+        p = a + LENGTH["gap"]                   # where the plate begins
+        x = graded(a, 20 * H, fine, a / 15)
+        if p > a:
+            x = np.concatenate([x, (a + graded(p - a, fine, fine, b))[1:]])
+        x = np.concatenate([x, (p + graded(b - p, fine, 40 * H, b / 40))[1:]])
         z = np.concatenate([film, H / 2 + np.array([0.25, 0.5, 0.75, 1]) * LENGTH["t"]])
         self.columns, self.rows, film_rows = len(x) - 1, len(z) - 1, count
         mid = lambda c: np.sort(np.concatenate([c, 0.5 * (c[1:] + c[:-1])]))
@@ -72,7 +76,7 @@ class Mesh:
         quads, is_film, under = [], [], []
         for i in range(self.columns):
             for k in range(self.rows):
-                if k >= film_rows and (not plate or x[i] < a * (1 - 1e-12)):
+                if k >= film_rows and (not plate or x[i] < p * (1 - 1e-12)):
                     continue
                 quads.append(number[2 * i:2 * i + 3, 2 * k:2 * k + 3].ravel())
                 is_film.append(k < film_rows)
@@ -129,7 +133,8 @@ class Problem:
         held[2:3 * m.nodes:3] |= self.top | self.bottom | ~touched
         held[self.pressure[~m.is_film].ravel()] = True
         self.free = np.where(~held)[0]
-        self.tip = np.argmin(np.hypot(x - a, z - H / 2))
+        self.tip = np.argmin(np.hypot(x - a - LENGTH["gap"], z - H / 2))
+        self.edge = np.argmin(np.hypot(x - a, z + H / 2))     # of the lower electrode
         # the film is free of stress across its plane: p at rest
         I1 = 2 * L**2 + L**-4
         self.u[self.pressure[m.is_film, 0]] = -2 * self.yeoh(I1) * L**-4
@@ -206,19 +211,37 @@ class Problem:
                 turned = q.copy()
                 turned[..., k] += 1j * small
                 D[..., k] = self.stress(turned, E0).imag / small
-            r = np.zeros(self.dofs)
-            np.add.at(r, self.at, np.einsum("egiG,egi,eg->eG", B, S, self.dV))
             K = np.einsum("egiG,egik,eg,egkH->eGH", B, D, self.dV, B, optimize=True)
-            rows, cols = np.repeat(self.at, G, axis=1).ravel(), np.tile(self.at, (1, G)).ravel()
-            K = sp.csc_matrix((K.ravel(), (rows, cols)), shape=(self.dofs, self.dofs))
-            f, d = self.free, sp.diags(scale[self.free])
-            K = d @ K[f][:, f] @ d
-            du = scale[f] * self.factor_solve(K.tocsc(), -scale[f] * r[f])
-            self.u[f] += du
-            moved = np.abs(du[f < 3 * self.m.nodes] / scale[f[f < 3 * self.m.nodes]]).max() / H
+            R = np.einsum("egiG,egi,eg->eG", B, S, self.dV)
+            du = self.newton_step(K, R, scale[:3 * self.m.nodes])
+            moved = np.abs(du).max() / H
             if moved < 1e-9:
                 return self.u[3 * self.tip + 1]
         raise ArithmeticError(f"no equilibrium at {V} V")
+
+    def newton_step(self, K, R, scale):
+        """Adds Newton's step; the pressure goes out element by element. Returns it over `scale`."""
+        m = self.m
+        Kup, Kpp = K[:, :27, 27:], K[:, 27:, 27:].copy()
+        Kpp[~m.is_film] = np.eye(3)
+        inv = np.linalg.solve(Kpp, np.concatenate([K[:, 27:, :27], R[:, 27:, None]], axis=2))
+        inv[~m.is_film] = 0
+        K = K[:, :27, :27] - Kup @ inv[:, :, :27]
+        at, count = self.at[:, :27], 3 * m.nodes
+        r, du = np.zeros(count), np.zeros(count)
+        np.add.at(r, at, R[:, :27] - np.einsum("eij,ej->ei", Kup, inv[:, :, 27]))
+        rows, cols = np.repeat(at, 27, axis=1).ravel(), np.tile(at, (1, 27)).ravel()
+        K = sp.csc_matrix((K.ravel(), (rows, cols)), shape=(count, count))
+        f = self.free[self.free < count]
+        d = sp.diags(scale[f])
+        # displacements make it positive, the potential negative definite: any pivot will do
+        factor = splu((d @ K[f][:, f] @ d).tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+                      options={"SymmetricMode": True})
+        du[f] = scale[f] * factor.solve(-scale[f] * r[f])
+        self.u[:count] += du
+        dp = -inv[:, :, 27] - np.einsum("eij,ej->ei", inv[:, :, :27], du[at])
+        self.u[self.pressure[m.is_film]] += dp[m.is_film]
+        return du / scale
 
     def go(self, V):
         """To a voltage from that of the last equilibrium, in steps where Newton's method needs them."""
@@ -236,18 +259,6 @@ class Problem:
         self.V = V
         return lift
 
-    @staticmethod
-    def factor_solve(K, right):
-        """K is long and narrow: as a band."""
-        order = reverse_cuthill_mckee(K, symmetric_mode=True)
-        K = K[order][:, order].tocoo()
-        width = int(np.abs(K.row - K.col).max())
-        band = np.zeros((2 * width + 1, len(right)))
-        np.add.at(band, (width + K.row - K.col, K.col), K.data)
-        out = np.empty(len(right))
-        out[order] = solve_banded((width, width), band, right[order], overwrite_ab=True)
-        return out
-
     def capacitance(self, V):
         """C/C0, C0 = eps a/h, from the field's energy at the state that is there."""
         q = self.points(self.u).real
@@ -256,19 +267,40 @@ class Problem:
         return (self.dV * w2)[self.m.is_film].sum() / V**2 * H / LENGTH["a"]
 
 
+def creep(V):
+    """By how much the lower electrode's edge moves outwards where the mesh at it is e = 2.718 times as fine,
+    by theory of small displacements on the stretched half-plane (docs/theory/coupled.md)."""
+    I1 = 2 * L**2 + L**-4
+    i, a, b = I1 - 3, L**2, L**-4
+    G, d = 2 * Problem.yeoh(I1), 4 * (2 * YEOH[1] + 6 * YEOH[2] * i) * (a - b)
+    m2 = np.roots([G * b, -(G * (a + b) + d * (a - b)), G * a])
+    m = np.sqrt(m2)
+    normal = m * (2 * G * b - d * b + G * a + d * a - G * b * m2)
+    A = np.linalg.solve(np.array([G * b * (m2 + 1), normal]), [1.0, 1.0])
+    return EPS * V**2 / (4 * H) / np.pi * (m @ A)
+
+
 def main():
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 32
-    mesh = Mesh(count)
-    print(f"{count} elements through the film, {len(mesh.quads)} elements, {mesh.nodes} nodes")
-    thin, coupled = Problem(mesh, False), Problem(mesh, True)
-    coupled.solve(0)
-    coupled.solve(1e-3)
-    excess = coupled.capacitance(1e-3) - 1
-    print(f"capacitance at rest: excess {excess:.6f}, over h/a: {excess * LENGTH['a'] / H:.5f}, "
-          f"exact {np.log(4) / 2 / np.pi:.5f}")
-    for V in [float(v) for v in sys.argv[2:]] or (100, 2000, 3000):
-        z = thin.go(V), coupled.go(V)
-        print(f"{V} V: tip {1e6 * z[0]:.5f} um (V/h), {1e6 * z[1]:.5f} um (coupled): {100 * (z[1] / z[0] - 1):+.2f} %")
+    words = sys.argv[1:]
+    if words[:1] == ["--gap"]:
+        LENGTH["gap"] = float(words[1]) * H
+        words = words[2:]
+    counts = [int(w) for w in words[0].split(",")] if words else [4, 8, 12, 16]
+    for count in counts:
+        mesh = Mesh(count)
+        thin, coupled = Problem(mesh, False), Problem(mesh, True)
+        coupled.solve(0)
+        coupled.solve(1e-3)
+        excess = (coupled.capacitance(1e-3) - 1) * LENGTH["a"] / H
+        first = np.diff(through_film(count))[0]
+        print(f"{count} elements through the film, the first h/{H / first:.0f}, {mesh.nodes} nodes; "
+              f"capacitance in excess at rest, over h/a: {excess:.5f}, exact {np.log(4) / 2 / np.pi:.5f}")
+        for V in [float(v) for v in words[1:]] or [100.0]:
+            z = thin.go(V), coupled.go(V)
+            print(f"  {V:g} V: tip {1e6 * z[0]:.7f} um (V/h), {1e6 * z[1]:.7f} um (coupled): "
+                  f"{100 * (z[1] / z[0] - 1):+.4f} %; edge of the lower electrode "
+                  f"{1e6 * coupled.u[3 * coupled.edge]:.5f} um, by theory {1e6 * creep(V):.5f} um more for each e "
+                  f"finer", flush=True)
 
 
 if __name__ == "__main__":

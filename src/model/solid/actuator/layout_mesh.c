@@ -13,7 +13,8 @@ static const double size_share = 0.12, edge_share = 0.4, growth = 0.7;
 /* A narrow region has an element across: its size over the region's area by its boundary, which is
  * half its width. */
 static const double across_share = 2;
-static const double near_share = 1e-6; // of the size of all: a node on a boundary
+static const double near_share = 1e-6;  // of the size of all: a node on a boundary
+static const double least_share = 1e-6; // of the area of all: what is smaller is as good as a point
 
 // Plane ------------------------------------------------------------------------------------------
 
@@ -117,11 +118,36 @@ static dea_status clip_region(struct dea_context *ctx, const struct dea_layout_m
   return DEA_OK;
 }
 
+/* Meshes those regions too that only say where a support ends, as far as they lie on the plies:
+ * else its last node would lie up to an element before that end, whatever the order of the
+ * elements. */
+static dea_status add_ends(struct dea_context *ctx, struct dea_layout_mesh *mesh,
+                           const struct dea_region *plies, struct dea_region *clipped)
+{
+  const struct dea_layout *l = mesh->layout;
+  for (size_t i = 0; i < l->support_count; i++) {
+    size_t end = l->supports[i].within;
+    if (end == DEA_LAYOUT_NONE || mesh->group[end] != DEA_LAYOUT_NONE) {
+      continue;
+    }
+    struct dea_region both = {.ctx = ctx};
+    DEA_TRY(ctx, dea_region_combine(ctx, DEA_INTERSECTION, &l->regions[end].region, plies, &both));
+    if (both.contour_count > 0 &&
+        dea_region_area_m2(&both) > least_share * dea_region_area_m2(plies)) {
+      mesh->group[end] = 0;
+      clipped[end] = both;
+    } else {
+      dea_region_free(&both);
+    }
+  }
+  return DEA_OK;
+}
+
 /* What of each region lies on the plies, into clipped[region_count]; empty where all of it does,
  * and where none: what a support or a body has beyond them would be meshed for nothing, and badly
  * where it runs out in a cusp. What lies in other copies of the sector only is not meshed. Without
  * GEOS nothing is clipped. */
-static dea_status clip(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+static dea_status clip(struct dea_context *ctx, struct dea_layout_mesh *mesh,
                        struct dea_region *clipped)
 {
   const struct dea_layout *l = mesh->layout;
@@ -136,6 +162,9 @@ static dea_status clip(struct dea_context *ctx, const struct dea_layout_mesh *me
     if (mesh->group[i] != DEA_LAYOUT_NONE) {
       status = clip_region(ctx, mesh, i, &plies, &sector, &clipped[i]);
     }
+  }
+  if (status == DEA_OK) {
+    status = add_ends(ctx, mesh, &plies, clipped);
   }
   dea_region_free(&plies);
   dea_region_free(&sector);

@@ -34,8 +34,8 @@ struct work {
   const struct dea_layout_mesh *like;
   const struct dea_plane_mesh *plane;
   struct dea_arena memory;
-  struct outline *outline; // [outline_count]
-  size_t outline_count;
+  struct outline *outline; // [outline_count + end_count]: last those where supports end only
+  size_t outline_count, end_count;
   double near_m, apart_m;    // lies on an outline; outlines move apart
   struct rule *rule;         // [nodes]
   size_t cell_count;         // quadrilaterals between nodes
@@ -150,6 +150,7 @@ static dea_status find_outlines(struct dea_context *ctx, struct work *w,
   const struct dea_layout *own = w->like->layout;
   size_t pieces = 0;
   bool *used = dea_arena_alloc(&w->memory, own->region_count, sizeof *used);
+  bool *ends = dea_arena_alloc(&w->memory, own->region_count, sizeof *ends);
   for (size_t i = 0; i < own->region_count; i++) {
     pieces += own->regions[i].region.vertex_count;
   }
@@ -160,6 +161,14 @@ static dea_status find_outlines(struct dea_context *ctx, struct work *w,
     if (used[i]) {
       DEA_TRY(ctx, add_region(ctx, w, &own->regions[i].region, &layout->regions[i].region,
                               w->outline, &w->outline_count));
+    }
+  }
+  for (size_t i = 0; i < own->support_count; i++) {
+    const size_t end = own->supports[i].within;
+    if (end != DEA_LAYOUT_NONE && !used[end] && !ends[end]) {
+      ends[end] = true;
+      DEA_TRY(ctx, add_region(ctx, w, &own->regions[end].region, &layout->regions[end].region,
+                              w->outline + w->outline_count, &w->end_count));
     }
   }
   return DEA_OK;
@@ -252,6 +261,20 @@ static bool add_sides(const struct work *w, const double x[2], struct rule *r)
   return good;
 }
 
+/* Nodes at the end of a support, which the mesh has there, go along with it. Where that end lies on
+ * an outline of a part and moves otherwise, the part has them. */
+static void add_ends(struct work *w, size_t node)
+{
+  const double *x = w->plane->x + 2 * node;
+  for (size_t i = w->outline_count; i < w->outline_count + w->end_count; i++) {
+    double normal[2];
+    if (is_on(&w->outline[i], x, w->near_m)) {
+      const double v = speed(&w->outline[i], x, normal);
+      add_rule(&w->rule[node], normal, v, &w->outline[i].to, w->apart_m);
+    }
+  }
+}
+
 static dea_status find_rules(struct dea_context *ctx, struct work *w)
 {
   w->rule = dea_arena_alloc(&w->memory, w->plane->node_count, sizeof *w->rule);
@@ -269,6 +292,7 @@ static dea_status find_rules(struct dea_context *ctx, struct work *w)
     if (!good) {
       return cannot(ctx, "outlines that lie on each other or touch come apart");
     }
+    add_ends(w, n);
   }
   return DEA_OK;
 }

@@ -165,12 +165,21 @@ static size_t share_beside(double length, double size, double finer)
   return share(length, finer > 1 ? size * (1 - 1 / finer) / log(finer) : size);
 }
 
+size_t dea_fibre_disc_beside(const struct dea_fibre_disc *p)
+{
+  if (p->fibres == 0) {
+    return 0;
+  }
+  double a = p->electrode_radius, rest = dea_fibre_disc_angle(p) / p->sectors - fibre_angle(p, a);
+  return share_beside(rest * a, p->beside > 0 ? p->beside : p->size, finer_at_tips(p));
+}
+
 static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_disc *p,
                                struct lines *out)
 {
   DEA_TRY(ctx, check_disc(ctx, p));
   *out = (struct lines){.plate = p, .alpha = dea_fibre_disc_angle(p) / p->sectors};
-  double a = p->electrode_radius, rest = out->alpha, finer = finer_at_tips(p);
+  double a = p->electrode_radius, finer = finer_at_tips(p);
   add_circle(out, a);
   add_circle(out, p->frame_radius);
   if (p->fibres > 0) {
@@ -179,11 +188,10 @@ static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_d
     double width = fmax(p->tip_width, p->outer_width);
     // fibres are stiff and bend: half the size
     out->across = share(0.5 * width, 0.5 * p->size / finer);
-    rest -= fibre_angle(p, a);
   }
   out->wider = log(finer);
-  out->count = out->across +
-               share_beside(rest * a, p->fibres > 0 && p->beside > 0 ? p->beside : p->size, finer);
+  out->count =
+      out->across + (p->fibres > 0 ? dea_fibre_disc_beside(p) : share(out->alpha * a, p->size));
   size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
   out->count = out->count < least ? least : out->count;
   if (out->count > DEA_FIBRE_DISC_LINE_MAX) {
