@@ -211,7 +211,8 @@ static void test_rest_under_stiff_electrodes(void **state)
 /* Four fibres over a film stretched to 3.83 times its size (random design 260): the elements at the
  * fibres' tips turn inside out in the steps of the path's corrector, which took 0.02 of the way to
  * each point then and ended before the limit point. That is where study path has it, by arc length
- * that counts displacements some thousand times less: 2810.19 V and 1.393. */
+ * that counts displacements some thousand times less, 2.81 kV and 1.393; further digits are of
+ * this search itself. */
 static void test_pull_in_beside_fibre_tips(void **state)
 {
   (void)state;

@@ -126,7 +126,10 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
                         const struct dea_settings *given)
 {
   const struct settings *settings = given->values;
-  const struct dea_model_settings model = dea_model_settings_of(design);
+  // a design with errors has none of the other settings yet
+  const struct dea_model_settings model = {.refinement = design->compute.solid.refinement.si,
+                                           .tip_refinement =
+                                               design->compute.solid.tip_refinement.si};
   return dea_study_rising(ctx, refinement_of(settings, &model), settings->refinements,
                           settings->refinement_count);
 }
