@@ -261,18 +261,19 @@ static bool add_sides(const struct work *w, const double x[2], struct rule *r)
   return good;
 }
 
-/* Nodes at the end of a support, which the mesh has there, go along with it. Where that end lies on
- * an outline of a part and moves otherwise, the part has them. */
-static void add_ends(struct work *w, size_t node)
+/* A node follows those of outlines [begin, end) that it lies on; false: they move apart. */
+static bool add_outlines(struct work *w, size_t node, size_t begin, size_t end)
 {
   const double *x = w->plane->x + 2 * node;
-  for (size_t i = w->outline_count; i < w->outline_count + w->end_count; i++) {
+  bool good = true;
+  for (size_t i = begin; i < end; i++) {
     double normal[2];
     if (is_on(&w->outline[i], x, w->near_m)) {
       const double v = speed(&w->outline[i], x, normal);
-      add_rule(&w->rule[node], normal, v, &w->outline[i].to, w->apart_m);
+      good = add_rule(&w->rule[node], normal, v, &w->outline[i].to, w->apart_m) && good;
     }
   }
+  return good;
 }
 
 static dea_status find_rules(struct dea_context *ctx, struct work *w)
@@ -280,19 +281,13 @@ static dea_status find_rules(struct dea_context *ctx, struct work *w)
   w->rule = dea_arena_alloc(&w->memory, w->plane->node_count, sizeof *w->rule);
   DEA_TRY(ctx, dea_arena_status(&w->memory));
   for (size_t n = 0; n < w->plane->node_count; n++) {
-    const double *x = w->plane->x + 2 * n;
-    bool good = add_sides(w, x, &w->rule[n]);
-    for (size_t i = 0; i < w->outline_count && good; i++) {
-      double normal[2];
-      if (is_on(&w->outline[i], x, w->near_m)) {
-        const double v = speed(&w->outline[i], x, normal);
-        good = add_rule(&w->rule[n], normal, v, &w->outline[i].to, w->apart_m);
-      }
-    }
-    if (!good) {
+    if (!add_sides(w, w->plane->x + 2 * n, &w->rule[n]) ||
+        !add_outlines(w, n, 0, w->outline_count)) {
       return cannot(ctx, "outlines that lie on each other or touch come apart");
     }
-    add_ends(w, n);
+    // the mesh has nodes where a support ends; where that end lies on an outline of a part and
+    // moves otherwise, the part has them
+    (void)add_outlines(w, n, w->outline_count, w->outline_count + w->end_count);
   }
   return DEA_OK;
 }
