@@ -2,6 +2,7 @@
 // ctest: solid
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
 #include "testing.h"
 
 #include "solid_fixture.h"
@@ -293,6 +294,12 @@ static void test_interrupted(void **state)
   dea_context_set_interrupt_fn(ctx, NULL, NULL);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 5e3, &report), DEA_OK);
   assert_true(dea_solid_voltage(solid) == 5e3);
+  // before each factor too: one iteration may need many, and one of a large mesh takes seconds
+  double softest;
+  dea_context_set_interrupt_fn(ctx, after_two, &asked);
+  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 1, &softest, NULL),
+                   DEA_E_INTERRUPTED);
+  dea_context_set_interrupt_fn(ctx, NULL, NULL);
   clear();
 }
 

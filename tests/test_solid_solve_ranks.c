@@ -8,8 +8,10 @@
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "quarter_grid.h"
+#include "study/study.h"
 
 #include <jansson.h>
+#include <signal.h>
 
 /* Tests may run as root, and on fewer cores than ranks, beside others. */
 #define MPIRUN                                                                                     \
@@ -161,11 +163,43 @@ static struct answer solve_case(int k)
   return solve(&cases[k]);
 }
 
-/* As a rank: all solve the first cases, the first rank prints. */
+static volatile sig_atomic_t interrupted;
+
+/* Stands for a model whose ranks need each other; the last rank is interrupted at the second point,
+ * after the engine has asked for the last time. */
+static dea_status solve_together(struct dea_context *context, struct dea_model *model,
+                                 double voltage_V, struct dea_load_point *out)
+{
+  (void)context;
+  (void)model;
+  *out = (struct dea_load_point){.voltage_V = voltage_V};
+  dea_solid_any(false);
+  interrupted = voltage_V > 0 && dea_solid_rank() > 0;
+  return DEA_OK;
+}
+
+/* A sweep of three points, one rank of which is interrupted: rank 0 prints how it ends. */
+static void sweep_interrupted(void)
+{
+  static const double voltages_V[] = {0, 1, 2};
+  const struct dea_model_type type = {.name = "together", .solve = solve_together};
+  struct dea_curve curve = {0};
+  dea_context_set_interrupt(ctx, &interrupted);
+  dea_status status = dea_study_take_points(ctx, &type, NULL, voltages_V, 3, &curve);
+  if (dea_solid_rank() == 0) {
+    printf("%d %zu %d\n", (int)status, curve.count, dea_interrupted(ctx));
+  }
+  dea_free(ctx, curve.points);
+}
+
+/* As a rank: all solve the first cases, the first rank prints. No cases: a sweep is interrupted. */
 static int run_as_rank(int cases)
 {
   if (dea_context_create(NULL, &ctx) != DEA_OK || dea_solid_start(ctx) != DEA_OK) {
     return 1;
+  }
+  if (cases == 0) {
+    sweep_interrupted();
   }
   for (int k = 0; k < cases; k++) {
     struct answer answer = solve_case(k);
@@ -244,6 +278,27 @@ static void test_ranks_agree(void **state)
   assert_int_equal(one[INVERTED].status, DEA_E_INVERTED);
 }
 
+/* An interruption of one rank, between two points, ends the sweep of all at the same point: else the
+ * others wait for it in the next one (and `timeout` ends this test). */
+static void test_one_rank_interrupted(void **state)
+{
+  (void)state;
+  char line[1200];
+  int status, told;
+  size_t points;
+  if (!have_mpirun()) {
+    skip();
+  }
+  snprintf(line, sizeof line, MPIRUN "-n 2 '%s' ranks 0", program);
+  FILE *pipe = popen(line, "r");
+  assert_non_null(pipe);
+  assert_int_equal(fscanf(pipe, "%d %zu %d", &status, &points, &told), 3);
+  pclose(pipe);
+  assert_int_equal(status, DEA_E_INTERRUPTED);
+  assert_int_equal(points, 2);
+  assert_int_equal(told, 1);
+}
+
 /* A factor that finds no room is a failure, not a solution of something else. */
 static void test_no_room_for_the_factor(void **state)
 {
@@ -303,6 +358,7 @@ int main(int argc, char **argv)
   }
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_ranks_agree),
+      cmocka_unit_test(test_one_rank_interrupted),
       cmocka_unit_test(test_no_room_for_the_factor),
       cmocka_unit_test(test_command_on_ranks),
   };

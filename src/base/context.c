@@ -31,6 +31,8 @@ struct dea_context {
   const volatile sig_atomic_t *interrupt;
   dea_interrupt_fn interrupt_fn;
   void *interrupt_user;
+  bool (*any)(bool here);
+  bool interrupted_elsewhere;
   dea_finding_fn finding_fn;
   void *finding_user;
 };
@@ -360,6 +362,21 @@ void dea_context_set_interrupt_fn(struct dea_context *ctx, dea_interrupt_fn fn, 
 
 bool dea_interrupted(const struct dea_context *ctx)
 {
-  return (ctx->interrupt != NULL && *ctx->interrupt != 0) ||
+  return ctx->interrupted_elsewhere || (ctx->interrupt != NULL && *ctx->interrupt != 0) ||
          (ctx->interrupt_fn != NULL && ctx->interrupt_fn(ctx->interrupt_user));
+}
+
+void dea_context_set_agreement(struct dea_context *ctx, bool (*any)(bool here))
+{
+  ctx->any = any;
+}
+
+bool dea_interrupted_anywhere(struct dea_context *ctx)
+{
+  bool here = dea_interrupted(ctx);
+  if (ctx->any != NULL) {
+    ctx->interrupted_elsewhere = ctx->any(here);
+    return ctx->interrupted_elsewhere;
+  }
+  return here;
 }

@@ -132,5 +132,11 @@ const volatile sig_atomic_t *dea_context_get_interrupt(const struct dea_context 
 /* The same as a question; both may be set. fn: NULL for none. */
 void dea_context_set_interrupt_fn(struct dea_context *ctx, dea_interrupt_fn fn, void *user);
 bool dea_interrupted(const struct dea_context *ctx);
+/* How processes that compute one model together (mpirun) agree: true on all of them where `here` is
+ * true on one. any: NULL, as at the start, for a process that computes alone. */
+void dea_context_set_agreement(struct dea_context *ctx, bool (*any)(bool here));
+/* Whether any of those processes was interrupted; from then on dea_interrupted says so on all. Each
+ * of them has to ask at the same place: else one of them waits for ever. */
+bool dea_interrupted_anywhere(struct dea_context *ctx);
 
 #endif

@@ -407,7 +407,7 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   struct dea_observation seen;
   double v[VALUES];
   char what[DEA_NAME_SIZE + 16], flags[DEA_FLAGS_SIZE];
-  if (dea_interrupted(ctx)) {
+  if (dea_interrupted_anywhere(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", l->point);
   }
   DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, l->scale * value, &at));

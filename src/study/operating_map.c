@@ -227,7 +227,7 @@ static dea_status add_parameter(struct dea_context *ctx, const struct parameter 
           dea_result_add_table(ctx, result, &parameter->table, map->type->name, LEVELS, &table));
   for (size_t i = 0; i < ROWS; i++) {
     double value = low + (high - low) * (double)i / (ROWS - 1);
-    if (dea_interrupted(ctx)) {
+    if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu rows of the operating map are kept",
                       table->row_count);
     }

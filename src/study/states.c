@@ -324,7 +324,7 @@ static dea_status sweep_up(struct search *s, size_t voltage_count)
   for (size_t i = 0; i < voltage_count; i++) {
     struct dea_load_point point;
     int at;
-    if (dea_interrupted(s->ctx)) {
+    if (dea_interrupted_anywhere(s->ctx)) {
       return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted before the search for states");
     }
     DEA_TRY(s->ctx, s->type->solve(s->ctx, s->model, s->voltages_V[i], &point));
@@ -364,7 +364,7 @@ static dea_status push(struct search *s, size_t from, const struct dea_push *way
   struct dea_load_point point;
   bool found;
   int to;
-  if (dea_interrupted(s->ctx)) {
+  if (dea_interrupted_anywhere(s->ctx)) {
     return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted in the search for states");
   }
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, s->model, &s->states[from].saved));
@@ -565,7 +565,7 @@ static dea_status carry_all(struct search *s, struct finer *before, struct finer
            i = pass == FOLLOWED_DOWN ? s->count - 1 - at : at;
     const struct dea_state *saved =
         before != NULL ? &before->carried[i].saved : &s->states[i].saved;
-    if (dea_interrupted(s->ctx)) {
+    if (dea_interrupted_anywhere(s->ctx)) {
       return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted as states went to a finer mesh");
     }
     if (pass == BY_ITSELF && (before == NULL || before->carried[i].is == (int)i)) {

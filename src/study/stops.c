@@ -46,7 +46,7 @@ dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model
 {
   for (size_t i = 0; i < count; i++) {
     struct dea_load_point point;
-    if (dea_interrupted(ctx)) {
+    if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV; %zu points are kept",
                       1e-3 * voltages_V[i], curve->count);
     }
@@ -77,7 +77,7 @@ dea_status dea_study_stop_by_stop(
                                                                           result->device, &model);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     struct dea_load_point at;
-    if (dea_interrupted(ctx)) {
+    if (dea_interrupted_anywhere(ctx)) {
       status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", curve->count);
       break;
     }

@@ -123,7 +123,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
                               struct dea_curve *curve)
 {
   struct dea_load_point point;
-  if (dea_interrupted(ctx)) {
+  if (dea_interrupted_anywhere(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV; %zu points are kept",
                     1e-3 * voltage_V, curve->count);
   }

@@ -464,7 +464,7 @@ static dea_status play(struct dea_context *ctx, struct player *p)
     p->next_s = fmin(p->longest_s, 0.1 * (end - p->time_s));
     p->time_s = end - p->time_s <= rounding * end ? end : p->time_s;
     while (p->time_s < end) {
-      if (dea_interrupted(ctx)) {
+      if (dea_interrupted_anywhere(ctx)) {
         DEA_TRY(ctx, flush(ctx, p));
         return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at %.6g s; %zu points are kept",
                         p->time_s, p->curve->count);

@@ -299,7 +299,7 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
   steps = steps < 1 ? 1 : steps;
   e->limited = e->has_passed = false;
   for (int i = 1; i <= steps; i++) {
-    if (dea_solid_any(dea_interrupted(ctx))) {
+    if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",
                       1e-3 * voltage_V);
     }

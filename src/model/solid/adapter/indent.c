@@ -214,7 +214,7 @@ dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
   do { // also where it is there already: the film may not be
     double left = depth_m - indent->depth_m;
     double next = fabs(left) <= 1.2 * step ? depth_m : indent->depth_m + copysign(step, left);
-    status = dea_solid_any(dea_interrupted(ctx))
+    status = dea_interrupted_anywhere(ctx)
                  ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted while pressing")
                  : move_on(ctx, indent, solid, voltage_V, next, &way, report);
     step = fmin(growth * step, largest_step_m);

@@ -581,7 +581,6 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
       .point_mass_kg = l->body_count > 0 ? point_mass : NULL,
       .self = model,
   };
-  DEA_TRY(ctx, dea_solid_start(ctx));
   DEA_TRY(ctx, dea_solid_create(ctx, model->mesh.grid, &options, &model->solid));
   DEA_TRY(ctx, add_loads(ctx, model));
   return DEA_OK;
@@ -661,7 +660,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
       dea_arena_alloc(&model->memory, device->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
                       sizeof *model->answer);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
-  DEA_TRY(ctx, make_mesh(ctx, model));
+  DEA_TRY(ctx, dea_solid_start(ctx));
+  DEA_TRY(ctx, dea_solid_agree(ctx, make_mesh(ctx, model))); // gmsh may be ended on one rank alone
   model->copies = (double)dea_layout_sector_copies(&model->mesh.sector);
   model->near_m = dea_layout_mesh_near_m(&model->mesh);
   DEA_TRY(ctx, say_mesh(ctx, model));

@@ -110,7 +110,7 @@ static dea_status follow_path(struct dea_context *ctx, struct dea_standing *stan
   struct dea_load_point point;
   for (size_t i = 1; i < o->max_points; i++) {
     struct dea_continuation_point at;
-    if (dea_solid_any(dea_interrupted(ctx))) {
+    if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the path");
     }
     dea_status status = dea_solid_continuation_step(ctx, path, &at);
@@ -317,7 +317,7 @@ dea_status dea_standing_advance(struct dea_context *ctx, struct dea_model *model
   if (standing->driven == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a history in time has to begin first");
   }
-  if (dea_solid_any(dea_interrupted(ctx))) {
+  if (dea_interrupted_anywhere(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted in a step in time");
   }
   DEA_TRY(ctx, dea_circuit_step_advance(ctx, standing->driven, step, &standing->report, error));

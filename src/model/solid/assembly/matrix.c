@@ -349,6 +349,9 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
   enum { ROOM = 25, ROOM_MAX = 400 };
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
+  if (dea_interrupted_anywhere(ctx)) { // that of a large mesh takes seconds, and hears nothing
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor");
+  }
   for (PetscInt room = ROOM; room <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY; room *= 2) {
     if (room > ROOM) {
       MatDestroy(factor); // PETSc takes no second attempt with it

@@ -61,6 +61,12 @@ static dea_status start_blas(struct dea_context *ctx)
              : dea_fail(ctx, DEA_E_MEMORY, "out of memory: LAPACK cannot be started");
 }
 
+/* A signal may reach one of the ranks alone. */
+static void agree_on_interruptions(struct dea_context *ctx)
+{
+  dea_context_set_agreement(ctx, rank_count() > 1 ? dea_solid_any : NULL);
+}
+
 dea_status dea_solid_start(struct dea_context *ctx)
 {
   // the signals are the caller's: an interrupt has to keep the points that are there
@@ -70,6 +76,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
   PetscBool running = PETSC_FALSE;
   PetscInitialized(&running);
   if (running) {
+    agree_on_interruptions(ctx);
     return DEA_OK;
   }
   start_mpi_alone();
@@ -80,6 +87,7 @@ dea_status dea_solid_start(struct dea_context *ctx)
     return dea_fail(ctx, DEA_E_TOOL, "SLEPc could not be started");
   }
   PetscPushErrorHandler(give_code, NULL);
+  agree_on_interruptions(ctx);
   DEA_TRY(ctx, dea_solid_agree(ctx, start_blas(ctx)));
   if (rank_count() > 1 &&
       atexit(dea_solid_stop) != 0) { // mpirun takes a process that leaves for crashed
@@ -124,7 +132,7 @@ void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size)
 
 dea_status dea_solid_heed_interruption(struct dea_context *ctx)
 {
-  return dea_solid_any(dea_interrupted(ctx))
+  return dea_interrupted_anywhere(ctx)
              ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to an equilibrium")
              : DEA_OK;
 }

@@ -273,7 +273,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   status = status == DEA_OK ? set_right(ctx, y, memory) : status;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     double *real = memory + p->dofs, *imaginary = real + p->dofs;
-    if (dea_solid_any(dea_interrupted(ctx))) {
+    if (dea_interrupted_anywhere(ctx)) {
       status = dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted at frequency %zu of %zu", i, count);
       break;
     }
