@@ -278,8 +278,8 @@ static void test_ranks_agree(void **state)
   assert_int_equal(one[INVERTED].status, DEA_E_INVERTED);
 }
 
-/* An interruption of one rank, between two points, ends the sweep of all at the same point: else the
- * others wait for it in the next one (and `timeout` ends this test). */
+/* An interruption of one rank, between two points, ends the sweep of all at the same point: else
+ * the others wait for it in the next one (and `timeout` ends this test). */
 static void test_one_rank_interrupted(void **state)
 {
   (void)state;

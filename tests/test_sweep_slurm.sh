@@ -111,7 +111,7 @@ twice=$(cat out/part-* | grep -v '^#' | grep . | cut -d, -f1 | sort | uniq -d | 
 echo "done before the node failed: $done_before; in the table: $rows; twice: $twice"
 echo "parts $(cat out/part-* | wc -c) bytes, $(find out -name 'part-*' | wc -l) files;" \
   "cases.csv $(wc -c <out/cases.csv), cases.h5 $(wc -c <out/cases.h5) bytes;" \
-  "with a reason: $(awk -F, '$NF != ""' out/cases.csv | wc -l)"
+  "with a reason: $(tail -n +2 out/cases.csv | awk -F, '$NF != ""' | wc -l)"
 if [ "$rows" -ne "$samples" ] || [ "$twice" -ne 0 ]; then
   squeue || :
   sinfo || :
