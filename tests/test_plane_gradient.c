@@ -1,6 +1,7 @@
 /* Gradients of the models without a mesh: Taylor's remainder of each falls as the square of the
  * change over four decades, for every number of a design. */
 #include "device/geometry.h"
+#include "devices.h"
 #include "result/columns.h"
 #include "study/design_file.h"
 #include "study/design_gradient.h"
@@ -131,11 +132,91 @@ static void test_axisymmetric(void **state)
   check("axisymmetric", 5e-12);
 }
 
+// Critical voltages -------------------------------------------------------------------------------
+
+static struct dea_critical find_critical(const struct dea_model_type *type,
+                                         const struct dea_device *device, enum dea_event_kind kind)
+{
+  struct dea_critical out;
+  const struct dea_critical_ask ask = {type, device, NULL, kind, 1e3, 5e4};
+  if (dea_critical_find(ctx, &ask, &out) != DEA_OK || isnan(out.voltage_V)) {
+    fail_msg("%s: no %s: %s %s", type->name, dea_event_name(kind), out.why,
+             dea_context_message(ctx));
+  }
+  return out;
+}
+
+/* Of what is left of a change of the voltage by all numbers but the voltage. */
+static void check_critical_of(const struct dea_design_gradient *ask, enum dea_event_kind kind,
+                              double floor)
+{
+  double slopes[DEA_NUMBERS_MAX], left[SHARES];
+  struct dea_critical base = find_critical(ask->type, ask->device, kind);
+  assert_int_equal(dea_design_gradient_critical(ctx, ask, &base, slopes), DEA_OK);
+  for (size_t i = 1; i < ask->number_count; i++) {
+    const struct dea_design_number *number = &ask->numbers[i];
+    for (int n = 0; n < SHARES; n++) {
+      const struct dea_device device =
+          changed(ask->design, ask->device, number, number->value * (1 + shares[n]));
+      struct dea_critical moved = find_critical(ask->type, &device, kind);
+      left[n] = (moved.voltage_V - base.voltage_V - slopes[i] * number->value * shares[n]) /
+                base.voltage_V;
+      dea_critical_end(ctx, &moved);
+    }
+    for (int n = 0; n < SHARES; n++) {
+      const double wanted = left[FROM] * pow(shares[n] / shares[FROM], 2);
+      const double part = n < FROM ? 1 : 0.2;
+      if (!(fabs(left[n] - wanted) <= part * fabs(wanted) + floor)) {
+        fail_msg("%s: %s by %s at %.0e: %.3e, not %.3e", ask->type->name, dea_event_name(kind),
+                 number->key, shares[n], left[n], wanted);
+      }
+    }
+  }
+  assert_string_equal(ask->numbers[0].key, "voltage");
+  assert_true(isnan(slopes[0]));
+  dea_critical_end(ctx, &base);
+}
+
+/* soft: a law that does not stiffen, of which the path turns back. */
+static void check_critical(const char *model, bool soft, const enum dea_event_kind *kinds,
+                           int kind_count, double floor)
+{
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design),
+                   DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  if (soft) {
+    device->film = test_material("neo-hookean", 60e3, 0, 0);
+  }
+  struct dea_design_gradient ask = {
+      .type = dea_model_find(model), .design = design, .device = device, .numbers = numbers};
+  assert_int_equal(dea_design_numbers(ctx, design, device, 1, numbers, &ask.number_count), DEA_OK);
+  for (int k = 0; k < kind_count; k++) {
+    check_critical_of(&ask, kinds[k], floor);
+  }
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+static void test_critical_voltages(void **state)
+{
+  (void)state;
+  static const enum dea_event_kind crossings[] = {DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN},
+                                   turns[] = {DEA_EVENT_PULL_IN};
+  check_critical("lumped", false, crossings, 2, 1e-10);
+  check_critical("axisymmetric", false, crossings, 2, 1e-9);
+  check_critical("lumped", true, turns, 1, 1e-12);
+  check_critical("axisymmetric", true, turns, 1, 5e-12);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_lumped),
       cmocka_unit_test(test_axisymmetric),
+      cmocka_unit_test(test_critical_voltages),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

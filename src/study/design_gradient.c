@@ -261,30 +261,59 @@ static dea_status make_changes(struct dea_context *ctx, const struct dea_design_
   return DEA_OK;
 }
 
+/* Makes the changed devices, in room that is freed by free_changes also after a failure. */
+static dea_status begin_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                                struct changed *all)
+{
+  *all = (struct changed){.memory = {.ctx = ctx}};
+  all->devices = dea_arena_alloc(&all->memory, 2 * ask->number_count, sizeof *all->devices);
+  all->pressed = dea_arena_alloc(&all->memory, 2 * ask->number_count, sizeof *all->pressed);
+  all->scratch = dea_arena_alloc(&all->memory, 1, sizeof *all->scratch);
+  all->changes = dea_arena_alloc(&all->memory, ask->number_count, sizeof *all->changes);
+  DEA_TRY(ctx, dea_arena_status(&all->memory));
+  DEA_TRY(ctx, make_changes(ctx, ask, all));
+  return DEA_OK;
+}
+
+static void free_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
+                         struct changed *all)
+{
+  for (size_t i = 0; all->devices != NULL && ask->device->general && i < 2 * ask->number_count;
+       i++) {
+    dea_layout_destroy(ctx, all->devices[i].layout);
+  }
+  dea_arena_free(&all->memory);
+}
+
 dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                     double *slopes)
 {
-  struct changed all = {.memory = {.ctx = ctx}};
+  struct changed all;
   const struct dea_model_settings settings = dea_model_settings_of(ask->design);
-  all.devices = dea_arena_alloc(&all.memory, 2 * ask->number_count, sizeof *all.devices);
-  all.pressed = dea_arena_alloc(&all.memory, 2 * ask->number_count, sizeof *all.pressed);
-  all.scratch = dea_arena_alloc(&all.memory, 1, sizeof *all.scratch);
-  all.changes = dea_arena_alloc(&all.memory, ask->number_count, sizeof *all.changes);
-  dea_status status = dea_arena_status(&all.memory);
-  if (status == DEA_OK) {
-    status = make_changes(ctx, ask, &all);
-  }
+  dea_status status = begin_changes(ctx, ask, &all);
   if (status == DEA_OK) {
     const struct dea_gradient_ask question = {
         all.changes,   ask->number_count,  ask->columns, ask->column_count,
         ask->monitors, ask->monitor_count, ask->motions};
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
-  for (size_t i = 0; all.devices != NULL && ask->device->general && i < 2 * ask->number_count;
-       i++) {
-    dea_layout_destroy(ctx, all.devices[i].layout);
+  free_changes(ctx, ask, &all);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_design_gradient_critical(struct dea_context *ctx,
+                                        const struct dea_design_gradient *ask,
+                                        const struct dea_critical *critical, double *slopes)
+{
+  struct changed all;
+  dea_status status = begin_changes(ctx, ask, &all);
+  if (status == DEA_OK) {
+    status = dea_critical_slopes(ctx, critical, all.changes, ask->number_count, slopes);
   }
-  dea_arena_free(&all.memory);
+  for (size_t i = 0; i < ask->number_count && status == DEA_OK; i++) {
+    slopes[i] = strcmp(ask->numbers[i].key, "voltage") == 0 ? NAN : slopes[i];
+  }
+  free_changes(ctx, ask, &all);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 

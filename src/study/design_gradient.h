@@ -3,7 +3,7 @@
 #ifndef DEA_STUDY_DESIGN_GRADIENT_H
 #define DEA_STUDY_DESIGN_GRADIENT_H
 
-#include "model/model.h"
+#include "study/critical.h"
 
 enum { DEA_NUMBERS_MAX = 256, DEA_NUMBER_KEY_SIZE = 64 };
 
@@ -65,6 +65,12 @@ struct dea_design_gradient {
  * where the model knows none, or its mesh cannot follow. */
 dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_design_gradient *ask,
                                     double *slopes);
+
+/* slopes [number_count] of a critical voltage that was found of the device; model, voltage, columns
+ * and monitors of the question are not looked at. NAN as above, and by "voltage". */
+dea_status dea_design_gradient_critical(struct dea_context *ctx,
+                                        const struct dea_design_gradient *ask,
+                                        const struct dea_critical *critical, double *slopes);
 
 /* All from a design: values [column_count] of quantities at a voltage and their slopes
  * [key_count][column_count] by keys, as above. DEA_E_ARGUMENT for a key that is no such number, and

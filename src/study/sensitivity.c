@@ -4,6 +4,7 @@
 #include "result/columns.h"
 #include "study/design_gradient.h"
 #include "study/force.h"
+#include "study/limit_slopes.h"
 #include "study/modal.h"
 #include "study/observe.h"
 #include "study/study.h"
@@ -35,8 +36,8 @@ static const struct dea_record record = {
     "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
     "displacements, field, tension, capacitance and energy by the numbers of the design; with "
     "study modal also of the lowest frequency, with study force also of the force on the tip, at "
-    "each of "
-    "its stops",
+    "each of its stops; and of the voltages of loss of tension, breakdown and pull-in that the run "
+    "has come to",
     fields, COUNT(fields)};
 
 static const struct dea_design_section section = {
@@ -245,28 +246,6 @@ static size_t leading(const struct stop *stop)
   return i;
 }
 
-/* A number as people read it, in a unit that fits. */
-static void write_number(double value, const char *unit, char *out, size_t size)
-{
-  static const struct {
-    const char *unit, *shown;
-    double least, factor;
-  } scales[] = {{"m", " mm", 0.9995e-3, 1e3},
-                {"m", " um", 0, 1e6},
-                {"N", " mN", 0, 1e3},
-                {"Pa", " MPa", 1e6, 1e-6},
-                {"Pa", " kPa", 1e3, 1e-3},
-                {"V", " kV", 1e3, 1e-3},
-                {"1", "", 0, 1}};
-  for (size_t i = 0; i < COUNT(scales); i++) {
-    if (strcmp(unit, scales[i].unit) == 0 && fabs(value) >= scales[i].least) {
-      snprintf(out, size, "%.5g%s", scales[i].factor * value, scales[i].shown);
-      return;
-    }
-  }
-  snprintf(out, size, "%.5g %.20s", value, unit);
-}
-
 static double depth_of(const struct stop *stop)
 {
   return stop->is_pressed ? stop->pressed.depth_m : NAN;
@@ -280,15 +259,15 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
       {.number = stop->voltage_V}, {.number = depth_of(stop)}, {.text = number->key}};
   char value[48], tolerance[48] = "", change[48] = "";
   size_t n = 3;
-  write_number(number->value, number->unit, value, sizeof value);
+  dea_number_text(number->value, number->unit, value, sizeof value);
   row[n++].text = value;
   for (size_t k = 0; k < QUANTITIES; k++) {
     row[n++].number = elasticity(stop, i, k);
   }
   if (!isnan(number->tolerance) && number->tolerance > 0) {
-    write_number(number->tolerance, number->unit, tolerance, sizeof tolerance);
-    write_number(slope_of(stop, i, lead) * number->tolerance,
-                 dea_point_columns[stop->columns[lead]].si_unit, change, sizeof change);
+    dea_number_text(number->tolerance, number->unit, tolerance, sizeof tolerance);
+    dea_number_text(slope_of(stop, i, lead) * number->tolerance,
+                    dea_point_columns[stop->columns[lead]].si_unit, change, sizeof change);
   }
   row[n++].text = tolerance;
   row[n++].text = change;
@@ -371,7 +350,7 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
   const struct dea_design_number *number = &stop->numbers[i];
   char quantity[80], value[48];
   name_of(stop, lead, quantity, sizeof quantity);
-  write_number(number->value, number->unit, value, sizeof value);
+  dea_number_text(number->value, number->unit, value, sizeof value);
   struct dea_result_table_value row[COUNT(part_matter_columns)] = {
       {.number = stop->voltage_V},
       {.text = quantity},
@@ -559,6 +538,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
     DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
   }
+  DEA_TRY(ctx, dea_limit_slopes_add(ctx, type, result));
   return DEA_OK;
 }
 

@@ -1,0 +1,411 @@
+#include "study/critical.h"
+
+#include "base/arena.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double enough = 1e-10;  // of the largest value: where the last line is straight
+static const double nothing = 1e-12; // of it: rounding of a value that is 0
+static const double near = 1e-6;     // of a voltage: how far lines lead well
+static const double narrow = 1e-9;   // of a voltage: a bracket that says all
+enum { STEPS = 80, PATH_POINTS = 20000 };
+
+/* A value at a voltage. */
+struct seen {
+  double V, value;
+};
+
+/* On the way up. The value is what is 0 at the voltage that is looked for, and above before. */
+struct search {
+  struct dea_context *ctx;
+  const struct dea_critical_ask *ask;
+  struct dea_critical *out;
+  struct seen low,
+      high;            // the highest that holds, the lowest that does not; value NAN: there is none
+  struct seen last[2]; // values, the last one behind
+  double largest;      // of all values
+  double stands_V;     // where the model is
+};
+
+static double value_of(const struct search *s, const struct dea_load_point *point)
+{
+  return s->ask->kind == DEA_EVENT_SLACK ? point->min_tension_N_per_m : point->breakdown_margin;
+}
+
+/* Tension goes with the square of the voltage, the field with the voltage. */
+static double scale_of(const struct search *s, double voltage_V)
+{
+  return s->ask->kind == DEA_EVENT_SLACK ? voltage_V * voltage_V : voltage_V;
+}
+
+static double unscale(const struct search *s, double x)
+{
+  return s->ask->kind == DEA_EVENT_SLACK ? sqrt(fmax(x, 0)) : x;
+}
+
+/* Statuses that say something of the film; others end the search. */
+static bool is_of_film(dea_status status)
+{
+  return status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_SLACK || status == DEA_E_DOMAIN ||
+         status == DEA_E_INVERTED || status == DEA_E_NOT_CONVERGED;
+}
+
+static dea_status make_model(struct search *s)
+{
+  const struct dea_critical_ask *ask = s->ask;
+  DEA_TRY(s->ctx, ask->type->create(s->ctx, ask->device, ask->settings, &s->out->model));
+  s->stands_V = NAN;
+  return DEA_OK;
+}
+
+/* A new model in place of one that has left the branch. */
+static dea_status begin_again(struct search *s)
+{
+  s->ask->type->destroy(s->ctx, s->out->model);
+  s->out->model = NULL;
+  return make_model(s);
+}
+
+/* Solves; *limit: the limit point that was met or passed on the way, NULL without one. *there:
+ * false where the branch has no equilibrium. */
+static dea_status solve(struct search *s, double voltage_V, struct dea_load_point *point,
+                        const struct dea_event **limit, bool *there)
+{
+  const struct dea_model_type *type = s->ask->type;
+  struct dea_model *model = s->out->model;
+  const size_t errors = dea_finding_trial_begin(s->ctx);
+  const dea_status status = type->solve(s->ctx, model, voltage_V, point);
+  dea_finding_trial_end(s->ctx, errors);
+  *limit = NULL;
+  *there = status == DEA_OK;
+  if (status == DEA_OK) {
+    s->stands_V = voltage_V;
+    *limit = type->passed != NULL ? type->passed(model) : NULL;
+    *there = *limit == NULL && point->stable;
+    return DEA_OK;
+  }
+  if (!is_of_film(status)) {
+    return dea_fail_chain(s->ctx, status, __func__, __FILE__, __LINE__);
+  }
+  snprintf(s->out->why, sizeof s->out->why, "%.199s", dea_context_message(s->ctx));
+  dea_context_clear(s->ctx);
+  *limit = type->limit != NULL ? type->limit(model) : NULL;
+  return DEA_OK;
+}
+
+// Tension and breakdown ---------------------------------------------------------------------------
+
+/* Where the line through two values is 0; INFINITY where it does not fall. */
+static double line(const struct search *s, const struct seen *a, const struct seen *b)
+{
+  const double x = scale_of(s, a->V), y = scale_of(s, b->V), fall = (a->value - b->value) / (y - x);
+  return fall > 0 ? unscale(s, y + b->value / fall) : (double)INFINITY;
+}
+
+/* The next voltage to look at: by the last two values, or else by those of the bracket. A membrane
+ * that is slack has the value 0 all the way: there is none beyond then, and the way is short. */
+static double next_V(const struct search *s)
+{
+  double next = line(s, &s->last[0], &s->last[1]);
+  if (isfinite(s->high.V)) {
+    const double width = s->high.V - s->low.V;
+    if (next > s->low.V && next < s->high.V) { // not of NAN
+      return next;
+    }
+    next = isnan(s->high.value) ? s->low.V + 0.9 * width : line(s, &s->low, &s->high);
+    return next > s->low.V && next < s->high.V ? next : s->low.V + 0.5 * width;
+  }
+  next = isnan(next) ? (double)INFINITY : next;
+  return fmin(fmin(next, fmax(2 * s->low.V, s->ask->first_V)), s->ask->highest_V);
+}
+
+/* Takes what was found at a voltage. *there: it is the one that is looked for, but for what the
+ * last line is off. A value that is nothing is so where the film is slack, or right there. */
+static void take(struct search *s, double voltage_V, double value, bool *there)
+{
+  const struct seen now = {voltage_V, value};
+  s->largest = fmax(s->largest, fabs(value));
+  const bool is_nothing = fabs(value) <= nothing * s->largest;
+  if (is_nothing) {
+    *there = voltage_V - s->low.V <= near * voltage_V;
+    s->high = (struct seen){voltage_V, NAN};
+    return;
+  }
+  if (value > 0) {
+    s->low = now;
+  } else {
+    s->high = now;
+  }
+  s->last[0] = s->last[1];
+  s->last[1] = now;
+  *there = fabs(value) <= enough * s->largest ||
+           (s->high.V - s->low.V <= narrow * s->high.V && !isnan(s->high.value));
+}
+
+/* Nothing was found at a voltage. *ends: nothing that holds less will be. */
+static dea_status take_failure(struct search *s, double voltage_V, const struct dea_event *limit,
+                               bool *ends)
+{
+  const bool known = limit != NULL && limit->kind != DEA_EVENT_SLACK;
+  s->high = (struct seen){known ? fmin(voltage_V, limit->point.voltage_V) : voltage_V, NAN};
+  *ends = false;
+  if (known && value_of(s, &limit->point) > 0) {
+    snprintf(s->out->why, sizeof s->out->why, "pull-in at %.6g kV comes first",
+             1e-3 * limit->point.voltage_V);
+    *ends = true;
+    return DEA_OK;
+  }
+  return s->stands_V == voltage_V ? begin_again(s) : DEA_OK; // it has left the branch
+}
+
+/* At the flat film: whether there is anything to lose. */
+static dea_status rest(struct search *s, bool *holds)
+{
+  const struct dea_event *limit;
+  bool there;
+  DEA_TRY(s->ctx, solve(s, 0, &s->out->point, &limit, &there));
+  s->low = s->last[1] = (struct seen){0, value_of(s, &s->out->point)};
+  s->last[0] = (struct seen){0, NAN};
+  s->largest = s->low.value;
+  *holds = there && s->low.value > 0;
+  if (there && isnan(s->low.value)) {
+    snprintf(s->out->why, sizeof s->out->why, "the model knows no %s of this device",
+             s->ask->kind == DEA_EVENT_SLACK ? "tension" : "breakdown field");
+  } else if (there && !*holds) {
+    snprintf(s->out->why, sizeof s->out->why, "the film has no tension at rest");
+  }
+  return DEA_OK;
+}
+
+/* Whether nothing is left of the way. */
+static bool is_over(struct search *s)
+{
+  if (isfinite(s->high.V)) { // the branch ends with a value that holds
+    return s->high.V - s->low.V <= narrow * s->high.V;
+  }
+  if (s->low.V >= s->ask->highest_V) {
+    snprintf(s->out->why, sizeof s->out->why, "not up to %.6g kV", 1e-3 * s->ask->highest_V);
+    return true;
+  }
+  return false;
+}
+
+static dea_status find_crossing(struct search *s)
+{
+  bool holds = false, ends = false, found = false;
+  DEA_TRY(s->ctx, rest(s, &holds));
+  for (int i = 0; holds && !ends && !found && i < STEPS && !is_over(s); i++) {
+    const double next = next_V(s);
+    const struct dea_event *limit;
+    bool there;
+    DEA_TRY(s->ctx, solve(s, next, &s->out->point, &limit, &there));
+    if (there) {
+      take(s, next, value_of(s, &s->out->point), &found);
+    } else {
+      DEA_TRY(s->ctx, take_failure(s, next, limit, &ends));
+    }
+  }
+  if (holds && !ends && !found && isfinite(s->high.V) && s->low.value < near * s->largest) {
+    const struct dea_event *limit; // it goes to 0 where the branch ends
+    DEA_TRY(s->ctx, solve(s, s->low.V, &s->out->point, &limit, &found));
+  }
+  if (found) {
+    s->out->voltage_V = line(s, &s->last[0], &s->last[1]);
+    s->out->why[0] = '\0';
+  }
+  return DEA_OK;
+}
+
+// Pull-in -----------------------------------------------------------------------------------------
+
+/* The first pull-in on a path. */
+static dea_status take_event(void *user, const struct dea_event *event)
+{
+  struct dea_critical *out = user;
+  if (event->kind == DEA_EVENT_PULL_IN && isnan(out->voltage_V)) {
+    out->voltage_V = event->point.voltage_V;
+    out->point = event->point;
+  }
+  return DEA_OK;
+}
+
+/* Ends the path behind it. */
+static dea_status pass_point(void *user, const struct dea_load_point *point)
+{
+  const struct dea_critical *out = user;
+  (void)point;
+  return isnan(out->voltage_V) ? DEA_OK : DEA_E_NO_EQUILIBRIUM;
+}
+
+/* By the whole path, of a model that has it. */
+static dea_status find_on_path(struct search *s)
+{
+  const struct dea_path_options options = {10 * s->ask->device->pre_stretch, s->ask->highest_V,
+                                           PATH_POINTS};
+  const dea_status status =
+      s->ask->type->path(s->ctx, s->out->model, &options, pass_point, take_event, s->out);
+  if (status != DEA_OK && isnan(s->out->voltage_V)) {
+    return dea_fail_chain(s->ctx, status, __func__, __FILE__, __LINE__);
+  }
+  if (isnan(s->out->voltage_V)) {
+    snprintf(s->out->why, sizeof s->out->why, "the path has none up to %.6g kV",
+             1e-3 * s->ask->highest_V);
+  }
+  dea_context_clear(s->ctx);
+  return DEA_OK;
+}
+
+/* By load steps until there is no equilibrium. */
+static dea_status find_end(struct search *s)
+{
+  const double highest_V = s->ask->highest_V;
+  double at_V = 0;
+  for (int i = 0; i < STEPS && at_V < highest_V; i++) {
+    const struct dea_event *limit;
+    bool there;
+    at_V = fmin(fmax(1.25 * at_V, s->ask->first_V), highest_V);
+    DEA_TRY(s->ctx, solve(s, at_V, &s->out->point, &limit, &there));
+    if (!there) {
+      if (limit != NULL && limit->kind == DEA_EVENT_PULL_IN) {
+        s->out->voltage_V = limit->point.voltage_V;
+        s->out->point = limit->point;
+        s->out->why[0] = '\0';
+      }
+      return DEA_OK;
+    }
+  }
+  snprintf(s->out->why, sizeof s->out->why, "not up to %.6g kV", 1e-3 * at_V);
+  return DEA_OK;
+}
+
+// All of it ---------------------------------------------------------------------------------------
+
+dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_ask *ask,
+                             struct dea_critical *out)
+{
+  struct search s = {
+      .ctx = ctx, .ask = &out->ask, .out = out, .high = {INFINITY, NAN}, .stands_V = NAN};
+  *out = (struct dea_critical){
+      .ask = *ask, .voltage_V = NAN, .point = dea_load_point_empty(), .model = NULL};
+  DEA_TRY(ctx, make_model(&s));
+  DEA_TRY(ctx, ask->kind != DEA_EVENT_PULL_IN ? find_crossing(&s)
+               : ask->type->path != NULL      ? find_on_path(&s)
+                                              : find_end(&s));
+  return DEA_OK;
+}
+
+void dea_critical_end(struct dea_context *ctx, struct dea_critical *critical)
+{
+  if (critical->model != NULL) {
+    critical->ask.type->destroy(ctx, critical->model);
+  }
+  critical->model = NULL;
+}
+
+// Slopes ------------------------------------------------------------------------------------------
+
+/* Where the model stands at V: the slopes at a fixed value g, dV/dP = -(dg/dP) / (dg/dV). own, out:
+ * [count + 1]. */
+static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_critical *c, double V,
+                                  const struct dea_design_change *changes, size_t count,
+                                  struct dea_design_change *own, double *out)
+{
+  static const double share = 1e-5; // of the voltage, to either side
+  const int column = dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK ? "min_tension_N_per_m"
+                                                                          : "breakdown_margin");
+  const struct dea_gradient_ask ask = {own, count + 1, &column, 1, NULL, 0, NULL};
+  for (size_t i = 0; i < count; i++) {
+    own[i] = changes[i];
+    own[i].voltage_V[0] = own[i].voltage_V[1] = V;
+  }
+  own[count] = (struct dea_design_change){.device = {c->ask.device, c->ask.device},
+                                          .voltage_V = {V * (1 - share), V * (1 + share)},
+                                          .width = 2 * share * V};
+  DEA_TRY(ctx, dea_model_gradient(ctx, c->ask.type, c->model, c->ask.settings, &ask, out));
+  for (size_t i = 0; i < count; i++) {
+    out[i] /= -out[count];
+  }
+  return DEA_OK;
+}
+
+/* A membrane has a kink where it loses its tension: a changed device would be slack there. Its
+ * slopes are those at two voltages below, taken to there along a line. */
+static dea_status slopes_below(struct dea_context *ctx, const struct dea_critical *c,
+                               const struct dea_design_change *changes, size_t count,
+                               struct dea_design_change *own, double *out, double *room)
+{
+  static const double share = 1e-4; // of the voltage; more than changes make of it
+  double *const at[2] = {room, out};
+  for (int k = 0; k < 2; k++) {
+    const double V = c->voltage_V * (1 - (2 - k) * share);
+    struct dea_load_point point;
+    DEA_TRY(ctx, c->ask.type->solve(ctx, c->model, V, &point));
+    DEA_TRY(ctx, slopes_of_value(ctx, c, V, changes, count, own, at[k]));
+  }
+  for (size_t i = 0; i < count; i++) {
+    out[i] += out[i] - room[i];
+  }
+  return DEA_OK;
+}
+
+/* Of a value that is 0 there. */
+static dea_status slopes_of_crossing(struct dea_context *ctx, const struct dea_critical *c,
+                                     const struct dea_design_change *changes, size_t count,
+                                     double *slopes)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  const bool kink = c->ask.kind == DEA_EVENT_SLACK && c->ask.settings->film == DEA_FILM_MEMBRANE;
+  struct dea_design_change *own = dea_arena_alloc(&memory, count + 1, sizeof *own);
+  double *out = dea_arena_alloc(&memory, 2 * (count + 1), sizeof *out);
+  dea_status status = dea_arena_status(&memory);
+  if (status == DEA_OK) {
+    status = kink ? slopes_below(ctx, c, changes, count, own, out, out + count + 1)
+                  : slopes_of_value(ctx, c, c->voltage_V, changes, count, own, out);
+  }
+  if (status == DEA_OK) {
+    memcpy(slopes, out, count * sizeof *slopes);
+  }
+  dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+/* Differences of the voltages of changed devices, each found anew: of a model without gradients,
+ * which costs little. */
+static dea_status slopes_anew(struct dea_context *ctx, const struct dea_critical *c,
+                              const struct dea_design_change *changes, size_t count, double *slopes)
+{
+  for (size_t i = 0; i < count; i++) {
+    double at_V[2] = {NAN, NAN};
+    for (size_t k = 0; k < 2 && changes[i].device[k] != NULL; k++) {
+      struct dea_critical side;
+      struct dea_critical_ask ask = c->ask;
+      ask.device = changes[i].device[k];
+      ask.highest_V = 2 * c->voltage_V;
+      const dea_status status = dea_critical_find(ctx, &ask, &side);
+      at_V[k] = side.voltage_V;
+      dea_critical_end(ctx, &side);
+      DEA_TRY(ctx, status);
+    }
+    slopes[i] = (at_V[1] - at_V[0]) / changes[i].width;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_critical_slopes(struct dea_context *ctx, const struct dea_critical *critical,
+                               const struct dea_design_change *changes, size_t change_count,
+                               double *slopes)
+{
+  if (isnan(critical->voltage_V) ||
+      (critical->ask.kind == DEA_EVENT_PULL_IN && critical->ask.type->gradient != NULL)) {
+    for (size_t i = 0; i < change_count; i++) {
+      slopes[i] = NAN;
+    }
+    return DEA_OK;
+  }
+  return critical->ask.type->gradient == NULL
+             ? slopes_anew(ctx, critical, changes, change_count, slopes)
+             : slopes_of_crossing(ctx, critical, changes, change_count, slopes);
+}

@@ -1,0 +1,242 @@
+#include "study/limit_slopes.h"
+
+#include "base/arena.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char study_name[] = "sensitivity";
+
+static const struct {
+  enum dea_event_kind kind;
+  const char *name, *said; // in files; on the screen
+} limits[] = {{DEA_EVENT_SLACK, "slack", "loss of tension"},
+              {DEA_EVENT_BREAKDOWN, "breakdown", "breakdown"},
+              {DEA_EVENT_PULL_IN, "pull_in", "pull-in"}};
+
+// Tables -----------------------------------------------------------------------------------------
+
+#define NAMED(its_key, its_title, its_meaning)                                                     \
+  {                                                                                                \
+    .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
+  }
+#define LIMIT NAMED("limit", "limit", "slack, breakdown or pull_in")
+#define LIMIT_VOLTAGE                                                                              \
+  DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "at", "voltage at which the film comes to it")
+
+static const struct dea_result_column slope_columns[] = {
+    LIMIT,
+    LIMIT_VOLTAGE,
+    NAMED("number", "number", "of the design"),
+    {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
+    NAMED("number_unit", "unit", "of the number"),
+    {.key = "slope", .title = "slope", .meaning = "of the voltage by the number, V by its unit"},
+    {.key = "elasticity",
+     .title = "per cent by one per cent",
+     .meaning = "d ln(voltage) / d ln(number)"},
+    {.key = "tolerance", .title = "tolerance", .meaning = "of the workshop, in the number's unit"},
+    DEA_NUMBER_COLUMN("change_V", "V", "V", 1, "change by tolerance", "of the voltage"),
+};
+static const struct dea_result_table_type slope_table = {
+    .study = study_name,
+    .name = "limit_slopes",
+    .title = "slopes of the limits by the design's numbers",
+    .where = DEA_IN_JSON | DEA_IN_CSV,
+    .columns = slope_columns,
+    .column_count = COUNT(slope_columns)};
+
+static const struct dea_result_column matter_columns[] = {
+    LIMIT,
+    LIMIT_VOLTAGE,
+    NAMED("number", "1 % of", "of the design"),
+    NAMED("number_text", "value", "of the number"),
+    {.key = "change", .title = "changes it by, %", .meaning = "in per cent by one per cent"},
+    NAMED("tolerance_text", "tolerance", "of the workshop"),
+    NAMED("change_text", "changes", "of the voltage by the tolerance"),
+};
+static const struct dea_result_table_type matter_table = {.study = study_name,
+                                                          .name = "limits",
+                                                          .title = "what moves the limits",
+                                                          .where = DEA_IN_SCREEN,
+                                                          .columns = matter_columns,
+                                                          .column_count = COUNT(matter_columns)};
+
+void dea_number_text(double value, const char *unit, char *out, size_t size)
+{
+  static const struct {
+    const char *unit, *shown;
+    double least, factor;
+  } scales[] = {{"m", " mm", 0.9995e-3, 1e3},
+                {"m", " um", 0, 1e6},
+                {"N", " mN", 0, 1e3},
+                {"Pa", " MPa", 1e6, 1e-6},
+                {"Pa", " kPa", 1e3, 1e-3},
+                {"V", " kV", 1e3, 1e-3},
+                {"1", "", 0, 1}};
+  for (size_t i = 0; i < COUNT(scales); i++) {
+    if (strcmp(unit, scales[i].unit) == 0 && fabs(value) >= scales[i].least) {
+      snprintf(out, size, "%.5g%s", scales[i].factor * value, scales[i].shown);
+      return;
+    }
+  }
+  snprintf(out, size, "%.5g %.20s", value, unit);
+}
+
+// One limit --------------------------------------------------------------------------------------
+
+/* A limit that was found, with slopes [number_count] of its voltage. */
+struct found {
+  size_t limit; // of limits above
+  double voltage_V;
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  size_t number_count;
+  double slopes[DEA_NUMBERS_MAX];
+};
+
+static double elasticity(const struct found *f, size_t i)
+{
+  return f->slopes[i] * f->numbers[i].value / f->voltage_V;
+}
+
+static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
+                             struct dea_result_table *table)
+{
+  for (size_t i = 0; i < f->number_count; i++) {
+    const struct dea_design_number *number = &f->numbers[i];
+    const struct dea_result_table_value row[] = {
+        {.text = limits[f->limit].name},
+        {.number = f->voltage_V},
+        {.text = number->key},
+        {.number = number->value},
+        {.text = number->unit},
+        {.number = f->slopes[i]},
+        {.number = elasticity(f, i)},
+        {.number = number->tolerance},
+        {.number = f->slopes[i] * number->tolerance},
+    };
+    if (!isnan(f->slopes[i])) {
+      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Numbers by how much they matter, most first. */
+static dea_status put_matter(struct dea_context *ctx, const struct found *f,
+                             struct dea_result_table *table)
+{
+  bool told[DEA_NUMBERS_MAX] = {false};
+  for (size_t n = 0; n < f->number_count; n++) {
+    size_t best = f->number_count;
+    for (size_t i = 0; i < f->number_count; i++) {
+      const double size = fabs(elasticity(f, i));
+      if (!told[i] && size > 0 && (best == f->number_count || size > fabs(elasticity(f, best)))) {
+        best = i;
+      }
+    }
+    if (best == f->number_count) {
+      break;
+    }
+    const struct dea_design_number *number = &f->numbers[best];
+    char value[48], tolerance[48] = "", change[48] = "";
+    dea_number_text(number->value, number->unit, value, sizeof value);
+    if (number->tolerance > 0) {
+      dea_number_text(number->tolerance, number->unit, tolerance, sizeof tolerance);
+      dea_number_text(f->slopes[best] * number->tolerance, "V", change, sizeof change);
+    }
+    const struct dea_result_table_value row[] = {{.text = limits[f->limit].said},
+                                                 {.number = f->voltage_V},
+                                                 {.text = number->key},
+                                                 {.text = value},
+                                                 {.number = elasticity(f, best)},
+                                                 {.text = tolerance},
+                                                 {.text = change}};
+    told[best] = true;
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
+static dea_status put(struct dea_context *ctx, const char *model, const struct found *f,
+                      struct dea_result *result)
+{
+  struct dea_result_table *table;
+  DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
+  DEA_TRY(ctx, put_matter(ctx, f, table));
+  DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
+  DEA_TRY(ctx, put_slopes(ctx, f, table));
+  return DEA_OK;
+}
+
+/* Whether the curves of a model have come to a limit; so of a result without curves. */
+static bool comes_to(const struct dea_result *result, const char *model, enum dea_event_kind kind)
+{
+  bool any = false;
+  for (size_t c = 0; c < result->curve_count; c++) {
+    const struct dea_curve *curve = &result->curves[c];
+    const bool is_sweep = strcmp(curve->kind, "sweep") == 0;
+    if (strcmp(curve->model, model) != 0 || (!is_sweep && strcmp(curve->kind, "path") != 0)) {
+      continue;
+    }
+    any = true;
+    if (dea_curve_first_event(curve, kind) != NULL) {
+      return true;
+    }
+    for (size_t i = 0; i < curve->count && kind != DEA_EVENT_PULL_IN; i++) {
+      const struct dea_load_point *p = &curve->points[i];
+      if (kind == DEA_EVENT_SLACK ? p->min_tension_N_per_m <= 0 : p->breakdown_margin <= 0) {
+        return true;
+      }
+    }
+  }
+  return !any;
+}
+
+static dea_status find(struct dea_context *ctx, const struct dea_critical_ask *ask,
+                       const struct dea_result *result, struct found *f)
+{
+  struct dea_critical critical;
+  dea_status status = dea_critical_find(ctx, ask, &critical);
+  f->voltage_V = critical.voltage_V;
+  if (status == DEA_OK && !isnan(f->voltage_V)) {
+    status = dea_design_numbers(ctx, result->design, result->device, f->voltage_V, f->numbers,
+                                &f->number_count);
+    const struct dea_design_gradient of = {.type = ask->type,
+                                           .design = result->design,
+                                           .device = result->device,
+                                           .numbers = f->numbers,
+                                           .number_count = f->number_count};
+    status =
+        status == DEA_OK ? dea_design_gradient_critical(ctx, &of, &critical, f->slopes) : status;
+  }
+  dea_critical_end(ctx, &critical);
+  return status;
+}
+
+dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_result *result)
+{
+  struct dea_model_settings settings = dea_model_settings_of(result->design);
+  const double highest_V = dea_design_highest_V(result->design);
+  struct found *f = dea_alloc(ctx, 1, sizeof *f);
+  dea_status status = f != NULL ? DEA_OK : DEA_E_MEMORY;
+  settings.domain = result->device->general ? DEA_DOMAIN_DISC : settings.domain;
+  for (size_t i = 0; i < COUNT(limits) && status == DEA_OK && highest_V > 0; i++) {
+    const struct dea_critical_ask ask = {.type = type,
+                                         .device = result->device,
+                                         .settings = &settings,
+                                         .kind = limits[i].kind,
+                                         .first_V = highest_V / 4,
+                                         .highest_V = highest_V};
+    if (comes_to(result, type->name, limits[i].kind)) {
+      f->limit = i;
+      status = find(ctx, &ask, result, f);
+      status = status == DEA_OK && !isnan(f->voltage_V) ? put(ctx, type->name, f, result) : status;
+    }
+  }
+  dea_free(ctx, f);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,17 @@
+/* Of the study "sensitivity": what moves the voltages at which the film comes to an end. */
+#ifndef DEA_STUDY_LIMIT_SLOPES_H
+#define DEA_STUDY_LIMIT_SLOPES_H
+
+#include "result/result.h"
+#include "study/design_gradient.h"
+
+/* A number of a design as people read it, in a unit that fits. */
+void dea_number_text(double value, const char *unit, char *out, size_t size);
+
+/* Adds the model's tables "limits" and "limit_slopes": loss of tension, breakdown and pull-in, each
+ * where the result's curves have come to it, or where the result has none, up to the highest
+ * voltage of the design. */
+dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_result *result);
+
+#endif
