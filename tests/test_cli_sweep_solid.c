@@ -109,6 +109,37 @@ static void test_parts(void **state)
   assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);
 }
 
+/* A critical voltage as a limit of a search by the model's gradients; that of a film goes with its
+ * thickness. */
+static void test_critical_voltage(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  double first_m, first_V, best_um;
+  command_write("disc.yaml",
+                "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.5\n"
+                "frame: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+                "compute: {models: [3d], voltage: {values: [2 kV]}, solid: {film: membrane}}\n");
+  command_write("lives.yaml",
+                "dea_explore: 1\nname: lives\ndesign: disc.yaml\nmodel: 3d\nvoltages: [1 kV]\n"
+                "quantities: [capacitance_F, breakdown_voltage_V]\nmethod: slsqp\nstarts: 1\n"
+                "evaluations: 12\nobjectives: [{quantity: capacitance_F, goal: most}]\n"
+                "limits: [{quantity: breakdown_voltage_V, above: 4 kV}]\n"
+                "variables: [{name: film.thickness, low: 80 um, high: 200 um}]\n");
+  const int code = command_run("optimise lives.yaml -j 1 -q");
+  if (code == 2) { // a build without model 3d
+    skip();
+  }
+  assert_int_equal(code, 0);
+  assert_contains(command_out, "gradients: of the model\n");
+  const char *best = strstr(command_out, "film.thickness");
+  assert_non_null(best);
+  assert_int_equal(sscanf(best, "film.thickness %lf um", &best_um), 1);
+  command_read("lives.optimise/cases.csv", bytes);
+  assert_int_equal(sscanf(strchr(bytes, '\n'), "\n0,%*[^,],%lf,%*f,%lf", &first_m, &first_V), 2);
+  assert_close(1e-6 * best_um, first_m * 4e3 / first_V, 1e-5, 0);
+}
+
 /* The force on a tip as a limit of a search by the model's gradients, by a number of the film and
  * one of the tip, which ends where the limit is; and what matters to that force. */
 static void test_force(void **state)
@@ -222,9 +253,8 @@ static void test_monitors(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_neighbours),
-      cmocka_unit_test(test_parts),
-      cmocka_unit_test(test_force),
+      cmocka_unit_test(test_neighbours),       cmocka_unit_test(test_parts),
+      cmocka_unit_test(test_critical_voltage), cmocka_unit_test(test_force),
       cmocka_unit_test(test_monitors),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

@@ -131,9 +131,9 @@ static const struct dea_field file_fields[] = {
      .count_offset = AT(quantity_count),
      .required = true,
      .doc = "keys of the quantities that are kept, as dea compare --quantity has them, and "
-            "MONITOR.KEY "
-            "of what a monitor shows (plate.turn_y_rad); force_N: "
-            "with the tip of compute.force held at its first depth",
+            "MONITOR.KEY of what a monitor shows (plate.turn_y_rad); force_N: "
+            "with the tip of compute.force held at its first depth; slack_voltage_V, "
+            "breakdown_voltage_V, pull_in_voltage_V: where the film comes to its end",
      .example = "[centre_z_m, breakdown_margin]"},
     {.key = "variables",
      .kind = DEA_FIELD_RECORD,

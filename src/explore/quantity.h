@@ -1,5 +1,5 @@
-/* What is kept of a design: a column of load points, or what a monitor of a device made of plies
- * shows. */
+/* What is kept of a design: a column of load points, what a monitor of a device made of plies
+ * shows, or a voltage at which the film comes to an end. */
 #ifndef DEA_EXPLORE_QUANTITY_H
 #define DEA_EXPLORE_QUANTITY_H
 
@@ -13,15 +13,23 @@ dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *
                                const char *what, const char *const names[], size_t count);
 
 struct dea_explored {
-  struct dea_column shown;    // its key and header are the texts below
-  char key[80], header[80];   // "centre_z_m", "plate.turn_y_rad"
-  int column;                 // of load points; -1: of a monitor
+  struct dea_column shown;  // its key and header are the texts below
+  char key[80], header[80]; // "centre_z_m", "plate.turn_y_rad"
+  int column;               // of load points; -1: none of them
+  bool is_critical;         // a voltage of the event below
+  enum dea_event_kind event;
   size_t monitor;             // of the layout
   enum dea_observed observed; // of that monitor
 };
 
-/* Finds a quantity by its key, KEY or MONITOR.KEY. *good: false after a finding at its place. The
- * texts that `shown` lends are those of *out, which stays where it is. */
+/* Whether it is of a monitor. */
+static inline bool dea_explored_is_seen(const struct dea_explored *quantity)
+{
+  return quantity->column < 0 && !quantity->is_critical;
+}
+
+/* Finds a quantity by its key, KEY, MONITOR.KEY or EVENT_voltage_V. *good: false after a finding at
+ * its place. The texts that `shown` lends are those of *out, which stays where it is. */
 dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *device,
                              const struct dea_label *label, struct dea_explored *out, bool *good);
 

@@ -147,7 +147,7 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
 {
   struct dea_question *question = user;
   const size_t count = question->quantity_count;
-  question->id[0] = question->model.why[0] = '\0';
+  question->id[0] = question->model.why[0] = question->why[0] = '\0';
   question->model.ctx = ctx;
   dea_status status =
       io->has_near
@@ -176,10 +176,43 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
       *q = question->quantities[i].column >= 0
                ? dea_point_get(point, question->quantities[i].column)
                : question->seen[k][i];
-      if (isnan(*q) && io->why[0] == '\0') {
+      if (isnan(*q) && io->why[0] == '\0' && question->quantities[i].is_critical) {
+        snprintf(io->why, sizeof io->why, "%s: %.120s", question->quantities[i].key, question->why);
+      } else if (isnan(*q) && io->why[0] == '\0') {
         snprintf(io->why, sizeof io->why, "the model knows no %s of this design",
                  question->quantities[i].key);
       }
+    }
+  }
+  return DEA_OK;
+}
+
+/* Critical voltages of a device, looked for up to four times the highest that is asked for. They do
+ * not depend on the voltage: all stops have the same. */
+static dea_status find_critical(struct dea_question *question,
+                                const struct dea_model_settings *settings,
+                                const struct dea_design *design, const struct dea_device *device)
+{
+  struct dea_context *ctx = question->model.ctx;
+  const double last_V = question->voltages_V[question->voltage_count - 1],
+               highest_V = fmax(last_V, dea_design_highest_V(design));
+  for (size_t i = 0; i < question->quantity_count; i++) {
+    const struct dea_explored *quantity = &question->quantities[i];
+    const struct dea_critical_ask ask = {.type = question->model.type,
+                                         .device = device,
+                                         .settings = settings,
+                                         .kind = quantity->event,
+                                         .first_V = highest_V / 4,
+                                         .highest_V = 4 * highest_V};
+    if (!quantity->is_critical) {
+      continue;
+    }
+    DEA_TRY(ctx, dea_critical_find(ctx, &ask, &question->critical[i]));
+    if (isnan(question->critical[i].voltage_V)) {
+      snprintf(question->why, sizeof question->why, "%s", question->critical[i].why);
+    }
+    for (size_t k = 0; k < question->voltage_count; k++) {
+      question->seen[k][i] = question->critical[i].voltage_V;
     }
   }
   return DEA_OK;
@@ -192,17 +225,27 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
   struct dea_question *question = user;
   struct dea_context *ctx = question->model.ctx;
   struct dea_observation observed = {.monitor_count = 0};
-  (void)design;
   for (size_t i = 0; i < question->quantity_count && stop < question->voltage_count; i++) {
     const struct dea_explored *quantity = &question->quantities[i];
-    if (quantity->column < 0) {
+    if (dea_explored_is_seen(quantity)) {
       if (observed.monitor_count == 0) {
         DEA_TRY(ctx, dea_model_observe(ctx, question->model.type, model, &observed));
       }
       question->seen[stop][i] = observed.monitor[quantity->monitor][quantity->observed];
     }
   }
-  return question->stood != NULL ? question->stood(question, model, device, stop) : DEA_OK;
+  if (stop + 1 != question->voltage_count) {
+    return question->stood != NULL ? question->stood(question, model, device, stop) : DEA_OK;
+  }
+  const struct dea_model_settings settings = dea_model_settings_of(design);
+  dea_status status = find_critical(question, &settings, design, device);
+  if (status == DEA_OK && question->stood != NULL) {
+    status = question->stood(question, model, device, stop);
+  }
+  for (size_t i = 0; i < question->quantity_count; i++) {
+    dea_critical_end(ctx, &question->critical[i]);
+  }
+  return status;
 }
 
 /* Groups of voltages: the film that moves freely, and where a force is asked for with a tip. */
@@ -292,7 +335,7 @@ static dea_status take_quantities(struct dea_question *question)
     if (twice) {
       DEA_TRY(question->ctx, dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,
                                              "%s is there twice", out->key));
-    } else if (good && out->column < 0 && question->model.type != NULL &&
+    } else if (good && dea_explored_is_seen(out) && question->model.type != NULL &&
                question->model.type->observe == NULL) {
       DEA_TRY(question->ctx,
               dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,

@@ -8,6 +8,7 @@
 #include "explore/explore_file.h"
 #include "explore/quantity.h"
 #include "job/device_fit_model.h"
+#include "study/critical.h"
 
 /* A variable: values, or a range, or a distribution. */
 struct dea_variable {
@@ -48,6 +49,9 @@ struct dea_question {
   struct dea_device_model model;
   struct dea_load_point *points;
   double seen[DEA_EXPLORE_VOLTAGES_MAX][DEA_EXPLORE_QUANTITIES_MAX]; // of monitors
+  /* Critical voltages of the device that stands at the last voltage, each by its quantity. */
+  struct dea_critical critical[DEA_EXPLORE_QUANTITIES_MAX];
+  char why[DEA_CRITICAL_WHY_SIZE]; // of the last one that there is not
   struct dea_arena memory;
   char id[DEA_CASE_ID_SIZE];
   struct dea_case *now; // what is evaluated, while slopes are taken too

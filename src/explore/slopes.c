@@ -46,7 +46,7 @@ static struct wanted find_wanted(const struct dea_question *question, bool held)
     for (size_t i = 0; i < question->quantity_count; i++) {
       const struct dea_explored *quantity = &question->quantities[i];
       if (!is_wanted(question, i) || dea_question_is_held(question, i) != held ||
-          (quantity->column < 0) != (of_monitors == 1)) {
+          quantity->is_critical || (quantity->column < 0) != (of_monitors == 1)) {
         continue;
       }
       out.quantity[out.column_count + out.monitor_count] = i;
@@ -108,6 +108,14 @@ static dea_status add_change(struct dea_context *ctx, const struct dea_question 
   return DEA_OK;
 }
 
+/* Keeps the slope of a quantity at the last voltage. */
+static void put(const struct dea_question *question, size_t quantity, size_t variable, double slope)
+{
+  const size_t value = (question->voltage_count - 1) * question->quantity_count + quantity;
+  question->now->q[question->evaluator.value_count + value * question->variable_count + variable] =
+      slope;
+}
+
 static dea_status find(struct dea_context *ctx, const struct dea_question *question,
                        struct dea_model *model, const struct sides *sides, bool held)
 {
@@ -128,13 +136,34 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
     dea_context_clear(ctx);
     return DEA_OK;
   }
-  const size_t n = question->variable_count;
   for (size_t c = 0; c < sides->count; c++) {
     for (size_t i = 0; i < count; i++) {
-      const size_t value =
-          (question->voltage_count - 1) * question->quantity_count + wanted.quantity[i];
-      question->now->q[question->evaluator.value_count + value * n + sides->variable[c]] =
-          slopes[c * count + i];
+      put(question, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
+    }
+  }
+  return DEA_OK;
+}
+
+/* Slopes of critical voltages. */
+static dea_status find_critical(struct dea_context *ctx, const struct dea_question *question,
+                                const struct sides *sides)
+{
+  double slopes[DEA_CASE_PARAMS_MAX];
+  for (size_t i = 0; i < question->quantity_count; i++) {
+    if (!question->quantities[i].is_critical || !is_wanted(question, i)) {
+      continue;
+    }
+    const dea_status status =
+        dea_critical_slopes(ctx, &question->critical[i], sides->changes, sides->count, slopes);
+    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+      return status;
+    }
+    if (status != DEA_OK) { // none at this design
+      dea_context_clear(ctx);
+      continue;
+    }
+    for (size_t c = 0; c < sides->count; c++) {
+      put(question, i, sides->variable[c], slopes[c]);
     }
   }
   return DEA_OK;
@@ -157,6 +186,9 @@ static dea_status take(struct dea_question *question, struct dea_model *model,
   }
   if (status == DEA_OK && sides.count > 0) {
     status = find(ctx, question, model, &sides, stop != last);
+  }
+  if (status == DEA_OK && sides.count > 0 && stop == last) {
+    status = find_critical(ctx, question, &sides);
   }
   for (size_t n = 0; n < 2 * question->variable_count; n++) {
     dea_device_destroy(ctx, sides.device[n]);
