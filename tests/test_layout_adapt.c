@@ -169,6 +169,22 @@ static void test_refused(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* A free mesh has no order 3 in the plane, and says so; of 2 there is nothing to say. */
+static void test_order(void **state)
+{
+  (void)state;
+  struct dea_device *device = rectangle_new();
+  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  for (int order = 2; order <= 3; order++) {
+    const struct dea_model_settings settings = {.order = order};
+    struct dea_model *model;
+    assert_int_equal(type->create(ctx, device, &settings, &model), DEA_OK);
+    assert_true((find_finding(ctx, DEA_WARNING, "compute.solid.order: 3") != NULL) == (order == 3));
+    type->destroy(ctx, model);
+  }
+  dea_device_destroy(ctx, device);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -177,6 +193,7 @@ int main(void)
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_blocks_and_free),
       cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_order),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -538,6 +538,14 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                "model 3d: %zu elements, %zu unknowns, a free mesh of %s",
                                grid->element_count, 3 * grid->node_count, what));
+  if (model->settings.order > grid->order) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                            "model 3d: compute.solid.order: %d is not there for devices made "
+                            "of `plies`: their free mesh has elements of order %d in the plane "
+                            "(compute.solid.refinement makes it finer)",
+                            model->settings.order, grid->order));
+  }
   if (model->mesh.membrane) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d with a membrane film is a preview: it has no bending of "
