@@ -3,6 +3,9 @@
 # sets itself up, of which systems of thirty unknowns have nothing. libdea.so takes the shared ones: the static
 # ones are not made for shared libraries, and what loads it (Python, Octave) often has them already.
 #
+# A program with PETSc in it has the property DEA_SHARED_BLAS: the linker takes the static BLAS into it wherever
+# the shared one stands on its line, and PETSc and MUMPS would then use that slow one.
+#
 # Sets HDF5_INCLUDE_DIRS, HDF5_C_LIBRARIES, DEA_LAPACK_LIBRARIES, and DEA_HEAVY_SHARED of libdea.so.
 set(HDF5_USE_STATIC_LIBRARIES ON)
 find_library(DEA_LAPACKE_A NAMES liblapacke.a)
@@ -12,7 +15,11 @@ find_library(DEA_GFORTRAN NAMES gfortran libgfortran.so.5)
 find_package(HDF5 REQUIRED COMPONENTS C)
 pkg_check_modules(DEA_LAPACKE REQUIRED lapacke)
 if(DEA_LAPACKE_A AND DEA_LAPACK_A AND DEA_BLAS_A AND DEA_GFORTRAN)
-  set(DEA_LAPACK_LIBRARIES ${DEA_LAPACKE_A} ${DEA_LAPACK_A} ${DEA_BLAS_A} ${DEA_GFORTRAN})
+  set(blas ${DEA_BLAS_A})
+  if(DEA_BLAS_FOUND)
+    set(blas $<IF:$<BOOL:$<TARGET_PROPERTY:DEA_SHARED_BLAS>>,${DEA_BLAS_LINK_LIBRARIES},${DEA_BLAS_A}>)
+  endif()
+  set(DEA_LAPACK_LIBRARIES ${DEA_LAPACKE_A} ${DEA_LAPACK_A} ${blas} ${DEA_GFORTRAN})
 else()
   set(DEA_LAPACK_LIBRARIES ${DEA_LAPACKE_LINK_LIBRARIES})
 endif()
