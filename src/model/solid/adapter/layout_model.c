@@ -630,6 +630,7 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
   const struct dea_solid *s = model->solid;
   size_t values = s->problem.dofs, pressures = dea_solid_pressure_count(s);
   model->at.rest_energy_J = model->at.report.energy_J;
+  model->at.as_made = !model->at.report.snapped;
   model->rest_is_one_of = model->at.left_a_state;
   model->rest = dea_arena_alloc(&model->memory, values + pressures, sizeof *model->rest);
   DEA_TRY(ctx, dea_arena_status(&model->memory));

@@ -195,6 +195,7 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
   memcpy(model->rest, s->state.u, dofs * sizeof *model->rest);
   memcpy(model->rest + dofs, s->state.multiplier, pressures * sizeof *model->rest);
   model->at.rest_energy_J = model->at.report.energy_J;
+  model->at.as_made = !model->at.report.snapped;
   return DEA_OK;
 }
 

@@ -39,9 +39,12 @@ dea_status dea_standing_solve(struct dea_context *ctx, struct dea_model *model, 
 {
   struct dea_standing *standing = (struct dea_standing *)model;
   const struct dea_ending_owner *owner = &standing->ending.owner;
-  dea_standing_end_history(ctx, standing);
-  DEA_TRY(ctx,
-          dea_ending_go(ctx, &standing->ending, standing->voltage_V, voltage_V, &standing->report));
+  const bool there = standing->as_made && voltage_V == standing->voltage_V;
+  if (!there) {
+    dea_standing_end_history(ctx, standing);
+    DEA_TRY(ctx, dea_ending_go(ctx, &standing->ending, standing->voltage_V, voltage_V,
+                               &standing->report));
+  }
   DEA_TRY(ctx, owner->point(ctx, owner->model, standing->voltage_V, out));
   return DEA_OK;
 }
@@ -228,7 +231,7 @@ dea_status dea_standing_push(struct dea_context *ctx, struct dea_standing *stand
   const struct dea_grid *grid = owner->solid->problem.grid;
   bool folds = push->kind == DEA_PUSH_FOLD;
   size_t moves = 3 * grid->node_count;
-  *found = false;
+  *found = standing->as_made = false;
   if (folds && fold == NULL) {
     return DEA_OK;
   }
@@ -278,6 +281,7 @@ dea_status dea_standing_carry(struct dea_context *ctx, struct dea_standing *stan
 
 void dea_standing_end_history(struct dea_context *ctx, struct dea_standing *standing)
 {
+  standing->as_made = false;
   if (standing->driven != NULL) {
     end_history(ctx, standing);
     standing->voltage_V = dea_solid_voltage(standing->ending.owner.solid);
@@ -351,6 +355,7 @@ dea_status dea_standing_load(struct dea_context *ctx, struct dea_model *model,
   if (own == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
   }
+  standing->as_made = false;
   DEA_TRY(ctx, dea_solid_load(ctx, standing->ending.owner.solid, state));
   standing->voltage_V = own[VOLTAGE];
   standing->left_a_state = own[LEFT_A_STATE] != 0;

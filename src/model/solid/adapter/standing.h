@@ -13,6 +13,7 @@ struct dea_standing {
   struct dea_ending ending; // of the last solve
   struct dea_solid_report report;
   double voltage_V, rest_energy_J;
+  bool as_made;                    // at rest, where making the model has led, and moved nowhere yet
   bool left_a_state;               // a state was left on the way to here: there are several
   struct dea_circuit_step *driven; // NULL: no history in time
   double stored_J;                 // of the film when that began
@@ -59,8 +60,8 @@ dea_status dea_standing_carry(struct dea_context *ctx, struct dea_standing *stan
 dea_status dea_standing_begin(struct dea_context *ctx, struct dea_standing *standing,
                               const struct dea_driven_solid *driven,
                               const struct dea_time_options *time, struct dea_load_point *out);
-/* Equilibria are looked for from where a history in time has come to: before other ways than
- * dea_standing_solve. */
+/* Equilibria are looked for from where a history in time has come to, or the model's making: before
+ * other ways than dea_standing_solve. */
 void dea_standing_end_history(struct dea_context *ctx, struct dea_standing *standing);
 
 /* `save`: where the solid stands as a saved state, as dea_solid_save. */
