@@ -180,7 +180,7 @@ static struct dea_load_point find_slopes(const struct state *at,
     changes[i].width = 2 * share;
   }
   const struct dea_gradient_ask ask = {
-      changes, (size_t)number_count(at), columns, (size_t)key_count(at), NULL, 0, NULL};
+      changes, (size_t)number_count(at), columns, (size_t)key_count(at), NULL, 0, NULL, false};
   if (solid->gradient(ctx, model, &ask, out) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
@@ -326,7 +326,7 @@ static void test_mesh_that_cannot_follow(void **state)
   solve(&at, NULL, &settings, &model);
   const struct dea_design_change change = {
       {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1, {NULL, NULL}};
-  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL};
+  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL, false};
   assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
   assert_true(isnan(slope));
   solid->destroy(ctx, model);
@@ -497,6 +497,49 @@ static void test_laws_of_critical_voltages(void **state)
   }
 }
 
+/* A soft disc, whose path turns back. */
+static struct state soft_disc(void)
+{
+  struct state at = {.device = test_disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 1.2,
+                                         2.6e-3, 2.6 / 15.5, 0),
+                     .voltage_V = 100};
+  at.device.film_thickness_unstretched_m = 30e-6;
+  at.device.film_thickness_m = 30e-6 / 1.44;
+  at.device.frame_radius_m = 15.5e-3;
+  at.device.film.permittivity.at_rest = 4.8;
+  return at;
+}
+
+/* Slopes of pull-in by the null vector of the tangent: the laws of above, and those of the exact
+ * disc by differences, to what the mesh leaves. */
+static void test_pull_in(void **state)
+{
+  (void)state;
+  static const int compared[] = {THICKNESS, MODULUS, PRE_STRETCH, ELECTRODE, FRAME};
+  static const double share = 1e-4;
+  const struct dea_model_settings settings = {0};
+  const struct state at = soft_disc();
+  double slopes[OF_DEVICE];
+  find_critical_slopes(&at, &settings, DEA_EVENT_PULL_IN, slopes);
+  assert_close(slopes[PERMITTIVITY], -0.5, 1e-6, 0);
+  assert_close(slopes[MODULUS], 0.5, 1e-6, 0);
+  assert_close(slopes[THICKNESS] + slopes[ELECTRODE] + slopes[FRAME], 1, 1e-5, 0);
+  for (size_t i = 0; i < sizeof compared / sizeof compared[0]; i++) {
+    double at_V[2];
+    for (int k = 0; k < 2; k++) {
+      struct state there = changed(&at, compared[i], k == 0 ? -share : share);
+      const struct dea_critical_ask ask = {
+          dea_model_find("axisymmetric"), &there.device, NULL, DEA_EVENT_PULL_IN, 100, 2e4};
+      struct dea_critical disc;
+      assert_int_equal(dea_critical_find(ctx, &ask, &disc), DEA_OK);
+      at_V[k] = disc.voltage_V;
+      dea_critical_end(ctx, &disc);
+    }
+    const double exact = (at_V[1] - at_V[0]) / (at_V[0] + at_V[1]) / share;
+    assert_close(slopes[compared[i]], exact, 3e-3, 0);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -509,6 +552,7 @@ int main(void)
       cmocka_unit_test(test_laws_of_the_force),
       cmocka_unit_test(test_critical_voltages),
       cmocka_unit_test(test_laws_of_critical_voltages),
+      cmocka_unit_test(test_pull_in),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

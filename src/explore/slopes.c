@@ -122,9 +122,9 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   const struct wanted wanted = find_wanted(question, held);
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
   const size_t count = wanted.column_count + wanted.monitor_count;
-  const struct dea_gradient_ask ask = {sides->changes,      sides->count,    wanted.columns,
-                                       wanted.column_count, wanted.monitors, wanted.monitor_count,
-                                       wanted.motions};
+  const struct dea_gradient_ask ask = {
+      sides->changes,  sides->count,         wanted.columns, wanted.column_count,
+      wanted.monitors, wanted.monitor_count, wanted.motions, false};
   if (count == 0) {
     return DEA_OK;
   }

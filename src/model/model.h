@@ -135,12 +135,15 @@ struct dea_gradient_ask {
   const size_t *monitors; // [monitor_count]
   size_t monitor_count;
   const enum dea_observed *motions; // [monitor_count]; NULL: the main ones (dea_observed_main)
+  /* One quantity in place of all these, without columns and monitors: the voltage of the limit
+   * point that the last solve, which failed, has come to. */
+  bool of_limit;
 };
 
 /* How many quantities that are. */
 static inline size_t dea_gradient_width(const struct dea_gradient_ask *ask)
 {
-  return ask->column_count + ask->monitor_count;
+  return ask->of_limit ? 1 : ask->column_count + ask->monitor_count;
 }
 
 struct dea_model_type {

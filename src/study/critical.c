@@ -316,7 +316,7 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
   static const double share = 1e-5; // of the voltage, to either side
   const int column = dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK ? "min_tension_N_per_m"
                                                                           : "breakdown_margin");
-  const struct dea_gradient_ask ask = {own, count + 1, &column, 1, NULL, 0, NULL};
+  const struct dea_gradient_ask ask = {own, count + 1, &column, 1, NULL, 0, NULL, false};
   for (size_t i = 0; i < count; i++) {
     own[i] = changes[i];
     own[i].voltage_V[0] = own[i].voltage_V[1] = V;
@@ -372,6 +372,33 @@ static dea_status slopes_of_crossing(struct dea_context *ctx, const struct dea_c
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
+/* Of a limit point, which is the model's own; none where it is another instability. */
+static dea_status slopes_of_limit(struct dea_context *ctx, const struct dea_critical *c,
+                                  const struct dea_design_change *changes, size_t count,
+                                  double *slopes)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_design_change *own = dea_arena_alloc(&memory, count, sizeof *own);
+  const struct dea_gradient_ask ask = {.changes = own, .change_count = count, .of_limit = true};
+  dea_status status = dea_arena_status(&memory);
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    own[i] = changes[i];
+    own[i].voltage_V[0] = own[i].voltage_V[1] = c->voltage_V;
+  }
+  if (status == DEA_OK) {
+    status = c->ask.type->gradient(ctx, c->model, &ask, slopes);
+  }
+  if (status == DEA_E_UNSUPPORTED) {
+    dea_context_clear(ctx);
+    for (size_t i = 0; i < count; i++) {
+      slopes[i] = NAN;
+    }
+    status = DEA_OK;
+  }
+  dea_arena_free(&memory);
+  return status;
+}
+
 /* Differences of the voltages of changed devices, each found anew: of a model without gradients,
  * which costs little. */
 static dea_status slopes_anew(struct dea_context *ctx, const struct dea_critical *c,
@@ -398,12 +425,14 @@ dea_status dea_critical_slopes(struct dea_context *ctx, const struct dea_critica
                                const struct dea_design_change *changes, size_t change_count,
                                double *slopes)
 {
-  if (isnan(critical->voltage_V) ||
-      (critical->ask.kind == DEA_EVENT_PULL_IN && critical->ask.type->gradient != NULL)) {
+  if (isnan(critical->voltage_V)) {
     for (size_t i = 0; i < change_count; i++) {
       slopes[i] = NAN;
     }
     return DEA_OK;
+  }
+  if (critical->ask.kind == DEA_EVENT_PULL_IN && critical->ask.type->gradient != NULL) {
+    return slopes_of_limit(ctx, critical, changes, change_count, slopes);
   }
   return critical->ask.type->gradient == NULL
              ? slopes_anew(ctx, critical, changes, change_count, slopes)

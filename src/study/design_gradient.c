@@ -294,7 +294,7 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
   if (status == DEA_OK) {
     const struct dea_gradient_ask question = {
         all.changes,   ask->number_count,  ask->columns, ask->column_count,
-        ask->monitors, ask->monitor_count, ask->motions};
+        ask->monitors, ask->monitor_count, ask->motions, false};
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
   free_changes(ctx, ask, &all);

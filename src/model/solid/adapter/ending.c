@@ -53,6 +53,17 @@ static dea_status take_event(struct dea_context *ctx, struct dea_ending *e,
   return status;
 }
 
+static void drop_limit(struct dea_ending *e)
+{
+  dea_solid_stand_free(&e->at_limit);
+  e->at_limit = (struct dea_solid_stand){.state = NULL};
+}
+
+void dea_ending_free(struct dea_ending *e)
+{
+  drop_limit(e);
+}
+
 /* A point of the path on the way to where a solve ends. Where the film goes slack between two of
  * them: the voltage from their tensions and the squares of their voltages. */
 static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
@@ -61,6 +72,10 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   double V = dea_solid_voltage(e->owner.solid);
   bool before = is_taut(e);
   bool thins = before || e->leapt; // where it turns unstable: in one place
+  if (where == DEA_STOP_LIMIT && e->keeps) {
+    drop_limit(e);
+    DEA_TRY(ctx, dea_solid_stand_keep(ctx, e->owner.solid, &e->at_limit));
+  }
   if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && thins)) {
     return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
   }
@@ -250,11 +265,14 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   struct dea_solid_stop stop;
   e->from_V = from_V;
   e->limited = e->leapt = false;
+  drop_limit(e);
   DEA_TRY(ctx, look_at_tension(ctx, e));
   dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
+    e->keeps = true;
     status =
         dea_solid_approach(ctx, e->owner.solid, voltage_V, is_taut(e), see_point, e, report, &stop);
+    e->keeps = false;
     if (status != DEA_OK) {
       e->rate[0] = 0;
       status = dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM

@@ -27,12 +27,14 @@ struct dea_ending_owner {
 /* Zeroed at first but for the owner. */
 struct dea_ending {
   struct dea_ending_owner owner;
-  double from_V;           // where the last way began
-  struct dea_event limit;  // where the last way came to its end
-  bool limited;            // it is known
-  struct dea_event passed; // a limit point that the last way has gone past to another state
-  bool has_passed;         // it is known
-  bool leapt;              // on the last step the film may have gone past one
+  double from_V;                   // where the last way began
+  struct dea_event limit;          // where the last way came to its end
+  bool limited;                    // it is known
+  bool keeps;                      // the state there is wanted
+  struct dea_solid_stand at_limit; // of a limit point that was located; state NULL: none was
+  struct dea_event passed;         // a limit point that the last way has gone past to another state
+  bool has_passed;                 // it is known
+  bool leapt;                      // on the last step the film may have gone past one
   double rate[2]; // motion of the last step over its way, of the voltage and of another control; 0:
                   // none
   double tension[2], tension_V[2]; // smallest of the film [N/m], at the last two points looked at
@@ -44,6 +46,7 @@ struct dea_ending {
  * element, the end of a law, or that it is ours; what arrived before stays. */
 dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *ending, double from_V,
                          double voltage_V, struct dea_solid_report *report);
+void dea_ending_free(struct dea_ending *ending);
 /* Where the last way came to its end, NULL where it did not; lent. */
 const struct dea_event *dea_ending_limit(const struct dea_ending *ending);
 /* A limit point that the last way has gone past to another state, NULL where none is known; lent.

@@ -238,6 +238,10 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltag
 
 // All of it ---------------------------------------------------------------------------------------
 
+/* Of a limit point: the answer to dR/dV, and the one to that, which is the tangent's null vector.
+ */
+enum { RATE, NULL_MODE, OF_LIMIT };
+
 /* The answers of all quantities. */
 static dea_status answer(struct dea_context *ctx, struct work *w)
 {
@@ -272,6 +276,10 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
   double energy_J;
   s->state.voltage_V = voltage_V;
   DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J));
+  if (w->ask->of_limit) {
+    *out = dea_adjoint_product(w->adjoint, NULL_MODE);
+    return DEA_OK;
+  }
   for (size_t i = 0; i < dea_gradient_width(w->ask); i++) {
     out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
   }
@@ -308,10 +316,10 @@ static dea_status difference(struct dea_context *ctx, struct work *w,
   return DEA_OK;
 }
 
-static dea_status find(struct dea_context *ctx, struct work *w, double *out)
+/* Slopes of all quantities by the changes, whose answers are there. */
+static dea_status find_by_changes(struct dea_context *ctx, struct work *w, double *out)
 {
   size_t count = dea_gradient_width(w->ask);
-  DEA_TRY(ctx, answer(ctx, w));
   for (size_t c = 0; c < w->ask->change_count; c++) {
     size_t errors = dea_finding_trial_begin(ctx);
     dea_status status = difference(ctx, w, &w->ask->changes[c]);
@@ -331,6 +339,13 @@ static dea_status find(struct dea_context *ctx, struct work *w, double *out)
           follows ? (w->side[count + i] - w->side[i]) / w->ask->changes[c].width : NAN;
     }
   }
+  return DEA_OK;
+}
+
+static dea_status find(struct dea_context *ctx, struct work *w, double *out)
+{
+  DEA_TRY(ctx, answer(ctx, w));
+  DEA_TRY(ctx, find_by_changes(ctx, w, out));
   return DEA_OK;
 }
 
@@ -364,5 +379,101 @@ dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_
   }
   dea_adjoint_destroy(ctx, w.adjoint);
   dea_arena_free(&memory);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+// A limit point -----------------------------------------------------------------------------------
+
+/* dR/dV at the unknowns as they are, into the slope that is answered to first. */
+static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_V)
+{
+  const struct dea_solid *s = w->owner->solid;
+  double *rate = dea_adjoint_slope(w->adjoint, RATE), energy_J;
+  for (int side = -1; side <= 1; side += 2) {
+    DEA_TRY(ctx,
+            dea_adjoint_assemble(ctx, w->adjoint, w->owner->voltage_V + side * by_V, &energy_J));
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      rate[i] += side * s->work.g[i];
+    }
+  }
+  return DEA_OK;
+}
+
+/* w of A w + B mu = 0, B^T w = 0, by two steps of inverse iteration. */
+static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
+{
+  const struct dea_solid *s = w->owner->solid;
+  const double *first = dea_adjoint_answer(w->adjoint, RATE);
+  double largest = 0;
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, (const bool[OF_LIMIT]){[RATE] = true}));
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    largest = fmax(largest, fabs(first[i]));
+  }
+  for (size_t i = 0; i < s->problem.dofs; i++) {
+    dea_adjoint_slope(w->adjoint, NULL_MODE)[i] = first[i] / largest;
+  }
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, (const bool[OF_LIMIT]){[NULL_MODE] = true}));
+  return DEA_OK;
+}
+
+/* -(w . dR/dP) / (w . dR/dV), where the solid is at the limit point. */
+static dea_status find_limit(struct dea_context *ctx, struct work *w, double *out)
+{
+  static const double share = 1e-5; // of the voltage
+  const double V = w->owner->voltage_V, by_V = share * V;
+  double side[2], energy_J;
+  DEA_TRY(ctx, find_rate(ctx, w, by_V));
+  DEA_TRY(ctx, find_null_mode(ctx, w));
+  for (int k = 0; k < 2; k++) {
+    DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, V + (k == 0 ? -by_V : by_V), &energy_J));
+    side[k] = dea_adjoint_product(w->adjoint, NULL_MODE);
+  }
+  DEA_TRY(ctx, find_by_changes(ctx, w, out));
+  for (size_t c = 0; c < w->ask->change_count; c++) {
+    out[c] *= -2 * by_V / (side[1] - side[0]);
+  }
+  return DEA_OK;
+}
+
+/* At the state that `ending` has kept. */
+static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                                const struct dea_ending *ending, const struct dea_gradient_ask *ask,
+                                double *out)
+{
+  struct dea_solid *s = owner->solid;
+  struct dea_gradient_owner there = *owner;
+  double side[2];
+  struct work w = {.owner = &there, .ask = ask, .side = side};
+  dea_solid_stand_again(s, &ending->at_limit);
+  there.voltage_V = dea_solid_voltage(s);
+  dea_status status = dea_adjoint_create(ctx, s, OF_LIMIT, &w.adjoint);
+  if (status == DEA_OK) {
+    status = find_limit(ctx, &w, out);
+  }
+  dea_adjoint_destroy(ctx, w.adjoint);
+  return status;
+}
+
+dea_status dea_gradient_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                              const struct dea_ending *ending, const struct dea_gradient_ask *ask,
+                              double *out)
+{
+  struct dea_solid *s = owner->solid;
+  struct dea_solid_stand here;
+  double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
+  if (!ending->limited || ending->at_limit.state == NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the path to the last solve's end has no limit point");
+  }
+  dea_status status = dea_solid_stand_keep(ctx, s, &here);
+  if (status == DEA_OK) {
+    status = find_at_limit(ctx, owner, ending, ask, out);
+    dea_solid_stand_again(s, &here);
+    s->found.force_largest_N = force_N;
+    s->found.energy_largest_J = all_J;
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
+  }
+  dea_solid_stand_free(&here);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -5,6 +5,7 @@
 #define DEA_MODEL_SOLID_ADAPTER_GRADIENT_H
 
 #include "model/model.h"
+#include "model/solid/adapter/ending.h"
 #include "model/solid/assembly/film.h"
 
 /* Whose solid it is. */
@@ -65,6 +66,11 @@ dea_status dea_gradient_rest_energy(struct dea_solid *solid, const struct dea_gr
 
 /* Whether it is asked for the frequency of the lowest mode, which needs a mass. */
 bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask);
+
+/* Those of a limit point's voltage, where a question is of it: `ending` has come to it. */
+dea_status dea_gradient_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                              const struct dea_ending *ending, const struct dea_gradient_ask *ask,
+                              double *out);
 
 /* `gradient` of struct dea_model_type. The frequency is this file's own. */
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,

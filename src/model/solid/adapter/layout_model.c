@@ -1190,7 +1190,8 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
   v->ask = ask;
   v->own = *model;
   DEA_TRY(ctx, find_asked_motions(ctx, model));
-  DEA_TRY(ctx, dea_gradient_find(ctx, &owner, ask, out));
+  DEA_TRY(ctx, ask->of_limit ? dea_gradient_limit(ctx, &owner, &model->at.ending, ask, out)
+                             : dea_gradient_find(ctx, &owner, ask, out));
   return DEA_OK;
 }
 

@@ -27,6 +27,7 @@ static void end_history(struct dea_context *ctx, struct dea_standing *standing)
 void dea_standing_free(struct dea_context *ctx, struct dea_standing *standing)
 {
   end_history(ctx, standing);
+  dea_ending_free(&standing->ending);
   dea_free(ctx, standing->soft);
   standing->soft = NULL;
   standing->soft_count = 0;

@@ -376,6 +376,11 @@ double *dea_adjoint_pressure_slope(struct dea_adjoint *a, size_t number)
   return a->pull + number * a->all;
 }
 
+const double *dea_adjoint_answer(const struct dea_adjoint *a, size_t number)
+{
+  return a->lambda + number * a->dofs;
+}
+
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, const bool *wanted)
 {
   size_t open = 0;

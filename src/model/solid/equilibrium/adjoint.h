@@ -28,6 +28,8 @@ double *dea_adjoint_pressure_slope(struct dea_adjoint *adjoint, size_t number);
  * do not settle. */
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoint,
                              const bool *wanted);
+/* lambda [dofs] of an answer; lent. */
+const double *dea_adjoint_answer(const struct dea_adjoint *adjoint, size_t number);
 /* Residuals and energy of the solid at its state, of another problem than the answers are of, for
  * dea_adjoint_product. */
 dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *adjoint,
