@@ -1,10 +1,8 @@
 /* Gradients of model 3d: Taylor's remainder of each by the changed device, solved by itself. */
 // ctest: solid
-#include "devices.h"
-#include "model/model.h"
+#include "device_numbers.h"
 #include "model/solid/assembly/solid.h"
 #include "result/columns.h"
-#include "study/critical.h"
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
@@ -12,75 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-extern const struct dea_model_type dea_solid_module;
-static const struct dea_model_type *const solid = &dea_solid_module;
-
-/* ---- the device as a function of its numbers ---- */
-
-enum {
-  VOLTAGE,
-  THICKNESS,
-  MODULUS,
-  STIFFENING,
-  PERMITTIVITY,
-  PRE_STRETCH,
-  ELECTRODE,
-  FRAME,
-  TIP,
-  WIDTH,
-  TIP_WIDTH,
-  FIBRE_THICKNESS,
-  FIBRE_MODULUS,
-  GLUE,
-  GLUE_MODULUS,
-  OF_DEVICE,
-  DEPTH = OF_DEVICE, // these two of a tip
-  TIP_SIZE,
-  NUMBERS,
-  SHARES_MAX = 5,
-  ROUNDS = 3
-};
-static const char *const names[NUMBERS] = {
-    "voltage",       "thickness", "modulus",      "stiffening", "permittivity",   "pre-stretch",
-    "electrode",     "frame",     "tip",          "width",      "tip width",      "fibre thickness",
-    "fibre modulus", "glue",      "glue modulus", "depth",      "size of the tip"};
-
-struct state {
-  struct dea_device device;
-  double voltage_V;
-  struct dea_pressed pressed; // radius 0: nothing
-};
-
-static double *number_of(struct state *s, int i)
-{
-  double *const all[NUMBERS] = {&s->voltage_V,
-                                &s->device.film_thickness_unstretched_m,
-                                &s->device.film.param[0],
-                                &s->device.film.param[2],
-                                &s->device.film.permittivity.at_rest,
-                                &s->device.pre_stretch,
-                                &s->device.electrode_radius_m,
-                                &s->device.frame_radius_m,
-                                &s->device.fibre_tip_radius_m,
-                                &s->device.fibre_width_m,
-                                &s->device.fibre_tip_width_m,
-                                &s->device.fibre_thickness_m,
-                                &s->device.fibre.young_modulus_Pa,
-                                &s->device.bond_thickness_m,
-                                &s->device.bond_modulus_Pa,
-                                &s->pressed.depth_m,
-                                &s->pressed.tip.radius_m};
-  return all[i];
-}
-
-static struct state changed(const struct state *from, int i, double share)
-{
-  struct state s = *from;
-  *number_of(&s, i) *= 1 + share;
-  s.device.film_thickness_m =
-      s.device.film_thickness_unstretched_m / (s.device.pre_stretch * s.device.pre_stretch);
-  return s;
-}
+enum { SHARES_MAX = 5, ROUNDS = 3 };
 
 /* ---- quantities ---- */
 
@@ -204,10 +134,6 @@ static double floor_of(const char *key)
   return strcmp(key, "min_tension_N_per_m") == 0 || strcmp(key, "frequency_Hz") == 0 ? 1e-8 : 2e-10;
 }
 
-/* Of a slope: what differences of residuals over 1e-5 of a number leave, rounding of 1e-11 over
- * that (docs/theory/gradients.md). */
-static const double slope_accuracy = 5e-6;
-
 /* The remainder falls as the square of the change of these numbers [number_count]: shares [count]
  * from the largest on, each compared with what the one at `from` leads to expect. */
 static void check_some(const struct state *at, const struct dea_model_settings *settings,
@@ -248,16 +174,6 @@ static void check(const struct state *at, const struct dea_model_settings *setti
     all[i] = i;
   }
   check_some(at, settings, all, number_count(at), shares, count, from);
-}
-
-static struct state star(void)
-{
-  struct state at = {.device = test_star(4), .voltage_V = 3e3};
-  at.device.fibre_tip_radius_m = 3.2e-3;
-  at.device.fibre_tip_width_m = 1e-3;
-  at.device.bond_thickness_m = 50e-6;
-  at.device.bond_modulus_Pa = 1e6;
-  return at;
 }
 
 /* It has a mass. */
@@ -390,156 +306,6 @@ static void test_laws_of_the_force(void **state)
   check_some(&at, &settings, numbers, 3, shares, 2, 0);
 }
 
-// Critical voltages -------------------------------------------------------------------------------
-
-/* That of a device on the mesh of another one. */
-static struct dea_critical find_critical(const struct state *at,
-                                         const struct dea_model_settings *settings,
-                                         enum dea_event_kind kind)
-{
-  struct dea_critical out;
-  const struct dea_critical_ask ask = {solid, &at->device, settings, kind, at->voltage_V, 2e4};
-  if (dea_critical_find(ctx, &ask, &out) != DEA_OK || isnan(out.voltage_V)) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
-  return out;
-}
-
-/* Slopes of its logarithm by those of all numbers but the voltage, out [OF_DEVICE]. */
-static double find_critical_slopes(const struct state *at,
-                                   const struct dea_model_settings *settings,
-                                   enum dea_event_kind kind, double *out)
-{
-  const double share = 1e-5;
-  struct state sides[2 * OF_DEVICE];
-  struct dea_design_change changes[OF_DEVICE];
-  struct dea_critical critical = find_critical(at, settings, kind);
-  for (int i = 0; i < OF_DEVICE; i++) {
-    for (int k = 0; k < 2; k++) {
-      sides[2 * i + k] = changed(at, i, k == 0 ? -share : share);
-    }
-    changes[i] = (struct dea_design_change){
-        .device = {&sides[2 * i].device, &sides[2 * i + 1].device}, .width = 2 * share};
-  }
-  if (dea_critical_slopes(ctx, &critical, changes, OF_DEVICE, out) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
-  dea_critical_end(ctx, &critical);
-  for (int i = 0; i < OF_DEVICE; i++) {
-    out[i] /= critical.voltage_V;
-  }
-  return critical.voltage_V;
-}
-
-static void check_critical(const struct state *at, const struct dea_model_settings *settings,
-                           enum dea_event_kind kind, int number)
-{
-  enum { COUNT = 4, FROM = 1 };
-  static const double shares[COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
-  double slopes[OF_DEVICE], left[COUNT];
-  struct dea_model_settings own = *settings;
-  const double base_V = find_critical_slopes(at, settings, kind, slopes);
-  own.mesh_of = &at->device;
-  for (size_t n = 0; n < COUNT; n++) {
-    struct state there = changed(at, number, shares[n]);
-    there.voltage_V = 0.95 * base_V;
-    struct dea_critical moved = find_critical(&there, &own, kind);
-    left[n] = moved.voltage_V / base_V - 1 - slopes[number] * shares[n];
-    dea_critical_end(ctx, &moved);
-  }
-  for (size_t n = 0; n < COUNT; n++) {
-    const double wanted = left[FROM] * pow(shares[n] / shares[FROM], 2);
-    if (!(fabs(left[n] - wanted) <=
-          0.2 * fabs(wanted) + slope_accuracy * shares[n] + floor_of("min_tension_N_per_m"))) {
-      fail_msg("%s by %s at %.0e: %.3e, not %.3e", dea_event_name(kind), names[number], shares[n],
-               left[n], wanted);
-    }
-  }
-}
-
-/* Of a membrane, which has a kink where it loses its tension, over four decades. */
-static void test_critical_voltages(void **state)
-{
-  (void)state;
-  struct state at = star();
-  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
-  check_critical(&at, &settings, DEA_EVENT_SLACK, PRE_STRETCH);
-  check_critical(&at, &settings, DEA_EVENT_BREAKDOWN, TIP);
-}
-
-/* Laws: with all lengths s times as large so is a critical voltage; with all moduli and the
- * permittivity s times as large it stays; and as the voltage comes in by eps V^2 only, that of the
- * loss of tension goes with 1 / sqrt(eps). */
-static void test_laws_of_critical_voltages(void **state)
-{
-  (void)state;
-  static const int lengths[] = {THICKNESS, ELECTRODE, FRAME,           TIP,
-                                WIDTH,     TIP_WIDTH, FIBRE_THICKNESS, GLUE};
-  enum { SLACK, BREAKDOWN, KINDS };
-  static const enum dea_event_kind kinds[] = {DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN};
-  static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
-  struct state at = star();
-  at.device.film.param[1] = 0; // of the law's moduli those that are numbers here are all
-  for (int n = 0; n < KINDS; n++) {
-    double slopes[OF_DEVICE], sum = 0;
-    const struct dea_model_settings settings = {.film = films[n]};
-    find_critical_slopes(&at, &settings, kinds[n], slopes);
-    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
-      sum += slopes[lengths[i]];
-    }
-    assert_close(sum, 1, 2e-5, 0);
-    assert_close(slopes[MODULUS] + slopes[STIFFENING] + slopes[FIBRE_MODULUS] +
-                     slopes[GLUE_MODULUS] + slopes[PERMITTIVITY],
-                 0, 0, 2e-5);
-    if (n == SLACK) {
-      assert_close(slopes[PERMITTIVITY], -0.5, 1e-5, 0);
-    }
-  }
-}
-
-/* A soft disc, whose path turns back. */
-static struct state soft_disc(void)
-{
-  struct state at = {.device = test_disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 1.2,
-                                         2.6e-3, 2.6 / 15.5, 0),
-                     .voltage_V = 100};
-  at.device.film_thickness_unstretched_m = 30e-6;
-  at.device.film_thickness_m = 30e-6 / 1.44;
-  at.device.frame_radius_m = 15.5e-3;
-  at.device.film.permittivity.at_rest = 4.8;
-  return at;
-}
-
-/* Slopes of pull-in by the null vector of the tangent: the laws of above, and those of the exact
- * disc by differences, to what the mesh leaves. */
-static void test_pull_in(void **state)
-{
-  (void)state;
-  static const int compared[] = {THICKNESS, MODULUS, PRE_STRETCH, ELECTRODE, FRAME};
-  static const double share = 1e-4;
-  const struct dea_model_settings settings = {0};
-  const struct state at = soft_disc();
-  double slopes[OF_DEVICE];
-  find_critical_slopes(&at, &settings, DEA_EVENT_PULL_IN, slopes);
-  assert_close(slopes[PERMITTIVITY], -0.5, 1e-6, 0);
-  assert_close(slopes[MODULUS], 0.5, 1e-6, 0);
-  assert_close(slopes[THICKNESS] + slopes[ELECTRODE] + slopes[FRAME], 1, 1e-5, 0);
-  for (size_t i = 0; i < sizeof compared / sizeof compared[0]; i++) {
-    double at_V[2];
-    for (int k = 0; k < 2; k++) {
-      struct state there = changed(&at, compared[i], k == 0 ? -share : share);
-      const struct dea_critical_ask ask = {
-          dea_model_find("axisymmetric"), &there.device, NULL, DEA_EVENT_PULL_IN, 100, 2e4};
-      struct dea_critical disc;
-      assert_int_equal(dea_critical_find(ctx, &ask, &disc), DEA_OK);
-      at_V[k] = disc.voltage_V;
-      dea_critical_end(ctx, &disc);
-    }
-    const double exact = (at_V[1] - at_V[0]) / (at_V[0] + at_V[1]) / share;
-    assert_close(slopes[compared[i]], exact, 3e-3, 0);
-  }
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -550,9 +316,6 @@ int main(void)
       cmocka_unit_test(test_force_of_a_tip),
       cmocka_unit_test(test_force_of_a_flat_tip),
       cmocka_unit_test(test_laws_of_the_force),
-      cmocka_unit_test(test_critical_voltages),
-      cmocka_unit_test(test_laws_of_critical_voltages),
-      cmocka_unit_test(test_pull_in),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

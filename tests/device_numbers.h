@@ -1,0 +1,88 @@
+/* A device of model 3d as a function of its numbers, for tests of gradients by changed devices. */
+#ifndef DEA_TESTS_DEVICE_NUMBERS_H
+#define DEA_TESTS_DEVICE_NUMBERS_H
+
+#include "devices.h"
+#include "model/model.h"
+
+extern const struct dea_model_type dea_solid_module;
+static const struct dea_model_type *const solid = &dea_solid_module;
+
+enum {
+  VOLTAGE,
+  THICKNESS,
+  MODULUS,
+  STIFFENING,
+  PERMITTIVITY,
+  PRE_STRETCH,
+  ELECTRODE,
+  FRAME,
+  TIP,
+  WIDTH,
+  TIP_WIDTH,
+  FIBRE_THICKNESS,
+  FIBRE_MODULUS,
+  GLUE,
+  GLUE_MODULUS,
+  OF_DEVICE,
+  DEPTH = OF_DEVICE, // these two of a tip
+  TIP_SIZE,
+  NUMBERS,
+};
+static const char *const names[NUMBERS] = {
+    "voltage",       "thickness", "modulus",      "stiffening", "permittivity",   "pre-stretch",
+    "electrode",     "frame",     "tip",          "width",      "tip width",      "fibre thickness",
+    "fibre modulus", "glue",      "glue modulus", "depth",      "size of the tip"};
+
+struct state {
+  struct dea_device device;
+  double voltage_V;
+  struct dea_pressed pressed; // radius 0: nothing
+};
+
+static inline double *number_of(struct state *s, int i)
+{
+  double *const all[NUMBERS] = {&s->voltage_V,
+                                &s->device.film_thickness_unstretched_m,
+                                &s->device.film.param[0],
+                                &s->device.film.param[2],
+                                &s->device.film.permittivity.at_rest,
+                                &s->device.pre_stretch,
+                                &s->device.electrode_radius_m,
+                                &s->device.frame_radius_m,
+                                &s->device.fibre_tip_radius_m,
+                                &s->device.fibre_width_m,
+                                &s->device.fibre_tip_width_m,
+                                &s->device.fibre_thickness_m,
+                                &s->device.fibre.young_modulus_Pa,
+                                &s->device.bond_thickness_m,
+                                &s->device.bond_modulus_Pa,
+                                &s->pressed.depth_m,
+                                &s->pressed.tip.radius_m};
+  return all[i];
+}
+
+static inline struct state changed(const struct state *from, int i, double share)
+{
+  struct state s = *from;
+  *number_of(&s, i) *= 1 + share;
+  s.device.film_thickness_m =
+      s.device.film_thickness_unstretched_m / (s.device.pre_stretch * s.device.pre_stretch);
+  return s;
+}
+
+/* Of a slope: what differences of residuals over 1e-5 of a number leave, rounding of 1e-11 over
+ * that (docs/theory/gradients.md). */
+static const double slope_accuracy = 5e-6;
+
+static inline struct state star(void)
+{
+  struct state at = {.device = test_star(4), .voltage_V = 3e3};
+  at.device.fibre_tip_radius_m = 3.2e-3;
+  at.device.fibre_tip_width_m = 1e-3;
+  at.device.bond_thickness_m = 50e-6;
+  at.device.bond_modulus_Pa = 1e6;
+  return at;
+}
+
+#endif

@@ -1,0 +1,171 @@
+/* Critical voltages of model 3d and their slopes: Taylor's remainder, laws, and the exact disc. */
+// ctest: solid
+#include "device_numbers.h"
+#include "model/solid/assembly/solid.h"
+#include "result/columns.h"
+#include "study/critical.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+
+/* That of a device on the mesh of another one. */
+static struct dea_critical find_critical(const struct state *at,
+                                         const struct dea_model_settings *settings,
+                                         enum dea_event_kind kind)
+{
+  struct dea_critical out;
+  const struct dea_critical_ask ask = {solid, &at->device, settings, kind, at->voltage_V, 2e4};
+  if (dea_critical_find(ctx, &ask, &out) != DEA_OK || isnan(out.voltage_V)) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  return out;
+}
+
+/* Slopes of its logarithm by those of all numbers but the voltage, out [OF_DEVICE]. */
+static double find_critical_slopes(const struct state *at,
+                                   const struct dea_model_settings *settings,
+                                   enum dea_event_kind kind, double *out)
+{
+  const double share = 1e-5;
+  struct state sides[2 * OF_DEVICE];
+  struct dea_design_change changes[OF_DEVICE];
+  struct dea_critical critical = find_critical(at, settings, kind);
+  for (int i = 0; i < OF_DEVICE; i++) {
+    for (int k = 0; k < 2; k++) {
+      sides[2 * i + k] = changed(at, i, k == 0 ? -share : share);
+    }
+    changes[i] = (struct dea_design_change){
+        .device = {&sides[2 * i].device, &sides[2 * i + 1].device}, .width = 2 * share};
+  }
+  if (dea_critical_slopes(ctx, &critical, changes, OF_DEVICE, out) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  dea_critical_end(ctx, &critical);
+  for (int i = 0; i < OF_DEVICE; i++) {
+    out[i] /= critical.voltage_V;
+  }
+  return critical.voltage_V;
+}
+
+/* What the solver leaves of the tension. */
+static const double tension_floor = 1e-8;
+
+static void check_critical(const struct state *at, const struct dea_model_settings *settings,
+                           enum dea_event_kind kind, int number)
+{
+  enum { COUNT = 4, FROM = 1 };
+  static const double shares[COUNT] = {1e-2, 1e-3, 1e-4, 1e-5};
+  double slopes[OF_DEVICE], left[COUNT];
+  struct dea_model_settings own = *settings;
+  const double base_V = find_critical_slopes(at, settings, kind, slopes);
+  own.mesh_of = &at->device;
+  for (size_t n = 0; n < COUNT; n++) {
+    struct state there = changed(at, number, shares[n]);
+    there.voltage_V = 0.95 * base_V;
+    struct dea_critical moved = find_critical(&there, &own, kind);
+    left[n] = moved.voltage_V / base_V - 1 - slopes[number] * shares[n];
+    dea_critical_end(ctx, &moved);
+  }
+  for (size_t n = 0; n < COUNT; n++) {
+    const double wanted = left[FROM] * pow(shares[n] / shares[FROM], 2);
+    if (!(fabs(left[n] - wanted) <=
+          0.2 * fabs(wanted) + slope_accuracy * shares[n] + tension_floor)) {
+      fail_msg("%s by %s at %.0e: %.3e, not %.3e", dea_event_name(kind), names[number], shares[n],
+               left[n], wanted);
+    }
+  }
+}
+
+/* Of a membrane, which has a kink where it loses its tension, over four decades. */
+static void test_critical_voltages(void **state)
+{
+  (void)state;
+  struct state at = star();
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  check_critical(&at, &settings, DEA_EVENT_SLACK, PRE_STRETCH);
+  check_critical(&at, &settings, DEA_EVENT_BREAKDOWN, TIP);
+}
+
+/* Laws: with all lengths s times as large so is a critical voltage; with all moduli and the
+ * permittivity s times as large it stays; and as the voltage comes in by eps V^2 only, that of the
+ * loss of tension goes with 1 / sqrt(eps). */
+static void test_laws_of_critical_voltages(void **state)
+{
+  (void)state;
+  static const int lengths[] = {THICKNESS, ELECTRODE, FRAME,           TIP,
+                                WIDTH,     TIP_WIDTH, FIBRE_THICKNESS, GLUE};
+  enum { SLACK, BREAKDOWN, KINDS };
+  static const enum dea_event_kind kinds[] = {DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN};
+  static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
+  struct state at = star();
+  at.device.film.param[1] = 0; // of the law's moduli those that are numbers here are all
+  for (int n = 0; n < KINDS; n++) {
+    double slopes[OF_DEVICE], sum = 0;
+    const struct dea_model_settings settings = {.film = films[n]};
+    find_critical_slopes(&at, &settings, kinds[n], slopes);
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+      sum += slopes[lengths[i]];
+    }
+    assert_close(sum, 1, 2e-5, 0);
+    assert_close(slopes[MODULUS] + slopes[STIFFENING] + slopes[FIBRE_MODULUS] +
+                     slopes[GLUE_MODULUS] + slopes[PERMITTIVITY],
+                 0, 0, 2e-5);
+    if (n == SLACK) {
+      assert_close(slopes[PERMITTIVITY], -0.5, 1e-5, 0);
+    }
+  }
+}
+
+/* A soft disc, whose path turns back. */
+static struct state soft_disc(void)
+{
+  struct state at = {.device = test_disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 1.2,
+                                         2.6e-3, 2.6 / 15.5, 0),
+                     .voltage_V = 100};
+  at.device.film_thickness_unstretched_m = 30e-6;
+  at.device.film_thickness_m = 30e-6 / 1.44;
+  at.device.frame_radius_m = 15.5e-3;
+  at.device.film.permittivity.at_rest = 4.8;
+  return at;
+}
+
+/* Slopes of pull-in by the null vector of the tangent: the laws of above, and those of the exact
+ * disc by differences, to what the mesh leaves. */
+static void test_pull_in(void **state)
+{
+  (void)state;
+  static const int compared[] = {THICKNESS, MODULUS, PRE_STRETCH, ELECTRODE, FRAME};
+  static const double share = 1e-4;
+  const struct dea_model_settings settings = {0};
+  const struct state at = soft_disc();
+  double slopes[OF_DEVICE];
+  find_critical_slopes(&at, &settings, DEA_EVENT_PULL_IN, slopes);
+  assert_close(slopes[PERMITTIVITY], -0.5, 1e-6, 0);
+  assert_close(slopes[MODULUS], 0.5, 1e-6, 0);
+  assert_close(slopes[THICKNESS] + slopes[ELECTRODE] + slopes[FRAME], 1, 1e-5, 0);
+  for (size_t i = 0; i < sizeof compared / sizeof compared[0]; i++) {
+    double at_V[2];
+    for (int k = 0; k < 2; k++) {
+      struct state there = changed(&at, compared[i], k == 0 ? -share : share);
+      const struct dea_critical_ask ask = {
+          dea_model_find("axisymmetric"), &there.device, NULL, DEA_EVENT_PULL_IN, 100, 2e4};
+      struct dea_critical disc;
+      assert_int_equal(dea_critical_find(ctx, &ask, &disc), DEA_OK);
+      at_V[k] = disc.voltage_V;
+      dea_critical_end(ctx, &disc);
+    }
+    const double exact = (at_V[1] - at_V[0]) / (at_V[0] + at_V[1]) / share;
+    assert_close(slopes[compared[i]], exact, 3e-3, 0);
+  }
+}
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_critical_voltages),
+      cmocka_unit_test(test_laws_of_critical_voltages),
+      cmocka_unit_test(test_pull_in),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
