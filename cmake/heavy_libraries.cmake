@@ -6,7 +6,8 @@
 # A program with PETSc in it has the property DEA_SHARED_BLAS: the linker takes the static BLAS into it wherever
 # the shared one stands on its line, and PETSc and MUMPS would then use that slow one.
 #
-# Sets HDF5_INCLUDE_DIRS, HDF5_C_LIBRARIES, DEA_LAPACK_LIBRARIES, and DEA_HEAVY_SHARED of libdea.so.
+# Sets HDF5_INCLUDE_DIRS, HDF5_C_LIBRARIES, DEA_LAPACK_LIBRARIES, the same as DEA_LAPACK_LINK for targets, whose
+# property chooses, and DEA_HEAVY_SHARED of libdea.so.
 set(HDF5_USE_STATIC_LIBRARIES ON)
 find_library(DEA_LAPACKE_A NAMES liblapacke.a)
 find_library(DEA_LAPACK_A NAMES liblapack.a PATH_SUFFIXES lapack)
@@ -19,9 +20,11 @@ if(DEA_LAPACKE_A AND DEA_LAPACK_A AND DEA_BLAS_A AND DEA_GFORTRAN)
   if(DEA_BLAS_FOUND)
     set(blas $<IF:$<BOOL:$<TARGET_PROPERTY:DEA_SHARED_BLAS>>,${DEA_BLAS_LINK_LIBRARIES},${DEA_BLAS_A}>)
   endif()
-  set(DEA_LAPACK_LIBRARIES ${DEA_LAPACKE_A} ${DEA_LAPACK_A} ${blas} ${DEA_GFORTRAN})
+  set(DEA_LAPACK_LIBRARIES ${DEA_LAPACKE_A} ${DEA_LAPACK_A} ${DEA_BLAS_A} ${DEA_GFORTRAN})
+  set(DEA_LAPACK_LINK ${DEA_LAPACKE_A} ${DEA_LAPACK_A} ${blas} ${DEA_GFORTRAN})
 else()
   set(DEA_LAPACK_LIBRARIES ${DEA_LAPACKE_LINK_LIBRARIES})
+  set(DEA_LAPACK_LINK ${DEA_LAPACK_LIBRARIES})
 endif()
 find_library(DEA_HDF5_SO NAMES hdf5_serial hdf5 REQUIRED)
 set(DEA_HEAVY_SHARED ${DEA_HDF5_SO} ${DEA_LAPACKE_LINK_LIBRARIES})

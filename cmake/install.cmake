@@ -43,7 +43,6 @@ set(DEA_PC_PACKAGES "yaml-0.1 jansson libmd cminpack expat")
 set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_HEAVY_SHARED})
 if(DEA_STATIC)
   set(DEA_PC_LIBRARIES ${UDUNITS2_LIBRARY} ${DEA_LAPACK_LIBRARIES} ${HDF5_C_LIBRARIES})
-  list(TRANSFORM DEA_PC_LIBRARIES REPLACE "^\\$<IF:.*,([^,]*)>$" "\\1") # users have no such property
 endif()
 # of what HDF5 names, the static one needs no more than these
 list(FILTER DEA_PC_LIBRARIES INCLUDE REGEX "hdf5|udunits|lapack|blas|gfortran|libsz|libz\\.")
