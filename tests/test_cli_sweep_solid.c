@@ -85,6 +85,19 @@ static void test_neighbours(void **state)
   }
 }
 
+/* A search by gradients of model 3d; a build without that model skips the test. */
+static void optimise(const char *file)
+{
+  char line[100];
+  snprintf(line, sizeof line, "optimise %s -j 1 -q", file);
+  const int code = command_run(line);
+  if (code == 2) {
+    skip();
+  }
+  assert_int_equal(code, 0);
+  assert_contains(command_out, "gradients: of the model\n");
+}
+
 /* A device made of plies: by a thickness and by a shape with the model's gradients. */
 static void test_parts(void **state)
 {
@@ -97,13 +110,8 @@ static void test_parts(void **state)
                 "limits: [{quantity: breakdown_margin, above: 0.5}]\nvariables:\n"
                 "  - {name: plies.film.thickness, low: 80 um, high: 130 um, start: 120 um}\n"
                 "  - {name: shapes.active.radius, low: 8.5 mm, high: 9.5 mm}\n");
-  const int code = command_run("optimise parts.yaml -j 1 -q");
-  if (code == 2) { // a build without model 3d
-    skip();
-  }
-  assert_int_equal(code, 0);
+  optimise("parts.yaml");
   assert_contains(command_out, "plies.film.thickness");
-  assert_contains(command_out, "gradients: of the model\n");
   const char *margin = strstr(command_out, "breakdown_margin");
   assert_true(margin == NULL || strtod(margin + 16, NULL) > 0.499);
   assert_int_equal(command_run("check parts.optimise/best.yaml"), 0);
@@ -126,12 +134,7 @@ static void test_critical_voltage(void **state)
                 "evaluations: 12\nobjectives: [{quantity: capacitance_F, goal: most}]\n"
                 "limits: [{quantity: breakdown_voltage_V, above: 4 kV}]\n"
                 "variables: [{name: film.thickness, low: 80 um, high: 200 um}]\n");
-  const int code = command_run("optimise lives.yaml -j 1 -q");
-  if (code == 2) { // a build without model 3d
-    skip();
-  }
-  assert_int_equal(code, 0);
-  assert_contains(command_out, "gradients: of the model\n");
+  optimise("lives.yaml");
   const char *best = strstr(command_out, "film.thickness");
   assert_non_null(best);
   assert_int_equal(sscanf(best, "film.thickness %lf um", &best_um), 1);

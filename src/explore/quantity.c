@@ -1,26 +1,13 @@
 #include "explore/quantity.h"
 
 #include "base/text.h"
+#include "study/critical.h"
 #include "study/observe.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static const struct dea_result_column motions[] = {DEA_OBSERVED_COLUMNS};
-
-/* Critical voltages. */
-static const struct {
-  const char *key;
-  enum dea_event_kind event;
-  const char *title, *meaning;
-} criticals[] = {
-    {"slack_voltage_V", DEA_EVENT_SLACK, "loss of tension",
-     "voltage at which the film loses its tension"},
-    {"breakdown_voltage_V", DEA_EVENT_BREAKDOWN, "breakdown",
-     "voltage at which the true field reaches the film's breakdown field"},
-    {"pull_in_voltage_V", DEA_EVENT_PULL_IN, "pull-in", "voltage of the first limit point"},
-};
-enum { CRITICALS = sizeof criticals / sizeof criticals[0] };
 
 /* Whether a monitor has such a quantity. */
 static bool has(enum dea_layout_monitor_kind kind, int observed)
@@ -49,14 +36,15 @@ dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *
 
 static dea_status no_quantity(struct dea_context *ctx, const struct dea_label *label)
 {
-  const char *keys[DEA_LOAD_POINT_COLUMNS + CRITICALS];
+  const char *keys[DEA_LOAD_POINT_COLUMNS + DEA_CRITICAL_KINDS];
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     keys[c] = dea_point_columns[c].key;
   }
-  for (int i = 0; i < CRITICALS; i++) {
-    keys[DEA_LOAD_POINT_COLUMNS + i] = criticals[i].key;
+  for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
+    keys[DEA_LOAD_POINT_COLUMNS + i] = dea_critical_kinds[i].key;
   }
-  return dea_explore_unknown(ctx, label, "quantity", keys, DEA_LOAD_POINT_COLUMNS + CRITICALS);
+  return dea_explore_unknown(ctx, label, "quantity", keys,
+                             DEA_LOAD_POINT_COLUMNS + DEA_CRITICAL_KINDS);
 }
 
 /* What a monitor does have. */
@@ -126,12 +114,13 @@ dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *d
     *good = true;
     return DEA_OK;
   }
-  for (int i = 0; i < CRITICALS; i++) {
-    if (strcmp(label->text, criticals[i].key) == 0) {
+  for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
+    const struct dea_critical_kind *critical = &dea_critical_kinds[i];
+    if (strcmp(label->text, critical->key) == 0) {
       out->is_critical = true;
-      out->event = criticals[i].event;
+      out->event = critical->kind;
       out->shown =
-          (struct dea_column){out->key, "V", "kV", 1e-3, criticals[i].title, criticals[i].meaning};
+          (struct dea_column){out->key, "V", "kV", 1e-3, critical->title, critical->meaning};
       *good = true;
       return DEA_OK;
     }

@@ -234,11 +234,10 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
       question->seen[stop][i] = observed.monitor[quantity->monitor][quantity->observed];
     }
   }
-  if (stop + 1 != question->voltage_count) {
-    return question->stood != NULL ? question->stood(question, model, device, stop) : DEA_OK;
-  }
   const struct dea_model_settings settings = dea_model_settings_of(design);
-  dea_status status = find_critical(question, &settings, design, device);
+  dea_status status = stop + 1 == question->voltage_count
+                          ? find_critical(question, &settings, design, device)
+                          : DEA_OK;
   if (status == DEA_OK && question->stood != NULL) {
     status = question->stood(question, model, device, stop);
   }

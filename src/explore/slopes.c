@@ -122,9 +122,13 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   const struct wanted wanted = find_wanted(question, held);
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
   const size_t count = wanted.column_count + wanted.monitor_count;
-  const struct dea_gradient_ask ask = {
-      sides->changes,  sides->count,         wanted.columns, wanted.column_count,
-      wanted.monitors, wanted.monitor_count, wanted.motions, false};
+  const struct dea_gradient_ask ask = {.changes = sides->changes,
+                                       .change_count = sides->count,
+                                       .columns = wanted.columns,
+                                       .column_count = wanted.column_count,
+                                       .monitors = wanted.monitors,
+                                       .monitor_count = wanted.monitor_count,
+                                       .motions = wanted.motions};
   if (count == 0) {
     return DEA_OK;
   }

@@ -26,6 +26,12 @@ enum dea_cell_kind {
     .title = head, .meaning = what                                                                 \
   }
 
+/* A column of texts. */
+#define DEA_TEXT_COLUMN(name, head, what)                                                          \
+  {                                                                                                \
+    .key = name, .kind = DEA_CELL_TEXT, .title = head, .meaning = what                             \
+  }
+
 /* Who writes a table; HDF5 has every table and column. SCREEN: the terminal and the report. */
 enum { DEA_IN_JSON = 1, DEA_IN_CSV = 2, DEA_IN_SCREEN = 4 };
 

@@ -7,6 +7,14 @@
 #include <stdio.h>
 #include <string.h>
 
+const struct dea_critical_kind dea_critical_kinds[DEA_CRITICAL_KINDS] = {
+    {DEA_EVENT_SLACK, "slack_voltage_V", "loss of tension",
+     "voltage at which the film loses its tension"},
+    {DEA_EVENT_BREAKDOWN, "breakdown_voltage_V", "breakdown",
+     "voltage at which the true field reaches the film's breakdown field"},
+    {DEA_EVENT_PULL_IN, "pull_in_voltage_V", "pull-in", "voltage of the first limit point"},
+};
+
 static const double enough = 1e-10;  // of the largest value: where the last line is straight
 static const double nothing = 1e-12; // of it: rounding of a value that is 0
 static const double near = 1e-6;     // of a voltage: how far lines lead well
@@ -307,6 +315,16 @@ void dea_critical_end(struct dea_context *ctx, struct dea_critical *critical)
 
 // Slopes ------------------------------------------------------------------------------------------
 
+/* The changes at one voltage, own [count]. */
+static void take_at(double V, const struct dea_design_change *changes, size_t count,
+                    struct dea_design_change *own)
+{
+  for (size_t i = 0; i < count; i++) {
+    own[i] = changes[i];
+    own[i].voltage_V[0] = own[i].voltage_V[1] = V;
+  }
+}
+
 /* Where the model stands at V: the slopes at a fixed value g, dV/dP = -(dg/dP) / (dg/dV). own, out:
  * [count + 1]. */
 static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_critical *c, double V,
@@ -316,11 +334,9 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
   static const double share = 1e-5; // of the voltage, to either side
   const int column = dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK ? "min_tension_N_per_m"
                                                                           : "breakdown_margin");
-  const struct dea_gradient_ask ask = {own, count + 1, &column, 1, NULL, 0, NULL, false};
-  for (size_t i = 0; i < count; i++) {
-    own[i] = changes[i];
-    own[i].voltage_V[0] = own[i].voltage_V[1] = V;
-  }
+  const struct dea_gradient_ask ask = {
+      .changes = own, .change_count = count + 1, .columns = &column, .column_count = 1};
+  take_at(V, changes, count, own);
   own[count] = (struct dea_design_change){.device = {c->ask.device, c->ask.device},
                                           .voltage_V = {V * (1 - share), V * (1 + share)},
                                           .width = 2 * share * V};
@@ -381,11 +397,8 @@ static dea_status slopes_of_limit(struct dea_context *ctx, const struct dea_crit
   struct dea_design_change *own = dea_arena_alloc(&memory, count, sizeof *own);
   const struct dea_gradient_ask ask = {.changes = own, .change_count = count, .of_limit = true};
   dea_status status = dea_arena_status(&memory);
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    own[i] = changes[i];
-    own[i].voltage_V[0] = own[i].voltage_V[1] = c->voltage_V;
-  }
   if (status == DEA_OK) {
+    take_at(c->voltage_V, changes, count, own);
     status = c->ask.type->gradient(ctx, c->model, &ask, slopes);
   }
   if (status == DEA_E_UNSUPPORTED) {

@@ -7,6 +7,15 @@
 
 enum { DEA_CRITICAL_WHY_SIZE = 200 };
 
+/* What there is of them. */
+struct dea_critical_kind {
+  enum dea_event_kind kind;
+  const char *key; // "slack_voltage_V"
+  const char *title, *meaning;
+};
+enum { DEA_CRITICAL_KINDS = 3 };
+extern const struct dea_critical_kind dea_critical_kinds[DEA_CRITICAL_KINDS];
+
 /* Of which device, how it is computed, and what is looked for. All lent. */
 struct dea_critical_ask {
   const struct dea_model_type *type;

@@ -292,9 +292,13 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
   const struct dea_model_settings settings = dea_model_settings_of(ask->design);
   dea_status status = begin_changes(ctx, ask, &all);
   if (status == DEA_OK) {
-    const struct dea_gradient_ask question = {
-        all.changes,   ask->number_count,  ask->columns, ask->column_count,
-        ask->monitors, ask->monitor_count, ask->motions, false};
+    const struct dea_gradient_ask question = {.changes = all.changes,
+                                              .change_count = ask->number_count,
+                                              .columns = ask->columns,
+                                              .column_count = ask->column_count,
+                                              .monitors = ask->monitors,
+                                              .monitor_count = ask->monitor_count,
+                                              .motions = ask->motions};
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
   free_changes(ctx, ask, &all);

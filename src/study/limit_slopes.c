@@ -1,6 +1,7 @@
 #include "study/limit_slopes.h"
 
-#include "base/arena.h"
+#include "result/columns.h"
+#include "study/number_rows.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,34 +11,21 @@
 
 static const char study_name[] = "sensitivity";
 
-static const struct {
-  enum dea_event_kind kind;
-  const char *name, *said; // in files; on the screen
-} limits[] = {{DEA_EVENT_SLACK, "slack", "loss of tension"},
-              {DEA_EVENT_BREAKDOWN, "breakdown", "breakdown"},
-              {DEA_EVENT_PULL_IN, "pull_in", "pull-in"}};
-
 // Tables -----------------------------------------------------------------------------------------
 
-#define NAMED(its_key, its_title, its_meaning)                                                     \
-  {                                                                                                \
-    .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
-  }
-#define LIMIT NAMED("limit", "limit", "slack, breakdown or pull_in")
+#define LIMIT DEA_TEXT_COLUMN("limit", "limit", "slack, breakdown or pull_in")
 #define LIMIT_VOLTAGE                                                                              \
   DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "at", "voltage at which the film comes to it")
 
 static const struct dea_result_column slope_columns[] = {
     LIMIT,
     LIMIT_VOLTAGE,
-    NAMED("number", "number", "of the design"),
-    {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
-    NAMED("number_unit", "unit", "of the number"),
+    DEA_NUMBER_IN_ROW,
     {.key = "slope", .title = "slope", .meaning = "of the voltage by the number, V by its unit"},
     {.key = "elasticity",
      .title = "per cent by one per cent",
      .meaning = "d ln(voltage) / d ln(number)"},
-    {.key = "tolerance", .title = "tolerance", .meaning = "of the workshop, in the number's unit"},
+    DEA_NUMBER_TOLERANCE,
     DEA_NUMBER_COLUMN("change_V", "V", "V", 1, "change by tolerance", "of the voltage"),
 };
 static const struct dea_result_table_type slope_table = {
@@ -51,11 +39,11 @@ static const struct dea_result_table_type slope_table = {
 static const struct dea_result_column matter_columns[] = {
     LIMIT,
     LIMIT_VOLTAGE,
-    NAMED("number", "1 % of", "of the design"),
-    NAMED("number_text", "value", "of the number"),
+    DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
+    DEA_TEXT_COLUMN("number_text", "value", "of the number"),
     {.key = "change", .title = "changes it by, %", .meaning = "in per cent by one per cent"},
-    NAMED("tolerance_text", "tolerance", "of the workshop"),
-    NAMED("change_text", "changes", "of the voltage by the tolerance"),
+    DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
+    DEA_TEXT_COLUMN("change_text", "changes", "of the voltage by the tolerance"),
 };
 static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .name = "limits",
@@ -64,32 +52,11 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .columns = matter_columns,
                                                           .column_count = COUNT(matter_columns)};
 
-void dea_number_text(double value, const char *unit, char *out, size_t size)
-{
-  static const struct {
-    const char *unit, *shown;
-    double least, factor;
-  } scales[] = {{"m", " mm", 0.9995e-3, 1e3},
-                {"m", " um", 0, 1e6},
-                {"N", " mN", 0, 1e3},
-                {"Pa", " MPa", 1e6, 1e-6},
-                {"Pa", " kPa", 1e3, 1e-3},
-                {"V", " kV", 1e3, 1e-3},
-                {"1", "", 0, 1}};
-  for (size_t i = 0; i < COUNT(scales); i++) {
-    if (strcmp(unit, scales[i].unit) == 0 && fabs(value) >= scales[i].least) {
-      snprintf(out, size, "%.5g%s", scales[i].factor * value, scales[i].shown);
-      return;
-    }
-  }
-  snprintf(out, size, "%.5g %.20s", value, unit);
-}
-
 // One limit --------------------------------------------------------------------------------------
 
 /* A limit that was found, with slopes [number_count] of its voltage. */
 struct found {
-  size_t limit; // of limits above
+  const struct dea_critical_kind *limit;
   double voltage_V;
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
@@ -107,7 +74,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
   for (size_t i = 0; i < f->number_count; i++) {
     const struct dea_design_number *number = &f->numbers[i];
     const struct dea_result_table_value row[] = {
-        {.text = limits[f->limit].name},
+        {.text = dea_event_name(f->limit->kind)},
         {.number = f->voltage_V},
         {.text = number->key},
         {.number = number->value},
@@ -128,18 +95,14 @@ static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
 static dea_status put_matter(struct dea_context *ctx, const struct found *f,
                              struct dea_result_table *table)
 {
-  bool told[DEA_NUMBERS_MAX] = {false};
-  for (size_t n = 0; n < f->number_count; n++) {
-    size_t best = f->number_count;
-    for (size_t i = 0; i < f->number_count; i++) {
-      const double size = fabs(elasticity(f, i));
-      if (!told[i] && size > 0 && (best == f->number_count || size > fabs(elasticity(f, best)))) {
-        best = i;
-      }
-    }
-    if (best == f->number_count) {
-      break;
-    }
+  double size[DEA_NUMBERS_MAX];
+  size_t order[DEA_NUMBERS_MAX];
+  for (size_t i = 0; i < f->number_count; i++) {
+    size[i] = fabs(elasticity(f, i));
+  }
+  const size_t count = dea_numbers_order(size, f->number_count, order);
+  for (size_t n = 0; n < count; n++) {
+    const size_t best = order[n];
     const struct dea_design_number *number = &f->numbers[best];
     char value[48], tolerance[48] = "", change[48] = "";
     dea_number_text(number->value, number->unit, value, sizeof value);
@@ -147,14 +110,10 @@ static dea_status put_matter(struct dea_context *ctx, const struct found *f,
       dea_number_text(number->tolerance, number->unit, tolerance, sizeof tolerance);
       dea_number_text(f->slopes[best] * number->tolerance, "V", change, sizeof change);
     }
-    const struct dea_result_table_value row[] = {{.text = limits[f->limit].said},
-                                                 {.number = f->voltage_V},
-                                                 {.text = number->key},
-                                                 {.text = value},
-                                                 {.number = elasticity(f, best)},
-                                                 {.text = tolerance},
-                                                 {.text = change}};
-    told[best] = true;
+    const struct dea_result_table_value row[] = {
+        {.text = f->limit->title}, {.number = f->voltage_V},        {.text = number->key},
+        {.text = value},           {.number = elasticity(f, best)}, {.text = tolerance},
+        {.text = change}};
     DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   }
   return DEA_OK;
@@ -224,15 +183,15 @@ dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_
   struct found *f = dea_alloc(ctx, 1, sizeof *f);
   dea_status status = f != NULL ? DEA_OK : DEA_E_MEMORY;
   settings.domain = result->device->general ? DEA_DOMAIN_DISC : settings.domain;
-  for (size_t i = 0; i < COUNT(limits) && status == DEA_OK && highest_V > 0; i++) {
+  for (size_t i = 0; i < DEA_CRITICAL_KINDS && status == DEA_OK && highest_V > 0; i++) {
     const struct dea_critical_ask ask = {.type = type,
                                          .device = result->device,
                                          .settings = &settings,
-                                         .kind = limits[i].kind,
+                                         .kind = dea_critical_kinds[i].kind,
                                          .first_V = highest_V / 4,
                                          .highest_V = highest_V};
-    if (comes_to(result, type->name, limits[i].kind)) {
-      f->limit = i;
+    if (comes_to(result, type->name, dea_critical_kinds[i].kind)) {
+      f->limit = &dea_critical_kinds[i];
       status = find(ctx, &ask, result, f);
       status = status == DEA_OK && !isnan(f->voltage_V) ? put(ctx, type->name, f, result) : status;
     }

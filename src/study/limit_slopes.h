@@ -5,9 +5,6 @@
 #include "result/result.h"
 #include "study/design_gradient.h"
 
-/* A number of a design as people read it, in a unit that fits. */
-void dea_number_text(double value, const char *unit, char *out, size_t size);
-
 /* Adds the model's tables "limits" and "limit_slopes": loss of tension, breakdown and pull-in, each
  * where the result's curves have come to it, or where the result has none, up to the highest
  * voltage of the design. */

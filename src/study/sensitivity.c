@@ -6,6 +6,7 @@
 #include "study/force.h"
 #include "study/limit_slopes.h"
 #include "study/modal.h"
+#include "study/number_rows.h"
 #include "study/observe.h"
 #include "study/study.h"
 
@@ -64,10 +65,6 @@ enum { QUANTITIES = COUNT(quantities), FORCE = 0, FIELD = 4, CAPACITANCE = 7, FR
 #define TIP_DEPTH                                                                                  \
   DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "tip depth",                                    \
                     "of a film that a tip is pressed into")
-#define NAMED(its_key, its_title, its_meaning)                                                     \
-  {                                                                                                \
-    .key = its_key, .kind = DEA_CELL_TEXT, .title = its_title, .meaning = its_meaning              \
-  }
 #define ELASTICITY(its_key, its_title)                                                             \
   {                                                                                                \
     .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
@@ -79,9 +76,7 @@ enum { QUANTITIES = COUNT(quantities), FORCE = 0, FIELD = 4, CAPACITANCE = 7, FR
 
 static const struct dea_result_column slope_columns[] = {
     VOLTAGE,
-    NAMED("number", "number", "of the design"),
-    {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
-    NAMED("number_unit", "unit", "of the number"),
+    DEA_NUMBER_IN_ROW,
     {.key = "quantity",
      .kind = DEA_CELL_QUANTITY,
      .title = "quantity",
@@ -91,7 +86,7 @@ static const struct dea_result_column slope_columns[] = {
     {.key = "elasticity",
      .title = "per cent by one per cent",
      .meaning = "d ln(quantity) / d ln(number)"},
-    {.key = "tolerance", .title = "tolerance", .meaning = "of the workshop, in the number's unit"},
+    DEA_NUMBER_TOLERANCE,
     {.key = "change",
      .kind = DEA_CELL_VALUE,
      .title = "change by tolerance",
@@ -108,8 +103,8 @@ static const struct dea_result_table_type slope_table = {.study = study_name,
 static const struct dea_result_column matter_columns[] = {
     VOLTAGE,
     TIP_DEPTH,
-    NAMED("number", "1 % of", "of the design"),
-    NAMED("number_text", "value", "of the number"),
+    DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
+    DEA_TEXT_COLUMN("number_text", "value", "of the number"),
     ELASTICITY("force_N", "force, %"),
     ELASTICITY("fibre_tip_z_m", "z tip, %"),
     ELASTICITY("centre_z_m", "z centre, %"),
@@ -120,14 +115,9 @@ static const struct dea_result_column matter_columns[] = {
     ELASTICITY("capacitance_F", "capacitance, %"),
     ELASTICITY("energy_J", "energy, %"),
     ELASTICITY("frequency_Hz", "frequency, %"),
-    {.key = "tolerance_text",
-     .kind = DEA_CELL_TEXT,
-     .title = "tolerance",
-     .meaning = "of the workshop"},
-    {.key = "change_text",
-     .kind = DEA_CELL_TEXT,
-     .title = "changes",
-     .meaning = "by the tolerance, of the displacement that comes first in the row"},
+    DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
+    DEA_TEXT_COLUMN("change_text", "changes",
+                    "by the tolerance, of the displacement that comes first in the row"),
 };
 static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .name = "matters",
@@ -139,10 +129,8 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
 /* Of the general form: monitors' main motions are quantities too, which go by their names. */
 static const struct dea_result_column part_slope_columns[] = {
     VOLTAGE,
-    NAMED("number", "number", "of the design"),
-    {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},
-    NAMED("number_unit", "unit", "of the number"),
-    NAMED("quantity", "quantity", "of load points, or of a monitor: middle.z_m"),
+    DEA_NUMBER_IN_ROW,
+    DEA_TEXT_COLUMN("quantity", "quantity", "of load points, or of a monitor: middle.z_m"),
     {.key = "value", .title = "quantity's value", .meaning = "there, in SI"},
     SLOPE,
     {.key = "elasticity",
@@ -159,9 +147,10 @@ static const struct dea_result_table_type part_slope_table = {
 
 static const struct dea_result_column part_matter_columns[] = {
     VOLTAGE,
-    NAMED("quantity", "quantity", "that the rows are sorted by: main motion of a monitor"),
-    NAMED("number", "1 % of", "of the design"),
-    NAMED("number_text", "value", "of the number"),
+    DEA_TEXT_COLUMN("quantity", "quantity",
+                    "that the rows are sorted by: main motion of a monitor"),
+    DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
+    DEA_TEXT_COLUMN("number_text", "value", "of the number"),
     ELASTICITY("change", "changes it by, %"),
     ELASTICITY("true_field_V_per_m", "field, %"),
     ELASTICITY("breakdown_margin", "margin, %"),
@@ -282,21 +271,14 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
                                                struct dea_result_table *table),
                              struct dea_result_table *table)
 {
-  bool told[DEA_NUMBERS_MAX] = {false};
-  for (size_t n = 0; n < stop->number_count; n++) {
-    size_t best = stop->number_count;
-    for (size_t i = 0; i < stop->number_count; i++) {
-      double size = fabs(elasticity(stop, i, lead));
-      if (!told[i] && size > 0 &&
-          (best == stop->number_count || size > fabs(elasticity(stop, best, lead)))) {
-        best = i;
-      }
-    }
-    if (best == stop->number_count) {
-      return DEA_OK;
-    }
-    told[best] = true;
-    DEA_TRY(ctx, put(ctx, stop, lead, best, table));
+  double size[DEA_NUMBERS_MAX];
+  size_t order[DEA_NUMBERS_MAX];
+  for (size_t i = 0; i < stop->number_count; i++) {
+    size[i] = fabs(elasticity(stop, i, lead));
+  }
+  const size_t count = dea_numbers_order(size, stop->number_count, order);
+  for (size_t n = 0; n < count; n++) {
+    DEA_TRY(ctx, put(ctx, stop, lead, order[n], table));
   }
   return DEA_OK;
 }

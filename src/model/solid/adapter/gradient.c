@@ -349,8 +349,9 @@ static dea_status find(struct dea_context *ctx, struct work *w, double *out)
   return DEA_OK;
 }
 
-dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                             const struct dea_gradient_ask *ask, double *out)
+/* At the equilibrium. */
+static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                            const struct dea_gradient_ask *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
   struct dea_arena memory = {.ctx = ctx};
@@ -435,16 +436,15 @@ static dea_status find_limit(struct dea_context *ctx, struct work *w, double *ou
   return DEA_OK;
 }
 
-/* At the state that `ending` has kept. */
+/* At the state that the ending has kept. */
 static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                                const struct dea_ending *ending, const struct dea_gradient_ask *ask,
-                                double *out)
+                                const struct dea_gradient_ask *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
   struct dea_gradient_owner there = *owner;
   double side[2];
   struct work w = {.owner = &there, .ask = ask, .side = side};
-  dea_solid_stand_again(s, &ending->at_limit);
+  dea_solid_stand_again(s, &owner->ending->at_limit);
   there.voltage_V = dea_solid_voltage(s);
   dea_status status = dea_adjoint_create(ctx, s, OF_LIMIT, &w.adjoint);
   if (status == DEA_OK) {
@@ -454,19 +454,18 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
   return status;
 }
 
-dea_status dea_gradient_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                              const struct dea_ending *ending, const struct dea_gradient_ask *ask,
-                              double *out)
+static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                             const struct dea_gradient_ask *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
   struct dea_solid_stand here;
   double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
-  if (!ending->limited || ending->at_limit.state == NULL) {
+  if (!owner->ending->limited || owner->ending->at_limit.state == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "the path to the last solve's end has no limit point");
   }
   dea_status status = dea_solid_stand_keep(ctx, s, &here);
   if (status == DEA_OK) {
-    status = find_at_limit(ctx, owner, ending, ask, out);
+    status = find_at_limit(ctx, owner, ask, out);
     dea_solid_stand_again(s, &here);
     s->found.force_largest_N = force_N;
     s->found.energy_largest_J = all_J;
@@ -476,4 +475,10 @@ dea_status dea_gradient_limit(struct dea_context *ctx, const struct dea_gradient
   }
   dea_solid_stand_free(&here);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
+                             const struct dea_gradient_ask *ask, double *out)
+{
+  return ask->of_limit ? find_there(ctx, owner, ask, out) : find_here(ctx, owner, ask, out);
 }

@@ -11,6 +11,7 @@
 /* Whose solid it is. */
 struct dea_gradient_owner {
   struct dea_solid *solid;
+  const struct dea_ending *ending; // of its last solve, for a question of a limit point
   void *model;
   double voltage_V;
   /* out [dofs], pressures [elements][pressures], 0 before: slope of a column of load points by the
@@ -66,11 +67,6 @@ dea_status dea_gradient_rest_energy(struct dea_solid *solid, const struct dea_gr
 
 /* Whether it is asked for the frequency of the lowest mode, which needs a mass. */
 bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask);
-
-/* Those of a limit point's voltage, where a question is of it: `ending` has come to it. */
-dea_status dea_gradient_limit(struct dea_context *ctx, const struct dea_gradient_owner *owner,
-                              const struct dea_ending *ending, const struct dea_gradient_ask *ask,
-                              double *out);
 
 /* `gradient` of struct dea_model_type. The frequency is this file's own. */
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,

@@ -1174,6 +1174,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
   struct variant *v = model->variant;
   struct dea_solid *s = model->solid;
   const struct dea_gradient_owner owner = {.solid = s,
+                                           .ending = &model->at.ending,
                                            .model = model,
                                            .voltage_V = model->at.voltage_V,
                                            .slope = slope,
@@ -1190,8 +1191,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
   v->ask = ask;
   v->own = *model;
   DEA_TRY(ctx, find_asked_motions(ctx, model));
-  DEA_TRY(ctx, ask->of_limit ? dea_gradient_limit(ctx, &owner, &model->at.ending, ask, out)
-                             : dea_gradient_find(ctx, &owner, ask, out));
+  DEA_TRY(ctx, dea_gradient_find(ctx, &owner, ask, out));
   return DEA_OK;
 }
 

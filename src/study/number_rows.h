@@ -1,0 +1,24 @@
+/* What tables about the numbers of a design share: columns, texts, and the order of their rows. */
+#ifndef DEA_STUDY_NUMBER_ROWS_H
+#define DEA_STUDY_NUMBER_ROWS_H
+
+#include "result/table.h"
+
+/* Columns of a number: its key, its value and its unit. */
+#define DEA_NUMBER_IN_ROW                                                                          \
+  DEA_TEXT_COLUMN("number", "number", "of the design"),                                            \
+      {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},          \
+      DEA_TEXT_COLUMN("number_unit", "unit", "of the number")
+#define DEA_NUMBER_TOLERANCE                                                                       \
+  {                                                                                                \
+    .key = "tolerance", .title = "tolerance", .meaning = "of the workshop, in the number's unit"   \
+  }
+
+/* A number as people read it, in a unit that fits. */
+void dea_number_text(double value, const char *unit, char *out, size_t size);
+
+/* order [count]: places of the sizes above 0, the largest first, equal ones as they come. How many
+ * they are. */
+size_t dea_numbers_order(const double *sizes, size_t count, size_t *order);
+
+#endif
