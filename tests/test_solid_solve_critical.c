@@ -96,15 +96,19 @@ static void test_laws_of_critical_voltages(void **state)
   (void)state;
   static const int lengths[] = {THICKNESS, ELECTRODE, FRAME,           TIP,
                                 WIDTH,     TIP_WIDTH, FIBRE_THICKNESS, GLUE};
-  enum { SLACK, BREAKDOWN, KINDS };
-  static const enum dea_event_kind kinds[] = {DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN};
-  static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
+  static const struct {
+    enum dea_event_kind kind;
+    struct dea_model_settings settings;
+  } cases[] = {
+      {DEA_EVENT_SLACK, {.film = DEA_FILM_SOLID}},
+      {DEA_EVENT_BREAKDOWN, {.film = DEA_FILM_MEMBRANE}},
+      {DEA_EVENT_SLACK, {.field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1}},
+  };
   struct state at = star();
   at.device.film.param[1] = 0; // of the law's moduli those that are numbers here are all
-  for (int n = 0; n < KINDS; n++) {
+  for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
     double slopes[OF_DEVICE], sum = 0;
-    const struct dea_model_settings settings = {.film = films[n]};
-    find_critical_slopes(&at, &settings, kinds[n], slopes);
+    find_critical_slopes(&at, &cases[n].settings, cases[n].kind, slopes);
     for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
       sum += slopes[lengths[i]];
     }
@@ -112,7 +116,7 @@ static void test_laws_of_critical_voltages(void **state)
     assert_close(slopes[MODULUS] + slopes[STIFFENING] + slopes[FIBRE_MODULUS] +
                      slopes[GLUE_MODULUS] + slopes[PERMITTIVITY],
                  0, 0, 2e-5);
-    if (n == SLACK) {
+    if (cases[n].kind == DEA_EVENT_SLACK) {
       assert_close(slopes[PERMITTIVITY], -0.5, 1e-5, 0);
     }
   }

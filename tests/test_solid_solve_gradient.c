@@ -76,6 +76,11 @@ static struct dea_load_point solve(const struct state *at, const struct dea_devi
       fail_msg("%s", dea_context_message(ctx));
     }
   }
+  for (int i = 0; i < ROUNDS && settings->field == DEA_FIELD_COUPLED; i++) { // and the solver's
+    if (solid->solve(ctx, model, at->voltage_V, &point) != DEA_OK) {
+      fail_msg("%s", dea_context_message(ctx));
+    }
+  }
   if (vibrates(at)) {
     point.frequency_Hz = frequency_of(model, &point);
   }
@@ -225,6 +230,64 @@ static void test_frequency_of_all_lengths(void **state)
   }
 }
 
+// A coupled field ---------------------------------------------------------------------------------
+
+static const struct dea_model_settings coupled[] = { // one element through the film, and two
+    {.field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1},
+    {.field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1, .elements_z = 2}};
+
+/* Numbers of three kinds, four decades of the change. */
+static void test_coupled_field(void **state)
+{
+  (void)state;
+  static const double shares[] = {1e-2, 1e-3, 1e-5};
+  static const int numbers[] = {VOLTAGE, THICKNESS, TIP};
+  const struct state at = heavy_star();
+  check_some(&at, &coupled[0], numbers, 3, shares, 3, 0);
+}
+
+/* Sum of the slopes of a quantity by some numbers, over the quantity. */
+static double sum_of(const double *slopes, const int *numbers, size_t count, int quantity,
+                     double value)
+{
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    sum += slopes[numbers[i] * KEYS + quantity] / value;
+  }
+  return sum;
+}
+
+/* Laws of all numbers: with all lengths and the voltage s times as large the device is the same,
+ * larger, and vibrates at 1/s of its frequency; with all moduli and the permittivity s times as
+ * large nothing moves; the voltage comes in by eps V^2 only, and the energy's slope by it is minus
+ * the charge. */
+static void test_laws_of_a_coupled_field(void **state)
+{
+  (void)state;
+  enum { FIELD = 3, MARGIN, TENSION, CAPACITANCE, ENERGY };
+  static const int lengths[] = {VOLTAGE, THICKNESS, ELECTRODE,       FRAME, TIP,
+                                WIDTH,   TIP_WIDTH, FIBRE_THICKNESS, GLUE},
+                   moduli[] = {MODULUS, STIFFENING, FIBRE_MODULUS, GLUE_MODULUS, PERMITTIVITY};
+  static const double larger[KEYS] = {1, 1, 1, 0, 0, 1, 1, 3, -1},
+                      stiffer[KEYS] = {0, 0, 0, 0, 0, 1, 1, 1, 0.5};
+  struct state at = heavy_star();
+  double slopes[NUMBERS * KEYS];
+  at.device.film.param[1] = 0; // of the law's moduli those that are numbers here are all
+  const struct dea_load_point base = find_slopes(&at, &coupled[1], slopes);
+  for (int k = 0; k < KEYS; k++) {
+    const double value = dea_point_get(&base, dea_point_column_find(key_of(&at, k)));
+    const double by_permittivity = slopes[PERMITTIVITY * KEYS + k] / value;
+    assert_close(sum_of(slopes, lengths, 9, k, value), larger[k], 0, 1e-5);
+    assert_close(sum_of(slopes, moduli, 5, k, value), stiffer[k], 0, 1e-5);
+    if (k != FIELD && k != MARGIN) { // which have V itself in them
+      assert_close(slopes[VOLTAGE * KEYS + k] / value, 2 * (by_permittivity - (k == CAPACITANCE)),
+                   0, 1e-5);
+    }
+  }
+  assert_close(slopes[VOLTAGE * KEYS + ENERGY], -base.capacitance_F * at.voltage_V * at.voltage_V,
+               1e-7, 0);
+}
+
 /* A change of the order of the parts: the tip comes to lie off the electrode. */
 static void test_mesh_that_cannot_follow(void **state)
 {
@@ -284,25 +347,29 @@ static void test_force_of_a_flat_tip(void **state)
  * force is s^2 times as large; the energy at a voltage rises with the depth by the force; and, the
  * charge being the energy's slope by the voltage, the force falls with the voltage as the charge
  * rises with the depth. */
+static void check_laws_of_the_force(const struct state *at,
+                                    const struct dea_model_settings *settings)
+{
+  enum { CAPACITANCE = 6, ENERGY = 7 };
+  static const int lengths[] = {VOLTAGE,   THICKNESS, ELECTRODE,       FRAME, TIP,     WIDTH,
+                                TIP_WIDTH, GLUE,      FIBRE_THICKNESS, DEPTH, TIP_SIZE};
+  double slopes[NUMBERS * KEYS];
+  const struct dea_load_point base = find_slopes(at, settings, slopes);
+  assert_close(sum_of(slopes, lengths, 11, FORCE, base.force_N), 2, 1e-5, 0);
+  assert_close(slopes[DEPTH * KEYS + ENERGY], base.force_N * at->pressed.depth_m, 1e-5, 0);
+  assert_close(slopes[VOLTAGE * KEYS + FORCE] * at->pressed.depth_m,
+               -slopes[DEPTH * KEYS + CAPACITANCE] * at->voltage_V * at->voltage_V, 1e-4, 0);
+}
+
 static void test_laws_of_the_force(void **state)
 {
   (void)state;
-  enum { CAPACITANCE = 6, ENERGY = 7 };
   static const double shares[] = {1e-2, 1e-4};
-  static const int numbers[] = {ELECTRODE, DEPTH, TIP_SIZE},
-                   lengths[] = {VOLTAGE,   THICKNESS, ELECTRODE,       FRAME, TIP,     WIDTH,
-                                TIP_WIDTH, GLUE,      FIBRE_THICKNESS, DEPTH, TIP_SIZE};
+  static const int numbers[] = {ELECTRODE, DEPTH, TIP_SIZE};
   const struct state at = pressed_star(DEA_PROBE_SPHERE);
   const struct dea_model_settings settings = {0};
-  double slopes[NUMBERS * KEYS], sum = 0;
-  const struct dea_load_point base = find_slopes(&at, &settings, slopes);
-  for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
-    sum += slopes[lengths[i] * KEYS + FORCE] / base.force_N;
-  }
-  assert_close(sum, 2, 1e-5, 0);
-  assert_close(slopes[DEPTH * KEYS + ENERGY], base.force_N * at.pressed.depth_m, 1e-5, 0);
-  assert_close(slopes[VOLTAGE * KEYS + FORCE] * at.pressed.depth_m,
-               -slopes[DEPTH * KEYS + CAPACITANCE] * at.voltage_V * at.voltage_V, 1e-4, 0);
+  check_laws_of_the_force(&at, &settings);
+  check_laws_of_the_force(&at, &coupled[0]);
   check_some(&at, &settings, numbers, 3, shares, 2, 0);
 }
 
@@ -312,6 +379,8 @@ int main(void)
       cmocka_unit_test(test_four_decades),
       cmocka_unit_test(test_membrane_with_weight),
       cmocka_unit_test(test_frequency_of_all_lengths),
+      cmocka_unit_test(test_coupled_field),
+      cmocka_unit_test(test_laws_of_a_coupled_field),
       cmocka_unit_test(test_mesh_that_cannot_follow),
       cmocka_unit_test(test_force_of_a_tip),
       cmocka_unit_test(test_force_of_a_flat_tip),

@@ -1,6 +1,7 @@
 #include "model/solid/adapter/gradient.h"
 
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/modes.h"
 #include "result/columns.h"
@@ -145,7 +146,7 @@ static dea_status find_mode(struct dea_context *ctx, struct work *w, struct dea_
   m->multiplier = dea_arena_alloc(memory, pressures, sizeof(double));
   m->gain = dea_arena_alloc(memory, pressures, sizeof(double));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
-  DEA_TRY(ctx, dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_MASS, 2, squares, m->v));
+  DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, 2, squares, m->v));
   m->known = fabs(squares[1] - squares[0]) > apart * fabs(squares[0]) && squares[0] != 0;
   m->square = squares[0];
   m->rate = 1 / (4 * pi * sqrt(fabs(squares[0])));
@@ -375,6 +376,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   }
   s->found.force_largest_N = force_N; // scales and reactions are those of the equilibrium again
   s->found.energy_largest_J = all_J;
+  dea_solid_hold_potential(s, owner->voltage_V, s->state.u);
   if (status == DEA_OK) {
     status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
   }

@@ -639,9 +639,6 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 {
   struct dea_arena memory = {.ctx = ctx};
   dea_standing_end_history(ctx, &model->at);
-  if (model->actuator.settings.field == DEA_FIELD_COUPLED) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no gradients with a coupled field yet");
-  }
   if (model->indent != NULL && dea_gradient_asks_mode(ask)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "model 3d knows no gradients of a frequency with a tip pressed in");

@@ -66,7 +66,8 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
 }
 
 /* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes
- * it is wider, so that rounding does not show in differences. */
+ * and of a coupled field, which films that wrinkle do not have, it is wider, so that rounding does
+ * not show in differences. */
 static const double step_V_per_m = 1e6, wide_step_V_per_m = 1e7;
 
 /* Squares of two voltages about that of the state. Charge: minus the derivative of the energy by V
@@ -108,7 +109,8 @@ static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
                                  double *capacitance_F)
 {
-  return find_capacitance(ctx, s, step_V_per_m, capacitance_F);
+  return find_capacitance(ctx, s, s->problem.field != NULL ? wide_step_V_per_m : step_V_per_m,
+                          capacitance_F);
 }
 
 dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *s,
@@ -256,21 +258,42 @@ void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_f
   }
 }
 
+/* out += times the forces at the solid's displacements and the potentials that a voltage has there.
+ */
+static dea_status add_forces(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                             double times, double *out)
+{
+  double energy;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, &energy));
+  for (size_t k = 0; k < 3 * s->problem.grid->node_count; k++) {
+    out[k] += times * s->work.g[k];
+  }
+  return DEA_OK;
+}
+
 dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *s, double *out,
                                        bool *known)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double squares[2], energy;
+  double squares[2];
   memset(out, 0, p->dofs * sizeof *out);
   *known = squares_about(s, wide_step_V_per_m, squares) > 0 && !dea_solid_has_own_voltages(s);
   if (!*known) {
     return DEA_OK;
   }
-  for (int i = 0; i < 2; i++) { // C = 2 (E(V0) - E(V1)) / (V1^2 - V0^2)
-    DEA_TRY(ctx, dea_solid_assemble(ctx, s, sqrt(squares[i]), DEA_FORCE, &energy));
-    for (size_t k = 0; k < p->dofs; k++) {
-      out[k] += (i == 0 ? 2 : -2) * s->work.g[k] / (squares[1] - squares[0]);
-    }
+  double *keep = dea_solid_alloc(ctx, p->dofs, sizeof *keep);
+  dea_status status = keep != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (status == DEA_OK) {
+    memcpy(keep, s->state.u, p->dofs * sizeof *keep);
   }
-  return DEA_OK;
+  for (int i = 0; i < 2 && status == DEA_OK; i++) { // C = 2 (E(V0) - E(V1)) / (V1^2 - V0^2)
+    const double times = (i == 0 ? 2 : -2) / (squares[1] - squares[0]);
+    status = add_forces(ctx, s, sqrt(squares[i]), times, out);
+  }
+  if (keep != NULL) {
+    memcpy(s->state.u, keep, p->dofs * sizeof *keep);
+  }
+  dea_free(ctx, keep);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -206,6 +206,17 @@ static dea_status solve_capacity(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
+void dea_solid_hold_potential(const struct dea_solid *s, double voltage_V, double *u)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  const size_t nodes = p->grid->node_count;
+  for (size_t n = 0; n < nodes && p->field != NULL; n++) {
+    if (p->held[3 * nodes + n]) {
+      u[3 * nodes + n] = p->field->share[n] * voltage_V / p->field->scale_V_per_m;
+    }
+  }
+}
+
 dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                      double *u)
 {
@@ -218,9 +229,7 @@ dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *
   double *psi = u + 3 * nodes, c = field->scale_V_per_m;
   const double *force = s->state.force + 3 * nodes;
   const unsigned char *held = p->held + 3 * nodes;
-  for (size_t n = 0; n < nodes; n++) {
-    psi[n] = held[n] ? field->share[n] * voltage_V / c : psi[n];
-  }
+  dea_solid_hold_potential(s, voltage_V, u);
   dea_status status = assemble_capacity(ctx, s, u, psi);
   if (status != DEA_OK) {
     return status;

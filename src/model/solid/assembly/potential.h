@@ -13,6 +13,8 @@ dea_status dea_solid_field_matrix(struct dea_context *ctx, struct dea_solid *s,
 void dea_solid_field_destroy(struct dea_solid *s);
 /* c: a potential is c psi [V/m]. */
 double dea_solid_field_scale(const struct dea_solid *s);
+/* Sets the held potentials in u [dofs] to those of a voltage. */
+void dea_solid_hold_potential(const struct dea_solid *s, double voltage_V, double *u);
 /* Sets the potentials in u [dofs] to those that belong to its displacements: the maximum of the
  * energy over them. DEA_E_DOMAIN for an inverted element. */
 dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,

@@ -4,6 +4,7 @@
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/matrix.h"
+#include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
@@ -427,6 +428,7 @@ dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, 
   struct dea_solid *s = a->s;
   const struct dea_solid_problem *p = &s->problem;
   size_t most = most_of(a);
+  dea_solid_hold_potential(s, voltage_V, s->state.u);
   dea_solid_scale_bulk_modulus(s, none);
   dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy_J);
   dea_solid_scale_bulk_modulus(s, 1 / none);

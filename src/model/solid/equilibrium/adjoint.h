@@ -31,7 +31,7 @@ dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoin
 /* lambda [dofs] of an answer; lent. */
 const double *dea_adjoint_answer(const struct dea_adjoint *adjoint, size_t number);
 /* Residuals and energy of the solid at its state, of another problem than the answers are of, for
- * dea_adjoint_product. */
+ * dea_adjoint_product. Held potentials become those of the voltage, and stay so. */
 dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *adjoint,
                                 double voltage_V, double *energy_J);
 /* lambda . R + mu . C of the last assembly. */

@@ -222,11 +222,11 @@ void dea_mode_orient(size_t count, double *v)
   }
 }
 
+/* vector: [count][dofs], of which the first ones of each are displacements. */
 static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size_t count,
-                            double *value, double *vector)
+                            size_t dofs, double *value, double *vector)
 {
   struct dea_solid *s = f->solid;
-  size_t dofs = 3 * s->problem.grid->node_count;
   for (size_t k = 0; k < count; k++) {
     value[k] = f->value[f->order[k]];
     if (vector != NULL) {
@@ -270,9 +270,9 @@ static void release(struct eigen *f)
   f->solid->found.factor_fits = f->solid->found.predicted_fits = false;
 }
 
-dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
-                                  enum dea_mode_metric metric, size_t count, double *value,
-                                  double *vector)
+static dea_status find_lowest(struct dea_context *ctx, struct dea_solid *s,
+                              enum dea_mode_metric metric, size_t count, size_t dofs, double *value,
+                              double *vector)
 {
   struct eigen f = {.solid = s};
   int negative = 0;
@@ -287,10 +287,27 @@ dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
   }
   dea_status status = find_modes(ctx, &f, metric, negative, (int)count);
   if (status == DEA_OK) {
-    status = hand_over(ctx, &f, count, value, vector);
+    status = hand_over(ctx, &f, count, dofs, value, vector);
   }
   release(&f);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *s,
+                                  enum dea_mode_metric metric, size_t count, double *value,
+                                  double *vector)
+{
+  const size_t moves = 3 * s->problem.grid->node_count;
+  DEA_TRY(ctx, find_lowest(ctx, s, metric, count, moves, value, vector));
+  return DEA_OK;
+}
+
+dea_status dea_solid_modes_whole(struct dea_context *ctx, struct dea_solid *s,
+                                 enum dea_mode_metric metric, size_t count, double *value,
+                                 double *vector)
+{
+  DEA_TRY(ctx, find_lowest(ctx, s, metric, count, s->problem.dofs, value, vector));
+  return DEA_OK;
 }
 
 dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s, double *value,
@@ -302,7 +319,7 @@ dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s,
   int wanted = negative < 1 || negative > DEA_MODES_MAX ? 1 : negative;
   dea_status status = find_modes(ctx, &f, DEA_MODES_BY_VOLUME, wanted, 1);
   if (status == DEA_OK) {
-    status = hand_over(ctx, &f, 1, value, vector);
+    status = hand_over(ctx, &f, 1, 3 * s->problem.grid->node_count, value, vector);
   }
   release(&f);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

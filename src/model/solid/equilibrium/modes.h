@@ -22,6 +22,10 @@ enum dea_mode_metric { DEA_MODES_BY_VOLUME, DEA_MODES_BY_MASS };
 dea_status dea_solid_modes_lowest(struct dea_context *ctx, struct dea_solid *solid,
                                   enum dea_mode_metric metric, size_t count, double *value,
                                   double *vector);
+/* The same with the potentials that a coupled field has along each: vector [count][dofs]. */
+dea_status dea_solid_modes_whole(struct dea_context *ctx, struct dea_solid *solid,
+                                 enum dea_mode_metric metric, size_t count, double *value,
+                                 double *vector);
 /* How many modes have a lambda below that. */
 dea_status dea_solid_modes_below(struct dea_context *ctx, struct dea_solid *solid,
                                  enum dea_mode_metric metric, double value, size_t *count);
