@@ -100,7 +100,10 @@ static dea_status solve(struct search *s, double voltage_V, struct dea_load_poin
   }
   snprintf(s->out->why, sizeof s->out->why, "%.199s", dea_context_message(s->ctx));
   dea_context_clear(s->ctx);
-  *limit = type->limit != NULL ? type->limit(model) : NULL;
+  *limit = type->passed != NULL ? type->passed(model) : NULL;
+  if (*limit == NULL && type->limit != NULL) {
+    *limit = type->limit(model);
+  }
   return DEA_OK;
 }
 

@@ -76,7 +76,7 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
     drop_limit(e);
     DEA_TRY(ctx, dea_solid_stand_keep(ctx, e->owner.solid, &e->at_limit));
   }
-  if (where == DEA_STOP_LIMIT || (where == DEA_STOP_UNSTABLE && thins)) {
+  if (where == DEA_STOP_LIMIT || where == DEA_STOP_NEAR || (where == DEA_STOP_UNSTABLE && thins)) {
     return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
   }
   if (where == DEA_STOP_UNSTABLE) {
@@ -196,8 +196,10 @@ static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
   DEA_TRY(ctx,
           dea_solid_look_back(ctx, e->owner.solid, from, leapt, see_point, has_grown, e, &stop));
   struct dea_event found = e->limit;
+  const struct dea_solid_stand at_limit = e->at_limit;
   bool passed = stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
   *e = kept;
+  e->at_limit = at_limit;
   *share = passed ? stop.way : NAN;
   if (passed) {
     e->passed = found;
@@ -265,14 +267,13 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   struct dea_solid_stop stop;
   e->from_V = from_V;
   e->limited = e->leapt = false;
-  drop_limit(e);
   DEA_TRY(ctx, look_at_tension(ctx, e));
   dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
-    e->keeps = true;
+    e->keeps = !e->has_passed;
     status =
         dea_solid_approach(ctx, e->owner.solid, voltage_V, is_taut(e), see_point, e, report, &stop);
-    e->keeps = false;
+    e->keeps = true;
     if (status != DEA_OK) {
       e->rate[0] = 0;
       status = dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
@@ -282,6 +283,10 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
       e->limited = false;
       status = look_at_step(ctx, e, voltage_V, &from, report->snapped);
     }
+    e->keeps = false;
+  }
+  if (status == DEA_OK && !e->has_passed) {
+    drop_limit(e);
   }
   dea_solid_stand_free(&from);
   return status;
@@ -316,6 +321,7 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
   int steps = isfinite(e->owner.step_V) ? (int)ceil(fabs(way) / e->owner.step_V - 1e-9) : 1;
   steps = steps < 1 ? 1 : steps;
   e->limited = e->has_passed = false;
+  drop_limit(e);
   for (int i = 1; i <= steps; i++) {
     if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to %.6g kV",

@@ -30,9 +30,9 @@ struct dea_ending {
   double from_V;                   // where the last way began
   struct dea_event limit;          // where the last way came to its end
   bool limited;                    // it is known
-  bool keeps;                      // the state there is wanted
-  struct dea_solid_stand at_limit; // of a limit point that was located; state NULL: none was
   struct dea_event passed;         // a limit point that the last way has gone past to another state
+  bool keeps;                      // the state at one of both that was located is wanted
+  struct dea_solid_stand at_limit; // there, of `passed` where that is known; state NULL: none was
   bool has_passed;                 // it is known
   bool leapt;                      // on the last step the film may have gone past one
   double rate[2]; // motion of the last step over its way, of the voltage and of another control; 0:

@@ -357,7 +357,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   struct dea_solid *s = owner->solid;
   struct dea_arena memory = {.ctx = ctx};
   struct work w = {.owner = owner, .ask = ask};
-  double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
+  double energy_J;
   w.known = dea_arena_alloc(&memory, dea_gradient_width(ask), sizeof *w.known);
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
@@ -374,10 +374,8 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
     }
     status = find(ctx, &w, out);
   }
-  s->found.force_largest_N = force_N; // scales and reactions are those of the equilibrium again
-  s->found.energy_largest_J = all_J;
   dea_solid_hold_potential(s, owner->voltage_V, s->state.u);
-  if (status == DEA_OK) {
+  if (status == DEA_OK) { // scales and reactions are those of the equilibrium again
     status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
   }
   dea_adjoint_destroy(ctx, w.adjoint);
@@ -461,16 +459,15 @@ static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_
 {
   struct dea_solid *s = owner->solid;
   struct dea_solid_stand here;
-  double energy_J, force_N = s->found.force_largest_N, all_J = s->found.energy_largest_J;
-  if (!owner->ending->limited || owner->ending->at_limit.state == NULL) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the path to the last solve's end has no limit point");
+  double energy_J;
+  if (owner->ending->at_limit.state == NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "no limit point was located on the way of the last solve");
   }
   dea_status status = dea_solid_stand_keep(ctx, s, &here);
   if (status == DEA_OK) {
     status = find_at_limit(ctx, owner, ask, out);
     dea_solid_stand_again(s, &here);
-    s->found.force_largest_N = force_N;
-    s->found.energy_largest_J = all_J;
   }
   if (status == DEA_OK) {
     status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);

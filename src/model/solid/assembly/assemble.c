@@ -313,11 +313,17 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
 static void keep_scales(struct dea_solid *s)
 {
   static const double share = 1e-3;
-  double force = sqrt(s->work.squares);
-  s->found.force_largest_N = fmax(s->found.force_largest_N, force);
-  s->found.energy_largest_J = fmax(s->found.energy_largest_J, s->found.energy_scale_J);
-  s->found.force_scale_N = fmax(force, share * s->found.force_largest_N);
+  s->found.force_scale_N = fmax(sqrt(s->work.squares), share * s->found.force_largest_N);
   s->found.energy_scale_J = fmax(s->found.energy_scale_J, share * s->found.energy_largest_J);
+  if (s->found.force_largest_N == 0) {
+    dea_solid_keep_scales(s);
+  }
+}
+
+void dea_solid_keep_scales(struct dea_solid *s)
+{
+  s->found.force_largest_N = fmax(s->found.force_largest_N, s->found.force_scale_N);
+  s->found.energy_largest_J = fmax(s->found.energy_largest_J, s->found.energy_scale_J);
 }
 
 /* Forces on followers of bodies become those on the bodies, whose rows of K get what comes of them.

@@ -25,5 +25,7 @@ dea_status dea_solid_energy(struct dea_solid *s, double *u, double voltage_V, do
  * found.predicted_fits K has the predicted stresses. */
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               enum dea_eval_order level, double *energy);
+/* The scales of that assembly count as those of an equilibrium. */
+void dea_solid_keep_scales(struct dea_solid *s);
 
 #endif

@@ -124,7 +124,7 @@ struct dea_solid_found {
   double force_scale_N;  // root of the sum of squared element forces
   double energy_scale_J; // sum of absolute element energies
   double force_largest_N;
-  double energy_largest_J; // of those two at any assembly
+  double energy_largest_J; // of those two at any equilibrium, by dea_solid_keep_scales
   bool checked;            // dea_solid_check has nothing to say
   bool predicted_fits;     // work.predicted belongs to state.u, by dea_solid_predict
   bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite

@@ -47,6 +47,7 @@ static dea_status take_stop(struct dea_context *ctx, const struct search *a,
   a->stop->kind = kind;
   a->stop->unstable_modes = at->unstable_modes;
   dea_status status = dea_solid_continuation_locate(ctx, path, at);
+  const bool located = status == DEA_OK;
   if (dea_solid_may_shorten(status) || status == DEA_E_ARGUMENT) {
     dea_context_clear(ctx);
     status = DEA_OK;
@@ -56,7 +57,7 @@ static dea_status take_stop(struct dea_context *ctx, const struct search *a,
   a->stop->way = at->load;
   dea_solid_state_get(a->s, a->limit.state);
   dea_solid_controls_get(a->s, a->limit.controls);
-  DEA_TRY(ctx, a->points(ctx, a->user, kind));
+  DEA_TRY(ctx, a->points(ctx, a->user, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind));
   return DEA_OK;
 }
 
@@ -299,7 +300,7 @@ static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea
   }
   if (nears_limit(&near, high)) {
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), low, 0};
-    return a->points(ctx, a->user, DEA_STOP_LIMIT);
+    return a->points(ctx, a->user, DEA_STOP_NEAR);
   }
   return DEA_OK;
 }
@@ -509,7 +510,7 @@ static dea_status find_leap(struct dea_context *ctx, struct search *a, const dou
                (ends.apart || dea_solid_moved_m(s, &ends.far) > s->settings.leap_jump * ends.whole);
   if (leaps) {
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(s), ends.at[0], 0};
-    status = a->points(ctx, a->user, DEA_STOP_LIMIT);
+    status = a->points(ctx, a->user, DEA_STOP_NEAR);
   }
   dea_solid_stand_free(&ends.near);
   dea_solid_stand_free(&ends.far);

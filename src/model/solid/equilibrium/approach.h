@@ -9,6 +9,7 @@
 enum dea_solid_stop_kind {
   DEA_STOP_UNKNOWN,  // the path cannot be followed either
   DEA_STOP_LIMIT,    // it turns back: a limit point
+  DEA_STOP_NEAR,     // only for sinks: one that was closed in on, and is not where the solid is
   DEA_STOP_UNSTABLE, // it turns unstable, and no way down from there was found
 };
 
@@ -20,7 +21,7 @@ struct dea_solid_stop {
 };
 
 /* Looks at the solid at a point of the path; where: DEA_STOP_UNKNOWN at one on the way, otherwise
- * at the limit point or bifurcation that was located. */
+ * at the limit point or bifurcation that was located, or with DEA_STOP_NEAR near one. */
 typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
                                           enum dea_solid_stop_kind where);
 

@@ -181,9 +181,11 @@ static double share_with_energy(struct dea_solid *s)
 }
 
 /* One iteration, unless *there: it is at an equilibrium in the plane. *residual: that of the
- * iteration before, then of this one; *small: the step was; *hidden: from the energy, by rounding.
- * Where the residual does not fall, the stresses that a linear step leads to are not those of its
- * end, and the tangent takes those that there are. */
+ * iteration before, INFINITY at first, then of this one; *small: the step was; *hidden: from the
+ * energy, by rounding. The first one always steps: a prediction whose residual is small all the
+ * same is off by more than an equilibrium, along soft modes, and so would be all that start from
+ * it. Where the residual does not fall, the stresses that a linear step leads to are not those of
+ * its end, and the tangent takes those that there are. */
 static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continuation *t,
                                double *residual, bool *there, bool *small, bool *hidden)
 {
@@ -196,7 +198,7 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
               (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   bool constrained = dea_solid_theta_max(s) < o->path_theta * o->theta;
-  *there = constrained && *residual < o->path_residual &&
+  *there = isfinite(before) && constrained && *residual < o->path_residual &&
            fabs(off_plane(t)) < o->path_plane * fabs(t->plane.length);
   if (*there) {
     return DEA_OK;
@@ -259,6 +261,7 @@ static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuati
   struct dea_solid *s = t->s;
   s->found.predicted_fits = s->found.factor_fits = false;
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &t->energy_J));
+  dea_solid_keep_scales(s);
   dea_solid_raise_bulk_modulus(s);
   double energy;
   dea_status status = force_rate(ctx, t);

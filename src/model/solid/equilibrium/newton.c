@@ -282,6 +282,7 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
   if (!tangent) {
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
+  dea_solid_keep_scales(s);
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &report->unstable_modes));
   report->factorisations++;
   s->found.factor_fits = report->unstable_modes == 0;
