@@ -5,7 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { ROWS_MAX = DEA_PATH_UNKNOWNS_MAX + 1, NEWTON_MAX = 12, LOCATE_MAX = 60, STEPS_MAX = 100000 };
+enum {
+  ROWS_MAX = DEA_PATH_UNKNOWNS_MAX + 1,
+  NEWTON_MAX = 12,
+  LOCATE_MAX = 60,
+  STEPS_MAX = 100000,
+  EVENTS_MAX = 4
+};
 
 static const double step_first = 0.01, step_largest = 0.05, step_smallest = 1e-9;
 static const double traced_largest = 0.02; // a drawn path looks smooth
@@ -18,6 +24,7 @@ struct dea_path {
   struct dea_path_state state, rest;
   struct dea_event limit, slack; // first limit point, first loss of tension of the last seek
   bool limited, slackened;       // whether it has passed them
+  bool thins;                    // the limit is where a taut film turns unstable, voltage rising
   bool crossed;                  // the wanted voltage at a state that compression has made unstable
   dea_status ended;              // why the last step that was tried failed
   double g[ROWS_MAX], gV[ROWS_MAX], K[ROWS_MAX * ROWS_MAX], bordered[ROWS_MAX * ROWS_MAX];
@@ -217,6 +224,39 @@ static dea_status locate(struct dea_path *path, const struct dea_path_state *fro
   return DEA_OK;
 }
 
+/* Whether a taut film turns unstable within this segment while the voltage rises: it thins in one
+ * place, short of a limit point of the whole (docs/theory/stops.md). Then the last stable point
+ * before that and its arc length. It is bisected: modes of many wave lengths turn at once, and so
+ * close to there that the bordered matrix is singular no step converges. */
+static bool thins_within(struct dea_path *path, const struct dea_path_state *from,
+                         const struct dea_load_point *from_point, double ds,
+                         const struct dea_path_state *to, const struct dea_load_point *to_point,
+                         double *arc, struct dea_load_point *point)
+{
+  static const double narrow = 1e-9;
+  double high = ds;
+  if (from->negative > 0 || to->negative == 0 || !(from->tangent_V > 0 && to->tangent_V > 0) ||
+      !(from_point->min_tension_N_per_m > 0 && to_point->min_tension_N_per_m > 0)) {
+    return false;
+  }
+  *arc = 0;
+  *point = *from_point;
+  while (high - *arc > narrow * ds) {
+    struct dea_path_state at;
+    struct dea_load_point seen;
+    int iterations;
+    double next = 0.5 * (*arc + high);
+    if (step(path, from, next, &at, &iterations) == DEA_OK && at.negative == 0 &&
+        state_point(path, &at, &seen) == DEA_OK) {
+      *arc = next;
+      *point = seen;
+    } else {
+      high = next;
+    }
+  }
+  return true;
+}
+
 /* The equilibrium at 0 V from path->rest, which stays as it was where there is none near by. */
 static dea_status find_rest(struct dea_path *path)
 {
@@ -350,8 +390,9 @@ static bool settle(struct dea_path *path, const struct dea_path_state *from, dou
   return true;
 }
 
-/* Takes the first limit point and the first loss of tension of a search, if they are within this
- * segment, whose ends are states and points. */
+/* Takes the first limit point, or the first place where a taut film turns unstable before one, and
+ * the first loss of tension of a search, if they are within this segment, whose ends are states and
+ * points. */
 static void note_events(struct dea_path *path, const struct dea_path_state *from,
                         const struct dea_load_point *from_point, double ds,
                         const struct dea_path_state *to, const struct dea_load_point *to_point,
@@ -364,6 +405,11 @@ static void note_events(struct dea_path *path, const struct dea_path_state *from
              &path->limit.point) == DEA_OK) {
     path->limit.kind = from->tangent_V > 0 ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
     path->limited = true;
+  }
+  if (!path->limited &&
+      thins_within(path, from, from_point, ds, to, to_point, &arc, &path->limit.point)) {
+    path->limit.kind = DEA_EVENT_PULL_IN;
+    path->limited = path->thins = true;
   }
   if (!path->slackened && !path->limited && tension[0] >= 0 && tension[1] < 0 &&
       locate(path, from, ds, WATCH_TENSION, watch, tension[0], tension[1], &arc, &at,
@@ -380,10 +426,12 @@ static dea_status fail_seek(struct dea_context *ctx, const struct dea_path *path
   if (path->limited) {
     const struct dea_load_point *at = &path->limit.point;
     return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
-                    "%s at %.6g kV and an electrode stretch of %.5g: beyond it there is no stable "
+                    "%s at %.6g kV and an electrode stretch of %.5g: %s there is no stable "
                     "equilibrium at %.6g kV",
                     path->limit.kind == DEA_EVENT_PULL_IN ? "pull-in" : "snap-back",
-                    1e-3 * at->voltage_V, at->electrode_stretch, 1e-3 * voltage_V);
+                    1e-3 * at->voltage_V, at->electrode_stretch,
+                    path->thins ? "the film thins in one place, and" : "beyond it",
+                    1e-3 * voltage_V);
   }
   if (path->crossed && path->slackened) {
     const struct dea_load_point *at = &path->slack.point;
@@ -417,7 +465,7 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
                          double max_stretch)
 {
   struct dea_path_state found;
-  path->limited = path->slackened = path->crossed = false;
+  path->limited = path->slackened = path->crossed = path->thins = false;
   if (seek_directly(path, voltage_V, &found)) {
     path->state = found;
     return DEA_OK;
@@ -485,38 +533,53 @@ static enum dea_event_kind event_kind(enum watched what, double before)
   }
 }
 
-/* Finds and reports the events inside one segment of arc length ds, in their order along it. */
+/* Events of one segment, in their order along it. */
+struct found_events {
+  struct dea_event event[EVENTS_MAX];
+  double arc[EVENTS_MAX];
+  size_t count;
+};
+
+static void put_event(struct found_events *found, enum dea_event_kind kind,
+                      const struct dea_load_point *point, double arc)
+{
+  size_t i = found->count++;
+  for (; i > 0 && found->arc[i - 1] > arc; i--) {
+    found->event[i] = found->event[i - 1];
+    found->arc[i] = found->arc[i - 1];
+  }
+  found->event[i] = (struct dea_event){.kind = kind, .point = *point};
+  found->arc[i] = arc;
+}
+
+/* Finds and reports the events inside one segment of arc length ds. */
 static dea_status report_events(struct trace *trace, const struct dea_path_state *from, double ds,
                                 const struct dea_path_state *to)
 {
-  enum { KINDS = 3 };
-  static const enum watched kinds[KINDS] = {WATCH_LIMIT, WATCH_TENSION, WATCH_BREAKDOWN};
+  static const enum watched kinds[] = {WATCH_LIMIT, WATCH_TENSION, WATCH_BREAKDOWN};
   struct dea_context *ctx = trace->path->ctx;
-  struct dea_event found[KINDS];
-  double arc[KINDS], at;
-  size_t count = 0;
-  for (size_t k = 0; k < KINDS && trace->events != NULL; k++) {
+  struct found_events found = {.count = 0};
+  struct dea_load_point point;
+  double at;
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0] && trace->events != NULL; k++) {
     double at_0 = watch_value(kinds[k], &trace->watch, from, &trace->before);
     double at_1 = watch_value(kinds[k], &trace->watch, to, &trace->now);
     // false when the value is unknown; a zero belongs to the segment that ends there
     bool down = at_0 > 0 && at_1 <= 0, up = kinds[k] == WATCH_LIMIT && at_0 < 0 && at_1 >= 0;
     struct dea_path_state state;
-    struct dea_event event = {.kind = event_kind(kinds[k], at_0)};
     if (!down && !up) {
       continue;
     }
     DEA_TRY(ctx, locate(trace->path, from, ds, kinds[k], &trace->watch, at_0, at_1, &at, &state,
-                        &event.point));
-    size_t i = count++;
-    for (; i > 0 && arc[i - 1] > at; i--) {
-      found[i] = found[i - 1];
-      arc[i] = arc[i - 1];
-    }
-    found[i] = event;
-    arc[i] = at;
+                        &point));
+    put_event(&found, event_kind(kinds[k], at_0), &point, at);
   }
-  for (size_t i = 0; i < count; i++) {
-    DEA_TRY(ctx, trace->events(trace->user, &found[i]));
+  if (trace->events != NULL &&
+      thins_within(trace->path, from, &trace->before, ds, to, &trace->now, &at, &point)) {
+    put_event(&found, DEA_EVENT_PULL_IN, &point, at);
+  }
+  for (size_t i = 0; i < found.count; i++) {
+    DEA_TRY(ctx, trace->events(trace->user, &found.event[i]));
   }
   return DEA_OK;
 }

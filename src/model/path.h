@@ -56,8 +56,8 @@ const struct dea_path_state *dea_path_state_get(const struct dea_path *path);
 dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double voltage_V,
                          double max_stretch);
 
-/* Where the last seek that found nothing came to its end: the first limit point or the loss of
- * tension; lent until the next. NULL: neither. */
+/* Where the last seek that found nothing came to its end: the first limit point, where a taut film
+ * thins in one place before it, or the loss of tension; lent until the next. NULL: none. */
 const struct dea_event *dea_path_limit(const struct dea_path *path);
 
 /* The whole path from rest, as dea_model_type.path says. stretch_factor: total stretch over

@@ -12,7 +12,7 @@ const struct dea_critical_kind dea_critical_kinds[DEA_CRITICAL_KINDS] = {
      "voltage at which the film loses its tension"},
     {DEA_EVENT_BREAKDOWN, "breakdown_voltage_V", "breakdown",
      "voltage at which the true field reaches the film's breakdown field"},
-    {DEA_EVENT_PULL_IN, "pull_in_voltage_V", "pull-in", "voltage of the first limit point"},
+    {DEA_EVENT_PULL_IN, "pull_in_voltage_V", "pull-in", "voltage at which the film pulls in"},
 };
 
 static const double enough = 1e-10;  // of the largest value: where the last line is straight
