@@ -249,7 +249,8 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
   DEA_TRY(ctx, look_at_tension(ctx, e));
   bool thins = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
   bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
-  if (thins || (rushed && taut && is_taut(e) && !snapped)) {
+  bool strays = voltage_V != from_V && dea_solid_strays(e->owner.solid, from);
+  if (thins || ((rushed || strays) && taut && is_taut(e) && !snapped)) {
     DEA_TRY(ctx, look_back(ctx, e, from, thins, &share));
   }
   if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {

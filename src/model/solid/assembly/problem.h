@@ -102,6 +102,7 @@ struct dea_solid_work {
   double *trial;        // [dofs] displacements that are tried
   double *g;            // [dofs] residual forces [N], 0 at held components, by dea_solid_assemble
   double *step;         // [dofs] of Newton's method [m]
+  double *foreseen;     // [dofs] the first linear step of a way [m], by dea_solid_foresee
   double *increment;    // [dofs] how far held components go in the next linear step [m], else 0;
                         // by dea_solid_controls_increment
   bool takes_increment; // the next assembly adds K times it to g
@@ -130,6 +131,8 @@ struct dea_solid_found {
   bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite
   bool stiff_factor_fits;  // it is so of K with the raised kappa; until the next factor
   bool factor_before;      // either is of the state before the last step to this one
+  bool foresees, foreseen; // work.foreseen is to be found; it is there
+  double foreseen_V;       // where it leads
 };
 
 struct dea_solid {

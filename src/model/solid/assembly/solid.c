@@ -50,9 +50,9 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
   struct dea_solid_problem *p = &s->problem;
   struct dea_arena *memory = &s->memory;
   size_t elements = p->grid->element_count, pressures = (size_t)p->elements.pressures;
-  double **const of_dofs[] = {&s->state.u,      &s->state.force,    &s->state.force_goal,
-                              &s->state.u_goal, &s->work.trial,     &s->work.g,
-                              &s->work.step,    &s->work.increment, &s->found.reaction};
+  double **const of_dofs[] = {
+      &s->state.u, &s->state.force, &s->state.force_goal, &s->state.u_goal,  &s->work.trial,
+      &s->work.g,  &s->work.step,   &s->work.increment,   &s->work.foreseen, &s->found.reaction};
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
     *of_dofs[i] = dea_arena_alloc(memory, p->dofs, sizeof(double));
   }

@@ -18,7 +18,9 @@ struct search {
   void *user;
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
+  struct dea_solid_stand start; // where the approach began
   struct dea_solid_stand limit; // where the path turns back, once that is known
+  bool leapt;                   // a load step has gone past a limit point to another state
   bool went_on;                 // the solid is at a stable equilibrium further on
   bool looks;     // it is known where the solid goes, and only asked what is on the way
   bool stuck;     // the path could not be followed to its end; where it looks the solid stays there
@@ -148,6 +150,14 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   return status;
 }
 
+/* The first linear step on the way to that voltage is kept, for dea_solid_strays. */
+static void foresee(struct dea_solid *s, double voltage_V)
+{
+  s->found.foresees = true;
+  s->found.foreseen = false;
+  s->found.foreseen_V = voltage_V;
+}
+
 /* A taut film is solved in a few iterations, or not at all. */
 static void take_fewer_iterations(struct dea_solid_settings *o)
 {
@@ -167,6 +177,15 @@ static dea_status try_steps(struct dea_context *ctx, struct search *a, double vo
       dea_load_steps_solve_within(ctx, a->s, voltage_V, o->approach_part, a->report);
   *o = own;
   return status;
+}
+
+/* Load steps that have failed may have leapt on the way. */
+static void step_back(struct search *a, bool taut)
+{
+  if (taut && !a->report->snapped && dea_solid_strays(a->s, &a->start)) {
+    dea_solid_stand_again(a->s, &a->start);
+    a->leapt = true;
+  }
 }
 
 /* Controls a share of the way: the square of the voltage, and all others, in proportion. */
@@ -217,51 +236,68 @@ static dea_status leap(struct dea_context *ctx, struct search *a, double voltage
 
 // Closing in on where load steps end, of a path that cannot be followed ---------------------------
 
-/* The last three equilibria on the way. */
+/* The last four equilibria on the way. */
 struct nearing {
-  int count;
-  double at[3];    // shares of the way
-  double moved[2]; // how far the nodes went between them
+  struct dea_arena memory;
+  double *rate;   // [3 nodes] motion of the last step over its way
+  int count;      // of them
+  double at[4];   // shares of the way
+  double bend[2]; // how far the rates of two steps in a row are apart
 };
 
-static void take_near(struct nearing *n, double at, double moved)
+/* The solid has come from `last` to that share of the way. */
+static void take_near(struct nearing *n, const struct dea_solid *s,
+                      const struct dea_solid_stand *last, double at)
 {
-  if (n->count == 3) {
-    n->at[0] = n->at[1];
-    n->at[1] = n->at[2];
-    n->moved[0] = n->moved[1];
-    n->count = 2;
+  double sum = 0;
+  if (n->count == 4) {
+    memmove(n->at, n->at + 1, 3 * sizeof *n->at);
+    n->bend[0] = n->bend[1];
+    n->count = 3;
   }
-  n->at[n->count] = at;
-  n->moved[n->count - 1] = moved;
-  n->count++;
+  for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
+    double rate = (s->state.u[i] - last->state[i]) / (at - n->at[n->count - 1]);
+    sum += (rate - n->rate[i]) * (rate - n->rate[i]);
+    n->rate[i] = rate;
+  }
+  if (n->count > 1) {
+    n->bend[n->count - 2] = sqrt(sum);
+  }
+  n->at[n->count++] = at;
 }
 
-/* Whether the motion between them is rather that to a limit point at `end` of the way, u = u_c - c
- * sqrt(end - w), than a steady one (docs/theory/stops.md). */
+/* Whether they go rather to a limit point at `end` of the way, u = u_c + s w - c sqrt(end - w),
+ * than on along an arc, u = u_0 + s w + c w^2 (docs/theory/stops.md). */
 static bool nears_limit(const struct nearing *n, double end)
 {
-  if (n->count < 3) {
+  double root[4], fold[3];
+  if (n->count < 4) {
     return false;
   }
-  double root[3];
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 4; i++) {
     root[i] = sqrt(end - n->at[i]);
   }
-  double faster = n->moved[1] / (n->at[2] - n->at[1]) * (n->at[1] - n->at[0]) / n->moved[0];
-  return faster > 0.5 * (1 + (root[0] + root[1]) / (root[1] + root[2]));
+  for (int i = 0; i < 3; i++) {
+    fold[i] = 1 / (root[i] + root[i + 1]);
+  }
+  double of_fold = (fold[2] - fold[1]) / (fold[1] - fold[0]);
+  double of_arc = (n->at[3] - n->at[1]) / (n->at[2] - n->at[0]);
+  return n->bend[1] > 0.5 * (of_fold + of_arc) * n->bend[0];
 }
 
-/* One load step to a share of the way from a->from; *there: it has found a stable state, which
- * *last then is too. */
+/* One load step to a share of the way from a->from; *there: it has found a stable state and leapt
+ * past no other, and *last then is there too. */
 static dea_status step_near(struct dea_context *ctx, struct search *a, double share,
                             struct dea_solid_stand *last, struct nearing *near, bool *there)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
   set_between(s, a->from, a->goal, share, a->limit.controls);
+  foresee(s, a->limit.controls[0]);
   dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
-  *there = status == DEA_OK && report.unstable_modes == 0;
+  bool leaps = status == DEA_OK && !report.snapped && dea_solid_strays(s, last);
+  *there = status == DEA_OK && report.unstable_modes == 0 && !leaps;
+  a->leapt |= leaps;
   if (!*there) {
     dea_solid_stand_again(s, last);
     if (dea_solid_may_shorten(status)) {
@@ -272,37 +308,49 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, double sh
   }
   report.snapped |= a->report->snapped;
   *a->report = report;
-  take_near(near, share, dea_solid_moved_m(s, last));
+  take_near(near, s, last, share);
   dea_solid_state_get(s, last->state);
   dea_solid_controls_get(s, last->controls);
   return a->points(ctx, a->user, DEA_STOP_UNKNOWN);
 }
 
-/* From the last equilibrium that load steps have found on, halving what is left, until the state
- * on one side and the failure on the other are `leap_way` apart; then to the goal, where nothing
- * has failed. *there: it is reached. */
-static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
-                           bool *there)
+/* Halves of what is left, until the state on one side and the failure on the other are `leap_way`
+ * apart; then to the goal, where nothing has failed. *there: it is reached. */
+static dea_status halve_way(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
+                            struct nearing *near, bool *there)
 {
-  struct nearing near = {.count = 1};
   double low = 0, high = 1;
   bool found;
-  *there = false;
-  while (high - low > a->s->settings.leap_way) {
+  while (high - low > a->s->settings.leap_way * (low > 0 ? high : 1)) {
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
     double next = 0.5 * (low + high);
-    DEA_TRY(ctx, step_near(ctx, a, next, last, &near, &found));
+    DEA_TRY(ctx, step_near(ctx, a, next, last, near, &found));
     low = found ? next : low;
     high = found ? high : next;
   }
   if (high == 1) {
-    return step_near(ctx, a, 1, last, &near, there);
+    return step_near(ctx, a, 1, last, near, there);
   }
-  if (nears_limit(&near, high)) {
+  if (a->leapt || nears_limit(near, high)) { // beyond it is another state, and no way to there
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), low, 0};
     return a->points(ctx, a->user, DEA_STOP_NEAR);
   }
   return DEA_OK;
+}
+
+/* From the last equilibrium that load steps have found on. *there: the goal is reached. */
+static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
+                           bool *there)
+{
+  struct nearing near = {.memory = {.ctx = ctx}, .count = 1};
+  *there = false;
+  near.rate = dea_arena_alloc(&near.memory, 3 * a->s->problem.grid->node_count, sizeof(double));
+  dea_status status = dea_solid_agree(ctx, dea_arena_status(&near.memory));
+  if (status == DEA_OK) {
+    status = halve_way(ctx, a, last, &near, there);
+  }
+  dea_arena_free(&near.memory);
+  return status;
 }
 
 /* All that load steps can, where the path says nothing. A taut film that they leave without an
@@ -321,6 +369,7 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   }
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
   dea_context_clear(ctx);
+  step_back(a, taut);
   struct dea_solid_stand last;
   dea_status closed = dea_solid_stand_keep(ctx, s, &last);
   dea_solid_controls_get(s, a->from);
@@ -329,6 +378,7 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   if (closed == DEA_OK) {
     closed = close_in(ctx, a, &last, &there);
   }
+  s->found.foreseen = false; // each of its steps has been looked at
   s->settings = own;
   dea_solid_stand_free(&last);
   DEA_TRY(ctx, closed);
@@ -347,8 +397,10 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
       return status;
     }
     dea_context_clear(ctx);
+    step_back(a, taut);
     dea_solid_controls_goal(a->s, voltage_V, a->goal);
     DEA_TRY(ctx, search_path(ctx, a));
+    a->s->found.foreseen = a->s->found.foreseen && !a->went_on; // it has been followed
     if (a->stop->kind == DEA_STOP_LIMIT) {
       return taut ? end_at_limit(ctx, a) : leap(ctx, a, voltage_V);
     }
@@ -375,12 +427,17 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
     status = dea_solid_stand_keep(ctx, s, &a.limit);
   }
   if (status == DEA_OK) {
+    status = dea_solid_stand_keep(ctx, s, &a.start);
+  }
+  if (status == DEA_OK) {
     const int lost = s->settings.lost;
     s->settings.lost = s->settings.approach_lost;
+    foresee(s, voltage_V);
     status = go(ctx, &a, voltage_V, taut);
     s->settings.lost = lost;
   }
   dea_solid_stand_free(&a.limit);
+  dea_solid_stand_free(&a.start);
   dea_arena_free(&memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
@@ -415,6 +472,19 @@ double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_stand
     sum += way * way;
   }
   return sqrt(3 * sum / (double)count);
+}
+
+bool dea_solid_strays(const struct dea_solid *s, const struct dea_solid_stand *from)
+{
+  double V = dea_solid_voltage(s), from_V = from->controls[0], goal_V = s->found.foreseen_V;
+  double share = (V * V - from_V * from_V) / (goal_V * goal_V - from_V * from_V);
+  double off = 0, way = 0;
+  for (size_t i = 0; i < 3 * s->problem.grid->node_count && s->found.foreseen; i++) {
+    double step = share * s->work.foreseen[i], beyond = s->state.u[i] - from->state[i] - step;
+    off += beyond * beyond;
+    way += step * step;
+  }
+  return off > way * s->settings.astray * s->settings.astray;
 }
 
 void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at)
@@ -533,7 +603,8 @@ static dea_status search_back(struct dea_context *ctx, struct search *a, bool le
     dea_solid_stand_again(a->s, from);
     status = a->s->problem.field == NULL ? search_path(ctx, a) : DEA_OK;
   }
-  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && (a->stuck || leapt)) {
+  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN &&
+      (a->stuck || leapt || a->s->problem.field != NULL)) {
     status = find_leap(ctx, a, from->controls, now);
   }
   dea_solid_stand_free(&a->limit);

@@ -52,6 +52,10 @@ void dea_solid_stand_again(struct dea_solid *solid, const struct dea_solid_stand
 /* Root of the mean square of how far the nodes are from there. */
 double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
 
+/* Whether the last approach, which began there, has come farther from where the tangent there saw
+ * it go than a path of equilibria leads, up to its limit point; false where that is not known. */
+bool dea_solid_strays(const struct dea_solid *solid, const struct dea_solid_stand *from);
+
 /* Whether load steps from there to where the solid is have gone past a limit point or a
  * bifurcation: follows the path from there towards the controls as they are. Where the path comes
  * to no end, and where it says nothing of what is known to have `leapt`, load steps close in on the

@@ -77,6 +77,15 @@ static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
+void dea_solid_foresee(struct dea_solid *s, const double *step)
+{
+  if (s->found.foresees && step != NULL) {
+    memcpy(s->work.foreseen, step, s->problem.dofs * sizeof *step);
+    s->found.foreseen = true;
+  }
+  s->found.foresees = false;
+}
+
 /* ---- line search ---- */
 
 bool dea_solid_resolved(const struct dea_solid *s, double change)
@@ -228,6 +237,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       d->report->iterations++;
     }
     DEA_TRY(ctx, linear_step(ctx, s));
+    dea_solid_foresee(s, there == 0 ? s->work.step : NULL);
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
     if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
@@ -357,6 +367,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
   struct newton d = {.voltage_V = s->state.voltage_V, .report = report};
   double energy, there = 0;
   s->found.factor_fits = s->found.predicted_fits = false;
+  dea_solid_foresee(s, NULL);
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   s->work.takes_increment = true;
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);

@@ -14,6 +14,10 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_solid *s,
                                           struct dea_solid_report *report);
 
+/* The first linear step of a way, where that is wanted: the displacements that the tangent at its
+ * start foresees for its end; NULL: they are not known. */
+void dea_solid_foresee(struct dea_solid *s, const double *step);
+
 /* Counts the unstable modes at an equilibrium; a factor without any starts the next step.
  * tangent: K of there has been assembled. */
 dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s, bool tangent,
