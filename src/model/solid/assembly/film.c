@@ -87,15 +87,19 @@ static double squares_about(const struct dea_solid *s, double field_V_per_m, dou
   return step;
 }
 
+/* potential: gives a vector of unknowns those of a voltage. */
 static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
-                                   double field_V_per_m, double *capacitance_F)
+                                   double field_V_per_m,
+                                   dea_status (*potential)(struct dea_context *, struct dea_solid *,
+                                                           double voltage_V, double *u),
+                                   double *capacitance_F)
 {
   const struct dea_solid_problem *p = &s->problem;
   double energy[2] = {0, 0}, squares[2], step = squares_about(s, field_V_per_m, squares);
   dea_status status = DEA_OK;
   memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
-    status = dea_solid_solve_potential(ctx, s, sqrt(squares[i]), s->work.trial);
+    status = potential(ctx, s, sqrt(squares[i]), s->work.trial);
     if (status == DEA_OK) {
       status = dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i]);
     }
@@ -110,13 +114,13 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
                                  double *capacitance_F)
 {
   return find_capacitance(ctx, s, s->problem.field != NULL ? wide_step_V_per_m : step_V_per_m,
-                          capacitance_F);
+                          dea_solid_solve_potential, capacitance_F);
 }
 
 dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *s,
                                       double *capacitance_F)
 {
-  return find_capacitance(ctx, s, wide_step_V_per_m, capacitance_F);
+  return find_capacitance(ctx, s, wide_step_V_per_m, dea_solid_scale_potential, capacitance_F);
 }
 
 /* Largest of all ranks; NAN where none knows it. */
@@ -264,7 +268,7 @@ static dea_status add_forces(struct dea_context *ctx, struct dea_solid *s, doubl
                              double times, double *out)
 {
   double energy;
-  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
+  DEA_TRY(ctx, dea_solid_scale_potential(ctx, s, voltage_V, s->state.u));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, &energy));
   for (size_t k = 0; k < 3 * s->problem.grid->node_count; k++) {
     out[k] += times * s->work.g[k];
@@ -290,8 +294,6 @@ dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid
   for (int i = 0; i < 2 && status == DEA_OK; i++) { // C = 2 (E(V0) - E(V1)) / (V1^2 - V0^2)
     const double times = (i == 0 ? 2 : -2) / (squares[1] - squares[0]);
     status = add_forces(ctx, s, sqrt(squares[i]), times, out);
-  }
-  if (keep != NULL) {
     memcpy(s->state.u, keep, p->dofs * sizeof *keep);
   }
   dea_free(ctx, keep);

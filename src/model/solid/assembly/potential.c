@@ -244,6 +244,35 @@ dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *
   return DEA_OK;
 }
 
+/* Whether free potentials go with the voltage. */
+static bool is_without_charge(const struct dea_solid *s)
+{
+  const size_t nodes = s->problem.grid->node_count;
+  const double *force = s->state.force + 3 * nodes;
+  for (size_t n = 0; n < nodes; n++) {
+    if (force[n] != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+dea_status dea_solid_scale_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                     double *u)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  const size_t nodes = p->grid->node_count;
+  if (p->field != NULL && (s->state.voltage_V == 0 || !is_without_charge(s))) {
+    DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, u));
+    return DEA_OK;
+  }
+  for (size_t i = 3 * nodes; i < p->dofs; i++) {
+    u[i] = s->state.u[i] * voltage_V / s->state.voltage_V;
+  }
+  dea_solid_hold_potential(s, voltage_V, u);
+  return DEA_OK;
+}
+
 void dea_solid_potential(const struct dea_solid *solid, double *potential_V)
 {
   size_t nodes = solid->problem.grid->node_count;

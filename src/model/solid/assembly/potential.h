@@ -19,5 +19,9 @@ void dea_solid_hold_potential(const struct dea_solid *s, double voltage_V, doubl
  * energy over them. DEA_E_DOMAIN for an inverted element. */
 dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                      double *u);
+/* The same at the displacements of an equilibrium, which u has, from its potentials: they go with
+ * the voltage, and are solved for only where it has none or there are charges. */
+dea_status dea_solid_scale_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                                     double *u);
 
 #endif
