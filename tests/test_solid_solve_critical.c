@@ -156,6 +156,13 @@ static double exact_slope(const struct state *at, int number)
   return (at_V[1] - at_V[0]) / (at_V[0] + at_V[1]) / share;
 }
 
+static void check_laws_of_pull_in(const double *slopes)
+{
+  assert_close(slopes[MODULUS], 0.5, 1e-6, 0);
+  assert_close(slopes[PERMITTIVITY], -0.5, 1e-6, 0);
+  assert_close(slopes[THICKNESS] + slopes[ELECTRODE] + slopes[FRAME], 1, 1e-5, 0);
+}
+
 /* Slopes of pull-in by the null vector of the tangent: the laws of above, and those of the exact
  * disc by differences, to what the mesh leaves: of a solid where the film's thickness changes at
  * the electrode's edge, of a membrane, which is in plane stress as the exact disc is, little. */
@@ -166,14 +173,17 @@ static void test_pull_in(void **state)
   static const double of_solid[] = {1e-4, 1e-6, 3e-3, 3e-3, 3e-3},
                       of_membrane[] = {1e-8, 1e-7, 5e-6, 5e-4, 5e-4};
   static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
+  static const struct dea_model_settings coupled = {
+      .field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1};
   struct state at = soft_disc();
+  double slopes[OF_DEVICE];
   at.voltage_V = 300;
+  find_critical_slopes(&at, &coupled, DEA_EVENT_PULL_IN, slopes);
+  check_laws_of_pull_in(slopes);
   for (int f = 0; f < 2; f++) {
-    double slopes[OF_DEVICE];
     const struct dea_model_settings settings = {.film = films[f]};
     find_critical_slopes(&at, &settings, DEA_EVENT_PULL_IN, slopes);
-    assert_close(slopes[PERMITTIVITY], -0.5, 1e-6, 0);
-    assert_close(slopes[THICKNESS] + slopes[ELECTRODE] + slopes[FRAME], 1, 1e-5, 0);
+    check_laws_of_pull_in(slopes);
     for (size_t i = 0; i < sizeof compared / sizeof compared[0]; i++) {
       assert_close(slopes[compared[i]], exact_slope(&at, compared[i]),
                    f == 0 ? of_solid[i] : of_membrane[i], 0);

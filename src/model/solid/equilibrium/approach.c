@@ -391,7 +391,7 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
 /* Long load steps and the path in turn; where the path says nothing, all that load steps can. */
 static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
 {
-  for (int i = 0; i < a->s->settings.approach_rounds && a->s->problem.field == NULL; i++) {
+  for (int i = 0; i < a->s->settings.approach_rounds; i++) {
     dea_status status = try_steps(ctx, a, voltage_V, taut);
     if (!dea_solid_may_shorten(status)) {
       return status;
@@ -601,10 +601,9 @@ static dea_status search_back(struct dea_context *ctx, struct search *a, bool le
   }
   if (status == DEA_OK) {
     dea_solid_stand_again(a->s, from);
-    status = a->s->problem.field == NULL ? search_path(ctx, a) : DEA_OK;
+    status = search_path(ctx, a);
   }
-  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN &&
-      (a->stuck || leapt || a->s->problem.field != NULL)) {
+  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && (a->stuck || leapt)) {
     status = find_leap(ctx, a, from->controls, now);
   }
   dea_solid_stand_free(&a->limit);

@@ -6,6 +6,7 @@
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
+#include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/check.h"
 #include "model/solid/equilibrium/equilibrate.h"
 #include "model/solid/equilibrium/modes.h"
@@ -60,7 +61,8 @@ static double size_of(const struct dea_solid_continuation *t, const double *du)
 }
 
 /* Sets all controls to those at tau, held components go along. DEA_E_DOMAIN below 0 V. */
-static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuation *t, double tau)
+static dea_status set_controls(struct dea_context *ctx, struct dea_solid_continuation *t,
+                               double tau)
 {
   struct dea_solid *s = t->s;
   double square = t->from[0] * t->from[0] * (1 - tau) + t->goal[0] * t->goal[0] * tau;
@@ -80,6 +82,17 @@ static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuatio
     }
   }
   return DEA_OK;
+}
+
+/* The same, and the potentials of a coupled field are those of the displacements there. */
+static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuation *t, double tau)
+{
+  struct dea_solid *s = t->s;
+  DEA_TRY(ctx, set_controls(ctx, t, tau));
+  dea_status status = dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u);
+  return status == DEA_OK
+             ? DEA_OK
+             : dea_fail(ctx, status, "an element on the path has no energy at its end");
 }
 
 /* The plane's normal, from a direction of any length. */
@@ -552,9 +565,6 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
   if (!(options->unit_m > 0) || !(fabs(options->step) > 0)) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a path takes a step and a unit of displacement");
   }
-  if (s->problem.field != NULL) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a path is followed with the field V/h only");
-  }
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
   if (goal == NULL) {
@@ -719,7 +729,7 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
   if (status != DEA_OK) {
     dea_solid_state_set(t->s, t->last.state);
     t->s->found.predicted_fits = t->s->found.factor_fits = false;
-    set_load(NULL, t, t->last.load); // where it was
+    set_controls(NULL, t, t->last.load); // where it was
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   t->located = t->event;

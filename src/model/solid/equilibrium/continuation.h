@@ -39,7 +39,7 @@ struct dea_continuation_point {
 /* Starts at the equilibrium that the solid is at or slides into. The goals (forces, prescribed
  * displacements, parameters of loads) are taken as they are now. solid: lent; while the trace lives
  * it alone moves the solid, which stays at the last point. out: owned by the caller, NULL on
- * failure. DEA_E_ARGUMENT for options that cannot be, DEA_E_UNSUPPORTED for a coupled field. */
+ * failure. DEA_E_ARGUMENT for options that cannot be. */
 dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_solid *solid,
                                          double voltage_V,
                                          const struct dea_continuation_options *options,

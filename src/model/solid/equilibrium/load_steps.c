@@ -176,7 +176,7 @@ static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int sid
 {
   const struct dea_solid_report before = *report;
   dea_status status = descend(ctx, s, side, false, mode, report);
-  if (dea_solid_may_shorten(status) && s->problem.field == NULL) {
+  if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
     dea_solid_state_set(s, state);
     s->found.factor_fits = s->found.predicted_fits = false;
