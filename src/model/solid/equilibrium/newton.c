@@ -324,7 +324,7 @@ static dea_status heed_divergence(struct dea_context *ctx, const struct dea_soli
                         d->report->residual);
 }
 
-dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool *slow,
                               struct dea_solid_report *report)
 {
   double voltage_V = s->state.voltage_V;
@@ -346,6 +346,10 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s,
           ctx, s, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits, report);
     }
     DEA_TRY(ctx, heed_divergence(ctx, s, &d));
+    if (slow != NULL && d.unresolved > 2 && !fits) {
+      *slow = true;
+      return DEA_OK;
+    }
     if (d.chord) {
       DEA_TRY(ctx, chord_step(ctx, s, &d));
     } else {
