@@ -53,8 +53,9 @@ struct at {
   size_t monitors[MONITORS], monitor_count;
   enum dea_observed motion[MONITORS]; // asked for, or found by the first that observes
   bool asked, found;
-  size_t numbers_max;      // that are checked; 0: all
-  const char *const *only; // those that are, ended by NULL; NULL: all
+  size_t numbers_max;                 // that are checked; 0: all
+  const char *const *only;            // those that are, ended by NULL; NULL: all
+  struct dea_model_settings settings; // of a critical voltage
 };
 
 /* Quantities of a device that is solved by itself, out [WIDTH]. */
@@ -88,8 +89,8 @@ static void solve(struct at *at, const struct dea_device *device, double voltage
   }
 }
 
-/* What the solver leaves of a quantity, over its size. */
-static const double floor_of_value = 3e-8;
+/* What the solver leaves of a quantity, over its size; of a critical voltage. */
+static const double floor_of_value = 3e-8, critical_floor = 1e-8;
 
 static void check_number(struct at *at, const struct dea_design_number *number, const double *base,
                          const double *slope)
@@ -457,13 +458,156 @@ static void test_what_cannot_follow(void **state)
   dea_design_destroy(ctx, at.design);
 }
 
+// Critical voltages -------------------------------------------------------------------------------
+
+/* Two soft films, bonded, the electrode between them: the field breaks the lower one down, then the
+ * lower one is slack, then the laminate is pulled in. */
+static const char laminate[] =
+    "dea: 1\n"
+    "title: two soft films bonded\n"
+    "shapes:\n"
+    "  - {name: film, kind: circle, radius: 15.5 mm}\n"
+    "  - {name: active, kind: circle, radius: 2.6 mm}\n"
+    "materials:\n"
+    "  - name: soft\n"
+    "    title: soft\n"
+    "    kind: elastomer\n"
+    "    laws:\n"
+    "      - {id: a, law: arruda-boyce, parameters: {mu: 15.36 kPa, lambda_m: 5.99}, source: a "
+    "test}\n"
+    "    permittivity:\n"
+    "      - {id: a, at_rest: 4.8, source: a test}\n"
+    "    breakdown:\n"
+    "      - {id: a, at_rest: 40 V/um, source: a test}\n"
+    "  - name: stiff\n"
+    "    title: stiff\n"
+    "    kind: elastomer\n"
+    "    laws:\n"
+    "      - {id: a, law: neo-hookean, parameters: {mu: 20 kPa}, source: a test}\n"
+    "    permittivity:\n"
+    "      - {id: a, at_rest: 3, source: a test}\n"
+    "    breakdown:\n"
+    "      - {id: a, at_rest: 40 V/um, source: a test}\n"
+    "plies:\n"
+    "  - {name: lower, shape: film, material: soft, thickness: 30 um, pre_stretch: 1.2}\n"
+    "  - {name: upper, shape: film, material: stiff, thickness: 20 um, pre_stretch: 1.3}\n"
+    "electrodes:\n"
+    "  - {ply: lower, side: bottom, shape: active, channel: ground}\n"
+    "  - {ply: lower, side: top, shape: active, channel: drive}\n"
+    "  - {ply: upper, side: top, shape: active, channel: ground}\n"
+    "supports:\n"
+    "  - {edge: film}\n"
+    "monitors:\n"
+    "  - {name: middle, at: [0 mm, 0 mm]}\n"
+    "compute:\n"
+    "  voltage: {to: 600 V, step: 50 V}\n"
+    "  solid: {order: 1}\n";
+
+static double find_critical(struct at *at, const struct dea_device *device,
+                            enum dea_event_kind kind, struct dea_critical *out)
+{
+  struct dea_model_settings *settings = &at->settings;
+  *settings = dea_model_settings_of(at->design);
+  settings->mesh_of = device == at->device ? NULL : at->device;
+  const struct dea_critical_ask ask = {dea_model_of_device(dea_model_find("3d"), device),
+                                       device,
+                                       settings,
+                                       kind,
+                                       at->voltage_V,
+                                       2e3};
+  if (dea_critical_find(ctx, &ask, out) != DEA_OK || isnan(out->voltage_V)) {
+    fail_msg("%s: %s %s", dea_event_name(kind), dea_context_message(ctx), out->why);
+  }
+  return out->voltage_V;
+}
+
+/* The remainder of a critical voltage falls as the square of the change of a number. */
+static void check_critical_number(struct at *at, enum dea_event_kind kind,
+                                  const struct dea_design_number *number, double base_V,
+                                  double slope)
+{
+  enum { COUNT = 3, FROM = 1 };
+  static const double shares[COUNT] = {1e-2, 1e-3, 1e-5};
+  const double reach = number->reach > 0 ? number->reach : number->value;
+  double left[COUNT];
+  for (int n = 0; n < COUNT; n++) {
+    struct dea_arena scratch = {.ctx = ctx};
+    struct dea_device device = {.layout = NULL};
+    struct dea_critical there;
+    assert_int_equal(dea_part_change(ctx, at->design, number, number->value + shares[n] * reach,
+                                     &scratch, &device),
+                     DEA_OK);
+    left[n] =
+        (find_critical(at, &device, kind, &there) - base_V - slope * reach * shares[n]) / base_V;
+    dea_critical_end(ctx, &there);
+    dea_layout_destroy(ctx, device.layout);
+    dea_arena_free(&scratch);
+  }
+  for (int n = 0; n < COUNT; n++) {
+    const double wanted = left[FROM] * pow(shares[n] / shares[FROM], 2);
+    if (!(fabs(left[n] - wanted) <= 0.2 * fabs(wanted) + 5e-6 * shares[n] + critical_floor)) {
+      fail_msg("%s by %s at %.0e: %.3e, not %.3e", dea_event_name(kind), number->key, shares[n],
+               left[n], wanted);
+    }
+  }
+}
+
+/* Of those numbers that are in at->only, or all. */
+static void check_critical(struct at *at, enum dea_event_kind kind)
+{
+  struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  double slopes[DEA_NUMBERS_MAX];
+  size_t count;
+  struct dea_critical base;
+  const double base_V = find_critical(at, at->device, kind, &base);
+  assert_int_equal(dea_design_numbers(ctx, at->design, at->device, base_V, numbers, &count),
+                   DEA_OK);
+  const struct dea_design_gradient ask = {.type = base.ask.type,
+                                          .design = at->design,
+                                          .device = at->device,
+                                          .numbers = numbers,
+                                          .number_count = count};
+  assert_int_equal(dea_design_gradient_critical(ctx, &ask, &base, slopes), DEA_OK);
+  dea_critical_end(ctx, &base);
+  for (size_t i = 0; i < count; i++) {
+    if (strcmp(numbers[i].key, "voltage") != 0 && is_checked(at, &numbers[i])) {
+      check_critical_number(at, kind, &numbers[i], base_V, slopes[i]);
+    }
+  }
+}
+
+static void test_critical_voltages_of_a_laminate(void **state)
+{
+  (void)state;
+  static const enum dea_event_kind kinds[] = {DEA_EVENT_BREAKDOWN, DEA_EVENT_SLACK,
+                                              DEA_EVENT_PULL_IN};
+  static const char *const only[][2] = {
+      {"plies.upper.pre_stretch"}, {"plies.lower.thickness"}, {"plies.upper.pre_stretch"}};
+  struct at at = {.voltage_V = 200};
+  assert_int_equal(
+      dea_design_read_memory(ctx, "laminate.yaml", laminate, strlen(laminate), NULL, 0, &at.design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    at.only = only[k];
+    check_critical(&at, kinds[k]);
+  }
+  dea_device_destroy(ctx, at.device);
+  dea_design_destroy(ctx, at.design);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cone),        cmocka_unit_test(test_two_plies_under_pressure),
-      cmocka_unit_test(test_shapes),      cmocka_unit_test(test_region),
-      cmocka_unit_test(test_tilt),        cmocka_unit_test(test_tension_of_a_bender),
-      cmocka_unit_test(test_all_lengths), cmocka_unit_test(test_what_cannot_follow),
+      cmocka_unit_test(test_cone),
+      cmocka_unit_test(test_two_plies_under_pressure),
+      cmocka_unit_test(test_shapes),
+      cmocka_unit_test(test_region),
+      cmocka_unit_test(test_tilt),
+      cmocka_unit_test(test_tension_of_a_bender),
+      cmocka_unit_test(test_all_lengths),
+      cmocka_unit_test(test_what_cannot_follow),
+      cmocka_unit_test(test_critical_voltages_of_a_laminate),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -117,6 +117,7 @@ struct work {
   double *side;   // [2][dea_gradient_width]
   double *motion; // [monitor_count]
   struct mode mode;
+  double *null_mode; // [dofs] of a limit point, as it is found
 };
 
 // The lowest mode ---------------------------------------------------------------------------------
@@ -400,21 +401,39 @@ static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_V
   return DEA_OK;
 }
 
-/* w of A w + B mu = 0, B^T w = 0, by two steps of inverse iteration. */
+/* The answer of a step of inverse iteration, of unit size, as what the next one answers to. *turn:
+ * square of the angle to what this one has answered to. */
+static void begin_step(struct work *w, size_t from, double *turn)
+{
+  const size_t dofs = w->owner->solid->problem.dofs;
+  const double *answer = dea_adjoint_answer(w->adjoint, from);
+  double *next = dea_adjoint_slope(w->adjoint, NULL_MODE), *last = w->null_mode;
+  double size = 0, product = 0, before = 0;
+  for (size_t i = 0; i < dofs; i++) {
+    size += answer[i] * answer[i];
+    product += answer[i] * last[i];
+    before += last[i] * last[i];
+  }
+  for (size_t i = 0; i < dofs; i++) {
+    next[i] = last[i] = answer[i] / sqrt(size);
+  }
+  *turn = before > 0 ? 1 - product * product / (size * before) : 1;
+}
+
+/* w of A w + B mu = 0, B^T w = 0, by inverse iteration from dR/dV on. */
 static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
 {
-  const struct dea_solid *s = w->owner->solid;
-  const double *first = dea_adjoint_answer(w->adjoint, RATE);
-  double largest = 0;
+  enum { STEPS = 20 };
+  static const double settled = 1e-12;
+  double turn = 1;
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, (const bool[OF_LIMIT]){[RATE] = true}));
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    largest = fmax(largest, fabs(first[i]));
+  begin_step(w, RATE, &turn);
+  for (int i = 0; i < STEPS && turn > settled; i++) {
+    DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, (const bool[OF_LIMIT]){[NULL_MODE] = true}));
+    begin_step(w, NULL_MODE, &turn);
   }
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    dea_adjoint_slope(w->adjoint, NULL_MODE)[i] = first[i] / largest;
-  }
-  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, (const bool[OF_LIMIT]){[NULL_MODE] = true}));
-  return DEA_OK;
+  return turn > settled ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "two modes turn unstable at once")
+                        : DEA_OK;
 }
 
 /* -(w . dR/dP) / (w . dR/dV), where the solid is at the limit point. */
@@ -446,11 +465,18 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
   struct work w = {.owner = &there, .ask = ask, .side = side};
   dea_solid_stand_again(s, &owner->ending->at_limit);
   there.voltage_V = dea_solid_voltage(s);
+  w.null_mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.null_mode);
+  if (w.null_mode == NULL) {
+    return DEA_E_MEMORY;
+  }
+  s->work.takes_small_pivots = true;
   dea_status status = dea_adjoint_create(ctx, s, OF_LIMIT, &w.adjoint);
+  s->work.takes_small_pivots = false;
   if (status == DEA_OK) {
     status = find_limit(ctx, &w, out);
   }
   dea_adjoint_destroy(ctx, w.adjoint);
+  dea_free(ctx, w.null_mode);
   return status;
 }
 

@@ -344,9 +344,10 @@ static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_perce
   return DEA_OK;
 }
 
+enum { ROOM = 25, ROOM_MAX = 400 };
+
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 {
-  enum { ROOM = 25, ROOM_MAX = 400 };
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
   if (dea_interrupted_anywhere(ctx)) { // that of a large mesh takes seconds, and hears nothing
@@ -374,6 +375,10 @@ dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int
 {
   PetscInt minus, zero, plus;
   s->found.stiff_factor_fits = false;
+  if (s->work.factor == NULL) {
+    DEA_TRY(ctx, analyse(ctx, s->work.K, ROOM, &s->work.factor));
+  }
+  DEA_PETSC(ctx, MatMumpsSetCntl(s->work.factor, 3, s->work.takes_small_pivots ? -1e-300 : 0));
   DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
   DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
   *negative = (int)(minus + zero) - (int)s->problem.free_potentials;

@@ -114,6 +114,8 @@ struct dea_solid_work {
   struct dea_load_piece *piece;       // of one piece of a load in it
   Mat K;                              // tangent, by dea_solid_assemble
   Mat factor;                         // LDL^T of K, by dea_solid_factorise
+  bool takes_small_pivots;            // for one of a K that is singular but for rounding: else what
+                                      // such a pivot belongs to is left out of solutions
   Vec right;                          // of K's rows
   Vec solution;                       // of K's rows
   struct dea_load_steps load_steps;

@@ -303,6 +303,8 @@ static dea_status begin(struct dea_context *ctx, struct dea_adjoint *a, size_t c
   DEA_TRY(ctx, solve(ctx, a, count, a->way));
   for (size_t k = 0; k < count; k++) {
     const size_t n = a->open[k];
+    memset(a->nu + n * a->all, 0, a->all * sizeof(double));
+    a->before[n] = a->largest[n][OF_ELEMENTS] = a->largest[n][OF_LOADS] = 0;
     memcpy(a->lambda + n * a->dofs, a->way + k * a->dofs, a->dofs * sizeof(double));
     squeeze(a, a->lambda + n * a->dofs, a->left + n * a->all);
     take_pressures(a, n);

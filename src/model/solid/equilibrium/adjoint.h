@@ -24,8 +24,8 @@ void dea_adjoint_destroy(struct dea_context *ctx, struct dea_adjoint *adjoint);
  * multipliers [elements][pressures], then those of each load. */
 double *dea_adjoint_slope(struct dea_adjoint *adjoint, size_t number);
 double *dea_adjoint_pressure_slope(struct dea_adjoint *adjoint, size_t number);
-/* The answers to all of them, [count] wanted, each once. DEA_E_NOT_CONVERGED where the constraints
- * do not settle. */
+/* The answers to all of them, [count] wanted, in place of what they were; the slopes are then gone.
+ * DEA_E_NOT_CONVERGED where the constraints do not settle. */
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoint,
                              const bool *wanted);
 /* lambda [dofs] of an answer; lent. */
