@@ -181,6 +181,9 @@ static void test_pull_in_keeps_what_was_computed(void **state)
   assert_true(pull_in_V > number(last, "voltage_V") && pull_in_V < number(last, "voltage_V") + 500);
   assert_close(number(last, "pull_in_distance_V"), pull_in_V - number(last, "voltage_V"), 1e-9, 0);
   json_decref(root);
+  // a study after it does not take its reason away
+  assert_int_equal(command_run("run soft.yaml -m axisymmetric --sensitivity --json"), 4);
+  assert_contains(command_err, "axisymmetric: pull-in at ");
 }
 
 /* Without pre-stretch the film has no tension at rest and less under a voltage: the pull-in of a

@@ -160,13 +160,27 @@ static dea_status make_tables(struct dea_context *ctx, const struct dea_study *s
   return study->tables != NULL ? study->tables(ctx, model, result) : DEA_OK;
 }
 
+/* What a run of several studies ends with: the first that failed, and what it said. */
+struct ending {
+  dea_status status;
+  char message[1024];
+};
+
+static void take(const struct dea_context *ctx, dea_status status, struct ending *ending)
+{
+  if (status != DEA_OK && ending->status == DEA_OK) {
+    ending->status = status;
+    snprintf(ending->message, sizeof ending->message, "%s", dea_context_message(ctx));
+  }
+}
+
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          const char *const names[], size_t name_count, struct dea_result *result)
 {
   struct dea_model *model = NULL; // made for the first study that wants it
   type = dea_model_of_device(type, result->device);
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
-  dea_status first = DEA_OK;
+  struct ending first = {.status = DEA_OK};
   for (size_t i = 0; i < STUDIES; i++) {
     if (!is_wanted(studies[i], names, name_count, result->design) ||
         !is_able(studies[i], result->design)) { // the path, that every design asks for
@@ -176,18 +190,19 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
       DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
     }
     dea_status status = studies[i]->run(ctx, type, studies[i]->own_models ? NULL : model, result);
-    first = first == DEA_OK ? status : first;
+    take(ctx, status, &first);
     if (status == DEA_E_MEMORY) {
       break;
     }
     status = make_tables(ctx, studies[i], type->name, result);
-    first = first == DEA_OK ? status : first;
-    if (first == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
+    take(ctx, status, &first);
+    if (first.status == DEA_E_INTERRUPTED || status == DEA_E_MEMORY) {
       break;
     }
   }
   if (model != NULL) {
     type->destroy(ctx, model);
   }
-  return first;
+  bool said = first.status == DEA_OK || strcmp(dea_context_message(ctx), first.message) == 0;
+  return said ? first.status : dea_fail(ctx, first.status, "%s", first.message);
 }
