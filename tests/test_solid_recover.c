@@ -5,6 +5,7 @@
 #include "material/plane.h"
 #include "model/solid/actuator/actuator.h"
 #include "model/solid/recovery/recover.h"
+#include "model/solid/recovery/recover_second.h"
 #include "testing.h"
 
 #include <stdlib.h>
@@ -496,6 +497,86 @@ static void test_film_under_fibres(void **state)
   assert_close(covered(0.495), covered(0.38), 0, 0);
 }
 
+/* ---- second derivatives from neighbours ---- */
+
+static void map_square(const void *self, double s, double t, double x[2])
+{
+  (void)self;
+  x[0] = length_m * s;
+  x[1] = length_m * t;
+}
+
+static bool everywhere(const void *self, int region, int ply)
+{
+  (void)self;
+  return region == 0 && ply == 0;
+}
+
+/* Component xx: (x^2 + 2 y^2) / length^2 times its sign at a level, of each element the linear
+ * function nearest to it; xy: x / length. */
+static void fill_linear(const struct dea_grid *grid, double *value)
+{
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    const double *low = grid->X + 3 * nodes[0], *high = grid->X + 3 * nodes[8];
+    for (int n = 0; n < 27; n++) {
+      double *v = value + (e * 27 + (size_t)n) * 9, level = 1 + n / 9;
+      for (int i = 0; i < 2; i++) {
+        double x = grid->X[3 * nodes[n] + i] / length_m;
+        double middle = 0.5 * (low[i] + high[i]) / length_m,
+               a = 0.5 * (high[i] - low[i]) / length_m;
+        v[0] += level * (i + 1) * (middle * middle + a * a / 3 + 2 * middle * (x - middle));
+      }
+      v[1] = grid->X[3 * nodes[n]] / length_m;
+    }
+  }
+}
+
+/* Of elements of unequal lengths with one neighbour, or two, and of one alone beside a mirror
+ * plane, in which xx is even and xy odd. x^2 of half a length a has c = 2 a^2 / 3. */
+static void test_second_derivatives(void **state)
+{
+  (void)state;
+  static const double cuts[4] = {0, 0.3, 0.8, 1}, alone[2] = {0, 1};
+  static const struct dea_ply ply = {44e-6, 1, 2};
+  for (int mirrors = 0; mirrors < 2; mirrors++) {
+    struct dea_block block = {map_square, NULL, mirrors ? alone : cuts, cuts, mirrors ? 1 : 3,
+                              3,          0};
+    struct dea_grid *grid;
+    assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &ply, 1, everywhere, 0, length_m, &grid),
+                     DEA_OK);
+    size_t count = grid->element_count, axes = 2 * (size_t)DEA_RECOVER_LEVELS * 9;
+    double *value = calloc(count * 27 * 9, sizeof *value), *c = calloc(count * axes, sizeof *c);
+    double(*mirror)[3] = calloc(grid->node_count, sizeof *mirror);
+    int *group = calloc(count, sizeof *group);
+    fill_linear(grid, value);
+    for (size_t n = 0; n < grid->node_count; n++) {
+      mirror[n][0] = grid->X[3 * n] == 0 ? 1 : 0;
+    }
+    const struct dea_recover_second in = {.grid = grid,
+                                          .group = group,
+                                          .mirror = mirrors ? (const double(*)[3])mirror : NULL,
+                                          .tensors = 1,
+                                          .nodes = 27,
+                                          .value = value};
+    assert_int_equal(dea_recover_second(ctx, &in, c), DEA_OK);
+    for (size_t k = 0; k < count * axes; k++) {
+      size_t e = k / axes, axis = k % axes / (axes / 2), level = k % (axes / 2) / 9;
+      const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+      double a = 0.5 *
+                 (grid->X[3 * (size_t)nodes[8] + axis] - grid->X[3 * (size_t)nodes[0] + axis]) /
+                 length_m;
+      bool xx = k % 9 == 0 && level < 3;
+      assert_close(c[k], xx ? (double)((level + 1) * (axis + 1)) * 2 * a * a / 3 : 0, 0, 1e-12);
+    }
+    free(value);
+    free(c);
+    free(mirror);
+    free(group);
+    dea_grid_destroy(ctx, grid);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -505,6 +586,7 @@ int main(void)
       cmocka_unit_test(test_parts_do_not_share_points),
       cmocka_unit_test(test_inverted_element),
       cmocka_unit_test(test_film_under_fibres),
+      cmocka_unit_test(test_second_derivatives),
       cmocka_unit_test(test_each_allocation),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -399,25 +399,6 @@ static void test_coupled_tips(void **state)
   }
 }
 
-/* One element between a fibre and the middle to the next one: that errors are not seen across it is
- * said. */
-static void test_one_element_between_fibres(void **state)
-{
-  (void)state;
-  for (int fibres = 4; fibres <= 8; fibres += 4) {
-    struct dea_device device = test_star(fibres);
-    for (int refinement = 1; refinement <= 2; refinement++) {
-      const struct dea_model_settings settings = {.film = DEA_FILM_SOLID, .refinement = refinement};
-      struct dea_model *model;
-      dea_finding_clear(ctx);
-      assert_int_equal(solid->create(ctx, &device, &settings, &model), DEA_OK);
-      bool told = find_finding(ctx, DEA_NOTE, "there is one element, across which") != NULL;
-      assert_true(told == (fibres == 8 && refinement == 1));
-      solid->destroy(ctx, model);
-    }
-  }
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -430,7 +411,6 @@ int main(void)
       cmocka_unit_test(test_capacitance_of_the_whole),
       cmocka_unit_test(test_fringe),
       cmocka_unit_test(test_coupled_tips),
-      cmocka_unit_test(test_one_element_between_fibres),
       cmocka_unit_test(test_charge),
       cmocka_unit_test(test_number_of_fibres),
       cmocka_unit_test(test_kinds_of_fibres),

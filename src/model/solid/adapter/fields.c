@@ -75,12 +75,30 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
   return status;
 }
 
+/* The normal of the mirror plane that a node moves in: the one component that is held, if it lies
+ * in the film's plane; zeros otherwise. */
+static void find_mirror(const struct dea_solid_problem *p, size_t node, double normal[3])
+{
+  static const double global[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double *Q = p->frame != NULL && p->frame[node] > 0 ? p->frames[p->frame[node] - 1] : global;
+  int held = 0, which = 0;
+  for (int i = 0; i < 3; i++) {
+    if (p->held[3 * node + (size_t)i] == DEA_HELD) {
+      held++;
+      which = i;
+    }
+  }
+  for (int i = 0; i < 3; i++) {
+    normal[i] = held == 1 && fabs(Q[3 * which + 2]) < 1e-6 ? Q[3 * which + i] : 0;
+  }
+}
+
 dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
                             const double *const *weight, size_t count, double *error_m,
                             double *part)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double *z = NULL;
+  double *z = NULL, (*mirror)[3] = NULL;
   const double *each[DEA_ERRORS_MAX];
   for (size_t k = 0; k < count; k++) {
     error_m[k] = NAN;
@@ -90,7 +108,11 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
   }
   struct recovery work = {0};
   z = dea_alloc(ctx, count * p->dofs, sizeof *z);
-  dea_status status = z != NULL ? prepare(ctx, s, &work) : DEA_E_MEMORY;
+  mirror = dea_alloc(ctx, p->grid->node_count, sizeof *mirror);
+  dea_status status = z != NULL && mirror != NULL ? prepare(ctx, s, &work) : DEA_E_MEMORY;
+  for (size_t n = 0; status == DEA_OK && n < p->grid->node_count; n++) {
+    find_mirror(p, n, mirror[n]);
+  }
   for (size_t k = 0; k < count && status == DEA_OK; k++) {
     each[k] = z + k * p->dofs;
     memcpy(z + k * p->dofs, weight[k], p->dofs * sizeof *z);
@@ -98,9 +120,11 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
     status = dea_solid_solve_linear(ctx, s, z + k * p->dofs, z + k * p->dofs);
   }
   if (status == DEA_OK) {
-    status = dea_recover_errors(ctx, &work.in, each, count, error_m, part);
+    status =
+        dea_recover_errors(ctx, &work.in, (const double(*)[3])mirror, each, count, error_m, part);
   }
   release(ctx, &work);
+  dea_free(ctx, mirror);
   dea_free(ctx, z);
   return status;
 }

@@ -105,13 +105,6 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
   if (model->actuator.settings.field == DEA_FIELD_COUPLED) {
     DEA_TRY(ctx, say_coupled(ctx, p));
   }
-  if (dea_fibre_disc_beside(p) == 1) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                                 "model 3d: from a fibre to halfway to the next one there is one "
-                                 "element, across which estimated errors see nothing: that of the "
-                                 "electrode's edge is too small, four times with eight fibres; a "
-                                 "larger compute.solid.refinement has more elements there"));
-  }
   if (p->membrane) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d with a membrane film is a preview: %s"

@@ -165,11 +165,9 @@ static size_t share_beside(double length, double size, double finer)
   return share(length, finer > 1 ? size * (1 - 1 / finer) / log(finer) : size);
 }
 
-size_t dea_fibre_disc_beside(const struct dea_fibre_disc *p)
+/* Elements along the electrode's edge from a fibre to the line halfway to the next one. */
+static size_t share_between(const struct dea_fibre_disc *p)
 {
-  if (p->fibres == 0) {
-    return 0;
-  }
   double a = p->electrode_radius, rest = dea_fibre_disc_angle(p) / p->sectors - fibre_angle(p, a);
   return share_beside(rest * a, p->beside > 0 ? p->beside : p->size, finer_at_tips(p));
 }
@@ -190,8 +188,7 @@ static dea_status lines_create(struct dea_context *ctx, const struct dea_fibre_d
     out->across = share(0.5 * width, 0.5 * p->size / finer);
   }
   out->wider = log(finer);
-  out->count =
-      out->across + (p->fibres > 0 ? dea_fibre_disc_beside(p) : share(out->alpha * a, p->size));
+  out->count = out->across + (p->fibres > 0 ? share_between(p) : share(out->alpha * a, p->size));
   size_t least = out->alpha > 0.51 * pi ? 4 : 2; // two for each wedge of the core
   out->count = out->count < least ? least : out->count;
   if (out->count > DEA_FIBRE_DISC_LINE_MAX) {

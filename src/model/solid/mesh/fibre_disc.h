@@ -59,10 +59,6 @@ double dea_fibre_disc_angle(const struct dea_fibre_disc *plate);
 /* Sectors of the whole disc. */
 int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate);
 
-/* Elements along the electrode's edge from a fibre to the line halfway to the next one, of a plate
- * whose parts fit together; 0 without fibres. */
-size_t dea_fibre_disc_beside(const struct dea_fibre_disc *plate);
-
 /* DEA_E_ARGUMENT for parts that do not fit together, or more than DEA_FIBRE_DISC_LINE_MAX elements
  * in a row. out: owned by the caller (dea_grid_destroy), NULL on failure. */
 dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
