@@ -26,10 +26,11 @@
   X(double, chord_rate, 0.2, "of the residual before", "at which an old factor is good enough")    \
   X(int, follow_steps, 30, "1", "with the factor of the last equilibrium, at first")               \
   X(double, follow_rate, 0.6, "of the first step", "later ones, at most")                          \
+  X(double, follow_aim, 0.5, "of the first step", "second one that the next part aims at")         \
   X(double, follow_accuracy, 1e-8, "of the first step", "last step")                               \
   X(double, follow_on_the_way, 1e-3, "of the first step",                                          \
     "last step to no point that is asked for")                                                     \
-  X(double, follow_part, 0.25, "of the way asked for", "shortest way with it")                     \
+  X(double, follow_part, 0.02, "of the way asked for", "shortest way with it")                     \
   X(int, halvings, 12, "1", "of a step in the line search")                                        \
   X(double, uphill, 20, "of the slope", "rise of the energy along a step that is let pass")        \
   X(double, downhill, 1e-4, "of the slope", "fall of the energy that is asked for (Armijo)")       \

@@ -43,6 +43,7 @@ struct follow {
   double *dx[DEPTH], *df[DEPTH]; // [count] differences between iterations, newest first
   double *dh[DEPTH];             // [dofs]
   int depth;                     // of them that there are
+  double rate;                   // size of the second f over that of the first
   double size_first, size;       // of f, at first and now
   double size_renewed;           // when the loads were last brought up to date; or at first
   int renewed;                   // iteration of that
@@ -341,6 +342,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
   w->size_first = k == 0 ? w->size : w->size_first;
   w->size_renewed = renewed ? w->size : w->size_renewed;
   bool small = k > 0 && w->size < w->accuracy * w->size_first;
+  w->rate = k == 1 ? w->size / w->size_first : w->rate;
   *there = small && (!w->equilibrium || (w->report->theta_max < o->theta &&
                                          w->report->residual < o->residual && w->load_error <= 1));
   *ends = !*there && !pays(w, k);
@@ -457,7 +459,7 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
 }
 
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool on_the_way,
-                            struct dea_solid_report *report, bool *there)
+                            struct dea_solid_report *report, double *rate, bool *there)
 {
   struct follow w = {.memory = {.ctx = ctx},
                      .s = s,
@@ -470,6 +472,9 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool o
                      .count = s->problem.dofs + dea_solid_pressure_count(s),
                      .stiff = s->found.factor_fits ? 1 : s->settings.bulk_stiff};
   *there = false;
+  if (rate != NULL) {
+    *rate = 0;
+  }
   if (s->problem.field != NULL || !(s->found.factor_fits || s->found.stiff_factor_fits)) {
     return DEA_OK;
   }
@@ -477,6 +482,9 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool o
   dea_status status = iterate_all(ctx, &w, there);
   if (status == DEA_OK && *there) {
     status = count(ctx, &w, there);
+  }
+  if (rate != NULL) {
+    *rate = w.rate;
   }
   dea_arena_free(&w.memory);
   return status;

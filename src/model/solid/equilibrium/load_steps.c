@@ -346,29 +346,39 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   return DEA_OK;
 }
 
-/* With the factors of points on the way, report->way, in steps that are halved where one is too
- * long. *there: at the last of them is an equilibrium. */
+/* The next part of the way after one, whose iterations fell by `rate` at first (0: not known),
+ * which goes with the part. */
+static double next_part(const struct dea_solid *s, double part, double rate, bool there)
+{
+  double share = rate > 0 ? s->settings.follow_aim / rate : there ? 2 : 0.5;
+  return part * (there ? fmin(fmax(share, 0.5), 2) : fmin(fmax(share, 0.125), 0.5));
+}
+
+/* With the factors of points on the way, report->way, in steps as long as their rate allows, until
+ * shorter ones fall no faster: from the same point, or to the end. *there: at the last of them is
+ * an equilibrium. */
 static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
                             struct dea_solid_report *report, bool *there)
 {
-  double part = 1;
-  *there = true;
-  while (report->way < 1 && part >= s->settings.follow_part) {
-    double way = fmin(report->way + part, 1);
+  double part = 1, rate = 0, from_here = INFINITY, to_end = INFINITY; // rates over root of part
+  bool fits = true;
+  while (report->way < 1 && part >= s->settings.follow_part && fits) {
+    double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
+    part = way - report->way;
     set_share(s, way);
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, way < 1, report, there));
-    if (*there) {
-      report->way = way;
-    } else if (s->found.factor_fits || s->found.stiff_factor_fits) {
-      part /= 2;
-    } else {
-      return DEA_OK;
-    }
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, way < 1, report, &rate, there));
+    fits = (s->found.factor_fits || s->found.stiff_factor_fits) &&
+           (*there || rate < sqrt(part) * (way < 1 ? from_here : fmin(from_here, to_end)));
+    from_here = *there ? INFINITY : rate / sqrt(part);
+    to_end = way < 1 ? to_end : rate / sqrt(part);
+    report->way = *there ? way : report->way;
+    part = next_part(s, part, rate, *there);
   }
   set_share(s, report->way);
   *there = report->way == 0 || report->way >= 1;
-  if (!*there) { // it is only near one
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, there));
+  fits = s->found.factor_fits || s->found.stiff_factor_fits;
+  if (!*there && fits) { // it is only near one
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, NULL, there));
   }
   return DEA_OK;
 }
