@@ -432,7 +432,8 @@ static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
     DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, (const bool[OF_LIMIT]){[NULL_MODE] = true}));
     begin_step(w, NULL_MODE, &turn);
   }
-  return turn > settled ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "two modes turn unstable at once")
+  return turn > settled ? dea_fail(ctx, DEA_E_UNSUPPORTED,
+                                   "two modes turn unstable at once: no slope is known there")
                         : DEA_OK;
 }
 
