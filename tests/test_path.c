@@ -185,8 +185,8 @@ static void test_points_lie_on_the_closed_form(void **state)
   dea_context_destroy(ctx);
 }
 
-/* Up to beyond pull-in the film snaps to the far branch, and it comes back only below the valley.
- */
+/* Up to beyond pull-in the film snaps to the far branch, and it comes back only below the valley
+ * (peak and valley in closed form). Both are said, and states beyond have a flag. */
 static void test_seek_snaps_and_shows_hysteresis(void **state)
 {
   (void)state;
@@ -203,10 +203,20 @@ static void test_seek_snaps_and_shows_hysteresis(void **state)
   static const struct {
     double field;
     bool far;
-  } steps[] = {{0.4, false}, {0.68, false}, {0.70, true}, {0.5, true}, {0.30, true}, {0.28, false}};
+    double passed; // field of a limit point on the way; 0: none
+  } steps[] = {{0.4, false, 0}, {0.68, false, 0}, {0.70, true, 0.68959},
+               {0.5, true, 0},  {0.30, true, 0},  {0.28, false, 0.28852}};
   for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
-    assert_int_equal(dea_path_seek(ctx, path, steps[i].field * unit_V, 10), DEA_OK);
-    assert_int_equal(dea_path_point(ctx, path, &p), DEA_OK);
+    size_t told = dea_finding_count(ctx, DEA_WARNING);
+    assert_int_equal(dea_path_solve(ctx, path, "free", steps[i].field * unit_V, 10, &p), DEA_OK);
+    const struct dea_event *passed = dea_path_passed(path);
+    assert_int_equal(passed != NULL, steps[i].passed > 0);
+    assert_int_equal(dea_finding_count(ctx, DEA_WARNING) - told, passed != NULL);
+    if (passed != NULL) {
+      assert_int_equal(passed->kind, steps[i].far ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
+      assert_close(passed->point.voltage_V, steps[i].passed * unit_V, 2e-5, 0);
+    }
+    assert_int_equal(p.told >> DEA_FLAG_STATES & 1, steps[i].far);
     assert_close(p.voltage_V, steps[i].field * unit_V, 1e-12, 0);
     assert_true(p.stable);
     assert_int_equal(p.electrode_stretch > 3, steps[i].far);

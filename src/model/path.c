@@ -23,7 +23,8 @@ struct dea_path {
   struct dea_path_system system;
   struct dea_path_state state, rest;
   struct dea_event limit, slack; // first limit point, first loss of tension of the last seek
-  bool limited, slackened;       // whether it has passed them
+  bool limited, slackened;       // whether it has passed them, on the way to nothing
+  bool passed, beyond;           // the limit, on the way to a state; that is not back yet
   bool thins;                    // the limit is where a taut film turns unstable, voltage rising
   bool crossed;                  // the wanted voltage at a state that compression has made unstable
   dea_status ended;              // why the last step that was tried failed
@@ -465,7 +466,7 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
                          double max_stretch)
 {
   struct dea_path_state found;
-  path->limited = path->slackened = path->crossed = path->thins = false;
+  path->limited = path->slackened = path->crossed = path->thins = path->passed = false;
   if (seek_directly(path, voltage_V, &found)) {
     path->state = found;
     return DEA_OK;
@@ -488,6 +489,8 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
     double at_0 = voltage_V - from.voltage_V, at_1 = voltage_V - to.voltage_V;
     if (at_0 * at_1 <= 0 && settle(path, &from, taken, &watch, at_0, at_1, &found)) {
       path->state = found;
+      path->passed = path->limited;
+      path->beyond = path->passed ? path->limit.kind == DEA_EVENT_PULL_IN : path->beyond;
       path->limited = path->slackened = false;
       return DEA_OK;
     }
@@ -510,6 +513,31 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
 const struct dea_event *dea_path_limit(const struct dea_path *path)
 {
   return path->limited ? &path->limit : path->crossed && path->slackened ? &path->slack : NULL;
+}
+
+const struct dea_event *dea_path_passed(const struct dea_path *path)
+{
+  return path->passed ? &path->limit : NULL;
+}
+
+dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const char *model,
+                          double voltage_V, double max_stretch, struct dea_load_point *out)
+{
+  double from_V = path->state.voltage_V;
+  DEA_TRY(ctx, dea_path_seek(ctx, path, voltage_V, max_stretch));
+  DEA_TRY(ctx, dea_path_point(ctx, path, out));
+  if (path->passed) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                            "model %s: from %.6g to %.6g kV it leaps past a limit point, %s at "
+                            "%.6g kV, to another state",
+                            model, 1e-3 * from_V, 1e-3 * voltage_V,
+                            path->limit.kind == DEA_EVENT_PULL_IN ? "pull-in or snapping through"
+                                                                  : "snapping back",
+                            1e-3 * path->limit.point.voltage_V));
+  }
+  out->told |= (unsigned)path->beyond << DEA_FLAG_STATES;
+  return DEA_OK;
 }
 
 /* A path being traced, with what it reports to. */

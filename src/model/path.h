@@ -56,6 +56,16 @@ const struct dea_path_state *dea_path_state_get(const struct dea_path *path);
 dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double voltage_V,
                          double max_stretch);
 
+/* dea_path_seek as a model's solve, and what it says of the state. Where that is beyond a limit
+ * point on the way there is a warning, and the flag DEA_FLAG_STATES until the path has snapped
+ * back. */
+dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const char *model,
+                          double voltage_V, double max_stretch, struct dea_load_point *out);
+
+/* The limit point that the last seek, which found a state, has gone past; lent until the next.
+ * NULL: none. */
+const struct dea_event *dea_path_passed(const struct dea_path *path);
+
 /* Where the last seek that found nothing came to its end: the first limit point, where a taut film
  * thins in one place before it, or the loss of tension; lent until the next. NULL: none. */
 const struct dea_event *dea_path_limit(const struct dea_path *path);

@@ -164,15 +164,19 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  DEA_TRY(ctx, dea_path_seek(ctx, model->path, voltage_V,
-                             model->max_stretch / model->lumped.pre_stretch));
-  DEA_TRY(ctx, dea_path_point(ctx, model->path, out));
+  DEA_TRY(ctx, dea_path_solve(ctx, model->path, "lumped", voltage_V,
+                              model->max_stretch / model->lumped.pre_stretch, out));
   return DEA_OK;
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
   return dea_path_limit(model->path);
+}
+
+static const struct dea_event *passed(const struct dea_model *model)
+{
+  return dea_path_passed(model->path);
 }
 
 static dea_status path(struct dea_context *ctx, struct dea_model *model,
@@ -271,6 +275,7 @@ const struct dea_model_type dea_model_lumped = {
     .destroy = destroy,
     .solve = solve,
     .limit = limit,
+    .passed = passed,
     .path = path,
     .hold = hold,
     .begin = begin,
