@@ -206,6 +206,11 @@ dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *lay
   }
   status = status == DEA_OK ? dea_region_check(d->ctx, out, true) : status;
   status = status == DEA_OK ? dea_region_arrange(d->ctx, out) : status;
+  if (status == DEA_OK && !(dea_region_area_m2(out) > 0)) {
+    status = dea_region_fault(d->ctx, asked, NAN, NAN,
+                              "the layer lies so far from the drawing's origin that rounding "
+                              "leaves its contours no area");
+  }
   if (status != DEA_OK) {
     dea_region_free(out);
   }
