@@ -287,6 +287,19 @@ static void test_rest_under_stiff_electrodes(void **state)
   assert_close(stretch[1], stretch[0], 2e-3, 0);
 }
 
+/* Fibres of the star's material from the frame to that far over the electrode. */
+static void add_fibres(struct dea_device *device, int count, double width_m, double thickness_m,
+                       double overlap_m)
+{
+  device->fibre = test_star(count).fibre;
+  device->fibre_count = count;
+  device->fibre_width_m = device->fibre_tip_width_m = width_m;
+  device->fibre_thickness_m = thickness_m;
+  device->fibre_overlap_m = overlap_m;
+  device->fibre_tip_radius_m = device->electrode_radius_m - overlap_m;
+  device->fibre_length_m = device->frame_radius_m - device->fibre_tip_radius_m;
+}
+
 /* Four fibres over a film stretched to 3.83 times its size (random design 260): the elements at the
  * fibres' tips turn inside out in the steps of the path's corrector, which took 0.02 of the way to
  * each point then and ended before the limit point. That is where study path has it, by arc length
@@ -301,13 +314,7 @@ static void test_pull_in_beside_fibre_tips(void **state)
   device.film.permittivity.at_rest = 7.95;
   device.electrode = test_material("neo-hookean", 98.33e3, 0, 0);
   device.electrode_thickness_m = 17e-6;
-  device.fibre = test_star(4).fibre;
-  device.fibre_count = 4;
-  device.fibre_width_m = device.fibre_tip_width_m = 1.497e-3;
-  device.fibre_thickness_m = 206.8e-6;
-  device.fibre_overlap_m = 1.29e-3;
-  device.fibre_tip_radius_m = device.electrode_radius_m - device.fibre_overlap_m;
-  device.fibre_length_m = device.frame_radius_m - device.fibre_tip_radius_m;
+  add_fibres(&device, 4, 1.497e-3, 206.8e-6, 1.29e-3);
   struct dea_event event;
   double at_V;
   assert_int_equal(sweep(&dea_solid_module, &device, &coarse, 3044.95, 5, &at_V, &event),
@@ -334,13 +341,7 @@ static void test_pressures_under_fibres_settle(void **state)
   struct dea_device device =
       disc(test_material("yeoh", 180.7e3, -16.7e3, 6.6e3), 607.9e-6, 2.536, 1.01e-3, 8.057e-3);
   device.film.permittivity.at_rest = 2.8;
-  device.fibre = test_star(3).fibre;
-  device.fibre_count = 3;
-  device.fibre_width_m = device.fibre_tip_width_m = 0.943e-3;
-  device.fibre_thickness_m = 154.6e-6;
-  device.fibre_overlap_m = 0.202e-3;
-  device.fibre_tip_radius_m = device.electrode_radius_m - device.fibre_overlap_m;
-  device.fibre_length_m = device.frame_radius_m - device.fibre_tip_radius_m;
+  add_fibres(&device, 3, 0.943e-3, 154.6e-6, 0.202e-3);
   struct dea_model *model;
   struct dea_load_point point;
   int asked = 0;

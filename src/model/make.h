@@ -1,4 +1,4 @@
-/* What the create functions of all models have in common. */
+/* What all models have in common: how they are created, and what they say of a leap. */
 #ifndef DEA_MODEL_MAKE_H
 #define DEA_MODEL_MAKE_H
 
@@ -13,5 +13,10 @@ dea_status dea_model_make(
     dea_status (*prepare)(struct dea_context *ctx, const struct dea_device *device,
                           const struct dea_model_settings *settings, struct dea_model *model),
     void (*destroy)(struct dea_context *ctx, struct dea_model *model), struct dea_model **out);
+
+/* Warns that the model of that name has gone past a limit point, from one voltage to another, to
+ * another state. */
+dea_status dea_model_say_passed(struct dea_context *ctx, const char *name, double from_V,
+                                double to_V, const struct dea_event *passed);
 
 #endif

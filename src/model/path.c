@@ -1,6 +1,7 @@
 #include "model/path.h"
 
 #include "base/dense.h"
+#include "model/make.h"
 
 #include <math.h>
 #include <string.h>
@@ -527,14 +528,7 @@ dea_status dea_path_solve(struct dea_context *ctx, struct dea_path *path, const 
   DEA_TRY(ctx, dea_path_seek(ctx, path, voltage_V, max_stretch));
   DEA_TRY(ctx, dea_path_point(ctx, path, out));
   if (path->passed) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
-                            "model %s: from %.6g to %.6g kV it leaps past a limit point, %s at "
-                            "%.6g kV, to another state",
-                            model, 1e-3 * from_V, 1e-3 * voltage_V,
-                            path->limit.kind == DEA_EVENT_PULL_IN ? "pull-in or snapping through"
-                                                                  : "snapping back",
-                            1e-3 * path->limit.point.voltage_V));
+    DEA_TRY(ctx, dea_model_say_passed(ctx, model, from_V, voltage_V, &path->limit));
   }
   out->told |= (unsigned)path->beyond << DEA_FLAG_STATES;
   return DEA_OK;

@@ -1,5 +1,6 @@
 #include "model/solid/adapter/ending.h"
 
+#include "model/make.h"
 #include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
@@ -167,13 +168,7 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
                            double before)
 {
   if (e->has_passed) {
-    return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
-                           "model 3d: from %.6g to %.6g kV it leaps past a limit point, %s at %.6g "
-                           "kV, to another state",
-                           1e-3 * e->from_V, 1e-3 * voltage_V,
-                           e->passed.kind == DEA_EVENT_PULL_IN ? "pull-in or snapping through"
-                                                               : "snapping back",
-                           1e-3 * e->passed.point.voltage_V);
+    return dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->passed);
   }
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: from %.6g to %.6g kV the film's area grows at once, from %.3g "
