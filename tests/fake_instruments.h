@@ -25,7 +25,7 @@ struct fake_script {
   unsigned idle;                       // calls of get of which all but one bring nothing
   bool inputs;                         // it reads them
   long leak_from;                      // sample from which the current is 0.2 mA; 0: never
-  void (*on_interrupt)(void);          // called then; NULL: nothing
+  void (*after_interrupt)(void); // in the next call, when the signal was heeded; NULL: nothing
 };
 static const struct fake_script fake_good = {-1, -1, -1, -1, -1,   -1, -1,  -1,
                                              -1, -1, 37, 1,  true, 0,  NULL};
@@ -68,9 +68,9 @@ static inline dea_status fake_put(struct dea_context *context, struct dea_instru
   assert_true(count > 0);
   if ((long)daq->puts == daq->script.interrupt_put) {
     *daq->flag = 1;
-    if (daq->script.on_interrupt != NULL) {
-      daq->script.on_interrupt();
-    }
+  }
+  if (daq->script.after_interrupt != NULL && (long)daq->puts == daq->script.interrupt_put + 1) {
+    daq->script.after_interrupt();
   }
   if ((long)daq->puts++ == daq->script.fail_put) {
     return fake_fail(context, "put");

@@ -327,7 +327,7 @@ static void test_disk_that_fills_in_the_ramp(void **state)
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
   void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
   script.interrupt_put = 8;
-  script.on_interrupt = fill_the_disk;
+  script.after_interrupt = fill_the_disk;
   trial_open(&t, SQUARE CHANNELS, &script);
   trial_play(&t, true);
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
