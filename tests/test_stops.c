@@ -150,6 +150,41 @@ static void test_stiff_electrodes_have_a_rest(void **state)
   }
 }
 
+/* Warnings of a leap. */
+static size_t leaps_said(void)
+{
+  size_t count, said = 0;
+  const struct dea_finding *finding = dea_finding_get(ctx, &count);
+  for (size_t i = 0; i < count; i++) {
+    said += strstr(finding[i].text, "leaps past") != NULL;
+  }
+  return said;
+}
+
+/* A film that snaps past pull-in to where its law stiffens says so once, in the sweep: what else a
+ * run solves on the way, to see how far the path is to go or in which steps a map is drawn, is
+ * silent. */
+static void test_a_leap_is_said_once(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"path", "operating-map", "sweep"};
+  static const char *const models[] = {"lumped", "axisymmetric"};
+  const struct dea_override voltage = {"compute.voltage", "{to: 4.5 kV, step: 0.75 kV}"};
+  struct dea_device device = test_disc(test_material("gent", 1e5, 90, 0), 2, 3e-3, 0.2, 0);
+  for (size_t m = 0; m < 2; m++) {
+    dea_finding_clear(ctx);
+    assert_int_equal(
+        dea_design_read_memory(ctx, "test", GOOD_DESIGN, strlen(GOOD_DESIGN), &voltage, 1, &design),
+        DEA_OK);
+    assert_int_equal(dea_result_create(ctx, design, &device, &result), DEA_OK);
+    assert_int_equal(dea_study_run(ctx, dea_model_find(models[m]), names, 3, result), DEA_OK);
+    assert_non_null(
+        dea_curve_first_event(dea_result_find(result, models[m], "sweep"), DEA_EVENT_PULL_IN));
+    assert_int_equal(leaps_said(), 1);
+    end();
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -157,6 +192,7 @@ int main(void)
       cmocka_unit_test(test_slack_is_said),
       cmocka_unit_test(test_words),
       cmocka_unit_test(test_stiff_electrodes_have_a_rest),
+      cmocka_unit_test(test_a_leap_is_said_once),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

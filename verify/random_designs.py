@@ -185,10 +185,11 @@ def lost_between(summary):
 
 
 def last_taut(mine, other):
-    """Stretches at the last voltage at which both films keep their tension: of waves the flat one
-    knows nothing. None: there is none above 0 V."""
+    """Stretches at the last voltage at which both films keep their tension, and neither has leapt:
+    of waves the flat one knows nothing, and a leap is an event. None: there is none above 0 V."""
     both = [p for p in zip(mine, other) if p[0]["voltage_V"] > 0 and
-            all(x.get("min_tension_N_per_m", 0) >= 0 for x in p)]
+            all(x.get("min_tension_N_per_m", 0) >= 0 and "states" not in x.get("flags", [])
+                for x in p)]
     return [x["electrode_stretch"] for x in both[-1]] if both else None
 
 
@@ -199,7 +200,8 @@ def overlap(a, b, within):
 def differs(mine, other, within):
     """What two summaries of one disc do not agree on; "" where they do, None where nothing tells:
     the flat model's limits say nothing of a film that has lost its tension, nor do points whose
-    smallest tension is that at the rim of a stiff electrode, where a solid film's is singular."""
+    smallest tension is that at the rim of a stiff electrode, where a solid film's is singular.
+    Pull-in is an event, whether the film has ended there or has leapt past it."""
     both = (mine, other)
     taut = last_taut(mine["points"], other["points"])
     if taut and abs(taut[0] - taut[1]) > within * abs(taut[1] - 1) + 2e-3:
@@ -207,22 +209,28 @@ def differs(mine, other, within):
     kinds = [m.get("verdict", "") or "complete" for m in both]
     lost = [lost_between(m) for m in both]
     ends = [m.get("limits", {}).get("pull_in_voltage_V") for m in both]
-    if kinds == ["complete", "complete"]:
+    if kinds == ["complete", "complete"] and not any(ends):
         return "" if taut else None
     if "slack" in kinds:  # lost tension is a verdict of one of them
         i = kinds.index("slack")
         j = 1 - i
         if lost[i] is None:  # it wrinkles as soon as it has no tension
             return None
-        if kinds[j] == "pull_in":  # the flat film goes on, a membrane thins at once
+        if ends[j]:  # the flat film goes on, a membrane thins at once
             return "" if lost[i][0] <= (1 + within) * ends[j] else "slack at %s, pull-in at %s V" % (
                 lost[i], ends[j])
         return "" if lost[j] and overlap(*lost, within) else "slack at %s, %s V" % tuple(lost)
-    if any(l and e and l[0] < e for l, e in zip(lost, ends)):
-        return None
+    if any(ends):
+        first = min(e for e in ends if e)
+        if any(l and l[0] < (e or first) for l, e in zip(lost, ends)):
+            return None
     if all(ends):
         return "" if same_within(*ends, within) else "pull-in at %s, %s V" % tuple(ends)
-    return "" if kinds[0] == kinds[1] else "%s, %s" % tuple(kinds)
+    reached = max(p["voltage_V"] for m in both for p in m["points"])
+    if any(ends) and "complete" in kinds and max(e or 0 for e in ends) * (1 + within) > reached:
+        return "" if taut else None  # that of the other one may be just beyond the sweep
+    return "" if kinds[0] == kinds[1] and not any(ends) else "%s, %s" % tuple(
+        "%s, pull-in at %s V" % (k, e) if e and k != "pull_in" else k for k, e in zip(kinds, ends))
 
 
 def run_design(a, folder, number):

@@ -200,11 +200,13 @@ static dea_status choose_step(struct dea_context *ctx, const struct dea_result *
   struct dea_load_point point = dea_load_point_empty();
   DEA_TRY(ctx, dea_model_create(ctx, map->type, result->design, result->device, &model));
   double reached = NAN;
+  const size_t errors = dea_finding_trial_begin(ctx);
   for (double share = 1; share > 0.1 && !(reached > 0); share -= 0.1) {
     if (map->type->solve(ctx, model, share * map->highest_V, &point) == DEA_OK) {
       reached = level_value(map, &point);
     }
   }
+  dea_finding_trial_end(ctx, errors);
   map->type->destroy(ctx, model);
   dea_context_clear(ctx);
   map->step = NAN;
