@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 
@@ -68,7 +69,6 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
 struct sheet {
   const struct dea_workshop *w;
   struct dea_document *to;
-  int models; // whose sensitivities stand in the check list: without fibres only the first
 };
 
 static void add_amount(struct sheet *s, const char *item, const char *material, double area_m2,
@@ -206,33 +206,26 @@ static void add_stretching(struct sheet *s)
 
 /* ---- check list ---- */
 
-/* "+-12 um (3 %)", or that it is unknown. */
-static void add_effect(struct sheet *s, const struct dea_sensitivity *sensitivity, int deviation)
+/* With the effect of the tolerance: "+12 um (+3 %)", or that it is unknown. */
+static void add_check(struct sheet *s, const struct dea_sensitivity *found, const char *what,
+                      const char *wanted, const char *tolerance, int deviation)
 {
-  double effect = deviation >= 0 ? sensitivity->effect_m[deviation] : NAN;
+  const double effect = deviation >= 0 ? found->effect_m[deviation] : NAN;
+  dea_document_add(s->to, DEA_BLOCK_ROW, "%s", what);
+  dea_document_cell(s->to, "%s", wanted);
+  dea_document_cell(s->to, "%s", tolerance);
   if (isnan(effect)) {
     dea_document_cell(s->to, "unknown");
   } else {
     dea_document_cell(s->to, "%+.3g \xc2\xb5m (%+.2g %%)", 1e6 * effect,
-                      100 * effect / sensitivity->displacement_m);
-  }
-}
-
-static void add_check(struct sheet *s, const struct dea_sensitivity found[DEA_SENSITIVITIES],
-                      const char *what, const char *wanted, const char *tolerance, int deviation)
-{
-  dea_document_add(s->to, DEA_BLOCK_ROW, "%s", what);
-  dea_document_cell(s->to, "%s", wanted);
-  dea_document_cell(s->to, "%s", tolerance);
-  for (int q = 0; q < s->models; q++) {
-    add_effect(s, &found[q], deviation);
+                      100 * effect / found->displacement_m);
   }
 }
 
 /* A length of the film in the state that its tolerance is given in. */
-static void add_length_check(struct sheet *s, const struct dea_sensitivity found[DEA_SENSITIVITIES],
-                             const char *what, double stretched_m,
-                             const struct dea_inplane_length *tolerance, int deviation)
+static void add_length_check(struct sheet *s, const struct dea_sensitivity *found, const char *what,
+                             double stretched_m, const struct dea_inplane_length *tolerance,
+                             int deviation)
 {
   char number[NUMBER], wanted[64], text[64];
   bool before = tolerance->state == DEA_UNSTRETCHED;
@@ -243,7 +236,7 @@ static void add_length_check(struct sheet *s, const struct dea_sensitivity found
   add_check(s, found, what, wanted, text, deviation);
 }
 
-static void add_check_rows(struct sheet *s, const struct dea_sensitivity found[DEA_SENSITIVITIES])
+static void add_check_rows(struct sheet *s, const struct dea_sensitivity *found)
 {
   const struct dea_fab_geometry *plan = &s->w->plan;
   const struct dea_device *d = plan->device;
@@ -281,50 +274,64 @@ static void add_check_rows(struct sheet *s, const struct dea_sensitivity found[D
   add_check(s, found, "kerf of the cutter", wanted, "see diameters", -1);
 }
 
-static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
+/* What the effects are of, and by which model. */
+static void add_source(struct sheet *s, const struct dea_sensitivity *found)
 {
-  static const double widths[] = {0.22, 0.24, 0.16, 0.19, 0.19};
-  struct dea_sensitivity found[DEA_SENSITIVITIES];
-  double voltage;
-  DEA_TRY(ctx, dea_sensitivities_find(ctx, s->w->plan.design, s->w->plan.device, &voltage, found));
-  dea_document_add(s->to, DEA_BLOCK_HEADING, "Check list");
-  if (isnan(voltage)) {
+  const bool bound = strcmp(found->model, "lumped") == 0;
+  if (isnan(found->voltage_V)) {
     dea_document_add(s->to, DEA_BLOCK_TEXT,
                      "What a deviation does to the displacement is unknown: the models have no "
-                     "equilibrium at the voltages of this design.");
-  } else {
+                     "state to be trusted at the voltages of this design.");
+    return;
+  }
+  if (bound) {
     dea_document_add(s->to, DEA_BLOCK_TEXT,
-                     "Effect of each tolerance on the displacement at %.4g kV, half the difference "
-                     "from minus to plus, by the quick models:",
-                     1e-3 * voltage);
+                     "Model 3d has no state to be trusted at the voltages of this design. What "
+                     "follows is by model lumped, of rigid, hinged fibres without the film between "
+                     "them: an upper bound, no prediction.");
   }
-  for (int q = 0; q < s->models && !isnan(voltage); q++) {
-    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 %s: model %s, %.4g \xc2\xb5m%s",
-                     found[q].what, found[q].model, 1e6 * found[q].displacement_m,
-                     q == 0 ? " (film and electrodes without fibres)"
-                            : " (rigid, hinged fibres without the film between them: an upper "
-                              "bound)");
+  dea_document_add(
+      s->to, DEA_BLOCK_TEXT,
+      "Effect of each tolerance (plus, with everything else as designed) on the displacement at "
+      "%.4g kV: %s, %.4g \xc2\xb5m by model %s%s.",
+      1e-3 * found->voltage_V, found->what, 1e6 * found->displacement_m, found->model,
+      bound                                ? ""
+      : s->w->plan.device->fibre_count > 0 ? " (the film and its fibres)"
+                                           : " (exact for film and electrodes in a ring)");
+  const double highest = dea_design_highest_V(s->w->plan.design);
+  if (found->voltage_V < highest) {
+    dea_document_add(
+        s->to, DEA_BLOCK_TEXT,
+        "That is the highest quarter of the design's %.4g kV that the model reaches in "
+        "states to be trusted with a film that is taut.",
+        1e-3 * highest);
   }
+}
+
+static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
+{
+  static const double widths[] = {0.25, 0.32, 0.21, 0.22};
+  struct dea_sensitivity found;
+  DEA_TRY(ctx, dea_sensitivity_find(ctx, s->w->plan.design, s->w->plan.device, &found));
+  dea_document_add(s->to, DEA_BLOCK_HEADING, "Check list");
+  add_source(s, &found);
   dea_document_add(s->to, DEA_BLOCK_HEAD, "what");
   dea_document_cell(s->to, "wanted");
   dea_document_cell(s->to, "tolerance");
-  for (int q = 0; q < s->models; q++) {
-    dea_document_cell(s->to, "%s (%s)", found[q].what, found[q].model);
-  }
+  dea_document_cell(s->to, "effect (%s)", found.model);
   dea_document_widths(s->to, widths);
-  add_check_rows(s, found);
+  add_check_rows(s, &found);
   dea_document_add(s->to, DEA_BLOCK_NOTE,
                    "Tolerances are those of the design's section fabrication.tolerance; those that "
-                   "nobody wrote are assumptions (docs/fabrication.md). Unknown: no quick model "
-                   "sees it; model 3d may.");
+                   "nobody wrote are assumptions (docs/fabrication.md). Unknown: no tolerance is "
+                   "given, or the model has no slope; 'dea run --sensitivity' has slopes of more.");
   return DEA_OK;
 }
 
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                              struct dea_document *document)
 {
-  struct sheet s = {workshop, document,
-                    workshop->plan.device->fibre_count > 0 ? DEA_SENSITIVITIES : 1};
+  struct sheet s = {workshop, document};
   const struct dea_design *design = workshop->plan.design;
   const char *title = design->title.text;
   dea_document_add(document, DEA_BLOCK_TITLE, "Process sheet: %s",

@@ -1,86 +1,28 @@
 #include "fabricate/sensitivity.h"
 
 #include "device/geometry.h"
-#include "model/model.h"
+#include "result/columns.h"
+#include "study/design_gradient.h"
 
 #include <math.h>
+#include <string.h>
 
-/* A displacement that a model answers with; which deviations it sees. */
-static const struct question {
-  const char *model, *what;
-  size_t offset; // of the member of a load point
-  bool sees[DEA_DEVIATION_COUNT];
-} questions[DEA_SENSITIVITIES] = {
-    {"axisymmetric",
-     "electrode edge, outwards",
-     offsetof(struct dea_load_point, electrode_edge_u_m),
-     {true, true, true, true, false}},
-    {"lumped",
-     "fibre tip, out of plane",
-     offsetof(struct dea_load_point, fibre_tip_z_m),
-     {true, true, true, true, true}},
+enum { QUARTERS = 4 };
+
+// Where a model stands ---------------------------------------------------------------------------
+
+struct standing {
+  const struct dea_model_type *type;
+  const struct dea_design *design;
+  const struct dea_device *device;
+  struct dea_model *model;     // NULL: none
+  struct dea_load_point point; // where it stands
 };
 
-/* A length of the design's own film state, changed by a length given in one or the other. */
-static void change(struct dea_inplane_length *length, double factor,
-                   const struct dea_inplane_length *by, double share, double pre_stretch)
+/* Failures of a model are an answer; only want of memory and an interruption are not. */
+static dea_status answer(struct dea_context *ctx, dea_status status, bool *there)
 {
-  double other = by->state == length->state     ? 1
-                 : by->state == DEA_UNSTRETCHED ? pre_stretch
-                                                : 1 / pre_stretch;
-  length->length.si += share * factor * other * by->length.si;
-}
-
-/* share: -1 or 1 of the tolerance. The tip's distance is changed by whichever key places it. */
-static void deviate(struct dea_design *design, const struct dea_design *from,
-                    enum dea_deviation which, double share)
-{
-  const struct dea_fabrication *f = &from->fabrication;
-  double l = from->pre_stretch.si;
-  switch (which) {
-  case DEA_DEVIATION_THICKNESS:
-    design->film.thickness_m.si *= 1 + share * f->tolerance.thickness.si;
-    break;
-  case DEA_DEVIATION_PRE_STRETCH:
-    design->pre_stretch.si += share * f->tolerance.pre_stretch.si;
-    break;
-  case DEA_DEVIATION_ELECTRODE:
-    change(&design->electrodes.radius, 0.5, &f->tolerance.electrode, share, l);
-    break;
-  case DEA_DEVIATION_FRAME:
-    design->frame.radius_m.si += 0.5 * share * f->tolerance.frame_m.si;
-    break;
-  case DEA_DEVIATION_FIBRE:
-    if (from->fibres.length.length.origin != DEA_ABSENT) {
-      change(&design->fibres.length, -1, &f->tolerance.fibre, share, l);
-    } else if (from->fibres.tip_radius.length.origin != DEA_ABSENT) {
-      change(&design->fibres.tip_radius, 1, &f->tolerance.fibre, share, l);
-    } else {
-      change(&design->fibres.overlap, -1, &f->tolerance.fibre, share, l);
-    }
-    break;
-  case DEA_DEVIATION_COUNT:
-    break;
-  }
-}
-
-/* The displacement of a device; NAN when the model has none there. Only want of memory and an
- * interruption are failures. */
-static dea_status ask(struct dea_context *ctx, const struct dea_device *device,
-                      const struct question *question, double voltage_V, double *out)
-{
-  const struct dea_model_type *type = dea_model_find(question->model);
-  struct dea_model *model = NULL;
-  struct dea_load_point point;
-  dea_status status = type->create(ctx, device, NULL, &model);
-  if (status == DEA_OK) {
-    status = type->solve(ctx, model, voltage_V, &point);
-  }
-  *out = NAN;
-  if (status == DEA_OK) {
-    *out = *(const double *)(const void *)((const char *)&point + question->offset);
-  }
-  type->destroy(ctx, model);
+  *there = status == DEA_OK;
   if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
     return status;
   }
@@ -88,79 +30,189 @@ static dea_status ask(struct dea_context *ctx, const struct dea_device *device,
   return DEA_OK;
 }
 
-/* The device that a changed design gives; materials stay. */
-static dea_status ask_changed(struct dea_context *ctx, struct dea_design *scratch,
-                              const struct dea_design *design, const struct dea_device *device,
-                              const struct question *question, enum dea_deviation which,
-                              double share, double voltage_V, double *out)
+/* A new model at a voltage, if it comes to a state there that is to be trusted. */
+static dea_status stand_at(struct dea_context *ctx, struct standing *s, double voltage_V,
+                           bool *there)
 {
-  struct dea_device changed = *device;
-  *scratch = *design;
-  deviate(scratch, design, which, share);
-  dea_geometry_fill(scratch, &changed);
-  *out = NAN;
-  bool possible =
-      changed.pre_stretch >= 1 && changed.electrode_radius_m > 0 &&
-      changed.electrode_radius_m < changed.frame_radius_m &&
-      (changed.fibre_count == 0 ||
-       (changed.fibre_tip_radius_m > 0 && changed.fibre_tip_radius_m < changed.frame_radius_m));
-  return possible ? ask(ctx, &changed, question, voltage_V, out) : DEA_OK;
+  s->type->destroy(ctx, s->model);
+  s->model = NULL;
+  dea_status status = dea_model_create(ctx, s->type, s->design, s->device, &s->model);
+  if (status == DEA_OK) {
+    status = s->type->solve(ctx, s->model, voltage_V, &s->point);
+  }
+  DEA_TRY(ctx, answer(ctx, status, there));
+  *there = *there && dea_load_point_trusted(&s->point);
+  return DEA_OK;
 }
 
-static dea_status differentiate(struct dea_context *ctx, struct dea_design *scratch,
-                                const struct dea_design *design, const struct dea_device *device,
-                                const struct question *question, double voltage_V,
+/* Whether the film is taut at a voltage, if its tension goes on as from one point to the next: with
+ * the square of the voltage. Of a model that knows no tension: yes. */
+static bool stays_taut(const struct dea_load_point *from, const struct dea_load_point *to,
+                       double voltage_V)
+{
+  const double a = from->voltage_V * from->voltage_V, b = to->voltage_V * to->voltage_V;
+  const double slope = (to->min_tension_N_per_m - from->min_tension_N_per_m) / (b - a);
+  const double next = to->min_tension_N_per_m + slope * (voltage_V * voltage_V - b);
+  return !(to->min_tension_N_per_m < 0 || next < 0);
+}
+
+/* Goes up by quarters of the highest voltage. A quarter at which the film would be slack is not
+ * asked for: it takes long, and its shape is one of several. */
+static dea_status stand(struct dea_context *ctx, struct standing *s, double *voltage_V)
+{
+  const double highest = dea_design_highest_V(s->design);
+  struct dea_load_point last, next;
+  bool there = false;
+  *voltage_V = NAN;
+  if (!(highest > 0)) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, stand_at(ctx, s, 0, &there));
+  last = s->point;
+  for (int quarter = 1; quarter <= QUARTERS && there; quarter++) {
+    const double voltage = highest * quarter / QUARTERS;
+    if (quarter > 1 && !stays_taut(&last, &s->point, voltage)) {
+      return DEA_OK;
+    }
+    last = s->point;
+    DEA_TRY(ctx, answer(ctx, s->type->solve(ctx, s->model, voltage, &next), &there));
+    there = there && dea_load_point_trusted(&next);
+    s->point = there ? next : s->point;
+    *voltage_V = there ? voltage : *voltage_V;
+  }
+  if (!there && !isnan(*voltage_V)) { // it has gone too far
+    DEA_TRY(ctx, stand_at(ctx, s, *voltage_V, &there));
+    *voltage_V = there ? *voltage_V : NAN;
+  }
+  return DEA_OK;
+}
+
+// Discs ------------------------------------------------------------------------------------------
+
+/* A displacement that a model answers with, of discs with or without fibres. */
+static const struct question {
+  const char *model, *what, *column;
+  bool fibres;
+} questions[] = {
+    {"3d", "fibre tip, out of plane", "fibre_tip_z_m", true},
+    {"lumped", "fibre tip, out of plane", "fibre_tip_z_m", true},
+    {"axisymmetric", "electrode edge, outwards", "electrode_edge_u_m", false},
+};
+
+static enum dea_deviation deviation_of(const char *key)
+{
+  return strcmp(key, "film.thickness") == 0     ? DEA_DEVIATION_THICKNESS
+         : strcmp(key, "pre_stretch") == 0      ? DEA_DEVIATION_PRE_STRETCH
+         : strncmp(key, "electrodes.", 11) == 0 ? DEA_DEVIATION_ELECTRODE
+         : strncmp(key, "frame.", 6) == 0       ? DEA_DEVIATION_FRAME
+                                                : DEA_DEVIATION_FIBRE;
+}
+
+/* A longer fibre, and more overlap, has its tip nearer to the centre. */
+static double sign_of(const char *key)
+{
+  return strcmp(key, "fibres.length") == 0 || strcmp(key, "fibres.overlap") == 0 ? -1 : 1;
+}
+
+/* By the gradient, for all numbers with a tolerance. */
+static dea_status differentiate(struct dea_context *ctx, const struct standing *s, int column,
                                 struct dea_sensitivity *out)
 {
+  struct dea_design_number all[DEA_NUMBERS_MAX], numbers[DEA_DEVIATION_COUNT];
+  double slopes[DEA_DEVIATION_COUNT];
+  size_t count, chosen = 0;
+  bool there;
+  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, out->voltage_V, all, &count));
+  for (size_t i = 0; i < count && chosen < DEA_DEVIATION_COUNT; i++) {
+    if (all[i].tolerance > 0) {
+      numbers[chosen++] = all[i];
+    }
+  }
+  const struct dea_design_gradient ask = {.type = s->type,
+                                          .model = s->model,
+                                          .design = s->design,
+                                          .device = s->device,
+                                          .voltage_V = out->voltage_V,
+                                          .numbers = numbers,
+                                          .number_count = chosen,
+                                          .columns = &column,
+                                          .column_count = 1};
+  DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
+  for (size_t i = 0; i < chosen && there; i++) {
+    out->effect_m[deviation_of(numbers[i].key)] =
+        sign_of(numbers[i].key) * slopes[i] * numbers[i].tolerance;
+  }
+  return DEA_OK;
+}
+
+/* The displacement with the fibre tips farther from the centre; NAN: none. */
+static dea_status ask_moved(struct dea_context *ctx, const struct standing *s, int column,
+                            double by_m, double voltage_V, double *out)
+{
+  struct dea_device moved = *s->device;
+  struct standing other = {.type = s->type, .design = s->design, .device = &moved};
+  moved.fibre_tip_radius_m += by_m;
+  moved.fibre_length_m -= by_m;
+  moved.fibre_overlap_m -= by_m;
+  bool there = false;
+  if (moved.fibre_tip_radius_m > 0 && moved.fibre_length_m > 0) {
+    const dea_status status = stand_at(ctx, &other, voltage_V, &there);
+    other.type->destroy(ctx, other.model);
+    DEA_TRY(ctx, status);
+  }
+  *out = there ? dea_point_get(&other.point, column) : NAN;
+  return DEA_OK;
+}
+
+/* Where fibre tips lie on the electrode's edge the gradient's mesh cannot follow them (nor is an
+ * overlap of 0 a number): half of the difference from minus to plus. */
+static dea_status move_tips(struct dea_context *ctx, const struct standing *s, int column,
+                            struct dea_sensitivity *out)
+{
+  const double by_m =
+      dea_length_stretched_m(&s->design->fabrication.tolerance.fibre, s->device->pre_stretch);
+  double low, high;
+  DEA_TRY(ctx, ask_moved(ctx, s, column, -by_m, out->voltage_V, &low));
+  DEA_TRY(ctx, ask_moved(ctx, s, column, by_m, out->voltage_V, &high));
+  out->effect_m[DEA_DEVIATION_FIBRE] = 0.5 * (high - low);
+  return DEA_OK;
+}
+
+static dea_status find(struct dea_context *ctx, struct standing *s, const struct question *question,
+                       struct dea_sensitivity *out)
+{
+  const int column = dea_point_column_find(question->column);
+  *out = (struct dea_sensitivity){
+      .model = question->model, .what = question->what, .displacement_m = NAN};
   for (int d = 0; d < DEA_DEVIATION_COUNT; d++) {
-    double low = NAN, high = NAN;
-    if (question->sees[d] && !isnan(out->displacement_m) &&
-        (d != DEA_DEVIATION_FIBRE || device->fibre_count > 0)) {
-      DEA_TRY(ctx, ask_changed(ctx, scratch, design, device, question, (enum dea_deviation)d, -1,
-                               voltage_V, &low));
-      DEA_TRY(ctx, ask_changed(ctx, scratch, design, device, question, (enum dea_deviation)d, 1,
-                               voltage_V, &high));
-    }
-    out->effect_m[d] = 0.5 * (high - low);
+    out->effect_m[d] = NAN;
+  }
+  DEA_TRY(ctx, stand(ctx, s, &out->voltage_V));
+  if (isnan(out->voltage_V)) {
+    return DEA_OK;
+  }
+  out->displacement_m = dea_point_get(&s->point, column);
+  DEA_TRY(ctx, differentiate(ctx, s, column, out));
+  if (question->fibres && isnan(out->effect_m[DEA_DEVIATION_FIBRE])) {
+    DEA_TRY(ctx, move_tips(ctx, s, column, out));
   }
   return DEA_OK;
 }
 
-static dea_status find(struct dea_context *ctx, struct dea_design *scratch,
-                       const struct dea_design *design, const struct dea_device *device,
-                       double *voltage_V, struct dea_sensitivity out[DEA_SENSITIVITIES])
+dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
+                                const struct dea_device *device, struct dea_sensitivity *out)
 {
-  double highest = dea_design_highest_V(design);
-  size_t asked = device->fibre_count > 0 ? DEA_SENSITIVITIES : 1;
-  *voltage_V = NAN;
-  for (size_t q = 0; q < DEA_SENSITIVITIES; q++) {
-    out[q] = (struct dea_sensitivity){questions[q].model, questions[q].what, NAN, {0}};
-  }
-  for (int quarter = 4; quarter > 0 && isnan(*voltage_V) && highest > 0; quarter--) {
-    double voltage = highest * quarter / 4;
-    bool all = true;
-    for (size_t q = asked; q-- > 0 && all;) { // the quicker model first
-      DEA_TRY(ctx, ask(ctx, device, &questions[q], voltage, &out[q].displacement_m));
-      all = !isnan(out[q].displacement_m);
+  bool found = false;
+  for (size_t q = 0; q < sizeof questions / sizeof questions[0] && !found; q++) {
+    if (questions[q].fibres != (device->fibre_count > 0)) {
+      continue;
     }
-    *voltage_V = all ? voltage : NAN;
-  }
-  for (size_t q = 0; q < DEA_SENSITIVITIES; q++) {
-    out[q].displacement_m = isnan(*voltage_V) ? NAN : out[q].displacement_m;
-    DEA_TRY(ctx, differentiate(ctx, scratch, design, device, &questions[q], *voltage_V, &out[q]));
+    struct standing s = {
+        .type = dea_model_find(questions[q].model), .design = design, .device = device};
+    const dea_status status = find(ctx, &s, &questions[q], out);
+    s.type->destroy(ctx, s.model);
+    DEA_TRY(ctx, status);
+    found = !isnan(out->voltage_V);
   }
   return DEA_OK;
-}
-
-dea_status dea_sensitivities_find(struct dea_context *ctx, const struct dea_design *design,
-                                  const struct dea_device *device, double *voltage_V,
-                                  struct dea_sensitivity out[DEA_SENSITIVITIES])
-{
-  struct dea_design *scratch = dea_alloc(ctx, 1, sizeof *scratch); // too large for the stack
-  if (scratch == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_status status = find(ctx, scratch, design, device, voltage_V, out);
-  dea_free(ctx, scratch);
-  return status;
 }
