@@ -200,6 +200,15 @@ static void test_four_decades(void **state)
   check(&at, &settings, shares, 5, 1);
 }
 
+static void test_four_decades_of_a_membrane(void **state)
+{
+  (void)state;
+  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  const struct state at = star();
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  check(&at, &settings, shares, 3, 0);
+}
+
 /* Its weight is a dead load that changes with the device, and so does its lowest frequency. */
 static void test_membrane_with_weight(void **state)
 {
@@ -377,6 +386,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_four_decades),
+      cmocka_unit_test(test_four_decades_of_a_membrane),
       cmocka_unit_test(test_membrane_with_weight),
       cmocka_unit_test(test_frequency_of_all_lengths),
       cmocka_unit_test(test_coupled_field),
