@@ -150,6 +150,27 @@ static void test_stiff_electrodes_have_a_rest(void **state)
   }
 }
 
+/* A film that has no rest, here since its law ends before its pre-stretch, has a sweep without
+ * points and a verdict like any other. */
+static void test_no_rest_has_a_verdict(void **state)
+{
+  (void)state;
+  static const char *const models[] = {"lumped", "axisymmetric"};
+  struct dea_device device = test_disc(test_material("gent", 1e5, 3, 0), 2.5, 7e-3, 0.47, 0);
+  for (size_t m = 0; m < 2; m++) {
+    assert_int_equal(run(&device, models[m], 1e3), DEA_E_DOMAIN);
+    const struct dea_curve *sweep = dea_result_find(result, models[m], "sweep");
+    assert_non_null(sweep);
+    assert_int_equal(sweep->count, 0);
+    json_t *root = summary();
+    assert_string_equal(json_string_value(json_object_get(root, "model")), models[m]);
+    assert_string_equal(json_string_value(json_object_get(root, "verdict")), "law_end");
+    assert_true(strlen(json_string_value(json_object_get(root, "stopped"))) > 0);
+    json_decref(root);
+    end();
+  }
+}
+
 /* Warnings of a leap. */
 static size_t leaps_said(void)
 {
@@ -192,6 +213,7 @@ int main(void)
       cmocka_unit_test(test_slack_is_said),
       cmocka_unit_test(test_words),
       cmocka_unit_test(test_stiff_electrodes_have_a_rest),
+      cmocka_unit_test(test_no_rest_has_a_verdict),
       cmocka_unit_test(test_a_leap_is_said_once),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -174,6 +174,20 @@ static void take(const struct dea_context *ctx, dea_status status, struct ending
   }
 }
 
+/* The model for the first study that wants one. A film whose rest is not found is a sweep that ends
+ * before its first point, where one is wanted: it too has a verdict. */
+static dea_status make_model(struct dea_context *ctx, const struct dea_model_type *type,
+                             bool sweeps, struct dea_result *result, struct dea_model **out)
+{
+  struct dea_curve *curve;
+  dea_status status = dea_model_create(ctx, type, result->design, result->device, out);
+  if (sweeps && dea_verdict_of(status)[0] != '\0') {
+    DEA_TRY(ctx, dea_result_get_curve(ctx, result, type->name, "sweep", &curve));
+    dea_curve_end(ctx, curve, status);
+  }
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          const char *const names[], size_t name_count, struct dea_result *result)
 {
@@ -187,7 +201,8 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
       continue;
     }
     if (!studies[i]->own_models && model == NULL) {
-      DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
+      const bool sweeps = is_wanted(&dea_study_sweep, names, name_count, result->design);
+      DEA_TRY(ctx, make_model(ctx, type, sweeps, result, &model));
     }
     dea_status status = studies[i]->run(ctx, type, studies[i]->own_models ? NULL : model, result);
     take(ctx, status, &first);

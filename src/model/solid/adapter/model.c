@@ -201,8 +201,9 @@ static void set_films(struct dea_model *model)
 }
 
 /* The rest in steps of the electrodes' pre-stretch: from where they have no stress and the flat
- * film is it, halved where one fails (docs/theory/stops.md). The solid is at the last one found. */
-static dea_status ease_rest(struct dea_context *ctx, struct dea_model *model)
+ * film is it, halved where one fails (docs/theory/stops.md). The solid is at the last one found,
+ * *found of them. */
+static dea_status ease_rest(struct dea_context *ctx, struct dea_model *model, double *found)
 {
   static const double least = 1.0 / 256;
   struct dea_solid *s = model->solid;
@@ -229,6 +230,7 @@ static dea_status ease_rest(struct dea_context *ctx, struct dea_model *model)
     }
   }
   s->problem.constituents = own;
+  *found = share;
   return status;
 }
 
@@ -236,10 +238,20 @@ static dea_status ease_rest(struct dea_context *ctx, struct dea_model *model)
  * to a third where they are stiff, which is farther than Newton's method goes at once. */
 static dea_status find_rest(struct dea_context *ctx, struct dea_model *model)
 {
+  double share = 0;
+  char why[160], far[80] = "";
   dea_status status = dea_load_steps_solve(ctx, model->solid, 0, &model->at.report);
   if (dea_solid_may_shorten(status) && model->actuator.plate.electrode_thickness > 0) {
     dea_context_clear(ctx);
-    status = ease_rest(ctx, model);
+    status = ease_rest(ctx, model, &share);
+    snprintf(far, sizeof far, "; with %.3g %% of its electrodes' pre-stretch it is", 100 * share);
+  }
+  if (status == DEA_E_NOT_CONVERGED) {
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    return dea_fail(ctx, status,
+                    "ours: not converged: the film at rest is not found (%s)%s. Please send the "
+                    "design",
+                    why, far);
   }
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
