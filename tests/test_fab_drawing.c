@@ -169,7 +169,7 @@ static void test_words_do_not_overlap(void **state)
     assert_int_equal(pages,
                      workshop->count + (workshop->plan.copies > 1 ? workshop->count - 1 : 0));
     struct dea_document document = {.ctx = ctx};
-    assert_int_equal(dea_process_write(ctx, workshop, &document), DEA_OK);
+    assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
     begin(210, 297);
     dea_document_pages(&paper, &document);
     check_page();
@@ -204,7 +204,7 @@ static void test_words_of_devices(void **state)
     check_page();
     assert_int_equal(pages, workshop->count);
     struct dea_document document = {.ctx = ctx};
-    assert_int_equal(dea_process_write(ctx, workshop, &document), DEA_OK);
+    assert_int_equal(dea_process_write(ctx, workshop, false, &document), DEA_OK);
     begin(210, 297);
     dea_document_pages(&paper, &document);
     check_page();
@@ -296,7 +296,7 @@ static dea_status write_document(struct dea_context *failing)
 {
   struct dea_document document = {.ctx = failing};
   struct dea_text html = {.ctx = failing};
-  dea_status status = dea_process_write(failing, workshop, &document);
+  dea_status status = dea_process_write(failing, workshop, false, &document);
   if (status == DEA_OK) {
     dea_document_html(&document, "", &html);
     status = html.failed ? DEA_E_MEMORY : DEA_OK;

@@ -1,6 +1,7 @@
 /* Effects of tolerances by model 3d against solutions of designs that are changed by hand. */
 // ctest: solid
 #include "fab_sensitivity.h"
+#include "fabricate/process.h"
 
 static void make(const struct dea_override *sets, size_t count)
 {
@@ -42,6 +43,74 @@ static void test_tips(void **state)
   assert_close(effect[2], effect[0], 1e-3, 0);
 }
 
+static const char *example(const char *name)
+{
+  static char text[8000];
+  char path[500];
+  snprintf(path, sizeof path, "%s/examples/%s.yaml", DEA_SOURCE_DIR, name);
+  FILE *file = fopen(path, "rb");
+  assert_non_null(file);
+  text[fread(text, 1, sizeof text - 1, file)] = '\0';
+  fclose(file);
+  return text;
+}
+
+/* Height of the first monitor of an example with a value changed, at its highest voltage. */
+static double height(const char *name, const char *key, const char *value)
+{
+  const struct dea_override set = {key, value};
+  struct dea_design *changed_design;
+  struct dea_device *changed;
+  struct dea_model *model;
+  struct dea_load_point point;
+  struct dea_observation seen;
+  assert_int_equal(read_and_build(ctx, example(name), &set, 1, &changed_design, &changed), DEA_OK);
+  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), changed);
+  assert_int_equal(dea_model_create(ctx, type, changed_design, changed, &model), DEA_OK);
+  assert_int_equal(type->solve(ctx, model, dea_design_highest_V(changed_design), &point), DEA_OK);
+  assert_int_equal(dea_model_observe(ctx, type, model, &seen), DEA_OK);
+  const double z_m = seen.monitor[0][DEA_OBSERVED_Z];
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, changed);
+  dea_design_destroy(ctx, changed_design);
+  return z_m;
+}
+
+/* A device of plies: the height of its middle by the film's thickness and pre-stretch. */
+static void test_plies(void **state)
+{
+  (void)state;
+  static const char name[] = "devices/diaphragm";
+  struct dea_layout_sensitivity found;
+  assert_int_equal(workshop_make(example(name), NULL, 0), DEA_OK);
+  assert_int_equal(dea_layout_sensitivity_find(ctx, design, device, &found), DEA_OK);
+  assert_close(found.voltage_V, dea_design_highest_V(design), 1e-12, 0);
+  assert_int_equal(found.seen, 1);
+  assert_int_equal(found.motion[0], DEA_OBSERVED_Z);
+  const double low_t = height(name, "plies.film.thickness", "95 um"),
+               high_t = height(name, "plies.film.thickness", "105 um"),
+               low_l = height(name, "plies.film.pre_stretch", "1.08"),
+               high_l = height(name, "plies.film.pre_stretch", "1.12");
+  assert_close(found.effect[0][DEA_PLY_THICKNESS][0], 0.5 * (high_t - low_t), 0.02, 0);
+  assert_close(found.effect[0][DEA_PLY_PRE_STRETCH][0], 0.5 * (high_l - low_l), 0.02, 0);
+  assert_true(isnan(found.effect[0][DEA_PLY_PRE_STRETCH_ACROSS][0])); // there is one number
+  assert_close(found.value[0], height(name, "plies.film.thickness", "100 um"), 1e-6, 0);
+  // as the sheet shows it
+  char cell[60];
+  struct dea_document document = {.ctx = ctx};
+  struct dea_text html = {.ctx = ctx};
+  snprintf(cell, sizeof cell, "%+.3g \xc2\xb5m (%+.2g %%)",
+           1e6 * found.effect[0][DEA_PLY_THICKNESS][0],
+           100 * found.effect[0][DEA_PLY_THICKNESS][0] / found.value[0]);
+  assert_int_equal(dea_process_write(ctx, workshop, true, &document), DEA_OK);
+  dea_document_html(&document, "", &html);
+  assert_non_null(strstr(dea_text_get(&html), cell));
+  assert_non_null(strstr(dea_text_get(&html), "by model 3d at 4 kV"));
+  dea_text_free(&html);
+  dea_document_free(&document);
+  dea_free(ctx, found.effect);
+}
+
 static struct dea_load_point solve(double voltage_V)
 {
   const struct dea_model_type *type = dea_model_find("3d");
@@ -67,12 +136,7 @@ static void test_lower(void **state)
   assert_true(dea_load_point_trusted(&lower) && !dea_load_point_trusted(&higher));
   assert_close(found.displacement_m, lower.fibre_tip_z_m, 1e-6, 0);
 
-  static char text[8000];
-  FILE *file = fopen(DEA_SOURCE_DIR "/examples/frdea-4.yaml", "rb");
-  assert_non_null(file);
-  text[fread(text, 1, sizeof text - 1, file)] = '\0';
-  fclose(file);
-  assert_int_equal(workshop_make(text, NULL, 0), DEA_OK); // slack from 6.1 kV on
+  assert_int_equal(workshop_make(example("frdea-4"), NULL, 0), DEA_OK); // slack from 6.1 kV on
   assert_int_equal(dea_sensitivity_find(ctx, design, device, &found), DEA_OK);
   assert_close(found.voltage_V, 6e3, 1e-12, 0);
   assert_true(solve(6e3).min_tension_N_per_m > 0);
@@ -89,6 +153,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_disc),
+      cmocka_unit_test(test_plies),
       cmocka_unit_test(test_tips),
       cmocka_unit_test(test_lower),
   };

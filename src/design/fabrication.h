@@ -1,6 +1,7 @@
 /* What the workshop needs beside the actuator itself: section `fabrication` of a design file.
  * Reasons for the defaults: docs/fabrication.md. A design of the general form has kerf to blank,
- * ring.width_m and frame_gap_m of its frame, marks, and cure; the rest is 0. */
+ * ring.width_m and frame_gap_m of its frame, marks, cure, and tolerances of thickness and
+ * pre-stretch; the rest is 0. */
 #ifndef DEA_DESIGN_FABRICATION_H
 #define DEA_DESIGN_FABRICATION_H
 

@@ -268,6 +268,8 @@ static const struct dea_field tolerance_fields[] = {
 };
 static const struct dea_record tolerance_record = {"tolerance", "tolerances of the check list",
                                                    tolerance_fields, COUNT(tolerance_fields)};
+static const struct dea_record general_tolerance_record = {
+    "tolerance", "tolerances of the check list", tolerance_fields, 2}; // of any film
 
 #define KERF_ROW                                                                                   \
   {                                                                                                \
@@ -329,9 +331,7 @@ static const struct dea_field general_fields[] = {
                   "strip"},
     {.key = "ring", .elsewhere = "the frame's width is 'frame: {width: ...}' here"},
     {.key = "holder", .elsewhere = "parts lie on a carrier here, which needs no holder"},
-    {.key = "tolerance",
-     .elsewhere = "no quick model knows what a tolerance does to a device of any layout; 'dea run "
-                  "--set' of a value shows it"},
+    SECTION_ROW("tolerance", general_tolerance_record, "tolerances of the check list"),
 };
 
 const struct dea_record dea_fabrication_general_record = {"fabrication", "what the workshop needs",

@@ -258,10 +258,11 @@ static dea_status write_process_html(struct dea_context *ctx, const struct dea_c
 }
 
 static dea_status write_process(struct dea_context *ctx, const struct dea_canvas_type *type,
-                                const struct dea_workshop *workshop, const char *directory)
+                                const struct dea_workshop *workshop, const char *directory,
+                                bool sensitivity)
 {
   struct dea_document document = {.ctx = ctx};
-  dea_status status = dea_process_write(ctx, workshop, &document);
+  dea_status status = dea_process_write(ctx, workshop, sensitivity, &document);
   if (status == DEA_OK) {
     status = write_process_pdf(ctx, type, &document, directory);
   }
@@ -282,7 +283,9 @@ static dea_status write_drawings(struct dea_context *ctx, const struct dea_works
       DEA_TRY(ctx, write_drawing(ctx, type, workshop, directory, &drawings[i]));
     }
   }
-  return options->drawing_only ? DEA_OK : write_process(ctx, type, workshop, directory);
+  return options->drawing_only
+             ? DEA_OK
+             : write_process(ctx, type, workshop, directory, options->sensitivity);
 }
 
 static dea_status write_layout(struct dea_context *ctx, const struct dea_workshop *workshop,

@@ -290,22 +290,17 @@ static void add_source(struct sheet *s, const struct dea_sensitivity *found)
                      "follows is by model lumped, of rigid, hinged fibres without the film between "
                      "them: an upper bound, no prediction.");
   }
-  dea_document_add(
-      s->to, DEA_BLOCK_TEXT,
-      "Effect of each tolerance (plus, with everything else as designed) on the displacement at "
-      "%.4g kV: %s, %.4g \xc2\xb5m by model %s%s.",
-      1e-3 * found->voltage_V, found->what, 1e6 * found->displacement_m, found->model,
-      bound                                ? ""
-      : s->w->plan.device->fibre_count > 0 ? " (the film and its fibres)"
-                                           : " (exact for film and electrodes in a ring)");
-  const double highest = dea_design_highest_V(s->w->plan.design);
-  if (found->voltage_V < highest) {
-    dea_document_add(
-        s->to, DEA_BLOCK_TEXT,
-        "That is the highest quarter of the design's %.4g kV that the model reaches in "
-        "states to be trusted with a film that is taut.",
-        1e-3 * highest);
-  }
+  dea_document_add(s->to, DEA_BLOCK_TEXT,
+                   "Effect of each tolerance (plus, with everything else as designed; per cent "
+                   "below 0: it moves "
+                   "less) on the displacement at "
+                   "%.4g kV: %s, %.4g \xc2\xb5m by model %s%s.",
+                   1e-3 * found->voltage_V, found->what, 1e6 * found->displacement_m, found->model,
+                   bound ? ""
+                   : s->w->plan.device->fibre_count > 0
+                       ? " (the film and its fibres)"
+                       : " (exact for film and electrodes in a ring)");
+  dea_process_add_voltage(s->to, found->voltage_V, dea_design_highest_V(s->w->plan.design));
 }
 
 static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
@@ -329,7 +324,7 @@ static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
 }
 
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
-                             struct dea_document *document)
+                             bool sensitivity, struct dea_document *document)
 {
   struct sheet s = {workshop, document};
   const struct dea_design *design = workshop->plan.design;
@@ -344,7 +339,7 @@ dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop 
       dea_path_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "",
       workshop->plan.device->general ? "" : " after section 3.1 of the paper,");
   if (workshop->plan.device->general) {
-    dea_process_write_layout(workshop, document);
+    DEA_TRY(ctx, dea_process_write_layout(ctx, workshop, sensitivity, document));
     return document->failed ? DEA_E_MEMORY : DEA_OK;
   }
   add_materials(&s);

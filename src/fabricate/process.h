@@ -25,9 +25,9 @@ void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *o
 double dea_ink_area_m2(const struct dea_workshop *workshop);
 double dea_plies_mass_kg(const struct dea_layout *layout);
 
-/* Computes the sensitivities and writes it all. document: zero but for its context; to be freed
- * also after a failure. */
+/* Computes the sensitivities, of a device of plies where they are asked for, and writes it all.
+ * document: zero but for its context; to be freed also after a failure. */
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
-                             struct dea_document *document);
+                             bool sensitivity, struct dea_document *document);
 
 #endif

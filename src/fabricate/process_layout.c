@@ -3,6 +3,7 @@
 #include "fabricate/layout_parts.h"
 #include "fabricate/process.h"
 #include "fabricate/process_parts.h"
+#include "fabricate/sensitivity.h"
 #include "output/drawing/dimensions.h"
 
 #include <math.h>
@@ -345,46 +346,155 @@ static void add_supports(const struct sheet *s)
 
 /* ---- check list ---- */
 
-static void add_checks(const struct sheet *s)
+/* Main motions of monitors, in the order of enum dea_observed. */
+static const char *const motions[DEA_OBSERVED_COUNT] = {[DEA_OBSERVED_X] = "x",
+                                                        [DEA_OBSERVED_Y] = "y",
+                                                        [DEA_OBSERVED_Z] = "z",
+                                                        [DEA_OBSERVED_STRETCH] = "stretch",
+                                                        [DEA_OBSERVED_AREA_STRETCH] =
+                                                            "area stretch"};
+
+/* Row of a number of a ply; plies that are cut alike deviate alike. found: NULL: not asked for. */
+static void add_check(const struct sheet *s, const struct dea_layout_sensitivity *found, size_t ply,
+                      enum dea_ply_deviation deviation, const char *wanted, const char *tolerance)
 {
-  static const double widths[] = {0.4, 0.6};
+  static const char *const what[] = {"thickness", "pre-stretch", "pre-stretch across it"};
+  const double *stretch = s->layout->plies[ply].pre_stretch;
+  dea_document_add(s->to, DEA_BLOCK_ROW, "%s of %s%s", what[deviation], s->layout->plies[ply].name,
+                   deviation == DEA_PLY_PRE_STRETCH && stretch[0] != stretch[1] ? ", first axis"
+                                                                                : "");
+  dea_document_cell(s->to, "%s", wanted);
+  dea_document_cell(s->to, "%s", tolerance);
+  for (size_t m = 0; found != NULL && m < found->seen; m++) {
+    const bool length = found->motion[m] <= DEA_OBSERVED_Z;
+    const double value = found->value[m] - (length ? 0 : 1);
+    double effect = 0;
+    for (size_t i = ply; i < s->layout->ply_count; i++) {
+      effect += dea_ply_like(s->layout, i) == ply ? found->effect[i][deviation][m] : 0;
+    }
+    if (isnan(effect)) {
+      dea_document_cell(s->to, "unknown");
+    } else {
+      dea_document_cell(s->to, length ? "%+.3g \xc2\xb5m (%+.2g %%)" : "%+.3g (%+.2g %%)",
+                        length ? 1e6 * effect : effect, 100 * effect / value);
+    }
+  }
+}
+
+static void add_ply_checks(const struct sheet *s, const struct dea_layout_sensitivity *found,
+                           size_t i)
+{
+  const struct dea_layout_ply *ply = &s->layout->plies[i];
+  const struct dea_fabrication *f = &s->w->plan.design->fabrication;
+  const double grid = 5 * s->w->room.grid_m;
+  char number[NUMBER], other[NUMBER], wanted[WORDS], tolerance[WORDS];
+  snprintf(wanted, sizeof wanted, "%.4g \xc2\xb5m%s", 1e6 * ply->thickness_unstretched_m,
+           dea_ply_is_stretched(ply) ? " unstretched" : "");
+  snprintf(tolerance, sizeof tolerance, "\xc2\xb1%.3g %%", 100 * f->tolerance.thickness.si);
+  add_check(s, found, i, DEA_PLY_THICKNESS, wanted, tolerance);
+  for (int k = 0; k < 2 && dea_ply_is_stretched(ply); k++) {
+    if (k == 1 && ply->pre_stretch[0] == ply->pre_stretch[1]) {
+      break;
+    }
+    dea_length_text(number, sizeof number, grid);
+    dea_length_text(other, sizeof other, grid / ply->pre_stretch[k]);
+    snprintf(wanted, sizeof wanted, "%.4g: five spacings of the grid, %s mm before, are %s mm",
+             ply->pre_stretch[k], other, number);
+    dea_length_text(number, sizeof number,
+                    grid / ply->pre_stretch[k] * f->tolerance.pre_stretch.si);
+    snprintf(tolerance, sizeof tolerance, "\xc2\xb1%.3g: \xc2\xb1%s mm",
+             f->tolerance.pre_stretch.si, number);
+    add_check(s, found, i, k == 0 ? DEA_PLY_PRE_STRETCH : DEA_PLY_PRE_STRETCH_ACROSS, wanted,
+              tolerance);
+  }
+}
+
+/* What the effects are of. */
+static void add_source(const struct sheet *s, const struct dea_layout_sensitivity *found)
+{
+  if (found->seen == 0 || isnan(found->voltage_V)) {
+    dea_document_add(s->to, DEA_BLOCK_TEXT,
+                     found->seen == 0
+                         ? "What a deviation does is unknown: the design has no monitor."
+                         : "What a deviation does is unknown: model 3d has no state to be trusted "
+                           "at the voltages of this design.");
+    return;
+  }
+  dea_document_add(s->to, DEA_BLOCK_TEXT,
+                   "Effect of each tolerance (plus, with everything else as designed; plies that "
+                   "are cut alike deviate alike; per cent below 0: it moves less) by model 3d at "
+                   "%.4g kV, on:",
+                   1e-3 * found->voltage_V);
+  for (size_t m = 0; m < found->seen; m++) {
+    const bool length = found->motion[m] <= DEA_OBSERVED_Z;
+    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 %s: %s %.4g%s from the flat film",
+                     s->layout->monitors[m].name, motions[found->motion[m]],
+                     (length ? 1e6 : 1) * found->value[m], length ? " \xc2\xb5m" : "");
+  }
+  if (found->seen < s->layout->monitor_count) {
+    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 not of the %zu monitors after these",
+                     s->layout->monitor_count - found->seen);
+  }
+  dea_process_add_voltage(s->to, found->voltage_V, dea_design_highest_V(s->w->plan.design));
+}
+
+static void write_checks(const struct sheet *s, const struct dea_layout_sensitivity *found)
+{
+  static const double widths[][3 + DEA_SEEN_MAX] = {{0.3, 0.5, 0.2},
+                                                    {0.25, 0.37, 0.15, 0.23},
+                                                    {0.18, 0.28, 0.14, 0.2, 0.2},
+                                                    {0.15, 0.22, 0.12, 0.17, 0.17, 0.17}};
   const struct dea_layout *l = s->layout;
-  char number[NUMBER], other[NUMBER];
+  const struct dea_layout_sensitivity *shown =
+      found != NULL && !isnan(found->voltage_V) ? found : NULL;
+  char number[NUMBER];
   dea_document_add(s->to, DEA_BLOCK_HEADING, "Check list");
+  if (found != NULL) {
+    add_source(s, found);
+  }
   dea_document_add(s->to, DEA_BLOCK_HEAD, "what");
   dea_document_cell(s->to, "wanted");
-  dea_document_widths(s->to, widths);
+  dea_document_cell(s->to, "tolerance");
+  for (size_t m = 0; shown != NULL && m < shown->seen; m++) {
+    dea_document_cell(s->to, "%s, %s", l->monitors[m].name, motions[shown->motion[m]]);
+  }
+  dea_document_widths(s->to, widths[shown != NULL ? shown->seen : 0]);
   for (size_t i = 0; i < l->ply_count; i++) {
-    const struct dea_layout_ply *ply = &l->plies[i];
-    if (dea_ply_like(l, i) != i) {
-      continue;
-    }
-    dea_document_add(s->to, DEA_BLOCK_ROW, "thickness of %s", ply->name);
-    dea_document_cell(s->to, "%.4g \xc2\xb5m%s", 1e6 * ply->thickness_unstretched_m,
-                      dea_ply_is_stretched(ply) ? " unstretched" : "");
-    for (int k = 0; k < 2 && dea_ply_is_stretched(ply); k++) {
-      if (k == 1 && ply->pre_stretch[0] == ply->pre_stretch[1]) {
-        break;
-      }
-      dea_length_text(number, sizeof number, 5 * s->w->room.grid_m);
-      dea_length_text(other, sizeof other, 5 * s->w->room.grid_m / ply->pre_stretch[k]);
-      dea_document_add(s->to, DEA_BLOCK_ROW, "pre-stretch of %s%s", ply->name,
-                       ply->pre_stretch[0] == ply->pre_stretch[1] ? ""
-                       : k == 0                                   ? ", first axis"
-                                                                  : ", across it");
-      dea_document_cell(s->to, "%.4g: five spacings of the grid, %s mm before, are %s mm",
-                        ply->pre_stretch[k], other, number);
+    if (dea_ply_like(l, i) == i) {
+      add_ply_checks(s, shown, i);
     }
   }
   dea_length_text(number, sizeof number, s->w->plan.kerf_m);
   dea_document_add(s->to, DEA_BLOCK_ROW, "kerf of the cutter");
   dea_document_cell(s->to, "%s mm, on a test square", number);
-  dea_document_add(s->to, DEA_BLOCK_NOTE,
-                   "What a deviation does to the motion no quick model knows for such a device: "
-                   "'dea run' with '--set' of the value that differs shows it.");
+  dea_document_cell(s->to, "not given");
+  for (size_t m = 0; shown != NULL && m < shown->seen; m++) {
+    dea_document_cell(s->to, "unknown");
+  }
+  dea_document_add(
+      s->to, DEA_BLOCK_NOTE,
+      "Tolerances are those of the design's section fabrication.tolerance; those that nobody wrote "
+      "are assumptions (docs/fabrication.md). %s",
+      found == NULL ? "'dea fab --sensitivity' computes what they do to the monitors."
+                    : "'dea run --sensitivity' has slopes by other numbers of the design.");
 }
 
-void dea_process_write_layout(const struct dea_workshop *workshop, struct dea_document *document)
+static dea_status add_checks(struct dea_context *ctx, const struct sheet *s, bool sensitivity)
+{
+  struct dea_layout_sensitivity found = {.effect = NULL};
+  dea_status status = DEA_OK;
+  if (sensitivity) {
+    status = dea_layout_sensitivity_find(ctx, s->w->plan.design, s->w->plan.device, &found);
+  }
+  if (status == DEA_OK) {
+    write_checks(s, sensitivity ? &found : NULL);
+  }
+  dea_free(ctx, found.effect);
+  return status;
+}
+
+dea_status dea_process_write_layout(struct dea_context *ctx, const struct dea_workshop *workshop,
+                                    bool sensitivity, struct dea_document *document)
 {
   const struct sheet s = {workshop, workshop->plan.device->layout, document};
   add_materials(&s);
@@ -398,5 +508,6 @@ void dea_process_write_layout(const struct dea_workshop *workshop, struct dea_do
   add_printing(&s);
   add_assembly(&s);
   add_supports(&s);
-  add_checks(&s);
+  DEA_TRY(ctx, add_checks(ctx, &s, sensitivity));
+  return DEA_OK;
 }

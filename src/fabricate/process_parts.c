@@ -35,3 +35,14 @@ void dea_process_add_material(struct dea_document *document, int copies, const c
                       1e9 * volume_m3, 1e9 * volume_m3 * copies, note);
   }
 }
+
+void dea_process_add_voltage(struct dea_document *document, double voltage_V, double highest_V)
+{
+  if (voltage_V < highest_V) {
+    dea_document_add(document, DEA_BLOCK_TEXT,
+                     "The design goes to %.4g kV. The next quarter of that is not shown: by the "
+                     "trend of its tension the film goes slack there, or the model has no state to "
+                     "be trusted.",
+                     1e-3 * highest_V);
+  }
+}

@@ -12,7 +12,10 @@ void dea_process_begin_materials(struct dea_document *document, int copies);
 void dea_process_add_material(struct dea_document *document, int copies, const char *item,
                               const char *material, double area_m2, double volume_m3,
                               const char *note);
+/* Why the effects of tolerances are not at the highest voltage, if they are not. */
+void dea_process_add_voltage(struct dea_document *document, double voltage_V, double highest_V);
 /* Bill, steps and checks of a device that is no disc (process_layout.c). */
-void dea_process_write_layout(const struct dea_workshop *workshop, struct dea_document *document);
+dea_status dea_process_write_layout(struct dea_context *ctx, const struct dea_workshop *workshop,
+                                    bool sensitivity, struct dea_document *document);
 
 #endif

@@ -5,6 +5,7 @@
 #include "study/design_gradient.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { QUARTERS = 4 };
@@ -215,4 +216,112 @@ dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design
     found = !isnan(out->voltage_V);
   }
   return DEA_OK;
+}
+
+// Devices of plies -------------------------------------------------------------------------------
+
+/* A number of a ply and what its tolerance is. */
+struct of_ply {
+  size_t ply;
+  enum dea_ply_deviation deviation;
+};
+
+/* Which number of which ply a key is, if it is one that has a tolerance. */
+static bool find_ply(const struct dea_layout *layout, const char *key, struct of_ply *out)
+{
+  static const char *const names[][DEA_PLY_DEVIATIONS] = {{"thickness", "pre_stretch", ""},
+                                                          {"", "pre_stretch[0]", "pre_stretch[1]"}};
+  char own[DEA_NUMBER_KEY_SIZE];
+  for (size_t i = 0; i < layout->ply_count; i++) {
+    const double *stretch = layout->plies[i].pre_stretch;
+    for (size_t k = 0; k < 2 * DEA_PLY_DEVIATIONS; k++) {
+      const size_t d = k % DEA_PLY_DEVIATIONS;
+      snprintf(own, sizeof own, "plies.%.30s.%s", layout->plies[i].name,
+               names[k / DEA_PLY_DEVIATIONS][d]);
+      if (strcmp(own, key) == 0) {
+        *out = (struct of_ply){i, (enum dea_ply_deviation)d};
+        return d == DEA_PLY_THICKNESS || stretch[0] != 1 || stretch[1] != 1;
+      }
+    }
+  }
+  return false;
+}
+
+static dea_status differentiate_plies(struct dea_context *ctx, const struct standing *s,
+                                      struct dea_layout_sensitivity *out)
+{
+  struct dea_design_number all[DEA_NUMBERS_MAX], numbers[DEA_NUMBERS_MAX];
+  struct of_ply places[DEA_NUMBERS_MAX];
+  double slopes[DEA_NUMBERS_MAX * DEA_SEEN_MAX];
+  const size_t monitors[DEA_SEEN_MAX] = {0, 1, 2};
+  const struct dea_fabrication *f = &s->design->fabrication;
+  size_t count, chosen = 0;
+  bool there;
+  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, out->voltage_V, all, &count));
+  for (size_t i = 0; i < count; i++) {
+    if (find_ply(s->device->layout, all[i].key, &places[chosen])) {
+      numbers[chosen++] = all[i];
+    }
+  }
+  const struct dea_design_gradient ask = {.type = s->type,
+                                          .model = s->model,
+                                          .design = s->design,
+                                          .device = s->device,
+                                          .voltage_V = out->voltage_V,
+                                          .numbers = numbers,
+                                          .number_count = chosen,
+                                          .monitors = monitors,
+                                          .monitor_count = out->seen};
+  DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
+  for (size_t i = 0; i < chosen * out->seen && there; i++) {
+    const struct of_ply *place = &places[i / out->seen];
+    const double tolerance = place->deviation == DEA_PLY_THICKNESS
+                                 ? f->tolerance.thickness.si * numbers[i / out->seen].value
+                                 : f->tolerance.pre_stretch.si;
+    out->effect[place->ply][place->deviation][i % out->seen] = slopes[i] * tolerance;
+  }
+  return DEA_OK;
+}
+
+static dea_status find_layout(struct dea_context *ctx, struct standing *s,
+                              struct dea_layout_sensitivity *out)
+{
+  struct dea_observation seen;
+  const struct dea_layout *layout = s->device->layout;
+  out->effect = dea_alloc(ctx, layout->ply_count, sizeof *out->effect);
+  if (out->effect == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < layout->ply_count * DEA_PLY_DEVIATIONS * DEA_SEEN_MAX; i++) {
+    (&out->effect[0][0][0])[i] = NAN;
+  }
+  out->seen = layout->monitor_count < DEA_SEEN_MAX ? layout->monitor_count : DEA_SEEN_MAX;
+  out->voltage_V = NAN;
+  if (out->seen == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, stand(ctx, s, &out->voltage_V));
+  if (isnan(out->voltage_V)) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_model_observe(ctx, s->type, s->model, &seen));
+  for (size_t i = 0; i < out->seen; i++) {
+    out->motion[i] = dea_observed_main(seen.monitor[i]);
+    out->value[i] = seen.monitor[i][out->motion[i]];
+  }
+  DEA_TRY(ctx, differentiate_plies(ctx, s, out));
+  return DEA_OK;
+}
+
+dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
+                                       const struct dea_device *device,
+                                       struct dea_layout_sensitivity *out)
+{
+  struct standing s = {.type = dea_model_of_device(dea_model_find("3d"), device),
+                       .design = design,
+                       .device = device};
+  *out = (struct dea_layout_sensitivity){.seen = 0};
+  const dea_status status = find_layout(ctx, &s, out);
+  s.type->destroy(ctx, s.model);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -4,6 +4,7 @@
 #define DEA_FABRICATE_SENSITIVITY_H
 
 #include "device/device.h"
+#include "result/observation.h"
 
 enum dea_deviation {
   DEA_DEVIATION_THICKNESS, // of the unstretched film
@@ -30,5 +31,28 @@ struct dea_sensitivity {
  */
 dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
                                 const struct dea_device *device, struct dea_sensitivity *out);
+
+enum dea_ply_deviation {
+  DEA_PLY_THICKNESS,   // unstretched
+  DEA_PLY_PRE_STRETCH, // along its first axis, or both where they are one number
+  DEA_PLY_PRE_STRETCH_ACROSS,
+  DEA_PLY_DEVIATIONS
+};
+enum { DEA_SEEN_MAX = 3 };
+
+/* Of a device of plies, by model 3d. */
+struct dea_layout_sensitivity {
+  double voltage_V;                                   // NAN: the model has no state to be trusted
+  size_t seen;                                        // monitors, the first ones of the layout
+  enum dea_observed motion[DEA_SEEN_MAX];             // main ones
+  double value[DEA_SEEN_MAX];                         // there
+  double (*effect)[DEA_PLY_DEVIATIONS][DEA_SEEN_MAX]; // [ply_count] of plus the tolerance of this
+                                                      // ply; NAN: unknown; owned by the caller
+};
+
+/* At the voltage of above. out->effect: to be freed also after a failure. */
+dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
+                                       const struct dea_device *device,
+                                       struct dea_layout_sensitivity *out);
 
 #endif
