@@ -27,6 +27,21 @@ static void test_fail_keeps_message_and_chain(void **state)
   dea_context_destroy(ctx);
 }
 
+static void test_trials_nest(void **state)
+{
+  (void)state;
+  struct dea_context *ctx;
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  const size_t outer = dea_finding_trial_begin(ctx), inner = dea_finding_trial_begin(ctx);
+  dea_finding_trial_end(ctx, inner);
+  dea_finding_add(ctx, DEA_ERROR, (struct dea_location){0}, "tried");
+  dea_finding_trial_end(ctx, outer);
+  assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 0);
+  dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0}, "kept");
+  assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1);
+  dea_context_destroy(ctx);
+}
+
 static void test_alloc_refuses_overflow(void **state)
 {
   (void)state;
@@ -189,6 +204,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_fail_keeps_message_and_chain),
+      cmocka_unit_test(test_trials_nest),
       cmocka_unit_test(test_alloc_refuses_overflow),
       cmocka_unit_test(test_nearest_name),
       cmocka_unit_test(test_text_to_double_ignores_locale),

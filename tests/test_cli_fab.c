@@ -21,6 +21,7 @@ static void test_files(void **state)
   (void)state;
   assert_int_equal(command_run("fab @/examples/frdea-4.yaml"), 0);
   assert_contains(command_err, "files for the workshop are in frdea-4.fab");
+  assert_true(strstr(command_err, "elements") == NULL); // of models that were only asked
   assert_string_equal(command_out, "");
   char *text;
   read_into("frdea-4.fab/frame.dxf", &text);

@@ -21,7 +21,7 @@ struct dea_context {
   struct dea_finding *findings;
   size_t finding_count, finding_room;
   size_t errors, errors_kept; // all that were added; those among the findings
-  bool trial;                 // findings are not kept
+  unsigned trials;            // while there are some, findings are not kept
   char **names;
   size_t name_count, name_room;
   struct kept_object kept[KEPT_MAX];
@@ -226,7 +226,7 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   va_end(args);
   bool error = severity == DEA_ERROR;
   ctx->errors += error; // also of what is not kept: callers stop when the number has grown
-  if (ctx->trial || (error && ctx->errors_kept == DEA_ERRORS_KEPT) ||
+  if (ctx->trials > 0 || (error && ctx->errors_kept == DEA_ERRORS_KEPT) ||
       is_known(ctx, severity, location, text)) {
     return DEA_OK;
   }
@@ -276,13 +276,13 @@ void dea_finding_clear(struct dea_context *ctx)
 
 size_t dea_finding_trial_begin(struct dea_context *ctx)
 {
-  ctx->trial = true;
+  ctx->trials++;
   return ctx->errors;
 }
 
 void dea_finding_trial_end(struct dea_context *ctx, size_t errors)
 {
-  ctx->trial = false;
+  ctx->trials--;
   ctx->errors = errors;
 }
 

@@ -107,7 +107,7 @@ size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_lea
 const struct dea_finding *dea_finding_get(const struct dea_context *ctx, size_t *count);
 void dea_finding_clear(struct dea_context *ctx);
 /* A trial, of which nobody needs the findings: from begin to end they are counted, but neither kept
- * nor told. begin returns what end takes, the errors before it. Trials do not nest. */
+ * nor told. begin returns what end takes, the errors before it. Trials nest. */
 size_t dea_finding_trial_begin(struct dea_context *ctx);
 void dea_finding_trial_end(struct dea_context *ctx, size_t errors);
 /* fn: NULL for none. */

@@ -210,7 +210,9 @@ dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design
     }
     struct standing s = {
         .type = dea_model_find(questions[q].model), .design = design, .device = device};
+    const size_t errors = dea_finding_trial_begin(ctx); // the sheet says what is to be said
     const dea_status status = find(ctx, &s, &questions[q], out);
+    dea_finding_trial_end(ctx, errors);
     s.type->destroy(ctx, s.model);
     DEA_TRY(ctx, status);
     found = !isnan(out->voltage_V);
@@ -321,7 +323,9 @@ dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea
                        .design = design,
                        .device = device};
   *out = (struct dea_layout_sensitivity){.seen = 0};
+  const size_t errors = dea_finding_trial_begin(ctx);
   const dea_status status = find_layout(ctx, &s, out);
+  dea_finding_trial_end(ctx, errors);
   s.type->destroy(ctx, s.model);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -26,9 +26,8 @@ struct dea_sensitivity {
 
 /* With fibres of their tip's height by model 3d, or where that has no state, by lumped; without
  * fibres of the electrode's edge by axisymmetric, which is exact there. At the highest quarter of
- * the design's highest voltage that is reached in states to be trusted, with a film that stays
- * taut.
- */
+ * the design's highest voltage that is reached in states to be trusted, before a quarter at which
+ * the film is foreseen to be slack. No finding is told. */
 dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
                                 const struct dea_device *device, struct dea_sensitivity *out);
 
