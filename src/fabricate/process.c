@@ -286,14 +286,14 @@ static void add_source(struct sheet *s, const struct dea_sensitivity *found)
   }
   if (bound) {
     dea_document_add(s->to, DEA_BLOCK_TEXT,
-                     "Model 3d has no state to be trusted at the voltages of this design. What "
-                     "follows is by model lumped, of rigid, hinged fibres without the film between "
+                     "Model 3d is not installed (dea doctor), or has no state to be trusted at the "
+                     "voltages of this design. What follows is by model lumped, of rigid, hinged "
+                     "fibres without the film between "
                      "them: an upper bound, no prediction.");
   }
   dea_document_add(s->to, DEA_BLOCK_TEXT,
                    "Effect of each tolerance (plus, with everything else as designed; per cent "
-                   "below 0: it moves "
-                   "less) on the displacement at "
+                   "below 0: it moves less) on the displacement at "
                    "%.4g kV: %s, %.4g \xc2\xb5m by model %s%s.",
                    1e-3 * found->voltage_V, found->what, 1e6 * found->displacement_m, found->model,
                    bound ? ""

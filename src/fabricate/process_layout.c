@@ -413,11 +413,12 @@ static void add_ply_checks(const struct sheet *s, const struct dea_layout_sensit
 static void add_source(const struct sheet *s, const struct dea_layout_sensitivity *found)
 {
   if (found->seen == 0 || isnan(found->voltage_V)) {
-    dea_document_add(s->to, DEA_BLOCK_TEXT,
-                     found->seen == 0
-                         ? "What a deviation does is unknown: the design has no monitor."
-                         : "What a deviation does is unknown: model 3d has no state to be trusted "
-                           "at the voltages of this design.");
+    dea_document_add(
+        s->to, DEA_BLOCK_TEXT,
+        found->seen == 0
+            ? "What a deviation does is unknown: the design has no monitor."
+            : "What a deviation does is unknown: model 3d is not installed "
+              "(dea doctor), or has no state to be trusted at the voltages of this design.");
     return;
   }
   dea_document_add(s->to, DEA_BLOCK_TEXT,
