@@ -287,7 +287,8 @@ static void add_source(struct sheet *s, const struct dea_sensitivity *found)
   if (bound) {
     dea_document_add(s->to, DEA_BLOCK_TEXT,
                      "Model 3d is not installed (dea doctor), or has no state to be trusted at the "
-                     "voltages of this design. What follows is by model lumped, of rigid, hinged "
+                     "voltages of this design (a preview, compute.solid.film: membrane, is none). "
+                     "What follows is by model lumped, of rigid, hinged "
                      "fibres without the film between "
                      "them: an upper bound, no prediction.");
   }

@@ -418,7 +418,8 @@ static void add_source(const struct sheet *s, const struct dea_layout_sensitivit
         found->seen == 0
             ? "What a deviation does is unknown: the design has no monitor."
             : "What a deviation does is unknown: model 3d is not installed "
-              "(dea doctor), or has no state to be trusted at the voltages of this design.");
+              "(dea doctor), or has no state to be trusted at the voltages of this design; a "
+              "preview (compute.solid.film: membrane beside stiff parts) is none.");
     return;
   }
   dea_document_add(s->to, DEA_BLOCK_TEXT,
