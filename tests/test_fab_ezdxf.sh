@@ -12,7 +12,7 @@ trap 'rm -rf "$folder"' EXIT
 for example in frdea-4 frdea-8 plain-disc devices/bender devices/quadrants; do
   mkdir -p "$folder/devices"
   "$DEA_COMMAND" --quiet fab "$source/examples/$example.yaml" -o "$folder/$example" --json \
-    --set fabrication.kerf=0mm --set fabrication.copies=2 >"$folder/$example.json" || exit 1
+    --set fabrication.kerf=0mm --set fabrication.copies=2 --set 'compute.voltage={values: [0 V]}' >"$folder/$example.json" || exit 1
 done
 /usr/bin/python3 - "$folder" <<'PYTHON'
 import glob, json, math, os, sys
