@@ -214,12 +214,7 @@ static void add_check(struct sheet *s, const struct dea_sensitivity *found, cons
   dea_document_add(s->to, DEA_BLOCK_ROW, "%s", what);
   dea_document_cell(s->to, "%s", wanted);
   dea_document_cell(s->to, "%s", tolerance);
-  if (isnan(effect)) {
-    dea_document_cell(s->to, "unknown");
-  } else {
-    dea_document_cell(s->to, "%+.3g \xc2\xb5m (%+.2g %%)", 1e6 * effect,
-                      100 * effect / found->displacement_m);
-  }
+  dea_process_add_effect(s->to, effect, found->displacement_m, true);
 }
 
 /* A length of the film in the state that its tolerance is given in. */
@@ -288,14 +283,13 @@ static void add_source(struct sheet *s, const struct dea_sensitivity *found)
     dea_document_add(s->to, DEA_BLOCK_TEXT,
                      "Model 3d is not installed (dea doctor), or has no state to be trusted at the "
                      "voltages of this design (a preview, compute.solid.film: membrane, is none). "
-                     "What follows is by model lumped, of rigid, hinged "
-                     "fibres without the film between "
-                     "them: an upper bound, no prediction.");
+                     "What follows is by model lumped, of rigid, hinged fibres without the film "
+                     "between them: an upper bound, no prediction.");
   }
   dea_document_add(s->to, DEA_BLOCK_TEXT,
                    "Effect of each tolerance (plus, with everything else as designed; per cent "
-                   "below 0: it moves less) on the displacement at "
-                   "%.4g kV: %s, %.4g \xc2\xb5m by model %s%s.",
+                   "below 0: it moves less) on the displacement at %.4g kV: %s, %.4g \xc2\xb5m by "
+                   "model %s%s.",
                    1e-3 * found->voltage_V, found->what, 1e6 * found->displacement_m, found->model,
                    bound ? ""
                    : s->w->plan.device->fibre_count > 0

@@ -372,12 +372,7 @@ static void add_check(const struct sheet *s, const struct dea_layout_sensitivity
     for (size_t i = ply; i < s->layout->ply_count; i++) {
       effect += dea_ply_like(s->layout, i) == ply ? found->effect[i][deviation][m] : 0;
     }
-    if (isnan(effect)) {
-      dea_document_cell(s->to, "unknown");
-    } else {
-      dea_document_cell(s->to, length ? "%+.3g \xc2\xb5m (%+.2g %%)" : "%+.3g (%+.2g %%)",
-                        length ? 1e6 * effect : effect, 100 * effect / value);
-    }
+    dea_process_add_effect(s->to, effect, value, length);
   }
 }
 

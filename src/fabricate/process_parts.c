@@ -36,6 +36,16 @@ void dea_process_add_material(struct dea_document *document, int copies, const c
   }
 }
 
+void dea_process_add_effect(struct dea_document *document, double effect, double value, bool length)
+{
+  if (isnan(effect)) {
+    dea_document_cell(document, "unknown");
+  } else {
+    dea_document_cell(document, length ? "%+.3g \xc2\xb5m (%+.2g %%)" : "%+.3g (%+.2g %%)",
+                      length ? 1e6 * effect : effect, 100 * effect / value);
+  }
+}
+
 void dea_process_add_voltage(struct dea_document *document, double voltage_V, double highest_V)
 {
   if (voltage_V < highest_V) {

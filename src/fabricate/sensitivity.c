@@ -88,6 +88,19 @@ static dea_status stand(struct dea_context *ctx, struct standing *s, double *vol
   return DEA_OK;
 }
 
+/* What is asked of a gradient there, but for the quantities. */
+static struct dea_design_gradient ask_of(const struct standing *s, double voltage_V,
+                                         const struct dea_design_number *numbers, size_t count)
+{
+  return (struct dea_design_gradient){.type = s->type,
+                                      .model = s->model,
+                                      .design = s->design,
+                                      .device = s->device,
+                                      .voltage_V = voltage_V,
+                                      .numbers = numbers,
+                                      .number_count = count};
+}
+
 // Discs ------------------------------------------------------------------------------------------
 
 /* A displacement that a model answers with, of discs with or without fibres. */
@@ -129,15 +142,9 @@ static dea_status differentiate(struct dea_context *ctx, const struct standing *
       numbers[chosen++] = all[i];
     }
   }
-  const struct dea_design_gradient ask = {.type = s->type,
-                                          .model = s->model,
-                                          .design = s->design,
-                                          .device = s->device,
-                                          .voltage_V = out->voltage_V,
-                                          .numbers = numbers,
-                                          .number_count = chosen,
-                                          .columns = &column,
-                                          .column_count = 1};
+  struct dea_design_gradient ask = ask_of(s, out->voltage_V, numbers, chosen);
+  ask.columns = &column;
+  ask.column_count = 1;
   DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
   for (size_t i = 0; i < chosen && there; i++) {
     out->effect_m[deviation_of(numbers[i].key)] =
@@ -265,15 +272,9 @@ static dea_status differentiate_plies(struct dea_context *ctx, const struct stan
       numbers[chosen++] = all[i];
     }
   }
-  const struct dea_design_gradient ask = {.type = s->type,
-                                          .model = s->model,
-                                          .design = s->design,
-                                          .device = s->device,
-                                          .voltage_V = out->voltage_V,
-                                          .numbers = numbers,
-                                          .number_count = chosen,
-                                          .monitors = monitors,
-                                          .monitor_count = out->seen};
+  struct dea_design_gradient ask = ask_of(s, out->voltage_V, numbers, chosen);
+  ask.monitors = monitors;
+  ask.monitor_count = out->seen;
   DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
   for (size_t i = 0; i < chosen * out->seen && there; i++) {
     const struct of_ply *place = &places[i / out->seen];
