@@ -209,6 +209,22 @@ static void test_four_decades_of_a_membrane(void **state)
   check(&at, &settings, shares, 3, 0);
 }
 
+/* Electrodes of a thickness, whose tension counts with the film's. */
+static void test_electrodes_of_a_thickness(void **state)
+{
+  (void)state;
+  static const double shares[] = {1e-2, 1e-3, 1e-5};
+  static const int numbers[] = {VOLTAGE, THICKNESS, PRE_STRETCH};
+  static const struct dea_model_settings settings[] = {
+      {.film = DEA_FILM_MEMBRANE}, {.film = DEA_FILM_SOLID, .order = 1, .order_z = 1}};
+  struct state at = star();
+  at.device.electrode = test_material("neo-hookean", 400e3, 0, 0);
+  at.device.electrode_thickness_m = 3e-6;
+  for (int f = 0; f < 2; f++) {
+    check_some(&at, &settings[f], numbers, 3, shares, 3, 0);
+  }
+}
+
 /* Its weight is a dead load that changes with the device, and so does its lowest frequency. */
 static void test_membrane_with_weight(void **state)
 {
@@ -387,6 +403,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_four_decades),
       cmocka_unit_test(test_four_decades_of_a_membrane),
+      cmocka_unit_test(test_electrodes_of_a_thickness),
       cmocka_unit_test(test_membrane_with_weight),
       cmocka_unit_test(test_frequency_of_all_lengths),
       cmocka_unit_test(test_coupled_field),

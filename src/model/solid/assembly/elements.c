@@ -31,6 +31,65 @@ dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
+/* Corner of the plane mesh below the first node of an element, and below the one across from it. */
+static int corner_of(const struct dea_grid *grid, size_t e, bool across)
+{
+  const int plane = (grid->order + 1) * (grid->order + 1);
+  return grid->column[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(across ? plane - 1 : 0)]];
+}
+
+static bool is_electrode(const struct dea_solid *s, size_t e)
+{
+  return dea_solid_constituent(s, e)->part == DEA_PART_ELECTRODE;
+}
+
+/* first: [nodes] an electrode whose first corner is there; next: [elements] another one; -1: none.
+ */
+static void find_electrodes(struct dea_solid *s, int *first, int *next)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  memset(first, -1, grid->node_count * sizeof *first);
+  for (size_t e = 0; e < grid->element_count; e++) {
+    if (is_electrode(s, e)) {
+      int *to = &first[corner_of(grid, e, false)];
+      next[e] = *to;
+      *to = (int)e;
+    }
+  }
+  for (size_t e = 0; e < grid->element_count; e++) {
+    int *to = s->problem.electrodes[e], count = 0, other = first[corner_of(grid, e, false)];
+    to[0] = to[1] = -1;
+    for (; other >= 0 && dea_solid_constituent(s, e)->permittivity_F_per_m > 0;
+         other = next[other]) {
+      if (count < 2 && corner_of(grid, (size_t)other, true) == corner_of(grid, e, true)) {
+        to[count++] = other;
+      }
+    }
+  }
+}
+
+dea_status dea_solid_find_electrodes(struct dea_context *ctx, struct dea_solid *s)
+{
+  struct dea_solid_problem *p = &s->problem;
+  const size_t elements = p->grid->element_count, nodes = p->grid->node_count;
+  bool any = false;
+  for (size_t e = 0; e < elements && !any; e++) {
+    any = is_electrode(s, e);
+  }
+  if (!any) {
+    return DEA_OK;
+  }
+  p->electrodes = dea_arena_alloc(&s->memory, elements, sizeof *p->electrodes);
+  DEA_TRY(ctx, dea_arena_status(&s->memory));
+  int *room = dea_alloc(ctx, nodes + elements, sizeof *room);
+  if (room == NULL) {
+    return dea_fail(ctx, DEA_E_MEMORY, "no memory for %zu elements", elements);
+  }
+  find_electrodes(s, room, room + nodes);
+  dea_free(ctx, room);
+  return DEA_OK;
+}
+
 void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *u, double voltage_V,
                              struct dea_solid_element_place *place, struct dea_element_input *out)
 {

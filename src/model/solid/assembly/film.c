@@ -8,22 +8,70 @@
 #include <math.h>
 #include <string.h>
 
+// Tension -----------------------------------------------------------------------------------------
+
+/* The smaller principal one of a force 11 22 12. */
+static double smaller_of(const double T[3])
+{
+  return 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
+}
+
+/* An element as a surface, with the forces of electrodes of a thickness that are bonded to it, on
+ * their own bases: they wrinkle together. */
+static dea_status surface_of(const struct dea_solid *s, size_t e, double voltage_V,
+                             struct dea_solid_element_place *place, struct dea_element_input *in,
+                             struct dea_membrane_state *out)
+{
+  const struct dea_element *element = dea_solid_element(s, e);
+  dea_solid_element_input(s, e, s->state.u, voltage_V, place, in);
+  dea_status status = element->type->membrane_state(element, in, out);
+  for (int side = 0; side < 2 && status == DEA_OK && dea_solid_electrode(s, e, side) >= 0; side++) {
+    const size_t other = (size_t)dea_solid_electrode(s, e, side);
+    struct dea_solid_element_place at;
+    struct dea_element_input of_other;
+    struct dea_membrane_state electrode;
+    element = dea_solid_element(s, other);
+    dea_solid_element_input(s, other, s->state.u, voltage_V, &at, &of_other);
+    status = element->type->membrane_state(element, &of_other, &electrode);
+    for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
+      out->force[i / 3][i % 3] += electrode.force[i / 3][i % 3];
+    }
+    for (int p = 0; p < out->count && status == DEA_OK; p++) {
+      out->tension[p] = smaller_of(out->force[p]);
+    }
+  }
+  return status;
+}
+
 /* What a clamped circular plate bears is 14.7 D / R^2, by its area 46 D / A; 4 pi^2 D / A is about
  * that of any clamped plate as wide as long (docs/theory/trust.md). D = E h^3 / (12 (1 - nu^2)) of
- * an incompressible film. */
-static double compression_borne_N(const struct dea_constituent *film)
+ * an incompressible film, and that of electrodes on both of its faces. */
+static double compression_borne_N(const struct dea_solid *s, size_t e)
 {
   const double pi = 3.14159265358979323846;
-  double D = dea_constituent_modulus(film) * pow(film->thickness_m, 3) / 3;
+  const struct dea_constituent *film = dea_solid_constituent(s, e);
+  const double h = film->thickness_m;
+  double D = dea_constituent_modulus(film) * pow(h, 3) / 3, both = 0, modulus = 0;
+  for (int side = 0; side < 2 && dea_solid_electrode(s, e, side) >= 0; side++) {
+    const struct dea_constituent *electrode =
+        dea_solid_constituent(s, (size_t)dea_solid_electrode(s, e, side));
+    both += electrode->thickness_m;
+    modulus = dea_constituent_modulus(electrode);
+  }
+  D += modulus * (pow(h + both, 3) - pow(h, 3)) / 3;
   return 4 * pi * pi * D;
 }
 
+// Extremes ----------------------------------------------------------------------------------------
+
 /* Compression and use of the law at the points in the plane of one element. */
-static dea_status wear_of(const struct dea_element *element, const struct dea_element_input *in,
+static dea_status wear_of(const struct dea_solid *s, size_t e, const struct dea_element_input *in,
                           const struct dea_membrane_state *film,
                           const struct dea_material *material, struct dea_solid_extremes *out)
 {
+  const struct dea_element *element = dea_solid_element(s, e);
   const struct dea_constituent *constituent = in->constituent;
+  const double borne_N = compression_borne_N(s, e);
   struct dea_element_strains strains;
   dea_status status = element->type->strains(element, in, &strains);
   for (int q = 0; status == DEA_OK && q < element->points; q++) {
@@ -34,7 +82,7 @@ static dea_status wear_of(const struct dea_element *element, const struct dea_el
     dea_constituent_pull_back(constituent, plane, plane);
     double root = hypot(0.5 * (plane[0] - plane[1]), plane[2]);
     double middle = 0.5 * (plane[0] + plane[1]);
-    out->compression_ratio += fmax(-film->tension[p], 0) * area / compression_borne_N(constituent);
+    out->compression_ratio += fmax(-film->tension[p], 0) * area / borne_N;
     dea_reach_take(&out->reach, dea_material_reach(material, sqrt(middle + root),
                                                    sqrt(fmax(middle - root, 1e-30))));
   }
@@ -46,12 +94,10 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
                               const struct dea_solid_film_data *data,
                               struct dea_solid_extremes *out)
 {
-  const struct dea_element *element = dea_solid_element(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
   struct dea_membrane_state film;
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  dea_status status = element->type->membrane_state(element, &in, &film);
+  dea_status status = surface_of(s, e, s->state.voltage_V, &place, &in, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
     double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
     double stretch = data->pre_stretch * sqrt(film.area[p]);
@@ -62,7 +108,7 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
           fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(data->material, stretch));
     }
   }
-  return status == DEA_OK ? wear_of(element, &in, &film, data->material, out) : status;
+  return status == DEA_OK ? wear_of(s, e, &in, &film, data->material, out) : status;
 }
 
 /* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes
@@ -160,16 +206,6 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
 
 // Slopes -----------------------------------------------------------------------------------------
 
-/* The film's surface at its points in the plane; false where it is not defined. */
-static bool surface_of(const struct dea_solid *s, size_t e, double voltage_V,
-                       struct dea_element_input *in, struct dea_membrane_state *out)
-{
-  const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place at;
-  dea_solid_element_input(s, e, s->state.u, voltage_V, &at, in);
-  return element->type->membrane_state(element, in, out) == DEA_OK;
-}
-
 static double quantity_of(const struct dea_element_input *in, const struct dea_membrane_state *film,
                           const struct dea_solid_film_data *data, enum dea_film_extreme which,
                           int p, const double direction[2])
@@ -195,9 +231,10 @@ double dea_solid_extreme_at(const struct dea_solid *s, const struct dea_solid_fi
                             enum dea_film_extreme which, const struct dea_film_place *place,
                             double voltage_V)
 {
+  struct dea_solid_element_place at;
   struct dea_element_input in;
   struct dea_membrane_state film;
-  return surface_of(s, place->element, voltage_V, &in, &film)
+  return surface_of(s, place->element, voltage_V, &at, &in, &film) == DEA_OK
              ? quantity_of(&in, &film, &films[s->problem.constituent_of[place->element]], which,
                            place->point, place->direction)
              : NAN;
@@ -208,6 +245,7 @@ bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_dat
 {
   const double sign = which == DEA_FILM_FIELD ? 1 : -1;
   double best = -INFINITY;
+  struct dea_solid_element_place at;
   struct dea_element_input in;
   struct dea_membrane_state film;
   *out = (struct dea_film_place){.element = 0};
@@ -215,7 +253,7 @@ bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_dat
     const struct dea_solid_film_data *data = &films[s->problem.constituent_of[e]];
     bool asked = dea_solid_constituent(s, e)->permittivity_F_per_m > 0 && data->material != NULL &&
                  (which == DEA_FILM_TENSION || s->problem.active[e]);
-    asked = asked && surface_of(s, e, s->state.voltage_V, &in, &film);
+    asked = asked && surface_of(s, e, s->state.voltage_V, &at, &in, &film) == DEA_OK;
     for (int p = 0; asked && p < film.count; p++) {
       struct dea_film_place place = {.element = e, .point = p};
       find_direction(film.force[p], place.direction);
@@ -243,22 +281,43 @@ static double slope_by(const struct dea_solid *s, const struct dea_solid_film_da
   return (sides[1] - sides[0]) / (2 * step);
 }
 
+/* Whether an element has a node, -1: no element. */
+static bool has_node(const struct dea_solid *s, int e, int node)
+{
+  const int *nodes;
+  bool found = false;
+  for (int n = e < 0 ? 0 : dea_solid_nodes(s, (size_t)e, &nodes); n > 0 && !found; n--) {
+    found = nodes[n - 1] == node;
+  }
+  return found;
+}
+
 void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_film_data *films,
                              enum dea_film_extreme which, const struct dea_film_place *place,
                              double *out, double *pressures)
 {
-  static const double share = 1e-5; // of the film's thickness and of its modulus
-  const struct dea_constituent *film = dea_solid_constituent(s, place->element);
-  size_t most = (size_t)s->problem.elements.pressures, first = place->element * most;
-  const int *nodes;
-  int count = dea_solid_nodes(s, place->element, &nodes);
-  for (int i = 0; i < 3 * count; i++) {
-    size_t at = 3 * (size_t)nodes[i / 3] + (size_t)(i % 3);
-    out[at] += slope_by(s, films, which, place, &s->state.u[at], share * film->thickness_m);
+  static const double share = 1e-5; // of a part's thickness and of its modulus
+  const size_t most = (size_t)s->problem.elements.pressures;
+  int elements[3] = {(int)place->element, -1, -1};
+  for (int side = 0; side < 2 && which == DEA_FILM_TENSION; side++) {
+    elements[1 + side] = dea_solid_electrode(s, place->element, side);
   }
-  for (size_t k = first; k < first + most; k++) {
-    pressures[k] += slope_by(s, films, which, place, &s->state.multiplier[k],
-                             share * dea_constituent_modulus(film));
+  for (int k = 0; k < 3 && elements[k] >= 0; k++) {
+    const size_t e = (size_t)elements[k];
+    const struct dea_constituent *part = dea_solid_constituent(s, e);
+    const int *nodes;
+    int count = dea_solid_nodes(s, e, &nodes);
+    for (int i = 0; i < 3 * count; i++) {
+      const int node = nodes[i / 3];
+      if (k == 0 || !has_node(s, elements[0], node)) { // electrodes share no node
+        size_t at = 3 * (size_t)node + (size_t)(i % 3);
+        out[at] += slope_by(s, films, which, place, &s->state.u[at], share * part->thickness_m);
+      }
+    }
+    for (size_t j = e * most; j < (e + 1) * most; j++) {
+      pressures[j] += slope_by(s, films, which, place, &s->state.multiplier[j],
+                               share * dea_constituent_modulus(part));
+    }
   }
 }
 

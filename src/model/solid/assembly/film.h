@@ -12,10 +12,12 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *soli
 
 /* Extremes of the film (elements of constituents with a permittivity). */
 struct dea_solid_extremes {
-  double true_field_V_per_m;  // largest V over the current thickness
-  double breakdown_margin;    // smallest; NAN when unknown
-  double min_tension_N_per_m; // smallest principal membrane force per current length
-  double compression_ratio; // integral of compression over 4 pi^2 D, D the film's bending stiffness
+  double true_field_V_per_m; // largest V over the current thickness
+  double breakdown_margin;   // smallest; NAN when unknown
+  /* Smallest principal membrane force per current length, of the film and electrodes of a thickness
+   * that are bonded to it. */
+  double min_tension_N_per_m;
+  double compression_ratio; // integral of compression over 4 pi^2 D, D their bending stiffness
   struct dea_reach reach;   // of the film's law
 };
 /* What a constituent is as a film, for its breakdown field. */

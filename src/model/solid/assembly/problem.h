@@ -34,6 +34,8 @@ struct dea_solid_problem {
   const struct dea_constituent *constituents; // [constituent_count]
   size_t constituent_count;
   int *constituent_of;  // [elements] place in constituents
+  int (*electrodes)[2]; // [elements] electrodes of a thickness below and above, which the element
+                        // is bonded to, -1: none; NULL: none anywhere; by dea_solid_find_electrodes
   int (*between)[2];    // [elements] channels at its top and bottom; 0, 0 without electrodes
   bool *active;         // [elements] whether these are two, with a voltage in between
   size_t channel_count; // ground not counted
@@ -169,6 +171,12 @@ static inline const struct dea_constituent *dea_solid_constituent(const struct d
                                                                   size_t e)
 {
   return &s->problem.constituents[s->problem.constituent_of[e]];
+}
+
+/* The electrode of a thickness that is bonded to an element, side 0 or 1; -1: none. */
+static inline int dea_solid_electrode(const struct dea_solid *s, size_t e, int side)
+{
+  return s->problem.electrodes != NULL ? s->problem.electrodes[e][side] : -1;
 }
 
 /* kappa of an element as it is [Pa]. */

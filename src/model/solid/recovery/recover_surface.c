@@ -90,9 +90,33 @@ static void add_level(struct work *w, size_t element, double z, const int *point
   }
 }
 
-/* The elements of the ply in one column, from below: the membrane forces of all, the rest from
- * the one that has the middle. */
-static dea_status add_column(struct work *w, size_t from, size_t end, bool covered)
+/* Membrane forces of one element, which is in w->at after it, added to those of its column. */
+static dea_status add_force(struct work *w, size_t element, double (*force)[6])
+{
+  dea_status status = dea_recover_element(w->in, element, w->at);
+  if (status != DEA_OK) {
+    return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", element);
+  }
+  for (int i = 0; i < 6 * w->at->plane_nodes; i++) {
+    force[i / 6][i % 6] += w->at->force[i / 6][i % 6];
+  }
+  return DEA_OK;
+}
+
+static enum dea_part part_of(const struct work *w, size_t k)
+{
+  return w->in->constituents[w->in->constituent[w->stack[k].element]].part;
+}
+
+/* All elements above each other, in the order of the stack. */
+struct column {
+  size_t from, end;
+};
+
+/* The elements of the ply in one column, from below: the membrane forces of all, and of electrodes
+ * of a thickness that are bonded to it, the rest from the one that has the middle. */
+static dea_status add_column(struct work *w, const struct column *column, size_t from, size_t end,
+                             bool covered)
 {
   const struct dea_recover_input *in = w->in;
   size_t last = w->stack[end - 1].element;
@@ -103,20 +127,17 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
   double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}}, weight = 0;
   for (size_t k = from; k < end; k++) {
     size_t e = w->stack[k].element;
-    dea_status status = dea_recover_element(in, e, w->at);
-    if (status != DEA_OK) {
-      return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", e);
-    }
-    for (int n = 0; n < w->at->plane_nodes; n++) {
-      for (int i = 0; i < 6; i++) {
-        force[n][i] += w->at->force[n][i];
-      }
-    }
+    DEA_TRY(w->ctx, add_force(w, e, force));
     double z = dea_recover_height(in, e, 0);
     double top = dea_recover_height(in, e, in->grid->levels[e] - 1);
     if (weight == 0 && (k + 1 == end || top > middle - 1e-9 * (top - z))) {
       weight = w->at->volume_m3;
       add_level(w, e, middle, points);
+    }
+  }
+  for (size_t k = column->from; k < column->end; k++) {
+    if (part_of(w, k) == DEA_PART_ELECTRODE) {
+      DEA_TRY(w->ctx, add_force(w, w->stack[k].element, force));
     }
   }
   for (int n = 0; n < w->at->plane_nodes; n++) {
@@ -130,13 +151,11 @@ static dea_status add_column(struct work *w, size_t from, size_t end, bool cover
 }
 
 /* Whether a fibre stands in a column. */
-static bool has_fibre(const struct work *w, size_t from, size_t end)
+static bool has_fibre(const struct work *w, const struct column *column)
 {
   bool any = false;
-  for (size_t k = from; k < end; k++) {
-    const struct dea_constituent *constituent =
-        &w->in->constituents[w->in->constituent[w->stack[k].element]];
-    any = any || constituent->part == DEA_PART_FIBRE;
+  for (size_t k = column->from; k < column->end; k++) {
+    any = any || part_of(w, k) == DEA_PART_FIBRE;
   }
   return any;
 }
@@ -144,16 +163,15 @@ static bool has_fibre(const struct work *w, size_t from, size_t end)
 static dea_status add_columns(struct work *w)
 {
   size_t count = w->in->grid->element_count;
-  for (size_t from = 0; from < count;) {
-    size_t end = dea_recover_column_end(w->stack, count, from, false);
-    for (size_t first = from; first < end;) {
+  for (struct column column = {0, 0}; column.from < count; column.from = column.end) {
+    column.end = dea_recover_column_end(w->stack, count, column.from, false);
+    for (size_t first = column.from; first < column.end;) {
       size_t last = dea_recover_column_end(w->stack, count, first, true);
       if (w->stack[first].ply == w->ply) {
-        DEA_TRY(w->ctx, add_column(w, first, last, has_fibre(w, from, end)));
+        DEA_TRY(w->ctx, add_column(w, &column, first, last, has_fibre(w, &column)));
       }
       first = last;
     }
-    from = end;
   }
   return DEA_OK;
 }
