@@ -146,7 +146,7 @@ static double centre_z(void)
 
 static struct dea_solid_continuation *trace_to(double voltage_V, double step)
 {
-  const struct dea_continuation_options options = {step, 0.5, 100e-6};
+  const struct dea_continuation_options options = {step, 0.5, 100e-6, false};
   struct dea_solid_continuation *trace;
   assert_int_equal(dea_solid_continuation_create(ctx, solid, voltage_V, &options, &trace), DEA_OK);
   return trace;

@@ -115,7 +115,7 @@ static double centre_mm(void)
 
 static struct dea_solid_continuation *trace_to(double voltage_V)
 {
-  const struct dea_continuation_options options = {0.05, 0.5, 100e-6};
+  const struct dea_continuation_options options = {0.05, 0.5, 100e-6, false};
   struct dea_solid_continuation *trace;
   verify_ok(ctx, dea_solid_continuation_create(ctx, solid, voltage_V, &options, &trace));
   return trace;

@@ -363,7 +363,7 @@ static double extreme_of(struct cone *film, const struct dea_spring *spring, dou
 /* Both limit points on the path of the voltage. */
 static void follow(struct cone *it, double kV[2], double mm[2])
 {
-  const struct dea_continuation_options options = {0.05, 0.1, 2e-3};
+  const struct dea_continuation_options options = {0.05, 0.1, 2e-3, false};
   struct dea_solid_continuation *path;
   struct dea_continuation_point point, limit;
   int found = 0;

@@ -72,7 +72,7 @@ static void body_destroy(struct body *body)
 
 static void trace(struct body *body, double voltage_V, double step, double step_most, double unit_m)
 {
-  const struct dea_continuation_options options = {step, step_most, unit_m};
+  const struct dea_continuation_options options = {step, step_most, unit_m, false};
   verify_ok(ctx,
             dea_solid_continuation_create(ctx, body->solid, voltage_V, &options, &body->trace));
 }

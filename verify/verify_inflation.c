@@ -231,7 +231,7 @@ static void balloon_row(const struct shell *balloon, int modes)
  * falls. */
 static void balloon_rows(double H, size_t count, double end)
 {
-  const struct dea_continuation_options options = {0.05, 0.2, 1};
+  const struct dea_continuation_options options = {0.05, 0.2, 1, false};
   struct shell balloon = balloon_create(H, count);
   struct dea_solid_continuation *trace;
   struct dea_continuation_point point;

@@ -152,7 +152,7 @@ static void plate_solve(struct plate *plate, double share, struct effort *effort
  * it back by a solve. */
 static void plate_follow(struct plate *plate, struct effort *effort)
 {
-  const struct dea_continuation_options options = {0.1, 0, 2};
+  const struct dea_continuation_options options = {0.1, 0, 2, false};
   struct dea_solid_continuation *trace;
   struct dea_continuation_point point = {0};
   memcpy(dea_solid_force(plate->solid), plate->force,

@@ -141,7 +141,7 @@ dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *stand
 {
   struct dea_solid *solid = standing->ending.owner.solid;
   const struct dea_continuation_options steps = {path_step, path_step_most,
-                                                 path_unit * solid->problem.length_m};
+                                                 path_unit * solid->problem.length_m, false};
   const struct path_sinks sinks = {options, points, events, user};
   struct dea_solid_continuation *path = NULL;
   struct dea_load_point point;

@@ -73,6 +73,7 @@
   /* ---- paths: the corrector ---- */                                                             \
   X(double, path_residual, 1e-8, "of the sum of element forces", "forces left: what kappa leaves") \
   X(double, path_step, 1e-10, "of the solid's length", "last step of the corrector")               \
+  X(double, path_rough, 1e-4, "of the step", "last step of the corrector on the way to an event")  \
   X(double, path_plane, 1e-9, "of the step", "distance to the plane that is left")                 \
   X(double, path_theta, 1e-2, "of theta", "theta where kappa theta is no pressure any more")       \
   X(double, path_bulk, 16, "1", "power of 2, factor of kappa on the way")                          \

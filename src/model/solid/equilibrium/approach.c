@@ -124,7 +124,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
 static dea_status search_path(struct dea_context *ctx, struct search *a)
 {
   const struct dea_solid_settings *o = &a->s->settings;
-  struct dea_continuation_options options = {o->approach_step, o->approach_step_most, 0};
+  struct dea_continuation_options options = {o->approach_step, o->approach_step_most, 0, true};
   struct dea_solid_continuation *path = NULL;
   dea_solid_state_get(a->s, a->state);
   dea_solid_controls_get(a->s, a->from);

@@ -32,6 +32,7 @@ struct dea_continuation_plane {
   double load;      // the unit normal's load
   const double *u0; // [dofs]
   double tau0, length;
+  double enough; // a step that is this share of the length is the last one
 };
 
 struct dea_solid_continuation {
@@ -46,6 +47,8 @@ struct dea_solid_continuation {
   struct dea_continuation_plane plane;
   double *rate, *right, *start, *mode; // [dofs] each: work; mode: critical one, unit size
   double step, step_most, step_least;
+  bool rough;                          // points on the way need not be exact
+  bool arc;                            // its last two points make a parabola, which is followed
   enum dea_continuation_event event;   // between before and last
   enum dea_continuation_event located; // what critical is
 };
@@ -108,14 +111,14 @@ static void orient_plane(struct dea_solid_continuation *t, const double *directi
 
 /* ---- corrector: an equilibrium in a plane, Newton on displacements and load together ---- */
 
-/* t->right = -dg/d tau at the displacements as they are, by a difference: g is linear in the square
- * of the voltage and in dead loads. */
+/* t->right = -dg/d tau at the displacements as they are, where g is assembled, by a difference: g
+ * is linear in the square of the voltage and in dead loads. Leaves g as it is. */
 static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuation *t)
 {
   struct dea_solid *s = t->s;
+  const size_t size = s->problem.dofs * sizeof(double);
   double energy, tau = t->load, by = s->settings.path_difference;
-  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
-  memcpy(t->right, s->work.g, s->problem.dofs * sizeof(double));
+  memcpy(t->rate, s->work.g, size);
   if (set_load(ctx, t, tau + by) != DEA_OK) {
     dea_context_clear(ctx);
     by = -by;
@@ -123,8 +126,9 @@ static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuat
   }
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy));
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    t->right[i] = (t->right[i] - s->work.g[i]) / by;
+    t->right[i] = (t->rate[i] - s->work.g[i]) / by;
   }
+  memcpy(s->work.g, t->rate, size);
   DEA_TRY(ctx, set_load(ctx, t, tau));
   return DEA_OK;
 }
@@ -204,9 +208,8 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
 {
   struct dea_solid *s = t->s;
   const struct dea_solid_settings *o = &s->settings;
-  double dtau = 0, size = 0, before = *residual;
+  double dtau = 0, most = 0, before = *residual;
   int negative;
-  DEA_TRY(ctx, force_rate(ctx, t));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
   *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
               (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
@@ -216,6 +219,7 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   if (*there) {
     return DEA_OK;
   }
+  DEA_TRY(ctx, force_rate(ctx, t));
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
   DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
   *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->work.g, s->work.step));
@@ -224,9 +228,11 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, share, stresses, true));
   for (size_t i = 0; i < s->problem.dofs; i++) {
     s->state.u[i] += share * s->work.step[i];
-    size = fmax(size, fabs(s->work.step[i]));
+    most = fmax(most, fabs(s->work.step[i]));
   }
-  *small = constrained && size < o->path_step * s->problem.length_m;
+  double size = hypot(size_of(t, s->work.step), dtau);
+  *small = (constrained && most < o->path_step * s->problem.length_m) ||
+           (share == 1 && size < t->plane.enough * fabs(t->plane.length));
   DEA_TRY(ctx, set_load(ctx, t, t->load + share * dtau));
   return DEA_OK;
 }
@@ -277,9 +283,9 @@ static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuati
   dea_solid_keep_scales(s);
   dea_solid_raise_bulk_modulus(s);
   double energy;
-  dea_status status = force_rate(ctx, t);
+  dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
   if (status == DEA_OK) {
-    status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
+    status = force_rate(ctx, t);
   }
   dea_solid_restore_bulk_modulus(s);
   DEA_TRY(ctx, status);
@@ -393,7 +399,50 @@ static double bend(const struct dea_solid_continuation *t)
   return sqrt(fmax(square, 0));
 }
 
-/* A point at t->step into t->next; *off: how far from the prediction, over the step. */
+/* How far the parabola through the last two points is beside the tangent at the last one, as a
+ * share of the step: x^2 (before - last + h tangent), with h the way between them along the tangent
+ * and x = step / h. *load: of tau. */
+static double curve(const struct dea_solid_continuation *t, double *h, double *load)
+{
+  *h = (t->last.load - t->before.load) * t->tangent_load;
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    *h += t->metric[i] * (t->last.state[i] - t->before.state[i]) * t->tangent[i];
+  }
+  double x = t->step / *h, square;
+  *load = x * x * (t->before.load - t->last.load + *h * t->tangent_load);
+  square = *load * *load;
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    double aside = x * x * (t->before.state[i] - t->last.state[i] + *h * t->tangent[i]);
+    square += t->metric[i] * aside * aside;
+  }
+  return sqrt(square) / t->step;
+}
+
+/* From the prediction along the tangent to that on the parabola, pressures too. The stresses stay
+ * those that the step along the tangent leads to. */
+static dea_status follow_curve(struct dea_context *ctx, struct dea_solid_continuation *t)
+{
+  struct dea_solid *s = t->s;
+  const size_t dofs = s->problem.dofs;
+  const double *last = t->last.state, *before = t->before.state;
+  double h, load;
+  if (!t->arc || !(curve(t, &h, &load) < s->settings.path_off_most)) {
+    return DEA_OK;
+  }
+  const double square = t->step * t->step / (h * h);
+  for (size_t i = 0; i < dofs; i++) {
+    s->state.u[i] += square * (before[i] - last[i] + h * t->tangent[i]);
+  }
+  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
+    double *p = &s->state.multiplier[i], rate = (*p - last[dofs + i]) / t->step;
+    *p += square * (before[dofs + i] - last[dofs + i] + h * rate);
+  }
+  DEA_TRY(ctx, set_load(ctx, t, t->load + load));
+  return DEA_OK;
+}
+
+/* A point at t->step into t->next; *off: how far from the prediction by the tangent, over the step.
+ */
 static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continuation *t,
                                double *off, int *iterations)
 {
@@ -406,10 +455,12 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, predict_from(ctx, t, t->start, t->step * t->tangent_load));
   memcpy(t->start, s->state.u, s->problem.dofs * sizeof *t->start);
   double tau = t->load;
+  DEA_TRY(ctx, follow_curve(ctx, t));
   orient_plane(t, t->tangent, t->tangent_load);
   t->plane.u0 = t->last.state;
   t->plane.tau0 = t->last.load;
   t->plane.length = t->step;
+  t->plane.enough = t->rough ? o->path_rough : 0;
   DEA_TRY(ctx, solve_in_plane(ctx, t, iterations));
   *off = distance_from(t, t->start, tau) / t->step;
   if (*off < o->path_off_most) {
@@ -434,6 +485,7 @@ static void accept_point(struct dea_solid_continuation *t)
   }
   t->tangent_load = t->last.slope;
   t->event = event_between(&t->before, &t->last);
+  t->arc = t->rough;
   t->located = DEA_CONTINUATION_NOTHING;
 }
 
@@ -510,6 +562,24 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
   t->step = fabs(options->step);
   t->step_least = s->settings.path_step_least * t->step;
   t->step_most = options->step_most > 0 ? options->step_most : INFINITY;
+  t->rough = options->rough;
+  return DEA_OK;
+}
+
+/* The equilibrium that the solid is at or slides into. */
+static dea_status settle(struct dea_context *ctx, struct dea_solid_continuation *t)
+{
+  struct dea_solid *s = t->s;
+  const struct dea_solid_settings *o = &s->settings;
+  struct dea_solid_report report = {0};
+  s->found.predicted_fits = false;
+  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
+  DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &t->energy_J));
+  double residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g));
+  if (!(residual < o->residual * s->found.force_scale_N) || dea_solid_theta_max(s) >= o->theta ||
+      dea_solid_update_loads(s) > 1) {
+    DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, &report));
+  }
   return DEA_OK;
 }
 
@@ -518,9 +588,8 @@ static dea_status begin_path(struct dea_context *ctx, struct dea_solid_continuat
                              const double *goal, double sense)
 {
   struct dea_solid *s = t->s;
-  struct dea_solid_report report = {0};
   DEA_TRY(ctx, dea_solid_check(ctx, s));
-  DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, &report));
+  DEA_TRY(ctx, settle(ctx, t));
   dea_solid_controls_get(s, t->from);
   memcpy(t->goal, goal, s->work.load_steps.control_count * sizeof(double));
   dea_solid_controls_increment(s, t->from);
@@ -590,7 +659,8 @@ void dea_solid_continuation_destroy(struct dea_context *ctx, struct dea_solid_co
 struct bracket {
   const struct dea_continuation_path_point *from;
   double *way; // [state_count]
-  double way_load, length, at[2], value[2];
+  double *bow; // [state_count] at a share x the guess is way x + bow x (x - 1)
+  double way_load, bow_load, length, at[2], value[2];
   size_t mode; // of a bifurcation: the place of the critical one among all
 };
 
@@ -617,21 +687,47 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
   return status;
 }
 
+/* The bow of the parabola whose tangent at the far end is the path's. */
+static void bow_by_tangent(const struct dea_solid_continuation *t, struct bracket *b)
+{
+  double along = t->tangent_load * b->way_load;
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    along += t->metric[i] * t->tangent[i] * b->way[i];
+  }
+  const double whole = b->length * b->length / along;
+  memset(b->bow, 0, t->s->work.load_steps.state_count * sizeof *b->bow);
+  for (size_t i = 0; i < t->s->problem.dofs && along > 0; i++) {
+    b->bow[i] = whole * t->tangent[i] - b->way[i];
+  }
+  b->bow_load = along > 0 ? whole * t->tangent_load - b->way_load : 0;
+}
+
+/* The bow of that through the point which was found at a share of the way. */
+static void bow_by_point(const struct dea_solid_continuation *t, struct bracket *b, double share)
+{
+  const struct dea_continuation_path_point *at = &t->critical;
+  for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
+    b->bow[i] = (at->state[i] - b->from->state[i] - share * b->way[i]) / (share * (share - 1));
+  }
+  b->bow_load = (at->load - b->from->load - share * b->way_load) / (share * (share - 1));
+}
+
 /* The equilibrium at a share of the way. */
 static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_continuation *t,
                                  const struct bracket *b, double share)
 {
   int iterations;
-  memcpy(t->critical.state, b->from->state, t->s->work.load_steps.state_count * sizeof(double));
+  const double aside = share * (share - 1);
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
-    t->critical.state[i] += share * b->way[i];
+    t->critical.state[i] = b->from->state[i] + share * b->way[i] + aside * b->bow[i];
   }
-  t->critical.load = b->from->load + share * b->way_load;
+  t->critical.load = b->from->load + share * b->way_load + aside * b->bow_load;
   DEA_TRY(ctx, return_to(ctx, t, &t->critical));
   orient_plane(t, b->way, b->way_load);
   t->plane.u0 = b->from->state;
   t->plane.tau0 = b->from->load;
   t->plane.length = share * b->length;
+  t->plane.enough = 0;
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   t->critical.arc = b->from->arc + share * b->length;
   return DEA_OK;
@@ -655,34 +751,40 @@ static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_con
   return status;
 }
 
-/* Regula falsi, with the older end's value halved while it stays (Illinois). A value between the
- * two ends that is larger than at both is that of a K which is singular to rounding: there it is.
- */
+static double next_share(const struct bracket *b)
+{
+  return b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
+}
+
+/* Regula falsi, with the older end's value halved while it stays (Illinois), until the next share
+ * would be this one. A value between the two ends that is larger than at both is that of a K which
+ * is singular to rounding: there it is. */
 static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuation *t,
                            struct bracket *b)
 {
   const struct dea_solid_settings *o = &t->s->settings;
   double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
-  double value, before = -1;
+  double value, share = next_share(b);
   double enough = t->event == DEA_CONTINUATION_LIMIT ? o->critical_limit : o->critical_bifurcation;
   int stays = -1;
   for (int i = 0; i < o->critical_rounds; i++) {
-    double share = b->at[0] + (b->at[1] - b->at[0]) * b->value[0] / (b->value[0] - b->value[1]);
     DEA_TRY(ctx, solve_near_share(ctx, t, b, &share));
     DEA_TRY(ctx, measure_critical(ctx, t, b, &value));
-    if (fabs(share - before) < enough || fabs(value) < o->critical_flat * first ||
-        fabs(value) > fmax(seen[0], seen[1])) {
-      return DEA_OK;
-    }
-    before = share;
     int end = (value < 0) == (b->value[0] < 0) ? 0 : 1;
     b->at[end] = share;
     b->value[end] = value;
-    seen[end] = fabs(value);
     if (stays == 1 - end) {
       b->value[1 - end] /= 2;
     }
     stays = 1 - end;
+    bow_by_point(t, b, share);
+    double next = next_share(b);
+    if (fabs(next - share) < enough || fabs(value) < o->critical_flat * first ||
+        fabs(value) > fmax(seen[0], seen[1])) {
+      return DEA_OK;
+    }
+    seen[end] = fabs(value);
+    share = next;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the critical point could not be closed in on");
 }
@@ -697,14 +799,18 @@ static dea_status locate_between(struct dea_context *ctx, struct dea_solid_conti
   }
   b->way_load = ends[1]->load - ends[0]->load;
   b->length = hypot(size_of(t, b->way), b->way_load);
+  bow_by_tangent(t, b);
   b->at[1] = 1;
   b->mode = (size_t)(ends[0]->modes < ends[1]->modes ? ends[0]->modes : ends[1]->modes);
   if (t->event == DEA_CONTINUATION_BIFURCATION && b->mode >= DEA_MODES_MAX) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "%zu modes are unstable already", b->mode);
   }
   for (int k = 0; k < 2; k++) {
-    DEA_TRY(ctx, return_to(ctx, t, ends[k]));
-    DEA_TRY(ctx, measure_critical(ctx, t, b, &b->value[k]));
+    b->value[k] = ends[k]->slope;
+    if (t->event == DEA_CONTINUATION_BIFURCATION) {
+      DEA_TRY(ctx, return_to(ctx, t, ends[k]));
+      DEA_TRY(ctx, measure_critical(ctx, t, b, &b->value[k]));
+    }
   }
   if (b->value[0] * b->value[1] > 0) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no change of sign between the two points");
@@ -720,9 +826,11 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
   if (t->event == DEA_CONTINUATION_NOTHING) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "the last step has passed no critical point");
   }
-  b.way = dea_solid_alloc(ctx, t->s->work.load_steps.state_count, sizeof *b.way);
+  const size_t states = t->s->work.load_steps.state_count;
+  b.way = dea_solid_alloc(ctx, 2 * states, sizeof *b.way);
   dea_status status = b.way != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
+    b.bow = b.way + states;
     status = locate_between(ctx, t, &b);
   }
   dea_free(ctx, b.way);
@@ -754,6 +862,7 @@ static dea_status switch_along(struct dea_context *ctx, struct dea_solid_continu
   t->plane.u0 = t->critical.state;
   t->plane.tau0 = t->critical.load;
   t->plane.length = distance;
+  t->plane.enough = 0;
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->start[i] = t->s->state.u[i] - t->critical.state[i];

@@ -16,6 +16,7 @@ struct dea_continuation_options {
   double step;      // length of the first step; below 0: tau falls at first
   double step_most; // longest step; 0: any
   double unit_m;    // displacement that counts as much as the whole load, above 0
+  bool rough;       // the path is only a way to what happens on it: points end at path_rough
 };
 
 enum dea_continuation_event {

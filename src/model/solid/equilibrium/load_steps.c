@@ -66,9 +66,9 @@ static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int 
 {
   const struct dea_solid_settings *o = &s->settings;
   // the stiffness is negative: a force against the mode leads along it
-  const struct dea_continuation_options options = {side > 0 ? -o->mode_path_step
-                                                            : o->mode_path_step,
-                                                   o->mode_path_step_most, s->problem.length_m};
+  const struct dea_continuation_options options = {
+      side > 0 ? -o->mode_path_step : o->mode_path_step, o->mode_path_step_most,
+      s->problem.length_m, false};
   struct dea_solid_continuation *trace = NULL;
   double *from = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *from);
   double *goal = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
