@@ -186,18 +186,21 @@ static void test_pull_in_keeps_what_was_computed(void **state)
   assert_contains(command_err, "axisymmetric: pull-in at ");
 }
 
-/* Without pre-stretch the film has no tension at rest and less under a voltage: the pull-in of a
- * flat one is marked wherever it is said, and only there. */
+/* Without pre-stretch the film has no tension at rest and less under a voltage, and with little it
+ * has lost it where its pull-in is: that of a flat one is marked wherever it is said, and only
+ * there. */
 static void test_pull_in_of_a_slack_film(void **state)
 {
   (void)state;
   static const char words[] = "pull-in of a slack film: not predictive";
+  static const char *const pre_stretch[] = {"1.3", "1", "1.1"};
   command_write("soft.yaml", soft_disc);
-  for (int slack = 0; slack < 2; slack++) {
+  for (int i = 0; i < 3; i++) {
+    const int slack = i > 0;
     char arguments[120];
     snprintf(arguments, sizeof arguments,
              "run soft.yaml -m axisymmetric --study sweep --set pre_stretch=%s -o out --force",
-             slack ? "1" : "1.3");
+             pre_stretch[i]);
     assert_int_equal(command_run(arguments), 4);
     const char *event = strstr(command_out, ": pull-in");
     assert_non_null(event);

@@ -31,4 +31,20 @@ assert differs(film("", 399.0, taut + [1.1]), film("", None, taut + [1.1, 1.2]),
 assert differs(ends, film("law_end", None, taut), 0.05) == "pull_in, law_end"
 assert "stretch" in differs(ends, film("pull_in", 250.0, [1, 1.02, 1.08]), 0.05)
 assert differs(film("", None, taut), film("", None, taut), 0.05) == ""
+
+slack = film("slack", None, taut)
+slack["limits"]["slack_voltage_V"] = 250.0
+for end_V, word in ((251.0, ""), (200.0, "slack")):  # a law that ends there hides the loss of tension
+    law = film("law_end", None, taut)
+    law["stopped"] = "the law ends at %g kV, on the way to 0.3 kV" % (1e-3 * end_V)
+    assert differs(law, slack, 0.05).startswith(word) and (word or differs(law, slack, 0.05) == "")
+no_tension = film("", None, taut)  # a membrane that has lost it has none, and no less
+no_tension["points"][1]["min_tension_N_per_m"] = 0.0
+assert differs(no_tension, slack, 0.05).startswith("slack")  # too early
+no_tension["points"][1]["min_tension_N_per_m"] = 1.0
+no_tension["points"].append(dict(no_tension["points"][2], voltage_V=300.0, min_tension_N_per_m=0.0))
+assert differs(no_tension, slack, 0.05) == ""
+flat = film("pull_in", 250.0, taut)
+flat["limits"]["pull_in_of_slack_film"] = True  # which says nothing
+assert differs(flat, film("pull_in", 150.0, taut), 0.05) is None
 END

@@ -215,6 +215,28 @@ static dea_status watch_point(void *user, const struct dea_load_point *point)
   return DEA_OK;
 }
 
+/* From one taut film (random design 531) to one that is an eighth as thick in
+ * one place: the path is followed past where it turns unstable, which is told and not forgotten. */
+static void test_pull_in_that_the_path_passes(void **state)
+{
+  (void)state;
+  static const struct dea_model_settings coarse = {
+      .film = DEA_FILM_MEMBRANE, .order = 1, .order_z = 1};
+  struct dea_device device = disc(test_material("yeoh", 183.361e3, -5.14587e3, 0.166696e3),
+                                  14.56e-6, 1.5, 17.55e-3, 39.37e-3);
+  device.film.permittivity.at_rest = 7.7;
+  device.film.density_kg_per_m3 = 1000;
+  device.gravity = DEA_GRAVITY_FIBRES_DOWN;
+  struct dea_event exact, found;
+  double at_V;
+  assert_int_equal(sweep(dea_model_find("axisymmetric"), &device, NULL, 584.2, 6, &at_V, &exact),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(sweep(&dea_solid_module, &device, &coarse, 584.2, 6, &at_V, &found),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(found.kind, DEA_EVENT_PULL_IN);
+  assert_close(found.point.voltage_V, exact.point.voltage_V, 1e-2, 0);
+}
+
 /* By arc-length one comes to the equilibria of load steps, and the model stays where it was. */
 static void test_path_beside_load_steps(void **state)
 {
@@ -357,6 +379,7 @@ static void test_pressures_under_fibres_settle(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_pull_in_that_the_path_passes),
       cmocka_unit_test(test_path_beside_load_steps),
       cmocka_unit_test(test_pull_in_agrees_with_the_exact_disc),
       cmocka_unit_test(test_pull_in_of_a_coupled_field),

@@ -209,10 +209,10 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     }
   }
   DEA_TRY(ctx, say_trust(ctx, type, curve));
-  status = say_slack_pull_in(ctx, curve, status);
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
     DEA_TRY(ctx, add_limit(ctx, type, model, curve));
+    status = dea_curve_end(ctx, curve, say_slack_pull_in(ctx, curve, status));
   }
   DEA_TRY(ctx, status);
   return DEA_OK;

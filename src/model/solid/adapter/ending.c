@@ -235,17 +235,23 @@ static dea_status refuse_leap(struct dea_context *ctx, struct dea_ending *e, dou
                   1e-3 * e->limit.point.voltage_V, stretch, area, 1e-3 * voltage_V);
 }
 
-/* Where a load step has come to. */
+/* Where a load step has come to, from a film that was so taut and had that area. On its way it may
+ * have followed its path past pull-in and gone down from there. */
 static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
-                               const struct dea_solid_stand *from, bool snapped)
+                               const struct dea_solid_stand *from, bool taut, double before,
+                               bool snapped)
 {
-  double before = e->area, share = NAN, from_V = e->from_V;
-  bool taut = is_taut(e);
+  double share = NAN, from_V = e->from_V;
+  const bool seen = e->limited && e->limit.kind == DEA_EVENT_PULL_IN;
+  e->limited = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
   bool thins = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
   bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
   bool strays = voltage_V != from_V && dea_solid_strays(e->owner.solid, from);
-  if (thins || ((rushed || strays) && taut && is_taut(e) && !snapped)) {
+  if (thins && seen) {
+    e->passed = e->limit;
+    e->has_passed = true;
+  } else if (thins || ((rushed || strays) && taut && is_taut(e) && !snapped)) {
     DEA_TRY(ctx, look_back(ctx, e, from, thins, &share));
   }
   if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {
@@ -264,11 +270,12 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   e->from_V = from_V;
   e->limited = e->leapt = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
+  const bool taut = is_taut(e);
+  const double area = e->area; // points on the way have their own
   dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
     e->keeps = !e->has_passed;
-    status =
-        dea_solid_approach(ctx, e->owner.solid, voltage_V, is_taut(e), see_point, e, report, &stop);
+    status = dea_solid_approach(ctx, e->owner.solid, voltage_V, taut, see_point, e, report, &stop);
     e->keeps = true;
     if (status != DEA_OK) {
       e->rate[0] = 0;
@@ -276,8 +283,7 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
                    ? stopped(ctx, e, voltage_V, &stop, status)
                    : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     } else {
-      e->limited = false;
-      status = look_at_step(ctx, e, voltage_V, &from, report->snapped);
+      status = look_at_step(ctx, e, voltage_V, &from, taut, area, report->snapped);
     }
     e->keeps = false;
   }
