@@ -125,6 +125,21 @@ static dea_status fail_slack(struct dea_context *ctx, const struct dea_ending *e
                   where, state, 1e-3 * voltage_V);
 }
 
+/* A film that no step leads on from, and whose tension is 0 closely beyond by its last two points:
+ * the voltage as an event. */
+static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e)
+{
+  const double *T = e->tension, *at_V = e->tension_V, V = dea_solid_voltage(e->owner.solid);
+  const double square = V * V;
+  const double beyond = square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1]);
+  const double near = 1 + e->owner.solid->settings.leap_way;
+  if (at_V[1] == V && T[0] > T[1] && beyond >= square && beyond <= square * near * near) {
+    DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
+    e->limit.point.voltage_V = sqrt(beyond);
+  }
+  return DEA_OK;
+}
+
 /* The verdict on a solve that failed on the way to a voltage (docs/theory/stops.md). */
 static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
                           const struct dea_solid_stop *stop, dea_status status)
@@ -144,6 +159,9 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
         1e-3 * voltage_V);
   }
   bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
+  if (status == DEA_E_NOT_CONVERGED && !e->limited) {
+    DEA_TRY(ctx, see_slack_beyond(ctx, e));
+  }
   if (e->limited || (unsettled && !is_taut(e))) {
     return fail_slack(ctx, e, voltage_V, stop);
   }
