@@ -1,4 +1,5 @@
 /* calibrate: least squares and error bars against closed forms, and coverage of the error bars. */
+// ctest: quick, heavy
 #include "calibrate/least_squares.h"
 #include "context_fixture.h"
 #include "testing.h"

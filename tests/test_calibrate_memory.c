@@ -1,4 +1,5 @@
 /* calibrate: every allocation of a fit fails once, and nothing is left. */
+// ctest: quick, heavy
 #include "calibrate/fit.h"
 #include "failing_allocator.h"
 #include "testing.h"

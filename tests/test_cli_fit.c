@@ -1,5 +1,6 @@
 #define _GNU_SOURCE
 /* dea fit, as a user runs it: an example, its files, bad data. */
+// ctest: quick, heavy
 #include "command.h"
 
 #include <stdbool.h>

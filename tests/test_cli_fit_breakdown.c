@@ -1,6 +1,7 @@
 #define _GNU_SOURCE
 /* dea fit of breakdown tests and of life tests, as a user runs it: the examples, their files, what
  * may be wrong. */
+// ctest: quick, heavy
 #include "command.h"
 
 /* A table and keys of the fit file; the exit code and one message are wanted. */

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE
 /* What a fit knows of a device, as variables of dea sweep and dea optimise (key from_fit). */
+// ctest: quick, heavy
 #include "command.h"
 
 #include <math.h>

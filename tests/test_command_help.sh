@@ -1,4 +1,5 @@
 #!/bin/sh
+# ctest: quick, heavy
 # examples, doctor, completion and the manual page, used as a user would.
 set -u
 source=$1

@@ -1,4 +1,5 @@
 /* design and device: each allocation failed in turn, without crash or leak. */
+// ctest: quick, heavy
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "study/design_file.h"

@@ -1,5 +1,6 @@
 /* Files for the workshop, read back: areas, lengths and places against those of the design, by
  * closed forms, for designs drawn at random. */
+// ctest: quick, heavy
 #include "cut_file.h"
 #include "fabricate/dxf.h"
 #include "fabricate/svg.h"

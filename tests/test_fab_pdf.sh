@@ -1,4 +1,5 @@
 #!/bin/sh
+# ctest: quick, heavy
 # PDF files as another program reads them (poppler): the scale is exactly 1:1, pages have their
 # size, words of the design stand in them as they are.
 set -u

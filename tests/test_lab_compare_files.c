@@ -1,5 +1,6 @@
 /* dea compare with what dea reduce writes: figures with bands, files that are wrong, failing
  * allocations. */
+// ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "measured_run.h"

@@ -1,6 +1,7 @@
 /* lab/recording: a program that records is killed between any two of its calls; what it had
  * announced is there, and every value is the right one. `test_lab_killed COUNT [SEED]` makes that
  * many kills at random moments (verify/recordings.sh). */
+// ctest: quick, heavy
 #define _GNU_SOURCE
 #include "own_disk.h"
 #include "own_folder.h"

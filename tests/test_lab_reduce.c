@@ -1,4 +1,5 @@
 /* The reduction as a whole: recordings whose truth is known. */
+// ctest: quick, heavy
 #include "lab_reduced.h"
 
 // Uncertainties ----------------------------------------------------------------------------------

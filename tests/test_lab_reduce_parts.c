@@ -1,4 +1,5 @@
 /* The steps of the reduction, each against a closed form or a slow way to the same. */
+// ctest: quick, heavy
 #include "context_fixture.h"
 #include "lab/reduce/reduce_parts.h"
 #include "lab_signals.h"

@@ -1,4 +1,5 @@
 /* The simulated bench: without noise what the model says, with noise what was asked for. */
+// ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "lab/instrument/instrument.h"

@@ -1,4 +1,5 @@
 #!/bin/sh
+# ctest: quick, heavy
 # The JSON Schemas of data/schema are those of this program; they accept all files that ship and
 # refuse what the tests of errors say is wrong.
 set -eu

@@ -1,4 +1,5 @@
 /* Layered hexahedra and their meshes: derivatives, invariance, patch test, areas. */
+// ctest: quick, heavy
 #include "devices.h"
 #include "failing_allocator.h"
 #include "model/solid/mesh/grid.h"
