@@ -47,7 +47,7 @@
   X(double, approach_part_least, 0.25, "of the way asked for",                                     \
     "shortest step where it says nothing")                                                         \
   X(int, approach_rounds, 12, "1", "times that load steps go on from a point of the path")         \
-  X(int, approach_iterations, 25, "1",                                                             \
+  X(int, approach_iterations, 15, "1",                                                             \
     "of one minimum of a taut film, before the path is followed")                                  \
   X(int, approach_lost, 12, "1", "`lost` on the way to a voltage")                                 \
   X(int, approach_points, 40, "1", "points of the path on the way, twice that where it bends")     \
