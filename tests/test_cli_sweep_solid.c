@@ -253,12 +253,43 @@ static void test_monitors(void **state)
   assert_close(wanted[1], 350, 1e-3, 0);
 }
 
+/* A number of a ply beside what its tolerance does to a monitor; angles and places have none. */
+static void test_tolerances_of_plies(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  static const struct {
+    const char *row;
+    double tolerance;
+  } rows[] = {{"\n3,plies.film.thickness,0.0001,m,hub.z_m,", 5e-6},
+              {"\n3,plies.film.pre_stretch,1.2,1,hub.z_m,", 0.02}};
+  double slope, tolerance, change;
+  command_write("cone.yaml", cone);
+  const int code = command_run("run cone.yaml --study sensitivity -q -o cone.run");
+  if (code == 2) { // a build without model 3d
+    skip();
+  }
+  assert_int_equal(code, 0);
+  command_read("cone.run/3d_sensitivity_slopes.csv", bytes);
+  for (int i = 0; i < 2; i++) {
+    const char *row = strstr(bytes, rows[i].row);
+    assert_non_null(row);
+    assert_int_equal(
+        sscanf(row + strlen(rows[i].row), "%*f,%lf,%*f,%lf,%lf", &slope, &tolerance, &change), 3);
+    assert_close(tolerance, rows[i].tolerance, 1e-9, 0);
+    assert_close(change, slope * tolerance, 1e-9, 0);
+  }
+  assert_int_equal(sscanf(strstr(bytes, "\n3,shapes.hub.radius,0.005,m,hub.z_m,"),
+                          "\n3,shapes.hub.radius,0.005,m,hub.z_m,%*f,%*f,%*f,%lf", &tolerance),
+                   0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_neighbours),       cmocka_unit_test(test_parts),
       cmocka_unit_test(test_critical_voltage), cmocka_unit_test(test_force),
-      cmocka_unit_test(test_monitors),
+      cmocka_unit_test(test_monitors),         cmocka_unit_test(test_tolerances_of_plies),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

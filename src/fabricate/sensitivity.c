@@ -235,21 +235,20 @@ struct of_ply {
   enum dea_ply_deviation deviation;
 };
 
-/* Which number of which ply a key is, if it is one that has a tolerance. */
+/* Which number of which ply a key is. */
 static bool find_ply(const struct dea_layout *layout, const char *key, struct of_ply *out)
 {
   static const char *const names[][DEA_PLY_DEVIATIONS] = {{"thickness", "pre_stretch", ""},
                                                           {"", "pre_stretch[0]", "pre_stretch[1]"}};
   char own[DEA_NUMBER_KEY_SIZE];
   for (size_t i = 0; i < layout->ply_count; i++) {
-    const double *stretch = layout->plies[i].pre_stretch;
     for (size_t k = 0; k < 2 * DEA_PLY_DEVIATIONS; k++) {
       const size_t d = k % DEA_PLY_DEVIATIONS;
       snprintf(own, sizeof own, "plies.%.30s.%s", layout->plies[i].name,
                names[k / DEA_PLY_DEVIATIONS][d]);
       if (strcmp(own, key) == 0) {
         *out = (struct of_ply){i, (enum dea_ply_deviation)d};
-        return d == DEA_PLY_THICKNESS || stretch[0] != 1 || stretch[1] != 1;
+        return true;
       }
     }
   }
@@ -263,12 +262,11 @@ static dea_status differentiate_plies(struct dea_context *ctx, const struct stan
   struct of_ply places[DEA_NUMBERS_MAX];
   double slopes[DEA_NUMBERS_MAX * DEA_SEEN_MAX];
   const size_t monitors[DEA_SEEN_MAX] = {0, 1, 2};
-  const struct dea_fabrication *f = &s->design->fabrication;
   size_t count, chosen = 0;
   bool there;
   DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, out->voltage_V, all, &count));
   for (size_t i = 0; i < count; i++) {
-    if (find_ply(s->device->layout, all[i].key, &places[chosen])) {
+    if (all[i].tolerance > 0 && find_ply(s->device->layout, all[i].key, &places[chosen])) {
       numbers[chosen++] = all[i];
     }
   }
@@ -278,10 +276,8 @@ static dea_status differentiate_plies(struct dea_context *ctx, const struct stan
   DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
   for (size_t i = 0; i < chosen * out->seen && there; i++) {
     const struct of_ply *place = &places[i / out->seen];
-    const double tolerance = place->deviation == DEA_PLY_THICKNESS
-                                 ? f->tolerance.thickness.si * numbers[i / out->seen].value
-                                 : f->tolerance.pre_stretch.si;
-    out->effect[place->ply][place->deviation][i % out->seen] = slopes[i] * tolerance;
+    out->effect[place->ply][place->deviation][i % out->seen] =
+        slopes[i] * numbers[i / out->seen].tolerance;
   }
   return DEA_OK;
 }

@@ -28,7 +28,11 @@ static const struct list {
     LIST("shapes", dea_parts_shape, shapes, shape_count, offsetof(struct dea_parts_shape, name)),
 #undef LIST
 };
-enum { LISTS = sizeof lists / sizeof lists[0], SHAPES = LISTS - 1 }; // these go by their kinds
+enum {
+  LISTS = sizeof lists / sizeof lists[0],
+  PLIES = 0,
+  SHAPES = LISTS - 1
+}; // these go by their kinds
 
 static const struct dea_record *record_of(const struct list *list)
 {
@@ -182,6 +186,25 @@ static dea_status add_shapes(struct dea_context *ctx, const struct dea_parts *pa
   return DEA_OK;
 }
 
+/* What the workshop says of a number of a ply, of which the film may be stretched; NAN: nothing. */
+static double tolerance_of(const struct dea_design *design, const struct dea_design_number *number)
+{
+  const struct dea_parts_ply *ply = &design->parts->plies[number->item];
+  const size_t si = offsetof(struct dea_quantity, si);
+  const size_t stretch = offsetof(struct dea_parts_ply, pre_stretch) + si;
+  bool stretched = false;
+  for (size_t k = 0; k < ply->pre_stretch_count; k++) {
+    stretched = stretched || ply->pre_stretch[k].si != 1;
+  }
+  if (number->offset == offsetof(struct dea_parts_ply, thickness_m) + si) {
+    return design->fabrication.tolerance.thickness.si * number->value;
+  }
+  return stretched && number->offset >= stretch &&
+                 number->offset < stretch + sizeof ply->pre_stretch
+             ? design->fabrication.tolerance.pre_stretch.si
+             : NAN;
+}
+
 dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *design,
                             const struct dea_device *device, bool all,
                             struct dea_design_number *out, size_t *count)
@@ -197,6 +220,11 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
       for (size_t f = 0; f < record->field_count; f++) {
         add_field(l, i, items + i * list->size, &record->fields[f], 0, out, count);
       }
+    }
+  }
+  for (size_t i = 0; i < *count; i++) {
+    if (out[i].of == DEA_NUMBER_OF_PART && out[i].list == PLIES) {
+      out[i].tolerance = tolerance_of(design, &out[i]);
     }
   }
   for (size_t i = 0; i < device->layout->ply_count; i++) {

@@ -136,6 +136,8 @@ static const struct dea_result_column part_slope_columns[] = {
     {.key = "elasticity",
      .title = "per cent by one per cent",
      .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
+    DEA_NUMBER_TOLERANCE,
+    {.key = "change", .title = "change by tolerance", .meaning = "of the quantity, in SI"},
 };
 static const struct dea_result_table_type part_slope_table = {
     .study = study_name,
@@ -158,6 +160,8 @@ static const struct dea_result_column part_matter_columns[] = {
     ELASTICITY("capacitance_F", "capacitance, %"),
     ELASTICITY("energy_J", "energy, %"),
     ELASTICITY("frequency_Hz", "frequency, %"),
+    DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
+    DEA_TEXT_COLUMN("change_text", "changes", "of the row's quantity, by the tolerance"),
 };
 static const struct dea_result_table_type part_matter_table = {.study = study_name,
                                                                .name = "matters",
@@ -240,26 +244,41 @@ static double depth_of(const struct stop *stop)
   return stop->is_pressed ? stop->pressed.depth_m : NAN;
 }
 
+/* A tolerance of the workshop and what it changes a quantity by; "" where there is none. */
+struct tolerated {
+  char tolerance[48], change[48];
+};
+
+static struct tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
+{
+  struct tolerated out = {"", ""};
+  const struct dea_design_number *number = &stop->numbers[i];
+  const char *unit = quantity < QUANTITIES ? dea_point_columns[stop->columns[quantity]].si_unit
+                                           : motions[stop->motion[quantity - QUANTITIES]].si_unit;
+  if (number->tolerance > 0) {
+    dea_number_text(number->tolerance, number->unit, out.tolerance, sizeof out.tolerance);
+    dea_number_text(slope_of(stop, i, quantity) * number->tolerance, unit, out.change,
+                    sizeof out.change);
+  }
+  return out;
+}
+
 static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
   struct dea_result_table_value row[COUNT(matter_columns)] = {
       {.number = stop->voltage_V}, {.number = depth_of(stop)}, {.text = number->key}};
-  char value[48], tolerance[48] = "", change[48] = "";
+  const struct tolerated tolerated = tolerate(stop, lead, i);
+  char value[48];
   size_t n = 3;
   dea_number_text(number->value, number->unit, value, sizeof value);
   row[n++].text = value;
   for (size_t k = 0; k < QUANTITIES; k++) {
     row[n++].number = elasticity(stop, i, k);
   }
-  if (!isnan(number->tolerance) && number->tolerance > 0) {
-    dea_number_text(number->tolerance, number->unit, tolerance, sizeof tolerance);
-    dea_number_text(slope_of(stop, i, lead) * number->tolerance,
-                    dea_point_columns[stop->columns[lead]].si_unit, change, sizeof change);
-  }
-  row[n++].text = tolerance;
-  row[n++].text = change;
+  row[n++].text = tolerated.tolerance;
+  row[n++].text = tolerated.change;
   DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   return DEA_OK;
 }
@@ -295,8 +314,7 @@ static void name_of(const struct stop *stop, size_t quantity, char *out, size_t 
   }
 }
 
-/* All slopes; the table of the general form has no columns of tolerances and tips, the last ones.
- */
+/* All slopes; the table of the general form has no column of tips, the last one. */
 static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
@@ -339,9 +357,13 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
       {.text = number->key},
       {.text = value},
       {.number = elasticity(stop, i, lead)}};
-  for (size_t k = FIELD, n = 5; k < QUANTITIES; k++) {
+  const struct tolerated tolerated = tolerate(stop, lead, i);
+  size_t n = 5;
+  for (size_t k = FIELD; k < QUANTITIES; k++) {
     row[n++].number = elasticity(stop, i, k);
   }
+  row[n++].text = tolerated.tolerance;
+  row[n++].text = tolerated.change;
   DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   return DEA_OK;
 }
