@@ -31,6 +31,7 @@ assert differs(film("", 399.0, taut + [1.1]), film("", None, taut + [1.1, 1.2]),
 assert differs(ends, film("law_end", None, taut), 0.05) == "pull_in, law_end"
 assert "stretch" in differs(ends, film("pull_in", 250.0, [1, 1.02, 1.08]), 0.05)
 assert differs(film("", None, taut), film("", None, taut), 0.05) == ""
+assert differs(film("pull_in", None, []), film("pull_in", None, []), 0.05) == ""  # of films without a rest
 
 slack = film("slack", None, taut)
 slack["limits"]["slack_voltage_V"] = 250.0

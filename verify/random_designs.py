@@ -238,7 +238,7 @@ def differs(mine, other, within):
             return None
     if all(ends):
         return "" if same_within(*ends, within) else "pull-in at %s, %s V" % tuple(ends)
-    reached = max(p["voltage_V"] for m in both for p in m["points"])
+    reached = max((p["voltage_V"] for m in both for p in m["points"]), default=0)
     if any(ends) and "complete" in kinds and max(e or 0 for e in ends) * (1 + within) > reached:
         return "" if taut else None  # that of the other one may be just beyond the sweep
     return "" if kinds[0] == kinds[1] and not any(ends) else "%s, %s" % tuple(

@@ -160,7 +160,14 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
   }
   bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
   if (status == DEA_E_NOT_CONVERGED && !e->limited) {
-    DEA_TRY(ctx, see_slack_beyond(ctx, e));
+    const dea_status seen = see_slack_beyond(ctx, e);
+    if (seen != DEA_OK && !dea_solid_may_shorten(seen)) {
+      return dea_fail_chain(ctx, seen, __func__, __FILE__, __LINE__);
+    }
+    if (seen != DEA_OK) { // the law ends there
+      snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+      status = seen;
+    }
   }
   if (e->limited || (unsettled && !is_taut(e))) {
     return fail_slack(ctx, e, voltage_V, stop);
@@ -196,7 +203,7 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
 }
 
 /* Looks for a limit point between there and where the solid is. *share: of the way to it, NAN:
- * there is none. */
+ * there is none, or a point on the way cannot be looked at, as where the law ends. */
 static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
                             const struct dea_solid_stand *from, bool leapt, double *share)
 {
@@ -206,11 +213,18 @@ static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
   e->leapt = leapt;
   e->tension[1] = e->tension[0]; // as the path begins
   e->tension_V[1] = e->tension_V[0];
-  DEA_TRY(ctx,
-          dea_solid_look_back(ctx, e->owner.solid, from, leapt, see_point, has_grown, e, &stop));
+  dea_status status =
+      dea_solid_look_back(ctx, e->owner.solid, from, leapt, see_point, has_grown, e, &stop);
+  const bool looked = status == DEA_OK;
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  DEA_TRY(ctx, status);
   struct dea_event found = e->limit;
   const struct dea_solid_stand at_limit = e->at_limit;
-  bool passed = stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
+  bool passed =
+      looked && stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
   *e = kept;
   e->at_limit = at_limit;
   *share = passed ? stop.way : NAN;
