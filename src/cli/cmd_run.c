@@ -184,6 +184,9 @@ static void print_event(const struct dea_event *event, const struct dea_breakdow
   case DEA_EVENT_BREAKDOWN:
     print_breakdown(p, film);
     break;
+  case DEA_EVENT_BUCKLING:
+    puts("the film buckles");
+    break;
   }
 }
 

@@ -133,7 +133,8 @@ static const struct dea_field file_fields[] = {
      .doc = "keys of the quantities that are kept, as dea compare --quantity has them, and "
             "MONITOR.KEY of what a monitor shows (plate.turn_y_rad); force_N: "
             "with the tip of compute.force held at its first depth; slack_voltage_V, "
-            "breakdown_voltage_V, pull_in_voltage_V: where the film comes to its end",
+            "breakdown_voltage_V, pull_in_voltage_V, buckling_voltage_V: where the film comes to "
+            "its end",
      .example = "[centre_z_m, breakdown_margin]"},
     {.key = "variables",
      .kind = DEA_FIELD_RECORD,

@@ -111,10 +111,9 @@ const struct dea_point_state *dea_point_state_find(const char *key)
 }
 
 static const char *const event_names[] = {
-    [DEA_EVENT_PULL_IN] = "pull_in",
-    [DEA_EVENT_SNAP_BACK] = "snap_back",
-    [DEA_EVENT_SLACK] = "slack",
-    [DEA_EVENT_BREAKDOWN] = "breakdown",
+    [DEA_EVENT_PULL_IN] = "pull_in",   [DEA_EVENT_SNAP_BACK] = "snap_back",
+    [DEA_EVENT_SLACK] = "slack",       [DEA_EVENT_BREAKDOWN] = "breakdown",
+    [DEA_EVENT_BUCKLING] = "buckling",
 };
 enum { EVENT_KINDS = sizeof event_names / sizeof event_names[0] };
 

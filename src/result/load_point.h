@@ -142,13 +142,14 @@ const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE]);
 /* Flags of such words; what is no word is passed over. */
 unsigned dea_flags_of_text(const char *text);
 
-/* Where a branch turns (limit point under voltage control) or the film goes slack or breaks down.
- */
+/* Where a branch turns (limit point under voltage control), the film goes slack or breaks down, or
+ * another branch crosses. */
 enum dea_event_kind {
   DEA_EVENT_PULL_IN,
   DEA_EVENT_SNAP_BACK,
   DEA_EVENT_SLACK,
-  DEA_EVENT_BREAKDOWN
+  DEA_EVENT_BREAKDOWN,
+  DEA_EVENT_BUCKLING
 };
 
 struct dea_event {

@@ -13,13 +13,15 @@ const struct dea_critical_kind dea_critical_kinds[DEA_CRITICAL_KINDS] = {
     {DEA_EVENT_BREAKDOWN, "breakdown_voltage_V", "breakdown",
      "voltage at which the true field reaches the film's breakdown field"},
     {DEA_EVENT_PULL_IN, "pull_in_voltage_V", "pull-in", "voltage at which the film pulls in"},
+    {DEA_EVENT_BUCKLING, "buckling_voltage_V", "buckling",
+     "voltage at which the lowest frequency is 0: another branch crosses"},
 };
 
 static const double enough = 1e-10;  // of the largest value: where the last line is straight
 static const double nothing = 1e-12; // of it: rounding of a value that is 0
 static const double near = 1e-6;     // of a voltage: how far lines lead well
 static const double narrow = 1e-9;   // of a voltage: a bracket that says all
-enum { STEPS = 80, PATH_POINTS = 20000 };
+enum { STEPS = 80, BUCKLING_STEPS = 40, PATH_POINTS = 20000 };
 
 /* A value at a voltage. */
 struct seen {
@@ -292,6 +294,130 @@ static dea_status find_end(struct search *s)
   return DEA_OK;
 }
 
+// Buckling ----------------------------------------------------------------------------------------
+
+/* The square of the lowest frequency against that of the voltage, the last ones on the way. */
+struct fall {
+  double x[3], value[3];
+  int count; // of them, the last one behind
+};
+
+/* Square of the lowest frequency at a voltage, NAN where the search is to end. *there: false where
+ * the film is not on the branch from rest: beyond the voltage that is looked for it goes on to a
+ * buckled state, which is stable. */
+static dea_status lowest_square(struct search *s, double voltage_V, double *square, bool *there)
+{
+  const struct dea_model_type *type = s->ask->type;
+  const struct dea_event *limit;
+  struct dea_load_point mode;
+  struct dea_field_mesh *shape;
+  DEA_TRY(s->ctx, solve(s, voltage_V, &s->out->point, &limit, there));
+  *there = *there && (s->out->point.told & 1u << DEA_FLAG_STATES) == 0;
+  if (limit != NULL && limit->kind == DEA_EVENT_PULL_IN) { // where the frequency is 0 too
+    snprintf(s->out->why, sizeof s->out->why, "pull-in at %.6g kV comes first",
+             1e-3 * limit->point.voltage_V);
+    *square = NAN;
+    return DEA_OK;
+  }
+  if (!*there) {
+    *square = 0;
+    return begin_again(s);
+  }
+  const dea_status status =
+      dea_model_modes(s->ctx, type, s->out->model, &s->out->point, 1, &mode, &shape);
+  if (status == DEA_E_ARGUMENT) { // no density is known
+    snprintf(s->out->why, sizeof s->out->why, "%.199s", dea_context_message(s->ctx));
+    dea_context_clear(s->ctx);
+    *square = NAN;
+    return DEA_OK;
+  }
+  DEA_TRY(s->ctx, status);
+  dea_field_mesh_destroy(s->ctx, shape);
+  *square = mode.frequency_Hz * fabs(mode.frequency_Hz);
+  *there = *square > 0;
+  return DEA_OK;
+}
+
+static void take_square(struct fall *f, double voltage_V, double square)
+{
+  if (f->count == 3) {
+    memmove(f->x, f->x + 1, 2 * sizeof *f->x);
+    memmove(f->value, f->value + 1, 2 * sizeof *f->value);
+    f->count = 2;
+  }
+  f->x[f->count] = voltage_V * voltage_V;
+  f->value[f->count++] = square;
+}
+
+/* Where the line through the last two is 0; INFINITY where it does not fall, or there is but one.
+ */
+static double end_of_line(const struct fall *f)
+{
+  const int last = f->count - 1, before = last > 0 ? last - 1 : 0;
+  const double loss = f->value[before] - f->value[last];
+  return loss > 0 ? f->x[last] + f->value[last] * (f->x[last] - f->x[before]) / loss
+                  : (double)INFINITY;
+}
+
+/* Where the parabola x(value) through the last three is 0. */
+static double end_of_parabola(const struct fall *f)
+{
+  double sum = 0;
+  for (int i = 0; i < 3; i++) {
+    const double *v = f->value;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sum += f->x[i] * v[j] * v[k] / ((v[i] - v[j]) * (v[i] - v[k]));
+  }
+  return sum;
+}
+
+/* From below only, each step most of the way to where the last line ends. The film goes off the
+ * branch beyond, and so it does where an imperfection leaves no point at which the frequency is 0.
+ */
+static dea_status find_buckling(struct search *s)
+{
+  static const double most = 0.8, close = 1e-3; // of the way left; of the square of the voltage
+  const double highest = s->ask->highest_V * s->ask->highest_V;
+  struct fall f = {.count = 0};
+  double square = NAN, high = INFINITY;
+  bool there = false;
+  if (s->ask->type->modes == NULL) {
+    snprintf(s->out->why, sizeof s->out->why, "the model knows no frequencies");
+    return DEA_OK;
+  }
+  DEA_TRY(s->ctx, lowest_square(s, 0, &square, &there));
+  if (!there || isnan(square)) {
+    return DEA_OK;
+  }
+  take_square(&f, 0, square);
+  for (int i = 0; i < BUCKLING_STEPS; i++) {
+    const double low = f.x[f.count - 1], end = end_of_line(&f);
+    if (f.count == 3 && end - low <= close * end) {
+      s->out->voltage_V = sqrt(end_of_parabola(&f));
+      s->out->why[0] = '\0';
+      return DEA_OK;
+    }
+    double next =
+        isfinite(end) ? low + most * (end - low) : fmax(4 * low, s->ask->first_V * s->ask->first_V);
+    next = fmin(next < high ? next : 0.5 * (low + high), highest);
+    if (low >= highest || (isfinite(high) && high - low <= close * high)) {
+      break;
+    }
+    DEA_TRY(s->ctx, lowest_square(s, sqrt(next), &square, &there));
+    if (isnan(square)) {
+      return DEA_OK;
+    }
+    if (there) {
+      take_square(&f, sqrt(next), square);
+    } else {
+      high = next;
+    }
+  }
+  snprintf(s->out->why, sizeof s->out->why, "the lowest frequency is %.3g Hz at %.6g kV, and not 0",
+           sqrt(f.value[f.count - 1]), 1e-3 * sqrt(f.x[f.count - 1]));
+  return DEA_OK;
+}
+
 // All of it ---------------------------------------------------------------------------------------
 
 dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_ask *ask,
@@ -302,9 +428,10 @@ dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_
   *out = (struct dea_critical){
       .ask = *ask, .voltage_V = NAN, .point = dea_load_point_empty(), .model = NULL};
   DEA_TRY(ctx, make_model(&s));
-  DEA_TRY(ctx, ask->kind != DEA_EVENT_PULL_IN ? find_crossing(&s)
-               : ask->type->path != NULL      ? find_on_path(&s)
-                                              : find_end(&s));
+  DEA_TRY(ctx, ask->kind == DEA_EVENT_BUCKLING  ? find_buckling(&s)
+               : ask->kind != DEA_EVENT_PULL_IN ? find_crossing(&s)
+               : ask->type->path != NULL        ? find_on_path(&s)
+                                                : find_end(&s));
   return DEA_OK;
 }
 
@@ -335,8 +462,10 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
                                   struct dea_design_change *own, double *out)
 {
   static const double share = 1e-5; // of the voltage, to either side
-  const int column = dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK ? "min_tension_N_per_m"
-                                                                          : "breakdown_margin");
+  const int column =
+      dea_point_column_find(c->ask.kind == DEA_EVENT_SLACK      ? "min_tension_N_per_m"
+                            : c->ask.kind == DEA_EVENT_BUCKLING ? "frequency_Hz"
+                                                                : "breakdown_margin");
   const struct dea_gradient_ask ask = {
       .changes = own, .change_count = count + 1, .columns = &column, .column_count = 1};
   take_at(V, changes, count, own);
@@ -350,8 +479,10 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
   return DEA_OK;
 }
 
-/* A membrane has a kink where it loses its tension: a changed device would be slack there. Its
- * slopes are those at two voltages below, taken to there along a line. */
+/* A membrane has a kink where it loses its tension: a changed device would be slack there. And
+ * where a film buckles its tangent has no inverse, and the slope of a frequency by its square is
+ * infinite, but not the ratio of two. Slopes are those at two voltages below, taken to there along
+ * a line. */
 static dea_status slopes_below(struct dea_context *ctx, const struct dea_critical *c,
                                const struct dea_design_change *changes, size_t count,
                                struct dea_design_change *own, double *out, double *room)
@@ -376,7 +507,8 @@ static dea_status slopes_of_crossing(struct dea_context *ctx, const struct dea_c
                                      double *slopes)
 {
   struct dea_arena memory = {.ctx = ctx};
-  const bool kink = c->ask.kind == DEA_EVENT_SLACK && c->ask.settings->film == DEA_FILM_MEMBRANE;
+  const bool kink = c->ask.kind == DEA_EVENT_BUCKLING ||
+                    (c->ask.kind == DEA_EVENT_SLACK && c->ask.settings->film == DEA_FILM_MEMBRANE);
   struct dea_design_change *own = dea_arena_alloc(&memory, count + 1, sizeof *own);
   double *out = dea_arena_alloc(&memory, 2 * (count + 1), sizeof *out);
   dea_status status = dea_arena_status(&memory);

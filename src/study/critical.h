@@ -13,7 +13,7 @@ struct dea_critical_kind {
   const char *key; // "slack_voltage_V"
   const char *title, *meaning;
 };
-enum { DEA_CRITICAL_KINDS = 3 };
+enum { DEA_CRITICAL_KINDS = 4 };
 extern const struct dea_critical_kind dea_critical_kinds[DEA_CRITICAL_KINDS];
 
 /* Of which device, how it is computed, and what is looked for. All lent. */
@@ -21,7 +21,7 @@ struct dea_critical_ask {
   const struct dea_model_type *type;
   const struct dea_device *device;
   const struct dea_model_settings *settings;
-  enum dea_event_kind kind; // DEA_EVENT_SLACK, _BREAKDOWN or _PULL_IN
+  enum dea_event_kind kind; // DEA_EVENT_SLACK, _BREAKDOWN, _PULL_IN or _BUCKLING
   double first_V;           // of the search, above 0
   double highest_V;         // it ends there; INFINITY: where the film does
 };

@@ -13,7 +13,7 @@ static const char study_name[] = "sensitivity";
 
 // Tables -----------------------------------------------------------------------------------------
 
-#define LIMIT DEA_TEXT_COLUMN("limit", "limit", "slack, breakdown or pull_in")
+#define LIMIT DEA_TEXT_COLUMN("limit", "limit", "slack, breakdown, pull_in or buckling")
 #define LIMIT_VOLTAGE                                                                              \
   DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "at", "voltage at which the film comes to it")
 
@@ -130,6 +130,17 @@ static dea_status put(struct dea_context *ctx, const char *model, const struct f
   return DEA_OK;
 }
 
+/* Whether a curve has gone over to another state, as a film does that buckles. */
+static bool leaves_a_state(const struct dea_curve *curve)
+{
+  for (size_t i = 0; i < curve->count; i++) {
+    if ((curve->points[i].told & 1u << DEA_FLAG_STATES) != 0) {
+      return dea_curve_first_event(curve, DEA_EVENT_PULL_IN) == NULL;
+    }
+  }
+  return false;
+}
+
 /* Whether the curves of a model have come to a limit; so of a result without curves. */
 static bool comes_to(const struct dea_result *result, const char *model, enum dea_event_kind kind)
 {
@@ -141,17 +152,19 @@ static bool comes_to(const struct dea_result *result, const char *model, enum de
       continue;
     }
     any = true;
-    if (dea_curve_first_event(curve, kind) != NULL) {
+    if (dea_curve_first_event(curve, kind) != NULL ||
+        (kind == DEA_EVENT_BUCKLING && leaves_a_state(curve))) {
       return true;
     }
-    for (size_t i = 0; i < curve->count && kind != DEA_EVENT_PULL_IN; i++) {
+    const bool of_points = kind == DEA_EVENT_SLACK || kind == DEA_EVENT_BREAKDOWN;
+    for (size_t i = 0; i < curve->count && of_points; i++) {
       const struct dea_load_point *p = &curve->points[i];
       if (kind == DEA_EVENT_SLACK ? p->min_tension_N_per_m <= 0 : p->breakdown_margin <= 0) {
         return true;
       }
     }
   }
-  return !any;
+  return !any && kind != DEA_EVENT_BUCKLING;
 }
 
 static dea_status find(struct dea_context *ctx, const struct dea_critical_ask *ask,
