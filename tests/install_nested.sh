@@ -8,7 +8,7 @@ shift 3
 prefix=$build/prefix
 rm -rf "$prefix"
 cmake -G Ninja -S "$source" -B "$build" -DDEA_LONG_TESTS=OFF -DDEA_BUILD_BENCH=OFF \
-  -DDEA_BUILD_VERIFY=OFF -DDEA_BUILD_TESTS=OFF -DCMAKE_C_FLAGS_RELEASE=-O1 -DCMAKE_INSTALL_PREFIX="$prefix" "$@"
+  -DDEA_BUILD_VERIFY=OFF -DDEA_BUILD_TESTS=OFF -DCMAKE_C_FLAGS_RELEASE=-O2 -DCMAKE_INSTALL_PREFIX="$prefix" "$@"
 cmake --build "$build"
 cmake --install "$build" >/dev/null
 
