@@ -284,6 +284,26 @@ static void test_loss_of_tension_is_located(void **state)
   type->destroy(ctx, model);
 }
 
+/* A film free of stress that is flat at 0.5 kV, below where it buckles (0.505 kV), and has buckled
+ * at 1 kV, of which a load step that comes there at once knows nothing: it might have to the other
+ * side.
+ */
+static void test_buckling_in_one_step(void **state)
+{
+  (void)state;
+  struct dea_device device = disc(test_yeoh(), 101e-6, 1, 3.75e-3, 15e-3);
+  struct dea_model *model;
+  struct dea_load_point flat, buckled;
+  device.film.permittivity.at_rest = 2.8;
+  assert_int_equal(dea_solid_module.create(ctx, &device, NULL, &model), DEA_OK);
+  assert_int_equal(dea_solid_module.solve(ctx, model, 500, &flat), DEA_OK);
+  assert_int_equal(dea_solid_module.solve(ctx, model, 1000, &buckled), DEA_OK);
+  assert_true(fabs(flat.centre_z_m) < 1e-9 && fabs(buckled.centre_z_m) > 100e-6);
+  assert_int_equal(dea_load_point_flags(&flat) & 1u << DEA_FLAG_STATES, 0);
+  assert_true((dea_load_point_flags(&buckled) & 1u << DEA_FLAG_STATES) != 0);
+  dea_solid_module.destroy(ctx, model);
+}
+
 /* Electrodes eighty times as stiff as the film, laid on before it was stretched to three times its
  * size, draw it together to a third (random design 17 without its fibres): Newton's method does not
  * go there at once. */
@@ -386,6 +406,7 @@ int main(void)
       cmocka_unit_test(test_local_pull_in_is_not_leapt_over),
       cmocka_unit_test(test_membrane_does_not_leap_over_pull_in),
       cmocka_unit_test(test_loss_of_tension_is_located),
+      cmocka_unit_test(test_buckling_in_one_step),
       cmocka_unit_test(test_rest_under_stiff_electrodes),
       cmocka_unit_test(test_pull_in_beside_fibre_tips),
       cmocka_unit_test(test_pressures_under_fibres_settle),

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* More area at once than this, and a limit point may have been passed: along a path that goes on
  * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
@@ -293,6 +294,54 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
   return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
 }
 
+/* How many columns the nodes of a solid may be in. */
+static size_t columns_of(const struct dea_solid *s)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  int last = 0;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    last = grid->column[n] > last ? grid->column[n] : last;
+  }
+  return (size_t)last + 1;
+}
+
+/* Largest height of a column's middle over where it is undeformed; heights: [columns], room. */
+static double deflection_m(const struct dea_solid *s, const double *u, size_t columns,
+                           double *heights)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  double largest = 0;
+  memset(heights, 0, columns * sizeof *heights);
+  for (size_t n = 0; n < grid->node_count; n++) { // what thins moves by as much up as down
+    if (grid->column[n] >= 0) {                   // -1: of a body
+      heights[grid->column[n]] += u[3 * n + 2];
+    }
+  }
+  for (size_t c = 0; c < columns; c++) {
+    largest = fmax(largest, fabs(heights[c]));
+  }
+  return largest;
+}
+
+/* Whether a film that was flat under a voltage is no more: it has buckled, if also straight to a
+ * stable state, and might have to the other side. */
+static dea_status see_buckling(struct dea_context *ctx, const struct dea_ending *e,
+                               const struct dea_solid_stand *from, bool *buckled)
+{
+  static const double flat = 1e-6, deflected = 1e-3; // of the thickness
+  const struct dea_solid *s = e->owner.solid;
+  const double h = e->owner.flat_thickness_m;
+  const size_t columns = columns_of(s);
+  double *room = dea_alloc(ctx, columns, sizeof *room);
+  if (room == NULL) {
+    return dea_context_status(ctx);
+  }
+  *buckled = e->from_V != 0 && deflection_m(s, from->state, columns, room) < flat * h &&
+             deflection_m(s, s->state.u, columns, room) > deflected * h;
+  dea_free(ctx, room);
+  return DEA_OK;
+}
+
 /* One load step. */
 static dea_status step(struct dea_context *ctx, struct dea_ending *e, double from_V,
                        double voltage_V, struct dea_solid_report *report)
@@ -315,7 +364,12 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
                    ? stopped(ctx, e, voltage_V, &stop, status)
                    : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     } else {
-      status = look_at_step(ctx, e, voltage_V, &from, taut, area, report->snapped);
+      bool buckled = false;
+      status = see_buckling(ctx, e, &from, &buckled);
+      report->snapped |= buckled;
+      status = status == DEA_OK
+                   ? look_at_step(ctx, e, voltage_V, &from, taut, area, report->snapped)
+                   : status;
     }
     e->keeps = false;
   }

@@ -217,9 +217,15 @@ dea_status dea_grid_add_nodes(struct dea_context *ctx, struct dea_grid *grid, si
                               const double *X_m, size_t *first)
 {
   double *X = dea_arena_alloc(&grid->memory, grid->node_count + count, 3 * sizeof *X);
+  int *column = dea_arena_alloc(&grid->memory, grid->node_count + count, sizeof *column);
   DEA_TRY(ctx, dea_arena_status(&grid->memory));
   memcpy(X, grid->X, 3 * grid->node_count * sizeof *X);
+  memcpy(column, grid->column, grid->node_count * sizeof *column);
+  for (size_t i = 0; i < count; i++) {
+    column[grid->node_count + i] = -1;
+  }
   grid->X = X;
+  grid->column = column;
   memcpy(X + 3 * grid->node_count, X_m, 3 * count * sizeof *X);
   *first = grid->node_count;
   grid->node_count += count;

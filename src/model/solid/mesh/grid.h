@@ -34,7 +34,7 @@ struct dea_grid {
   int order, order_z;      // in the plane, through a ply with a thickness
   size_t node_count, element_count;
   double *X;         // [node_count][3]
-  int *column;       // [node_count] node of the plane mesh that it was extruded from
+  int *column;       // [node_count] node of the plane mesh that it was extruded from; -1: of none
   int *nodes;        // [element_count][DEA_HEX_NODES_MAX], the first dea_grid_nodes_of used
   int *region, *ply; // [element_count]
   int *levels;       // [element_count] of (order + 1)^2 nodes each; 1 of a surface
