@@ -50,6 +50,16 @@ static void read_cases(const char *name, char fields[DESIGNS][200], double q[DES
   }
 }
 
+/* A command that needs model 3d; a build without it skips the test. */
+static void run_solid(const char *arguments)
+{
+  const int code = command_run(arguments);
+  if (code == 2) {
+    skip();
+  }
+  assert_int_equal(code, 0);
+}
+
 /* The same as from rest, and to the bit the same whoever computes it after whom. */
 static void test_neighbours(void **state)
 {
@@ -57,11 +67,7 @@ static void test_neighbours(void **state)
   static char near[DESIGNS][200], rest[DESIGNS][200], parts[DESIGNS][200];
   static double a[DESIGNS][NUMBERS], b[DESIGNS][NUMBERS];
   write_files();
-  const int code = command_run("sweep near.yaml -j 1");
-  if (code == 2) { // a build without model 3d
-    skip();
-  }
-  assert_int_equal(code, 0);
+  run_solid("sweep near.yaml -j 1");
   assert_contains(command_out, "without all values: 4");
   assert_int_equal(command_run("sweep rest.yaml -j 1"), 0);
   read_cases("near.sweep/cases.csv", near, a);
@@ -85,16 +91,12 @@ static void test_neighbours(void **state)
   }
 }
 
-/* A search by gradients of model 3d; a build without that model skips the test. */
+/* A search by gradients of model 3d. */
 static void optimise(const char *file)
 {
   char line[100];
   snprintf(line, sizeof line, "optimise %s -j 1 -q", file);
-  const int code = command_run(line);
-  if (code == 2) {
-    skip();
-  }
-  assert_int_equal(code, 0);
+  run_solid(line);
   assert_contains(command_out, "gradients: of the model\n");
 }
 
@@ -163,11 +165,7 @@ static void test_force(void **state)
                 "limits: [{quantity: force_N, above: 25 mN}]\nvariables:\n"
                 "  - {name: film.thickness, low: 80 um, high: 120 um, start: 100 um}\n"
                 "  - {name: compute.force.radius, low: 1.2 mm, high: 1.6 mm, start: 1.3 mm}\n");
-  const int code = command_run("optimise pressed.yaml -j 1 -q");
-  if (code == 2) { // a build without model 3d
-    skip();
-  }
-  assert_int_equal(code, 0);
+  run_solid("optimise pressed.yaml -j 1 -q");
   assert_contains(command_out, "gradients: of the model\n");
   command_read("pressed.optimise/best.yaml", bytes);
   command_write("stiff.yaml", bytes);
@@ -211,11 +209,7 @@ static void test_monitors(void **state)
       "%svoltages: [2 kV, 3 kV]\nvariables: [{name: plies.film.thickness, values: [100 um]}]\n",
       head);
   command_write("seen.yaml", text);
-  const int code = command_run("sweep seen.yaml -j 1 -q");
-  if (code == 2) { // a build without model 3d
-    skip();
-  }
-  assert_int_equal(code, 0);
+  run_solid("sweep seen.yaml -j 1 -q");
   command_read("seen.sweep/cases.csv", bytes);
   assert_contains(bytes,
                   ",hub.z_m@2000 (m),ring.z_m@2000 (m),ring.area_stretch@2000 (1),hub.z_m@3");
@@ -265,11 +259,7 @@ static void test_tolerances_of_plies(void **state)
               {"\n3,plies.film.pre_stretch,1.2,1,hub.z_m,", 0.02}};
   double slope, tolerance, change;
   command_write("cone.yaml", cone);
-  const int code = command_run("run cone.yaml --study sensitivity -q -o cone.run");
-  if (code == 2) { // a build without model 3d
-    skip();
-  }
-  assert_int_equal(code, 0);
+  run_solid("run cone.yaml --study sensitivity -q -o cone.run");
   command_read("cone.run/3d_sensitivity_slopes.csv", bytes);
   for (int i = 0; i < 2; i++) {
     const char *row = strstr(bytes, rows[i].row);

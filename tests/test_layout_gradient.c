@@ -1,6 +1,7 @@
 /* Gradients of devices of the general form: Taylor's remainder of each by the changed device, built
  * and solved by itself. */
 // ctest: solid
+#include "design_text.h"
 #include "model/model.h"
 #include "result/columns.h"
 #include "study/design_file.h"
@@ -355,10 +356,7 @@ static void test_tension_of_a_bender(void **state)
   struct at at = {.voltage_V = 500};
   struct dea_model *model;
   double base[WIDTH], moved[WIDTH], slope, left[3];
-  assert_int_equal(
-      dea_design_read_memory(ctx, "bender.yaml", bender, strlen(bender), NULL, 0, &at.design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  assert_int_equal(read_and_build(ctx, bender, NULL, 0, &at.design, &at.device), DEA_OK);
   solve(&at, at.device, at.voltage_V, base, &model);
   const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
   const int column = dea_point_column_find(keys[TENSION]);
@@ -392,10 +390,7 @@ static void test_all_lengths(void **state)
   double base[WIDTH], sum[WIDTH] = {0}, slopes[DEA_NUMBERS_MAX * WIDTH];
   int columns[KEYS];
   size_t count;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "bender.yaml", bender, strlen(bender), NULL, 0, &at.design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  assert_int_equal(read_and_build(ctx, bender, NULL, 0, &at.design, &at.device), DEA_OK);
   solve(&at, at.device, at.voltage_V, base, &model);
   assert_int_equal(dea_design_numbers(ctx, at.design, at.device, at.voltage_V, numbers, &count),
                    DEA_OK);
@@ -439,9 +434,7 @@ static void test_what_cannot_follow(void **state)
   struct at at = {.voltage_V = 1e3};
   struct dea_model *model;
   double base[WIDTH], slope;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
-  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  assert_int_equal(read_and_build(ctx, cone, NULL, 0, &at.design, &at.device), DEA_OK);
   at.monitor_count = at.device->layout->monitor_count;
   solve(&at, at.device, at.voltage_V, base, &model);
   const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
@@ -459,10 +452,7 @@ static void test_what_cannot_follow(void **state)
   for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
     struct dea_design *design;
     struct dea_device *device;
-    assert_int_equal(
-        dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), &all[i].change, 1, &design),
-        DEA_OK);
-    assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+    assert_int_equal(read_and_build(ctx, cone, &all[i].change, 1, &design, &device), DEA_OK);
     const struct dea_design_change change = {
         {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6, {NULL, NULL}};
     const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL, false};
@@ -609,10 +599,7 @@ static void test_critical_voltages_of_a_laminate(void **state)
       {"plies.upper.pre_stretch"}, {"plies.lower.thickness"}, {"plies.upper.pre_stretch"}};
   struct at at = {.voltage_V = 200};
   double voltage_V, slopes[DEA_NUMBERS_MAX];
-  assert_int_equal(
-      dea_design_read_memory(ctx, "laminate.yaml", laminate, strlen(laminate), NULL, 0, &at.design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  assert_int_equal(read_and_build(ctx, laminate, NULL, 0, &at.design, &at.device), DEA_OK);
   for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
     at.only = only[k];
     check_critical(&at, kinds[k], &voltage_V, slopes);
@@ -666,9 +653,7 @@ static void test_buckling_of_a_strip(void **state)
   const double wanted_V = pi * h * h / L * sqrt(2 * mu / eps), part = 0.03;
   struct at at = {.voltage_V = 500, .only = only};
   double V, by[DEA_NUMBERS_MAX], larger = 0;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "strut.yaml", strut, strlen(strut), NULL, 0, &at.design), DEA_OK);
-  assert_int_equal(dea_device_build(ctx, at.design, &at.device), DEA_OK);
+  assert_int_equal(read_and_build(ctx, strut, NULL, 0, &at.design, &at.device), DEA_OK);
   assert_int_equal(check_critical(&at, DEA_EVENT_BUCKLING, &V, by), OF_SHAPES + SHAPES);
   assert_close(V, wanted_V, part, 0);
   assert_close(by[STRETCH], 3 * mu * h * h / (eps * V), 2 * part, 0);

@@ -182,6 +182,22 @@ static void test_local_pull_in_is_not_leapt_over(void **state)
   }
 }
 
+/* Pull-in is that of the exact disc to a share, in six steps. Returns the last voltage before. */
+static double check_pull_in(const struct dea_device *device,
+                            const struct dea_model_settings *settings, double highest_V,
+                            double share)
+{
+  struct dea_event exact, found;
+  double at_V;
+  assert_int_equal(sweep(dea_model_find("axisymmetric"), device, NULL, highest_V, 6, &at_V, &exact),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(sweep(&dea_solid_module, device, settings, highest_V, 6, &at_V, &found),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(found.kind, DEA_EVENT_PULL_IN);
+  assert_close(found.point.voltage_V, exact.point.voltage_V, share, 0);
+  return at_V;
+}
+
 /* A membrane that goes slack close to its pull-in (random design 1): the path has a corner there,
  * and a load step that begins before it ends in a state that only the end of the law holds. */
 static void test_membrane_does_not_leap_over_pull_in(void **state)
@@ -190,15 +206,7 @@ static void test_membrane_does_not_leap_over_pull_in(void **state)
   struct dea_device device =
       disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 13.74e-6, 1.245, 8.619e-3, 33.66e-3);
   device.film.permittivity.at_rest = 4.8;
-  struct dea_event exact, found;
-  double at_V;
-  assert_int_equal(sweep(dea_model_find("axisymmetric"), &device, NULL, 191.4, 6, &at_V, &exact),
-                   DEA_E_NO_EQUILIBRIUM);
-  assert_int_equal(sweep(&dea_solid_module, &device, &membrane, 191.4, 6, &at_V, &found),
-                   DEA_E_NO_EQUILIBRIUM);
-  assert_int_equal(found.kind, DEA_EVENT_PULL_IN);
-  assert_close(at_V, 191.4 * 4 / 6, 0, 1e-9);
-  assert_close(found.point.voltage_V, exact.point.voltage_V, 5e-3, 0);
+  assert_close(check_pull_in(&device, &membrane, 191.4, 5e-3), 191.4 * 4 / 6, 0, 1e-9);
 }
 
 /* What a path has come by. */
@@ -215,8 +223,8 @@ static dea_status watch_point(void *user, const struct dea_load_point *point)
   return DEA_OK;
 }
 
-/* From one taut film (random design 531) to one that is an eighth as thick in
- * one place: the path is followed past where it turns unstable, which is told and not forgotten. */
+/* From one taut film (random design 531) to one that is an eighth as thick in one place: the path
+ * is followed past where it turns unstable, which is told and not forgotten. */
 static void test_pull_in_that_the_path_passes(void **state)
 {
   (void)state;
@@ -227,14 +235,7 @@ static void test_pull_in_that_the_path_passes(void **state)
   device.film.permittivity.at_rest = 7.7;
   device.film.density_kg_per_m3 = 1000;
   device.gravity = DEA_GRAVITY_FIBRES_DOWN;
-  struct dea_event exact, found;
-  double at_V;
-  assert_int_equal(sweep(dea_model_find("axisymmetric"), &device, NULL, 584.2, 6, &at_V, &exact),
-                   DEA_E_NO_EQUILIBRIUM);
-  assert_int_equal(sweep(&dea_solid_module, &device, &coarse, 584.2, 6, &at_V, &found),
-                   DEA_E_NO_EQUILIBRIUM);
-  assert_int_equal(found.kind, DEA_EVENT_PULL_IN);
-  assert_close(found.point.voltage_V, exact.point.voltage_V, 1e-2, 0);
+  check_pull_in(&device, &coarse, 584.2, 1e-2);
 }
 
 /* By arc-length one comes to the equilibria of load steps, and the model stays where it was. */

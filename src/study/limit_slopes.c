@@ -104,16 +104,13 @@ static dea_status put_matter(struct dea_context *ctx, const struct found *f,
   for (size_t n = 0; n < count; n++) {
     const size_t best = order[n];
     const struct dea_design_number *number = &f->numbers[best];
-    char value[48], tolerance[48] = "", change[48] = "";
+    const struct dea_tolerated tolerated = dea_number_tolerated(number, f->slopes[best], "V");
+    char value[48];
     dea_number_text(number->value, number->unit, value, sizeof value);
-    if (number->tolerance > 0) {
-      dea_number_text(number->tolerance, number->unit, tolerance, sizeof tolerance);
-      dea_number_text(f->slopes[best] * number->tolerance, "V", change, sizeof change);
-    }
     const struct dea_result_table_value row[] = {
         {.text = f->limit->title}, {.number = f->voltage_V},        {.text = number->key},
-        {.text = value},           {.number = elasticity(f, best)}, {.text = tolerance},
-        {.text = change}};
+        {.text = value},           {.number = elasticity(f, best)}, {.text = tolerated.tolerance},
+        {.text = tolerated.change}};
     DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   }
   return DEA_OK;

@@ -27,6 +27,17 @@ void dea_number_text(double value, const char *unit, char *out, size_t size)
   snprintf(out, size, "%.5g %.20s", value, unit);
 }
 
+struct dea_tolerated dea_number_tolerated(const struct dea_design_number *number, double slope,
+                                          const char *unit)
+{
+  struct dea_tolerated out = {"", ""};
+  if (number->tolerance > 0) {
+    dea_number_text(number->tolerance, number->unit, out.tolerance, sizeof out.tolerance);
+    dea_number_text(slope * number->tolerance, unit, out.change, sizeof out.change);
+  }
+  return out;
+}
+
 size_t dea_numbers_order(const double *sizes, size_t count, size_t *order)
 {
   size_t placed = 0;

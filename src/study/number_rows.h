@@ -3,6 +3,7 @@
 #define DEA_STUDY_NUMBER_ROWS_H
 
 #include "result/table.h"
+#include "study/design_gradient.h"
 
 /* Columns of a number: its key, its value and its unit. */
 #define DEA_NUMBER_IN_ROW                                                                          \
@@ -16,6 +17,14 @@
 
 /* A number as people read it, in a unit that fits. */
 void dea_number_text(double value, const char *unit, char *out, size_t size);
+
+/* A tolerance of the workshop and what it changes a quantity by; "" where there is none. */
+struct dea_tolerated {
+  char tolerance[48], change[48];
+};
+/* slope: of the quantity, in `unit`, by the number. */
+struct dea_tolerated dea_number_tolerated(const struct dea_design_number *number, double slope,
+                                          const char *unit);
 
 /* order [count]: places of the sizes above 0, the largest first, equal ones as they come. How many
  * they are. */

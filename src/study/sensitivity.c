@@ -244,23 +244,11 @@ static double depth_of(const struct stop *stop)
   return stop->is_pressed ? stop->pressed.depth_m : NAN;
 }
 
-/* A tolerance of the workshop and what it changes a quantity by; "" where there is none. */
-struct tolerated {
-  char tolerance[48], change[48];
-};
-
-static struct tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
+static struct dea_tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
 {
-  struct tolerated out = {"", ""};
-  const struct dea_design_number *number = &stop->numbers[i];
   const char *unit = quantity < QUANTITIES ? dea_point_columns[stop->columns[quantity]].si_unit
                                            : motions[stop->motion[quantity - QUANTITIES]].si_unit;
-  if (number->tolerance > 0) {
-    dea_number_text(number->tolerance, number->unit, out.tolerance, sizeof out.tolerance);
-    dea_number_text(slope_of(stop, i, quantity) * number->tolerance, unit, out.change,
-                    sizeof out.change);
-  }
-  return out;
+  return dea_number_tolerated(&stop->numbers[i], slope_of(stop, i, quantity), unit);
 }
 
 static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
@@ -269,7 +257,7 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
   const struct dea_design_number *number = &stop->numbers[i];
   struct dea_result_table_value row[COUNT(matter_columns)] = {
       {.number = stop->voltage_V}, {.number = depth_of(stop)}, {.text = number->key}};
-  const struct tolerated tolerated = tolerate(stop, lead, i);
+  const struct dea_tolerated tolerated = tolerate(stop, lead, i);
   char value[48];
   size_t n = 3;
   dea_number_text(number->value, number->unit, value, sizeof value);
@@ -357,7 +345,7 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
       {.text = number->key},
       {.text = value},
       {.number = elasticity(stop, i, lead)}};
-  const struct tolerated tolerated = tolerate(stop, lead, i);
+  const struct dea_tolerated tolerated = tolerate(stop, lead, i);
   size_t n = 5;
   for (size_t k = FIELD; k < QUANTITIES; k++) {
     row[n++].number = elasticity(stop, i, k);

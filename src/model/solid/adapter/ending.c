@@ -294,17 +294,6 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
   return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
 }
 
-/* How many columns the nodes of a solid may be in. */
-static size_t columns_of(const struct dea_solid *s)
-{
-  const struct dea_grid *grid = s->problem.grid;
-  int last = 0;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    last = grid->column[n] > last ? grid->column[n] : last;
-  }
-  return (size_t)last + 1;
-}
-
 /* Largest height of a column's middle over where it is undeformed; heights: [columns], room. */
 static double deflection_m(const struct dea_solid *s, const double *u, size_t columns,
                            double *heights)
@@ -331,12 +320,16 @@ static dea_status see_buckling(struct dea_context *ctx, const struct dea_ending 
   static const double flat = 1e-6, deflected = 1e-3; // of the thickness
   const struct dea_solid *s = e->owner.solid;
   const double h = e->owner.flat_thickness_m;
-  const size_t columns = columns_of(s);
-  double *room = dea_alloc(ctx, columns, sizeof *room);
-  if (room == NULL) {
-    return dea_context_status(ctx);
+  const size_t columns = dea_grid_columns(s->problem.grid);
+  *buckled = false;
+  if (e->from_V == 0) {
+    return DEA_OK;
   }
-  *buckled = e->from_V != 0 && deflection_m(s, from->state, columns, room) < flat * h &&
+  double *room = dea_solid_alloc(ctx, columns, sizeof *room);
+  if (room == NULL) {
+    return dea_fail_chain(ctx, DEA_E_MEMORY, __func__, __FILE__, __LINE__);
+  }
+  *buckled = deflection_m(s, from->state, columns, room) < flat * h &&
              deflection_m(s, s->state.u, columns, room) > deflected * h;
   dea_free(ctx, room);
   return DEA_OK;
@@ -364,7 +357,7 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
                    ? stopped(ctx, e, voltage_V, &stop, status)
                    : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     } else {
-      bool buckled = false;
+      bool buckled;
       status = see_buckling(ctx, e, &from, &buckled);
       report->snapped |= buckled;
       status = status == DEA_OK

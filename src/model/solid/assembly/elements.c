@@ -43,12 +43,13 @@ static bool is_electrode(const struct dea_solid *s, size_t e)
   return dea_solid_constituent(s, e)->part == DEA_PART_ELECTRODE;
 }
 
-/* first: [nodes] an electrode whose first corner is there; next: [elements] another one; -1: none.
+/* first: [columns] an electrode whose first corner is there; next: [elements] another one; -1:
+ * none.
  */
-static void find_electrodes(struct dea_solid *s, int *first, int *next)
+static void find_electrodes(struct dea_solid *s, size_t columns, int *first, int *next)
 {
   const struct dea_grid *grid = s->problem.grid;
-  memset(first, -1, grid->node_count * sizeof *first);
+  memset(first, -1, columns * sizeof *first);
   for (size_t e = 0; e < grid->element_count; e++) {
     if (is_electrode(s, e)) {
       int *to = &first[corner_of(grid, e, false)];
@@ -71,7 +72,7 @@ static void find_electrodes(struct dea_solid *s, int *first, int *next)
 dea_status dea_solid_find_electrodes(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_solid_problem *p = &s->problem;
-  const size_t elements = p->grid->element_count, nodes = p->grid->node_count;
+  const size_t elements = p->grid->element_count, columns = dea_grid_columns(p->grid);
   bool any = false;
   for (size_t e = 0; e < elements && !any; e++) {
     any = is_electrode(s, e);
@@ -81,11 +82,11 @@ dea_status dea_solid_find_electrodes(struct dea_context *ctx, struct dea_solid *
   }
   p->electrodes = dea_arena_alloc(&s->memory, elements, sizeof *p->electrodes);
   DEA_TRY(ctx, dea_arena_status(&s->memory));
-  int *room = dea_alloc(ctx, nodes + elements, sizeof *room);
+  int *room = dea_solid_alloc(ctx, columns + elements, sizeof *room);
   if (room == NULL) {
-    return dea_fail(ctx, DEA_E_MEMORY, "no memory for %zu elements", elements);
+    return dea_fail_chain(ctx, DEA_E_MEMORY, __func__, __FILE__, __LINE__);
   }
-  find_electrodes(s, room, room + nodes);
+  find_electrodes(s, columns, room, room + columns);
   dea_free(ctx, room);
   return DEA_OK;
 }

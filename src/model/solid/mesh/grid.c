@@ -142,6 +142,15 @@ static dea_status compact(struct dea_context *ctx, struct dea_grid *grid)
   return DEA_OK;
 }
 
+size_t dea_grid_columns(const struct dea_grid *grid)
+{
+  int last = -1;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    last = grid->column[n] > last ? grid->column[n] : last;
+  }
+  return (size_t)(last + 1);
+}
+
 int dea_grid_nodes_of(const struct dea_grid *grid, size_t element)
 {
   return (grid->order + 1) * (grid->order + 1) * grid->levels[element];

@@ -41,6 +41,10 @@ struct dea_grid {
   enum dea_element_kind *kind; // [element_count] hexahedra and membranes, unless changed
 };
 
+/* What column [node_count] counts in: one more than the largest. A plane mesh may have more nodes
+ * than the grid, where regions have no plies. */
+size_t dea_grid_columns(const struct dea_grid *grid);
+
 /* Nodes of an element. */
 int dea_grid_nodes_of(const struct dea_grid *grid, size_t element);
 
