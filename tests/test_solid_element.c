@@ -314,8 +314,23 @@ static void check_constraint(struct sample *s)
   }
 }
 
+/* The deformation alone is that of the recovery. */
+static void check_deformation(struct sample *s)
+{
+  static struct dea_recovered recovered;
+  static double F[DEA_HEX_NODES_MAX][9];
+  const struct dea_element_type *type = s->element->type;
+  shake(s);
+  assert_int_equal(type->recover(s->element, &s->in, &recovered), DEA_OK);
+  assert_int_equal(type->deformation(s->element, &s->in, F), DEA_OK);
+  for (int i = 0; i < 9 * recovered.nodes; i++) {
+    assert_close(F[i / 9][i % 9], recovered.F[i / 9][i % 9], 0, 1e-14);
+  }
+}
+
 static void check_inverted(struct sample *s)
 {
+  static double F[DEA_HEX_NODES_MAX][9];
   static struct dea_element_strains strains;
   static double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], share[DEA_HEX_NODES_MAX];
   const struct dea_element_type *type = s->element->type;
@@ -326,6 +341,7 @@ static void check_inverted(struct sample *s)
   memset(s->u, 0, sizeof s->u);
   assert_int_equal(type->evaluate(s->element, &s->in, DEA_TANGENT, &at), DEA_E_DOMAIN);
   assert_int_equal(type->strains(s->element, &s->in, &strains), DEA_E_DOMAIN);
+  assert_int_equal(type->deformation(s->element, &s->in, F), DEA_E_DOMAIN);
   assert_int_equal(type->mass(s->element, &s->film, s->X, mass), DEA_E_DOMAIN);
   assert_int_equal(type->metric(s->element, &s->film, s->X, mass, share), DEA_E_DOMAIN);
 }
@@ -338,8 +354,8 @@ static void test_every_kind(void **state)
     assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &set), DEA_OK);
     for (int kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
       static void (*const checks[])(struct sample * s) = {
-          check_derivatives, check_rigid_motion, check_patch,   check_integrals,
-          check_prediction,  check_constraint,   check_inverted};
+          check_derivatives, check_rigid_motion, check_patch,      check_integrals,
+          check_prediction,  check_deformation,  check_constraint, check_inverted};
       for (size_t i = 0; i < 2 * sizeof checks / sizeof checks[0]; i++) {
         static struct sample s;
         fill(order, &set.of[kind], i % 2 == 1, &s);

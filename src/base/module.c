@@ -31,7 +31,8 @@ dea_status dea_module_open(struct dea_context *ctx, const char *file, const char
                     "%s is not here: %s; DEA_MODULES may name the folder of %s", what, advice,
                     file);
   }
-  void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL); // stays open
+  // it stays open; what it needs itself is found here (-z now), what its libraries need when called
+  void *handle = dlopen(path, RTLD_LAZY | RTLD_LOCAL);
   *out = handle != NULL ? dlsym(handle, symbol) : NULL;
   if (*out == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "%s cannot be loaded: %.300s", what, dlerror());

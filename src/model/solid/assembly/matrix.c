@@ -307,6 +307,7 @@ static dea_status analyse(struct dea_context *ctx, Mat A, PetscInt room_percent,
   DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 24, 1)); // null pivots and
   DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 13, 1)); // no parallel root, so that inertia is counted
   DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 14, room_percent));
+  DEA_PETSC(ctx, MatMumpsSetIcntl(*factor, 8, 1)); // scaled by its diagonal, which takes no passes
   DEA_PETSC(ctx, MatCholeskyFactorSymbolic(*factor, A, NULL, &info));
   return DEA_OK;
 }

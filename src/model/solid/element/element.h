@@ -133,6 +133,9 @@ struct dea_element_type {
                                struct dea_membrane_state *out);
   dea_status (*recover)(const struct dea_element *e, const struct dea_element_input *in,
                         struct dea_recovered *out);
+  /* F of recover alone, [nodes][9], for less. */
+  dea_status (*deformation)(const struct dea_element *e, const struct dea_element_input *in,
+                            double (*F)[9]);
   /* Electric stiffness L [nodes][nodes] [F]: the energy at potentials phi [V] is -(1/2) phi L phi.
    * NULL for a kind without a potential. */
   dea_status (*capacity)(const struct dea_element *e, const struct dea_element_input *in,

@@ -37,34 +37,45 @@ void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out)
   }
 }
 
-void dea_fit_node(const struct dea_gauss_fit *fit, int node, double (*at)[DEA_FIT_VALUES],
-                  double out[DEA_FIT_VALUES])
+/* Along the second axis of [outer][n][inner], in place; rows of a table of struct dea_gauss_fit. */
+static void fit_axis(const double *fit, int outer, int n, int inner, double *values)
 {
-  int i = node % fit->n, j = node / fit->n % fit->n, k = node / (fit->n * fit->n);
-  memset(out, 0, DEA_FIT_VALUES * sizeof *out);
-  for (int c = 0, q = 0; c < fit->nz; c++) {
-    for (int b = 0; b < fit->n; b++) {
-      for (int a = 0; a < fit->n; a++, q++) {
-        double share = fit->plane[i][a] * fit->plane[j][b] * fit->z[k][c];
-        for (int v = 0; v < DEA_FIT_VALUES; v++) {
-          out[v] += share * at[q][v];
+  for (int o = 0; o < outer; o++) {
+    double *line = values + o * n * inner;
+    for (int x = 0; x < inner; x++) {
+      double sum[DEA_FIT_LINE_MAX] = {0};
+      for (int i = 0; i < n; i++) {
+        for (int q = 0; q < n; q++) {
+          sum[i] += fit[i * DEA_FIT_LINE_MAX + q] * line[q * inner + x];
         }
+      }
+      for (int i = 0; i < n; i++) {
+        line[i * inner + x] = sum[i];
       }
     }
   }
 }
 
+void dea_fit_nodes(const struct dea_gauss_fit *fit, int width, const double *at, double *out)
+{
+  int n = fit->n, nz = fit->nz;
+  memcpy(out, at, (size_t)(n * n * nz * width) * sizeof *out);
+  fit_axis(fit->plane[0], nz * n, n, width, out);
+  fit_axis(fit->plane[0], nz, n, n * width, out);
+  fit_axis(fit->z[0], 1, nz, n * n * width, out);
+}
+
 void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
                        struct dea_recovered *out)
 {
+  double value[DEA_HEX_NODES_MAX][DEA_FIT_VALUES];
   out->plane_nodes = fit->n * fit->n;
   out->nodes = out->plane_nodes * fit->nz;
+  dea_fit_nodes(fit, DEA_FIT_VALUES, at[0], value[0]);
   for (int node = 0; node < out->nodes; node++) {
-    double value[DEA_FIT_VALUES];
-    dea_fit_node(fit, node, at, value);
-    memcpy(out->F[node], value, sizeof out->F[node]);
-    memcpy(out->stress[node], value + 9, sizeof out->stress[node]);
-    out->energy[node] = value[15];
-    out->field[node] = value[16];
+    memcpy(out->F[node], value[node], sizeof out->F[node]);
+    memcpy(out->stress[node], value[node] + 9, sizeof out->stress[node]);
+    out->energy[node] = value[node][15];
+    out->field[node] = value[node][16];
   }
 }

@@ -701,7 +701,8 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   double thin_V_per_m =
       !coupled && constituent->thickness_m > 0 ? in->voltage_V / constituent->thickness_m : 0;
   out->volume_m3 = out->volume_error = 0;
-  dea_status status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
+  dea_status status = coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, points)
+                              : dea_hex_find_points(shape, in->X, in->u, points);
   if (status == DEA_OK) {
     status = dea_hex_project(shape, points, factor, moment, theta);
   }
@@ -725,6 +726,24 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   dea_recovered_set(&fit, values, out);
   membrane_force(shape, &fit, in->X[3 * (shape->nodes - 1) + 2] - in->X[2], P, out);
   return DEA_OK;
+}
+
+dea_status dea_hex_deformation(const struct dea_element *element,
+                               const struct dea_element_input *in, double (*F)[9])
+{
+  const struct dea_hex_shape *shape = element->basis;
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  double at[DEA_HEX_GAUSS_MAX][9];
+  struct dea_gauss_fit fit;
+  dea_status status = dea_hex_find_points(shape, in->X, in->u, points);
+  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
+    memcpy(at[q], points[q].F, sizeof at[q]);
+  }
+  if (status == DEA_OK) {
+    dea_fit_create(shape->order, shape->order_z, &fit);
+    dea_fit_nodes(&fit, 9, at[0], F[0]);
+  }
+  return status;
 }
 
 /* ---- the kind ---- */

@@ -64,12 +64,15 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
                                   struct dea_membrane_state *out);
 dea_status dea_hex_recover(const struct dea_element *element, const struct dea_element_input *in,
                            struct dea_recovered *out);
+dea_status dea_hex_deformation(const struct dea_element *element,
+                               const struct dea_element_input *in, double (*F)[9]);
 
 /* The members of such a kind's type that are the hexahedron's. */
 #define DEA_HEX_MEMBERS                                                                            \
   .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON, .basis_size = sizeof(struct dea_hex_shape),  \
   .create = dea_hex_create, .check = dea_hex_check, .predict = dea_hex_predict,                    \
   .constraint = dea_hex_constraint, .mass = dea_hex_mass, .metric = dea_hex_metric,                \
-  .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state, .recover = dea_hex_recover
+  .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state,                            \
+  .recover = dea_hex_recover, .deformation = dea_hex_deformation
 
 #endif

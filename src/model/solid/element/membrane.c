@@ -338,6 +338,22 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
   return DEA_OK;
 }
 
+static dea_status deformation(const struct dea_element *element, const struct dea_element_input *in,
+                              double (*F)[9])
+{
+  const struct dea_flat_shape *shape = element->basis;
+  double at[DEA_FLAT_NODES_MAX][9], columns[6];
+  struct dea_gauss_fit fit;
+  for (int q = 0; q < shape->gauss; q++) {
+    if (!(columns_at(shape, q, in->X, in->u, columns) > 0 && complete(columns, at[q]) > 0)) {
+      return DEA_E_DOMAIN;
+    }
+  }
+  dea_fit_create(shape->order, 0, &fit);
+  dea_fit_nodes(&fit, 9, at[0], F[0]);
+  return DEA_OK;
+}
+
 /* ---- the kind ---- */
 
 static dea_status create(int order, int order_z, struct dea_element *out)
@@ -366,4 +382,5 @@ const struct dea_element_type dea_element_membrane = {
     .strains = strains,
     .membrane_state = membrane_state,
     .recover = recover,
+    .deformation = deformation,
 };

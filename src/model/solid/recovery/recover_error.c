@@ -112,49 +112,69 @@ static double (*value_at(const struct work *w, size_t e, int n))[9]
   return w->value + (e * w->nodes + (size_t)n) * w->tensors;
 }
 
-/* Values of one element, of u (k = 0) or moved by the k-th z times `step`. */
-static dea_status take_element(struct work *w, const struct dea_recover_input *in, size_t e,
-                               size_t k, double step, struct dea_recovered *at)
+/* Values of one element at u. */
+static dea_status take_state(struct work *w, size_t e, struct dea_recovered *at)
 {
-  dea_status status = dea_recover_element(in, e, at);
+  dea_status status = dea_recover_element(w->in, e, at);
   for (int n = 0; status == DEA_OK && n < at->nodes; n++) {
     double(*value)[9] = value_at(w, e, n);
-    if (k == 0) {
-      nominal_stress(at->F[n], at->stress[n], value[AT_P]);
-      memcpy(value[AT_F], at->F[n], sizeof at->F[n]);
-    } else {
-      for (int i = 0; i < 9; i++) {
-        value[AT_Z + k - 1][i] = (at->F[n][i] - value[AT_F][i]) / step;
-      }
-    }
+    nominal_stress(at->F[n], at->stress[n], value[AT_P]);
+    memcpy(value[AT_F], at->F[n], sizeof at->F[n]);
   }
   w->volume[e] = at->volume_m3;
   return status;
 }
 
-/* All elements, of u or moved. */
-static dea_status take_all(struct work *w, size_t k, const double *z, struct dea_recovered *at)
+/* The gradient of the k-th z in one element, where `in` is moved by `step` of it. */
+static dea_status take_gradient(struct work *w, const struct dea_recover_input *in, size_t e,
+                                size_t k, double step)
 {
-  const struct dea_grid *grid = w->in->grid;
-  struct dea_recover_input in = *w->in;
-  double largest = 0, step = 1;
-  for (size_t i = 0; z != NULL && i < 3 * grid->node_count; i++) {
+  double F[DEA_HEX_NODES_MAX][9];
+  dea_status status = dea_recover_deformation(in, e, F);
+  for (int n = 0; status == DEA_OK && n < dea_grid_nodes_of(w->in->grid, e); n++) {
+    double(*value)[9] = value_at(w, e, n);
+    for (int i = 0; i < 9; i++) {
+      value[AT_Z + k][i] = (F[n][i] - value[AT_F][i]) / step;
+    }
+  }
+  return status;
+}
+
+/* What u is moved by: a nanometre, so that nothing turns inside out. Returns the share of z. */
+static double move(struct work *w, const double *z)
+{
+  const size_t count = 3 * w->in->grid->node_count;
+  double largest = 0;
+  for (size_t i = 0; i < count; i++) {
     largest = fmax(largest, fabs(z[i]));
   }
-  if (z != NULL) {
-    step = largest > 0 ? 1e-9 / largest : 1; // moved by a nanometre: nothing turns inside out
-    for (size_t i = 0; i < 3 * grid->node_count; i++) {
-      w->moved[i] = w->in->u[i] + step * z[i];
-    }
-    in.u = w->moved;
+  const double step = largest > 0 ? 1e-9 / largest : 1;
+  for (size_t i = 0; i < count; i++) {
+    w->moved[i] = w->in->u[i] + step * z[i];
   }
-  for (size_t e = 0; e < grid->element_count; e++) {
-    dea_status status = take_element(w, &in, e, k, step, at);
-    if (status != DEA_OK) {
-      return dea_fail(w->ctx, status, "element %zu is inverted or beyond its law's domain", e);
+  return step;
+}
+
+/* All elements, at u and moved by each z. */
+static dea_status take_all(struct work *w, const double *const *z, struct dea_recovered *at)
+{
+  const size_t elements = w->in->grid->element_count;
+  struct dea_recover_input in = *w->in;
+  dea_status status = DEA_OK;
+  size_t e = 0;
+  for (; status == DEA_OK && e < elements; e++) {
+    status = take_state(w, e, at);
+  }
+  in.u = w->moved;
+  for (size_t k = 0; status == DEA_OK && k < w->count; k++) {
+    const double step = move(w, z[k]);
+    for (e = 0; status == DEA_OK && e < elements; e++) {
+      status = take_gradient(w, &in, e, k, step);
     }
   }
-  return DEA_OK;
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(w->ctx, status,
+                                     "element %zu is inverted or beyond its law's domain", e - 1);
 }
 
 /* P_2 at the nodes of a line of order 2. */
@@ -282,10 +302,7 @@ static double estimate(const struct work *w, size_t k, double *part)
 static dea_status gather(struct work *w, const double *const *z, const double (*mirror)[3],
                          struct dea_recovered *at)
 {
-  dea_status status = DEA_OK;
-  for (size_t k = 0; status == DEA_OK && k <= w->count; k++) {
-    status = take_all(w, k, k > 0 ? z[k - 1] : NULL, at);
-  }
+  dea_status status = take_all(w, z, at);
   if (status == DEA_OK && w->in->grid->order == 2) {
     const struct dea_recover_second second = {.grid = w->in->grid,
                                               .group = w->group,

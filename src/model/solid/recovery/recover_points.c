@@ -82,29 +82,50 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 
 /* ---- elements ---- */
 
-dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
-                               struct dea_recovered *out)
-{
+/* What an element is asked with. */
+struct asked {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential_V[DEA_HEX_NODES_MAX];
+  struct dea_constituent constituent;
+  struct dea_element_input in;
+};
+
+static void ask(const struct dea_recover_input *in, size_t e, struct asked *out)
+{
   const struct dea_element *element = &in->elements->of[in->kind[e]];
   const int *nodes = in->grid->nodes + e * DEA_HEX_NODES_MAX;
   for (int n = 0; n < element->nodes; n++) {
-    memcpy(X + 3 * n, in->grid->X + 3 * nodes[n], 3 * sizeof *X);
-    memcpy(u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *u);
-    potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
+    memcpy(out->X + 3 * n, in->grid->X + 3 * nodes[n], 3 * sizeof *out->X);
+    memcpy(out->u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *out->u);
+    out->potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
   }
-  struct dea_constituent constituent = in->constituents[in->constituent[e]];
-  constituent.kappa_Pa *= in->bulk_factor;
-  const struct dea_element_input at = {
-      .constituent = &constituent,
-      .X = X,
-      .u = u,
+  out->constituent = in->constituents[in->constituent[e]];
+  out->constituent.kappa_Pa *= in->bulk_factor;
+  out->in = (struct dea_element_input){
+      .constituent = &out->constituent,
+      .X = out->X,
+      .u = out->u,
       .multiplier = in->multiplier + e * (size_t)in->elements->pressures,
-      .potential = potential_V,
+      .potential = out->potential_V,
       .potential_V_per_m = 1,
       .voltage_V = in->across_V[e],
   };
-  return element->type->recover(element, &at, out);
+}
+
+dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
+                               struct dea_recovered *out)
+{
+  const struct dea_element *element = &in->elements->of[in->kind[e]];
+  struct asked asked;
+  ask(in, e, &asked);
+  return element->type->recover(element, &asked.in, out);
+}
+
+dea_status dea_recover_deformation(const struct dea_recover_input *in, size_t e, double (*F)[9])
+{
+  const struct dea_element *element = &in->elements->of[in->kind[e]];
+  struct asked asked;
+  ask(in, e, &asked);
+  return element->type->deformation(element, &asked.in, F);
 }
 
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level)

@@ -20,6 +20,8 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 /* One element of any kind. */
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
                                struct dea_recovered *out);
+/* F at its nodes alone, [nodes][9]. */
+dea_status dea_recover_deformation(const struct dea_recover_input *in, size_t e, double (*F)[9]);
 /* Height of a level of nodes of an element. */
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level);
 

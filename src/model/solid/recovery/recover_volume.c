@@ -135,14 +135,16 @@ static dea_status take_means(struct work *w)
 }
 
 /* Eigenvalues of a symmetric matrix xx yy zz xy yz zx, the largest first, and their directions. */
-static void principal(const double m[6], double value[3], double axis[3][3])
+static void principal(const double m[6], double value[3], double (*axis)[3])
 {
   double A[9] = {m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2]}, rising[3] = {NAN, NAN, NAN};
   double work[32];
-  LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', 3, A, 3, rising, work, 32);
+  LAPACKE_dsyev_work(LAPACK_COL_MAJOR, axis != NULL ? 'V' : 'N', 'L', 3, A, 3, rising, work, 32);
   for (int k = 0; k < 3; k++) {
     value[k] = rising[2 - k];
-    memcpy(axis[k], A + 3 * (2 - k), sizeof axis[k]);
+    if (axis != NULL) {
+      memcpy(axis[k], A + 3 * (2 - k), sizeof axis[k]);
+    }
   }
 }
 
@@ -152,7 +154,7 @@ static void principal_stretch(const struct dea_constituent *constituent, const d
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
   const double *G = constituent->pre_stretch, s = constituent->pre_shear;
-  double C[6] = {0}, axis[3][3];
+  double C[6] = {0};
   for (int m = 0; m < 6; m++) {
     for (int i = 0; i < 3; i++) {
       C[m] += F[3 * i + row[m]] * F[3 * i + column[m]];
@@ -166,7 +168,7 @@ static void principal_stretch(const struct dea_constituent *constituent, const d
   C[3] = plane[2];
   C[4] = G[1] * G[2] * yz + s * G[2] * zx;
   C[5] = G[2] * G[0] * zx + s * G[2] * yz;
-  principal(C, out, axis);
+  principal(C, out, NULL);
   for (int k = 0; k < 3; k++) {
     out[k] = sqrt(fmax(out[k], 0));
   }
