@@ -66,6 +66,30 @@ void dea_ending_free(struct dea_ending *e)
   drop_limit(e);
 }
 
+/* Whether the tension of the film, which no step leads on from, is 0 closely beyond by its last two
+ * points: the voltage of that, else 0. */
+static double slack_beyond_V(const struct dea_ending *e)
+{
+  const double *T = e->tension, *at_V = e->tension_V, V = dea_solid_voltage(e->owner.solid);
+  const double square = V * V;
+  const double beyond = square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1]);
+  const double near = 1 + e->owner.solid->settings.leap_way;
+  const bool slack =
+      at_V[1] == V && T[0] > T[1] && beyond >= square && beyond <= square * near * near;
+  return slack ? sqrt(beyond) : 0;
+}
+
+/* The same as an event. */
+static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e)
+{
+  const double at_V = slack_beyond_V(e);
+  if (at_V > 0) {
+    DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
+    e->limit.point.voltage_V = at_V;
+  }
+  return DEA_OK;
+}
+
 /* A point of the path on the way to where a solve ends. Where the film goes slack between two of
  * them: the voltage from their tensions and the squares of their voltages. */
 static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
@@ -77,6 +101,10 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   if (where == DEA_STOP_LIMIT && e->keeps) {
     drop_limit(e);
     DEA_TRY(ctx, dea_solid_stand_keep(ctx, e->owner.solid, &e->at_limit));
+  }
+  if (where == DEA_STOP_NEAR && !e->leapt && slack_beyond_V(e) > 0) { // it has no tension there
+    DEA_TRY(ctx, see_slack_beyond(ctx, e));
+    return DEA_OK;
   }
   if (where == DEA_STOP_LIMIT || where == DEA_STOP_NEAR || (where == DEA_STOP_UNSTABLE && thins)) {
     return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
@@ -124,21 +152,6 @@ static dea_status fail_slack(struct dea_context *ctx, const struct dea_ending *e
                   "the film %s; %s. No state at %.6g kV was found on this mesh "
                   "(compute.solid.refinement, domain: disc)",
                   where, state, 1e-3 * voltage_V);
-}
-
-/* A film that no step leads on from, and whose tension is 0 closely beyond by its last two points:
- * the voltage as an event. */
-static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e)
-{
-  const double *T = e->tension, *at_V = e->tension_V, V = dea_solid_voltage(e->owner.solid);
-  const double square = V * V;
-  const double beyond = square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1]);
-  const double near = 1 + e->owner.solid->settings.leap_way;
-  if (at_V[1] == V && T[0] > T[1] && beyond >= square && beyond <= square * near * near) {
-    DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
-    e->limit.point.voltage_V = sqrt(beyond);
-  }
-  return DEA_OK;
 }
 
 /* The verdict on a solve that failed on the way to a voltage (docs/theory/stops.md). */
