@@ -156,7 +156,8 @@ def run_one(dea, path, model, seconds):
         out.seek(0)
         err.seek(0)
         stdout, stderr = out.read(), err.read().decode(errors="replace")
-    if child.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and used > 0.9 * seconds:
+    killed = child.returncode == -signal.SIGKILL and used > 0.9 * seconds
+    if killed or child.returncode == -signal.SIGXCPU:  # not all of the time may be counted
         return "out of time", "more than %d s of processor time" % seconds, used, None
     try:
         summary = json.loads(stdout)

@@ -134,6 +134,16 @@ static dea_status has_grown(struct dea_context *ctx, void *user, bool *grew)
   return DEA_OK;
 }
 
+static bool was_taut(const void *user)
+{
+  return is_taut(user);
+}
+
+static struct dea_solid_watch watch_of(struct dea_ending *e)
+{
+  return (struct dea_solid_watch){see_point, has_grown, was_taut, e};
+}
+
 /* A film without tension that turned unstable, or that has lost it on the way that ended here. */
 static dea_status fail_slack(struct dea_context *ctx, const struct dea_ending *e, double voltage_V,
                              const struct dea_solid_stop *stop)
@@ -217,18 +227,21 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
 }
 
 /* Looks for a limit point between there and where the solid is. *share: of the way to it, NAN:
- * there is none, or a point on the way cannot be looked at, as where the law ends. */
+ * there is none, or a point on the way cannot be looked at, as where the law ends. *flat: the
+ * solid, which was bent, is in the flat state now, which *report is of. */
 static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
-                            const struct dea_solid_stand *from, bool leapt, double *share)
+                            const struct dea_solid_stand *from, bool leapt,
+                            struct dea_solid_report *report, bool *flat, double *share)
 {
   struct dea_solid_stop stop;
+  const struct dea_solid_watch watch = watch_of(e);
   const struct dea_ending kept = *e; // what the points of the path change
   e->limited = false;
   e->leapt = leapt;
   e->tension[1] = e->tension[0]; // as the path begins
   e->tension_V[1] = e->tension_V[0];
   dea_status status =
-      dea_solid_look_back(ctx, e->owner.solid, from, leapt, see_point, has_grown, e, &stop);
+      dea_solid_look_back(ctx, e->owner.solid, from, leapt, &watch, report, &stop, flat);
   const bool looked = status == DEA_OK;
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -285,67 +298,33 @@ static dea_status refuse_leap(struct dea_context *ctx, struct dea_ending *e, dou
  * have followed its path past pull-in and gone down from there. */
 static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
                                const struct dea_solid_stand *from, bool taut, double before,
-                               bool snapped)
+                               struct dea_solid_report *report)
 {
   double share = NAN, from_V = e->from_V;
+  bool flat = false;
   const bool seen = e->limited && e->limit.kind == DEA_EVENT_PULL_IN;
   e->limited = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
   bool thins = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
   bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
+  bool bent = dea_solid_left_plane(e->owner.solid, from, e->owner.flat_thickness_m);
   bool strays = voltage_V != from_V && dea_solid_strays(e->owner.solid, from);
   if (thins && seen) {
     e->passed = e->limit;
     e->has_passed = true;
-  } else if (thins || ((rushed || strays) && taut && is_taut(e) && !snapped)) {
-    DEA_TRY(ctx, look_back(ctx, e, from, thins, &share));
+  } else if (thins || (taut && is_taut(e) && (bent || ((rushed || strays) && !report->snapped)))) {
+    DEA_TRY(ctx, look_back(ctx, e, from, thins, report, &flat, &share));
   }
+  if (flat) { // it has gone past nothing
+    DEA_TRY(ctx, look_at_tension(ctx, e));
+    return DEA_OK;
+  }
+  report->snapped |= bent && from_V != 0; // if also straight to a stable state
   if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {
     return refuse_leap(ctx, e, voltage_V, from);
   }
   e->leapt = thins || !isnan(share);
   return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
-}
-
-/* Largest height of a column's middle over where it is undeformed; heights: [columns], room. */
-static double deflection_m(const struct dea_solid *s, const double *u, size_t columns,
-                           double *heights)
-{
-  const struct dea_grid *grid = s->problem.grid;
-  double largest = 0;
-  memset(heights, 0, columns * sizeof *heights);
-  for (size_t n = 0; n < grid->node_count; n++) { // what thins moves by as much up as down
-    if (grid->column[n] >= 0) {                   // -1: of a body
-      heights[grid->column[n]] += u[3 * n + 2];
-    }
-  }
-  for (size_t c = 0; c < columns; c++) {
-    largest = fmax(largest, fabs(heights[c]));
-  }
-  return largest;
-}
-
-/* Whether a film that was flat under a voltage is no more: it has buckled, if also straight to a
- * stable state, and might have to the other side. */
-static dea_status see_buckling(struct dea_context *ctx, const struct dea_ending *e,
-                               const struct dea_solid_stand *from, bool *buckled)
-{
-  static const double flat = 1e-6, deflected = 1e-3; // of the thickness
-  const struct dea_solid *s = e->owner.solid;
-  const double h = e->owner.flat_thickness_m;
-  const size_t columns = dea_grid_columns(s->problem.grid);
-  *buckled = false;
-  if (e->from_V == 0) {
-    return DEA_OK;
-  }
-  double *room = dea_solid_alloc(ctx, columns, sizeof *room);
-  if (room == NULL) {
-    return dea_fail_chain(ctx, DEA_E_MEMORY, __func__, __FILE__, __LINE__);
-  }
-  *buckled = deflection_m(s, from->state, columns, room) < flat * h &&
-             deflection_m(s, s->state.u, columns, room) > deflected * h;
-  dea_free(ctx, room);
-  return DEA_OK;
 }
 
 /* One load step. */
@@ -354,6 +333,7 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
 {
   struct dea_solid_stand from;
   struct dea_solid_stop stop;
+  const struct dea_solid_watch watch = watch_of(e);
   e->from_V = from_V;
   e->limited = e->leapt = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
@@ -362,7 +342,7 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
     e->keeps = !e->has_passed;
-    status = dea_solid_approach(ctx, e->owner.solid, voltage_V, taut, see_point, e, report, &stop);
+    status = dea_solid_approach(ctx, e->owner.solid, voltage_V, taut, &watch, report, &stop);
     e->keeps = true;
     if (status != DEA_OK) {
       e->rate[0] = 0;
@@ -370,12 +350,7 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
                    ? stopped(ctx, e, voltage_V, &stop, status)
                    : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     } else {
-      bool buckled;
-      status = see_buckling(ctx, e, &from, &buckled);
-      report->snapped |= buckled;
-      status = status == DEA_OK
-                   ? look_at_step(ctx, e, voltage_V, &from, taut, area, report->snapped)
-                   : status;
+      status = look_at_step(ctx, e, voltage_V, &from, taut, area, report);
     }
     e->keeps = false;
   }
@@ -394,7 +369,9 @@ dea_status dea_ending_watch(struct dea_context *ctx, struct dea_ending *e, doubl
   e->from_V = dea_solid_voltage(e->owner.solid);
   DEA_TRY(ctx, look_at_tension(ctx, e));
   if (rushes(e, &e->rate[1], way, from) && is_taut(e)) {
-    DEA_TRY(ctx, look_back(ctx, e, from, false, share));
+    struct dea_solid_report report;
+    bool flat;
+    DEA_TRY(ctx, look_back(ctx, e, from, false, &report, &flat, share));
   }
   return DEA_OK;
 }

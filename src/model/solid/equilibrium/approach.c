@@ -3,6 +3,7 @@
 #include "model/solid/assembly/controls.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
 #include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
@@ -13,9 +14,7 @@
 struct search {
   struct dea_solid *s;
   double *state, *from, *goal; // state and controls at its start, controls that are wanted
-  dea_solid_path_sink points;
-  dea_solid_growth_test grew; // of a search for a leap
-  void *user;
+  const struct dea_solid_watch *watch;
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
   struct dea_solid_stand start; // where the approach began
@@ -23,9 +22,51 @@ struct search {
   bool leapt;                   // a load step has gone past a limit point to another state
   bool went_on;                 // the solid is at a stable equilibrium further on
   bool looks;     // it is known where the solid goes, and only asked what is on the way
+  bool bent;      // it looks from a flat film to one that is no more
   bool stuck;     // the path could not be followed to its end; where it looks the solid stays there
   double reached; // share of the way of the last point of the path
 };
+
+/* The sink looks at where the solid is. */
+static dea_status see(struct dea_context *ctx, const struct search *a,
+                      enum dea_solid_stop_kind where)
+{
+  return a->watch->points(ctx, a->watch->user, where);
+}
+
+// Flat films -------------------------------------------------------------------------------------
+
+/* Largest height of a column's middle over where it is undeformed, by its nodes. */
+static double deflection_m(struct dea_solid *s, const double *u)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  const size_t columns = dea_grid_columns(grid);
+  double largest = 0, *heights = s->work.trial;
+  memset(heights, 0, columns * sizeof *heights);
+  for (size_t n = 0; n < grid->node_count; n++) { // what thins moves by as much up as down
+    if (grid->column[n] >= 0) {                   // -1: of a body
+      heights[grid->column[n]] += u[3 * n + 2];
+    }
+  }
+  for (size_t c = 0; c < columns; c++) {
+    largest = fmax(largest, fabs(heights[c]));
+  }
+  return largest;
+}
+
+static bool is_flat(struct dea_solid *s, const double *u, double size_m)
+{
+  static const double flat = 1e-6;
+  return deflection_m(s, u) < flat * size_m;
+}
+
+bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *from, double size_m)
+{
+  static const double deflected = 1e-3;
+  return is_flat(s, from->state, size_m) && deflection_m(s, s->state.u) > deflected * size_m;
+}
+
+// The path ----------------------------------------------------------------------------------------
 
 /* Displacement that counts as much as the whole load: a share of that on the way, as far as the
  * displacements that are there tell, which go with the square of the voltage. */
@@ -59,7 +100,7 @@ static dea_status take_stop(struct dea_context *ctx, const struct search *a,
   a->stop->way = at->load;
   dea_solid_state_get(a->s, a->limit.state);
   dea_solid_controls_get(a->s, a->limit.controls);
-  DEA_TRY(ctx, a->points(ctx, a->user, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind));
+  DEA_TRY(ctx, see(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind));
   return DEA_OK;
 }
 
@@ -82,6 +123,70 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
   return status == DEA_OK ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "it stays unstable") : status;
 }
 
+/* Whether a mode [dofs] leads out of the plane. */
+static bool leaves_plane(struct dea_solid *s, const double *mode)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  const size_t columns = dea_grid_columns(grid);
+  double along = 0, across = 0, *sum = s->work.trial;
+  for (int k = 0; k < 3; k++) { // of columns: what thins moves by as much up as down
+    memset(sum, 0, columns * sizeof *sum);
+    for (size_t n = 0; n < grid->node_count; n++) {
+      if (grid->column[n] >= 0) { // -1: of a body
+        sum[grid->column[n]] += mode[3 * n + (size_t)k];
+      }
+    }
+    for (size_t c = 0; c < columns; c++) {
+      *(k < 2 ? &along : &across) += sum[c] * sum[c];
+    }
+  }
+  return across > along;
+}
+
+/* A flat film in tension all over is held in its plane by it. Where the last step has made a mode
+ * unstable in which it leaves the plane, that is one of the mesh, as are all that there are then,
+ * and the path goes on (docs/theory/stops.md). *of_mesh: so many. */
+static dea_status look_at_modes(struct dea_context *ctx, const struct search *a, int unstable,
+                                int *of_mesh)
+{
+  struct dea_solid *s = a->s;
+  double value;
+  if (unstable <= *of_mesh || !a->watch->taut(a->watch->user) ||
+      !is_flat(s, s->state.u, s->problem.length_m)) {
+    *of_mesh = unstable < *of_mesh ? unstable : *of_mesh;
+    return DEA_OK;
+  }
+  double *mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *mode);
+  if (mode == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_solid_unstable_mode(ctx, s, &value, mode);
+  if (status == DEA_OK && leaves_plane(s, mode)) {
+    *of_mesh = unstable;
+  }
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  dea_free(ctx, mode);
+  return status;
+}
+
+/* The flat film's path has come to the goal: the state there is its own, with the mesh's modes. */
+static dea_status stay_flat(struct dea_context *ctx, struct search *a,
+                            struct dea_solid_continuation *path)
+{
+  struct dea_solid *s = a->s;
+  struct dea_continuation_point at;
+  DEA_TRY(ctx, dea_solid_continuation_at(ctx, path, 1, &at));
+  dea_solid_controls_set(s, a->goal); // what rounding leaves of it
+  a->went_on = is_flat(s, s->state.u, s->problem.length_m);
+  a->report->unstable_modes = at.unstable_modes;
+  a->report->energy_J = at.energy_J;
+  a->report->snapped = false;
+  return DEA_OK;
+}
+
 /* Along the path until something has happened. */
 static dea_status follow(struct dea_context *ctx, struct search *a,
                          struct dea_solid_continuation *path)
@@ -90,6 +195,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
   struct dea_continuation_point at = {0};
   const int points = a->s->settings.approach_points;
   double first = 0;
+  int of_mesh = 0; // unstable modes that are no modes of the film
   for (int i = 0; i < (at.slope < bent * first ? 2 : 1) * points; i++) {
     DEA_TRY(ctx, dea_solid_continuation_step(ctx, path, &at));
     a->reached = at.load;
@@ -98,15 +204,17 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
       return DEA_OK;
     }
-    DEA_TRY(ctx, a->points(ctx, a->user, DEA_STOP_UNKNOWN));
-    if (a->looks && at.unstable_modes > 0) {
+    DEA_TRY(ctx, see(ctx, a, DEA_STOP_UNKNOWN));
+    DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
+    const bool unstable = at.unstable_modes > of_mesh;
+    if (a->looks && unstable) {
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at));
       return DEA_OK;
     }
     if (a->looks && at.load >= 1) {
-      return DEA_OK;
+      return a->bent ? stay_flat(ctx, a, path) : DEA_OK;
     }
-    if (at.load >= 1 || at.unstable_modes > 0) {
+    if (at.load >= 1 || unstable) {
       dea_status status = leave_path(ctx, a, &at);
       if (!dea_solid_may_shorten(status) || at.unstable_modes == 0) {
         return status;
@@ -179,12 +287,14 @@ static dea_status try_steps(struct dea_context *ctx, struct search *a, double vo
   return status;
 }
 
-/* Load steps that have failed may have leapt on the way. */
+/* Load steps that have failed may have leapt on the way, or have left the plane of a flat film,
+ * which its tension holds there as long as the path has any. */
 static void step_back(struct search *a, bool taut)
 {
-  if (taut && !a->report->snapped && dea_solid_strays(a->s, &a->start)) {
+  const bool strays = !a->report->snapped && dea_solid_strays(a->s, &a->start);
+  if (taut && (strays || dea_solid_left_plane(a->s, &a->start, a->s->problem.length_m))) {
     dea_solid_stand_again(a->s, &a->start);
-    a->leapt = true;
+    a->leapt |= strays;
   }
 }
 
@@ -311,7 +421,7 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, double sh
   take_near(near, s, last, share);
   dea_solid_state_get(s, last->state);
   dea_solid_controls_get(s, last->controls);
-  return a->points(ctx, a->user, DEA_STOP_UNKNOWN);
+  return see(ctx, a, DEA_STOP_UNKNOWN);
 }
 
 /* Halves of what is left, until the state on one side and the failure on the other are `leap_way`
@@ -333,7 +443,7 @@ static dea_status halve_way(struct dea_context *ctx, struct search *a, struct de
   }
   if (a->leapt || nears_limit(near, high)) { // beyond it is another state, and no way to there
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), low, 0};
-    return a->points(ctx, a->user, DEA_STOP_NEAR);
+    return see(ctx, a, DEA_STOP_NEAR);
   }
   return DEA_OK;
 }
@@ -412,10 +522,10 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
 }
 
 dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                              bool taut, dea_solid_path_sink points, void *user,
+                              bool taut, const struct dea_solid_watch *watch,
                               struct dea_solid_report *report, struct dea_solid_stop *stop)
 {
-  struct search a = {.s = s, .points = points, .user = user, .report = report, .stop = stop};
+  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop};
   struct dea_arena memory = {.ctx = ctx};
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
@@ -508,13 +618,13 @@ static dea_status take_end(struct dea_context *ctx, const struct search *a, cons
 {
   struct dea_solid *s = a->s;
   bool grown = false;
-  DEA_TRY(ctx, a->grew(ctx, a->user, &grown));
+  DEA_TRY(ctx, a->watch->grew(ctx, a->watch->user, &grown));
   *stays = !grown && dea_solid_moved_m(s, &ends->near) < dea_solid_moved_m(s, &ends->far);
   struct dea_solid_stand *end = *stays ? &ends->near : &ends->far;
   dea_solid_state_get(s, end->state);
   memcpy(end->controls, controls, s->work.load_steps.control_count * sizeof *controls);
   ends->apart = *stays ? ends->apart : grown;
-  return *stays ? a->points(ctx, a->user, DEA_STOP_UNKNOWN) : DEA_OK;
+  return *stays ? see(ctx, a, DEA_STOP_UNKNOWN) : DEA_OK;
 }
 
 /* Between both ends a share of the way; the solid is then at the near one. */
@@ -571,7 +681,7 @@ static dea_status find_leap(struct dea_context *ctx, struct search *a, const dou
   }
   if (status == DEA_OK) {
     ends.whole = dea_solid_moved_m(s, &ends.far);
-    status = a->points(ctx, a->user, DEA_STOP_UNKNOWN);
+    status = see(ctx, a, DEA_STOP_UNKNOWN);
   }
   if (status == DEA_OK) {
     status = bracket_leap(ctx, a, from, &ends);
@@ -580,7 +690,7 @@ static dea_status find_leap(struct dea_context *ctx, struct search *a, const dou
                (ends.apart || dea_solid_moved_m(s, &ends.far) > s->settings.leap_jump * ends.whole);
   if (leaps) {
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(s), ends.at[0], 0};
-    status = a->points(ctx, a->user, DEA_STOP_NEAR);
+    status = see(ctx, a, DEA_STOP_NEAR);
   }
   dea_solid_stand_free(&ends.near);
   dea_solid_stand_free(&ends.far);
@@ -603,7 +713,7 @@ static dea_status search_back(struct dea_context *ctx, struct search *a, bool le
     dea_solid_stand_again(a->s, from);
     status = search_path(ctx, a);
   }
-  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && (a->stuck || leapt)) {
+  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && !a->went_on && (a->stuck || leapt)) {
     status = find_leap(ctx, a, from->controls, now);
   }
   dea_solid_stand_free(&a->limit);
@@ -613,23 +723,21 @@ static dea_status search_back(struct dea_context *ctx, struct search *a, bool le
 
 dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *s,
                                const struct dea_solid_stand *from, bool leapt,
-                               dea_solid_path_sink points, dea_solid_growth_test grew, void *user,
-                               struct dea_solid_stop *stop)
+                               const struct dea_solid_watch *watch, struct dea_solid_report *report,
+                               struct dea_solid_stop *stop, bool *flat)
 {
-  struct dea_solid_report report = {0};
-  struct search a = {.s = s,
-                     .points = points,
-                     .grew = grew,
-                     .user = user,
-                     .report = &report,
-                     .stop = stop,
-                     .looks = true};
+  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .looks = true};
   struct dea_solid_stand now;
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_status status = dea_solid_stand_keep(ctx, s, &now);
+  *flat = false;
   if (status == DEA_OK) {
+    a.bent = dea_solid_left_plane(s, from, s->problem.length_m);
     status = search_back(ctx, &a, leapt, from, &now);
-    dea_solid_stand_again(s, &now);
+    *flat = status == DEA_OK && a.went_on;
+    if (!*flat) {
+      dea_solid_stand_again(s, &now);
+    }
   }
   dea_solid_stand_free(&now);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -29,13 +29,21 @@ typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
  * solid is: a film may thin in one place without a displacement that tells. */
 typedef dea_status (*dea_solid_growth_test)(struct dea_context *ctx, void *user, bool *grew);
 
+/* Who looks at the points of a path. */
+struct dea_solid_watch {
+  dea_solid_path_sink points;
+  dea_solid_growth_test grew;
+  bool (*taut)(const void *user); // whether the film had tension where `points` has looked last
+  void *user;
+};
+
 /* As dea_load_steps_solve; load steps that fail go on along the path by arc length, around a
- * bifurcation too, and then by load steps again. points: sees each point of such a path. taut: the
+ * bifurcation too, and then by load steps again. watch: sees each point of such a path. taut: the
  * film has tension, so that what takes more than approach_iterations is not looked for at first. A
  * failure leaves the solid at the last equilibrium that was found: DEA_E_NO_EQUILIBRIUM beyond a
  * limit point; otherwise the status of the last load step, and *stop says what is known. */
 dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                              bool taut, dea_solid_path_sink points, void *user,
+                              bool taut, const struct dea_solid_watch *watch,
                               struct dea_solid_report *report, struct dea_solid_stop *stop);
 
 /* Where the solid has been. */
@@ -52,6 +60,10 @@ void dea_solid_stand_again(struct dea_solid *solid, const struct dea_solid_stand
 /* Root of the mean square of how far the nodes are from there. */
 double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
 
+/* Whether a film that was flat there is no more, to 1e-6 and 1e-3 of a size. */
+bool dea_solid_left_plane(struct dea_solid *solid, const struct dea_solid_stand *from,
+                          double size_m);
+
 /* Whether the last approach, which began there, has come farther from where the tangent there saw
  * it go than a path of equilibria leads, up to its limit point; false where that is not known. */
 bool dea_solid_strays(const struct dea_solid *solid, const struct dea_solid_stand *from);
@@ -60,11 +72,12 @@ bool dea_solid_strays(const struct dea_solid *solid, const struct dea_solid_stan
  * bifurcation: follows the path from there towards the controls as they are. Where the path comes
  * to no end, and where it says nothing of what is known to have `leapt`, load steps close in on the
  * controls at which the states on both sides stay apart: a limit point, or a corner that acts as
- * one. The solid is then where it was. *stop: where, which `points` has seen last;
- * DEA_STOP_UNKNOWN: there was none, or none was found. */
+ * one. The solid is then where it was, unless it has left the plane of a flat film that was taut
+ * all along its path to there: it is then at that path's end, *flat, which *report is of. *stop:
+ * where, which `watch` has seen last; DEA_STOP_UNKNOWN: there was none, or none was found. */
 dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *solid,
                                const struct dea_solid_stand *from, bool leapt,
-                               dea_solid_path_sink points, dea_solid_growth_test grew, void *user,
-                               struct dea_solid_stop *stop);
+                               const struct dea_solid_watch *watch, struct dea_solid_report *report,
+                               struct dea_solid_stop *stop, bool *flat);
 
 #endif

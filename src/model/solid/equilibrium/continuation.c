@@ -524,6 +524,30 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   return DEA_OK;
 }
 
+dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                     double load, struct dea_continuation_point *point)
+{
+  struct dea_continuation_path_point *at = &t->critical;
+  const double share = (load - t->before.load) / (t->last.load - t->before.load);
+  int iterations;
+  for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
+    at->state[i] = t->before.state[i] + share * (t->last.state[i] - t->before.state[i]);
+  }
+  at->load = load;
+  at->arc = t->before.arc + share * (t->last.arc - t->before.arc);
+  DEA_TRY(ctx, return_to(ctx, t, at));
+  memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
+  orient_plane(t, t->start, 1);
+  t->plane.u0 = t->before.state;
+  t->plane.tau0 = t->before.load;
+  t->plane.length = load - t->before.load;
+  t->plane.enough = 0;
+  DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
+  DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, at));
+  report_point(t, at, DEA_CONTINUATION_NOTHING, point);
+  return DEA_OK;
+}
+
 /* ---- creation ---- */
 
 /* Memory and metric. */

@@ -53,6 +53,11 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx,
                                        struct dea_solid_continuation *trace,
                                        struct dea_continuation_point *point);
 
+/* The equilibrium at a load between those of the last two points, stable or not, where the solid is
+ * then. DEA_E_NOT_CONVERGED: it is not found. */
+dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *trace,
+                                     double load, struct dea_continuation_point *point);
+
 /* The limit point or bifurcation that the last step has passed: the solid is there until the next
  * call. Of several modes that turn unstable in one step it is that of the first. DEA_E_ARGUMENT
  * where nothing was passed, DEA_E_NOT_CONVERGED when it cannot be closed in on: the solid is then
