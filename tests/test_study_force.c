@@ -197,12 +197,265 @@ static void test_deeper(void **state)
   dea_design_destroy(ctx, design);
 }
 
+// Voltages between computed ones --------------------------------------------------------------
+
+/* A film whose force is F = F_0 - b V^2 - c V^4 while it is taut, which jumps at 6.35 kV to a state
+ * that goes back with the voltage only below 5.2 kV. */
+struct dea_film {
+  double end_V;    // no equilibrium beyond
+  double hidden_V; // none here either, unless it is the next of steps of 0.1 kV
+  bool sticks;     // it is not the same where the voltage has fallen
+  int solves;
+};
+static struct dea_film film;
+static const double jump_V = 6350, tension_V = 4450;
+static bool jumped;
+
+static double taut_force(double voltage_V)
+{
+  double V = voltage_V / 1e3;
+  return 0.1 - 4e-4 * V * V - 1e-5 * V * V * V * V;
+}
+
+static dea_status film_solve(struct dea_context *context, struct dea_model *model, double voltage_V,
+                             struct dea_load_point *out)
+{
+  film.solves++;
+  bool jumps = voltage_V - model->voltage_V > 101;
+  if (voltage_V > film.end_V || (voltage_V == film.hidden_V && jumps)) {
+    return dea_fail(context, DEA_E_NO_EQUILIBRIUM, "none at %g V", voltage_V);
+  }
+  bool fell = voltage_V < model->voltage_V;
+  model->voltage_V = voltage_V;
+  jumped = voltage_V > jump_V || (jumped && voltage_V > 5200);
+  report(model, out);
+  out->min_tension_N_per_m = tension_V - voltage_V;
+  out->compression_ratio = 0; // too small a part to wrinkle
+  out->force_N = taut_force(voltage_V) - (jumped ? 0.02 : 0) + (fell && film.sticks ? 0.005 : 0);
+  out->told = jumped ? 1u << DEA_FLAG_STATES : 0;
+  return DEA_OK;
+}
+
+static dea_status film_load(struct dea_context *context, struct dea_model *model,
+                            const struct dea_state *state)
+{
+  (void)context;
+  model->voltage_V = *dea_state_find(state, "voltage", 1);
+  jumped = false; // states are kept of taut films only
+  return DEA_OK;
+}
+
+/* Study force of that film with these settings, the last of them NULL where there are no bands.
+ * Returns how it ended. */
+static dea_status run_film(const char *const settings[3], struct dea_design **design,
+                           struct dea_device **device, struct dea_result **result)
+{
+  const struct dea_override sets[] = {{"compute.voltage", settings[0]},
+                                      {"compute.force", settings[1]},
+                                      {"compute.uncertainty", settings[2]}};
+  static const char *const name = "force";
+  struct dea_model_type type = spring;
+  type.save = save;
+  type.load = film_load;
+  type.solve = film_solve;
+  film.solves = 0;
+  jumped = false;
+  assert_int_equal(dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets,
+                                          settings[2] != NULL ? 3 : 2, design),
+                   DEA_OK);
+  assert_int_equal(dea_device_build(ctx, *design, device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, *design, *device, result), DEA_OK);
+  return dea_study_run(ctx, &type, &name, 1, *result);
+}
+
+static void end_film(struct dea_design *design, struct dea_device *device,
+                     struct dea_result *result)
+{
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+#define TO_8_KV "{from: 0 kV, to: 8 kV, step: 0.1 kV}"
+#define ONE_MM "tip: flat, radius: 2 mm, side: back, depth: [1 mm]"
+static const char *const usual[3] = {TO_8_KV, "{" ONE_MM "}", NULL};
+
+/* Up to the voltage where tension is lost few points are computed, beyond it all, as they come in a
+ * sweep of all. */
+static void test_interpolated(void **state)
+{
+  (void)state;
+  static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  film = (struct dea_film){.end_V = INFINITY, .sticks = true};
+  assert_int_equal(run_film(settings, &design, &device, &result), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+  assert_int_equal(curve->count, 81);
+  int computed = 0;
+  for (size_t i = 0; i < 81; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    double V = 100.0 * (double)i;
+    assert_close(p->voltage_V, V, 1e-12, 0);
+    double wanted = taut_force(V) - (V > jump_V ? 0.02 : 0);
+    if (!dea_load_point_interpolated(p)) {
+      assert_close(p->force_N, wanted, 1e-14, 0);
+      computed++;
+    } else {
+      assert_true(V < tension_V);
+      assert_true(fabs(p->force_N - wanted) <= p->force_interpolation_error_N);
+      assert_true(p->force_interpolation_error_N <= 0.0002 * 0.04);
+    }
+    assert_true(((p->told >> DEA_FLAG_STATES & 1) != 0) == (V > jump_V));
+  }
+  assert_true(computed < 60);
+  assert_int_equal(film.solves, computed + 2); // 4.8 and 4.6 kV were too far, 4.5 kV the next one
+  const struct dea_result_table *table = dea_result_find_table(result, "spring", "force", "lines");
+  assert_non_null(table);
+  assert_close(dea_result_table_number(table, 0, "voltages", 0), 81, 0, 0);
+  assert_close(dea_result_table_number(table, 0, "computed", 0), computed, 0, 0);
+  assert_true(dea_result_table_number(table, 0, "force_interpolation_error_N", 0) > 0);
+  end_film(design, device, result);
+}
+
+/* With a tolerance of 0, with bands, of few voltages, of falling ones: every one is computed. */
+static void test_all_computed(void **state)
+{
+  (void)state;
+  static const char *const cases[][3] = {
+      {TO_8_KV, "{" ONE_MM ", tolerance: 0}", NULL},
+      {TO_8_KV, "{" ONE_MM "}", "{parameters: [{name: film.thickness, std: 1 um}]}"},
+      {"{from: 0 kV, to: 6 kV, step: 0.4 kV}", "{" ONE_MM "}", NULL},
+      {"{values: [6 kV, 5.9 kV, 5.8 kV, 5.7 kV, 5.6 kV, 5.5 kV, 5.4 kV, 5.3 kV, 5.2 kV, 5.1 kV, 5 "
+       "kV, 4.9 "
+       "kV, 4.8 kV, 4.7 kV, 4.6 kV, 4.5 kV, 4.4 kV, 4.3 kV]}",
+       "{" ONE_MM "}", NULL},
+  };
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  film = (struct dea_film){.end_V = INFINITY};
+  for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
+    assert_int_equal(run_film(cases[n], &design, &device, &result), DEA_OK);
+    const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+    assert_int_equal(curve->count, film.solves);
+    for (size_t i = 0; i < curve->count; i++) {
+      assert_false(dea_load_point_interpolated(&curve->points[i]));
+    }
+    end_film(design, device, result);
+  }
+}
+
+/* The way back is computed voltage by voltage from where the way up has ended. */
+static void test_back(void **state)
+{
+  (void)state;
+  static const char *const settings[3] = {"{from: 0 kV, to: 8 kV, step: 0.1 kV, back: yes}",
+                                          "{" ONE_MM "}", NULL};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  film = (struct dea_film){.end_V = INFINITY};
+  assert_int_equal(run_film(settings, &design, &device, &result), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+  assert_int_equal(curve->count, 161);
+  for (size_t i = 81; i < 161; i++) {
+    double V = 100.0 * (double)(160 - i);
+    assert_false(dea_load_point_interpolated(&curve->points[i]));
+    assert_close(curve->points[i].force_N, taut_force(V) - (V > 5200 ? 0.02 : 0), 1e-14, 0);
+  }
+  assert_true(dea_load_point_interpolated(&curve->points[3]));
+  end_film(design, device, result);
+}
+
+/* A line that stops has its points up to there, and says why. */
+static void test_stops(void **state)
+{
+  (void)state;
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  static const double ends_V[] = {7250, 4150, -1};
+  static const size_t counts[] = {73, 42, 0};
+  for (int i = 0; i < 3; i++) {
+    film = (struct dea_film){.end_V = ends_V[i]};
+    assert_int_equal(run_film(usual, &design, &device, &result), DEA_E_NO_EQUILIBRIUM);
+    const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+    assert_int_equal(curve->count, counts[i]);
+    assert_int_equal(curve->status, DEA_E_NO_EQUILIBRIUM);
+    char why[40];
+    snprintf(why, sizeof why, "none at %g V", 100.0 * (double)counts[i]);
+    assert_non_null(strstr(curve->stopped, why));
+    for (size_t n = 0; n < curve->count; n++) {
+      double V = 100.0 * (double)n;
+      assert_close(curve->points[n].force_N, taut_force(V) - (V > jump_V ? 0.02 : 0), 1e-3, 0);
+    }
+    assert_true(counts[i] == 0 || dea_load_point_interpolated(&curve->points[3]));
+    end_film(design, device, result);
+    dea_context_clear(ctx);
+  }
+}
+
+/* Where a state between others is not found, all are computed one after the other. */
+static void test_hidden(void **state)
+{
+  (void)state;
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  static const char *const strict[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0000001}", NULL};
+  film = (struct dea_film){.end_V = INFINITY, .hidden_V = 400};
+  assert_int_equal(run_film(strict, &design, &device, &result), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+  assert_int_equal(curve->count, 81);
+  for (size_t i = 0; i < 81; i++) {
+    assert_false(dea_load_point_interpolated(&curve->points[i]));
+  }
+  end_film(design, device, result);
+}
+
+static bool interrupted(void *user)
+{
+  (void)user;
+  return film.solves == 14;
+}
+
+/* An interrupted line has what was computed, and nothing between. */
+static void test_interrupted(void **state)
+{
+  (void)state;
+  static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  film = (struct dea_film){.end_V = INFINITY};
+  dea_context_set_interrupt_fn(ctx, interrupted, NULL);
+  assert_int_equal(run_film(settings, &design, &device, &result), DEA_E_INTERRUPTED);
+  dea_context_set_interrupt_fn(ctx, NULL, NULL);
+  const struct dea_curve *curve = dea_result_find(result, "spring", "force");
+  assert_int_equal(curve->count, 12); // two of 14 went too far
+  for (size_t i = 0; i < curve->count; i++) {
+    assert_false(dea_load_point_interpolated(&curve->points[i]));
+    assert_true(i == 0 || curve->points[i].voltage_V > curve->points[i - 1].voltage_V);
+    assert_true(curve->points[i].force_N > 0);
+  }
+  end_film(design, device, result);
+  dea_context_clear(ctx);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_depths_and_preloads),
       cmocka_unit_test(test_deeper),
       cmocka_unit_test(test_nothing_asked),
+      cmocka_unit_test(test_interpolated),
+      cmocka_unit_test(test_all_computed),
+      cmocka_unit_test(test_back),
+      cmocka_unit_test(test_stops),
+      cmocka_unit_test(test_hidden),
+      cmocka_unit_test(test_interrupted),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

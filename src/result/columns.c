@@ -54,6 +54,9 @@ int dea_point_error_column(int column)
   static const char unit[] = "_m", ending[] = "_error_m";
   char key[64];
   size_t length = strlen(dea_point_columns[column].key);
+  if (strcmp(dea_point_columns[column].key, "force_N") == 0) { // the mesh's is not estimated
+    return dea_point_column_find("force_interpolation_error_N");
+  }
   if (length < sizeof unit || length + sizeof ending > sizeof key) {
     return -1;
   }

@@ -66,6 +66,11 @@ bool dea_load_point_bounds(const struct dea_load_point *point)
   return (dea_load_point_flags(point) >> DEA_FLAG_BOUND & 1u) != 0;
 }
 
+bool dea_load_point_interpolated(const struct dea_load_point *point)
+{
+  return (dea_load_point_flags(point) >> DEA_FLAG_INTERPOLATED & 1u) != 0;
+}
+
 const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE])
 {
   size_t n = 0;

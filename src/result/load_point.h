@@ -26,6 +26,10 @@
     "how far a tip is pressed beyond touching the flat film; negative: a gap")                     \
   X(force_N, "N", "mN", 1e3, "force",                                                              \
     "out-of-plane force: on the tip, or the largest along the load line")                          \
+  X(force_interpolation_error_N, "N", "mN", 1e3, "interpolation error of force",                   \
+    "estimated error by interpolation of the force between computed points")                       \
+  X(interpolation_error, "1", "%", 100.0, "interpolation error of the rest",                       \
+    "largest of the other numbers, over what each changes by on its line")                         \
   X(nominal_field_V_per_m, "V/m", "V/um", 1e-6, "nominal field",                                   \
     "V over the unstretched thickness")                                                            \
   X(true_field_V_per_m, "V/m", "V/um", 1e-6, "true field", "largest V over the current thickness") \
@@ -82,7 +86,7 @@
 
 /* What a reader of a point has to know of its numbers (docs/theory/trust.md). A doubt: they are not
  * to be trusted. A danger: they are, but the device would not live. A limit: of what the model
- * answers; some of its numbers are no prediction for this device.
+ * answers; some of its numbers are no prediction for this device. A source: where they are from.
  * X(NAME, word in files, kind, sentence) */
 #define DEA_FLAG_LIST(X)                                                                           \
   X(SLACK, "slack", DOUBT,                                                                         \
@@ -99,9 +103,11 @@
   X(BREAKDOWN, "breakdown", DANGER, "the true field is beyond the film's breakdown field")         \
   X(BOUND, "bound", LIMIT, "z and force are upper bounds of rigid rods, not predictions")          \
   X(PLAIN, "plain", LIMIT,                                                                         \
-    "strain, field and tension are those of the film without its fibres, which hold it back")
+    "strain, field and tension are those of the film without its fibres, which hold it back")      \
+  X(INTERPOLATED, "interpolated", SOURCE,                                                          \
+    "interpolated between computed points, within the error that is estimated beside it")
 
-enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT };
+enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT, DEA_FLAG_SOURCE };
 #define DEA_FLAG_NUMBER(name, word, kind, sentence) DEA_FLAG_##name,
 enum dea_flag { DEA_FLAG_LIST(DEA_FLAG_NUMBER) DEA_FLAG_COUNT };
 #undef DEA_FLAG_NUMBER
@@ -125,6 +131,7 @@ unsigned dea_load_point_flags(const struct dea_load_point *point);
 bool dea_load_point_trusted(const struct dea_load_point *point);
 bool dea_load_point_safe(const struct dea_load_point *point);
 bool dea_load_point_bounds(const struct dea_load_point *point);
+bool dea_load_point_interpolated(const struct dea_load_point *point);
 
 /* "slack unstable ...", each with a blank after it. */
 #define DEA_FLAG_WORD(name, word, kind, sentence) word " "

@@ -2,10 +2,13 @@
  * is held there while the voltage goes through the sweep. Depth after depth that gives force
  * against voltage at fixed depths and force against depth at fixed voltages: the actuator's load
  * lines. To a deeper depth the tip goes on from the one before, at 0 V again; otherwise from rest.
+ * Voltages between others of a smooth line are interpolated (force_line.h).
  */
 #include "study/force.h"
 #include "base/schema.h"
+#include "study/force_line.h"
 #include "study/study.h"
+#include "study/uncertainty.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -23,6 +26,7 @@ struct settings {
   struct dea_quantity radius_m, edge_radius_m;
   struct dea_quantity depths_m[DEA_DESIGN_STOPS_MAX], preloads_N[DEA_DESIGN_STOPS_MAX];
   size_t depth_count, preload_count;
+  struct dea_quantity tolerance; // 0: every voltage is computed
 };
 
 #define AT(member) offsetof(struct settings, member)
@@ -89,6 +93,16 @@ static const struct dea_field fields[] = {
      .count_offset = AT(preload_count),
      .doc = "forces that the tip is pressed to at 0 V, instead of depths or besides",
      .example = "[0.18 N]"},
+    {.key = "tolerance",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(tolerance),
+     .unit = "1",
+     .max = 0.1,
+     .default_text = "0.002",
+     .doc = "estimated error of forces that are interpolated between computed ones, over what the "
+            "force changes by along its line, where the film has tension; ten times that for all "
+            "other numbers; 0: every voltage is computed",
+     .example = "0"},
 };
 
 static const struct dea_record record = {study_name,
@@ -196,6 +210,13 @@ dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type
   return DEA_OK;
 }
 
+/* What is interpolated at most; bands are of small differences of lines. */
+static double tolerance_of(const struct dea_design *design)
+{
+  const struct settings *force = settings_of(design);
+  return force != NULL && !dea_uncertainty_written(design) ? force->tolerance.si : 0;
+}
+
 /* A model that goes from stop to stop, and where it was last pressed to at 0 V. */
 struct press {
   const struct dea_model_type *type;
@@ -231,11 +252,12 @@ static dea_status ready(struct dea_context *ctx, struct press *p, size_t stop)
   return status;
 }
 
-/* Keeps where the tip is pressed to if the next stop goes on from there. */
+/* Keeps where the tip is pressed to if its line or the next stop goes on from there. */
 static dea_status keep_pressed(struct dea_context *ctx, struct press *p, size_t stop)
 {
   struct dea_state now = {0};
-  if (p->type->load == NULL || !goes_deeper(p->result->design, stop + 1)) {
+  const struct dea_design *design = p->result->design;
+  if (p->type->load == NULL || (!goes_deeper(design, stop + 1) && tolerance_of(design) <= 0)) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_save(ctx, p->type, p->model, &now));
@@ -252,8 +274,13 @@ static dea_status load_line(struct dea_context *ctx, struct press *p, size_t sto
   DEA_TRY(ctx, ready(ctx, p, stop));
   DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, stop));
   DEA_TRY(ctx, keep_pressed(ctx, p, stop));
-  DEA_TRY(ctx, dea_study_take_points(ctx, p->type, p->model, design->compute.voltages_V,
-                                     design->compute.voltage_count, curve));
+  const struct dea_force_line line = {.type = p->type,
+                                      .model = p->model,
+                                      .pressed = p->kept ? &p->at : NULL,
+                                      .voltages_V = design->compute.voltages_V,
+                                      .count = design->compute.voltage_count,
+                                      .tolerance = tolerance_of(design)};
+  DEA_TRY(ctx, dea_force_line_take(ctx, &line, curve));
   return DEA_OK;
 }
 
@@ -287,7 +314,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 
 // Figures ----------------------------------------------------------------------------------------
 
-/* Of the first model with such a curve; count 0 when there is none. */
+/* Of a curve; count 0 when there is none. */
 struct stops {
   const struct dea_curve *curve; // lent
   size_t count;
@@ -309,24 +336,47 @@ static void sort(struct stops *stops)
   }
 }
 
-static void find_stops(const struct dea_result *result, struct stops *out)
+static void find_stops(const struct dea_curve *curve, struct stops *out)
 {
-  *out = (struct stops){0};
-  for (size_t i = 0; i < result->curve_count && out->curve == NULL; i++) {
-    const struct dea_curve *curve = &result->curves[i];
-    out->curve = strcmp(curve->kind, study_name) == 0 && curve->count > 0 ? curve : NULL;
-  }
-  if (out->curve == NULL) {
-    return;
-  }
-  const struct dea_load_point *p = out->curve->points;
-  for (size_t i = 0; i < out->curve->count && out->count < DEA_DESIGN_STOPS_MAX; i++) {
+  *out = (struct stops){.curve = curve};
+  const struct dea_load_point *p = curve != NULL ? curve->points : NULL;
+  for (size_t i = 0; p != NULL && i < curve->count && out->count < DEA_DESIGN_STOPS_MAX; i++) {
     if (i == 0 || p[i].tip_depth_m != p[i - 1].tip_depth_m) { // held exactly while V rises
       out->first[out->count++] = i;
     }
     out->first[out->count] = i + 1;
   }
   sort(out);
+}
+
+/* The first such curve of any model, or NULL. */
+static const struct dea_curve *first_curve(const struct dea_result *result)
+{
+  for (size_t i = 0; i < result->curve_count; i++) {
+    if (strcmp(result->curves[i].kind, study_name) == 0) {
+      return &result->curves[i];
+    }
+  }
+  return NULL;
+}
+
+/* The points of one stop as a curve of their own; lent. */
+static struct dea_curve one_stop(const struct stops *stops, size_t i)
+{
+  struct dea_curve part = *stops->curve;
+  part.points = stops->curve->points + stops->first[i];
+  part.std = stops->curve->std != NULL ? stops->curve->std + stops->first[i] : NULL;
+  part.count = stops->first[i + 1] - stops->first[i];
+  return part;
+}
+
+static size_t count_computed(const struct dea_curve *curve)
+{
+  size_t n = 0;
+  for (size_t i = 0; i < curve->count; i++) {
+    n += dea_load_point_interpolated(&curve->points[i]) ? 0 : 1;
+  }
+  return n;
 }
 
 /* Look of the i-th curve, without title. */
@@ -338,22 +388,43 @@ static struct dea_series stop_style(size_t i)
       .style = DEA_LINE_MARKED, .colour = order[i % 6], .marker = (int)(i % 6)};
 }
 
+/* Markers at the computed points of a line that has others, as far as it is to be trusted. */
+static dea_status add_computed(struct dea_context *ctx, struct dea_panel *panel,
+                               const struct dea_curve *curve, const struct dea_series *look)
+{
+  struct dea_series *series, marks = *look;
+  marks.style = DEA_MARKERS;
+  marks.aside = true;
+  marks.title[0] = '\0';
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, &marks, &series));
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    if (!dea_load_point_interpolated(p) && dea_load_point_trusted(p)) {
+      series->values[i] = 1e-3 * p->voltage_V;
+      series->values[curve->count + i] = 1e3 * p->force_N;
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status build_tip_force(struct dea_context *ctx, const struct dea_result *result,
                                   struct dea_plot *plot)
 {
   struct dea_panel *panel = &plot->panels[0];
   struct stops stops;
   int column = dea_point_column_find("force_N");
-  find_stops(result, &stops);
+  find_stops(first_curve(result), &stops);
   for (size_t i = 0; i < stops.count; i++) {
-    struct dea_curve part = *stops.curve; // lent points: a curve of one stop
-    part.points = stops.curve->points + stops.first[i];
-    part.std = stops.curve->std != NULL ? stops.curve->std + stops.first[i] : NULL;
-    part.count = stops.first[i + 1] - stops.first[i];
+    struct dea_curve part = one_stop(&stops, i);
+    bool all = count_computed(&part) == part.count;
     struct dea_series look = stop_style(i);
+    look.style = all ? look.style : DEA_LINE;
     snprintf(look.title, sizeof look.title, "%.4g mm", 1e3 * part.points[0].tip_depth_m);
     DEA_TRY(ctx, dea_figure_add(ctx, panel, &part, column, dea_point_columns[column].factor, 0.0,
                                 &look));
+    if (!all) {
+      DEA_TRY(ctx, add_computed(ctx, panel, &part, &look));
+    }
   }
   snprintf(panel->y_label, sizeof panel->y_label, "Force on the tip {/:Italic F} (mN)");
   dea_panel_voltage_axis(panel);
@@ -364,24 +435,27 @@ static dea_status build_tip_force(struct dea_context *ctx, const struct dea_resu
 enum { SHOWN_MAX = 6 };
 
 /* Force over depth at the k-th voltage of each stop that came so far; a line with a point that is
- * not to be trusted says so. */
+ * not to be trusted, or is interpolated, says so. */
 static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
                            const struct stops *stops, size_t k, size_t number)
 {
   const struct dea_series look = stop_style(number);
   struct dea_series *series;
-  bool trusted = true;
+  const struct dea_load_point *points = stops->curve->points;
+  bool trusted = true, computed = true;
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, stops->count, &look, &series));
   for (size_t i = 0; i < stops->count; i++) {
     size_t at = stops->first[stops->by_depth[i]] + k;
-    if (at < stops->first[stops->by_depth[i] + 1]) {
-      series->values[i] = 1e3 * stops->curve->points[at].tip_depth_m;
-      series->values[stops->count + i] = 1e3 * stops->curve->points[at].force_N;
-      trusted = trusted && dea_load_point_trusted(&stops->curve->points[at]);
+    if (at < stops->first[stops->by_depth[i] + 1] &&
+        points[at].voltage_V == points[k].voltage_V) { // else it was interrupted
+      series->values[i] = 1e3 * points[at].tip_depth_m;
+      series->values[stops->count + i] = 1e3 * points[at].force_N;
+      trusted = trusted && dea_load_point_trusted(&points[at]);
+      computed = computed && !dea_load_point_interpolated(&points[at]);
     }
   }
-  snprintf(series->title, sizeof series->title, "%.4g kV%s",
-           1e-3 * stops->curve->points[k].voltage_V, trusted ? "" : " (?)");
+  snprintf(series->title, sizeof series->title, "%.4g kV%s%s", 1e-3 * points[k].voltage_V,
+           trusted ? "" : " (?)", computed ? "" : " (i)");
   return DEA_OK;
 }
 
@@ -390,7 +464,7 @@ static dea_status build_load_line(struct dea_context *ctx, const struct dea_resu
 {
   struct dea_panel *panel = &plot->panels[0];
   struct stops stops;
-  find_stops(result, &stops);
+  find_stops(first_curve(result), &stops);
   if (stops.count < 2) { // one depth is no line
     return DEA_OK;
   }
@@ -410,18 +484,70 @@ static const struct dea_figure figures[] = {
     {
         .name = "tip_force",
         .study = study_name,
-        .caption = "force on the tip against the voltage, for each depth that it is held at",
+        .caption = "force on the tip against the voltage, for each depth that it is held at (where "
+                   "voltages are interpolated, markers are at the computed ones)",
         .build = build_tip_force,
     },
     {
         .name = "load_line",
         .study = study_name,
         .caption = "force on the tip against the depth that it is held at, for some voltages (?: "
-                   "not to be "
-                   "trusted at one of the depths)",
+                   "not to be trusted at one of the depths, i: interpolated at one)",
         .build = build_load_line,
     },
 };
+
+// Table ------------------------------------------------------------------------------------------
+
+static const struct dea_result_column line_columns[] = {
+    DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "depth",
+                      "how far the tip is pressed beyond touching the flat film"),
+    {.key = "voltages",
+     .kind = DEA_CELL_COUNT,
+     .title = "voltages",
+     .meaning = "points of the line"},
+    {.key = "computed",
+     .kind = DEA_CELL_COUNT,
+     .title = "computed",
+     .meaning = "how many of them are; the others are interpolated"},
+    DEA_NUMBER_COLUMN("force_interpolation_error_N", "N", "mN", 1e3, "error of force",
+                      "largest estimated error of a force that is interpolated"),
+    DEA_NUMBER_COLUMN("interpolation_error", "1", "%", 100, "of the rest",
+                      "largest of the other numbers, over what each changes by on the line"),
+};
+static const struct dea_result_table_type line_table = {
+    .study = study_name,
+    .name = "lines",
+    .title = "load lines, and how many of their points are computed",
+    .where = DEA_IN_JSON | DEA_IN_SCREEN,
+    .columns = line_columns,
+    .column_count = sizeof line_columns / sizeof line_columns[0]};
+
+static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
+{
+  struct stops stops;
+  struct dea_result_table *table;
+  find_stops(dea_result_find(result, model, study_name), &stops);
+  if (stops.count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &line_table, model, 0, &table));
+  for (size_t i = 0; i < stops.count; i++) {
+    const struct dea_curve part = one_stop(&stops, i);
+    double force_N = NAN, rest = NAN;
+    for (size_t k = 0; k < part.count; k++) {
+      force_N = fmax(force_N, part.points[k].force_interpolation_error_N);
+      rest = fmax(rest, part.points[k].interpolation_error);
+    }
+    const struct dea_result_table_value row[] = {{.number = part.points[0].tip_depth_m},
+                                                 {.number = (double)part.count},
+                                                 {.number = (double)count_computed(&part)},
+                                                 {.number = force_N},
+                                                 {.number = rest}};
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
 
 // The study --------------------------------------------------------------------------------------
 
@@ -437,6 +563,7 @@ const struct dea_study dea_study_force = {
     .needs = "compute.force.depth or compute.force.preload",
     .own_models = true,
     .run = run,
+    .tables = tables,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],
 };

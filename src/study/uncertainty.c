@@ -10,6 +10,8 @@
  *
  * g by central differences over +-s_j (not less than a step that the solution can resolve), or to
  * one side where the other has no answer. */
+#include "study/uncertainty.h"
+
 #include "base/correlations.h"
 #include "base/schema.h"
 #include "base/yaml_write.h"
@@ -264,6 +266,8 @@ static bool is_answer(int column)
                                      "time_s",
                                      "source_voltage_V",
                                      "tip_depth_m",
+                                     "force_interpolation_error_N",
+                                     "interpolation_error",
                                      "nominal_field_V_per_m",
                                      "breakdown_probability",
                                      "centre_z_error_m",
@@ -482,6 +486,12 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   dea_free(ctx, w);
   DEA_TRY(ctx, status);
   return DEA_OK;
+}
+
+bool dea_uncertainty_written(const struct dea_design *design)
+{
+  const struct dea_settings *given = dea_design_settings(design, &section);
+  return given != NULL && given->written;
 }
 
 /* Also without the section: a film's law may have uncertainties. */
