@@ -319,7 +319,7 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
     DEA_TRY(ctx, look_at_tension(ctx, e));
     return DEA_OK;
   }
-  report->snapped |= bent && from_V != 0; // if also straight to a stable state
+  report->snapped |= bent; // if also straight to a stable state
   if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {
     return refuse_leap(ctx, e, voltage_V, from);
   }

@@ -63,7 +63,10 @@ static bool is_flat(struct dea_solid *s, const double *u, double size_m)
 bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *from, double size_m)
 {
   static const double deflected = 1e-3;
-  return is_flat(s, from->state, size_m) && deflection_m(s, s->state.u) > deflected * size_m;
+  const bool pushed =
+      from->controls[0] == 0 && !(s->found.foreseen && is_flat(s, s->work.foreseen, size_m));
+  return !pushed && is_flat(s, from->state, size_m) &&
+         deflection_m(s, s->state.u) > deflected * size_m;
 }
 
 // The path ----------------------------------------------------------------------------------------

@@ -60,7 +60,9 @@ void dea_solid_stand_again(struct dea_solid *solid, const struct dea_solid_stand
 /* Root of the mean square of how far the nodes are from there. */
 double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
 
-/* Whether a film that was flat there is no more, to 1e-6 and 1e-3 of a size. */
+/* Whether a film that was flat there, and that the voltage does not push across, is no more, to
+ * 1e-6 and 1e-3 of a size. It does not push where the film was flat under one, or where the first
+ * linear step from 0 V leaves it flat. */
 bool dea_solid_left_plane(struct dea_solid *solid, const struct dea_solid_stand *from,
                           double size_m);
 
