@@ -115,10 +115,11 @@ static void check_fall(const char *what, const char *number, const double *share
 static void check_number(struct at *at, const struct dea_design_number *number, const double *base,
                          const double *slope)
 {
-  static const double decades[] = {3e-2, 3e-3, 3e-4, 3e-5, 3e-6}, small[] = {3e-3, 3e-4};
+  enum { COUNT_MAX = 3 };
+  static const double decades[COUNT_MAX] = {3e-2, 3e-4, 3e-6}, small[] = {3e-3, 3e-4};
   const double *shares = at->four_decades ? decades : small;
-  const size_t count = at->four_decades ? 5 : 2;
-  double moved[5][WIDTH];
+  const size_t count = at->four_decades ? COUNT_MAX : 2;
+  double moved[COUNT_MAX][WIDTH];
   bool voltage = strcmp(number->key, "voltage") == 0;
   const double reach = number->reach > 0 ? number->reach : number->value;
   for (size_t n = 0; n < count; n++) {
@@ -140,7 +141,7 @@ static void check_number(struct at *at, const struct dea_design_number *number, 
     if (isnan(base[k]) || size < 1e-12) { // of what lies still
       continue;
     }
-    double left[5];
+    double left[COUNT_MAX];
     assert_true(!isnan(slope[k]));
     for (size_t n = 0; n < count; n++) {
       left[n] = (moved[n][k] - base[k] - slope[k] * reach * shares[n]) / size;
