@@ -10,7 +10,7 @@ second time (one that took long because others had the machine). Prints a line a
 KEPT/record.csv; the exit code is 1 if anything was found.
 
 --write moves those rows to docs/verification/fuzzing.csv, writes docs/verification/fuzzing.md from all
-that stand there, and puts into tests/fuzz/corpus the SMALL smallest of at most LARGEST bytes among
+that stand there, and puts into tests/fuzz/corpus SMALL of at most LARGEST bytes, of all sizes, among
 those inputs that reach all that is reached (-set_cover_merge). With --hours 0 it does only that.
 """
 import argparse
@@ -57,7 +57,10 @@ def run(args, name, options, log):
     with open(log, "wb") as out:
         child = subprocess.Popen([program] + options, stdout=out, stderr=subprocess.STDOUT,
                                  env=environment(name))
+        ends = threading.Timer(10 * ROUND_S, child.kill)  # libFuzzer may wait for itself when it is told to end
+        ends.start()
         _, status, used = os.wait4(child.pid, 0)
+        ends.cancel()
         child.returncode = os.waitstatus_to_exitcode(status)
     return used.ru_utime + used.ru_stime, child.returncode
 
@@ -152,7 +155,7 @@ def write_page():
 
 
 def keep_small(args, name):
-    """The smallest inputs of a cover go into the repository."""
+    """Some inputs of a cover, of all sizes, go into the repository."""
     home = os.path.join(ROOT, "tests", "fuzz", "corpus", name)
     with tempfile.TemporaryDirectory() as cover:
         options = ["-set_cover_merge=1", "-rss_limit_mb=2048", "-max_len=65536", cover,
@@ -160,7 +163,9 @@ def keep_small(args, name):
         options += [home] if os.path.isdir(home) else []
         _, status = run(args, name, options, os.path.join(args.kept, name + "-merge.log"))
         inputs = [(os.path.getsize(os.path.join(cover, f)), f) for f in os.listdir(cover)]
-        inputs = sorted(i for i in inputs if 0 < i[0] <= LARGEST)[:SMALL]
+        inputs = sorted(i for i in inputs if 0 < i[0] <= LARGEST)
+        step = max(len(inputs) / SMALL, 1)
+        inputs = [inputs[int((k + 1) * step) - 1] for k in range(int(len(inputs) / step + 1e-9))]
         if status != 0 or not inputs:
             print(f"{name}: the corpus is left as it is (merge ended with {status})", file=sys.stderr)
             return
