@@ -96,8 +96,9 @@ static double quartic(double V)
 static void test_estimate(void **state)
 {
   (void)state;
-  const double h = 8, unit = fourth * h * h * h * h;
-  begin((size_t)h, quartic);
+  const size_t h = 8;
+  const double unit = fourth * (double)(h * h * h * h);
+  begin(h, quartic);
   dea_sampled_line_fill(&line);
   double inside = 0, outside = 0;
   for (size_t k = 0; k < COUNT; k++) {
