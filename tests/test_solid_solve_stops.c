@@ -365,6 +365,28 @@ static void test_modes_of_the_mesh_are_not_followed(void **state)
   assert_close(stretch[0], stretch[1], 1e-8, 0);
 }
 
+/* On such a mesh a path that does not stay in the plane either is no reason to begin again from the
+ * flat film: pull-in is found where the exact disc has it (random design 1082).
+ */
+static void test_path_that_leaves_the_plane_of_a_coarse_mesh(void **state)
+{
+  (void)state;
+  static const struct dea_model_settings coarse = {
+      .film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
+  struct dea_device device =
+      disc(test_material("ogden", 302.64e3, 2.781, 0), 43.01e-6, 2.856, 11.76e-3, 37e-3);
+  struct dea_event exact, found;
+  double at_V;
+  device.film.permittivity.at_rest = 7.53;
+  assert_int_equal(sweep(dea_model_find("axisymmetric"), &device, NULL, 1494, 6, &at_V, &exact),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(sweep(&dea_solid_module, &device, &coarse, 1494, 6, &at_V, &found),
+                   DEA_E_NO_EQUILIBRIUM);
+  assert_int_equal(exact.kind, DEA_EVENT_PULL_IN);
+  assert_int_equal(found.kind, DEA_EVENT_PULL_IN);
+  assert_close(found.point.voltage_V, exact.point.voltage_V, 1e-2, 0);
+}
+
 /* Electrodes eighty times as stiff as the film, laid on before it was stretched to three times its
  * size, draw it together to a third (random design 17 without its fibres): Newton's method does not
  * go there at once. */
@@ -490,6 +512,7 @@ int main(void)
       cmocka_unit_test(test_loss_of_tension_is_no_pull_in),
       cmocka_unit_test(test_buckling_in_one_step),
       cmocka_unit_test(test_modes_of_the_mesh_are_not_followed),
+      cmocka_unit_test(test_path_that_leaves_the_plane_of_a_coarse_mesh),
       cmocka_unit_test(test_rest_under_stiff_electrodes),
       cmocka_unit_test(test_pull_in_beside_fibre_tips),
       cmocka_unit_test(test_pressures_under_fibres_settle),

@@ -23,6 +23,7 @@ struct search {
   bool went_on;                 // the solid is at a stable equilibrium further on
   bool looks;     // it is known where the solid goes, and only asked what is on the way
   bool bent;      // it looks from a flat film to one that is no more
+  bool left;      // its path has led out of the plane of a flat film, so that load steps may
   bool stuck;     // the path could not be followed to its end; where it looks the solid stays there
   double reached; // share of the way of the last point of the path
 };
@@ -290,12 +291,17 @@ static dea_status try_steps(struct dea_context *ctx, struct search *a, double vo
   return status;
 }
 
+static bool has_left(const struct search *a)
+{
+  return dea_solid_left_plane(a->s, &a->start, a->s->problem.length_m);
+}
+
 /* Load steps that have failed may have leapt on the way, or have left the plane of a flat film,
- * which its tension holds there as long as the path has any. */
+ * which its tension holds there as long as the path has any and stays in it. */
 static void step_back(struct search *a, bool taut)
 {
   const bool strays = !a->report->snapped && dea_solid_strays(a->s, &a->start);
-  if (taut && (strays || dea_solid_left_plane(a->s, &a->start, a->s->problem.length_m))) {
+  if (taut && (strays || (!a->left && has_left(a)))) {
     dea_solid_stand_again(a->s, &a->start);
     a->leapt |= strays;
   }
@@ -513,6 +519,7 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
     step_back(a, taut);
     dea_solid_controls_goal(a->s, voltage_V, a->goal);
     DEA_TRY(ctx, search_path(ctx, a));
+    a->left |= a->went_on && has_left(a);
     a->s->found.foreseen = a->s->found.foreseen && !a->went_on; // it has been followed
     if (a->stop->kind == DEA_STOP_LIMIT) {
       return taut ? end_at_limit(ctx, a) : leap(ctx, a, voltage_V);
