@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* More area at once than this, and a limit point may have been passed: along a path that goes on
  * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
@@ -67,25 +66,17 @@ void dea_ending_free(struct dea_ending *e)
 }
 
 /* Whether the tension of the film, which no step leads on from, is 0 closely beyond by its last two
- * points: the voltage of that, else 0. */
-static double slack_beyond_V(const struct dea_ending *e)
+ * points: the voltage of that as an event. */
+static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e, bool *slack)
 {
   const double *T = e->tension, *at_V = e->tension_V, V = dea_solid_voltage(e->owner.solid);
   const double square = V * V;
   const double beyond = square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1]);
   const double near = 1 + e->owner.solid->settings.leap_way;
-  const bool slack =
-      at_V[1] == V && T[0] > T[1] && beyond >= square && beyond <= square * near * near;
-  return slack ? sqrt(beyond) : 0;
-}
-
-/* The same as an event. */
-static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e)
-{
-  const double at_V = slack_beyond_V(e);
-  if (at_V > 0) {
+  *slack = at_V[1] == V && T[0] > T[1] && beyond >= square && beyond <= square * near * near;
+  if (*slack) {
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
-    e->limit.point.voltage_V = at_V;
+    e->limit.point.voltage_V = sqrt(beyond);
   }
   return DEA_OK;
 }
@@ -102,9 +93,12 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
     drop_limit(e);
     DEA_TRY(ctx, dea_solid_stand_keep(ctx, e->owner.solid, &e->at_limit));
   }
-  if (where == DEA_STOP_NEAR && !e->leapt && slack_beyond_V(e) > 0) { // it has no tension there
-    DEA_TRY(ctx, see_slack_beyond(ctx, e));
-    return DEA_OK;
+  if (where == DEA_STOP_NEAR && !e->leapt) {
+    bool slack;
+    dea_status status = see_slack_beyond(ctx, e, &slack);
+    if (status != DEA_OK || slack) { // it has no tension there
+      return status;
+    }
   }
   if (where == DEA_STOP_LIMIT || where == DEA_STOP_NEAR || (where == DEA_STOP_UNSTABLE && thins)) {
     return take_event(ctx, e, V >= e->from_V ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK);
@@ -184,7 +178,8 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
   }
   bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
   if (status == DEA_E_NOT_CONVERGED && !e->limited) {
-    const dea_status seen = see_slack_beyond(ctx, e);
+    bool slack;
+    const dea_status seen = see_slack_beyond(ctx, e, &slack);
     if (seen != DEA_OK && !dea_solid_may_shorten(seen)) {
       return dea_fail_chain(ctx, seen, __func__, __FILE__, __LINE__);
     }

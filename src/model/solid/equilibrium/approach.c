@@ -37,19 +37,29 @@ static dea_status see(struct dea_context *ctx, const struct search *a,
 
 // Flat films -------------------------------------------------------------------------------------
 
+/* Sums of a component of displacements over the nodes of each column, in which what thins moves by
+ * as much up as down: [*count], lent until the next call. */
+static const double *sum_columns(struct dea_solid *s, const double *u, int component, size_t *count)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  double *sum = s->work.trial;
+  *count = dea_grid_columns(grid);
+  memset(sum, 0, *count * sizeof *sum);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (grid->column[n] >= 0) { // -1: of a body
+      sum[grid->column[n]] += u[3 * n + (size_t)component];
+    }
+  }
+  return sum;
+}
+
 /* Largest height of a column's middle over where it is undeformed, by its nodes. */
 static double deflection_m(struct dea_solid *s, const double *u)
 {
-  const struct dea_grid *grid = s->problem.grid;
-  const size_t columns = dea_grid_columns(grid);
-  double largest = 0, *heights = s->work.trial;
-  memset(heights, 0, columns * sizeof *heights);
-  for (size_t n = 0; n < grid->node_count; n++) { // what thins moves by as much up as down
-    if (grid->column[n] >= 0) {                   // -1: of a body
-      heights[grid->column[n]] += u[3 * n + 2];
-    }
-  }
-  for (size_t c = 0; c < columns; c++) {
+  size_t count;
+  const double *heights = sum_columns(s, u, 2, &count);
+  double largest = 0;
+  for (size_t c = 0; c < count; c++) {
     largest = fmax(largest, fabs(heights[c]));
   }
   return largest;
@@ -130,17 +140,11 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
 /* Whether a mode [dofs] leads out of the plane. */
 static bool leaves_plane(struct dea_solid *s, const double *mode)
 {
-  const struct dea_grid *grid = s->problem.grid;
-  const size_t columns = dea_grid_columns(grid);
-  double along = 0, across = 0, *sum = s->work.trial;
-  for (int k = 0; k < 3; k++) { // of columns: what thins moves by as much up as down
-    memset(sum, 0, columns * sizeof *sum);
-    for (size_t n = 0; n < grid->node_count; n++) {
-      if (grid->column[n] >= 0) { // -1: of a body
-        sum[grid->column[n]] += mode[3 * n + (size_t)k];
-      }
-    }
-    for (size_t c = 0; c < columns; c++) {
+  double along = 0, across = 0;
+  for (int k = 0; k < 3; k++) {
+    size_t count;
+    const double *sum = sum_columns(s, mode, k, &count);
+    for (size_t c = 0; c < count; c++) {
       *(k < 2 ? &along : &across) += sum[c] * sum[c];
     }
   }

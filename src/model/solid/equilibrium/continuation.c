@@ -98,8 +98,11 @@ static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuatio
              : dea_fail(ctx, status, "an element on the path has no energy at its end");
 }
 
-/* The plane's normal, from a direction of any length. */
-static void orient_plane(struct dea_solid_continuation *t, const double *direction, double load)
+/* A plane across a direction of any length, at a distance from a point of the path. enough: a step
+ * that is this share of the distance is the last one. */
+static void set_plane(struct dea_solid_continuation *t, const double *direction, double load,
+                      const struct dea_continuation_path_point *from, double distance,
+                      double enough)
 {
   double size = hypot(size_of(t, direction), load);
   size = size > 0 ? size : 1;
@@ -107,6 +110,10 @@ static void orient_plane(struct dea_solid_continuation *t, const double *directi
     t->plane.weight[i] = t->metric[i] * direction[i] / size;
   }
   t->plane.load = load / size;
+  t->plane.u0 = from->state;
+  t->plane.tau0 = from->load;
+  t->plane.length = distance;
+  t->plane.enough = enough;
 }
 
 /* ---- corrector: an equilibrium in a plane, Newton on displacements and load together ---- */
@@ -456,11 +463,7 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
   memcpy(t->start, s->state.u, s->problem.dofs * sizeof *t->start);
   double tau = t->load;
   DEA_TRY(ctx, follow_curve(ctx, t));
-  orient_plane(t, t->tangent, t->tangent_load);
-  t->plane.u0 = t->last.state;
-  t->plane.tau0 = t->last.load;
-  t->plane.length = t->step;
-  t->plane.enough = t->rough ? o->path_rough : 0;
+  set_plane(t, t->tangent, t->tangent_load, &t->last, t->step, t->rough ? o->path_rough : 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, iterations));
   *off = distance_from(t, t->start, tau) / t->step;
   if (*off < o->path_off_most) {
@@ -537,11 +540,7 @@ dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_c
   at->arc = t->before.arc + share * (t->last.arc - t->before.arc);
   DEA_TRY(ctx, return_to(ctx, t, at));
   memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
-  orient_plane(t, t->start, 1);
-  t->plane.u0 = t->before.state;
-  t->plane.tau0 = t->before.load;
-  t->plane.length = load - t->before.load;
-  t->plane.enough = 0;
+  set_plane(t, t->start, 1, &t->before, load - t->before.load, 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, at));
   report_point(t, at, DEA_CONTINUATION_NOTHING, point);
@@ -747,11 +746,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_conti
   }
   t->critical.load = b->from->load + share * b->way_load + aside * b->bow_load;
   DEA_TRY(ctx, return_to(ctx, t, &t->critical));
-  orient_plane(t, b->way, b->way_load);
-  t->plane.u0 = b->from->state;
-  t->plane.tau0 = b->from->load;
-  t->plane.length = share * b->length;
-  t->plane.enough = 0;
+  set_plane(t, b->way, b->way_load, b->from, share * b->length, 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   t->critical.arc = b->from->arc + share * b->length;
   return DEA_OK;
@@ -882,11 +877,7 @@ static dea_status switch_along(struct dea_context *ctx, struct dea_solid_continu
     t->start[i] = distance / size * t->mode[i];
   }
   DEA_TRY(ctx, predict_from(ctx, t, t->start, 0));
-  orient_plane(t, t->mode, 0);
-  t->plane.u0 = t->critical.state;
-  t->plane.tau0 = t->critical.load;
-  t->plane.length = distance;
-  t->plane.enough = 0;
+  set_plane(t, t->mode, 0, &t->critical, distance, 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->start[i] = t->s->state.u[i] - t->critical.state[i];
