@@ -96,7 +96,8 @@ static const double turns[BODIES_MAX][3] = {{0.9, -0.5, 0.4}, {-0.1, 0.15, 0.2}}
 
 static struct bodies two_bodies(void)
 {
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct dea_constituent layer = dea_constituent_bonded(elastic);
+  layer.density_kg_per_m3 = 1000;
   return bodies_create(&bar, &layer, 1, 2, two_centres, 0, third_and_part, clamped, NULL);
 }
 
@@ -265,6 +266,32 @@ static void test_tangent_is_slope_of_forces(void **state)
   }
   dea_free(ctx, vector);
   dea_free(ctx, u);
+  bodies_destroy(&it);
+}
+
+/* Of the same, with the forces that hold the bodies still at work: squares of frequencies, which
+ * elements, loads and bodies are asked for, are where the negative pivots of K - x M change. */
+static void test_frequencies_are_where_pivots_change(void **state)
+{
+  (void)state;
+  enum { MODES = 8 };
+  static const double beside = 1e-8;
+  struct bodies it = two_bodies();
+  double square[MODES];
+  hold_both(&it);
+  for (size_t k = 0; k < 2; k++) {
+    assert_int_equal(dea_solid_body_release(ctx, it.solid, k, ALL), DEA_OK);
+  }
+  assert_int_equal(dea_solid_modes_lowest(ctx, it.solid, DEA_MODES_BY_MASS, MODES, square, NULL),
+                   DEA_OK);
+  for (size_t m = 0; m < MODES; m++) {
+    for (size_t above = 0; above < 2; above++) {
+      const double x = square[m] + (above == 1 ? beside : -beside) * fabs(square[m]);
+      size_t count;
+      assert_int_equal(dea_solid_modes_below(ctx, it.solid, DEA_MODES_BY_MASS, x, &count), DEA_OK);
+      assert_int_equal(count, m + above);
+    }
+  }
   bodies_destroy(&it);
 }
 
@@ -749,6 +776,7 @@ int main(void)
       cmocka_unit_test(test_forces_are_slopes_of_the_energy),
       cmocka_unit_test(test_forces_and_moments_balance),
       cmocka_unit_test(test_tangent_is_slope_of_forces),
+      cmocka_unit_test(test_frequencies_are_where_pivots_change),
       cmocka_unit_test(test_turned_as_a_whole),
       cmocka_unit_test(test_body_that_only_shifts),
       cmocka_unit_test(test_vibrations_of_a_rigid_block),

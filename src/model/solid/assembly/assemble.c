@@ -126,6 +126,16 @@ static dea_status add_springs(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
+double dea_solid_springs_curvature(const struct dea_solid *s, const double *v)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  double sum = 0;
+  for (size_t i = 0; i < 3 * p->grid->node_count && p->spring != NULL; i++) {
+    sum += neutral * p->spring[i] * v[i] * v[i];
+  }
+  return sum;
+}
+
 /* ---- the whole ---- */
 
 /* Energy of this rank's elements and pieces of loads. */

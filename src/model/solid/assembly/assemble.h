@@ -16,6 +16,8 @@ struct dea_solid_inertia {
 
 /* Makes problem.spring if there are elements that need it. */
 dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s);
+/* What they add to v . K v, v [dofs]. */
+double dea_solid_springs_curvature(const struct dea_solid *s, const double *v);
 
 /* Energy at displacements u, dead loads included; sets those of followers of bodies. DEA_E_DOMAIN
  * for an inverted element. */

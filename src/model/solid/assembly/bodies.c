@@ -329,31 +329,54 @@ dea_status dea_solid_bodies_add_pins(struct dea_context *ctx, struct dea_solid *
   return DEA_OK;
 }
 
+/* H of forces g [dofs] on the followers of a body, by L w. */
+static void geometric_of(const struct dea_solid *s, size_t body, const double *g, double H[9])
+{
+  const double length_m = s->problem.bodies[body].length_m;
+  double P[9] = {0}, r[3];
+  struct rotation q;
+  for (size_t n = 0; n < s->problem.grid->node_count; n++) {
+    if (body_of(s, n) == body) {
+      arm_of(s, body, n, r);
+      for (size_t i = 0; i < 9; i++) {
+        P[i] += g[3 * n + i / 3] * r[i % 3];
+      }
+    }
+  }
+  rotation_at(s, body, s->state.u, &q);
+  curvature(&q, P, H);
+  for (int i = 0; i < 9; i++) {
+    H[i] /= length_m * length_m;
+  }
+}
+
+double dea_solid_bodies_curvature(const struct dea_solid *s, const double *g, const double *v)
+{
+  double sum = 0;
+  for (size_t k = 0; k < s->problem.body_count; k++) {
+    const double *turn = v + 3 * (s->problem.bodies[k].node + 1);
+    double H[9];
+    geometric_of(s, k, g, H);
+    for (int i = 0; i < 9; i++) {
+      sum += turn[i / 3] * H[i] * turn[i % 3];
+    }
+  }
+  return sum;
+}
+
 dea_status dea_solid_bodies_add_geometric(struct dea_context *ctx, struct dea_solid *s, Mat A,
                                           const double *increment, double *g)
 {
   const struct dea_solid_problem *p = &s->problem;
   for (size_t k = 0; k < p->body_count; k++) {
-    const struct dea_solid_body *b = &p->bodies[k];
-    double P[9] = {0}, H[9], block[36] = {0}, r[3];
-    struct rotation q;
-    for (size_t n = 0; n < p->grid->node_count; n++) {
-      if (body_of(s, n) == k) {
-        arm_of(s, k, n, r);
-        for (size_t i = 0; i < 9; i++) {
-          P[i] += g[3 * n + i / 3] * r[i % 3];
-        }
-      }
-    }
-    rotation_at(s, k, s->state.u, &q);
-    curvature(&q, P, H);
+    const size_t turn = 3 * (p->bodies[k].node + 1);
+    double H[9], block[36] = {0};
+    geometric_of(s, k, g, H);
     for (int i = 0; i < 9; i++) {
-      block[6 * (3 + i / 3) + 3 + i % 3] = H[i] / (b->length_m * b->length_m);
+      block[6 * (3 + i / 3) + 3 + i % 3] = H[i];
     }
-    double *turn = g + 3 * (b->node + 1);
-    const double *way = increment != NULL ? increment + 3 * (b->node + 1) : NULL;
-    for (int i = 0; i < 9 && way != NULL; i++) {
-      turn[i / 3] += H[i] / (b->length_m * b->length_m) * way[i % 3];
+    for (size_t i = 0; i < 9 && increment != NULL; i++) {
+      g[turn + i / 3] += H[i] * increment[turn + i % 3];
     }
     DEA_TRY(ctx, add_block(ctx, s, A, k, block, pin_stiffness(s)));
   }

@@ -49,6 +49,8 @@ dea_status dea_solid_bodies_add_pins(struct dea_context *ctx, struct dea_solid *
  * it. A: not ended. */
 dea_status dea_solid_bodies_add_geometric(struct dea_context *ctx, struct dea_solid *s, Mat A,
                                           const double *increment, double *g);
+/* What that term adds to v . K v, v [dofs]. */
+double dea_solid_bodies_curvature(const struct dea_solid *s, const double *g, const double *v);
 /* A += factor A_n^T d_n A_n with a number d_n for each follower n, which stands at apart * n in d.
  * A: not ended. */
 dea_status dea_solid_bodies_add_diagonal(struct dea_context *ctx, struct dea_solid *s, Mat A,

@@ -1,0 +1,178 @@
+/* v . K v element by element. As one matrix, K rounds what a mode does not touch: sums of entries
+ * of kappa, from which a soft mode leaves a part of 1e-7, so that its value is right to 1e-9. In an
+ * element the motion of its middle is taken off first, for which it has no stiffness, and what
+ * kappa resists is a square,
+ *
+ *   v . K v = sum_e (v - v_0) . A_e (v - v_0) + kappa |b_e (v - v_0)|^2 + loads, springs, bodies,
+ *
+ * A without kappa at the pressures that there are, b as in element.h. */
+#include "model/solid/assembly/curvature.h"
+
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/incompressible.h"
+
+#include <string.h>
+
+/* The room for b and L of one element. */
+struct room {
+  double b[DEA_HEX_PRESSURES_MAX * DEA_HEX_DOFS_MAX];
+  double L[DEA_HEX_PRESSURES_MAX * DEA_HEX_PRESSURES_MAX];
+};
+
+static double product(int count, const double *K, const double *v)
+{
+  double sum = 0;
+  for (int i = 0; i < count; i++) {
+    double force = 0;
+    for (int j = 0; j < count; j++) {
+      force += K[i * count + j] * v[j];
+    }
+    sum += v[i] * force;
+  }
+  return sum;
+}
+
+/* Displacements of an element along v from their mean: [nodes][3]. */
+static void gather_shape(const struct dea_solid *s, size_t e, const double *v, double *out)
+{
+  const int count = dea_solid_gather(s, e, v, out);
+  for (int i = 0; i < 3; i++) {
+    double mean = 0;
+    for (int n = 0; n < count; n++) {
+      mean += out[3 * n + i] / count;
+    }
+    for (int n = 0; n < count; n++) {
+      out[3 * n + i] -= mean;
+    }
+  }
+}
+
+/* Of an element that is in work.element and `room`; kappa_Pa: that of the stiff solid. */
+static double of_element(const struct dea_solid *s, size_t e, double kappa_Pa,
+                         const struct room *room, const double *v)
+{
+  const struct dea_element *element = dea_solid_element(s, e);
+  const int per = element->type->per_node, nodes = element->nodes;
+  const int *node;
+  double shape[DEA_HEX_DOFS_MAX], all[DEA_ELEMENT_DOFS_MAX], sum = 0;
+  gather_shape(s, e, v, shape);
+  dea_solid_nodes(s, e, &node);
+  for (int i = 0; i < per * nodes; i++) {
+    const int n = i / per, k = i % per;
+    all[i] = k < 3 ? shape[3 * n + k] : v[dea_solid_at(s, node[n], k)];
+  }
+  for (int m = 0; m < element->pressures && element->type->constraint != NULL; m++) {
+    double gain = 0;
+    for (int i = 0; i < 3 * nodes; i++) {
+      gain += room->b[m * 3 * nodes + i] * shape[i];
+    }
+    sum += kappa_Pa * gain * gain;
+  }
+  return sum + product(per * nodes, s->work.element->K, all);
+}
+
+/* Adds forces of a few nodes to those of the whole. */
+static void add_forces(struct dea_solid *s, int count, const int *nodes, int per, const double *g)
+{
+  for (int i = 0; i < per * count; i++) {
+    s->work.g[dea_solid_at(s, nodes[i / per], i % per)] += g[i];
+  }
+}
+
+static dea_status add_elements(struct dea_solid *s, double stiffer, struct room *room, size_t count,
+                               const double *v, double *out)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  for (size_t k = 0; k < p->own_count; k++) {
+    const size_t e = p->own[k];
+    const struct dea_element *element = dea_solid_element(s, e);
+    struct dea_solid_element_place place;
+    struct dea_element_input in;
+    dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+    dea_status status = element->type->evaluate(element, &in, DEA_TANGENT, s->work.element);
+    if (status == DEA_OK && element->type->constraint != NULL) {
+      status = element->type->constraint(element, &in, room->b, room->L);
+    }
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+      out[i] += of_element(s, e, stiffer * dea_solid_bulk_modulus(s, e), room, v + i * p->dofs);
+    }
+    add_forces(s, element->nodes, p->grid->nodes + e * DEA_HEX_NODES_MAX, element->type->per_node,
+               s->work.element->g);
+  }
+  return DEA_OK;
+}
+
+static dea_status add_loads(struct dea_solid *s, size_t count, const double *v, double *out)
+{
+  struct dea_load_piece *piece = s->work.piece;
+  for (size_t l = 0; l < s->problem.load_count; l++) {
+    const struct dea_solid_load *load = &s->problem.loads[l];
+    size_t from, to;
+    dea_solid_share(load->piece_count, &from, &to);
+    for (size_t k = from; k < to; k++) {
+      double own[3 * DEA_PIECE_NODES_MAX];
+      dea_status status = load->evaluate(load->self, k, s->state.u, DEA_TANGENT, piece);
+      if (status != DEA_OK) {
+        return status;
+      }
+      for (size_t i = 0; i < count && piece->node_count > 0; i++) {
+        for (int n = 0; n < piece->node_count; n++) {
+          memcpy(own + 3 * n, v + i * s->problem.dofs + 3 * piece->nodes[n], 3 * sizeof *own);
+        }
+        out[i] += product(3 * piece->node_count, piece->K, own);
+      }
+      add_forces(s, piece->node_count, piece->nodes, 3, piece->g);
+    }
+  }
+  return DEA_OK;
+}
+
+/* Without kappa, at the pressures that the state has. */
+static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s, struct room *room,
+                             size_t count, const double *v, double *out)
+{
+  static const double none = 0x1p-100; // of kappa
+  const size_t pressures = dea_solid_pressure_count(s);
+  double *own = dea_solid_alloc(ctx, pressures + 1, sizeof *own);
+  if (own == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(own, s->state.multiplier, pressures * sizeof *own);
+  dea_solid_update_multipliers(s);
+  dea_solid_scale_bulk_modulus(s, none);
+  dea_status status = add_elements(s, s->settings.bulk_stiff / none, room, count, v, out);
+  dea_solid_scale_bulk_modulus(s, 1 / none);
+  memcpy(s->state.multiplier, own, pressures * sizeof *own);
+  dea_free(ctx, own);
+  return status == DEA_OK ? add_loads(s, count, v, out) : status;
+}
+
+dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                                const double *v, double *out)
+{
+  const size_t dofs = s->problem.dofs;
+  struct room *room = dea_solid_alloc(ctx, 1, sizeof *room);
+  if (room == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memset(out, 0, count * sizeof *out);
+  memset(s->work.g, 0, dofs * sizeof *s->work.g);
+  dea_status status = dea_solid_agree(ctx, add_pieces(ctx, s, room, count, v, out));
+  dea_free(ctx, room);
+  DEA_TRY(ctx, status);
+  dea_solid_sum(out, count);
+  dea_solid_sum(s->work.g, dofs);
+  for (size_t i = 0; i < dofs; i++) {
+    s->work.g[i] -= s->state.force[i];
+  }
+  for (size_t i = 0; i < count; i++) {
+    out[i] += dea_solid_springs_curvature(s, v + i * dofs) +
+              dea_solid_bodies_curvature(s, s->work.g, v + i * dofs);
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,13 @@
+/* v . K v of small motions, as exactly as elements have it (docs/theory/vibration.md). */
+#ifndef DEA_MODEL_SOLID_ASSEMBLY_CURVATURE_H
+#define DEA_MODEL_SOLID_ASSEMBLY_CURVATURE_H
+
+#include "model/solid/assembly/problem.h"
+
+/* v . K v of motions v [count][dofs], K that of the solid as good as incompressible at the state
+ * (dea_solid_assemble_stiff), of which theta has to belong to u; without inertia. Held components
+ * of v are 0, and followers of bodies move with them. out: [count]. Leaves work.g undefined. */
+dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, size_t count,
+                                const double *v, double *out);
+
+#endif
