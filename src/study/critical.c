@@ -312,6 +312,9 @@ static dea_status lowest_square(struct search *s, double voltage_V, double *squa
   struct dea_load_point mode;
   struct dea_field_mesh *shape;
   DEA_TRY(s->ctx, solve(s, voltage_V, &s->out->point, &limit, there));
+  if (*there) { // again, for what the first one leaves is seen where the frequency is nearly 0
+    DEA_TRY(s->ctx, solve(s, voltage_V, &s->out->point, &limit, there));
+  }
   *there = *there && (s->out->point.told & 1u << DEA_FLAG_STATES) == 0;
   if (limit != NULL && limit->kind == DEA_EVENT_PULL_IN) { // where the frequency is 0 too
     snprintf(s->out->why, sizeof s->out->why, "pull-in at %.6g kV comes first",
@@ -376,7 +379,7 @@ static double end_of_parabola(const struct fall *f)
  */
 static dea_status find_buckling(struct search *s)
 {
-  static const double most = 0.8, close = 1e-3; // of the way left; of the square of the voltage
+  static const double most = 0.8, close = 4e-5; // of the way left; of the square of the voltage
   const double highest = s->ask->highest_V * s->ask->highest_V;
   struct fall f = {.count = 0};
   double square = NAN, high = INFINITY;
