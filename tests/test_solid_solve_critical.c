@@ -198,7 +198,9 @@ static void test_pull_in_exactly(void **state)
 {
   (void)state;
   static const double from_V[] = {250, 320};
-  static const struct dea_model_settings film = {0}, membrane = {.film = DEA_FILM_MEMBRANE};
+  static const struct dea_model_settings film = {0}, membrane = {.film = DEA_FILM_MEMBRANE},
+                                         coupled = {
+                                             .field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1};
   struct state at = soft_disc();
   double found_V[2];
   for (int k = 0; k < 2; k++) {
@@ -211,6 +213,8 @@ static void test_pull_in_exactly(void **state)
   check_critical(&at, &membrane, DEA_EVENT_PULL_IN, PRE_STRETCH);
   check_critical(&at, &membrane, DEA_EVENT_PULL_IN, FRAME);
   check_critical(&at, &film, DEA_EVENT_PULL_IN, PRE_STRETCH);
+  check_critical(&at, &coupled, DEA_EVENT_PULL_IN, PRE_STRETCH);
+  check_critical(&at, &coupled, DEA_EVENT_PULL_IN, ELECTRODE);
 }
 
 int main(void)
