@@ -314,23 +314,42 @@ static void check_constraint(struct sample *s)
   }
 }
 
-/* The deformation alone is that of the recovery. */
-static void check_deformation(struct sample *s)
+/* The work of P at the Gauss points on a small motion is that of the forces; F, J and pressure do
+ * not need P. */
+static void check_state(struct sample *s)
 {
-  static struct dea_recovered recovered;
-  static double F[DEA_HEX_NODES_MAX][9];
+  static struct dea_element_state here, moved, alone;
   const struct dea_element_type *type = s->element->type;
+  const double step = 1e-10;
+  int per = type->per_node, nodes = s->element->nodes;
+  double forces = 0, work = 0, size = 0;
   shake(s);
-  assert_int_equal(type->recover(s->element, &s->in, &recovered), DEA_OK);
-  assert_int_equal(type->deformation(s->element, &s->in, F), DEA_OK);
-  for (int i = 0; i < 9 * recovered.nodes; i++) {
-    assert_close(F[i / 9][i % 9], recovered.F[i / 9][i % 9], 0, 1e-14);
+  evaluate(s, &at);
+  assert_int_equal(type->state(s->element, &s->in, true, &here), DEA_OK);
+  assert_int_equal(type->state(s->element, &s->in, false, &alone), DEA_OK);
+  for (int i = 0; i < 3 * nodes; i++) {
+    double way = sin(1.1 * i + 0.2);
+    forces += at.g[per * (i / 3) + i % 3] * way;
+    s->u[i] += step * way;
   }
+  assert_int_equal(type->state(s->element, &s->in, false, &moved), DEA_OK);
+  for (int q = 0; q < s->element->points; q++) {
+    for (int i = 0; i < 9; i++) {
+      double one = here.volume_m3[q] * here.P[q][i] * (moved.F[q][i] - here.F[q][i]) / step;
+      work += one;
+      size += fabs(one);
+      assert_true(alone.F[q][i] == here.F[q][i]);
+    }
+    double cof[9];
+    assert_close(here.J[q], dea_cofactors(here.F[q], cof), 1e-12, 0);
+    assert_true(alone.J[q] == here.J[q] && alone.pressure[q] == here.pressure[q]);
+  }
+  assert_close(work, forces, 0, 1e-4 * size);
 }
 
 static void check_inverted(struct sample *s)
 {
-  static double F[DEA_HEX_NODES_MAX][9];
+  static struct dea_element_state state;
   static struct dea_element_strains strains;
   static double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], share[DEA_HEX_NODES_MAX];
   const struct dea_element_type *type = s->element->type;
@@ -341,7 +360,7 @@ static void check_inverted(struct sample *s)
   memset(s->u, 0, sizeof s->u);
   assert_int_equal(type->evaluate(s->element, &s->in, DEA_TANGENT, &at), DEA_E_DOMAIN);
   assert_int_equal(type->strains(s->element, &s->in, &strains), DEA_E_DOMAIN);
-  assert_int_equal(type->deformation(s->element, &s->in, F), DEA_E_DOMAIN);
+  assert_int_equal(type->state(s->element, &s->in, true, &state), DEA_E_DOMAIN);
   assert_int_equal(type->mass(s->element, &s->film, s->X, mass), DEA_E_DOMAIN);
   assert_int_equal(type->metric(s->element, &s->film, s->X, mass, share), DEA_E_DOMAIN);
 }
@@ -355,7 +374,7 @@ static void test_every_kind(void **state)
     for (int kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
       static void (*const checks[])(struct sample * s) = {
           check_derivatives, check_rigid_motion, check_patch,      check_integrals,
-          check_prediction,  check_deformation,  check_constraint, check_inverted};
+          check_prediction,  check_state,        check_constraint, check_inverted};
       for (size_t i = 0; i < 2 * sizeof checks / sizeof checks[0]; i++) {
         static struct sample s;
         fill(order, &set.of[kind], i % 2 == 1, &s);

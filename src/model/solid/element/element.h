@@ -75,6 +75,14 @@ struct dea_element_strains {
   double C[DEA_HEX_GAUSS_MAX][6], inverse[DEA_HEX_GAUSS_MAX][6], volume_m3[DEA_HEX_GAUSS_MAX];
 };
 
+/* At the Gauss points, as many as the element has. */
+struct dea_element_state {
+  double volume_m3[DEA_HEX_GAUSS_MAX];                  // of each, in the stretched flat film
+  double F[DEA_HEX_GAUSS_MAX][9], J[DEA_HEX_GAUSS_MAX]; // dx/dX, det F
+  double pressure[DEA_HEX_GAUSS_MAX]; // that holds the volume, 0 of what takes none [Pa]
+  double P[DEA_HEX_GAUSS_MAX][9];     // first Piola-Kirchhoff stress, all of it [Pa]
+};
+
 /* What an element tells of itself at its nodes after a solve (docs/theory/recovery.md). Plane nodes
  * are those of one level through the thickness. */
 struct dea_recovered {
@@ -133,9 +141,9 @@ struct dea_element_type {
                                struct dea_membrane_state *out);
   dea_status (*recover)(const struct dea_element *e, const struct dea_element_input *in,
                         struct dea_recovered *out);
-  /* F of recover alone, [nodes][9], for less. */
-  dea_status (*deformation)(const struct dea_element *e, const struct dea_element_input *in,
-                            double (*F)[9]);
+  /* stress: false leaves P untouched. */
+  dea_status (*state)(const struct dea_element *e, const struct dea_element_input *in, bool stress,
+                      struct dea_element_state *out);
   /* Electric stiffness L [nodes][nodes] [F]: the energy at potentials phi [V] is -(1/2) phi L phi.
    * NULL for a kind without a potential. */
   dea_status (*capacity)(const struct dea_element *e, const struct dea_element_input *in,

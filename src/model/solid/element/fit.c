@@ -37,6 +37,30 @@ void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out)
   }
 }
 
+static void back_line(int order, double fit[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX])
+{
+  size_t count = (size_t)order + 1;
+  double nodes[DEA_FIT_LINE_MAX], x[DEA_FIT_LINE_MAX], w[DEA_FIT_LINE_MAX];
+  double slope[DEA_FIT_LINE_MAX];
+  dea_lobatto_nodes((size_t)order, nodes);
+  dea_gauss_rule(count, x, w);
+  for (size_t q = 0; q < count; q++) {
+    dea_lagrange(count, nodes, x[q], fit[q], slope);
+  }
+}
+
+void dea_fit_create_back(int order, int order_z, struct dea_gauss_fit *out)
+{
+  out->n = order + 1;
+  out->nz = order_z + 1;
+  back_line(order, out->plane);
+  if (order_z > 0) {
+    back_line(order_z, out->z);
+  } else {
+    out->z[0][0] = 1;
+  }
+}
+
 /* Along the second axis of [outer][n][inner], in place; rows of a table of struct dea_gauss_fit. */
 static void fit_axis(const double *fit, int outer, int n, int inner, double *values)
 {

@@ -20,8 +20,11 @@ struct dea_gauss_fit {
 
 /* order_z: 0 for a flat element. */
 void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out);
-/* Values at the nodes from those at the Gauss points, [gauss][width] to [nodes][width], width at
- * most DEA_FIT_VALUES. Both are numbered first axis fastest. */
+/* The other way: values at the Gauss points of what has these values at the nodes, by the basis of
+ * the element. */
+void dea_fit_create_back(int order, int order_z, struct dea_gauss_fit *out);
+/* Values at the nodes from those at the Gauss points, [gauss][width] to [nodes][width], or back.
+ * Both are numbered first axis fastest. */
 void dea_fit_nodes(const struct dea_gauss_fit *fit, int width, const double *at, double *out);
 /* Numbers of nodes, and F, stress, energy and field of all of them. */
 void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],

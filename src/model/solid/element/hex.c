@@ -634,8 +634,26 @@ static void coupled_field(const struct dea_hex_shape *s, double gradient[3][DEA_
   }
 }
 
-/* Values of one Gauss point, and P for the membrane force. E: of a coupled field, NULL for a thin
- * film with thin_V_per_m. */
+/* P, all of it, and the field at J = 1. E: of a coupled field, NULL for a thin film with
+ * thin_V_per_m. */
+static dea_status total_stress(const struct dea_constituent *constituent,
+                               const struct dea_hex_point *at, double pressure, double thin_V_per_m,
+                               const double *E, double P[9], double *field)
+{
+  struct dea_point point;
+  dea_status status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
+                                            E == NULL ? thin_V_per_m : 0, false, &point);
+  if (status != DEA_OK) {
+    return status;
+  }
+  const double *c = at->cof;
+  memcpy(P, point.P, 9 * sizeof *P);
+  *field = E != NULL ? add_electric(constituent->permittivity_F_per_m, at, E, P)
+                     : fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]);
+  return DEA_OK;
+}
+
+/* Values of one Gauss point, and P for the membrane force, as total_stress has it. */
 static dea_status recover_point(const struct dea_constituent *constituent,
                                 const struct dea_hex_point *at, double pressure,
                                 double thin_V_per_m, const double *E, double values[DEA_FIT_VALUES],
@@ -648,22 +666,16 @@ static dea_status recover_point(const struct dea_constituent *constituent,
   double slope, curvature;
   values[15] -= constituent->p0_Pa * (at->J - 1) +
                 dea_constituent_pointwise(constituent, at->J, &slope, &curvature);
-  if (status == DEA_OK && E == NULL && thin_V_per_m != 0) { // electrostriction included
-    status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, thin_V_per_m,
-                                   false, &point);
+  memcpy(P, point.P, sizeof point.P);
+  values[16] = 0;
+  if (status == DEA_OK && (E != NULL || thin_V_per_m != 0)) {
+    status = total_stress(constituent, at, pressure, thin_V_per_m, E, P, &values[16]);
   }
-  if (status != DEA_OK) {
-    return status;
+  if (status == DEA_OK) {
+    memcpy(values, at->F, sizeof at->F);
+    true_stress(P, at->F, at->J, values + 9);
   }
-  const double *c = at->cof;
-  memcpy(P, point.P, 9 * sizeof *P);
-  values[16] = fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]); // |F_1 x F_2|
-  if (E != NULL) {
-    values[16] = add_electric(constituent->permittivity_F_per_m, at, E, P);
-  }
-  memcpy(values, at->F, sizeof at->F);
-  true_stress(P, at->F, at->J, values + 9);
-  return DEA_OK;
+  return status;
 }
 
 /* P through the thickness of the element, at the plane nodes; along the plane as the stress. */
@@ -686,38 +698,54 @@ static void membrane_force(const struct dea_hex_shape *s, const struct dea_gauss
   }
 }
 
+/* An element at its Gauss points. */
+struct hex_points {
+  struct dea_hex_point at[DEA_HEX_GAUSS_MAX];
+  double pressure[DEA_HEX_GAUSS_MAX];
+  double thin_V_per_m; // of a thin film
+  bool coupled;
+  double E[DEA_HEX_GAUSS_MAX][3]; // of a coupled field
+};
+
+static dea_status find_state(const struct dea_element *element, const struct dea_element_input *in,
+                             struct hex_points *out)
+{
+  const struct dea_hex_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
+  double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
+  double theta[DEA_HEX_PRESSURES_MAX];
+  out->coupled = element->type->per_node > 3;
+  out->thin_V_per_m =
+      !out->coupled && constituent->thickness_m > 0 ? in->voltage_V / constituent->thickness_m : 0;
+  dea_status status = out->coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, out->at)
+                                   : dea_hex_find_points(shape, in->X, in->u, out->at);
+  if (status == DEA_OK) {
+    status = dea_hex_project(shape, out->at, factor, moment, theta);
+  }
+  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
+    out->pressure[q] = pressure_at(shape, constituent, q, in->multiplier, theta);
+    if (out->coupled) {
+      coupled_field(shape, gradient[q], in->potential, in->potential_V_per_m, out->E[q]);
+    }
+  }
+  return status;
+}
+
 dea_status dea_hex_recover(const struct dea_element *element, const struct dea_element_input *in,
                            struct dea_recovered *out)
 {
   const struct dea_hex_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
-  bool coupled = element->type->per_node > 3;
-  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
-  double theta[DEA_HEX_PRESSURES_MAX], values[DEA_HEX_GAUSS_MAX][DEA_FIT_VALUES];
-  double P[DEA_HEX_GAUSS_MAX][9];
+  double values[DEA_HEX_GAUSS_MAX][DEA_FIT_VALUES], P[DEA_HEX_GAUSS_MAX][9];
   struct dea_gauss_fit fit;
-  double thin_V_per_m =
-      !coupled && constituent->thickness_m > 0 ? in->voltage_V / constituent->thickness_m : 0;
+  struct hex_points points;
   out->volume_m3 = out->volume_error = 0;
-  dea_status status = coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, points)
-                              : dea_hex_find_points(shape, in->X, in->u, points);
-  if (status == DEA_OK) {
-    status = dea_hex_project(shape, points, factor, moment, theta);
-  }
+  dea_status status = find_state(element, in, &points);
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    double pressure = 0, E[3];
-    for (int m = 0; m < shape->pressures; m++) {
-      pressure += shape->pressure[q][m] * (in->multiplier[m] + constituent->kappa_Pa * theta[m]);
-    }
-    if (coupled) {
-      coupled_field(shape, gradient[q], in->potential, in->potential_V_per_m, E);
-    }
-    status = recover_point(constituent, &points[q], pressure, thin_V_per_m, coupled ? E : NULL,
-                           values[q], P[q]);
-    out->volume_m3 += points[q].weight;
-    out->volume_error = fmax(out->volume_error, fabs(points[q].J - 1));
+    status = recover_point(in->constituent, &points.at[q], points.pressure[q], points.thin_V_per_m,
+                           points.coupled ? points.E[q] : NULL, values[q], P[q]);
+    out->volume_m3 += points.at[q].weight;
+    out->volume_error = fmax(out->volume_error, fabs(points.at[q].J - 1));
   }
   if (status != DEA_OK) {
     return status;
@@ -728,20 +756,22 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   return DEA_OK;
 }
 
-dea_status dea_hex_deformation(const struct dea_element *element,
-                               const struct dea_element_input *in, double (*F)[9])
+dea_status dea_hex_state(const struct dea_element *element, const struct dea_element_input *in,
+                         bool stress, struct dea_element_state *out)
 {
-  const struct dea_hex_shape *shape = element->basis;
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  double at[DEA_HEX_GAUSS_MAX][9];
-  struct dea_gauss_fit fit;
-  dea_status status = dea_hex_find_points(shape, in->X, in->u, points);
-  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    memcpy(at[q], points[q].F, sizeof at[q]);
-  }
-  if (status == DEA_OK) {
-    dea_fit_create(shape->order, shape->order_z, &fit);
-    dea_fit_nodes(&fit, 9, at[0], F[0]);
+  struct hex_points points;
+  dea_status status = find_state(element, in, &points);
+  for (int q = 0; q < element->points && status == DEA_OK; q++) {
+    const struct dea_hex_point *at = &points.at[q];
+    double field;
+    memcpy(out->F[q], at->F, sizeof at->F);
+    out->volume_m3[q] = at->weight;
+    out->J[q] = at->J;
+    out->pressure[q] = points.pressure[q];
+    if (stress) {
+      status = total_stress(in->constituent, at, points.pressure[q], points.thin_V_per_m,
+                            points.coupled ? points.E[q] : NULL, out->P[q], &field);
+    }
   }
   return status;
 }

@@ -64,8 +64,8 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
                                   struct dea_membrane_state *out);
 dea_status dea_hex_recover(const struct dea_element *element, const struct dea_element_input *in,
                            struct dea_recovered *out);
-dea_status dea_hex_deformation(const struct dea_element *element,
-                               const struct dea_element_input *in, double (*F)[9]);
+dea_status dea_hex_state(const struct dea_element *element, const struct dea_element_input *in,
+                         bool stress, struct dea_element_state *out);
 
 /* The members of such a kind's type that are the hexahedron's. */
 #define DEA_HEX_MEMBERS                                                                            \
@@ -73,6 +73,6 @@ dea_status dea_hex_deformation(const struct dea_element *element,
   .create = dea_hex_create, .check = dea_hex_check, .predict = dea_hex_predict,                    \
   .constraint = dea_hex_constraint, .mass = dea_hex_mass, .metric = dea_hex_metric,                \
   .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state,                            \
-  .recover = dea_hex_recover, .deformation = dea_hex_deformation
+  .recover = dea_hex_recover, .state = dea_hex_state
 
 #endif

@@ -338,19 +338,29 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
   return DEA_OK;
 }
 
-static dea_status deformation(const struct dea_element *element, const struct dea_element_input *in,
-                              double (*F)[9])
+static dea_status state(const struct dea_element *element, const struct dea_element_input *in,
+                        bool stress, struct dea_element_state *out)
 {
   const struct dea_flat_shape *shape = element->basis;
-  double at[DEA_FLAT_NODES_MAX][9], columns[6];
-  struct dea_gauss_fit fit;
+  double field = in->voltage_V != 0 ? in->voltage_V / in->constituent->thickness_m : 0;
+  double F[6];
+  struct dea_membrane_point point;
   for (int q = 0; q < shape->gauss; q++) {
-    if (!(columns_at(shape, q, in->X, in->u, columns) > 0 && complete(columns, at[q]) > 0)) {
+    double area = columns_at(shape, q, in->X, in->u, F);
+    if (!(area > 0 && complete(F, out->F[q]) > 0)) {
       return DEA_E_DOMAIN;
     }
+    dea_status status = stress ? dea_membrane_point(in->constituent, F, field, &point) : DEA_OK;
+    if (status != DEA_OK) {
+      return status;
+    }
+    out->volume_m3[q] = in->constituent->thickness_m * area;
+    out->J[q] = 1;
+    out->pressure[q] = 0;
+    for (int i = 0; stress && i < 9; i++) {
+      out->P[q][i] = i % 3 < 2 ? point.P[2 * (i / 3) + i % 3] : 0;
+    }
   }
-  dea_fit_create(shape->order, 0, &fit);
-  dea_fit_nodes(&fit, 9, at[0], F[0]);
   return DEA_OK;
 }
 
@@ -382,5 +392,5 @@ const struct dea_element_type dea_element_membrane = {
     .strains = strains,
     .membrane_state = membrane_state,
     .recover = recover,
-    .deformation = deformation,
+    .state = state,
 };

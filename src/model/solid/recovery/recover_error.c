@@ -2,69 +2,54 @@
 #include "model/solid/recovery/recover_error.h"
 
 #include "base/quadrature.h"
+#include "model/solid/element/fit.h"
 #include "model/solid/recovery/recover_points.h"
 #include "model/solid/recovery/recover_second.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { AT_P, AT_F, AT_Z, TENSORS = AT_Z + DEA_ERRORS_MAX }; // P, F, the gradient of each z
-enum { SECOND = 2 * DEA_RECOVER_LEVELS };                   // of an element, times the tensors
+/* Numbers of a point: P, the gradient of each z, the pressure of each z. */
+enum { TENSOR = 9, WIDTH_MAX = TENSOR + (TENSOR + 1) * DEA_ERRORS_MAX };
+enum { SECOND = 2 * DEA_RECOVER_LEVELS, CORNERS = 4 };
 
-/* Of an error how many times what recovery sees of it: regular solutions have (3/2)^4 of the error
- * of elements of one order more and so 1 / (1 - (2/3)^4) of what lies between; solid films were
- * calibrated (docs/theory/trust.md). */
-static const double unseen_of_membranes = 81.0 / 65.0, unseen_of_solids = 4;
+/* Of an error how many times what recovery sees of it, 1 / (1 - (2/3)^2p): recovery sees elements
+ * of one order more. p = 2 of membranes, whose solutions are regular, 1 of solids, which have edges
+ * and layers as wide as they are thick. */
+static const double unseen_of_membranes = 81.0 / 65.0, unseen_of_solids = 9.0 / 5.0;
 
 struct work {
   struct dea_context *ctx;
   struct dea_arena memory; // of all arrays
   const struct dea_recover_input *in;
-  size_t count, tensors, nodes; // quantities, tensors of a node, nodes of an element at most
-  double *moved;                // u + z / scale, [nodes][3]
+  size_t count, width, nodes; // quantities, numbers of a point, points of an element at most
+  double *moved;              // u + z / scale, [nodes][3]
   size_t group_count;
   int *group; // [elements] of a ply and a region
   int *point; // [groups][node_count], counted from 1; 0: none
   size_t point_count;
-  double (*value)[9];                // [elements][nodes][tensors]
-  double (*mean)[9];                 // [points][tensors] sums, then means
-  double *second;                    // [elements] as dea_recover_second
-  double *weight, *volume;           // [points], [elements]
-  double along[2][DEA_HEX_LINE_MAX]; // shares of the nodes of a line in its integral, in the plane
-                                     // and through the thickness
+  double *own;             // [elements][nodes][width] at the Gauss points
+  double *excess, *share;  // [elements][nodes] J - 1, volume of a Gauss point
+  double *value;           // [elements][nodes][width] at the nodes
+  double *mean;            // [points][width] sums, then means
+  double *second;          // [elements] as dea_recover_second
+  double *weight, *volume; // [points], [elements]
+  double *around;          // [count][columns of nodes] what elements add around each
+  struct dea_gauss_fit to_nodes[2], back[2];  // of solid elements, of flat ones
+  double hat[DEA_ELEMENT_LEVEL_MAX][CORNERS]; // of the corners at the Gauss points of a level
 };
 
-/* First Piola-Kirchhoff stress J sigma F^-T. */
-static void nominal_stress(const double F[9], const double s[6], double P[9])
+/* The bilinear functions of the corners, that add up to 1. */
+static void weigh_corners(struct work *w)
 {
-  const double sigma[9] = {s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2]};
-  double cof[9];
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-      cof[3 * i + j] = F[3 * a + c] * F[3 * b + d] - F[3 * a + d] * F[3 * b + c];
-    }
-  }
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      P[3 * i + j] =
-          sigma[3 * i] * cof[j] + sigma[3 * i + 1] * cof[3 + j] + sigma[3 * i + 2] * cof[6 + j];
-    }
-  }
-}
-
-/* Shares of the nodes of a line of elements in the integral over it. */
-static void weigh_line(int order, double *share)
-{
-  size_t count = (size_t)order + 1;
-  double node[DEA_HEX_LINE_MAX], x[DEA_HEX_LINE_MAX], w[DEA_HEX_LINE_MAX];
-  double value[DEA_HEX_LINE_MAX], slope[DEA_HEX_LINE_MAX];
-  dea_lobatto_nodes((size_t)order, node);
-  dea_gauss_rule(count, x, w);
-  for (size_t q = 0; q < count; q++) {
-    dea_lagrange(count, node, x[q], value, slope);
-    for (size_t n = 0; n < count; n++) {
-      share[n] += 0.5 * w[q] * value[n];
+  int line = w->in->grid->order + 1;
+  double x[DEA_HEX_LINE_MAX], weight[DEA_HEX_LINE_MAX];
+  dea_gauss_rule((size_t)line, x, weight);
+  for (int q = 0; q < line * line; q++) {
+    for (int c = 0; c < CORNERS; c++) {
+      double along = c % 2 == 0 ? -x[q % line] : x[q % line];
+      double across = c / 2 == 0 ? -x[q / line] : x[q / line];
+      w->hat[q][c] = 0.25 * (1 + along) * (1 + across);
     }
   }
 }
@@ -82,20 +67,27 @@ static dea_status prepare(struct work *w)
   }
   size_t most = elements * w->nodes;
   w->group_count = plies * regions;
-  w->tensors = AT_Z + w->count;
+  w->width = TENSOR + (TENSOR + 1) * w->count;
   w->moved = dea_arena_alloc(&w->memory, 3 * grid->node_count, sizeof *w->moved);
   w->group = dea_arena_alloc(&w->memory, elements, sizeof *w->group);
   w->point = dea_arena_alloc(&w->memory, w->group_count * grid->node_count, sizeof *w->point);
-  w->value = dea_arena_alloc(&w->memory, most * w->tensors, sizeof *w->value);
-  w->mean = dea_arena_alloc(&w->memory, most * w->tensors, sizeof *w->mean);
-  w->second = dea_arena_alloc(&w->memory, elements * SECOND * 9 * w->tensors, sizeof *w->second);
+  w->own = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->own);
+  w->excess = dea_arena_alloc(&w->memory, most, sizeof *w->excess);
+  w->share = dea_arena_alloc(&w->memory, most, sizeof *w->share);
+  w->value = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->value);
+  w->mean = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->mean);
+  w->second = dea_arena_alloc(&w->memory, elements * SECOND * w->width, sizeof *w->second);
   w->weight = dea_arena_alloc(&w->memory, most, sizeof *w->weight);
   w->volume = dea_arena_alloc(&w->memory, elements, sizeof *w->volume);
+  w->around = dea_arena_alloc(&w->memory, w->count * dea_grid_columns(grid), sizeof *w->around);
   for (size_t e = 0; e < elements && w->group != NULL; e++) {
     w->group[e] = (int)((size_t)grid->region[e] * plies + (size_t)grid->ply[e]);
   }
-  weigh_line(grid->order, w->along[0]);
-  weigh_line(grid->order_z, w->along[1]);
+  for (int flat = 0; flat < 2; flat++) {
+    dea_fit_create(grid->order, flat ? 0 : grid->order_z, &w->to_nodes[flat]);
+    dea_fit_create_back(grid->order, flat ? 0 : grid->order_z, &w->back[flat]);
+  }
+  weigh_corners(w);
   return dea_arena_status(&w->memory);
 }
 
@@ -106,36 +98,51 @@ static int *point_of(const struct work *w, size_t e, int n)
                    (size_t)grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]];
 }
 
-/* The tensors of a node of an element. */
-static double (*value_at(const struct work *w, size_t e, int n))[9]
+/* The numbers of a Gauss point of an element, from the one at `at` on. */
+static double *own_at(const struct work *w, size_t e, int q, size_t at)
 {
-  return w->value + (e * w->nodes + (size_t)n) * w->tensors;
+  return w->own + (e * w->nodes + (size_t)q) * w->width + at;
 }
 
-/* Values of one element at u. */
-static dea_status take_state(struct work *w, size_t e, struct dea_recovered *at)
+static size_t gradient_of(size_t k)
 {
-  dea_status status = dea_recover_element(w->in, e, at);
-  for (int n = 0; status == DEA_OK && n < at->nodes; n++) {
-    double(*value)[9] = value_at(w, e, n);
-    nominal_stress(at->F[n], at->stress[n], value[AT_P]);
-    memcpy(value[AT_F], at->F[n], sizeof at->F[n]);
+  return TENSOR * (1 + k);
+}
+
+static size_t pressure_of(const struct work *w, size_t k)
+{
+  return TENSOR * (1 + w->count) + k;
+}
+
+/* Values of one element at u, and in `own` those that the moved one is compared with. */
+static dea_status take_state(struct work *w, size_t e, struct dea_element_state *at)
+{
+  dea_status status = dea_recover_state(w->in, e, true, at);
+  for (int q = 0; status == DEA_OK && q < dea_grid_nodes_of(w->in->grid, e); q++) {
+    memcpy(own_at(w, e, q, 0), at->P[q], sizeof at->P[q]);
+    w->excess[e * w->nodes + (size_t)q] = at->J[q] - 1;
+    w->share[e * w->nodes + (size_t)q] = at->volume_m3[q];
+    w->volume[e] += at->volume_m3[q];
+    for (size_t k = 0; k < w->count; k++) {
+      memcpy(own_at(w, e, q, gradient_of(k)), at->F[q], sizeof at->F[q]);
+      *own_at(w, e, q, pressure_of(w, k)) = at->pressure[q];
+    }
   }
-  w->volume[e] = at->volume_m3;
   return status;
 }
 
-/* The gradient of the k-th z in one element, where `in` is moved by `step` of it. */
-static dea_status take_gradient(struct work *w, const struct dea_recover_input *in, size_t e,
-                                size_t k, double step)
+/* Gradient and pressure of the k-th z in one element, where `in` is moved by `step` of it. */
+static dea_status take_dual(struct work *w, const struct dea_recover_input *in, size_t e, size_t k,
+                            double step, struct dea_element_state *at)
 {
-  double F[DEA_HEX_NODES_MAX][9];
-  dea_status status = dea_recover_deformation(in, e, F);
-  for (int n = 0; status == DEA_OK && n < dea_grid_nodes_of(w->in->grid, e); n++) {
-    double(*value)[9] = value_at(w, e, n);
-    for (int i = 0; i < 9; i++) {
-      value[AT_Z + k][i] = (F[n][i] - value[AT_F][i]) / step;
+  dea_status status = dea_recover_state(in, e, false, at);
+  for (int q = 0; status == DEA_OK && q < dea_grid_nodes_of(w->in->grid, e); q++) {
+    double *gradient = own_at(w, e, q, gradient_of(k)),
+           *pressure = own_at(w, e, q, pressure_of(w, k));
+    for (int i = 0; i < TENSOR; i++) {
+      gradient[i] = (at->F[q][i] - gradient[i]) / step;
     }
+    *pressure = (at->pressure[q] - *pressure) / step;
   }
   return status;
 }
@@ -156,7 +163,7 @@ static double move(struct work *w, const double *z)
 }
 
 /* All elements, at u and moved by each z. */
-static dea_status take_all(struct work *w, const double *const *z, struct dea_recovered *at)
+static dea_status take_all(struct work *w, const double *const *z, struct dea_element_state *at)
 {
   const size_t elements = w->in->grid->element_count;
   struct dea_recover_input in = *w->in;
@@ -169,7 +176,7 @@ static dea_status take_all(struct work *w, const double *const *z, struct dea_re
   for (size_t k = 0; status == DEA_OK && k < w->count; k++) {
     const double step = move(w, z[k]);
     for (e = 0; status == DEA_OK && e < elements; e++) {
-      status = take_gradient(w, &in, e, k, step);
+      status = take_dual(w, &in, e, k, step, at);
     }
   }
   return status == DEA_OK ? DEA_OK
@@ -177,22 +184,34 @@ static dea_status take_all(struct work *w, const double *const *z, struct dea_re
                                      "element %zu is inverted or beyond its law's domain", e - 1);
 }
 
+static bool is_flat(const struct work *w, size_t e)
+{
+  return w->in->grid->levels[e] == 1;
+}
+
+static void fit_all(struct work *w)
+{
+  for (size_t e = 0; e < w->in->grid->element_count; e++) {
+    dea_fit_nodes(&w->to_nodes[is_flat(w, e)], (int)w->width, own_at(w, e, 0, 0),
+                  w->value + e * w->nodes * w->width);
+  }
+}
+
 /* P_2 at the nodes of a line of order 2. */
 static const double bent[3] = {1, -0.5, 1};
 
-/* Adds what neighbours know of the second order to the value of a node. */
-static void add_second(const struct work *w, size_t e, int n, double (*value)[9])
+/* Adds what neighbours know of the second order to the values of a node. */
+static void add_second(const struct work *w, size_t e, int n, double *value)
 {
-  const struct dea_grid *grid = w->in->grid;
-  if (grid->order != 2) {
+  if (w->in->grid->order != 2) {
     return;
   }
   size_t level = (size_t)n / 9;
   const double share[2] = {bent[n % 3], bent[n / 3 % 3]};
   for (size_t axis = 0; axis < 2; axis++) {
-    const double *c = w->second + (e * SECOND + axis * DEA_RECOVER_LEVELS + level) * w->tensors * 9;
-    for (size_t i = 0; i < 9 * w->tensors; i++) {
-      value[i / 9][i % 9] += share[axis] * c[i];
+    const double *c = w->second + (e * SECOND + axis * DEA_RECOVER_LEVELS + level) * w->width;
+    for (size_t i = 0; i < w->width; i++) {
+      value[i] += share[axis] * c[i];
     }
   }
 }
@@ -206,110 +225,100 @@ static void take_means(struct work *w)
       int *point = point_of(w, e, n);
       *point = *point == 0 ? (int)++w->point_count : *point;
       size_t p = (size_t)*point - 1;
-      double value[TENSORS][9];
-      memcpy(value, value_at(w, e, n), w->tensors * sizeof *value);
+      double *value = w->value + (e * w->nodes + (size_t)n) * w->width;
       add_second(w, e, n, value);
       w->weight[p] += w->volume[e];
-      for (size_t i = 0; i < 9 * w->tensors; i++) {
-        w->mean[p * w->tensors + i / 9][i % 9] += w->volume[e] * value[i / 9][i % 9];
+      for (size_t i = 0; i < w->width; i++) {
+        w->mean[p * w->width + i] += w->volume[e] * value[i];
       }
     }
   }
-  for (size_t i = 0; i < 9 * w->point_count * w->tensors; i++) {
-    w->mean[i / 9][i % 9] /= w->weight[i / 9 / w->tensors];
+  for (size_t i = 0; i < w->point_count * w->width; i++) {
+    w->mean[i] /= w->weight[i / w->width];
   }
 }
 
-/* d[t] = what recovery changes of the tensors of a node. */
-static void changes(const struct work *w, size_t e, int n, double (*d)[9])
+/* What recovery makes of an element, at its Gauss points, [points][width]. */
+static void take_recovered(const struct work *w, size_t e, double *out)
 {
-  double(*own)[9] = value_at(w, e, n);
-  double(*mean)[9] = w->mean + ((size_t)*point_of(w, e, n) - 1) * w->tensors;
-  for (size_t i = 0; i < 9 * w->tensors; i++) {
-    d[i / 9][i % 9] = mean[i / 9][i % 9] - own[i / 9][i % 9];
+  double nodes[DEA_HEX_NODES_MAX * WIDTH_MAX];
+  for (int n = 0; n < dea_grid_nodes_of(w->in->grid, e); n++) {
+    memcpy(nodes + (size_t)n * w->width, w->mean + ((size_t)*point_of(w, e, n) - 1) * w->width,
+           w->width * sizeof *nodes);
   }
+  dea_fit_nodes(&w->back[is_flat(w, e)], (int)w->width, nodes, out);
 }
 
-/* Work of what recovery changes of the stress on what it changes of the gradient of the k-th z, of
- * a solid in the plane of the film: (F^-1 dP)_ab (F^T dgrad z)_ab, a, b = 1, 2. */
-static double work_at(const double own[9], const double dP[9], const double dZ[9])
+/* (P* - P) : (grad z* - grad z) - (zeta* - zeta) (J - 1) of the k-th z at a Gauss point. */
+static double work_at(const struct work *w, size_t e, int q, size_t k, const double *recovered)
 {
-  const double *f = own;
-  double cof[9], J, sum = 0;
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
-      cof[3 * i + j] = f[3 * a + c] * f[3 * b + d] - f[3 * a + d] * f[3 * b + c];
-    }
-  }
-  J = f[0] * cof[0] + f[1] * cof[1] + f[2] * cof[2];
-  for (int a = 0; a < 2; a++) {
-    for (int b = 0; b < 2; b++) {
-      double S = 0, G = 0;
-      for (int i = 0; i < 3; i++) {
-        S += cof[3 * i + a] / J * dP[3 * i + b];
-        G += f[3 * i + a] * dZ[3 * i + b];
-      }
-      sum += S * G;
-    }
+  const double *own = own_at(w, e, q, 0), *star = recovered + (size_t)q * w->width;
+  size_t at = gradient_of(k), zeta = pressure_of(w, k);
+  double sum = -(star[zeta] - own[zeta]) * w->excess[e * w->nodes + (size_t)q];
+  for (size_t i = 0; i < TENSOR; i++) {
+    sum += (star[i] - own[i]) * (star[at + i] - own[at + i]);
   }
   return sum;
 }
 
-/* The same of a membrane, all of whose stress is in its surface. */
-static double surface_work_at(const double dP[9], const double dZ[9])
-{
-  double sum = 0;
-  for (int i = 0; i < 9; i++) {
-    sum += dP[i] * dZ[i];
-  }
-  return sum;
-}
-
-/* Its integral over an element, by its nodes, and what an element of that kind does not see. */
-static double product(const struct work *w, size_t e, size_t k)
+/* Its integral over an element with what is not seen, each point's part to the corners by its
+ * place to `around` them. Returns all of it. */
+static double add_element(const struct work *w, size_t e, size_t k, const double *recovered,
+                          double *around)
 {
   const struct dea_grid *grid = w->in->grid;
-  int line = grid->order + 1, levels = grid->levels[e];
-  bool flat = w->in->kind[e] == DEA_ELEMENT_MEMBRANE;
-  double sum = 0;
-  for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {
-    double d[TENSORS][9];
-    changes(w, e, n, d);
-    double share = w->along[0][n % line] * w->along[0][n / line % line] *
-                   (levels > 1 ? w->along[1][n / (line * line)] : 1);
-    sum += share * (flat ? surface_work_at(d[AT_P], d[AT_Z + k])
-                         : work_at(value_at(w, e, n)[AT_F], d[AT_P], d[AT_Z + k]));
+  int level = (grid->order + 1) * (grid->order + 1), line = grid->order + 1;
+  const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+  const int corner[CORNERS] = {nodes[0], nodes[line - 1], nodes[level - line], nodes[level - 1]};
+  double unseen = is_flat(w, e) ? unseen_of_membranes : unseen_of_solids, sum = 0;
+  for (int q = 0; q < dea_grid_nodes_of(grid, e); q++) {
+    double one = unseen * w->share[e * w->nodes + (size_t)q] * work_at(w, e, q, k, recovered);
+    for (int c = 0; c < CORNERS; c++) {
+      around[grid->column[corner[c]]] += w->hat[q % level][c] * one;
+    }
+    sum += one;
   }
-  return w->volume[e] * sum * (flat ? unseen_of_membranes : unseen_of_solids);
+  return sum;
 }
 
-/* What the elements add, none of it against another's (docs/verification/trust.md). */
-static double estimate(const struct work *w, size_t k, double *part)
+/* What the elements add around the corners of the plane mesh, none of it against another's. */
+static void estimate(struct work *w, double *error, double *part)
 {
-  double magnitudes = 0;
-  for (size_t e = 0; e < w->in->grid->element_count; e++) {
-    double one = product(w, e, k);
-    if (part != NULL) {
-      part[k * w->in->grid->element_count + e] = one;
+  const size_t elements = w->in->grid->element_count, columns = dea_grid_columns(w->in->grid);
+  double recovered[DEA_HEX_NODES_MAX * WIDTH_MAX];
+  for (size_t e = 0; e < elements; e++) {
+    take_recovered(w, e, recovered);
+    for (size_t k = 0; k < w->count; k++) {
+      double one = add_element(w, e, k, recovered, w->around + k * columns);
+      if (part != NULL) {
+        part[k * elements + e] = one;
+      }
     }
-    magnitudes += fabs(one);
   }
-  return magnitudes;
+  for (size_t k = 0; k < w->count; k++) {
+    error[k] = 0;
+    for (size_t c = 0; c < columns; c++) {
+      error[k] += fabs(w->around[k * columns + c]);
+    }
+  }
 }
 
 /* Values of all elements at u and moved by each z, and what follows from them. */
 static dea_status gather(struct work *w, const double *const *z, const double (*mirror)[3],
-                         struct dea_recovered *at)
+                         struct dea_element_state *at)
 {
   dea_status status = take_all(w, z, at);
+  if (status == DEA_OK) {
+    fit_all(w);
+  }
   if (status == DEA_OK && w->in->grid->order == 2) {
     const struct dea_recover_second second = {.grid = w->in->grid,
                                               .group = w->group,
                                               .mirror = mirror,
-                                              .tensors = w->tensors,
+                                              .tensors = 1 + w->count,
+                                              .scalars = w->count,
                                               .nodes = w->nodes,
-                                              .value = (const double *)w->value};
+                                              .value = w->value};
     status = dea_recover_second(w->ctx, &second, w->second);
   }
   if (status == DEA_OK) {
@@ -323,13 +332,13 @@ dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_
                               double *error, double *part)
 {
   struct work w = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .count = count};
-  struct dea_recovered *at = dea_alloc(ctx, 1, sizeof *at);
+  struct dea_element_state *at = dea_alloc(ctx, 1, sizeof *at);
   dea_status status = at != NULL ? prepare(&w) : DEA_E_MEMORY;
   if (status == DEA_OK) {
     status = gather(&w, z, mirror, at);
   }
-  for (size_t k = 0; status == DEA_OK && k < count; k++) {
-    error[k] = estimate(&w, k, part);
+  if (status == DEA_OK) {
+    estimate(&w, error, part);
   }
   dea_free(ctx, at);
   dea_arena_free(&w.memory);

@@ -120,12 +120,13 @@ dea_status dea_recover_element(const struct dea_recover_input *in, size_t e,
   return element->type->recover(element, &asked.in, out);
 }
 
-dea_status dea_recover_deformation(const struct dea_recover_input *in, size_t e, double (*F)[9])
+dea_status dea_recover_state(const struct dea_recover_input *in, size_t e, bool stress,
+                             struct dea_element_state *out)
 {
   const struct dea_element *element = &in->elements->of[in->kind[e]];
   struct asked asked;
   ask(in, e, &asked);
-  return element->type->deformation(element, &asked.in, F);
+  return element->type->state(element, &asked.in, stress, out);
 }
 
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level)

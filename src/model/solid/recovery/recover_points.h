@@ -20,8 +20,9 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 /* One element of any kind. */
 dea_status dea_recover_element(const struct dea_recover_input *in, size_t element,
                                struct dea_recovered *out);
-/* F at its nodes alone, [nodes][9]. */
-dea_status dea_recover_deformation(const struct dea_recover_input *in, size_t e, double (*F)[9]);
+/* The same at its Gauss points; stress: false leaves P untouched. */
+dea_status dea_recover_state(const struct dea_recover_input *in, size_t e, bool stress,
+                             struct dea_element_state *out);
 /* Height of a level of nodes of an element. */
 double dea_recover_height(const struct dea_recover_input *in, size_t element, int level);
 

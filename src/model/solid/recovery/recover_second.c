@@ -163,6 +163,9 @@ static bool add_side(const struct work *w, size_t e, int axis, int end, int leve
       c[TENSOR * t + i] -= out * (image[i] + own[TENSOR * t + i]) / 6;
     }
   }
+  for (size_t i = TENSOR * w->in->tensors; n != NULL && i < w->size; i++) {
+    c[i] -= out * own[i] / 3; // its own image
+  }
   return n != NULL;
 }
 
@@ -182,7 +185,7 @@ dea_status dea_recover_second(struct dea_context *ctx, const struct dea_recover_
                               double *c)
 {
   const struct dea_grid *grid = in->grid;
-  struct work w = {.in = in, .memory = {.ctx = ctx}, .size = TENSOR * in->tensors};
+  struct work w = {.in = in, .memory = {.ctx = ctx}, .size = TENSOR * in->tensors + in->scalars};
   size_t count = grid->element_count;
   w.slope = dea_arena_alloc(&w.memory, count * AXES * DEA_RECOVER_LEVELS * w.size, sizeof *w.slope);
   w.length = dea_arena_alloc(&w.memory, count, sizeof *w.length);
