@@ -94,7 +94,7 @@
   X(double, mode_residual, 1e-10, "of the mode", "residual of a mode")                             \
   X(double, mode_apart, 1e-6, "of their values", "distance of two modes that a count can tell")    \
   X(int, mode_rounds, 6, "1", "searches at one end of the spectrum")                               \
-  X(int, mode_extra, 4, "1", "modes that more are asked for")                                      \
+  X(int, mode_extra, 4, "1", "modes that more are asked for, at most")                             \
   X(double, mode_room, 0.5, "of the modes", "those that more are asked for at first")              \
   X(int, mode_iterations, 1000, "1", "of one search")
 

@@ -155,8 +155,9 @@ static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, b
 static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, bool below)
 {
   const struct dea_solid_settings *o = &f->solid->settings;
-  PetscInt wanted =
-      below ? count : count - f->count + o->mode_extra + (PetscInt)(o->mode_room * count);
+  // of few modes, one more: with more asked for, Lanczos' first space of vectors does not do
+  const PetscInt extra = (count + 1) / 2 < o->mode_extra ? (count + 1) / 2 : o->mode_extra;
+  PetscInt wanted = below ? count : count - f->count + extra + (PetscInt)(o->mode_room * count);
   f->below = below;
   for (int round = 0; round < o->mode_rounds; round++) {
     PetscInt before = f->count;
