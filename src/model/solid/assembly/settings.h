@@ -39,6 +39,11 @@
   X(double, shift_least, 3e-5, "of the softest modulus", "shift below which there is none")        \
   X(double, shift_up, 4, "1", "factor to a larger shift")                                          \
   X(double, shift_down, 10, "1", "divisor to a smaller one")                                       \
+  X(double, pair_residual, 0.03, "of the sum of element forces", "forces left in a valley")        \
+  X(double, pair_gentle, 1, "of the slope",                                                        \
+    "rise of a step up below which the shift is too large")                                        \
+  X(double, pair_wild, 5, "of the slope", "rise of a step up above which the shift stays")         \
+  X(double, pair_down, 2, "1", "divisor of the shift of a step up; its cube after a gentle one")   \
   X(double, bulk_stiff, 128, "1", "power of 2, factor of kappa where unstable modes are counted")  \
   /* ---- load steps, and the descent from an unstable equilibrium ---- */                         \
   X(double, load_step_least, 1.0 / 64, "of the way asked for", "shortest step")                    \

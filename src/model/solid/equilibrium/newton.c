@@ -10,6 +10,15 @@
 #include <math.h>
 #include <string.h>
 
+/* A shifted step that went up, out of the valley, and the next one, back into it. */
+struct pair {
+  int steps;         // of them taken in a row; 0: none
+  double shift_Pa;   // of the first
+  double energy_J;   // before it
+  double promised_J; // the size of its slope times its share
+  double share, rise;
+};
+
 struct newton {
   double voltage_V;
   double shift_Pa;
@@ -21,6 +30,7 @@ struct newton {
   int unresolved;     // steps in a row whose change of the energy rounding hides
   int lost;           // iterates in a row whose forces are far out of balance
   int stuck;          // shifted steps in a row that are too small to matter
+  struct pair pair;
   struct dea_solid_report *report;
 };
 
@@ -131,6 +141,35 @@ static void adapt_shift(struct dea_solid *s, struct newton *d, double share, dou
   } else if (rise < -0.25) {
     d->shift_Pa /= fabs(rise + 0.5) < 0.05 ? o->shift_down * o->shift_down : o->shift_down;
   }
+  if (d->shift_Pa < o->shift_least * s->problem.modulus_Pa) {
+    d->shift_Pa = 0;
+  }
+}
+
+/* Whether a step from there, with that shift and slope, is one of a pair. */
+static void begin_pair(struct newton *d, double shift_Pa, double slope, double share, double rise)
+{
+  if (rise > 0 && shift_Pa > 0 && !d->strict) {
+    d->pair = (struct pair){1, shift_Pa, d->report->energy_J, share * fabs(slope), share, rise};
+  } else {
+    d->pair.steps = d->pair.steps == 1 ? 2 : 0;
+  }
+}
+
+/* The shift after both steps of a pair that have come back into the valley, from that of the first:
+ * the second, quadratic as it may be, says nothing of the valley. */
+static void end_pair(const struct dea_solid *s, struct newton *d)
+{
+  const struct dea_solid_settings *o = &s->settings;
+  const struct pair *p = &d->pair;
+  d->pair.steps = 0;
+  if (d->report->residual > o->pair_residual) {
+    return;
+  }
+  double down = p->share < 1 || p->rise > o->pair_wild ? 1
+                : p->rise < o->pair_gentle             ? o->pair_down * o->pair_down * o->pair_down
+                                                       : o->pair_down;
+  d->shift_Pa = d->report->energy_J > p->energy_J ? o->shift_up * p->shift_Pa : p->shift_Pa / down;
   if (d->shift_Pa < o->shift_least * s->problem.modulus_Pa) {
     d->shift_Pa = 0;
   }
@@ -250,6 +289,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       if (start) {
         return DEA_OK;
       }
+      begin_pair(d, there, slope, share, rise);
       adapt_shift(s, d, share, rise);
       d->chords = 0;
       d->chord = quadratic && there == 0;
@@ -282,6 +322,9 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, tangent, &report->energy_J));
   }
   d->norm_before = size;
+  if (d->pair.steps == 2) {
+    end_pair(s, d);
+  }
   return DEA_OK;
 }
 
