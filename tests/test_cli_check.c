@@ -119,6 +119,7 @@ static void test_errors_in_the_order_of_the_file(void **state)
   }
   assert_true(count >= 8);
   assert_contains(command_err, "wrong.yaml:5:33: error: there is no model 'lumpd'");
+  assert_contains(command_err, "3d; did you mean 'lumped'?");
 }
 
 static void test_only_what_was_changed(void **state)
@@ -234,7 +235,14 @@ static void test_layout(void **state)
   static char svg[COMMAND_TEXT_MAX];
   command_read("drawing.svg", svg);
   assert_contains(svg, ">stiffeners, 50 ");
+  // what does not fit in one line stands in two
+  assert_int_equal(command_run("check @/examples/devices/cone-loading.yaml --svg drawing.svg"), 0);
+  command_read("drawing.svg", svg);
+  assert_contains(svg, ">active, inside<");
+  assert_contains(svg, ">8.333 unstretched<");
   assert_int_equal(command_run("check @/examples/frdea-4.yaml --svg disc.svg"), 0);
+  command_read("disc.svg", svg);
+  assert_contains(svg, ">4 of 11.25 \303\227 2 mm<");
   assert_int_equal(
       command_run("check @/examples/devices/two-electrodes.yaml --set compute.force.side=back"), 3);
   assert_contains(command_err, "the study 'force' needs a disc in a round frame");

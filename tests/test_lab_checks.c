@@ -244,9 +244,9 @@ static void test_interlocks_cannot_be_switched_off(void **state)
       {"trip_current: 1000 A", "trip_current must be at most 1 A"},
       {"trip_count: 101", "trip_count must be at most 100"},
       {"trip_count: 0", "trip_count must be at least 1"},
-      {"leak_rise: 500 %", "leak_rise must be at most 4"},
+      {"leak_rise: 500 %", "leak_rise must be at most 400 %"},
       {"leak_time: 61 s", "leak_time must be at most 60 s"},
-      {"readback_error: 21 %", "readback_error must be at most 0.2"},
+      {"readback_error: 21 %", "readback_error must be at most 20 %"},
   };
   for (size_t i = 0; i < sizeof out_of_range / sizeof out_of_range[0]; i++) {
     char text[512];

@@ -75,6 +75,24 @@ static void absent_section(const struct dea_record *record, char *base,
   }
 }
 
+/* " (from, to, step, ...)": the first keys of a record; NULL: nothing. */
+static void write_keys(const struct dea_record *record, char *out, size_t size)
+{
+  enum { SHOWN = 5 };
+  size_t used = 0, shown = 0, count = record != NULL ? record->field_count : 0;
+  out[0] = '\0';
+  for (size_t i = 0; i < count && shown <= SHOWN && used < size; i++) {
+    if (record->fields[i].elsewhere == NULL) {
+      used += (size_t)snprintf(out + used, size - used, "%s%s", shown > 0 ? ", " : " (",
+                               shown < SHOWN ? record->fields[i].key : "...");
+      shown++;
+    }
+  }
+  if (shown > 0 && used < size) {
+    snprintf(out + used, size - used, ")");
+  }
+}
+
 /* false after an error: the node is not of the form that the field wants. */
 static dea_status check_form(const struct dea_reader *reader, const struct dea_field *field,
                              const struct dea_node *node, bool element, bool *good)
@@ -94,8 +112,10 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
                             field->example != NULL ? "'" : "");
   }
   static const char *const forms[] = {"a single value", "a list", "a section with keys of its own"};
+  char keys[MESSAGE_SIZE / 4];
+  write_keys(section && due == DEA_NODE_SECTION ? field->record : NULL, keys, sizeof keys);
   return dea_schema_error(
-      reader, node->location, "%s must be %s, not %s%s%s%s", field->key, forms[due],
+      reader, node->location, "%s must be %s%s, not %s%s%s%s", field->key, forms[due], keys,
       forms[node->kind], field->example != NULL ? "; write for example '" : "",
       field->example != NULL ? field->example : "", field->example != NULL ? "'" : "");
 }

@@ -90,18 +90,29 @@ void dea_schema_value_absent(const struct dea_field *field, char *target,
   }
 }
 
-static void format_limit(const struct dea_field *field, double limit, char text[32])
+/* A limit in the unit that the number was written in, "at most 10 mm" of '100 mm'. */
+static void format_limit(const struct dea_field *field, double limit, const char *written,
+                         double si, char text[48])
 {
-  bool bare = limit == 0 || strcmp(field->unit, "1") == 0;
-  snprintf(text, 32, "%g%s%s", limit, bare ? "" : " ", bare ? "" : field->unit);
+  const char *unit;
+  double number = dea_text_to_double(written, &unit);
+  unit += strspn(unit, " ");
+  bool scales = strcmp(field->unit, "K") != 0; // degC has a zero of its own
+  if (scales && number != 0 && si != 0 && unit[0] != '\0' && strlen(unit) < 30) {
+    limit *= number / si;
+  } else {
+    unit = strcmp(field->unit, "1") == 0 ? "" : field->unit;
+  }
+  bool bare = limit == 0 || unit[0] == '\0';
+  snprintf(text, 48, "%g%s%s", limit, bare ? "" : " ", bare ? "" : unit);
 }
 
-/* false after an error: si is out of the field's range. */
+/* false after an error: si, which is the number `written`, is out of the field's range. */
 static dea_status check_range(const struct dea_reader *reader, const struct dea_schema_value *value,
-                              double si, bool *good)
+                              const char *written, double si, bool *good)
 {
   const struct dea_field *field = value->field;
-  char limit[32];
+  char limit[48];
   *good = true;
   if (field->min == 0 && field->max == 0 && !field->above_min) {
     return DEA_OK;
@@ -113,7 +124,7 @@ static dea_status check_range(const struct dea_reader *reader, const struct dea_
     return DEA_OK;
   }
   *good = false;
-  format_limit(field, low ? field->min : field->max, limit);
+  format_limit(field, low ? field->min : field->max, written, si, limit);
   const char *word =
       low ? (field->above_min ? "above" : "at least") : (field->below_max ? "below" : "at most");
   return dea_schema_error(reader, value->location, "%s must be %s %s, not '%.60s'", field->key,
@@ -134,7 +145,7 @@ static dea_status read_number(const struct dea_reader *reader, const struct dea_
     return dea_schema_error(reader, value->location, "%s: %s", value->field->key, why);
   }
   bool good;
-  DEA_TRY(reader->ctx, check_range(reader, value, si, &good));
+  DEA_TRY(reader->ctx, check_range(reader, value, text, si, &good));
   if (good && value->field->kind == DEA_FIELD_INTEGER && floor(si) != si) {
     return dea_schema_error(reader, value->location, "%s must be a whole number, not '%.60s'",
                             value->field->key, value->text);

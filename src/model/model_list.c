@@ -37,13 +37,17 @@ dea_status dea_model_seek(struct dea_context *ctx, const char *name, struct dea_
   if (*out != NULL) {
     return DEA_OK;
   }
+  const char *names[sizeof models / sizeof models[0]];
   struct dea_text known = {.ctx = ctx};
   for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
-    dea_text_add(&known, "%s%s", i > 0 ? ", " : "", models[i]->name);
+    names[i] = models[i]->name;
+    dea_text_add(&known, "%s%s", i > 0 ? ", " : "", names[i]);
   }
-  dea_status status = dea_finding_add(ctx, DEA_ERROR, place,
-                                      "there is no model '%.60s' in this version; there are: %s",
-                                      name, dea_text_get(&known));
+  const char *nearest = dea_nearest_name(name, names, sizeof names / sizeof names[0]);
+  dea_status status = dea_finding_add(
+      ctx, DEA_ERROR, place, "there is no model '%.60s' in this version; there are: %s%s%s%s", name,
+      dea_text_get(&known), nearest != NULL ? "; did you mean '" : "",
+      nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
   dea_text_free(&known);
   return status;
 }

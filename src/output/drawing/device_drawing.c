@@ -372,15 +372,17 @@ static void write_length(char out[32], double length_m)
   dea_length_text(out, 32, length_m);
 }
 
-/* The label of an outline: "Ø 30 mm", "40 x 20 mm", with how many there are of its area. */
+/* The label of an outline: "Ø 30 mm", "40 x 20 mm", with how many there are of its area: "3 x Ø 2
+ * mm", "4 of 11 x 2 mm". */
 static void write_sides(const struct dea_contour *contour, size_t like, char *out, size_t size)
 {
   char a[32], b[32], times[32] = "";
   double side[2], centre[2], radius;
+  bool circle = is_circle(contour, centre, &radius);
   if (like > 1) {
-    snprintf(times, sizeof times, "%zu \303\227 ", like);
+    snprintf(times, sizeof times, circle ? "%zu \303\227 " : "%zu of ", like);
   }
-  if (is_circle(contour, centre, &radius)) {
+  if (circle) {
     write_length(a, 2 * radius);
     snprintf(out, size, "%.20s\303\230 %.16s mm", times, a);
     return;
@@ -418,30 +420,36 @@ static double stretch_of(const struct dea_layout_ply *ply)
   return ply->pre_stretch[0] == ply->pre_stretch[1] ? ply->pre_stretch[0] : 1;
 }
 
-/* A name with what is said of it, as one line beside the drawing: of a long name the end is cut. */
+/* A name with what is said of it, beside the drawing: in two lines where one is too short for both;
+ * of a long name the end is cut. */
 static void write_note(struct dea_callout *c, const char *name, const char *rest)
 {
   enum { LETTERS = 31, DOTS = 3 };
-  size_t room = LETTERS - strlen(rest), length = strlen(name);
-  if (length <= room) {
-    snprintf(c->note, sizeof c->note, "%s%s", name, rest);
+  size_t length = strlen(name);
+  if (length + strlen("; ") + strlen(rest) <= LETTERS) {
+    snprintf(c->note, sizeof c->note, "%s%s%s", name, rest[0] != '\0' ? "; " : "", rest);
     return;
   }
-  length = room - DOTS;
+  snprintf(c->below, sizeof c->below, "%s", rest);
+  if (length <= LETTERS) {
+    snprintf(c->note, sizeof c->note, "%s", name);
+    return;
+  }
+  length = LETTERS - DOTS;
   while (length > 0 && (name[length] & 0xc0) == 0x80) { // not inside of a letter
     length--;
   }
-  snprintf(c->note, sizeof c->note, "%.*s...%s", (int)length, name, rest);
+  snprintf(c->note, sizeof c->note, "%.*s...", (int)length, name);
 }
 
 static void set_note(struct dea_callout *c, const char *what, const struct dea_contour *contour,
                      double stretch)
 {
-  char text[32], rest[27] = "";
+  char text[32], rest[25] = "";
   double centre[2], radius;
   if (stretch != 1 && is_circle(contour, centre, &radius)) {
     write_length(text, 2 * radius / stretch);
-    snprintf(rest, sizeof rest, "; %.10s unstretched", text);
+    snprintf(rest, sizeof rest, "%.10s unstretched", text);
   }
   write_note(c, what, rest);
 }
@@ -676,14 +684,14 @@ static size_t call_out_section(const struct view *v, const double *x, size_t cou
       snprintf(times, sizeof times, "%zu \303\227 ", run);
     }
     snprintf(c->label, sizeof c->label, "%s%.4g \302\265m", times, 1e6 * ply->thickness_m);
-    char what[96], rest[27] = "";
+    char what[96], rest[25] = "";
     if (run > 1) {
       snprintf(what, sizeof what, "%.40s to %.40s", ply->name, l->plies[i + run - 1].name);
     } else {
       snprintf(what, sizeof what, "%.80s", ply->name);
     }
     if (ply->thickness_m != ply->thickness_unstretched_m) {
-      snprintf(rest, sizeof rest, "; %.4g unstretched", 1e6 * ply->thickness_unstretched_m);
+      snprintf(rest, sizeof rest, "%.4g unstretched", 1e6 * ply->thickness_unstretched_m);
     }
     write_note(c, what, rest);
   }

@@ -95,6 +95,10 @@ static void draw_label(const struct dea_paper *paper, const struct dea_callout *
   paper->type->text(paper->canvas, x, letters, label_size, 0, align, false, INK, callout->label);
   paper->type->text(paper->canvas, x, letters - 3.4, note_size, 0, align, false, GREY,
                     callout->note);
+  if (callout->below[0] != '\0') {
+    paper->type->text(paper->canvas, x, letters - 6.2, note_size, 0, align, false, GREY,
+                      callout->below);
+  }
 }
 
 static void draw_column(const struct dea_paper *paper, const double box[4], int side,

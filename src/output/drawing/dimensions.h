@@ -5,7 +5,7 @@
 
 #include "output/drawing/canvas.h"
 
-enum { DEA_CALLOUT_LABEL = 72, DEA_CALLOUT_NOTE = 96 };
+enum { DEA_CALLOUT_LABEL = 72, DEA_CALLOUT_NOTE = 96, DEA_CALLOUT_BELOW = 32 };
 
 /* A label beside a drawing, with a leader to a point, or to a circle where that faces the label. */
 struct dea_callout {
@@ -13,6 +13,7 @@ struct dea_callout {
   double radius_mm; // 0: a point
   bool bare;        // leader without an arrow: to a dimension that has its own
   char label[DEA_CALLOUT_LABEL], note[DEA_CALLOUT_NOTE];
+  char below[DEA_CALLOUT_BELOW]; // a second line of the note, or none
 };
 
 /* Labels in two columns left and right of a box {x min, y min, x max, y max}. */
