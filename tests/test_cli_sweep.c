@@ -249,6 +249,24 @@ static void test_optimise(void **state)
   assert_contains(command_err, "best-3.yaml");
 }
 
+/* What is counted off begins at one of its values, not at the design's four fibres. */
+static void test_values_without_the_start(void **state)
+{
+  (void)state;
+  static const char more[] = "objectives: [{quantity: electrode_edge_u_m}]";
+  write_file("{name: fibres.count, values: [10, 6, 8], start: 4}", more);
+  command_expect("optimise mine.yaml", 3,
+                 "error: fibres.count starts at 4, which is none of its values");
+  write_file("{name: fibres.count, values: [10, 6, 8], start: 8}, {name: pre_stretch, "
+             "values: [1.3, 1.4], start: 1.4}",
+             more);
+  assert_int_equal(command_run("optimise mine.yaml -o given"), 0);
+  assert_contains(command_out, "designs: 6, 0 of them");
+  write_file("{name: fibres.count, values: [10, 6, 8]}", more);
+  assert_int_equal(command_run("optimise mine.yaml -o near"), 0);
+  assert_contains(command_out, "designs: 3, 0 of them");
+}
+
 /* The most capacitance of a film that lives to 4 kV: that voltage goes with the thickness, and the
  * path of the best design, which locates it by itself, has it. What there is not has a reason. */
 static void test_critical_voltages(void **state)
@@ -295,6 +313,6 @@ int main(void)
       cmocka_unit_test(test_killed),   cmocka_unit_test(test_interrupted),
       cmocka_unit_test(test_optimise), cmocka_unit_test(test_critical_voltages),
       cmocka_unit_test(test_page),     cmocka_unit_test(test_parts),
-      cmocka_unit_test(test_monitors)};
+      cmocka_unit_test(test_monitors), cmocka_unit_test(test_values_without_the_start)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -103,6 +103,17 @@ static dea_status make_scatter(struct work *w)
   return status;
 }
 
+/* Where a search begins: of what is counted off, at the value nearest to the start. */
+static double begin_of(const struct dea_variable *variable)
+{
+  const double start = variable->param.param.start;
+  double out = variable->value_count > 0 ? variable->values[0] : start;
+  for (size_t i = 1; i < variable->value_count; i++) {
+    out = fabs(variable->values[i] - start) < fabs(out - start) ? variable->values[i] : out;
+  }
+  return out;
+}
+
 static void fill_search(struct work *w)
 {
   const struct dea_question *question = w->question;
@@ -134,12 +145,20 @@ static void fill_search(struct work *w)
   }
   for (size_t j = 0; j < question->variable_count; j++) {
     const struct dea_variable *variable = &question->variables[j];
-    search->start[j] = variable->param.param.start;
+    search->start[j] = begin_of(variable);
     search->low[j] = variable->low;
     search->high[j] = variable->high;
     search->values[j] = variable->values;
     search->value_count[j] = variable->value_count;
   }
+}
+
+/* Whether a start that the file says is none of the values that a variable can take. */
+static bool is_start_excluded(const struct dea_variable *variable)
+{
+  const double start = variable->param.param.start;
+  return variable->text->text.start.text[0] != '\0' &&
+         !(fabs(begin_of(variable) - start) <= 1e-9 * fabs(start));
 }
 
 static dea_status check(const struct work *w)
@@ -162,6 +181,10 @@ static dea_status check(const struct work *w)
     } else if (variable->value_count == 0 && !(variable->high > variable->low)) {
       DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, name->location,
                                       "%s: its bounds leave nothing to search", name->text));
+    } else if (is_start_excluded(variable)) {
+      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, variable->text->text.start.location,
+                                      "%s starts at %s, which is none of its values", name->text,
+                                      variable->text->text.start.text));
     }
   }
   if (combinations > 10000) {
