@@ -9,10 +9,12 @@ import sys
 import jsonschema
 import yaml
 
-# What no schema can say: values beside each other, geometry, names of materials and laws.
+# What no schema can say: values beside each other, upper limits of numbers with a unit, geometry,
+# names of materials and laws.
 BEYOND = [
     "more than 10000 voltages",
     "must be above the pre-stretch 1.5",
+    "must be at most 10 mm",
     "do not fit into",
     "does not fit on",
     "18 mm in radius",

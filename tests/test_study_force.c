@@ -316,6 +316,11 @@ static void test_interpolated(void **state)
   assert_close(dea_result_table_number(table, 0, "voltages", 0), 81, 0, 0);
   assert_close(dea_result_table_number(table, 0, "computed", 0), computed, 0, 0);
   assert_true(dea_result_table_number(table, 0, "force_interpolation_error_N", 0) > 0);
+  assert_close(dea_result_table_number(table, 0, "trusted_voltage_V", 0), 6300, 1e-9,
+               0); // it jumps
+  assert_close(dea_result_table_number(table, 0, "first_force_N", 0), taut_force(0), 1e-14, 0);
+  assert_close(dea_result_table_number(table, 0, "last_force_N", 0), taut_force(8000) - 0.02, 1e-14,
+               0);
   end_film(design, device, result);
 }
 

@@ -217,10 +217,62 @@ static dea_status read_default(const struct dea_reader *reader, const struct sec
   return dea_schema_value_read(reader, &value, section->base + field->offset);
 }
 
+/* Key of the first section right below that knows a key, or NULL. */
+static const char *section_with(const struct dea_record *record, const char *key)
+{
+  for (size_t i = 0; i < record->field_count; i++) {
+    const struct dea_record *below = record->fields[i].record;
+    for (size_t k = 0; below != NULL && k < below->field_count; k++) {
+      if (strcmp(below->fields[k].key, key) == 0) {
+        return record->fields[i].key;
+      }
+    }
+  }
+  return NULL;
+}
+
+static bool is_key(const struct dea_field *field, const char *key)
+{
+  return strcmp(field->key, key) == 0 || (field->alias != NULL && strcmp(field->alias, key) == 0);
+}
+
+static size_t list_keys(const struct dea_record *record, const char *keys[KEYS_MAX])
+{
+  size_t count = record->field_count < KEYS_MAX ? record->field_count : KEYS_MAX;
+  for (size_t i = 0; i < count; i++) {
+    keys[i] = record->fields[i].key;
+  }
+  return count;
+}
+
+/* Whether an unknown key of the section is one that was meant to be this: its message says so. */
+static bool is_misspelt(const struct section *section, const char *key)
+{
+  const char *keys[KEYS_MAX];
+  const struct dea_record *record = section->record;
+  size_t count = list_keys(record, keys);
+  const struct dea_node *node = section->node != NULL ? section->node->child : NULL;
+  for (; node != NULL; node = node->next) {
+    size_t i = 0;
+    while (i < count && !is_key(&record->fields[i], node->key)) {
+      i++;
+    }
+    const char *nearest = i == count ? dea_nearest_name(node->key, keys, count) : NULL;
+    if (nearest != NULL && strcmp(nearest, key) == 0 && section_with(record, node->key) == NULL) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* An error, unless the key is there misspelt. */
 static dea_status missing_field(const struct dea_reader *reader, const struct section *section,
                                 const struct dea_field *field)
 {
   char where[80];
+  if (is_misspelt(section, field->key)) {
+    return DEA_OK;
+  }
   snprintf(where, sizeof where, section->path[0] != '\0' ? "section '%.60s'" : "the file",
            section->path);
   if (field->group > 0) {
@@ -310,7 +362,7 @@ static dea_status choose_option(const struct dea_reader *reader, const struct se
   return DEA_OK;
 }
 
-/* All ways to write what a group wants, for the message that none is there. */
+/* All ways to write what a group wants, for the message that none is there, also misspelt. */
 static dea_status missing_group(const struct dea_reader *reader, const struct section *section,
                                 const struct dea_field *asking)
 {
@@ -318,6 +370,9 @@ static dea_status missing_group(const struct dea_reader *reader, const struct se
   size_t used = 0;
   for (size_t i = 0; i < section->record->field_count; i++) {
     const struct dea_field *field = &section->record->fields[i];
+    if (field->group == asking->group && is_misspelt(section, field->key)) {
+      return DEA_OK;
+    }
     if (field->group == asking->group && used < sizeof ways) {
       used += (size_t)snprintf(ways + used, sizeof ways - used, "%s'%s: %s'",
                                used > 0 ? " or " : "", field->key, field->example);
@@ -350,25 +405,6 @@ static dea_status read_field(const struct dea_reader *reader, const struct secti
                       : read_absent(reader, section, field, path);
 }
 
-/* Key of the first section right below that knows a key, or NULL. */
-static const char *section_with(const struct dea_record *record, const char *key)
-{
-  for (size_t i = 0; i < record->field_count; i++) {
-    const struct dea_record *below = record->fields[i].record;
-    for (size_t k = 0; below != NULL && k < below->field_count; k++) {
-      if (strcmp(below->fields[k].key, key) == 0) {
-        return record->fields[i].key;
-      }
-    }
-  }
-  return NULL;
-}
-
-static bool is_key(const struct dea_field *field, const char *key)
-{
-  return strcmp(field->key, key) == 0 || (field->alias != NULL && strcmp(field->alias, key) == 0);
-}
-
 /* An older word beside the key itself. */
 static dea_status check_twice(const struct dea_reader *reader, const struct section *section,
                               const struct dea_field *field, const struct dea_node *node)
@@ -387,12 +423,11 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
   const struct dea_record *record = section->record;
   const char *keys[KEYS_MAX];
   char list[MESSAGE_SIZE / 2] = "";
-  size_t count = 0, used = 0;
-  for (; count < record->field_count && count < KEYS_MAX; count++) {
-    keys[count] = record->fields[count].key;
-    if (used < sizeof list && record->fields[count].elsewhere == NULL) {
-      used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "",
-                               keys[count]);
+  size_t count = list_keys(record, keys), used = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (used < sizeof list && record->fields[i].elsewhere == NULL) {
+      used +=
+          (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", keys[i]);
     }
   }
   for (const struct dea_node *node = section->node->child; node != NULL; node = node->next) {

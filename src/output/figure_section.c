@@ -68,11 +68,12 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   size_t count = dea_surface_spread(result, SHOWN_MAX + 1, records);
   size_t first =
       count > SHOWN_MAX ? 1 : 0; // at the first voltage, mostly 0, there is nothing to see
-  bool all_doubtful = true;      // then grey would tell them apart from nothing
+  size_t doubtful = 0;
   for (size_t i = first; i < count; i++) {
-    all_doubtful =
-        all_doubtful && dea_result_doubts(result, records[i]->model, records[i]->voltage_V) != 0;
+    doubtful += dea_result_doubts(result, records[i]->model, records[i]->voltage_V) != 0;
   }
+  bool all_doubtful = doubtful == count - first; // then grey would tell them apart from nothing
+  bool some_grey = doubtful > 0 && !all_doubtful;
   for (size_t i = first; i < count; i++) {
     DEA_TRY(ctx, add_record(ctx, panel, result, records[i], SHOWN_MAX - count + i, all_doubtful));
   }
@@ -80,8 +81,12 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     return DEA_OK;
   }
   if (records[0]->mesh->fibres > 0) {
+    size_t entries = panel->series_count;
     DEA_TRY(ctx, dea_figure_add_entry(ctx, panel, DEA_LINE, "along fibres", panel->x_min, 0));
     DEA_TRY(ctx, dea_figure_add_entry(ctx, panel, DEA_DASHED, "between", panel->x_min, 0));
+    for (size_t i = entries; i < panel->series_count && some_grey; i++) {
+      panel->series[i].colour = DEA_BLACK; // grey is a curve's
+    }
   }
   snprintf(panel->x_label, sizeof panel->x_label, "Place across the film (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");

@@ -519,7 +519,7 @@ static bool asked(const struct dea_design *design)
 const struct dea_study dea_study_compare_design = {
     .name = study_name,
     .asked = asked,
-    .needs = "compute.compare, or more design files on the command line,",
+    .needs = "more design files on the command line, or compute.compare",
     .run = run,
     .tables = tables,
     .figures = figures,

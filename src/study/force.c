@@ -510,6 +510,11 @@ static const struct dea_result_column line_columns[] = {
      .kind = DEA_CELL_COUNT,
      .title = "computed",
      .meaning = "how many of them are; the others are interpolated"},
+    DEA_NUMBER_COLUMN("first_force_N", "N", "mN", 1e3, "first force",
+                      "force on the tip at the first voltage"),
+    DEA_NUMBER_COLUMN("last_force_N", "N", "mN", 1e3, "last force", "and at the last one"),
+    DEA_NUMBER_COLUMN("trusted_voltage_V", "V", "kV", 1e-3, "trusted to",
+                      "last voltage before the first point that is not to be trusted"),
     DEA_NUMBER_COLUMN("force_interpolation_error_N", "N", "mN", 1e3, "error of force",
                       "largest estimated error of a force that is interpolated"),
     DEA_NUMBER_COLUMN("interpolation_error", "1", "%", 100, "of the rest",
@@ -518,7 +523,7 @@ static const struct dea_result_column line_columns[] = {
 static const struct dea_result_table_type line_table = {
     .study = study_name,
     .name = "lines",
-    .title = "load lines, and how many of their points are computed",
+    .title = "force on the tip at the first and the last voltage, and how many points are computed",
     .where = DEA_IN_JSON | DEA_IN_SCREEN,
     .columns = line_columns,
     .column_count = sizeof line_columns / sizeof line_columns[0]};
@@ -534,7 +539,10 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &line_table, model, 0, &table));
   for (size_t i = 0; i < stops.count; i++) {
     const struct dea_curve part = one_stop(&stops, i);
-    double force_N = NAN, rest = NAN;
+    double force_N = NAN, rest = NAN, trusted_V = NAN;
+    for (size_t k = 0; k < part.count && dea_load_point_trusted(&part.points[k]); k++) {
+      trusted_V = part.points[k].voltage_V;
+    }
     for (size_t k = 0; k < part.count; k++) {
       force_N = fmax(force_N, part.points[k].force_interpolation_error_N);
       rest = fmax(rest, part.points[k].interpolation_error);
@@ -542,6 +550,9 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
     const struct dea_result_table_value row[] = {{.number = part.points[0].tip_depth_m},
                                                  {.number = (double)part.count},
                                                  {.number = (double)count_computed(&part)},
+                                                 {.number = part.points[0].force_N},
+                                                 {.number = part.points[part.count - 1].force_N},
+                                                 {.number = trusted_V},
                                                  {.number = force_N},
                                                  {.number = rest}};
     DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
