@@ -365,6 +365,36 @@ static void test_modes_of_the_mesh_are_not_followed(void **state)
   assert_close(stretch[0], stretch[1], 1e-8, 0);
 }
 
+/* Another, under electrodes of a thickness: behind the point where such modes turn unstable
+ * rounding raises the film by 1.5e-6 of its thickness, which is flat all the same (random design
+ * 792). */
+static void test_rounding_is_no_deflection(void **state)
+{
+  (void)state;
+  static const struct dea_model_settings coarse = {
+      .film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
+  const struct dea_model_type *const types[] = {dea_model_find("axisymmetric"), &dea_solid_module};
+  struct dea_device device = disc(test_material("yeoh", 910.372e3, -34.9215e3, 0.760233e3),
+                                  25.36e-6, 2.726, 11.2e-3, 35.52e-3);
+  device.film.permittivity.at_rest = 7.95;
+  device.electrode = test_material("neo-hookean", 223.9e3, 0, 0);
+  device.electrode_thickness_m = 10.6e-6;
+  double stretch[2];
+  for (int i = 0; i < 2; i++) {
+    struct dea_model *model;
+    struct dea_load_point point;
+    assert_int_equal(types[i]->create(ctx, &device, &coarse, &model), DEA_OK);
+    for (int k = 0; k <= 6; k++) {
+      assert_int_equal(types[i]->solve(ctx, model, 153.107633638 * k, &point), DEA_OK);
+      assert_true(types[i]->passed == NULL || types[i]->passed(model) == NULL);
+    }
+    assert_true(point.min_tension_N_per_m > 0);
+    stretch[i] = point.electrode_stretch;
+    types[i]->destroy(ctx, model);
+  }
+  assert_close(stretch[1], stretch[0], 1e-3, 0);
+}
+
 /* On such a mesh a path that does not stay in the plane either is no reason to begin again from the
  * flat film: pull-in is found where the exact disc has it (random design 1082).
  */
@@ -512,6 +542,7 @@ int main(void)
       cmocka_unit_test(test_loss_of_tension_is_no_pull_in),
       cmocka_unit_test(test_buckling_in_one_step),
       cmocka_unit_test(test_modes_of_the_mesh_are_not_followed),
+      cmocka_unit_test(test_rounding_is_no_deflection),
       cmocka_unit_test(test_path_that_leaves_the_plane_of_a_coarse_mesh),
       cmocka_unit_test(test_rest_under_stiff_electrodes),
       cmocka_unit_test(test_pull_in_beside_fibre_tips),

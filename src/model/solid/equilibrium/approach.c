@@ -71,13 +71,19 @@ static bool is_flat(struct dea_solid *s, const double *u, double size_m)
   return deflection_m(s, u) < flat * size_m;
 }
 
-bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *from, double size_m)
+/* Heights above which a film is not flat any more. Below, they may be what rounding becomes where K
+ * is nearly singular. */
+static bool is_deflected(struct dea_solid *s, double size_m)
 {
   static const double deflected = 1e-3;
+  return deflection_m(s, s->state.u) > deflected * size_m;
+}
+
+bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *from, double size_m)
+{
   const bool pushed =
       from->controls[0] == 0 && !(s->found.foreseen && is_flat(s, s->work.foreseen, size_m));
-  return !pushed && is_flat(s, from->state, size_m) &&
-         deflection_m(s, s->state.u) > deflected * size_m;
+  return !pushed && is_flat(s, from->state, size_m) && is_deflected(s, size_m);
 }
 
 // The path ----------------------------------------------------------------------------------------
@@ -160,7 +166,7 @@ static dea_status look_at_modes(struct dea_context *ctx, const struct search *a,
   struct dea_solid *s = a->s;
   double value;
   if (unstable <= *of_mesh || !a->watch->taut(a->watch->user) ||
-      !is_flat(s, s->state.u, s->problem.length_m)) {
+      is_deflected(s, s->problem.length_m)) {
     *of_mesh = unstable < *of_mesh ? unstable : *of_mesh;
     return DEA_OK;
   }
@@ -188,7 +194,7 @@ static dea_status stay_flat(struct dea_context *ctx, struct search *a,
   struct dea_continuation_point at;
   DEA_TRY(ctx, dea_solid_continuation_at(ctx, path, 1, &at));
   dea_solid_controls_set(s, a->goal); // what rounding leaves of it
-  a->went_on = is_flat(s, s->state.u, s->problem.length_m);
+  a->went_on = !is_deflected(s, s->problem.length_m);
   a->report->unstable_modes = at.unstable_modes;
   a->report->energy_J = at.energy_J;
   a->report->snapped = false;
