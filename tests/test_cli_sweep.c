@@ -226,6 +226,12 @@ static void test_optimise(void **state)
   write_file("{name: pre_stretch, low: 1.2, high: 1.8}",
              "limits: [{quantity: breakdown_margin, above: 0.3, below: 0.2}]");
   command_expect("optimise mine.yaml", 3, "breakdown_margin cannot be above 0.3 and below 0.2");
+  write_file(
+      "{name: pre_stretch, low: 1.2, high: 1.8}",
+      "objectives: [{quantity: electrode_edge_u_m}]\n"
+      "limits: [{quantity: breakdown_margin, below: 0.25},"
+      " {quantity: electrode_edge_u_m, above: 1 um}, {quantity: breakdown_margin, above: 0.3}]");
+  command_expect("optimise mine.yaml", 3, "breakdown_margin cannot be above 0.3 and below 0.25");
   write_file("{name: pre_stretch, low: 1.2, high: 1.8}", "");
   command_expect("optimise mine.yaml", 3, "a grid needs values");
   write_file("{name: pre_stretch, low: 1.2, high: 1.8}",

@@ -161,6 +161,25 @@ static bool is_start_excluded(const struct dea_variable *variable)
          !(fabs(begin_of(variable) - start) <= 1e-9 * fabs(start));
 }
 
+/* Says limits of one quantity that exclude each other; each by itself is checked as it is read. */
+static dea_status check_limits(const struct work *w)
+{
+  const struct dea_question *question = w->question;
+  for (size_t l = 0; l < question->limit_count; l++) {
+    for (size_t k = 0; k < question->limit_count; k++) {
+      const struct dea_limit *low = &question->limits[l], *high = &question->limits[k];
+      if (k != l && low->column == high->column && low->above >= high->below) {
+        const struct dea_explore_limit *text = question->file->limits;
+        DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, text[k > l ? k : l].quantity.location,
+                                        "%s cannot be above %s and below %s",
+                                        question->quantities[low->column].key, text[l].above.text,
+                                        text[k].below.text));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check(const struct work *w)
 {
   const struct dea_question *question = w->question;
@@ -187,6 +206,7 @@ static dea_status check(const struct work *w)
                                       variable->text->text.start.text));
     }
   }
+  DEA_TRY(w->ctx, check_limits(w));
   if (combinations > 10000) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, file,
                                     "%.3g combinations of values and whole numbers are too many",
