@@ -14,8 +14,15 @@
 #include <string.h>
 
 static const char *const keys[] = {"highest_z_m",         "true_field_V_per_m", "breakdown_margin",
-                                   "min_tension_N_per_m", "capacitance_F",      "energy_J"};
-enum { KEYS = sizeof keys / sizeof keys[0], TENSION = 3, MONITORS = 2, WIDTH = KEYS + MONITORS };
+                                   "min_tension_N_per_m", "capacitance_F",      "energy_J",
+                                   "frequency_Hz"};
+enum {
+  KEYS = sizeof keys / sizeof keys[0],
+  TENSION = 3,
+  FREQUENCY = KEYS - 1, // of a device that vibrates
+  MONITORS = 2,
+  WIDTH = KEYS + MONITORS
+};
 
 /* A device with all that has numbers: a hub with a mass, a force and a spring, its own voltages. */
 static const char cone[] = "dea: 1\n"
@@ -53,12 +60,30 @@ struct at {
   double voltage_V;
   size_t monitors[MONITORS], monitor_count;
   enum dea_observed motion[MONITORS]; // asked for, or found by the first that observes
-  bool asked, found;
+  bool asked, found, vibrates;
   const char *const *only;            // those that are, ended by NULL; NULL: all
   bool again;                         // solved for once more, for what the first solution leaves
   double leaves;                      // what solutions leave of a quantity, over its size
   struct dea_model_settings settings; // of a critical voltage
 };
+
+static size_t key_count(const struct at *at)
+{
+  return at->vibrates ? KEYS : FREQUENCY;
+}
+
+/* The lowest of a model at its last point. */
+static double frequency_of(const struct dea_model_type *type, struct dea_model *model,
+                           const struct dea_load_point *point)
+{
+  struct dea_load_point mode;
+  struct dea_field_mesh *shapes;
+  if (type->modes(ctx, model, point, 1, &mode, &shapes) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  dea_field_mesh_destroy(ctx, shapes);
+  return mode.frequency_Hz;
+}
 
 /* Quantities of a device that is solved by itself, out [WIDTH]. */
 static void solve(struct at *at, const struct dea_device *device, double voltage_V, double *out,
@@ -75,6 +100,9 @@ static void solve(struct at *at, const struct dea_device *device, double voltage
       (at->again && type->solve(ctx, model, voltage_V, &point) != DEA_OK) ||
       dea_model_observe(ctx, type, model, &seen) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
+  }
+  if (at->vibrates) {
+    point.frequency_Hz = frequency_of(type, model, &point);
   }
   for (int k = 0; k < KEYS; k++) {
     out[k] = dea_point_get(&point, dea_point_column_find(keys[k]));
@@ -144,9 +172,10 @@ static void check_number(struct at *at, const struct dea_design_number *number, 
       continue;
     }
     double left[CHANGES];
-    assert_true(!isnan(slope[k]));
+    const double own = slope[k < KEYS ? k : k - KEYS + key_count(at)];
+    assert_true(!isnan(own));
     for (int n = 0; n < CHANGES; n++) {
-      left[n] = (moved[n][k] - base[k] - slope[k] * reach * decades[n]) / size;
+      left[n] = (moved[n][k] - base[k] - own * reach * decades[n]) / size;
     }
     check_fall(at, k < KEYS ? keys[k] : "monitor", number->key, left);
   }
@@ -192,11 +221,11 @@ static size_t check(struct at *at)
                                           .numbers = numbers,
                                           .number_count = count,
                                           .columns = columns,
-                                          .column_count = KEYS,
+                                          .column_count = key_count(at),
                                           .monitors = at->monitors,
                                           .monitor_count = at->monitor_count,
                                           .motions = at->asked ? at->motion : NULL};
-  const size_t width = KEYS + at->monitor_count;
+  const size_t width = key_count(at) + at->monitor_count;
   double *slopes = dea_alloc(ctx, count * width, sizeof *slopes);
   assert_non_null(slopes);
   if (dea_design_gradient_find(ctx, &ask, slopes) != DEA_OK) {
@@ -223,6 +252,19 @@ static void test_cone(void **state)
   /* voltage, thickness, two stretches, ratio and voltage of a channel, mass, force, stiffness and
    * free end of a spring, three of the law, permittivity, four radii */
   assert_int_equal(check(&at), 18);
+}
+
+/* The lowest frequency of it: a body on a film and a spring. */
+static void test_frequency_of_the_cone(void **state)
+{
+  (void)state;
+  static const char *const only[] = {"voltage",           "plies.film.thickness",
+                                     "bodies.hub.mass",   "springs[0].stiffness",
+                                     "shapes.hub.radius", NULL};
+  struct at at = {.voltage_V = 3e3, .only = only, .vibrates = true};
+  assert_int_equal(
+      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  check(&at);
 }
 
 /* A diaphragm of two plies, the upper one without a field. */
@@ -385,18 +427,18 @@ static void test_tension_of_a_bender(void **state)
 static void test_all_lengths(void **state)
 {
   (void)state;
-  static const double powers[KEYS] = {1, 0, 0, 1, 1, 3};
+  static const double powers[FREQUENCY] = {1, 0, 0, 1, 1, 3};
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   struct at at = {.voltage_V = 500, .monitor_count = 1, .motion = {DEA_OBSERVED_Z}, .asked = true};
   struct dea_model *model;
   double base[WIDTH], sum[WIDTH] = {0}, slopes[DEA_NUMBERS_MAX * WIDTH];
-  int columns[KEYS];
+  int columns[FREQUENCY];
   size_t count;
   assert_int_equal(read_and_build(ctx, bender, NULL, 0, &at.design, &at.device), DEA_OK);
   solve(&at, at.device, at.voltage_V, base, &model);
   assert_int_equal(dea_design_numbers(ctx, at.design, at.device, at.voltage_V, numbers, &count),
                    DEA_OK);
-  for (int k = 0; k < KEYS; k++) {
+  for (int k = 0; k < FREQUENCY; k++) {
     columns[k] = dea_point_column_find(keys[k]);
   }
   const struct dea_design_gradient ask = {.type =
@@ -408,7 +450,7 @@ static void test_all_lengths(void **state)
                                           .numbers = numbers,
                                           .number_count = count,
                                           .columns = columns,
-                                          .column_count = KEYS,
+                                          .column_count = FREQUENCY,
                                           .monitors = at.monitors,
                                           .monitor_count = 1,
                                           .motions = at.motion};
@@ -416,14 +458,15 @@ static void test_all_lengths(void **state)
   ask.type->destroy(ctx, model);
   for (size_t i = 0; i < count; i++) {
     const bool scales = strcmp(numbers[i].unit, "m") == 0 || strcmp(numbers[i].unit, "V") == 0;
-    for (size_t k = 0; k < KEYS + 1 && scales; k++) {
-      sum[k] += numbers[i].value * slopes[i * (KEYS + 1) + k];
+    for (size_t k = 0; k < FREQUENCY + 1 && scales; k++) {
+      sum[k] += numbers[i].value * slopes[i * (FREQUENCY + 1) + k];
     }
   }
-  for (int k = 0; k < KEYS + 1; k++) {
-    const double power = k < KEYS ? powers[k] : 1;
+  for (int k = 0; k < FREQUENCY + 1; k++) {
+    const double power = k < FREQUENCY ? powers[k] : 1;
     // rounding leaves a few 1e-6 of a displacement in each slope (docs/theory/gradients.md)
-    assert_close(sum[k], power * base[k], 0, 2e-5 * fabs(base[k]) + 1e-12);
+    const double value = base[k < FREQUENCY ? k : KEYS]; // or of the monitor
+    assert_close(sum[k], power * value, 0, 2e-5 * fabs(value) + 1e-12);
   }
   dea_device_destroy(ctx, at.device);
   dea_design_destroy(ctx, at.design);
@@ -747,6 +790,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_cone),
+      cmocka_unit_test(test_frequency_of_the_cone),
       cmocka_unit_test(test_two_plies_under_pressure),
       cmocka_unit_test(test_shapes),
       cmocka_unit_test(test_region),
