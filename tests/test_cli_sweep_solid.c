@@ -274,12 +274,24 @@ static void test_tolerances_of_plies(void **state)
                    0);
 }
 
+/* Slopes of the lowest frequency with study modal, which the command names. */
+static void test_frequency(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  command_write("cone.yaml", cone);
+  run_solid("run cone.yaml --study modal --study sensitivity -q -o ringing.run");
+  command_read("ringing.run/3d_sensitivity_slopes.csv", bytes);
+  assert_contains(bytes, "\n3,plies.film.thickness,0.0001,m,frequency_Hz,");
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_neighbours),       cmocka_unit_test(test_parts),
       cmocka_unit_test(test_critical_voltage), cmocka_unit_test(test_force),
       cmocka_unit_test(test_monitors),         cmocka_unit_test(test_tolerances_of_plies),
+      cmocka_unit_test(test_frequency),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

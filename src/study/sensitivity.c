@@ -382,14 +382,16 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   return DEA_OK;
 }
 
-/* The lowest mode, of a design with study modal. */
+/* The lowest mode, where study modal is asked for or has run by its name. */
 static dea_status find_frequency(struct dea_context *ctx, const struct dea_model_type *type,
                                  struct dea_model *model, const struct dea_result *result,
                                  struct stop *stop)
 {
   struct dea_load_point mode;
   struct dea_field_mesh *shapes;
-  stop->vibrates = type->modes != NULL && !stop->is_pressed && dea_modal_asked(result->design);
+  const bool asked =
+      dea_modal_asked(result->design) || dea_result_find(result, type->name, "modal") != NULL;
+  stop->vibrates = type->modes != NULL && !stop->is_pressed && asked;
   if (stop->vibrates) {
     DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, 1, &mode, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
