@@ -9,6 +9,7 @@
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "lowest_frequency.h"
 
 #include <math.h>
 #include <string.h>
@@ -70,19 +71,6 @@ struct at {
 static size_t key_count(const struct at *at)
 {
   return at->vibrates ? KEYS : FREQUENCY;
-}
-
-/* The lowest of a model at its last point. */
-static double frequency_of(const struct dea_model_type *type, struct dea_model *model,
-                           const struct dea_load_point *point)
-{
-  struct dea_load_point mode;
-  struct dea_field_mesh *shapes;
-  if (type->modes(ctx, model, point, 1, &mode, &shapes) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
-  dea_field_mesh_destroy(ctx, shapes);
-  return mode.frequency_Hz;
 }
 
 /* Quantities of a device that is solved by itself, out [WIDTH]. */

@@ -6,6 +6,7 @@
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "lowest_frequency.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,18 +44,6 @@ static const char *key_of(const struct state *at, int k)
 static int number_count(const struct state *at)
 {
   return is_pressed(at) ? NUMBERS : OF_DEVICE;
-}
-
-/* The lowest of a model at its last point. */
-static double frequency_of(struct dea_model *model, const struct dea_load_point *point)
-{
-  struct dea_load_point mode;
-  struct dea_field_mesh *shapes;
-  if (solid->modes(ctx, model, point, 1, &mode, &shapes) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
-  dea_field_mesh_destroy(ctx, shapes);
-  return mode.frequency_Hz;
 }
 
 /* To where the solves of changed devices begin, which then need no steps from rest on: away by a
@@ -109,7 +98,7 @@ static struct dea_load_point solve(const struct state *at, const struct dea_devi
     }
   }
   if (vibrates(at)) {
-    point.frequency_Hz = frequency_of(model, &point);
+    point.frequency_Hz = frequency_of(solid, model, &point);
   }
   if (keep != NULL) {
     *keep = model;

@@ -75,21 +75,17 @@ static void absent_section(const struct dea_record *record, char *base,
   }
 }
 
-/* " (from, to, step, ...)": the first keys of a record; NULL: nothing. */
-static void write_keys(const struct dea_record *record, char *out, size_t size)
+/* "from, to, step, ...": the first keys of a record, `most` of them. */
+static void write_keys(const struct dea_record *record, size_t most, char *out, size_t size)
 {
-  enum { SHOWN = 5 };
-  size_t used = 0, shown = 0, count = record != NULL ? record->field_count : 0;
+  size_t used = 0, shown = 0;
   out[0] = '\0';
-  for (size_t i = 0; i < count && shown <= SHOWN && used < size; i++) {
+  for (size_t i = 0; i < record->field_count && shown <= most && used < size; i++) {
     if (record->fields[i].elsewhere == NULL) {
-      used += (size_t)snprintf(out + used, size - used, "%s%s", shown > 0 ? ", " : " (",
-                               shown < SHOWN ? record->fields[i].key : "...");
+      used += (size_t)snprintf(out + used, size - used, "%s%s", shown > 0 ? ", " : "",
+                               shown < most ? record->fields[i].key : "...");
       shown++;
     }
-  }
-  if (shown > 0 && used < size) {
-    snprintf(out + used, size - used, ")");
   }
 }
 
@@ -112,12 +108,16 @@ static dea_status check_form(const struct dea_reader *reader, const struct dea_f
                             field->example != NULL ? "'" : "");
   }
   static const char *const forms[] = {"a single value", "a list", "a section with keys of its own"};
-  char keys[MESSAGE_SIZE / 4];
-  write_keys(section && due == DEA_NODE_SECTION ? field->record : NULL, keys, sizeof keys);
-  return dea_schema_error(
-      reader, node->location, "%s must be %s%s, not %s%s%s%s", field->key, forms[due], keys,
-      forms[node->kind], field->example != NULL ? "; write for example '" : "",
-      field->example != NULL ? field->example : "", field->example != NULL ? "'" : "");
+  enum { SHOWN = 5 };
+  char keys[MESSAGE_SIZE / 4] = "";
+  if (section && due == DEA_NODE_SECTION && field->record != NULL) {
+    write_keys(field->record, SHOWN, keys, sizeof keys);
+  }
+  return dea_schema_error(reader, node->location, "%s must be %s%s%s%s, not %s%s%s%s", field->key,
+                          forms[due], keys[0] != '\0' ? " (" : "", keys, keys[0] != '\0' ? ")" : "",
+                          forms[node->kind], field->example != NULL ? "; write for example '" : "",
+                          field->example != NULL ? field->example : "",
+                          field->example != NULL ? "'" : "");
 }
 
 /* A section with memory of its own; node NULL: its defaults. */
@@ -245,6 +245,16 @@ static size_t list_keys(const struct dea_record *record, const char *keys[KEYS_M
   return count;
 }
 
+/* Field of a key among the first `count`; count: none. */
+static size_t find_key(const struct dea_record *record, size_t count, const char *key)
+{
+  size_t i = 0;
+  while (i < count && !is_key(&record->fields[i], key)) {
+    i++;
+  }
+  return i;
+}
+
 /* Whether an unknown key of the section is one that was meant to be this: its message says so. */
 static bool is_misspelt(const struct section *section, const char *key)
 {
@@ -253,11 +263,8 @@ static bool is_misspelt(const struct section *section, const char *key)
   size_t count = list_keys(record, keys);
   const struct dea_node *node = section->node != NULL ? section->node->child : NULL;
   for (; node != NULL; node = node->next) {
-    size_t i = 0;
-    while (i < count && !is_key(&record->fields[i], node->key)) {
-      i++;
-    }
-    const char *nearest = i == count ? dea_nearest_name(node->key, keys, count) : NULL;
+    const bool unknown = find_key(record, count, node->key) == count;
+    const char *nearest = unknown ? dea_nearest_name(node->key, keys, count) : NULL;
     if (nearest != NULL && strcmp(nearest, key) == 0 && section_with(record, node->key) == NULL) {
       return true;
     }
@@ -422,19 +429,11 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
 {
   const struct dea_record *record = section->record;
   const char *keys[KEYS_MAX];
-  char list[MESSAGE_SIZE / 2] = "";
-  size_t count = list_keys(record, keys), used = 0;
-  for (size_t i = 0; i < count; i++) {
-    if (used < sizeof list && record->fields[i].elsewhere == NULL) {
-      used +=
-          (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", keys[i]);
-    }
-  }
+  char list[MESSAGE_SIZE / 2];
+  size_t count = list_keys(record, keys);
+  write_keys(record, count, list, sizeof list);
   for (const struct dea_node *node = section->node->child; node != NULL; node = node->next) {
-    size_t i = 0;
-    while (i < count && !is_key(&record->fields[i], node->key)) {
-      i++;
-    }
+    size_t i = find_key(record, count, node->key);
     if (i < count) {
       const char *instead = record->fields[i].elsewhere;
       DEA_TRY(reader->ctx, instead != NULL

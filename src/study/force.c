@@ -6,6 +6,7 @@
  */
 #include "study/force.h"
 #include "base/schema.h"
+#include "result/trust.h"
 #include "study/force_line.h"
 #include "study/study.h"
 #include "study/uncertainty.h"
@@ -539,10 +540,7 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &line_table, model, 0, &table));
   for (size_t i = 0; i < stops.count; i++) {
     const struct dea_curve part = one_stop(&stops, i);
-    double force_N = NAN, rest = NAN, trusted_V = NAN;
-    for (size_t k = 0; k < part.count && dea_load_point_trusted(&part.points[k]); k++) {
-      trusted_V = part.points[k].voltage_V;
-    }
+    double force_N = NAN, rest = NAN;
     for (size_t k = 0; k < part.count; k++) {
       force_N = fmax(force_N, part.points[k].force_interpolation_error_N);
       rest = fmax(rest, part.points[k].interpolation_error);
@@ -552,7 +550,7 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
                                                  {.number = (double)count_computed(&part)},
                                                  {.number = part.points[0].force_N},
                                                  {.number = part.points[part.count - 1].force_N},
-                                                 {.number = trusted_V},
+                                                 {.number = dea_curve_trust(&part).trusted_V},
                                                  {.number = force_N},
                                                  {.number = rest}};
     DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));

@@ -81,7 +81,7 @@ static void add_forces(struct dea_solid *s, int count, const int *nodes, int per
   }
 }
 
-static dea_status add_elements(struct dea_solid *s, double stiffer, struct room *room, size_t count,
+static dea_status add_elements(struct dea_solid *s, double stiff, struct room *room, size_t count,
                                const double *v, double *out)
 {
   const struct dea_solid_problem *p = &s->problem;
@@ -99,7 +99,8 @@ static dea_status add_elements(struct dea_solid *s, double stiffer, struct room 
       return status;
     }
     for (size_t i = 0; i < count; i++) {
-      out[i] += of_element(s, e, stiffer * dea_solid_bulk_modulus(s, e), room, v + i * p->dofs);
+      out[i] +=
+          of_element(s, e, stiff * dea_solid_constituent(s, e)->kappa_Pa, room, v + i * p->dofs);
     }
     add_forces(s, element->nodes, p->grid->nodes + e * DEA_HEX_NODES_MAX, element->type->per_node,
                s->work.element->g);
@@ -136,7 +137,7 @@ static dea_status add_loads(struct dea_solid *s, size_t count, const double *v, 
 static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s, struct room *room,
                              size_t count, const double *v, double *out)
 {
-  static const double none = 0x1p-100; // of kappa
+  const double stiff = s->settings.bulk_stiff * s->state.bulk_factor;
   const size_t pressures = dea_solid_pressure_count(s);
   double *own = dea_solid_alloc(ctx, pressures + 1, sizeof *own);
   if (own == NULL) {
@@ -144,9 +145,9 @@ static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s, struc
   }
   memcpy(own, s->state.multiplier, pressures * sizeof *own);
   dea_solid_update_multipliers(s);
-  dea_solid_scale_bulk_modulus(s, none);
-  dea_status status = add_elements(s, s->settings.bulk_stiff / none, room, count, v, out);
-  dea_solid_scale_bulk_modulus(s, 1 / none);
+  dea_solid_drop_bulk_modulus(s);
+  dea_status status = add_elements(s, stiff, room, count, v, out);
+  dea_solid_restore_dropped_bulk_modulus(s);
   memcpy(s->state.multiplier, own, pressures * sizeof *own);
   dea_free(ctx, own);
   return status == DEA_OK ? add_loads(s, count, v, out) : status;

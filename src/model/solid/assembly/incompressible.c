@@ -27,6 +27,18 @@ void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor)
   s->state.bulk_factor *= factor;
 }
 
+static const double dropped = 0x1p-100; // of kappa
+
+void dea_solid_drop_bulk_modulus(struct dea_solid *s)
+{
+  dea_solid_scale_bulk_modulus(s, dropped);
+}
+
+void dea_solid_restore_dropped_bulk_modulus(struct dea_solid *s)
+{
+  dea_solid_scale_bulk_modulus(s, 1 / dropped);
+}
+
 /* p + kappa theta stays what it is when kappa becomes factor times as large. */
 static void keep_pressures(struct dea_solid *s, double factor)
 {

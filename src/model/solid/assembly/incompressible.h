@@ -11,6 +11,9 @@ double dea_solid_theta_max(const struct dea_solid *s);
 void dea_solid_update_multipliers(struct dea_solid *s);
 /* Another kappa of all constituents, factor (a power of 2) times the present one. */
 void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor);
+/* kappa so small that kappa theta is no pressure, but theta is still found, and back. */
+void dea_solid_drop_bulk_modulus(struct dea_solid *s);
+void dea_solid_restore_dropped_bulk_modulus(struct dea_solid *s);
 /* kappa so large that the solid is as good as incompressible, at the same pressures, and back;
  * theta has to belong to u. at_pressure: back with multipliers that are the
  * pressures by themselves. */

@@ -533,10 +533,8 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
     for (int q = p; q < shape->gauss && status == DEA_OK; q += out->count) {
       struct dea_point point;
       const struct dea_hex_point *at = &state[q];
-      double pressure = 0, w = shape->weight[q];
-      for (int m = 0; m < shape->pressures; m++) {
-        pressure += shape->pressure[q][m] * (in->multiplier[m] + constituent->kappa_Pa * theta[m]);
-      }
+      double w = shape->weight[q];
+      double pressure = pressure_at(shape, constituent, q, in->multiplier, theta);
       status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
                                      in->voltage_V / constituent->thickness_m, false, &point);
       if (status == DEA_OK) {

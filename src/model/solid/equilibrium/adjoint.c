@@ -426,14 +426,13 @@ static void evaluate_rows(struct dea_adjoint *a)
 dea_status dea_adjoint_assemble(struct dea_context *ctx, struct dea_adjoint *a, double voltage_V,
                                 double *energy_J)
 {
-  static const double none = 0x1p-100; // of kappa: kappa theta is no pressure of the state
   struct dea_solid *s = a->s;
   const struct dea_solid_problem *p = &s->problem;
   size_t most = most_of(a);
   dea_solid_hold_potential(s, voltage_V, s->state.u);
-  dea_solid_scale_bulk_modulus(s, none);
+  dea_solid_drop_bulk_modulus(s);
   dea_status status = dea_solid_assemble(ctx, s, voltage_V, DEA_FORCE, energy_J);
-  dea_solid_scale_bulk_modulus(s, 1 / none);
+  dea_solid_restore_dropped_bulk_modulus(s);
   DEA_TRY(ctx, status);
   memset(a->theta, 0, a->all * sizeof *a->theta);
   for (size_t k = 0; k < p->own_count && most > 0; k++) {

@@ -270,13 +270,12 @@ static void find_pressures(struct follow *w)
 /* r at u and q, both x; theta. */
 static dea_status find_forces(struct dea_context *ctx, struct follow *w)
 {
-  static const double none = 0x1p-100; // of kappa
   struct dea_solid *s = w->s;
   set(w, w->x);
-  dea_solid_scale_bulk_modulus(s, none);
+  dea_solid_drop_bulk_modulus(s);
   dea_status status =
       dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &w->report->energy_J);
-  dea_solid_scale_bulk_modulus(s, 1 / none);
+  dea_solid_restore_dropped_bulk_modulus(s);
   if (status == DEA_OK) {
     memcpy(w->h, s->work.g, w->dofs * sizeof *w->h);
     memcpy(w->theta, s->state.theta, w->pressures * sizeof *w->theta);

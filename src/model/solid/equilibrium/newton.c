@@ -130,20 +130,24 @@ static bool search_line(struct dea_context *ctx, struct dea_solid *s, const stru
   return false;
 }
 
-/* The shift of the next step from how this one went. */
-static void adapt_shift(struct dea_solid *s, struct newton *d, double share, double rise)
+/* None where it is too small to matter. */
+static void set_shift(const struct dea_solid *s, struct newton *d, double shift_Pa)
 {
+  d->shift_Pa = shift_Pa < s->settings.shift_least * s->problem.modulus_Pa ? 0 : shift_Pa;
+}
+
+/* The shift of the next step from how this one went. */
+static void adapt_shift(const struct dea_solid *s, struct newton *d, double share, double rise)
+{
+  double shift_Pa = d->shift_Pa;
   const struct dea_solid_settings *o = &s->settings;
   if (share < 1 || rise > 0) {
-    d->shift_Pa = d->shift_Pa > 0
-                      ? d->shift_Pa * (share < 0.2 ? o->shift_up * o->shift_up : o->shift_up)
-                      : o->shift_first * s->problem.modulus_Pa;
+    shift_Pa = shift_Pa > 0 ? shift_Pa * (share < 0.2 ? o->shift_up * o->shift_up : o->shift_up)
+                            : o->shift_first * s->problem.modulus_Pa;
   } else if (rise < -0.25) {
-    d->shift_Pa /= fabs(rise + 0.5) < 0.05 ? o->shift_down * o->shift_down : o->shift_down;
+    shift_Pa /= fabs(rise + 0.5) < 0.05 ? o->shift_down * o->shift_down : o->shift_down;
   }
-  if (d->shift_Pa < o->shift_least * s->problem.modulus_Pa) {
-    d->shift_Pa = 0;
-  }
+  set_shift(s, d, shift_Pa);
 }
 
 /* Whether a step from there, with that shift and slope, is one of a pair. */
@@ -169,10 +173,8 @@ static void end_pair(const struct dea_solid *s, struct newton *d)
   double down = p->share < 1 || p->rise > o->pair_wild ? 1
                 : p->rise < o->pair_gentle             ? o->pair_down * o->pair_down * o->pair_down
                                                        : o->pair_down;
-  d->shift_Pa = d->report->energy_J > p->energy_J ? o->shift_up * p->shift_Pa : p->shift_Pa / down;
-  if (d->shift_Pa < o->shift_least * s->problem.modulus_Pa) {
-    d->shift_Pa = 0;
-  }
+  set_shift(s, d,
+            d->report->energy_J > p->energy_J ? o->shift_up * p->shift_Pa : p->shift_Pa / down);
 }
 
 /* ---- stresses and pressures at the end of a step ---- */
