@@ -1,4 +1,5 @@
-/* Study "force" of model 3d: interpolated points beside the same voltages computed. */
+/* Study "force" of model 3d: interpolated points beside the same voltages computed; lines in
+ * processes of their own. */
 // ctest: solid
 #include "design_text.h"
 #include "model/model.h"
@@ -67,10 +68,43 @@ static void test_interpolated(void **state)
   }
 }
 
+/* To the last digit, though the first line has gone to other voltages before the second begins. */
+static void test_beside(void **state)
+{
+  (void)state;
+  static const struct dea_override sets[] = {
+      {"compute.voltage", "{values: [0 kV, 2 kV, 4 kV]}"},
+      {"compute.force", "{depth: [0.2 mm, 0.4 mm], tolerance: 0}"}};
+  static const char *const name = "force";
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *results[2];
+  const struct dea_curve *curves[2];
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  for (size_t i = 0; i < 2; i++) {
+    assert_int_equal(dea_result_create(ctx, design, device, &results[i]), DEA_OK);
+    results[i]->processes = i + 1;
+    assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), &name, 1, results[i]), DEA_OK);
+    curves[i] = dea_result_find(results[i], "3d", name);
+    assert_int_equal(curves[i]->count, 6);
+  }
+  for (size_t p = 0; p < 6; p++) {
+    assert_memory_equal(&curves[0]->points[p], &curves[1]->points[p], sizeof *curves[0]->points);
+  }
+  dea_result_destroy(ctx, results[0]);
+  dea_result_destroy(ctx, results[1]);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_interpolated),
+      cmocka_unit_test(test_beside),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

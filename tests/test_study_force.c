@@ -202,10 +202,11 @@ static void test_deeper(void **state)
 /* A film whose force is F = F_0 - b V^2 - c V^4 while it is taut, which jumps at 6.35 kV to a state
  * that goes back with the voltage only below 5.2 kV. */
 struct dea_film {
-  double end_V;    // no equilibrium beyond
-  double hidden_V; // none here either, unless it is the next of steps of 0.1 kV
-  bool sticks;     // it is not the same where the voltage has fallen
-  int solves;
+  double end_V;     // no equilibrium beyond
+  double hidden_V;  // none here either, unless it is the next of steps of 0.1 kV
+  bool sticks;      // it is not the same where the voltage has fallen
+  int solves;       // in this process
+  size_t processes; // that the study may take
 };
 static struct dea_film film;
 static const double jump_V = 6350, tension_V = 4450;
@@ -265,6 +266,7 @@ static dea_status run_film(const char *const settings[3], struct dea_design **de
                    DEA_OK);
   assert_int_equal(dea_device_build(ctx, *design, device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, *design, *device, result), DEA_OK);
+  (*result)->processes = film.processes;
   return dea_study_run(ctx, &type, &name, 1, *result);
 }
 
@@ -449,6 +451,42 @@ static void test_interrupted(void **state)
   dea_context_clear(ctx);
 }
 
+/* Lines in processes of their own have the points of lines one after the other, up to the first
+ * that stops; only the tip is pressed in here. */
+static void test_beside(void **state)
+{
+  (void)state;
+  static const char *const settings[3] = {
+      TO_8_KV,
+      "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, 2 mm, 0.5 mm, 3 mm], preload: [180 mN]}",
+      NULL};
+  static const double ends_V[] = {INFINITY, 7250};
+  for (int n = 0; n < 2; n++) {
+    struct dea_design *designs[3];
+    struct dea_device *devices[3];
+    struct dea_result *results[3];
+    const struct dea_curve *curves[3];
+    for (size_t i = 0; i < 3; i++) {
+      film = (struct dea_film){.end_V = ends_V[n], .processes = i + 1};
+      assert_int_equal(run_film(settings, &designs[i], &devices[i], &results[i]),
+                       n == 0 ? DEA_OK : DEA_E_NO_EQUILIBRIUM);
+      assert_true((film.solves > 0) == (i == 0));
+      curves[i] = dea_result_find(results[i], "spring", "force");
+      assert_int_equal(curves[i]->count, n == 0 ? 5 * 81 : 73);
+      assert_int_equal(curves[i]->status, curves[0]->status);
+      assert_string_equal(curves[i]->stopped, curves[0]->stopped);
+      for (size_t p = 0; p < curves[i]->count; p++) {
+        assert_memory_equal(&curves[i]->points[p], &curves[0]->points[p],
+                            sizeof *curves[i]->points);
+      }
+    }
+    for (int i = 0; i < 3; i++) {
+      end_film(designs[i], devices[i], results[i]);
+    }
+    dea_context_clear(ctx);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -461,6 +499,7 @@ int main(void)
       cmocka_unit_test(test_stops),
       cmocka_unit_test(test_hidden),
       cmocka_unit_test(test_interrupted),
+      cmocka_unit_test(test_beside),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -25,6 +25,7 @@ struct request {
   struct cli_words models, studies;
   struct cli_overrides overrides;
   bool json, force, resume, no_figures, sensitivity;
+  double processes; // 0: not given
 };
 
 /* Everything of one run that has to be given back. */
@@ -316,7 +317,8 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
                               .folder = folder,
                               .force = request->force,
                               .resume = request->resume,
-                              .no_figures = request->no_figures};
+                              .no_figures = request->no_figures,
+                              .processes = (size_t)request->processes};
   DEA_TRY(ctx, choose_models(cli, request, run->design, &run->job));
   dea_status status = dea_job_run(ctx, &run->job, run->result, &began);
   snprintf(message, sizeof message, "%s", dea_context_message(ctx));
@@ -370,6 +372,8 @@ static const struct cli_option options[] = {
     CLI_FORCE_ROW('f', "replace the results in an existing run folder"),
     {"resume", 0, CLI_FLAG, NULL, "go on where the run in the folder stopped (model 3d)",
      CLI_AT(resume)},
+    {"jobs", 'j', CLI_TEXT, "N", "processes for the load lines of study force (default: 1)",
+     CLI_AT(processes), cli_take_processes},
     {"no-figures", 0, CLI_FLAG, NULL, "no figures", CLI_AT(no_figures)},
     CLI_JSON_ROW("summary as JSON on stdout; a folder only with -o"),
     {0}};

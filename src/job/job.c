@@ -42,6 +42,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   DEA_TRY(ctx, open_folder(ctx, job, result));
   *began = true;
   result->rerun = &dea_rerun_designs;
+  result->processes = job->processes;
   clock_gettime(CLOCK_MONOTONIC, &start);
   for (size_t i = 0;
        i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);

@@ -15,6 +15,7 @@ struct dea_job {
   bool force;         // replace the results in it
   bool resume;        // go on from them
   bool no_figures;
+  size_t processes;      // that a study may take at the same time; 0 or 1: this one
   struct dea_keep *keep; // of a job that has begun
 };
 

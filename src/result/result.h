@@ -86,6 +86,7 @@ struct dea_result {
   double convergence_tolerance; // relative error that the study asks for; NAN: it did not run
   const struct dea_checkpoint_sink *checkpoint; // lent, NULL for none
   const struct dea_rerun *rerun;                // lent, NULL for none: no bands
+  size_t processes; // that a study may take at the same time; 0 or 1: this one
   struct dea_provenance provenance;
 };
 

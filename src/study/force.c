@@ -5,6 +5,7 @@
  * Voltages between others of a smooth line are interpolated (force_line.h).
  */
 #include "study/force.h"
+#include "base/aside.h"
 #include "base/schema.h"
 #include "result/trust.h"
 #include "study/force_line.h"
@@ -267,14 +268,19 @@ static dea_status keep_pressed(struct dea_context *ctx, struct press *p, size_t 
   return DEA_OK;
 }
 
-/* One stop: press at 0 V, then all voltages. */
-static dea_status load_line(struct dea_context *ctx, struct press *p, size_t stop,
-                            struct dea_curve *curve)
+/* At 0 V, to one stop. */
+static dea_status press_in(struct dea_context *ctx, struct press *p, size_t stop)
+{
+  DEA_TRY(ctx, ready(ctx, p, stop));
+  DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, p->result->design, stop));
+  DEA_TRY(ctx, keep_pressed(ctx, p, stop));
+  return DEA_OK;
+}
+
+/* All voltages from where the tip is pressed in. */
+static dea_status take_line(struct dea_context *ctx, struct press *p, struct dea_curve *curve)
 {
   const struct dea_design *design = p->result->design;
-  DEA_TRY(ctx, ready(ctx, p, stop));
-  DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, stop));
-  DEA_TRY(ctx, keep_pressed(ctx, p, stop));
   const struct dea_force_line line = {.type = p->type,
                                       .model = p->model,
                                       .pressed = p->kept ? &p->at : NULL,
@@ -285,11 +291,91 @@ static dea_status load_line(struct dea_context *ctx, struct press *p, size_t sto
   return DEA_OK;
 }
 
+/* The same in another process, which hands back its points. */
+static dea_status line_aside(struct dea_context *ctx, void *user, struct dea_bytes *out)
+{
+  struct dea_curve line = {0};
+  dea_status status = take_line(ctx, user, &line);
+  dea_bytes_add(out, line.points, line.count * sizeof *line.points);
+  dea_free(ctx, line.points);
+  return status;
+}
+
+/* Lines of stops that processes beside this one compute. */
+struct lines {
+  struct dea_aside at[DEA_DESIGN_STOPS_MAX]; // [begun]
+  size_t begun;
+  size_t most; // processes, with this one, that compute at the same time
+};
+
+static bool one_failed(const struct lines *lines)
+{
+  bool failed = false;
+  for (size_t i = 0; i < lines->begun; i++) {
+    failed = failed || dea_aside_failed(&lines->at[i]);
+  }
+  return failed;
+}
+
+/* Presses in for one stop after the other, since each goes on from the one before, and begins its
+ * line beside that, or computes it. No more after a line that failed. */
+static dea_status take_lines(struct dea_context *ctx, struct press *press, size_t stops,
+                             const char *what, struct lines *lines, struct dea_curve *curve)
+{
+  for (size_t i = 0; i < stops && !one_failed(lines); i++) {
+    DEA_TRY(ctx, press_in(ctx, press, i));
+    lines->most = dea_context_is_alone(ctx) ? lines->most : 1; // known once there is a model
+    if (lines->most > 1 && stops > 1) {
+      DEA_TRY(ctx, dea_aside_start(ctx, line_aside, press, &lines->at[i]));
+      lines->begun++;
+      DEA_TRY(ctx, dea_aside_wait(ctx, lines->at, lines->begun, lines->most - 1));
+    } else {
+      DEA_TRY(ctx, take_line(ctx, press, curve));
+      dea_progress(ctx, what, i + 1, stops);
+    }
+  }
+  return DEA_OK;
+}
+
+/* The points of one line into the curve, as far as it has come. */
+static dea_status gather_line(struct dea_context *ctx, const struct dea_aside *line,
+                              struct dea_curve *curve)
+{
+  const char *bytes;
+  size_t length;
+  struct dea_load_point point;
+  dea_status status = dea_aside_take(ctx, line, &bytes, &length);
+  for (size_t at = 0; at + sizeof point <= length; at += sizeof point) {
+    memcpy(&point, bytes + at, sizeof point);
+    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
+  }
+  return status;
+}
+
+/* Waits for the lines beside, and has them in order up to the first that failed, if before that was
+ * `status`. */
+static dea_status gather(struct dea_context *ctx, struct lines *lines, size_t stops,
+                         const char *what, dea_status status, struct dea_curve *curve)
+{
+  char why[1024];
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  dea_status first = dea_aside_wait(ctx, lines->at, lines->begun, 0);
+  for (size_t i = 0; i < lines->begun; i++) {
+    first = first == DEA_OK ? gather_line(ctx, &lines->at[i], curve) : first;
+    if (first == DEA_OK) {
+      dea_progress(ctx, what, i + 1, stops);
+    }
+    dea_aside_end(&lines->at[i]);
+  }
+  return first == DEA_OK && status != DEA_OK ? dea_fail(ctx, status, "%s", why) : first;
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: it has no tip
   struct press press = {.type = type, .result = result};
+  struct lines lines = {.most = result->processes};
   size_t stops = dea_force_stops(result->design);
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
@@ -298,12 +384,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
   snprintf(what, sizeof what, "%s force", type->name);
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i < stops && status == DEA_OK; i++) {
-    status = load_line(ctx, &press, i, curve);
-    if (status == DEA_OK) {
-      dea_progress(ctx, what, i + 1, stops);
-    }
+  dea_status status = take_lines(ctx, &press, stops, what, &lines, curve);
+  if (lines.begun > 0) {
+    status = gather(ctx, &lines, stops, what, status, curve);
   }
   dea_state_free_values(ctx, &press.at);
   if (press.model != NULL) {

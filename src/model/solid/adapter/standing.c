@@ -357,6 +357,7 @@ dea_status dea_standing_load(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
   }
   standing->as_made = false;
+  standing->ending.rate[0] = 0; // there is no step before
   DEA_TRY(ctx, dea_solid_load(ctx, standing->ending.owner.solid, state));
   standing->voltage_V = own[VOLTAGE];
   standing->left_a_state = own[LEFT_A_STATE] != 0;

@@ -1,0 +1,234 @@
+#define _GNU_SOURCE // prctl's names, MSG_NOSIGNAL
+#include "base/aside.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { ASIDE_MAX = 256, ASK_MS = 100, CHUNK = 1 << 16 };
+
+/* What stands before all that is handed back: bytes, then findings. */
+struct head {
+  dea_status status;
+  char message[1024];
+  size_t bytes, findings;
+};
+
+/* Before the text of a finding and the name of its file, both without their end. */
+struct finding {
+  enum dea_severity severity;
+  size_t line, column, text, file;
+};
+
+// There ------------------------------------------------------------------------------------------
+
+/* The process that waits has shut its side, or is gone. */
+static bool is_told(void *user)
+{
+  struct pollfd end = {.fd = *(const int *)user, .events = POLLIN};
+  return poll(&end, 1, 0) > 0;
+}
+
+/* Findings from the `known` ones on. */
+static void add_findings(const struct dea_context *ctx, size_t known, struct dea_bytes *out)
+{
+  size_t count;
+  const struct dea_finding *all = dea_finding_get(ctx, &count);
+  for (size_t i = known; i < count; i++) {
+    const struct dea_location *at = &all[i].location;
+    const struct finding finding = {all[i].severity, at->line, at->column, strlen(all[i].text),
+                                    strlen(at->file != NULL ? at->file : "")};
+    dea_bytes_add(out, &finding, sizeof finding);
+    dea_bytes_add(out, all[i].text, finding.text);
+    dea_bytes_add(out, at->file, finding.file);
+  }
+}
+
+static bool send_all(int socket, const void *bytes, size_t length)
+{
+  for (const char *from = bytes; length > 0;) {
+    const ssize_t n = send(socket, from, length, MSG_NOSIGNAL);
+    if (n <= 0 && errno != EINTR) {
+      return false;
+    }
+    from += n > 0 ? n : 0;
+    length -= n > 0 ? (size_t)n : 0;
+  }
+  return true;
+}
+
+/* The whole of the other process; returns its exit code. */
+static int work_aside(struct dea_context *ctx, dea_aside_work work, void *user, int socket)
+{
+  struct dea_bytes bytes = {.ctx = ctx}, findings = {.ctx = ctx};
+  struct head head;
+  size_t known;
+  memset(&head, 0, sizeof head); // all bytes of it are sent
+  dea_finding_get(ctx, &known);
+  dea_context_set_progress(ctx, NULL, NULL);
+  dea_context_set_finding_sink(ctx, NULL, NULL);
+  dea_context_set_interrupt(ctx, NULL);
+  dea_context_set_interrupt_fn(ctx, is_told, &socket);
+  head.status = work(ctx, user, &bytes);
+  snprintf(head.message, sizeof head.message, "%s", dea_context_message(ctx));
+  add_findings(ctx, known, &findings);
+  head.bytes = bytes.length;
+  head.findings = findings.length;
+  return !bytes.failed && !findings.failed && send_all(socket, &head, sizeof head) &&
+                 send_all(socket, bytes.data, bytes.length) &&
+                 send_all(socket, findings.data, findings.length)
+             ? 0
+             : 1;
+}
+
+// Here -------------------------------------------------------------------------------------------
+
+dea_status dea_aside_start(struct dea_context *ctx, dea_aside_work work, void *user,
+                           struct dea_aside *aside)
+{
+  int ends[2];
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
+    return dea_fail(ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
+  }
+  const pid_t parent = getpid(), process = fork();
+  if (process == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    signal(SIGINT, SIG_IGN);
+    signal(SIGTERM, SIG_DFL);
+    close(ends[0]);
+    _exit(getppid() == parent ? work_aside(ctx, work, user, ends[1]) : 1);
+  }
+  close(ends[1]);
+  if (process < 0) {
+    close(ends[0]);
+    return dea_fail(ctx, DEA_E_IO, "no other process: %s", strerror(errno));
+  }
+  *aside = (struct dea_aside){process, ends[0], {.ctx = ctx}, true, false};
+  return DEA_OK;
+}
+
+/* Its end; nothing of one that did not hand back all counts. */
+static void bury(struct dea_aside *aside)
+{
+  int how = 0;
+  while (waitpid(aside->process, &how, 0) < 0 && errno == EINTR) {
+  }
+  close(aside->socket);
+  aside->process = 0;
+  aside->said.length = WIFEXITED(how) && WEXITSTATUS(how) == 0 ? aside->said.length : 0;
+}
+
+/* Some of what it says, or its end. */
+static dea_status hear(struct dea_context *ctx, struct dea_aside *aside)
+{
+  char chunk[CHUNK];
+  const ssize_t n = recv(aside->socket, chunk, sizeof chunk, 0);
+  if (n > 0) {
+    dea_bytes_add(&aside->said, chunk, (size_t)n);
+  } else if (n == 0 || errno != EINTR) {
+    bury(aside);
+  }
+  return aside->said.failed ? dea_context_status(ctx) : DEA_OK;
+}
+
+/* Tells one that this process was interrupted, once. */
+static void tell(const struct dea_context *ctx, struct dea_aside *aside)
+{
+  if (!aside->told && dea_interrupted(ctx)) {
+    shutdown(aside->socket, SHUT_WR);
+    aside->told = true;
+  }
+}
+
+dea_status dea_aside_wait(struct dea_context *ctx, struct dea_aside *all, size_t count, size_t most)
+{
+  struct pollfd polled[ASIDE_MAX];
+  size_t at[ASIDE_MAX];
+  for (;;) {
+    nfds_t run = 0;
+    for (size_t i = 0; i < count && run < ASIDE_MAX; i++) {
+      if (all[i].process > 0) {
+        tell(ctx, &all[i]);
+        at[run] = i;
+        polled[run++] = (struct pollfd){.fd = all[i].socket, .events = POLLIN};
+      }
+    }
+    if (run <= most) {
+      return DEA_OK;
+    }
+    if (poll(polled, run, ASK_MS) > 0) {
+      for (nfds_t k = 0; k < run; k++) {
+        DEA_TRY(ctx, polled[k].revents != 0 ? hear(ctx, &all[at[k]]) : DEA_OK);
+      }
+    }
+  }
+}
+
+/* false: it has died. */
+static bool read_head(const struct dea_aside *aside, struct head *head)
+{
+  const bool whole = aside->said.length >= sizeof *head;
+  if (whole) {
+    memcpy(head, aside->said.data, sizeof *head);
+  }
+  return whole && aside->said.length == sizeof *head + head->bytes + head->findings;
+}
+
+bool dea_aside_failed(const struct dea_aside *aside)
+{
+  struct head head;
+  return aside->begun && aside->process == 0 && !(read_head(aside, &head) && head.status == DEA_OK);
+}
+
+static dea_status take_findings(struct dea_context *ctx, const char *from, size_t length)
+{
+  struct finding finding;
+  for (const char *end = from + length; from < end; from += finding.file) {
+    memcpy(&finding, from, sizeof finding);
+    const char *text = from + sizeof finding;
+    from = text + finding.text;
+    char *file = dea_copy_text(ctx, from, finding.file);
+    const char *name = file != NULL ? dea_intern(ctx, file) : NULL;
+    dea_free(ctx, file);
+    if (name == NULL) {
+      return DEA_E_MEMORY;
+    }
+    DEA_TRY(ctx, dea_finding_add(ctx, finding.severity,
+                                 (struct dea_location){name, finding.line, finding.column}, "%.*s",
+                                 (int)finding.text, text));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_aside_take(struct dea_context *ctx, const struct dea_aside *aside,
+                          const char **bytes, size_t *length)
+{
+  struct head head;
+  *bytes = NULL;
+  *length = 0;
+  if (!read_head(aside, &head)) {
+    return dea_fail(ctx, DEA_E_TOOL, "a process of this run has died");
+  }
+  *bytes = aside->said.data + sizeof head;
+  *length = head.bytes;
+  DEA_TRY(ctx, take_findings(ctx, *bytes + head.bytes, head.findings));
+  return head.status == DEA_OK ? DEA_OK : dea_fail(ctx, head.status, "%s", head.message);
+}
+
+void dea_aside_end(struct dea_aside *aside)
+{
+  if (aside->process > 0) {
+    kill(aside->process, SIGKILL);
+    bury(aside);
+  }
+  if (aside->begun) {
+    dea_bytes_free(&aside->said);
+  }
+  *aside = (struct dea_aside){0};
+}
