@@ -40,7 +40,8 @@ static void sweep(void *user)
 static void path(void *user)
 {
   struct dea_model *model = make(user);
-  const struct dea_path_options options = {3, INFINITY, 1000};
+  const struct dea_path_options options = {
+      .max_stretch = 3, .max_voltage_V = INFINITY, .max_points = 1000};
   if (type->path(ctx, model, &options, ignore, NULL, NULL) != DEA_OK) {
     abort();
   }

@@ -51,7 +51,8 @@ static void test_loss_of_tension(void **state)
   (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
-  const struct dea_path_options options = {3, INFINITY, 1000};
+  const struct dea_path_options options = {
+      .max_stretch = 3, .max_voltage_V = INFINITY, .max_points = 1000};
   struct dea_model *model;
   struct dea_event slack = {0};
   assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);
@@ -333,7 +334,8 @@ static void test_held_film_goes_slack_at_the_maxwell_voltage(void **state)
   (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_device device = test_disc(test_yeoh(), 1.5, 14.9999e-3, 0.99, 0);
-  const struct dea_path_options options = {1.6, 12e3, 1000};
+  const struct dea_path_options options = {
+      .max_stretch = 1.6, .max_voltage_V = 12e3, .max_points = 1000};
   struct dea_model *model;
   struct dea_event slack = {0};
   assert_int_equal(type->create(ctx, &device, NULL, &model), DEA_OK);

@@ -396,7 +396,8 @@ static void test_tension_of_a_bender(void **state)
                                            {at.voltage_V * (1 - 1e-5), at.voltage_V * (1 + 1e-5)},
                                            2e-5,
                                            {NULL, NULL}};
-  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL, false};
+  const struct dea_gradient_ask ask = {
+      .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
   assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
   type->destroy(ctx, model);
   for (int n = 0; n < 3; n++) {
@@ -488,7 +489,8 @@ static void test_what_cannot_follow(void **state)
     assert_int_equal(read_and_build(ctx, cone, &all[i].change, 1, &design, &device), DEA_OK);
     const struct dea_design_change change = {
         {at.device, device}, {at.voltage_V, at.voltage_V}, 1e-6, {NULL, NULL}};
-    const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL, false};
+    const struct dea_gradient_ask ask = {
+        .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
     assert_int_equal(type->gradient(ctx, model, &ask, &slope), DEA_OK);
     assert_int_equal(!isnan(slope), all[i].follows);
     dea_device_destroy(ctx, device);

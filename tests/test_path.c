@@ -75,7 +75,8 @@ static struct record trace(const struct dea_material *material, double pre, doub
   free.scale_Pa = dea_film_modulus(&free.film);
   const struct dea_path_system system = {
       1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL};
-  const struct dea_path_options options = {end, INFINITY, 5000};
+  const struct dea_path_options options = {
+      .max_stretch = end, .max_voltage_V = INFINITY, .max_points = 5000};
   struct dea_path *path;
   struct record record = {0};
   assert_int_equal(dea_path_create(ctx, &system, &pre, &path), DEA_OK);
@@ -176,7 +177,8 @@ static void test_points_lie_on_the_closed_form(void **state)
   struct free_film free = {.film = {.material = &m, .thickness_m = 100e-6}, .scale_Pa = 3e5};
   const struct dea_path_system system = {
       1, &free, free_evaluate, free_point, dea_film_voltage_scale(&free.film), NULL};
-  const struct dea_path_options options = {2.5, INFINITY, 5000};
+  const struct dea_path_options options = {
+      .max_stretch = 2.5, .max_voltage_V = INFINITY, .max_points = 5000};
   const double start = 1;
   struct dea_path *path;
   assert_int_equal(dea_path_create(ctx, &system, &start, &path), DEA_OK);
@@ -286,7 +288,8 @@ static void test_events_come_in_order(void **state)
     size_t events;
   } runs[] = {{1.5, 3}, {1.25985, 2}, {1.2597, 1}, {1.259, 0}};
   for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
-    const struct dea_path_options options = {runs[k].end, INFINITY, 5000};
+    const struct dea_path_options options = {
+        .max_stretch = runs[k].end, .max_voltage_V = INFINITY, .max_points = 5000};
     struct record r = {0};
     assert_int_equal(dea_path_trace(ctx, path, &options, 1, take_point, take_event, &r), DEA_OK);
     assert_close(r.last_stretch, runs[k].end, 1e-9, 0);

@@ -12,18 +12,36 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const keys[] = {
-    "centre_z_m",         "fibre_tip_z_m",        "electrode_edge_u_m",  "electrode_stretch",
-    "true_field_V_per_m", "breakdown_margin",     "min_tension_N_per_m", "capacitance_F",
-    "energy_J",           "nominal_field_V_per_m"};
+static const char *const keys[] = {"centre_z_m",
+                                   "fibre_tip_z_m",
+                                   "electrode_edge_u_m",
+                                   "electrode_stretch",
+                                   "true_field_V_per_m",
+                                   "breakdown_margin",
+                                   "min_tension_N_per_m",
+                                   "capacitance_F",
+                                   "energy_J",
+                                   "nominal_field_V_per_m",
+                                   "voltage_V"};
 static const double shares[] = {3e-2, 3e-3, 3e-4, 3e-5, 3e-6};
 enum { KEYS = sizeof keys / sizeof keys[0], SHARES = sizeof shares / sizeof shares[0], FROM = 1 };
+
+/* Of a law that does not stiffen, with which a path turns back. */
+static struct dea_material soft_film(void)
+{
+  return test_material("neo-hookean", 60e3, 0, 0);
+}
+
+/* At a voltage, or where the path comes to a stretch of the electrode, 0: not so. */
 static void solve(const struct dea_model_type *type, const struct dea_device *device,
-                  double voltage_V, struct dea_load_point *out, struct dea_model **keep)
+                  double voltage_V, double stretch, struct dea_load_point *out,
+                  struct dea_model **keep)
 {
   struct dea_model *model;
-  if (type->create(ctx, device, NULL, &model) != DEA_OK ||
-      type->solve(ctx, model, voltage_V, out) != DEA_OK) {
+  assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
+  const dea_status status = stretch > 0 ? dea_model_stretch(ctx, type, model, device, stretch, out)
+                                        : type->solve(ctx, model, voltage_V, out);
+  if (status != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
   if (keep != NULL) {
@@ -60,7 +78,7 @@ static void check_number(const struct dea_model_type *type, const struct dea_des
     const double value = number->value * (1 + shares[n]);
     const struct dea_device device =
         voltage ? *ask->device : changed(ask->design, ask->device, number, value);
-    solve(type, &device, voltage ? value : ask->voltage_V, &moved[n], NULL);
+    solve(type, &device, voltage ? value : ask->voltage_V, ask->stretch, &moved[n], NULL);
   }
   for (int k = 0; k < KEYS; k++) {
     const int column = dea_point_column_find(keys[k]);
@@ -83,8 +101,9 @@ static void check_number(const struct dea_model_type *type, const struct dea_des
   }
 }
 
-/* floor: what the solver leaves of a quantity, and the model's differences of its slope. */
-static void check(const char *model, double floor)
+/* stretch: along the path of a soft film, 0: at a voltage of the example. floor: what the solver
+ * leaves of a quantity, and the model's differences of its slope. */
+static void check(const char *model, double stretch, double floor)
 {
   const struct dea_model_type *type = dea_model_find(model);
   struct dea_design *design;
@@ -97,23 +116,30 @@ static void check(const char *model, double floor)
   for (int k = 0; k < KEYS; k++) {
     columns[k] = dea_point_column_find(keys[k]);
   }
-  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design),
+  const struct dea_override stretched = {"pre_stretch", "1.8"};
+  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", &stretched,
+                                   stretch > 0 ? 1 : 0, &design),
                    DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   struct dea_design_gradient ask = {.type = type,
                                     .design = design,
                                     .device = device,
                                     .voltage_V = 3e3,
+                                    .stretch = stretch,
                                     .numbers = numbers,
                                     .columns = columns,
                                     .column_count = KEYS};
+  if (stretch > 0) { // more than the whole turns unstable only far beyond the limit point
+    device->film = test_material("arruda-boyce", 15.36e3, 5.99, 0);
+  }
   assert_int_equal(dea_design_numbers(ctx, design, device, ask.voltage_V, numbers, &count), DEA_OK);
   assert_true(count >= 10);
   ask.number_count = count;
-  solve(type, device, ask.voltage_V, &base, &ask.model);
+  solve(type, device, ask.voltage_V, stretch, &base, &ask.model);
+  assert_true(stretch == 0 || base.unstable_modes == 1); // it has gone past its limit point
   assert_int_equal(dea_design_gradient_find(ctx, &ask, slopes), DEA_OK);
   type->destroy(ctx, ask.model);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = stretch > 0 ? 1 : 0; i < count; i++) { // the voltage is the first
     check_number(type, &ask, &numbers[i], &base, slopes + i * KEYS, floor);
   }
   dea_device_destroy(ctx, device);
@@ -123,13 +149,20 @@ static void check(const char *model, double floor)
 static void test_lumped(void **state)
 {
   (void)state;
-  check("lumped", 2e-13);
+  check("lumped", 0, 2e-13);
 }
 
 static void test_axisymmetric(void **state)
 {
   (void)state;
-  check("axisymmetric", 5e-12);
+  check("axisymmetric", 0, 5e-12);
+}
+
+static void test_along_the_path(void **state)
+{
+  (void)state;
+  check("lumped", 1.75, 5e-12);
+  check("axisymmetric", 1.7, 5e-12);
 }
 
 // Critical voltages -------------------------------------------------------------------------------
@@ -177,7 +210,6 @@ static void check_critical_of(const struct dea_design_gradient *ask, enum dea_ev
   dea_critical_end(ctx, &base);
 }
 
-/* soft: a law that does not stiffen, of which the path turns back. */
 static void check_critical(const char *model, bool soft, const enum dea_event_kind *kinds,
                            int kind_count, double floor)
 {
@@ -188,7 +220,7 @@ static void check_critical(const char *model, bool soft, const enum dea_event_ki
                    DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   if (soft) {
-    device->film = test_material("neo-hookean", 60e3, 0, 0);
+    device->film = soft_film();
   }
   struct dea_design_gradient ask = {
       .type = dea_model_find(model), .design = design, .device = device, .numbers = numbers};
@@ -216,6 +248,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_lumped),
       cmocka_unit_test(test_axisymmetric),
+      cmocka_unit_test(test_along_the_path),
       cmocka_unit_test(test_critical_voltages),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -17,7 +17,8 @@ static dea_status count_point(void *user, const struct dea_load_point *point)
 
 static void use_model(struct dea_context *ctx)
 {
-  const struct dea_path_options options = {3, 5e3, 50};
+  const struct dea_path_options options = {
+      .max_stretch = 3, .max_voltage_V = 5e3, .max_points = 50};
   struct dea_model *model = NULL;
   struct dea_load_point point;
   struct dea_profile profile;

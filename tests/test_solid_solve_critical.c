@@ -126,19 +126,6 @@ static void test_laws_of_critical_voltages(void **state)
   }
 }
 
-/* A soft disc, whose path turns back. */
-static struct state soft_disc(void)
-{
-  struct state at = {.device = test_disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 1.2,
-                                         2.6e-3, 2.6 / 15.5, 0),
-                     .voltage_V = 100};
-  at.device.film_thickness_unstretched_m = 30e-6;
-  at.device.film_thickness_m = 30e-6 / 1.44;
-  at.device.frame_radius_m = 15.5e-3;
-  at.device.film.permittivity.at_rest = 4.8;
-  return at;
-}
-
 /* Slopes of pull-in of the exact disc, by its logarithm, over that of a number. */
 static double exact_slope(const struct state *at, int number)
 {

@@ -131,8 +131,10 @@ static struct dea_load_point find_slopes(const struct state *at,
     }
     changes[i].width = 2 * share;
   }
-  const struct dea_gradient_ask ask = {
-      changes, (size_t)number_count(at), columns, (size_t)key_count(at), NULL, 0, NULL, false};
+  const struct dea_gradient_ask ask = {.changes = changes,
+                                       .change_count = (size_t)number_count(at),
+                                       .columns = columns,
+                                       .column_count = (size_t)key_count(at)};
   if (solid->gradient(ctx, model, &ask, out) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
@@ -355,7 +357,8 @@ static void test_mesh_that_cannot_follow(void **state)
   solve(&at, NULL, &settings, NULL, &model);
   const struct dea_design_change change = {
       {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1, {NULL, NULL}};
-  const struct dea_gradient_ask ask = {&change, 1, &column, 1, NULL, 0, NULL, false};
+  const struct dea_gradient_ask ask = {
+      .changes = &change, .change_count = 1, .columns = &column, .column_count = 1};
   assert_int_equal(solid->gradient(ctx, model, &ask, &slope), DEA_OK);
   assert_true(isnan(slope));
   solid->destroy(ctx, model);

@@ -136,7 +136,8 @@ static dea_status take_first(void *user, const struct dea_event *event)
 static struct dea_event trace_pull_in(const struct dea_device *device)
 {
   const struct dea_model_type *type = dea_model_find("axisymmetric");
-  static const struct dea_path_options options = {5, 400, 1000};
+  static const struct dea_path_options options = {
+      .max_stretch = 5, .max_voltage_V = 400, .max_points = 1000};
   struct dea_model *model;
   struct dea_event first = {.point = {.voltage_V = 0}};
   assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
@@ -245,7 +246,8 @@ static void test_path_beside_load_steps(void **state)
   struct dea_device device =
       disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 30e-6, 1.2, 2.6e-3, 15.5e-3);
   device.film.permittivity.at_rest = 4.8;
-  const struct dea_path_options options = {INFINITY, 200, 50};
+  const struct dea_path_options options = {
+      .max_stretch = INFINITY, .max_voltage_V = 200, .max_points = 50};
   struct dea_model *model;
   struct dea_load_point rest, end;
   struct watched watched = {0};

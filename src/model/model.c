@@ -99,8 +99,35 @@ dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_typ
   return type->profile != NULL ? type->profile(ctx, model, out) : lacks(ctx, type, "profile");
 }
 
-/* Quantities of a device at a voltage, out [dea_gradient_width]; NAN without an equilibrium there,
- * and of monitors, which no model without a gradient of its own has. */
+static dea_status take_last(void *user, const struct dea_load_point *point)
+{
+  *(struct dea_load_point *)user = *point;
+  return DEA_OK;
+}
+
+dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_device *device,
+                             double stretch, struct dea_load_point *out)
+{
+  enum { POINTS_MAX = 20000, LONG_POINTS_MAX = 500 }; // as study path
+  static const double close = 1e-9;
+  const struct dea_path_options options = {.max_stretch = device->pre_stretch * stretch,
+                                           .max_voltage_V = INFINITY,
+                                           .max_points =
+                                               type->path != NULL ? POINTS_MAX : LONG_POINTS_MAX,
+                                           .stays = true};
+  *out = dea_load_point_empty();
+  DEA_TRY(ctx, dea_model_path(ctx, type, model, &options, take_last, NULL, out));
+  return fabs(out->electrode_stretch - stretch) <= close * stretch
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                        "the path ends at an electrode stretch of %.4g, before %.4g",
+                        out->electrode_stretch, stretch);
+}
+
+/* Quantities of a device at a voltage, or at the stretch that is held, out [dea_gradient_width];
+ * NAN without an equilibrium there, and of monitors, which no model without a gradient of its own
+ * has. */
 static dea_status answer(struct dea_context *ctx, const struct dea_model_type *type,
                          const struct dea_model_settings *settings, const struct dea_device *device,
                          double voltage_V, const struct dea_gradient_ask *ask, double *out)
@@ -110,7 +137,8 @@ static dea_status answer(struct dea_context *ctx, const struct dea_model_type *t
   size_t errors = dea_finding_trial_begin(ctx);
   dea_status status = type->create(ctx, device, settings, &model);
   if (status == DEA_OK) {
-    status = type->solve(ctx, model, voltage_V, &point);
+    status = ask->holds_stretch ? dea_model_stretch(ctx, type, model, device, ask->stretch, &point)
+                                : type->solve(ctx, model, voltage_V, &point);
     type->destroy(ctx, model);
   }
   dea_finding_trial_end(ctx, errors);

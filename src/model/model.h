@@ -23,6 +23,7 @@ struct dea_path_options {
   double max_stretch;   // end: total electrode stretch (pre-stretch included)
   double max_voltage_V; // end; INFINITY for none
   size_t max_points;
+  bool stays; // the model then stands at the last point, stable or not, not where it did
 };
 
 /* How a model is computed, which its device does not know: what a model with a mesh makes of it.
@@ -135,6 +136,10 @@ struct dea_gradient_ask {
   const size_t *monitors; // [monitor_count]
   size_t monitor_count;
   const enum dea_observed *motions; // [monitor_count]; NULL: the main ones (dea_observed_main)
+  /* The model stands at a point of its path: slopes at the electrode's stretch there, which is held
+   * in place of the voltage. Voltages of changes are not looked at, "voltage_V" is a column. */
+  bool holds_stretch;
+  double stretch; // what is held
   /* One quantity in place of all these, without columns and monitors: the voltage of the limit
    * point that the last solve, which failed, has come to. */
   bool of_limit;
@@ -310,6 +315,12 @@ dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *
                           dea_point_sink points, dea_event_sink events, void *user);
 dea_status dea_model_profile(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, struct dea_profile *out);
+/* Follows the path from rest to the first equilibrium, stable or not, with that stretch of the
+ * electrode, 1 at rest, where the model then stands. DEA_E_NO_EQUILIBRIUM where the path ends
+ * before; also as dea_model_path. */
+dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_type *type,
+                             struct dea_model *model, const struct dea_device *device,
+                             double stretch, struct dea_load_point *out);
 /* Of any model: one without a gradient of its own is made anew for each changed device and solved
  * at its voltage, with these settings. */
 dea_status dea_model_gradient(struct dea_context *ctx, const struct dea_model_type *type,

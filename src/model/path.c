@@ -652,15 +652,16 @@ dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
         state_point(path, &to, &trace.now) != DEA_OK || to.voltage_V <= 0) {
       break; // the law's domain or the path's own end
     }
-    bool last = cut_at_end(&trace, &from, &taken, &to);
+    const bool last = cut_at_end(&trace, &from, &taken, &to);
     DEA_TRY(ctx, report_events(&trace, &from, taken, &to)); // none beyond the end
     DEA_TRY(ctx, points(user, &trace.now));
+    trace.before = trace.now;
+    from = to;
     if (last) {
       break;
     }
-    trace.before = trace.now;
-    from = to;
   }
+  path->state = options->stays ? from : path->state;
   return DEA_OK;
 }
 

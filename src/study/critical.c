@@ -256,8 +256,9 @@ static dea_status pass_point(void *user, const struct dea_load_point *point)
 /* By the whole path, of a model that has it. */
 static dea_status find_on_path(struct search *s)
 {
-  const struct dea_path_options options = {10 * s->ask->device->pre_stretch, s->ask->highest_V,
-                                           PATH_POINTS};
+  const struct dea_path_options options = {.max_stretch = 10 * s->ask->device->pre_stretch,
+                                           .max_voltage_V = s->ask->highest_V,
+                                           .max_points = PATH_POINTS};
   const dea_status status =
       s->ask->type->path(s->ctx, s->out->model, &options, pass_point, take_event, s->out);
   if (status != DEA_OK && isnan(s->out->voltage_V)) {

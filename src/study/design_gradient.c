@@ -298,7 +298,9 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
                                               .column_count = ask->column_count,
                                               .monitors = ask->monitors,
                                               .monitor_count = ask->monitor_count,
-                                              .motions = ask->motions};
+                                              .motions = ask->motions,
+                                              .holds_stretch = ask->stretch > 0,
+                                              .stretch = ask->stretch};
     status = dea_model_gradient(ctx, ask->type, ask->model, &settings, &question, slopes);
   }
   free_changes(ctx, ask, &all);

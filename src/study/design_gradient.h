@@ -51,6 +51,9 @@ struct dea_design_gradient {
   const struct dea_design *design;
   const struct dea_device *device;
   double voltage_V;
+  /* It stands at a point of its path with this stretch of the electrode, which is held while the
+   * voltage follows; 0: the voltage is held. */
+  double stretch;
   const struct dea_pressed *pressed;       // the tip of the model; NULL: it has none
   const struct dea_design_number *numbers; // [number_count]
   size_t number_count;

@@ -159,7 +159,9 @@ static dea_status take_event(void *user, const struct dea_event *event)
 /* The path of the varied design. */
 static dea_status follow(struct dea_context *ctx, const struct dea_device *device, struct map *map)
 {
-  const struct dea_path_options options = {10 * device->pre_stretch, map->end_V, PATH_POINTS};
+  const struct dea_path_options options = {.max_stretch = 10 * device->pre_stretch,
+                                           .max_voltage_V = map->end_V,
+                                           .max_points = PATH_POINTS};
   struct dea_model *model;
   DEA_TRY(ctx, dea_model_create(ctx, map->type, map->varied, device, &model));
   map->before = dea_load_point_empty();

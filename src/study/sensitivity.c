@@ -25,11 +25,29 @@ static const char study_name[] = "sensitivity";
 struct settings {
   struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: the highest of the run
   size_t voltage_count;
+  struct dea_quantity stretches[DEA_DESIGN_STOPS_MAX];
+  size_t stretch_count;
 };
+
+#define AT(member) offsetof(struct settings, member)
 
 static const struct dea_field fields[] = {
     DEA_STUDY_STOPS_FIELD("the highest that the run has reached",
                           "voltages at which it is asked what matters", "[4 kV, 6 kV]"),
+    {.key = "stretch",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(stretches),
+     .unit = "1",
+     .min = 1,
+     .above_min = true,
+     .max = 20,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_STOPS_MAX,
+     .element_size = sizeof(struct dea_quantity),
+     .count_offset = AT(stretch_count),
+     .doc = "stretches of the electrode's edge (1 at rest) that the path is followed to, through "
+            "limit points: what matters to the voltage and the rest at such a stretch",
+     .example = "[1.2, 1.5]"},
 };
 
 static const struct dea_record record = {
@@ -38,7 +56,7 @@ static const struct dea_record record = {
     "displacements, field, tension, capacitance and energy by the numbers of the design; with "
     "study modal also of the lowest frequency, with study force also of the force on the tip, at "
     "each of its stops; and of the voltages of loss of tension, breakdown and pull-in that the run "
-    "has come to",
+    "has come to; at given stretches of the electrode also of the voltage",
     fields, COUNT(fields)};
 
 static const struct dea_design_section section = {
@@ -57,14 +75,25 @@ static const char *const quantities[] = {"force_N",
                                          "min_tension_N_per_m",
                                          "capacitance_F",
                                          "energy_J",
-                                         "frequency_Hz"};
-enum { QUANTITIES = COUNT(quantities), FORCE = 0, FIELD = 4, CAPACITANCE = 7, FREQUENCY = 9 };
+                                         "frequency_Hz",
+                                         "voltage_V"};
+enum {
+  QUANTITIES = COUNT(quantities),
+  FORCE = 0,
+  FIELD = 4,
+  CAPACITANCE = 7,
+  FREQUENCY = 9,
+  FOLLOWING = 10, // the voltage, where the stretch is held
+};
 
 /* Columns that tables share. */
 #define VOLTAGE DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage")
 #define TIP_DEPTH                                                                                  \
   DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "tip depth",                                    \
                     "of a film that a tip is pressed into")
+#define HELD_STRETCH                                                                               \
+  DEA_NUMBER_COLUMN("held_stretch", "1", "1", 1, "held stretch",                                   \
+                    "of the electrode, where that is held and the voltage follows")
 #define ELASTICITY(its_key, its_title)                                                             \
   {                                                                                                \
     .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
@@ -92,6 +121,7 @@ static const struct dea_result_column slope_columns[] = {
      .title = "change by tolerance",
      .meaning = "of the quantity"},
     TIP_DEPTH,
+    HELD_STRETCH,
 };
 static const struct dea_result_table_type slope_table = {.study = study_name,
                                                          .name = "slopes",
@@ -103,6 +133,7 @@ static const struct dea_result_table_type slope_table = {.study = study_name,
 static const struct dea_result_column matter_columns[] = {
     VOLTAGE,
     TIP_DEPTH,
+    HELD_STRETCH,
     DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
     DEA_TEXT_COLUMN("number_text", "value", "of the number"),
     ELASTICITY("force_N", "force, %"),
@@ -115,9 +146,11 @@ static const struct dea_result_column matter_columns[] = {
     ELASTICITY("capacitance_F", "capacitance, %"),
     ELASTICITY("energy_J", "energy, %"),
     ELASTICITY("frequency_Hz", "frequency, %"),
+    ELASTICITY("voltage", "voltage, %"),
     DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
     DEA_TEXT_COLUMN("change_text", "changes",
-                    "by the tolerance, of the displacement that comes first in the row"),
+                    "by the tolerance, of the displacement that comes first in the row, or of the "
+                    "voltage"),
 };
 static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .name = "matters",
@@ -192,14 +225,9 @@ struct stop {
   bool is_pressed;
   struct dea_pressed pressed; // by this tip
   bool vibrates;              // the frequency is one of the quantities that are asked for
-  double *slopes;             // [number_count][asked_of]
+  double stretch;             // that is held in place of the voltage; 0: none
+  double *slopes;             // [number_count][width]; NAN of what is not asked for
 };
-
-/* How many quantities slopes are asked of. */
-static size_t asked_of(const struct stop *stop)
-{
-  return stop->vibrates ? stop->width : stop->width - 1;
-}
 
 static double value_of(const struct stop *stop, size_t quantity)
 {
@@ -212,11 +240,8 @@ static double value_of(const struct stop *stop, size_t quantity)
 
 static double slope_of(const struct stop *stop, size_t number, size_t quantity)
 {
-  if ((quantity == FREQUENCY && !stop->vibrates) || (quantity == FORCE && !stop->is_pressed)) {
-    return NAN;
-  }
-  const size_t at = quantity > FREQUENCY && !stop->vibrates ? quantity - 1 : quantity;
-  return stop->slopes[number * asked_of(stop) + at];
+  return quantity == FORCE && !stop->is_pressed ? NAN
+                                                : stop->slopes[number * stop->width + quantity];
 }
 
 static double elasticity(const struct stop *stop, size_t number, size_t quantity)
@@ -229,10 +254,10 @@ static double elasticity(const struct stop *stop, size_t number, size_t quantity
   return value != 0 ? slope_of(stop, number, quantity) * stop->numbers[number].value / value : NAN;
 }
 
-/* The first quantity that the model knows at this point. */
+/* The voltage where it follows, else the first quantity that the model knows at this point. */
 static size_t leading(const struct stop *stop)
 {
-  size_t i = 0;
+  size_t i = stop->stretch > 0 ? FOLLOWING : 0;
   while (i + 1 < QUANTITIES && !(fabs(value_of(stop, i)) > 0)) {
     i++;
   }
@@ -242,6 +267,11 @@ static size_t leading(const struct stop *stop)
 static double depth_of(const struct stop *stop)
 {
   return stop->is_pressed ? stop->pressed.depth_m : NAN;
+}
+
+static double held_by(const struct stop *stop)
+{
+  return stop->stretch > 0 ? stop->stretch : NAN;
 }
 
 static struct dea_tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
@@ -255,11 +285,13 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
                              size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
-  struct dea_result_table_value row[COUNT(matter_columns)] = {
-      {.number = stop->voltage_V}, {.number = depth_of(stop)}, {.text = number->key}};
+  struct dea_result_table_value row[COUNT(matter_columns)] = {{.number = stop->voltage_V},
+                                                              {.number = depth_of(stop)},
+                                                              {.number = held_by(stop)},
+                                                              {.text = number->key}};
   const struct dea_tolerated tolerated = tolerate(stop, lead, i);
   char value[48];
-  size_t n = 3;
+  size_t n = 4;
   dea_number_text(number->value, number->unit, value, sizeof value);
   row[n++].text = value;
   for (size_t k = 0; k < QUANTITIES; k++) {
@@ -302,7 +334,7 @@ static void name_of(const struct stop *stop, size_t quantity, char *out, size_t 
   }
 }
 
-/* All slopes; the table of the general form has no column of tips, the last one. */
+/* All slopes; the table of the general form has no columns of tips and stretches, the last two. */
 static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
@@ -324,6 +356,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
         {.number = number->tolerance},
         {.number = slope * number->tolerance},
         {.number = depth_of(stop)},
+        {.number = held_by(stop)},
     };
     if (!isnan(slope)) {
       DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
@@ -347,7 +380,7 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
       {.number = elasticity(stop, i, lead)}};
   const struct dea_tolerated tolerated = tolerate(stop, lead, i);
   size_t n = 5;
-  for (size_t k = FIELD; k < QUANTITIES; k++) {
+  for (size_t k = FIELD; k < FOLLOWING; k++) {
     row[n++].number = elasticity(stop, i, k);
   }
   row[n++].text = tolerated.tolerance;
@@ -400,12 +433,71 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
   return DEA_OK;
 }
 
+/* Slopes of all quantities that there are. */
+static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_result *result,
+                              struct stop *stop)
+{
+  int columns[QUANTITIES];
+  size_t place[QUANTITIES], asked = 0;
+  for (size_t k = 0; k < QUANTITIES; k++) {
+    if ((k != FREQUENCY || stop->vibrates) && (k != FOLLOWING || stop->stretch > 0)) {
+      place[asked] = k;
+      columns[asked++] = stop->columns[k];
+    }
+  }
+  const size_t seen = stop->width - QUANTITIES, row = asked + seen;
+  double *slopes = dea_arena_alloc(&stop->memory, stop->number_count * row, sizeof *slopes);
+  stop->slopes =
+      dea_arena_alloc(&stop->memory, stop->number_count * stop->width, sizeof *stop->slopes);
+  DEA_TRY(ctx, dea_arena_status(&stop->memory));
+  const struct dea_design_gradient ask = {.type = type,
+                                          .model = model,
+                                          .design = result->design,
+                                          .device = result->device,
+                                          .voltage_V = stop->voltage_V,
+                                          .stretch = stop->stretch,
+                                          .pressed = stop->is_pressed ? &stop->pressed : NULL,
+                                          .numbers = stop->numbers,
+                                          .number_count = stop->number_count,
+                                          .columns = columns,
+                                          .column_count = asked,
+                                          .monitors = stop->monitors,
+                                          .monitor_count = seen};
+  DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, slopes));
+  for (size_t i = 0; i < stop->number_count * stop->width; i++) {
+    stop->slopes[i] = NAN;
+  }
+  for (size_t i = 0; i < stop->number_count; i++) {
+    for (size_t k = 0; k < row; k++) {
+      const size_t at = k < asked ? place[k] : QUANTITIES + k - asked;
+      stop->slopes[i * stop->width + at] = slopes[i * row + k];
+    }
+  }
+  return DEA_OK;
+}
+
+/* It is no number where it follows. */
+static void drop_voltage(struct stop *stop)
+{
+  size_t kept = 0;
+  for (size_t i = 0; i < stop->number_count; i++) {
+    if (strcmp(stop->numbers[i].key, "voltage") != 0) {
+      stop->numbers[kept++] = stop->numbers[i];
+    }
+  }
+  stop->number_count = kept;
+}
+
 static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_result *result,
                             struct stop *stop)
 {
   DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V,
                                   stop->numbers, &stop->number_count));
+  if (stop->stretch > 0) {
+    drop_voltage(stop);
+  }
   if (stop->is_pressed) {
     dea_tip_numbers(&stop->pressed, stop->numbers, &stop->number_count);
   }
@@ -414,22 +506,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   }
   DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
   DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
-  stop->slopes =
-      dea_arena_alloc(&stop->memory, stop->number_count * asked_of(stop), sizeof *stop->slopes);
-  DEA_TRY(ctx, dea_arena_status(&stop->memory));
-  const struct dea_design_gradient ask = {.type = type,
-                                          .model = model,
-                                          .design = result->design,
-                                          .device = result->device,
-                                          .voltage_V = stop->voltage_V,
-                                          .pressed = stop->is_pressed ? &stop->pressed : NULL,
-                                          .numbers = stop->numbers,
-                                          .number_count = stop->number_count,
-                                          .columns = stop->columns,
-                                          .column_count = stop->vibrates ? QUANTITIES : FREQUENCY,
-                                          .monitors = stop->monitors,
-                                          .monitor_count = stop->width - QUANTITIES};
-  DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, stop->slopes));
+  DEA_TRY(ctx, find_slopes(ctx, type, model, result, stop));
   return DEA_OK;
 }
 
@@ -466,10 +543,11 @@ static dea_status put_stop(struct dea_context *ctx, const char *model, const str
   return DEA_OK;
 }
 
-/* What matters where the model is. tip: that it is pressed by, NULL: none. */
+/* What matters where the model is. tip: that it is pressed by, NULL: none. stretch: that is held in
+ * place of the voltage, 0: none. */
 static dea_status look(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at,
-                       const struct dea_probe *tip, struct dea_result *result)
+                       const struct dea_probe *tip, double stretch, struct dea_result *result)
 {
   struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
   if (stop == NULL) {
@@ -478,6 +556,7 @@ static dea_status look(struct dea_context *ctx, const struct dea_model_type *typ
   stop->memory.ctx = ctx;
   stop->voltage_V = at->voltage_V;
   stop->point = *at;
+  stop->stretch = stretch;
   stop->is_pressed = tip != NULL;
   if (tip != NULL) {
     stop->pressed = (struct dea_pressed){*tip, at->tip_depth_m};
@@ -495,7 +574,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
 {
   (void)number;
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, at));
-  DEA_TRY(ctx, look(ctx, type, model, at, NULL, result));
+  DEA_TRY(ctx, look(ctx, type, model, at, NULL, 0, result));
   return DEA_OK;
 }
 
@@ -511,7 +590,29 @@ static dea_status press(struct dea_context *ctx, const struct dea_model_type *ty
   dea_status status = dea_force_indent(ctx, type, model, result->design, number);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = type->solve(ctx, model, voltages_V[i], &at);
-    status = status == DEA_OK ? look(ctx, type, model, &at, &tip, result) : status;
+    status = status == DEA_OK ? look(ctx, type, model, &at, &tip, 0, result) : status;
+  }
+  type->destroy(ctx, model);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+/* A point of the path. Where that ends before, there is a note. */
+static dea_status follow(struct dea_context *ctx, const struct dea_model_type *type,
+                         struct dea_result *result, double stretch)
+{
+  struct dea_load_point at;
+  struct dea_model *model;
+  DEA_TRY(ctx, dea_model_create(ctx, type, result->design, result->device, &model));
+  dea_status status = dea_model_stretch(ctx, type, model, result->device, stretch, &at);
+  const bool ends = status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_NOT_CONVERGED ||
+                    status == DEA_E_UNSUPPORTED;
+  if (status == DEA_OK) {
+    status = look(ctx, type, model, &at, NULL, stretch, result);
+  } else if (ends) {
+    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                             "model %s: not known what matters at an electrode stretch of %.4g: %s",
+                             type->name, stretch, dea_context_message(ctx));
+    dea_context_clear(ctx);
   }
   type->destroy(ctx, model);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -531,6 +632,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                                       take));
   for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
     DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
+  }
+  for (size_t i = 0; i < settings->stretch_count; i++) {
+    DEA_TRY(ctx, follow(ctx, type, result, settings->stretches[i].si));
   }
   DEA_TRY(ctx, dea_limit_slopes_add(ctx, type, result));
   return DEA_OK;

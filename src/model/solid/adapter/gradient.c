@@ -46,7 +46,8 @@ dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gra
       out[i] *= film->copies;
     }
   } else { // forces of the energy are 0
-    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0;
+    *known = strcmp(key, "energy_J") == 0 || strcmp(key, "nominal_field_V_per_m") == 0 ||
+             strcmp(key, "voltage_V") == 0;
   }
   return DEA_OK;
 }
@@ -109,14 +110,23 @@ struct mode {
   double *gain, *motion;  // [pressures], [dofs] room
 };
 
+/* The electrode's stretch is held, and the voltage follows it. */
+struct border {
+  double *rate, *slope;     // [dofs] dR/dV; slope of the stretch
+  double *pull;             // [dea_gradient_width] how much of it each quantity takes
+  double *by_voltage;       // [dea_gradient_width] their own slopes by the voltage
+  double along, along_rate; // slope . v and rate . v, of v the answer to dR/dV
+};
+
 struct work {
   const struct dea_gradient_owner *owner;
   const struct dea_gradient_ask *ask;
   struct dea_adjoint *adjoint;
-  bool *known;    // [dea_gradient_width] there is an answer
+  bool *known;    // [dea_gradient_width + 1] there is an answer; the last one: the border's
   double *side;   // [2][dea_gradient_width]
   double *motion; // [monitor_count]
   struct mode mode;
+  struct border border;
   double *null_mode; // [dofs] of a limit point, as it is found
 };
 
@@ -253,12 +263,29 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltag
 
 // All of it ---------------------------------------------------------------------------------------
 
+static const double share_of_voltage = 1e-5; // that differences by the voltage go to either side
+
 /* Of a limit point: the answer to dR/dV, and the one to that, which is the tangent's null vector.
  */
 enum { RATE, NULL_MODE, OF_LIMIT };
 
-/* The answers of all quantities. */
-static dea_status answer(struct dea_context *ctx, struct work *w)
+/* dR/dV at the unknowns as they are, times twice by_V, added to out [dofs]. */
+static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_V, double *out)
+{
+  const struct dea_solid *s = w->owner->solid;
+  double energy_J;
+  for (int side = -1; side <= 1; side += 2) {
+    DEA_TRY(ctx,
+            dea_adjoint_assemble(ctx, w->adjoint, w->owner->voltage_V + side * by_V, &energy_J));
+    for (size_t i = 0; i < s->problem.dofs; i++) {
+      out[i] += side * s->work.g[i];
+    }
+  }
+  return DEA_OK;
+}
+
+/* Slopes of all quantities by the unknowns. */
+static dea_status find_slopes(struct dea_context *ctx, struct work *w)
 {
   for (size_t i = 0; i < w->ask->column_count; i++) {
     double *out = dea_adjoint_slope(w->adjoint, i);
@@ -279,25 +306,15 @@ static dea_status answer(struct dea_context *ctx, struct work *w)
                                            dea_adjoint_slope(w->adjoint, at), &w->known[at]));
     }
   }
-  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, w->known));
   return DEA_OK;
 }
 
-/* J - lambda . R - mu . C of every quantity on one side of a change. */
-static dea_status evaluate(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
+/* J of every quantity at the unknowns as they are, of what is under the solid now, added to out;
+ * where the stretch is held, less what each takes of it. */
+static dea_status add_quantities(struct dea_context *ctx, struct work *w, double voltage_V,
+                                 double energy_J, double *out)
 {
-  struct dea_solid *s = w->owner->solid;
   struct dea_load_point point;
-  double energy_J;
-  s->state.voltage_V = voltage_V;
-  DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J));
-  if (w->ask->of_limit) {
-    *out = dea_adjoint_product(w->adjoint, NULL_MODE);
-    return DEA_OK;
-  }
-  for (size_t i = 0; i < dea_gradient_width(w->ask); i++) {
-    out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
-  }
   DEA_TRY(ctx, w->owner->point(ctx, w->owner->model, voltage_V, energy_J, &point));
   if (w->mode.known) {
     DEA_TRY(ctx, mode_at(ctx, w, voltage_V, &point.frequency_Hz));
@@ -311,8 +328,118 @@ static dea_status evaluate(struct dea_context *ctx, struct work *w, double volta
       out[w->ask->column_count + i] += w->motion[i];
     }
   }
+  for (size_t i = 0; i < dea_gradient_width(w->ask) && w->ask->holds_stretch; i++) {
+    out[i] -= w->border.pull[i] * point.electrode_stretch;
+  }
   return DEA_OK;
 }
+
+/* J - lambda . R - mu . C of every quantity on one side of a change. */
+static dea_status evaluate(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
+{
+  struct dea_solid *s = w->owner->solid;
+  double energy_J;
+  s->state.voltage_V = voltage_V;
+  DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J));
+  if (w->ask->of_limit) {
+    *out = dea_adjoint_product(w->adjoint, NULL_MODE);
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < dea_gradient_width(w->ask); i++) {
+    out[i] = w->known[i] ? -dea_adjoint_product(w->adjoint, i) : NAN;
+  }
+  DEA_TRY(ctx, add_quantities(ctx, w, voltage_V, energy_J, out));
+  return DEA_OK;
+}
+
+// A held stretch ----------------------------------------------------------------------------------
+
+/* The border of the system: dR/dV, its answer v, and the slope of the stretch. Only then do other
+ * slopes go where those of answers begin. */
+static dea_status begin_border(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+{
+  const size_t dofs = w->owner->solid->problem.dofs, width = dea_gradient_width(w->ask);
+  const double by_V = share_of_voltage * w->owner->voltage_V;
+  struct border *b = &w->border;
+  double *first = dea_adjoint_slope(w->adjoint, 0), *of_v = dea_adjoint_slope(w->adjoint, width);
+  bool known;
+  b->rate = dea_arena_alloc(memory, dofs, sizeof(double));
+  b->slope = dea_arena_alloc(memory, dofs, sizeof(double));
+  b->pull = dea_arena_alloc(memory, width, sizeof(double));
+  b->by_voltage = dea_arena_alloc(memory, 2 * width, sizeof(double));
+  bool *wanted = dea_arena_alloc(memory, width + 1, sizeof *wanted);
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
+  DEA_TRY(ctx, find_rate(ctx, w, by_V, b->rate));
+  for (size_t i = 0; i < dofs; i++) {
+    b->rate[i] /= 2 * by_V;
+  }
+  memcpy(of_v, b->rate, dofs * sizeof *of_v);
+  wanted[width] = true;
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
+  memset(first, 0, dofs * sizeof *first);
+  DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, dea_point_column_find("electrode_stretch"),
+                               b->slope, dea_adjoint_pressure_slope(w->adjoint, width), &known));
+  b->along = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->slope);
+  b->along_rate = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->rate);
+  return known ? DEA_OK
+               : dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no electrode's stretch here");
+}
+
+/* What each quantity takes of the stretch's slope. */
+static dea_status share_border(struct dea_context *ctx, struct work *w)
+{
+  const struct dea_solid *s = w->owner->solid;
+  const size_t width = dea_gradient_width(w->ask);
+  const double V = w->owner->voltage_V, by_V = share_of_voltage * V;
+  struct border *b = &w->border;
+  for (int side = -1; side <= 1; side += 2) {
+    double energy_J, *values = b->by_voltage + (side > 0 ? width : 0);
+    w->owner->solid->state.voltage_V = V + side * by_V;
+    DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, V + side * by_V, &energy_J));
+    DEA_TRY(ctx, add_quantities(ctx, w, V + side * by_V, energy_J, values));
+  }
+  w->owner->solid->state.voltage_V = V;
+  for (size_t i = 0; i < width; i++) {
+    double *slope = dea_adjoint_slope(w->adjoint, i);
+    b->by_voltage[i] = (b->by_voltage[width + i] - b->by_voltage[i]) / (2 * by_V);
+    b->pull[i] = (dea_adjoint_pair(w->adjoint, width, i) - b->by_voltage[i]) / b->along;
+    for (size_t k = 0; k < s->problem.dofs; k++) {
+      slope[k] -= b->pull[i] * b->slope[k];
+    }
+  }
+  return DEA_OK;
+}
+
+/* What an answer leaves of the border's equation, rate . lambda = dQ/dV, is along v, which close to
+ * a limit point is all that the tangent does not resolve. */
+static void end_border(struct work *w)
+{
+  const size_t width = dea_gradient_width(w->ask);
+  const struct border *b = &w->border;
+  for (size_t i = 0; i < width; i++) {
+    const double *lambda = dea_adjoint_answer(w->adjoint, i);
+    const double left = b->by_voltage[i] - dea_solid_dot(w->owner->solid, lambda, b->rate);
+    if (w->known[i]) {
+      dea_adjoint_add(w->adjoint, i, left / b->along_rate, width);
+    }
+  }
+}
+
+/* The answers of all quantities. */
+static dea_status answer(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+{
+  const bool holds = w->ask->holds_stretch;
+  DEA_TRY(ctx, holds ? begin_border(ctx, w, memory) : DEA_OK);
+  DEA_TRY(ctx, find_slopes(ctx, w));
+  DEA_TRY(ctx, holds ? share_border(ctx, w) : DEA_OK);
+  DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, w->known));
+  if (holds) {
+    end_border(w);
+  }
+  return DEA_OK;
+}
+
+// Changes -----------------------------------------------------------------------------------------
 
 /* Both sides of a change. */
 static dea_status difference(struct dea_context *ctx, struct work *w,
@@ -321,8 +448,8 @@ static dea_status difference(struct dea_context *ctx, struct work *w,
   for (int k = 0; k < 2; k++) {
     dea_status status = w->owner->enter(ctx, w->owner->model, change, k);
     if (status == DEA_OK) {
-      status =
-          evaluate(ctx, w, change->voltage_V[k], w->side + (size_t)k * dea_gradient_width(w->ask));
+      const double voltage_V = w->ask->holds_stretch ? w->owner->voltage_V : change->voltage_V[k];
+      status = evaluate(ctx, w, voltage_V, w->side + (size_t)k * dea_gradient_width(w->ask));
     }
     w->owner->solid->state.voltage_V = w->owner->voltage_V;
     w->owner->leave(ctx, w->owner->model);
@@ -357,13 +484,6 @@ static dea_status find_by_changes(struct dea_context *ctx, struct work *w, doubl
   return DEA_OK;
 }
 
-static dea_status find(struct dea_context *ctx, struct work *w, double *out)
-{
-  DEA_TRY(ctx, answer(ctx, w));
-  DEA_TRY(ctx, find_by_changes(ctx, w, out));
-  return DEA_OK;
-}
-
 /* At the equilibrium. */
 static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_owner *owner,
                             const struct dea_gradient_ask *ask, double *out)
@@ -372,7 +492,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   struct dea_arena memory = {.ctx = ctx};
   struct work w = {.owner = owner, .ask = ask};
   double energy_J;
-  w.known = dea_arena_alloc(&memory, dea_gradient_width(ask), sizeof *w.known);
+  w.known = dea_arena_alloc(&memory, dea_gradient_width(ask) + 1, sizeof *w.known);
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
@@ -380,14 +500,17 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
     status = find_mode(ctx, &w, &memory);
   }
   if (status == DEA_OK) {
-    status = dea_adjoint_create(ctx, s, dea_gradient_width(ask), &w.adjoint);
+    s->work.takes_small_pivots = ask->holds_stretch; // at a limit point there is one
+    status = dea_adjoint_create(ctx, s, dea_gradient_width(ask) + 1, &w.adjoint);
+    s->work.takes_small_pivots = false;
   }
   if (status == DEA_OK) {
     if (w.mode.known) {
       prepare_mode(&w);
     }
-    status = find(ctx, &w, out);
+    status = answer(ctx, &w, &memory);
   }
+  status = status == DEA_OK ? find_by_changes(ctx, &w, out) : status;
   dea_solid_hold_potential(s, owner->voltage_V, s->state.u);
   if (status == DEA_OK) { // scales and reactions are those of the equilibrium again
     status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
@@ -398,21 +521,6 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
 }
 
 // A limit point -----------------------------------------------------------------------------------
-
-/* dR/dV at the unknowns as they are, into the slope that is answered to first. */
-static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_V)
-{
-  const struct dea_solid *s = w->owner->solid;
-  double *rate = dea_adjoint_slope(w->adjoint, RATE), energy_J;
-  for (int side = -1; side <= 1; side += 2) {
-    DEA_TRY(ctx,
-            dea_adjoint_assemble(ctx, w->adjoint, w->owner->voltage_V + side * by_V, &energy_J));
-    for (size_t i = 0; i < s->problem.dofs; i++) {
-      rate[i] += side * s->work.g[i];
-    }
-  }
-  return DEA_OK;
-}
 
 /* The answer of a step of inverse iteration, of unit size, as what the next one answers to. *turn:
  * square of the angle to what this one has answered to. */
@@ -453,10 +561,9 @@ static dea_status find_null_mode(struct dea_context *ctx, struct work *w)
 /* -(w . dR/dP) / (w . dR/dV), where the solid is at the limit point. */
 static dea_status find_limit(struct dea_context *ctx, struct work *w, double *out)
 {
-  static const double share = 1e-5; // of the voltage
-  const double V = w->owner->voltage_V, by_V = share * V;
+  const double V = w->owner->voltage_V, by_V = share_of_voltage * V;
   double side[2], energy_J;
-  DEA_TRY(ctx, find_rate(ctx, w, by_V));
+  DEA_TRY(ctx, find_rate(ctx, w, by_V, dea_adjoint_slope(w->adjoint, RATE)));
   DEA_TRY(ctx, find_null_mode(ctx, w));
   for (int k = 0; k < 2; k++) {
     DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, V + (k == 0 ? -by_V : by_V), &energy_J));

@@ -51,7 +51,7 @@ void dea_gradient_places_find(const struct dea_gradient_film *film,
                               struct dea_gradient_places *out);
 
 /* `slope` above for what all solids know alike: extremes of the film, capacitance, energy and
- * nominal field; *known false for every other column. */
+ * nominal field, and the voltage, which is no unknown; *known false for every other column. */
 dea_status dea_gradient_film_slope(struct dea_context *ctx, const struct dea_gradient_film *film,
                                    const struct dea_gradient_places *places, int column,
                                    double *out, double *pressures, bool *known);

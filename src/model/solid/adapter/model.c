@@ -787,9 +787,17 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_path_options *options, dea_point_sink points,
                             dea_event_sink events, void *user)
 {
-  struct dea_path_options own = *options;
-  own.max_stretch /= model->device->pre_stretch;
-  DEA_TRY(ctx, dea_standing_path(ctx, &model->at, &own, points, events, user));
+  const struct dea_device *d = model->device;
+  double *weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
+  if (weight == NULL) {
+    return DEA_E_MEMORY;
+  }
+  weigh_edge(model, weight);
+  const struct dea_standing_end end = {weight, (options->max_stretch / d->pre_stretch - 1) *
+                                                   d->electrode_radius_m};
+  dea_status status = dea_standing_path(ctx, &model->at, options, &end, points, events, user);
+  dea_free(ctx, weight);
+  DEA_TRY(ctx, status);
   return DEA_OK;
 }
 

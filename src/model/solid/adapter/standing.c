@@ -65,6 +65,7 @@ const struct dea_event *dea_standing_passed(const struct dea_model *model)
 /* Where its points go. */
 struct path_sinks {
   const struct dea_path_options *options;
+  const struct dea_standing_end *end;
   dea_point_sink points;
   dea_event_sink events; // NULL: not wanted
   void *user;
@@ -81,8 +82,19 @@ static dea_status path_point(struct dea_context *ctx, struct dea_standing *stand
   return DEA_OK;
 }
 
-/* The limit point or bifurcation that the last step has passed; where it cannot be closed in on
- * there is none. */
+/* How far the solid is beyond the end, in its unit. */
+static double beyond(const struct dea_standing *standing, const struct dea_standing_end *end)
+{
+  const struct dea_solid *solid = standing->ending.owner.solid;
+  double sum = -end->value;
+  for (size_t i = 0; i < solid->problem.dofs; i++) {
+    sum += end->weight[i] * solid->state.u[i];
+  }
+  return sum;
+}
+
+/* The limit point or bifurcation that the last step has passed, if it is not beyond the end; where
+ * it cannot be closed in on there is none. */
 static dea_status path_event(struct dea_context *ctx, struct dea_standing *standing,
                              struct dea_solid_continuation *path, const struct path_sinks *sinks,
                              const struct dea_continuation_point *after)
@@ -95,6 +107,9 @@ static dea_status path_event(struct dea_context *ctx, struct dea_standing *stand
     return DEA_OK;
   }
   DEA_TRY(ctx, status);
+  if (beyond(standing, sinks->end) > 0) {
+    return DEA_OK;
+  }
   if (after->passed == DEA_CONTINUATION_BIFURCATION) {
     return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                            "model 3d: another branch crosses the path at %.4g kV; the path goes "
@@ -106,13 +121,45 @@ static dea_status path_event(struct dea_context *ctx, struct dea_standing *stand
   return sinks->events != NULL ? sinks->events(sinks->user, &event) : DEA_OK;
 }
 
+/* A point of a path into its sink. */
+static dea_status put_point(struct dea_context *ctx, struct dea_standing *standing,
+                            const struct dea_continuation_point *at, const struct path_sinks *sinks)
+{
+  struct dea_load_point point;
+  DEA_TRY(ctx, path_point(ctx, standing, at, &point));
+  DEA_TRY(ctx, sinks->points(sinks->user, &point));
+  return DEA_OK;
+}
+
+/* The point where the step ends, or the path within it. */
+static dea_status take_step(struct dea_context *ctx, struct dea_standing *standing,
+                            struct dea_solid_continuation *path, struct dea_continuation_point *at,
+                            const struct path_sinks *sinks, bool *ended)
+{
+  const struct dea_standing_end *end = sinks->end;
+  const struct dea_continuation_point step = *at;
+  *ended = beyond(standing, end) >= 0;
+  if (!*ended) {
+    DEA_TRY(ctx, put_point(ctx, standing, at, sinks));
+  }
+  if (step.passed != DEA_CONTINUATION_NOTHING) {
+    DEA_TRY(ctx, path_event(ctx, standing, path, sinks, &step));
+  }
+  if (*ended) {
+    DEA_TRY(ctx, dea_solid_continuation_across(ctx, path, end->weight, end->value, at));
+    DEA_TRY(ctx, put_point(ctx, standing, at, sinks));
+  }
+  standing->voltage_V = at->voltage_V;
+  *ended = *ended || at->voltage_V >= sinks->options->max_voltage_V;
+  return DEA_OK;
+}
+
 /* Step by step to one of the ends. */
 static dea_status follow_path(struct dea_context *ctx, struct dea_standing *standing,
                               struct dea_solid_continuation *path, const struct path_sinks *sinks)
 {
-  const struct dea_path_options *o = sinks->options;
-  struct dea_load_point point;
-  for (size_t i = 1; i < o->max_points; i++) {
+  bool ended = false;
+  for (size_t i = 1; i < sinks->options->max_points && !ended; i++) {
     struct dea_continuation_point at;
     if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the path");
@@ -123,42 +170,42 @@ static dea_status follow_path(struct dea_context *ctx, struct dea_standing *stan
       return DEA_OK;
     }
     DEA_TRY(ctx, status);
-    DEA_TRY(ctx, path_point(ctx, standing, &at, &point));
-    DEA_TRY(ctx, sinks->points(sinks->user, &point));
-    if (at.passed != DEA_CONTINUATION_NOTHING) {
-      DEA_TRY(ctx, path_event(ctx, standing, path, sinks, &at));
-    }
-    if (at.voltage_V >= o->max_voltage_V || point.electrode_stretch > o->max_stretch) {
-      return DEA_OK;
-    }
+    DEA_TRY(ctx, take_step(ctx, standing, path, &at, sinks, &ended));
   }
   return DEA_OK;
 }
 
 dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *standing,
-                             const struct dea_path_options *options, dea_point_sink points,
+                             const struct dea_path_options *options,
+                             const struct dea_standing_end *end, dea_point_sink points,
                              dea_event_sink events, void *user)
 {
   struct dea_solid *solid = standing->ending.owner.solid;
   const struct dea_continuation_options steps = {path_step, path_step_most,
                                                  path_unit * solid->problem.length_m, false};
-  const struct path_sinks sinks = {options, points, events, user};
+  const struct path_sinks sinks = {options, end, points, events, user};
   struct dea_solid_continuation *path = NULL;
   struct dea_load_point point;
   struct dea_solid_stand from;
   dea_standing_end_history(ctx, standing);
   const struct dea_solid_report report = standing->report;
+  const double voltage_V = standing->voltage_V;
   DEA_TRY(ctx, standing->ending.owner.point(ctx, standing->ending.owner.model, standing->voltage_V,
                                             &point));
   DEA_TRY(ctx, points(user, &point));
   dea_status status = dea_solid_stand_keep(ctx, solid, &from);
   if (status == DEA_OK) {
-    status = dea_solid_continuation_create(ctx, solid, options->max_voltage_V, &steps, &path);
+    const double scale_V =
+        isfinite(options->max_voltage_V) ? options->max_voltage_V : standing->ending.owner.step_V;
+    status = dea_solid_continuation_create(ctx, solid, scale_V, &steps, &path);
   }
   if (status == DEA_OK) {
     status = follow_path(ctx, standing, path, &sinks);
+  }
+  if (path != NULL && !(status == DEA_OK && options->stays)) {
     dea_solid_stand_again(solid, &from);
     standing->report = report;
+    standing->voltage_V = voltage_V;
   }
   dea_solid_continuation_destroy(ctx, path);
   dea_solid_stand_free(&from);

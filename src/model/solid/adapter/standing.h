@@ -41,9 +41,16 @@ dea_status dea_standing_load(struct dea_context *ctx, struct dea_model *model,
 
 // For functions of a model's type ----------------------------------------------------------------
 
-/* `long_path`, from where the solid is. */
+/* Where a path ends but for its options: weight [dofs] . u comes to `value` from below. */
+struct dea_standing_end {
+  const double *weight;
+  double value;
+};
+
+/* `long_path`, from where the solid is; the stretch of the options is not looked at. */
 dea_status dea_standing_path(struct dea_context *ctx, struct dea_standing *standing,
-                             const struct dea_path_options *options, dea_point_sink points,
+                             const struct dea_path_options *options,
+                             const struct dea_standing_end *end, dea_point_sink points,
                              dea_event_sink events, void *user);
 
 /* `push`. fold: [node_count][3] what a push of that kind does; NULL: none is known. */

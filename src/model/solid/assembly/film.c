@@ -113,12 +113,13 @@ static dea_status extremes_of(const struct dea_solid *s, size_t e,
 
 /* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes
  * and of a coupled field, which films that wrinkle do not have, it is wider, so that rounding does
- * not show in differences. */
-static const double step_V_per_m = 1e6, wide_step_V_per_m = 1e7;
+ * not show in differences: of slopes a share of V^2, for a soft film loses its tension at little
+ * more than V. */
+static const double step_V_per_m = 1e6, wide_step_V_per_m = 1e7, wide_share = 0.03;
 
 /* Squares of two voltages about that of the state. Charge: minus the derivative of the energy by V
  * at fixed displacements; by V^2 it is C/2. Returns the step, 0 without electrodes. */
-static double squares_about(const struct dea_solid *s, double field_V_per_m, double squares[2])
+static double squares_about(const struct dea_solid *s, bool of_slopes, double squares[2])
 {
   const struct dea_solid_problem *p = &s->problem;
   double thickness = 0, square = s->state.voltage_V * s->state.voltage_V;
@@ -127,21 +128,23 @@ static double squares_about(const struct dea_solid *s, double field_V_per_m, dou
     bool counts = p->active[e] || dea_solid_element(s, e)->type->per_node > 3;
     thickness = fmax(thickness, counts ? constituent->thickness_m : 0);
   }
-  double step = field_V_per_m * field_V_per_m * thickness * thickness;
+  const double narrow = pow(step_V_per_m * thickness, 2),
+               wide = pow(wide_step_V_per_m * thickness, 2);
+  const double of_film = of_slopes ? fmin(wide, fmax(narrow, wide_share * square)) : narrow;
+  const double step = p->field != NULL ? wide : of_film;
   squares[0] = fmax(square - step, 0);
   squares[1] = square + step;
   return step;
 }
 
 /* potential: gives a vector of unknowns those of a voltage. */
-static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
-                                   double field_V_per_m,
+static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s, bool of_slopes,
                                    dea_status (*potential)(struct dea_context *, struct dea_solid *,
                                                            double voltage_V, double *u),
                                    double *capacitance_F)
 {
   const struct dea_solid_problem *p = &s->problem;
-  double energy[2] = {0, 0}, squares[2], step = squares_about(s, field_V_per_m, squares);
+  double energy[2] = {0, 0}, squares[2], step = squares_about(s, of_slopes, squares);
   dea_status status = DEA_OK;
   memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
@@ -159,14 +162,13 @@ static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *s,
                                  double *capacitance_F)
 {
-  return find_capacitance(ctx, s, s->problem.field != NULL ? wide_step_V_per_m : step_V_per_m,
-                          dea_solid_solve_potential, capacitance_F);
+  return find_capacitance(ctx, s, false, dea_solid_solve_potential, capacitance_F);
 }
 
 dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid *s,
                                       double *capacitance_F)
 {
-  return find_capacitance(ctx, s, wide_step_V_per_m, dea_solid_scale_potential, capacitance_F);
+  return find_capacitance(ctx, s, true, dea_solid_scale_potential, capacitance_F);
 }
 
 /* Largest of all ranks; NAN where none knows it. */
@@ -341,7 +343,7 @@ dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid
   const struct dea_solid_problem *p = &s->problem;
   double squares[2];
   memset(out, 0, p->dofs * sizeof *out);
-  *known = squares_about(s, wide_step_V_per_m, squares) > 0 && !dea_solid_has_own_voltages(s);
+  *known = squares_about(s, true, squares) > 0 && !dea_solid_has_own_voltages(s);
   if (!*known) {
     return DEA_OK;
   }

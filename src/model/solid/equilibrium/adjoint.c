@@ -405,6 +405,29 @@ dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *a, con
              : dea_fail(ctx, DEA_E_NOT_CONVERGED, "the pressures of a gradient do not settle");
 }
 
+double dea_adjoint_pair(struct dea_adjoint *a, size_t answer, size_t number)
+{
+  double *left = a->left + number * a->all; // 0 less L^-1 Q_p
+  const double *nu = a->nu + answer * a->all;
+  double sum = dea_solid_dot(a->s, dea_adjoint_answer(a, answer), dea_adjoint_slope(a, number));
+  memset(left, 0, a->all * sizeof *left);
+  take_pressures(a, number);
+  for (size_t i = 0; i < a->all; i++) {
+    sum -= nu[i] * left[i];
+  }
+  return sum;
+}
+
+void dea_adjoint_add(struct dea_adjoint *a, size_t number, double times, size_t answer)
+{
+  for (size_t i = 0; i < a->dofs; i++) {
+    a->lambda[number * a->dofs + i] += times * a->lambda[answer * a->dofs + i];
+  }
+  for (size_t i = 0; i < a->all; i++) {
+    a->nu[number * a->all + i] += times * a->nu[answer * a->all + i];
+  }
+}
+
 /* Constraints of the loads that are now under the solid. */
 static void evaluate_rows(struct dea_adjoint *a)
 {

@@ -28,6 +28,11 @@ double *dea_adjoint_pressure_slope(struct dea_adjoint *adjoint, size_t number);
  * DEA_E_NOT_CONVERGED where the constraints do not settle. */
 dea_status dea_adjoint_solve(struct dea_context *ctx, struct dea_adjoint *adjoint,
                              const bool *wanted);
+/* Q_u . lambda + Q_p . mu of an answer, with the slopes of a quantity that is not solved for yet.
+ */
+double dea_adjoint_pair(struct dea_adjoint *adjoint, size_t answer, size_t number);
+/* Adds `times` times an answer to another one. */
+void dea_adjoint_add(struct dea_adjoint *adjoint, size_t number, double times, size_t answer);
 /* lambda [dofs] of an answer; lent. */
 const double *dea_adjoint_answer(const struct dea_adjoint *adjoint, size_t number);
 /* Residuals and energy of the solid at its state, of another problem than the answers are of, for

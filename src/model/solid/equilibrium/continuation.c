@@ -527,23 +527,50 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   return DEA_OK;
 }
 
-dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *t,
-                                     double load, struct dea_continuation_point *point)
+/* The equilibrium in the plane that is set, from a share of the way between the last two points. */
+static dea_status solve_between(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                double share, struct dea_continuation_point *point)
 {
   struct dea_continuation_path_point *at = &t->critical;
-  const double share = (load - t->before.load) / (t->last.load - t->before.load);
   int iterations;
   for (size_t i = 0; i < t->s->work.load_steps.state_count; i++) {
     at->state[i] = t->before.state[i] + share * (t->last.state[i] - t->before.state[i]);
   }
-  at->load = load;
+  at->load = t->before.load + share * (t->last.load - t->before.load);
   at->arc = t->before.arc + share * (t->last.arc - t->before.arc);
   DEA_TRY(ctx, return_to(ctx, t, at));
-  memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
-  set_plane(t, t->start, 1, &t->before, load - t->before.load, 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, &iterations));
   DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, at));
   report_point(t, at, DEA_CONTINUATION_NOTHING, point);
+  return DEA_OK;
+}
+
+dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                     double load, struct dea_continuation_point *point)
+{
+  const double way = load - t->before.load;
+  memset(t->start, 0, t->s->problem.dofs * sizeof *t->start);
+  set_plane(t, t->start, 1, &t->before, way, 0);
+  DEA_TRY(ctx, solve_between(ctx, t, way / (t->last.load - t->before.load), point));
+  return DEA_OK;
+}
+
+dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_solid_continuation *t,
+                                         const double *weight, double value,
+                                         struct dea_continuation_point *point)
+{
+  double from = 0, to = 0;
+  for (size_t i = 0; i < t->s->problem.dofs; i++) {
+    from += weight[i] * t->before.state[i];
+    to += weight[i] * t->last.state[i];
+  }
+  memcpy(t->plane.weight, weight, t->s->problem.dofs * sizeof *weight);
+  t->plane.load = 0;
+  t->plane.u0 = t->before.state;
+  t->plane.tau0 = t->before.load;
+  t->plane.length = value - from;
+  t->plane.enough = 0;
+  DEA_TRY(ctx, solve_between(ctx, t, (value - from) / (to - from), point));
   return DEA_OK;
 }
 

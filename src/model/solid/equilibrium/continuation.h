@@ -58,6 +58,12 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx,
 dea_status dea_solid_continuation_at(struct dea_context *ctx, struct dea_solid_continuation *trace,
                                      double load, struct dea_continuation_point *point);
 
+/* The same where weight [dofs] . u has a value between those of the last two points; on a path that
+ * turns back in this the one that the way between them leads to. */
+dea_status dea_solid_continuation_across(struct dea_context *ctx,
+                                         struct dea_solid_continuation *trace, const double *weight,
+                                         double value, struct dea_continuation_point *point);
+
 /* The limit point or bifurcation that the last step has passed: the solid is there until the next
  * call. Of several modes that turn unstable in one step it is that of the first. DEA_E_ARGUMENT
  * where nothing was passed, DEA_E_NOT_CONVERGED when it cannot be closed in on: the solid is then
