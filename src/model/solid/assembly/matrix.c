@@ -3,6 +3,7 @@
 #include "model/solid/assembly/matrix.h"
 
 #include "model/solid/assembly/bodies.h"
+#include "model/solid/assembly/fronts.h"
 
 #include <string.h>
 
@@ -211,6 +212,7 @@ dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s,
 
 void dea_solid_destroy_matrix(struct dea_solid *s)
 {
+  dea_fronts_destroy(s->memory.ctx, s->work.fronts);
   MatDestroy(&s->work.factor);
   MatDestroy(&s->work.K);
   VecDestroy(&s->work.right);
@@ -372,15 +374,60 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
   return status;
 }
 
+/* Largest K that is tried by fronts: of larger ones nothing was measured. */
+static const size_t fronts_most = 60000;
+
+/* The factor by fronts, of a K that is positive definite (*there). */
+static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s, bool *there)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  PetscMPIInt ranks;
+  *there = s->work.by_fronts = false;
+  DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
+  if (ranks > 1 || p->per_node != 3 || p->free_potentials > 0 || p->dofs > fronts_most ||
+      s->work.takes_small_pivots || s->work.no_fronts) {
+    return DEA_OK;
+  }
+  if (dea_interrupted_anywhere(ctx)) { // as dea_solid_factor
+    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor");
+  }
+  if (s->work.fronts != NULL && !dea_fronts_fit(s->work.fronts, s->work.K)) {
+    dea_fronts_destroy(ctx, s->work.fronts);
+    s->work.fronts = NULL;
+  }
+  if (s->work.fronts == NULL) {
+    DEA_TRY(ctx, dea_fronts_create(ctx, s->work.K, &s->work.fronts));
+    s->work.no_fronts = s->work.fronts == NULL;
+  }
+  if (s->work.fronts != NULL) {
+    DEA_TRY(ctx, dea_fronts_factor(ctx, s->work.fronts, s->work.K, there));
+  }
+  s->work.by_fronts = *there;
+  return DEA_OK;
+}
+
+dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s)
+{
+  s->work.by_fronts = false;
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
+  return DEA_OK;
+}
+
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   PetscInt minus, zero, plus;
+  bool there;
   s->found.stiff_factor_fits = false;
+  DEA_TRY(ctx, factor_by_fronts(ctx, s, &there));
+  if (there) {
+    *negative = 0;
+    return DEA_OK;
+  }
   if (s->work.factor == NULL) {
     DEA_TRY(ctx, analyse(ctx, s->work.K, ROOM, &s->work.factor));
   }
   DEA_PETSC(ctx, MatMumpsSetCntl(s->work.factor, 3, s->work.takes_small_pivots ? -1e-300 : 0));
-  DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
+  DEA_TRY(ctx, dea_solid_factor_any(ctx, s));
   DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
   *negative = (int)(minus + zero) - (int)s->problem.free_potentials;
   return DEA_OK;
@@ -445,13 +492,22 @@ static void collect(struct dea_solid *s, double *right)
   }
 }
 
+dea_status dea_solid_solve_rows(struct dea_context *ctx, struct dea_solid *s, Vec right, Vec x)
+{
+  if (s->work.by_fronts) {
+    return dea_fronts_solve(ctx, s->work.fronts, right, x);
+  }
+  DEA_PETSC(ctx, MatSolve(s->work.factor, right, x));
+  return DEA_OK;
+}
+
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,
                                   double *out)
 {
   memmove(out, right, s->problem.dofs * sizeof(double));
   collect(s, out);
   DEA_TRY(ctx, dea_solid_to_vector(ctx, s, out, s->work.right));
-  DEA_PETSC(ctx, MatSolve(s->work.factor, s->work.right, s->work.solution));
+  DEA_TRY(ctx, dea_solid_solve_rows(ctx, s, s->work.right, s->work.solution));
   DEA_TRY(ctx, dea_solid_from_vector(ctx, s, s->work.solution, out));
   return DEA_OK;
 }
@@ -505,7 +561,7 @@ dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, si
   Mat sides[2] = {NULL, NULL};
   PetscMPIInt ranks;
   DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
-  if (count < 2 || ranks > 1) {
+  if (count < 2 || ranks > 1 || s->work.by_fronts) {
     for (size_t k = 0; k < count; k++) {
       DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, right + k * dofs, out + k * dofs));
     }

@@ -52,6 +52,10 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
 /* Factor of K; *negative: its negative pivots beyond those of free potentials. */
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
+/* Factor of K, of whatever definiteness. */
+dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s);
+/* x = K^-1 right with the present factor; vectors of K's rows, not the same. */
+dea_status dea_solid_solve_rows(struct dea_context *ctx, struct dea_solid *s, Vec right, Vec x);
 /* out = K^-1 right with the present factor, [dofs] both, in global components; what is on followers
  * of a body goes to the body, and they move with it. */
 dea_status dea_solid_solve_linear(struct dea_context *ctx, struct dea_solid *s, const double *right,

@@ -116,6 +116,9 @@ struct dea_solid_work {
   struct dea_load_piece *piece;       // of one piece of a load in it
   Mat K;                              // tangent, by dea_solid_assemble
   Mat factor;                         // LDL^T of K, by dea_solid_factorise
+  struct dea_fronts *fronts;          // its factor where it is positive definite (fronts.h); owned
+  bool by_fronts;                     // the present factor is that
+  bool no_fronts;                     // K has none
   bool takes_small_pivots;            // for one of a K that is singular but for rounding: else what
                                       // such a pivot belongs to is left out of solutions
   Vec right;                          // of K's rows

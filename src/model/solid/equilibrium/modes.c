@@ -40,7 +40,7 @@ static PetscErrorCode apply_factor(PC pc, Vec x, Vec y)
 {
   struct dea_solid *s;
   CHECK(PCShellGetContext(pc, &s));
-  return MatSolve(s->work.factor, x, y);
+  return dea_solid_solve_rows(s->memory.ctx, s, x, y) == DEA_OK ? 0 : PETSC_ERR_LIB;
 }
 
 /* *which: below 0 where eigenvalue a is wanted before b. */
@@ -178,7 +178,7 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
       break;
     }
     if (!below) {
-      DEA_TRY(ctx, dea_solid_factor(ctx, f->solid->work.K, &f->solid->work.factor));
+      DEA_TRY(ctx, dea_solid_factor_any(ctx, f->solid));
     }
     wanted = below ? count - f->count : o->mode_extra + count / 2;
   }
