@@ -42,6 +42,7 @@ struct follow {
   double *x_old, *f_old, *h_old; // of the one before
   double *dx[DEPTH], *df[DEPTH]; // [count] differences between iterations, newest first
   double *dh[DEPTH];             // [dofs]
+  double gram[DEPTH][DEPTH];     // products of df[i] and df[j] by K0
   int depth;                     // of them that there are
   double rate;                   // size of the second f over that of the first
   double size_first, size;       // of f, at first and now
@@ -123,6 +124,15 @@ static void remember(struct follow *w)
   for (size_t i = 0; i < w->dofs; i++) {
     dh[i] = w->h[i] - w->h_old[i];
   }
+  for (int i = w->depth - 1; i > 0; i--) {
+    for (int j = w->depth - 1; j > 0; j--) {
+      w->gram[i][j] = w->gram[i - 1][j - 1];
+    }
+  }
+  for (int i = 0; i < w->depth; i++) {
+    w->gram[i][0] = product(w, w->df[i], dh, df);
+    w->gram[0][i] = product(w, df, w->dh[i], w->df[i]);
+  }
 }
 
 /* share [depth] that makes the size of f - sum of share df least; how many of the differences, the
@@ -133,16 +143,13 @@ static int mix(const struct follow *w, double *share)
   for (int n = w->depth; n > 0; n--) {
     bool fine = true;
     for (int i = 0; i < n; i++) {
-      scale[i] = sqrt(fmax(product(w, w->df[i], w->dh[i], w->df[i]), 0));
+      scale[i] = sqrt(fmax(w->gram[i][i], 0));
       fine = fine && scale[i] > 0;
     }
     for (int i = 0; i < n && fine; i++) {
       share[i] = product(w, w->df[i], w->h, w->f) / scale[i];
       for (int j = 0; j < n; j++) {
-        A[i * n + j] =
-            0.5 *
-            (product(w, w->df[i], w->dh[j], w->df[j]) + product(w, w->df[j], w->dh[i], w->df[i])) /
-            (scale[i] * scale[j]);
+        A[i * n + j] = 0.5 * (w->gram[i][j] + w->gram[j][i]) / (scale[i] * scale[j]);
       }
       A[i * n + i] += 1e-10;
     }
