@@ -66,12 +66,23 @@ static dea_status keep_taut(struct way *way, size_t k)
   return DEA_OK;
 }
 
-/* Steps of several voltages while the film has tension; what ends beyond is halved from before.
+/* Whether tension would end before a voltage by its last two points, the first `before`, as it goes
+ * with the square of the voltage. */
+static bool ends_before(const struct way *way, size_t before, size_t to)
+{
+  const struct dea_load_point *p = &way->line.points[before], *last = &way->line.points[way->top];
+  double fall = p->min_tension_N_per_m - last->min_tension_N_per_m, V = way->line.voltages_V[to];
+  double at = last->voltage_V * last->voltage_V, way_back = at - p->voltage_V * p->voltage_V;
+  return fall > 0 && (V * V - at) * fall > way_back * last->min_tension_N_per_m;
+}
+
+/* Steps of several voltages while the film has tension; what ends beyond, or would by the tension
+ * so far, is halved from before.
  * *next: the first voltage that is not computed yet. */
 static dea_status go_up(struct way *way, size_t *next)
 {
   const struct dea_force_line *asked = way->asked;
-  size_t step = 1, beyond = way->line.count;
+  size_t step = 1, beyond = way->line.count, before = 0;
   while (2 * step * FIRST_GAPS < way->line.count) {
     step *= 2;
   }
@@ -85,12 +96,13 @@ static dea_status go_up(struct way *way, size_t *next)
   while (step > 0 && way->top + 1 < way->line.count) {
     size_t to = way->top + step < way->line.count ? way->top + step : way->line.count - 1;
     *next = way->top + 1;
-    if (to >= beyond) {
+    if (to >= beyond || (to > *next && ends_before(way, before, to))) {
       step /= 2;
       continue;
     }
     dea_status status = solve(way, to);
     if (status == DEA_OK && is_taut(&way->line.points[to])) {
+      before = way->top;
       DEA_TRY(way->ctx, keep_taut(way, to));
       *next = to + 1;
     } else if (to == *next || (status != DEA_OK && dea_verdict_of(status)[0] == '\0')) {
