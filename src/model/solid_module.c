@@ -61,7 +61,9 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
     return DEA_E_MEMORY;
   }
   model->type = type;
-  dea_status status = type->create(ctx, device, settings, &model->inner);
+  struct dea_model_settings own = settings != NULL ? *settings : (struct dea_model_settings){0};
+  own.mesh_from = own.mesh_from != NULL ? own.mesh_from->inner : NULL;
+  dea_status status = type->create(ctx, device, &own, &model->inner);
   if (status != DEA_OK) {
     dea_free(ctx, model);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

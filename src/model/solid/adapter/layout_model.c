@@ -37,8 +37,7 @@ struct dea_model {
   struct dea_model_settings settings;
   struct dea_adapt_pass *passes; // [pass_count] that led to its mesh; NULL: none
   size_t pass_count;
-  struct dea_arena memory;     // of all arrays
-  struct dea_layout_mesh like; // of another device, that its mesh was moved from; empty: none
+  struct dea_arena memory; // of all arrays
   struct dea_layout_mesh mesh;
   struct dea_constituent *constituents; // [ply_count]
   struct dea_solid_film_data *films;    // [ply_count]
@@ -639,16 +638,15 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
   return DEA_OK;
 }
 
-/* A mesh of its own, or that of another device. */
+/* A mesh of its own, or that of another model. */
 static dea_status make_mesh(struct dea_context *ctx, struct dea_model *model)
 {
-  const struct dea_device *of = model->settings.mesh_of;
-  if (of == NULL || of->layout == model->layout) {
+  const struct dea_model *from = model->settings.mesh_from;
+  if (from == NULL) {
     DEA_TRY(ctx, dea_layout_mesh_create(ctx, model->layout, &model->settings, &model->mesh));
-    return DEA_OK;
+  } else {
+    DEA_TRY(ctx, dea_mesh_follow(ctx, model->layout, &model->settings, &from->mesh, &model->mesh));
   }
-  DEA_TRY(ctx, dea_layout_mesh_create(ctx, of->layout, &model->settings, &model->like));
-  DEA_TRY(ctx, dea_mesh_follow(ctx, model->layout, &model->settings, &model->like, &model->mesh));
   return DEA_OK;
 }
 
@@ -710,7 +708,6 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   dea_free(ctx, model->passes);
   dea_solid_destroy(ctx, model->solid);
   free_parts(ctx, model);
-  dea_layout_mesh_free(ctx, &model->like);
   dea_free(ctx, model);
 }
 
