@@ -28,11 +28,39 @@ enum {
   DEPTH = OF_DEVICE, // these two of a tip
   TIP_SIZE,
   NUMBERS,
+  PERMITTIVITY_SLOPE = NUMBERS, // these of a device that has them
+  POISSON_RATIO,
+  OUTER_GAP,
+  ELECTRODE_THICKNESS,
+  ELECTRODE_MODULUS,
+  FILM_DENSITY,
+  FIBRE_DENSITY,
+  ALL,
 };
-static const char *const names[NUMBERS] = {
-    "voltage",       "thickness", "modulus",      "stiffening", "permittivity",   "pre-stretch",
-    "electrode",     "frame",     "tip",          "width",      "tip width",      "fibre thickness",
-    "fibre modulus", "glue",      "glue modulus", "depth",      "size of the tip"};
+static const char *const names[ALL] = {"voltage",
+                                       "thickness",
+                                       "modulus",
+                                       "stiffening",
+                                       "permittivity",
+                                       "pre-stretch",
+                                       "electrode",
+                                       "frame",
+                                       "tip",
+                                       "width",
+                                       "tip width",
+                                       "fibre thickness",
+                                       "fibre modulus",
+                                       "glue",
+                                       "glue modulus",
+                                       "depth",
+                                       "size of the tip",
+                                       "slope of the permittivity",
+                                       "Poisson ratio",
+                                       "outer gap",
+                                       "electrode thickness",
+                                       "electrode modulus",
+                                       "film density",
+                                       "fibre density"};
 
 struct state {
   struct dea_device device;
@@ -42,23 +70,30 @@ struct state {
 
 static inline double *number_of(struct state *s, int i)
 {
-  double *const all[NUMBERS] = {&s->voltage_V,
-                                &s->device.film_thickness_unstretched_m,
-                                &s->device.film.param[0],
-                                &s->device.film.param[2],
-                                &s->device.film.permittivity.at_rest,
-                                &s->device.pre_stretch,
-                                &s->device.electrode_radius_m,
-                                &s->device.frame_radius_m,
-                                &s->device.fibre_tip_radius_m,
-                                &s->device.fibre_width_m,
-                                &s->device.fibre_tip_width_m,
-                                &s->device.fibre_thickness_m,
-                                &s->device.fibre.young_modulus_Pa,
-                                &s->device.bond_thickness_m,
-                                &s->device.bond_modulus_Pa,
-                                &s->pressed.depth_m,
-                                &s->pressed.tip.radius_m};
+  double *const all[ALL] = {&s->voltage_V,
+                            &s->device.film_thickness_unstretched_m,
+                            &s->device.film.param[0],
+                            &s->device.film.param[2],
+                            &s->device.film.permittivity.at_rest,
+                            &s->device.pre_stretch,
+                            &s->device.electrode_radius_m,
+                            &s->device.frame_radius_m,
+                            &s->device.fibre_tip_radius_m,
+                            &s->device.fibre_width_m,
+                            &s->device.fibre_tip_width_m,
+                            &s->device.fibre_thickness_m,
+                            &s->device.fibre.young_modulus_Pa,
+                            &s->device.bond_thickness_m,
+                            &s->device.bond_modulus_Pa,
+                            &s->pressed.depth_m,
+                            &s->pressed.tip.radius_m,
+                            &s->device.film.permittivity.slope,
+                            &s->device.fibre.poisson_ratio,
+                            &s->device.fibre_outer_gap_m,
+                            &s->device.electrode_thickness_m,
+                            &s->device.electrode.param[0],
+                            &s->device.film.density_kg_per_m3,
+                            &s->device.fibre.density_kg_per_m3};
   return all[i];
 }
 
