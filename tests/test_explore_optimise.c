@@ -1,9 +1,10 @@
 #define _GNU_SOURCE
 /* Searches for optima that are known in closed form, to 1e-4: with limits, whole numbers, gradients
- * of the evaluator, designs without values, a front, and a search that goes on. */
+ * of the evaluator, designs without values, a front, and searches that go on, also after Ctrl-C. */
 #include "explore/optimise.h"
 
 #include <math.h>
+#include <signal.h>
 #include <string.h>
 
 #include "testing.h"
@@ -211,10 +212,61 @@ static void test_scatter(void **state)
   gradients = false;
 }
 
+static volatile sig_atomic_t stopped;
+static size_t designs, stop_at;
+
+static void count_design(void *user, const char *what, size_t done, size_t total)
+{
+  (void)user;
+  (void)what;
+  (void)done;
+  (void)total;
+  designs++;
+  stopped = designs == stop_at || stopped;
+}
+
+/* Ctrl-C while designs are evaluated: what was done is kept, and the search that goes on makes
+ * those that are missing, none twice. */
+static void test_interrupt(void **state)
+{
+  (void)state;
+  static const int sum[] = {0, 0};
+  const struct dea_shard whole = {1, 1};
+  struct dea_optimum best, again;
+  size_t count;
+  struct dea_search search = search_of(sum, 1);
+  search.limit_count = 1;
+  dea_context_set_progress(ctx, count_design, NULL);
+  dea_context_set_interrupt(ctx, &stopped);
+  designs = stop_at = 0;
+  const size_t all = run(&search, "uninterrupted", &best, &count);
+  assert_int_equal(designs, all);
+  designs = 0;
+  stop_at = all / 3;
+  assert_int_equal(
+      dea_store_open(ctx, in_folder("stopped"), "q", &evaluator, &whole, &search.store), DEA_OK);
+  assert_int_equal(dea_search_run(&search, &again, &count), DEA_E_INTERRUPTED);
+  const size_t kept = dea_store_count(search.store);
+  dea_store_close(search.store);
+  assert_int_equal(kept, designs);
+  assert_in_range(kept, stop_at, all - 1);
+  dea_context_clear(ctx);
+  stopped = 0;
+  designs = stop_at = 0;
+  assert_int_equal(run(&search, "stopped", &again, &count), all - kept);
+  assert_int_equal(designs, all - kept);
+  assert_memory_equal(again.p, best.p, 2 * sizeof *best.p);
+  dea_context_set_progress(ctx, NULL, NULL);
+  dea_context_set_interrupt(ctx, NULL);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_limit), cmocka_unit_test(test_whole),
-                                     cmocka_unit_test(test_front), cmocka_unit_test(test_scatter),
-                                     cmocka_unit_test(test_slopes_that_are_missing)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_limit),
+                                     cmocka_unit_test(test_whole),
+                                     cmocka_unit_test(test_front),
+                                     cmocka_unit_test(test_scatter),
+                                     cmocka_unit_test(test_slopes_that_are_missing),
+                                     cmocka_unit_test(test_interrupt)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }
