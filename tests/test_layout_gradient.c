@@ -421,6 +421,61 @@ static void test_plate_askew(void **state)
   check(&at);
 }
 
+/* A hub that is held aside and askew, as blocked forces are measured: what it takes to hold it, and
+ * mean stretches of a region, by numbers of the film and by where it is moved to. */
+static void test_held_hub(void **state)
+{
+  (void)state;
+  static const char device[] =
+      "dea: 1\n"
+      "title: a hub that is held\n"
+      "shapes:\n"
+      "  - {name: film, kind: circle, radius: 20 mm}\n"
+      "  - {name: hub, kind: circle, x: 2 mm, radius: 5 mm}\n"
+      "  - {name: active, kind: difference, of: [film, hub]}\n"
+      "  - {name: side, kind: rectangle, x: 12 mm, y: 3 mm, width: 6 mm, height: 4 mm}\n"
+      "plies:\n"
+      "  - {name: film, shape: film, material: elastosil-2030, thickness: 100 um, "
+      "pre_stretch: [1.2, 1.25]}\n"
+      "electrodes:\n"
+      "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+      "  - {ply: film, side: top, shape: active, channel: drive}\n"
+      "supports:\n"
+      "  - {edge: film, move_y: 0.2 mm}\n"
+      "bodies:\n"
+      "  - {name: hub, shape: hub, free: [], move_x: 0.5 mm, move_y: 0.3 mm, move_z: 2 mm, "
+      "turn_y: 3 degree, turn_z: 2 degree}\n"
+      "monitors:\n"
+      "  - {name: hub, body: hub}\n"
+      "  - {name: side, shape: side}\n"
+      "compute:\n"
+      "  voltage: {to: 2 kV, step: 1 kV}\n"
+      "  solid: {film: membrane, order: 1}\n";
+  static const char *const only[] = {"voltage",
+                                     "plies.film.thickness",
+                                     "bodies.hub.move_x",
+                                     "bodies.hub.move_z",
+                                     "bodies.hub.turn_y",
+                                     "shapes.hub.radius",
+                                     "shapes.film.radius",
+                                     "supports[0].move_y",
+                                     NULL};
+  struct at at = {.voltage_V = 1e3,
+                  .monitors = {0, 0, 0, 0, 0, 1, 1},
+                  .monitor_count = 7,
+                  .motion = {DEA_OBSERVED_FORCE_X, DEA_OBSERVED_FORCE_Y, DEA_OBSERVED_FORCE_Z,
+                             DEA_OBSERVED_MOMENT_Y, DEA_OBSERVED_MOMENT_Z, DEA_OBSERVED_STRETCH_X,
+                             DEA_OBSERVED_STRETCH_Y},
+                  .asked = true,
+                  .only = only,
+                  .again = true,
+                  .leaves = 5e-11};
+  assert_int_equal(
+      dea_design_read_memory(ctx, "held.yaml", device, strlen(device), NULL, 0, &at.design),
+      DEA_OK);
+  check(&at);
+}
+
 static const char bender[] =
     "dea: 1\n"
     "title: bender\n"
@@ -532,7 +587,7 @@ static void test_what_cannot_follow(void **state)
     bool follows;
   } all[] = {
       {{"shapes.film.radius", "20.001 mm"}, true},
-      {{"supports", "[{edge: film, hold: [x, y, z], move_z: 1 um}]"}, false},
+      {{"supports", "[{edge: film, hold: [x, y, z], move_z: 1 um}]"}, true},
       {{"shapes.hub.x", "1 um"}, false},              // not in a sector
       {{"shapes.ring.outer_radius", "25 mm"}, false}, // over another outline: other pieces
       {{"monitors", "[{name: hub, body: hub}, {name: edge, at: [20 mm, 0 mm]}]"}, true},
@@ -836,6 +891,7 @@ int main(void)
       cmocka_unit_test(test_shapes),
       cmocka_unit_test(test_region),
       cmocka_unit_test(test_plate_askew),
+      cmocka_unit_test(test_held_hub),
       cmocka_unit_test(test_tension_of_a_bender),
       cmocka_unit_test(test_all_lengths),
       cmocka_unit_test(test_what_cannot_follow),

@@ -33,7 +33,7 @@ struct dea_design_number {
 };
 
 /* All numbers of a design that its device depends on, but those that are 0; of the general form
- * without those of what is held, and with places of shapes that the file says to be 0. out:
+ * with places of shapes that the file says to be 0. out:
  * [DEA_NUMBERS_MAX]. */
 dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *design,
                               const struct dea_device *device, double voltage_V,

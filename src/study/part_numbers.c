@@ -22,6 +22,7 @@ static const struct list {
     LIST("plies", dea_parts_ply, plies, ply_count, offsetof(struct dea_parts_ply, name)),
     LIST("channels", dea_parts_channel, channels, channel_count,
          offsetof(struct dea_parts_channel, name)),
+    LIST("supports", dea_parts_support, supports, support_count, NAMELESS),
     LIST("bodies", dea_parts_body, bodies, body_count, offsetof(struct dea_parts_body, name)),
     LIST("springs", dea_parts_spring, springs, spring_count, NAMELESS),
     LIST("pressures", dea_parts_pressure, pressures, pressure_count, NAMELESS),
@@ -54,13 +55,6 @@ static void add(struct dea_design_number *out, size_t *count,
 
 // Keys of the file --------------------------------------------------------------------------------
 
-/* Where a body is moved to is held there, so that no slope is known by it. */
-static bool is_held(const struct list *list, const char *key)
-{
-  return strcmp(list->key, "bodies") == 0 &&
-         (strncmp(key, "move_", 5) == 0 || strncmp(key, "turn_", 5) == 0);
-}
-
 /* The numbers of a field of an item: one, or those of its list. size_m: of a shape; 0: of none. */
 static void add_field(size_t at, size_t item, const char *base, const struct dea_field *field,
                       double size_m, struct dea_design_number *out, size_t *count)
@@ -69,7 +63,7 @@ static void add_field(size_t at, size_t item, const char *base, const struct dea
   const struct list *list = &lists[at];
   size_t own = 1;
   char name[DEA_NAME_SIZE];
-  if (!dea_field_varies(field) || is_held(list, field->key)) {
+  if (!dea_field_varies(field)) {
     return;
   }
   if (field->list_max > 0) {

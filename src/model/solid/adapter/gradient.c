@@ -100,14 +100,19 @@ dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradie
 
 // Gradients ---------------------------------------------------------------------------------------
 
+/* A motion that residuals are taken along. */
+struct way {
+  const double *v, *pressure; // [dofs], [pressures]; NULL: pressures stay
+  double step;                // of v, in differences
+};
+
 /* The lowest mode of small motions, whose frequency is asked for. */
 struct mode {
   bool known;
-  double *v, *pressure;   // [dofs], [pressures]: its motion, v . Mv = 1, and kappa M^-1 B^T v
-  double square, rate;    // omega^2; slope of the frequency by it
-  double step;            // of v, in differences
-  double *u, *multiplier; // of the equilibrium
-  double *gain, *motion;  // [pressures], [dofs] room
+  double *v, *pressure;  // [dofs], [pressures]: its motion, v . Mv = 1, and kappa M^-1 B^T v
+  double square, rate;   // omega^2; slope of the frequency by it
+  struct way way;        // both
+  double *gain, *motion; // [pressures], [dofs] room
 };
 
 /* The electrode's stretch is held, and the voltage follows it. */
@@ -125,6 +130,9 @@ struct work {
   bool *known;    // [dea_gradient_width + 1] there is an answer; the last one: the border's
   double *side;   // [2][dea_gradient_width]
   double *motion; // [monitor_count]
+  double *u,
+      *multiplier;   // [dofs], [pressures] room for the state while residuals are taken elsewhere
+  double *force_way; // [dofs]
   struct mode mode;
   struct border border;
   double *null_mode; // [dofs] of a limit point, as it is found
@@ -151,10 +159,8 @@ static dea_status find_mode(struct dea_context *ctx, struct work *w, struct dea_
   const size_t dofs = s->problem.dofs, pressures = dea_solid_pressure_count(s);
   double squares[2];
   m->v = dea_arena_alloc(memory, 2 * dofs, sizeof(double)); // the second one is only compared
-  m->u = dea_arena_alloc(memory, dofs, sizeof(double));
   m->motion = dea_arena_alloc(memory, dofs, sizeof(double));
   m->pressure = dea_arena_alloc(memory, pressures, sizeof(double));
-  m->multiplier = dea_arena_alloc(memory, pressures, sizeof(double));
   m->gain = dea_arena_alloc(memory, pressures, sizeof(double));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
   DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, 2, squares, m->v));
@@ -167,45 +173,50 @@ static dea_status find_mode(struct dea_context *ctx, struct work *w, struct dea_
                             "model 3d: no gradient of the frequency: the two lowest modes have "
                             "the same one (a sector of the device has only one of them)"));
   }
-  memcpy(m->u, s->state.u, dofs * sizeof(double));
-  memcpy(m->multiplier, s->state.multiplier, pressures * sizeof(double));
   return DEA_OK;
 }
 
-/* Its pressures, and how far differences go: a share of the thickness of the thinnest film. */
-static void prepare_mode(struct work *w)
+/* How far differences along a motion go: a share of the thickness of the thinnest film. */
+static double step_along(const struct work *w, const double *v)
 {
   static const double share = 0.02;
   const struct dea_solid *s = w->owner->solid;
-  struct mode *m = &w->mode;
   double thinnest_m = INFINITY, largest = 0;
   for (size_t e = 0; e < s->problem.grid->element_count; e++) {
     const struct dea_constituent *film = dea_solid_constituent(s, e);
     thinnest_m = film->permittivity_F_per_m > 0 ? fmin(thinnest_m, film->thickness_m) : thinnest_m;
   }
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    largest = fmax(largest, fabs(m->v[i]));
+    largest = fmax(largest, fabs(v[i]));
   }
-  m->step = share * thinnest_m / largest;
-  dea_adjoint_mode_pressures(w->adjoint, m->v, m->pressure);
+  return share * thinnest_m / largest;
 }
 
-/* Residuals at the equilibrium moved by `steps` along the mode. */
-static dea_status assemble_along(struct dea_context *ctx, struct work *w, double voltage_V,
-                                 double steps)
+/* Its pressures. */
+static void prepare_mode(struct work *w)
+{
+  struct mode *m = &w->mode;
+  dea_adjoint_mode_pressures(w->adjoint, m->v, m->pressure);
+  m->way = (struct way){m->v, m->pressure, step_along(w, m->v)};
+}
+
+/* Residuals at the unknowns as they are, moved by `steps` along a motion. */
+static dea_status assemble_along(struct dea_context *ctx, struct work *w, const struct way *way,
+                                 double voltage_V, double steps)
 {
   struct dea_solid *s = w->owner->solid;
-  const struct mode *m = &w->mode;
   double energy_J;
+  memcpy(w->u, s->state.u, s->problem.dofs * sizeof(double)); // what is held may have been moved
+  memcpy(w->multiplier, s->state.multiplier, dea_solid_pressure_count(s) * sizeof(double));
   for (size_t i = 0; i < s->problem.dofs; i++) {
-    s->state.u[i] = m->u[i] + steps * m->step * m->v[i];
+    s->state.u[i] = w->u[i] + steps * way->step * way->v[i];
   }
-  for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-    s->state.multiplier[i] = m->multiplier[i] + steps * m->step * m->pressure[i];
+  for (size_t i = 0; i < dea_solid_pressure_count(s) && way->pressure != NULL; i++) {
+    s->state.multiplier[i] = w->multiplier[i] + steps * way->step * way->pressure[i];
   }
   dea_status status = dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J);
-  memcpy(s->state.u, m->u, s->problem.dofs * sizeof(double));
-  memcpy(s->state.multiplier, m->multiplier, dea_solid_pressure_count(s) * sizeof(double));
+  memcpy(s->state.u, w->u, s->problem.dofs * sizeof(double));
+  memcpy(s->state.multiplier, w->multiplier, dea_solid_pressure_count(s) * sizeof(double));
   return status;
 }
 
@@ -219,19 +230,41 @@ static const double by_places[2][PLACES] = {
     {-1. / 12, 16. / 12, -30. / 12, 16. / 12, -1. / 12},
 };
 
-/* Slopes of the frequency by the unknowns: second differences of the residuals along the mode. */
-static dea_status mode_slope(struct dea_context *ctx, struct work *w, double *out,
-                             double *pressures)
+/* The first (order 1) or second derivative of residuals and constraints along a motion, added
+ * `factor` times to the slopes of a quantity by the unknowns. */
+static dea_status add_along(struct dea_context *ctx, struct work *w, const struct way *way,
+                            int order, double factor, double *out, double *pressures)
 {
   const struct dea_solid *s = w->owner->solid;
-  const struct mode *m = &w->mode;
   for (int k = 0; k < PLACES; k++) {
-    const double times = by_places[1][k] * m->rate / (m->step * m->step);
-    DEA_TRY(ctx, assemble_along(ctx, w, w->owner->voltage_V, k - PLACES / 2));
+    const double times = by_places[order - 1][k] * factor / pow(way->step, order);
+    if (times == 0) {
+      continue;
+    }
+    DEA_TRY(ctx, assemble_along(ctx, w, way, w->owner->voltage_V, k - PLACES / 2));
     for (size_t i = 0; i < s->problem.dofs; i++) {
       out[i] += times * s->work.g[i];
     }
     dea_adjoint_add_constraints(w->adjoint, times, pressures);
+  }
+  return DEA_OK;
+}
+
+/* Slopes of a monitor's motion by the unknowns; of a force way . R they are those of R along the
+ * way, as the tangent is symmetric. */
+static dea_status monitor_slope(struct dea_context *ctx, struct work *w, size_t i, size_t at)
+{
+  const size_t dofs = w->owner->solid->problem.dofs;
+  double *out = dea_adjoint_slope(w->adjoint, at);
+  bool is_force = false;
+  memset(w->force_way, 0, dofs * sizeof *w->force_way);
+  DEA_TRY(ctx, w->owner->monitor_slope(ctx, w->owner->model, i, out, w->force_way, &w->known[at]));
+  for (size_t k = 0; k < dofs && w->known[at]; k++) {
+    is_force = is_force || w->force_way[k] != 0;
+  }
+  if (is_force) {
+    const struct way way = {w->force_way, NULL, step_along(w, w->force_way)};
+    DEA_TRY(ctx, add_along(ctx, w, &way, 1, 1, out, dea_adjoint_pressure_slope(w->adjoint, at)));
   }
   return DEA_OK;
 }
@@ -245,11 +278,11 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltag
   double square = 0, pressed;
   memset(m->gain, 0, dea_solid_pressure_count(s) * sizeof(double));
   for (int k = 0; k < PLACES; k++) {
-    const double times = by_places[0][k] / m->step;
+    const double times = by_places[0][k] / m->way.step;
     if (k == PLACES / 2) {
       continue;
     }
-    DEA_TRY(ctx, assemble_along(ctx, w, voltage_V, k - PLACES / 2));
+    DEA_TRY(ctx, assemble_along(ctx, w, &m->way, voltage_V, k - PLACES / 2));
     square += times * dea_solid_dot(s, m->v, s->work.g);
     for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
       m->gain[i] += times * s->state.theta[i];
@@ -292,7 +325,8 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w)
     double *pressures = dea_adjoint_pressure_slope(w->adjoint, i);
     if (is_frequency(w->ask->columns[i])) {
       w->known[i] = w->mode.known;
-      DEA_TRY(ctx, w->known[i] ? mode_slope(ctx, w, out, pressures) : DEA_OK);
+      DEA_TRY(ctx, w->known[i] ? add_along(ctx, w, &w->mode.way, 2, w->mode.rate, out, pressures)
+                               : DEA_OK);
     } else {
       DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], out, pressures,
                                    &w->known[i]));
@@ -302,8 +336,7 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w)
     const size_t at = w->ask->column_count + i;
     w->known[at] = false;
     if (w->owner->monitor_slope != NULL) {
-      DEA_TRY(ctx, w->owner->monitor_slope(ctx, w->owner->model, i,
-                                           dea_adjoint_slope(w->adjoint, at), &w->known[at]));
+      DEA_TRY(ctx, monitor_slope(ctx, w, i, at));
     }
   }
   return DEA_OK;
@@ -495,6 +528,9 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   w.known = dea_arena_alloc(&memory, dea_gradient_width(ask) + 1, sizeof *w.known);
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
+  w.u = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
+  w.multiplier = dea_arena_alloc(&memory, dea_solid_pressure_count(s), sizeof(double));
+  w.force_way = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
   if (status == DEA_OK && dea_gradient_asks_mode(ask)) { // first: it needs a factor of its own
     status = find_mode(ctx, &w, &memory);

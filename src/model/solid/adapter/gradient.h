@@ -19,11 +19,12 @@ struct dea_gradient_owner {
    * the model has none. */
   dea_status (*slope)(struct dea_context *ctx, void *model, int column, double *out,
                       double *pressures, bool *known);
-  /* The same of the motion of monitor i of the question, out [dofs]; and the motions of all that
+  /* The same of the motion of monitor i of the question, out [dofs]; of a force on a body in its
+   * place the motion that it does work along, way [dofs], 0 before. And the motions of all that
    * are asked for at the unknowns as they are, out [monitor_count] of the question. Both NULL
    * without monitors. */
   dea_status (*monitor_slope)(struct dea_context *ctx, void *model, size_t i, double *out,
-                              bool *known);
+                              double *way, bool *known);
   dea_status (*monitors)(struct dea_context *ctx, void *model, double *out);
   /* Puts mesh, constituents and loads of one side of a change under the solid, whose unknowns stay.
    * DEA_E_ARGUMENT and DEA_E_UNSUPPORTED where the mesh cannot follow. */

@@ -12,6 +12,7 @@
 #include "model/solid/adapter/standing.h"
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/film.h"
+#include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
@@ -78,7 +79,9 @@ struct variant {
   struct dea_solid *solid;          // of the changed device; NULL: there is none
   double *force, *own_V;            // [dofs], [channels] as they were
   double *rest;                     // [dofs] u at rest, room
-  enum dea_observed *motion;        // [monitor_count of the question]
+  double *u, *shift;         // [dofs] u as it was, and how much farther the changed device is moved
+  bool is_moved;             // by that, from u
+  enum dea_observed *motion; // [monitor_count of the question]
   struct dea_gradient_places places;
   const struct dea_gradient_ask *ask;
 };
@@ -936,18 +939,15 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
 static bool same_hold(const struct dea_layout_support *a, const struct dea_layout_support *b)
 {
   return a->region == b->region && a->edge == b->edge && a->within == b->within &&
-         a->components == b->components && a->hinged == b->hinged &&
-         memcmp(a->move_m, b->move_m, sizeof a->move_m) == 0;
+         a->components == b->components && a->hinged == b->hinged;
 }
 
 static bool same_place(const struct dea_layout_body *a, const struct dea_layout_body *b)
 {
-  return a->region == b->region && a->free == b->free && a->moved == b->moved &&
-         memcmp(a->shift_m, b->shift_m, sizeof a->shift_m) == 0 &&
-         memcmp(a->turn_rad, b->turn_rad, sizeof a->turn_rad) == 0;
+  return a->region == b->region && a->free == b->free && a->moved == b->moved;
 }
 
-/* What is held where: unknowns at which slopes are taken do not move. */
+/* What is held where, but not how far it is moved. */
 static bool same_supports(const struct dea_layout *a, const struct dea_layout *b)
 {
   bool same = a->support_count == b->support_count && a->body_count == b->body_count &&
@@ -962,11 +962,10 @@ static bool same_supports(const struct dea_layout *a, const struct dea_layout *b
 }
 
 /* Whether nodes are held and follow bodies as before: unknowns at which slopes are taken stay. */
-static dea_status check_held(struct dea_context *ctx, struct dea_model *model)
+static dea_status check_held(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_model *own = &model->variant->own;
   const struct dea_solid_problem *a = &own->solid->problem, *b = &model->solid->problem;
-  DEA_TRY(ctx, hold_supports(ctx, model, true));
   const bool same =
       a->dofs == b->dofs && memcmp(a->held, b->held, a->dofs) == 0 &&
       memcmp(own->follows, model->follows, model->mesh_node_count * sizeof *model->follows) == 0;
@@ -983,16 +982,13 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, dea_mesh_follow(ctx, model->layout, &model->settings, &own->mesh, &model->mesh));
   DEA_TRY(ctx, fill_constituents(ctx, model));
   DEA_TRY(ctx, make_solid(ctx, model));
+  DEA_TRY(ctx, set_weight(ctx, model));
+  DEA_TRY(ctx, hold_supports(ctx, model, true));
+  DEA_TRY(ctx, load_bodies(ctx, model));
   DEA_TRY(ctx, check_held(ctx, model));
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
   find_thinnest(model);
   set_pressures(model, 1);
-  DEA_TRY(ctx, set_weight(ctx, model));
-  for (size_t i = 0; i < model->layout->body_count; i++) {
-    memcpy(model->push[i], model->layout->bodies[i].force_N, 3 * sizeof(double));
-    memcpy(model->push[i] + 3, model->layout->bodies[i].moment_N_m, 3 * sizeof(double));
-    push_body(model, i);
-  }
   const struct dea_solid_problem *p = &model->solid->problem;
   for (size_t i = 0; i < p->load_count; i++) { // they stand where a solve would bring them
     if (p->loads[i].parameter_count > 0) {
@@ -1000,6 +996,23 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
     }
   }
   return DEA_OK;
+}
+
+/* Supports and bodies to where the changed device has them: these are no unknowns, which stay. */
+static void move_held(struct variant *v)
+{
+  struct dea_solid *s = v->own.solid;
+  const size_t dofs = s->problem.dofs;
+  for (size_t i = 0; i < dofs; i++) {
+    const bool moves = s->problem.held[i] == DEA_PRESCRIBED;
+    v->shift[i] = moves ? v->solid->state.u_goal[i] - s->state.u_goal[i] : 0;
+  }
+  dea_solid_frame_vector(s, true, v->shift);
+  memcpy(v->u, s->state.u, dofs * sizeof *v->u);
+  for (size_t i = 0; i < dofs; i++) {
+    s->state.u[i] += v->shift[i];
+  }
+  v->is_moved = true;
 }
 
 static dea_status enter(struct dea_context *ctx, void *self, const struct dea_design_change *change,
@@ -1040,6 +1053,7 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
   for (size_t k = 1; k < model->layout->channel_count; k++) {
     s->state.own_V[k] = model->layout->channels[k].own_V;
   }
+  move_held(v);
   return DEA_OK;
 }
 
@@ -1056,6 +1070,11 @@ static void leave(struct dea_context *ctx, void *self)
   }
   *model = v->own;
   s->problem = v->problem;
+  if (v->is_moved) {
+    memcpy(s->state.u, v->u, s->problem.dofs * sizeof *s->state.u);
+    memset(v->shift, 0, s->problem.dofs * sizeof *v->shift);
+  }
+  v->is_moved = false;
   memcpy(s->state.force, v->force, s->problem.dofs * sizeof *s->state.force);
   memcpy(s->state.own_V, v->own_V, (s->problem.channel_count + 1) * sizeof *s->state.own_V);
 }
@@ -1107,13 +1126,15 @@ static dea_status slope(struct dea_context *ctx, void *self, int column, double 
 }
 
 static dea_status monitor_slope(struct dea_context *ctx, void *self, size_t i, double *out,
-                                bool *known)
+                                double *way, bool *known)
 {
   struct dea_model *model = self;
   const struct variant *v = model->variant;
   (void)ctx;
   *known =
-      dea_observer_gradient(model->observer, model->solid, v->ask->monitors[i], v->motion[i], out);
+      dea_observer_gradient(model->observer, model->solid, v->ask->monitors[i], v->motion[i],
+                            out) ||
+      dea_observer_force_way(model->observer, model->solid, v->ask->monitors[i], v->motion[i], way);
   return DEA_OK;
 }
 
@@ -1136,7 +1157,9 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
   const struct variant *v = model->variant;
   const struct dea_gradient_film film = film_of(model);
   double *rest = v->rest; // room: followers of bodies are moved
-  memcpy(rest, model->rest, model->solid->problem.dofs * sizeof *rest);
+  for (size_t i = 0; i < model->solid->problem.dofs; i++) {
+    rest[i] = model->rest[i] + v->shift[i];
+  }
   model->at.report.energy_J = energy_J;
   dea_status status =
       dea_gradient_rest_energy(model->solid, v->ask, rest, model->rest + model->solid->problem.dofs,
@@ -1206,13 +1229,15 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
     DEA_TRY(ctx, check_densities(ctx, model->layout));
   }
   struct variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
-  double *values = dea_arena_alloc(&memory, 2 * p->dofs, sizeof *values);
+  double *values = dea_arena_alloc(&memory, 4 * p->dofs, sizeof *values);
   double *own_V = dea_arena_alloc(&memory, p->channel_count + 1, sizeof *own_V);
   enum dea_observed *motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *motion);
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
   if (status == DEA_OK) {
     v->force = values;
     v->rest = values + p->dofs;
+    v->u = values + 2 * p->dofs;
+    v->shift = values + 3 * p->dofs;
     v->own_V = own_V;
     v->motion = motion;
     status = find_gradient(ctx, model, ask, out);

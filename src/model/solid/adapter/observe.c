@@ -534,6 +534,34 @@ static void add_area_stretch(const int *const face[2], int nodes, double dA, dou
   }
 }
 
+/* Adds the same of the length of the tangent along x or y, in the mean over the copies of the
+ * sector: of the direction a in the sector d|F a| = F a . dF a / |F a|. */
+static void add_tangent(const struct dea_layout_mesh *mesh, bool along_y, const int *const face[2],
+                        int nodes, double dA, double (*slope)[2], double F[3][2], double *weight)
+{
+  const size_t copies = dea_layout_sector_copies(&mesh->sector);
+  const double axis[2] = {along_y ? 0 : 1, along_y ? 1 : 0};
+  for (size_t k = 0; k < copies; k++) {
+    double a[2] = {axis[0], axis[1]}, along[3], size = 0;
+    if (k > 0) {
+      struct dea_motion back = back_to_sector(mesh, k);
+      dea_layout_sector_turn(&back, axis, a);
+    }
+    for (int i = 0; i < 3; i++) {
+      along[i] = F[i][0] * a[0] + F[i][1] * a[1];
+      size += along[i] * along[i];
+    }
+    for (int n = 0; n < nodes; n++) {
+      const double by =
+          0.5 * dA * (slope[n][0] * a[0] + slope[n][1] * a[1]) / (sqrt(size) * (double)copies);
+      for (int i = 0; i < 3; i++) {
+        weight[3 * face[0][n] + i] += by * along[i];
+        weight[3 * face[1][n] + i] += by * along[i];
+      }
+    }
+  }
+}
+
 /* How much of a displacement of the sector lies along x, y or z in the mean over its copies. */
 static void share_of_copies(const struct dea_layout_sector *sector, enum dea_observed motion,
                             double share[3])
@@ -552,8 +580,8 @@ static void share_of_copies(const struct dea_layout_sector *sector, enum dea_obs
   }
 }
 
-/* Of a region's mean area stretch, or of its mean displacement along x, y or z. Returns the area
- * that the means are over. */
+/* Of a region's mean stretch along x or y or area stretch, or of its mean displacement along x, y
+ * or z. Returns the area that the means are over. */
 static double gradient_of_region(const struct dea_layout_mesh *mesh,
                                  const struct dea_layout_monitor *m, enum dea_observed motion,
                                  const double *u, double *weight)
@@ -578,8 +606,10 @@ static double gradient_of_region(const struct dea_layout_mesh *mesh,
       double dA =
           slopes_of(grid, face, at, u, value, slope, F) * part[p % points] * part[p / points];
       area += dA;
-      if (!shift) {
+      if (motion == DEA_OBSERVED_AREA_STRETCH) {
         add_area_stretch(face, per, dA, slope, F, weight);
+      } else if (!shift) {
+        add_tangent(mesh, motion == DEA_OBSERVED_STRETCH_Y, face, per, dA, slope, F, weight);
       }
       for (int i = 0; i < 3 * per && shift; i++) {
         weight[3 * face[0][i / 3] + i % 3] += 0.5 * dA * value[i / 3] * share[i % 3];
@@ -593,10 +623,29 @@ static double gradient_of_region(const struct dea_layout_mesh *mesh,
 static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed motion)
 {
   const bool shift = motion <= DEA_OBSERVED_Z;
-  return kind == DEA_MONITOR_POINT    ? shift
-         : kind == DEA_MONITOR_LINE   ? motion == DEA_OBSERVED_STRETCH
-         : kind == DEA_MONITOR_REGION ? shift || motion == DEA_OBSERVED_AREA_STRETCH
-                                      : motion <= DEA_OBSERVED_TURN_Z;
+  return kind == DEA_MONITOR_POINT  ? shift
+         : kind == DEA_MONITOR_LINE ? motion == DEA_OBSERVED_STRETCH
+         : kind == DEA_MONITOR_REGION
+             ? shift || (motion >= DEA_OBSERVED_STRETCH_X && motion <= DEA_OBSERVED_AREA_STRETCH)
+             : motion <= DEA_OBSERVED_TURN_Z;
+}
+
+bool dea_observer_force_way(const struct dea_observer *o, const struct dea_solid *solid,
+                            size_t monitor, enum dea_observed motion, double *way)
+{
+  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
+  const size_t component = (size_t)(motion - DEA_OBSERVED_FORCE_X);
+  if (m->kind != DEA_MONITOR_BODY || motion < DEA_OBSERVED_FORCE_X) {
+    return false;
+  }
+  if (((dea_layout_sector_keeps(&o->mesh->sector) >> component) & 1) == 0) {
+    return true; // it is 0
+  }
+  const bool known = dea_solid_body_force_way(solid, m->body, component, way);
+  for (size_t i = 0; i < solid->problem.dofs && known; i++) {
+    way[i] *= (double)dea_layout_sector_copies(&o->mesh->sector);
+  }
+  return known;
 }
 
 bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size_t monitor,

@@ -26,9 +26,15 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
                                       struct dea_solid *solid, const double *v, double *out);
 
 /* How a motion of a monitor changes with each displacement, from where the solid is: weight
- * [3 node_count]. false: that is not known of this motion (mean stretches of a region along x and
- * y, forces). */
+ * [3 node_count]. false: that is not known of this motion (forces). */
 bool dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, double *weight);
+
+/* The motion that a force or moment of a body's monitor does work along, way [3 node_count], 0
+ * before: it is way . R, with the forces R on what is held. false: not one of these, or not known
+ * (a
+ * moment on a body that may turn). */
+bool dea_observer_force_way(const struct dea_observer *observer, const struct dea_solid *solid,
+                            size_t monitor, enum dea_observed motion, double *way);
 
 #endif

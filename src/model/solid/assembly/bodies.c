@@ -612,35 +612,62 @@ void dea_solid_body_push(struct dea_solid *solid, size_t body, const double forc
   }
 }
 
-/* What is conjugate to w is T^T times the moment, where T dw is the small turn on top of R:
- * T = a 1 + b [w x] + c w w^T with c = (1 - a)/s. */
+/* T^-T, by which what is conjugate to w becomes a moment: that is T^T times the moment, where T dw
+ * is the small turn on top of R: T = a 1 + b [w x] + c w w^T with c = (1 - a)/s. */
+static void moment_matrix(const struct rotation *q, double M[9])
+{
+  double T[9], c = 0, power = 1. / 6, det = 0;
+  for (int k = 0; k < 32; k++) { // c = sum (-s)^k/(2k + 3)!
+    c += power;
+    power *= -q->s / ((2 * k + 4) * (2 * k + 5));
+  }
+  cross_matrix(q->w, T);
+  for (int i = 0; i < 9; i++) {
+    T[i] = q->b[0] * T[i] + c * q->w[i / 3] * q->w[i % 3] + (i % 4 == 0 ? q->a[0] : 0);
+  }
+  for (int i = 0; i < 9; i++) { // cofactors of T over its determinant
+    int j = (i / 3 + 1) % 3, k = (i / 3 + 2) % 3, v = (i % 3 + 1) % 3, w = (i % 3 + 2) % 3;
+    M[i] = T[3 * j + v] * T[3 * k + w] - T[3 * j + w] * T[3 * k + v];
+    det += i < 3 ? T[i] * M[i] : 0;
+  }
+  for (int i = 0; i < 9; i++) {
+    M[i] /= det;
+  }
+}
+
 void dea_solid_body_reaction(const struct dea_solid *solid, size_t body, double force_N[3],
                              double moment_N_m[3])
 {
   const struct dea_solid_body *b = &solid->problem.bodies[body];
   const double *reaction = solid->found.reaction + 3 * b->node;
   struct rotation q;
-  double T[9], m[3], c = 0, power = 1. / 6;
+  double M[9], m[3];
   rotation_at(solid, body, solid->state.u, &q);
-  for (int k = 0; k < 32; k++) { // c = sum (-s)^k/(2k + 3)!
-    c += power;
-    power *= -q.s / ((2 * k + 4) * (2 * k + 5));
-  }
-  cross_matrix(q.w, T);
-  for (int i = 0; i < 9; i++) {
-    T[i] = q.b[0] * T[i] + c * q.w[i / 3] * q.w[i % 3] + (i % 4 == 0 ? q.a[0] : 0);
-  }
+  moment_matrix(&q, M);
   for (size_t i = 0; i < 3; i++) {
     force_N[i] = reaction[i];
     m[i] = b->length_m * reaction[3 + i];
   }
-  double C[9], det = 0; // cofactors of T: T^-T = C/det
-  for (int i = 0; i < 9; i++) {
-    int j = (i / 3 + 1) % 3, k = (i / 3 + 2) % 3, v = (i % 3 + 1) % 3, w = (i % 3 + 2) % 3;
-    C[i] = T[3 * j + v] * T[3 * k + w] - T[3 * j + w] * T[3 * k + v];
-    det += i < 3 ? T[i] * C[i] : 0;
-  }
   for (size_t i = 0; i < 3; i++) {
-    moment_N_m[i] = (C[3 * i] * m[0] + C[3 * i + 1] * m[1] + C[3 * i + 2] * m[2]) / det;
+    moment_N_m[i] = M[3 * i] * m[0] + M[3 * i + 1] * m[1] + M[3 * i + 2] * m[2];
   }
+}
+
+bool dea_solid_body_force_way(const struct dea_solid *solid, size_t body, size_t component,
+                              double *way)
+{
+  const struct dea_solid_body *b = &solid->problem.bodies[body];
+  const unsigned char *held = solid->problem.held + 3 * b->node;
+  struct rotation q;
+  double M[9];
+  if (component < 3) {
+    way[3 * b->node + component] = 1;
+    return true;
+  }
+  rotation_at(solid, body, solid->state.u, &q);
+  moment_matrix(&q, M);
+  for (size_t i = 0; i < 3; i++) {
+    way[3 * b->node + 3 + i] = b->length_m * M[3 * (component - 3) + i];
+  }
+  return held[3] && held[4] && held[5];
 }
