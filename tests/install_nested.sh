@@ -17,6 +17,12 @@ PKG_CONFIG_PATH=$library/pkgconfig
 LD_LIBRARY_PATH=$library
 export PKG_CONFIG_PATH LD_LIBRARY_PATH
 
+moved=$build/moved # another prefix than the one that was configured
+rm -rf "$moved"
+cmake --install "$build" --prefix "$moved" >/dev/null
+there=$(dirname "$(find "$moved" -name libdea.pc)")
+data=$(PKG_CONFIG_PATH=$there pkg-config --variable=datadir libdea)
+[ "$(cd "$data" && pwd)" = "$moved/share/dea" ] || { echo "libdea.pc of $moved names $data"; exit 1; }
 find "$prefix/include" -type f | grep -v '/include/dea\.h$' && { echo "more than dea.h was installed"; exit 1; }
 # shellcheck disable=SC2046 # one argument a flag
 cc -std=c17 -Wall -Wextra -Wpedantic -Werror "$source/examples/c/models.c" -o "$build/user" \

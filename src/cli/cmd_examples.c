@@ -92,6 +92,9 @@ static dea_status unknown_example(struct dea_context *ctx, const struct cli_data
     names[i] = list->files[i].name;
   }
   nearest = dea_nearest_name(name, names, list->count);
+  for (size_t i = 0; i < list->count && nearest == NULL; i++) {
+    nearest = strstr(names[i], name) != NULL ? names[i] : NULL;
+  }
   dea_free(ctx, names);
   return nearest != NULL ? dea_fail(ctx, DEA_E_USAGE,
                                     "there is no example '%s'; did you mean '%s'?", name, nearest)
