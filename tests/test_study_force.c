@@ -451,6 +451,15 @@ static void test_interrupted(void **state)
   dea_context_clear(ctx);
 }
 
+/* All but what lies unused between the members. */
+static void assert_same_point(const struct dea_load_point *one, const struct dea_load_point *other)
+{
+  assert_memory_equal(one, other, offsetof(struct dea_load_point, stable));
+  assert_int_equal(one->stable, other->stable);
+  assert_int_equal(one->unstable_modes, other->unstable_modes);
+  assert_int_equal(one->told, other->told);
+}
+
 /* Lines in processes of their own have the points of lines one after the other, up to the first
  * that stops; only the tip is pressed in here. */
 static void test_beside(void **state)
@@ -476,8 +485,7 @@ static void test_beside(void **state)
       assert_int_equal(curves[i]->status, curves[0]->status);
       assert_string_equal(curves[i]->stopped, curves[0]->stopped);
       for (size_t p = 0; p < curves[i]->count; p++) {
-        assert_memory_equal(&curves[i]->points[p], &curves[0]->points[p],
-                            sizeof *curves[i]->points);
+        assert_same_point(&curves[i]->points[p], &curves[0]->points[p]);
       }
     }
     for (int i = 0; i < 3; i++) {

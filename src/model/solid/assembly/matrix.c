@@ -342,6 +342,7 @@ static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_perce
   if (*factor == NULL) {
     DEA_TRY(ctx, analyse(ctx, A, room_percent, factor));
   }
+  DEA_PETSC(ctx, MatSetErrorIfFailure(A, PETSC_FALSE)); // as SLEPc's solvers set it
   DEA_PETSC(ctx, MatCholeskyFactorNumeric(*factor, A, &info));
   DEA_PETSC(ctx, MatFactorGetError(*factor, error));
   return DEA_OK;
