@@ -106,6 +106,22 @@ static inline struct state changed(const struct state *from, int i, double share
   return s;
 }
 
+/* Changes of `count` of its numbers by shares of themselves to either side, out [count], over the
+ * share; sides [2 count] are lent to them. Of all numbers of the device: numbers NULL. */
+static inline void make_changes(const struct state *at, const int *numbers, size_t count,
+                                struct state *sides, struct dea_design_change *out)
+{
+  const double share = 1e-5;
+  for (size_t i = 0; i < count; i++) {
+    for (size_t k = 0; k < 2; k++) {
+      sides[2 * i + k] =
+          changed(at, numbers != NULL ? numbers[i] : (int)i, k == 0 ? -share : share);
+    }
+    out[i] = (struct dea_design_change){.device = {&sides[2 * i].device, &sides[2 * i + 1].device},
+                                        .width = 2 * share};
+  }
+}
+
 /* Of a slope: what differences of residuals over 1e-5 of a number leave, rounding of 1e-11 over
  * that (docs/theory/gradients.md). */
 static const double slope_accuracy = 5e-6;

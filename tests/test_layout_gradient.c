@@ -69,6 +69,12 @@ struct at {
   struct dea_model_settings settings; // of a critical voltage
 };
 
+static void read_design(struct at *at, const char *name, const char *text)
+{
+  assert_int_equal(dea_design_read_memory(ctx, name, text, strlen(text), NULL, 0, &at->design),
+                   DEA_OK);
+}
+
 static size_t key_count(const struct at *at)
 {
   return at->vibrates ? KEYS : FREQUENCY;
@@ -246,8 +252,7 @@ static void test_cone(void **state)
 {
   (void)state;
   struct at at = {.voltage_V = 3e3};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  read_design(&at, "cone.yaml", cone);
   /* voltage, thickness, two stretches, ratio and voltage of a channel, mass, force, stiffness and
    * free end of a spring, three of the law, permittivity, four radii */
   assert_int_equal(check(&at), 18);
@@ -261,8 +266,7 @@ static void test_frequency_of_the_cone(void **state)
                                      "bodies.hub.mass",   "springs[0].stiffness",
                                      "shapes.hub.radius", NULL};
   struct at at = {.voltage_V = 3e3, .only = only, .vibrates = true};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  read_design(&at, "cone.yaml", cone);
   check(&at);
 }
 
@@ -328,9 +332,7 @@ static void test_shapes(void **state)
                   .asked = true,
                   .only = only,
                   .leaves = 5e-12};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "aside.yaml", device, strlen(device), NULL, 0, &at.design),
-      DEA_OK);
+  read_design(&at, "aside.yaml", device);
   /* beside the shapes: voltage, thickness, stretch, law, permittivity of the film, thickness,
    * stretch and law of the leg, force; of shapes also the y that is said to be 0 */
   assert_int_equal(check(&at), 14 + 13);
@@ -347,8 +349,7 @@ static void test_region(void **state)
                   .motion = {DEA_OBSERVED_Z, DEA_OBSERVED_AREA_STRETCH},
                   .asked = true,
                   .only = only};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "cone.yaml", cone, strlen(cone), NULL, 0, &at.design), DEA_OK);
+  read_design(&at, "cone.yaml", cone);
   check(&at);
 }
 
@@ -415,9 +416,7 @@ static void test_plate_askew(void **state)
                   .asked = true,
                   .only = only,
                   .leaves = 5e-11};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "askew.yaml", device, strlen(device), NULL, 0, &at.design),
-      DEA_OK);
+  read_design(&at, "askew.yaml", device);
   check(&at);
 }
 
@@ -470,9 +469,7 @@ static void test_held_hub(void **state)
                   .only = only,
                   .again = true,
                   .leaves = 5e-11};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "held.yaml", device, strlen(device), NULL, 0, &at.design),
-      DEA_OK);
+  read_design(&at, "held.yaml", device);
   check(&at);
 }
 

@@ -28,17 +28,10 @@ static double find_critical_slopes(const struct state *at,
                                    const struct dea_model_settings *settings,
                                    enum dea_event_kind kind, double *out)
 {
-  const double share = 1e-5;
   struct state sides[2 * OF_DEVICE];
   struct dea_design_change changes[OF_DEVICE];
   struct dea_critical critical = find_critical(at, settings, kind);
-  for (int i = 0; i < OF_DEVICE; i++) {
-    for (int k = 0; k < 2; k++) {
-      sides[2 * i + k] = changed(at, i, k == 0 ? -share : share);
-    }
-    changes[i] = (struct dea_design_change){
-        .device = {&sides[2 * i].device, &sides[2 * i + 1].device}, .width = 2 * share};
-  }
+  make_changes(at, NULL, OF_DEVICE, sides, changes);
   if (dea_critical_slopes(ctx, &critical, changes, OF_DEVICE, out) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }

@@ -38,7 +38,6 @@ static struct dea_load_point find_slopes(const struct state *at,
                                          const struct dea_model_settings *settings, double stretch,
                                          const int *numbers, size_t count, double *out)
 {
-  static const double share = 1e-5;
   struct state sides[2 * OF_DEVICE];
   struct dea_design_change changes[OF_DEVICE];
   struct dea_model *model;
@@ -46,13 +45,7 @@ static struct dea_load_point find_slopes(const struct state *at,
   for (int k = 0; k < KEYS; k++) {
     columns[k] = dea_point_column_find(keys[k]);
   }
-  for (size_t i = 0; i < count; i++) {
-    for (size_t k = 0; k < 2; k++) {
-      sides[2 * i + k] = changed(at, numbers[i], k == 0 ? -share : share);
-    }
-    changes[i] = (struct dea_design_change){
-        .device = {&sides[2 * i].device, &sides[2 * i + 1].device}, .width = 2 * share};
-  }
+  make_changes(at, numbers, count, sides, changes);
   const struct dea_gradient_ask ask = {.changes = changes,
                                        .change_count = count,
                                        .columns = columns,
@@ -135,7 +128,6 @@ static void test_where_it_turns(void **state)
   (void)state;
   static const int numbers[] = {THICKNESS, MODULUS, PERMITTIVITY, PRE_STRETCH, ELECTRODE, FRAME};
   enum { COUNT = sizeof numbers / sizeof numbers[0], STRETCHES = 3 };
-  static const double share = 1e-5;
   const struct dea_model_settings film = {.film = DEA_FILM_MEMBRANE};
   const struct state at = stretched_disc();
   const struct dea_critical_ask ask = {solid, &at.device, &film, DEA_EVENT_PULL_IN, 100, 2e4};
@@ -144,13 +136,7 @@ static void test_where_it_turns(void **state)
   struct dea_design_change changes[COUNT];
   double slopes[COUNT * KEYS], of_pull_in[COUNT];
   assert_int_equal(dea_critical_find(ctx, &ask, &pull_in), DEA_OK);
-  for (size_t i = 0; i < COUNT; i++) {
-    for (size_t k = 0; k < 2; k++) {
-      sides[2 * i + k] = changed(&at, numbers[i], k == 0 ? -share : share);
-    }
-    changes[i] = (struct dea_design_change){
-        .device = {&sides[2 * i].device, &sides[2 * i + 1].device}, .width = 2 * share};
-  }
+  make_changes(&at, numbers, COUNT, sides, changes);
   assert_int_equal(dea_critical_slopes(ctx, &pull_in, changes, COUNT, of_pull_in), DEA_OK);
   const double stretches[STRETCHES] = {pull_in.point.electrode_stretch, 1.2, 1.6};
   for (int n = 0; n < STRETCHES; n++) {

@@ -50,7 +50,7 @@ static void add_findings(const struct dea_context *ctx, size_t known, struct dea
   }
 }
 
-static bool send_all(int socket, const void *bytes, size_t length)
+bool dea_send_all(int socket, const void *bytes, size_t length)
 {
   for (const char *from = bytes; length > 0;) {
     const ssize_t n = send(socket, from, length, MSG_NOSIGNAL);
@@ -80,36 +80,49 @@ static int work_aside(struct dea_context *ctx, dea_aside_work work, void *user, 
   add_findings(ctx, known, &findings);
   head.bytes = bytes.length;
   head.findings = findings.length;
-  return !bytes.failed && !findings.failed && send_all(socket, &head, sizeof head) &&
-                 send_all(socket, bytes.data, bytes.length) &&
-                 send_all(socket, findings.data, findings.length)
+  return !bytes.failed && !findings.failed && dea_send_all(socket, &head, sizeof head) &&
+                 dea_send_all(socket, bytes.data, bytes.length) &&
+                 dea_send_all(socket, findings.data, findings.length)
              ? 0
              : 1;
 }
 
 // Here -------------------------------------------------------------------------------------------
 
-dea_status dea_aside_start(struct dea_context *ctx, dea_aside_work work, void *user,
-                           struct dea_aside *aside)
+dea_status dea_fork_beside(struct dea_context *ctx, pid_t *process, int *socket)
 {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     return dea_fail(ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
   }
-  const pid_t parent = getpid(), process = fork();
-  if (process == 0) {
+  const pid_t parent = getpid();
+  *process = fork();
+  *socket = ends[*process == 0 ? 1 : 0];
+  close(ends[*process == 0 ? 0 : 1]);
+  if (*process == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     signal(SIGINT, SIG_IGN);
     signal(SIGTERM, SIG_DFL);
-    close(ends[0]);
-    _exit(getppid() == parent ? work_aside(ctx, work, user, ends[1]) : 1);
-  }
-  close(ends[1]);
-  if (process < 0) {
-    close(ends[0]);
+    if (getppid() != parent) {
+      _exit(1);
+    }
+  } else if (*process < 0) {
+    close(*socket);
     return dea_fail(ctx, DEA_E_IO, "no other process: %s", strerror(errno));
   }
-  *aside = (struct dea_aside){process, ends[0], {.ctx = ctx}, true, false};
+  return DEA_OK;
+}
+
+dea_status dea_aside_start(struct dea_context *ctx, dea_aside_work work, void *user,
+                           struct dea_aside *aside)
+{
+  pid_t process = -1;
+  int socket = -1;
+  DEA_TRY(ctx, dea_fork_beside(ctx, &process, &socket));
+  if (process == 0) {
+    _exit(work_aside(ctx, work, user, socket));
+  }
+  *aside = (struct dea_aside){process, socket, {.ctx = ctx}, true, false};
   return DEA_OK;
 }
 

@@ -35,4 +35,12 @@ dea_status dea_aside_take(struct dea_context *ctx, const struct dea_aside *aside
 /* Ends it at once if it still runs, and frees what came of it. */
 void dea_aside_end(struct dea_aside *aside);
 
+// What other pools of processes are made of ------------------------------------------------------
+
+/* Makes a copy of this process, with a socket between both. *process: 0 in the copy, which ends
+ * with this one and leaves Ctrl-C to it. */
+dea_status dea_fork_beside(struct dea_context *ctx, pid_t *process, int *socket);
+/* All bytes [length] through a socket; false where the other end is gone. */
+bool dea_send_all(int socket, const void *bytes, size_t length);
+
 #endif

@@ -1,6 +1,7 @@
-#define _GNU_SOURCE // prctl's names, MSG_NOSIGNAL
+#define _GNU_SOURCE // names of POSIX
 #include "explore/pool.h"
 
+#include "base/aside.h"
 #include "base/clock.h"
 
 #include <errno.h>
@@ -9,7 +10,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -35,19 +35,6 @@ struct reply {
   dea_status status;
   char message[256];
 };
-
-static bool send_all(int socket, const void *bytes, size_t length)
-{
-  for (const char *from = bytes; length > 0;) {
-    const ssize_t n = send(socket, from, length, MSG_NOSIGNAL);
-    if (n <= 0 && errno != EINTR) {
-      return false;
-    }
-    from += n > 0 ? n : 0;
-    length -= n > 0 ? (size_t)n : 0;
-  }
-  return true;
-}
 
 static bool take_all(int socket, void *bytes, size_t length)
 {
@@ -77,24 +64,19 @@ static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator,
     reply.status = evaluator->evaluate(evaluator->user, ctx, &reply.done);
     snprintf(reply.message, sizeof reply.message, "%.255s", dea_context_message(ctx));
     reply.done.wall_s = dea_clock_s() - began_s;
-    if (!send_all(socket, &reply, sizeof reply)) {
+    if (!dea_send_all(socket, &reply, sizeof reply)) {
       return;
     }
   }
 }
 
-/* A process that ends with this one, however that ends, and leaves Ctrl-C to it. */
+/* A process that works until this one ends, however that ends. */
 static dea_status start(struct dea_pool *pool, struct worker *worker)
 {
-  int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    return dea_fail(pool->ctx, DEA_E_IO, "no socket for another process: %s", strerror(errno));
-  }
-  const pid_t parent = getpid(), process = fork();
+  pid_t process = -1;
+  int socket = -1;
+  DEA_TRY(pool->ctx, dea_fork_beside(pool->ctx, &process, &socket));
   if (process == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    signal(SIGINT, SIG_IGN);
-    signal(SIGTERM, SIG_DFL);
     dea_context_set_progress(pool->ctx, NULL, NULL);
     dea_context_set_interrupt(pool->ctx, NULL);
     for (size_t k = 0; k < pool->count; k++) { // the end of one is seen by this socket alone
@@ -102,18 +84,10 @@ static dea_status start(struct dea_pool *pool, struct worker *worker)
         close(pool->workers[k].socket);
       }
     }
-    close(ends[0]);
-    if (getppid() == parent) {
-      work(pool->ctx, pool->evaluator, ends[1]);
-    }
+    work(pool->ctx, pool->evaluator, socket);
     _exit(0);
   }
-  close(ends[1]);
-  if (process < 0) {
-    close(ends[0]);
-    return dea_fail(pool->ctx, DEA_E_IO, "no other process: %s", strerror(errno));
-  }
-  *worker = (struct worker){.process = process, .socket = ends[0]};
+  *worker = (struct worker){.process = process, .socket = socket};
   return DEA_OK;
 }
 
@@ -174,7 +148,7 @@ static dea_status give(struct dea_pool *pool, struct worker *worker)
   }
   worker->now = now;
   worker->busy = true;
-  send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
+  dea_send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
   return DEA_OK;
 }
 

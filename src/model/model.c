@@ -109,13 +109,12 @@ dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_typ
                              struct dea_model *model, const struct dea_device *device,
                              double stretch, struct dea_load_point *out)
 {
-  enum { POINTS_MAX = 20000, LONG_POINTS_MAX = 500 }; // as study path
   static const double close = 1e-9;
-  const struct dea_path_options options = {.max_stretch = device->pre_stretch * stretch,
-                                           .max_voltage_V = INFINITY,
-                                           .max_points =
-                                               type->path != NULL ? POINTS_MAX : LONG_POINTS_MAX,
-                                           .stays = true};
+  const struct dea_path_options options = {
+      .max_stretch = device->pre_stretch * stretch,
+      .max_voltage_V = INFINITY,
+      .max_points = type->path != NULL ? DEA_PATH_POINTS_MAX : DEA_LONG_PATH_POINTS_MAX,
+      .stays = true};
   *out = dea_load_point_empty();
   DEA_TRY(ctx, dea_model_path(ctx, type, model, &options, take_last, NULL, out));
   return fabs(out->electrode_stretch - stretch) <= close * stretch

@@ -19,6 +19,9 @@ struct dea_model; // state of one solve: device, last equilibrium
 typedef dea_status (*dea_point_sink)(void *user, const struct dea_load_point *point);
 typedef dea_status (*dea_event_sink)(void *user, const struct dea_event *event);
 
+/* Points of a path that are enough for any, and of one that costs more than a sweep. */
+enum { DEA_PATH_POINTS_MAX = 20000, DEA_LONG_PATH_POINTS_MAX = 500 };
+
 struct dea_path_options {
   double max_stretch;   // end: total electrode stretch (pre-stretch included)
   double max_voltage_V; // end; INFINITY for none

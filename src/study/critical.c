@@ -21,7 +21,7 @@ static const double enough = 1e-10;  // of the largest value: where the last lin
 static const double nothing = 1e-12; // of it: rounding of a value that is 0
 static const double near = 1e-6;     // of a voltage: how far lines lead well
 static const double narrow = 1e-9;   // of a voltage: a bracket that says all
-enum { STEPS = 80, BUCKLING_STEPS = 40, PATH_POINTS = 20000 };
+enum { STEPS = 80, BUCKLING_STEPS = 40 };
 
 /* A value at a voltage. */
 struct seen {
@@ -258,7 +258,7 @@ static dea_status find_on_path(struct search *s)
 {
   const struct dea_path_options options = {.max_stretch = 10 * s->ask->device->pre_stretch,
                                            .max_voltage_V = s->ask->highest_V,
-                                           .max_points = PATH_POINTS};
+                                           .max_points = DEA_PATH_POINTS_MAX};
   const dea_status status =
       s->ask->type->path(s->ctx, s->out->model, &options, pass_point, take_event, s->out);
   if (status != DEA_OK && isnan(s->out->voltage_V)) {

@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-enum { POINTS_MAX = 20000, LONG_POINTS_MAX = 500 };
-
 struct target {
   struct dea_context *ctx;
   struct dea_curve *curve;
@@ -69,7 +67,7 @@ static struct dea_path_options long_options(const struct dea_design *design)
   return (struct dea_path_options){
       .max_stretch = end->origin == DEA_DEFAULT ? (double)INFINITY : end->si,
       .max_voltage_V = dea_design_highest_V(design),
-      .max_points = LONG_POINTS_MAX,
+      .max_points = DEA_LONG_PATH_POINTS_MAX,
   };
 }
 
@@ -83,7 +81,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
-  struct dea_path_options options = {.max_voltage_V = INFINITY, .max_points = POINTS_MAX};
+  struct dea_path_options options = {.max_voltage_V = INFINITY, .max_points = DEA_PATH_POINTS_MAX};
   if (is_long) {
     options = long_options(result->design);
   } else {

@@ -418,6 +418,22 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
                : dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no electrode's stretch here");
 }
 
+/* Quantities at the unknowns as they are and another voltage, out [dea_gradient_width], 0 before.
+ */
+static dea_status quantities_at(struct dea_context *ctx, struct work *w, double voltage_V,
+                                double *out)
+{
+  struct dea_solid *s = w->owner->solid;
+  double energy_J;
+  s->state.voltage_V = voltage_V;
+  dea_status status = dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J);
+  if (status == DEA_OK) {
+    status = add_quantities(ctx, w, voltage_V, energy_J, out);
+  }
+  s->state.voltage_V = w->owner->voltage_V;
+  return status;
+}
+
 /* What each quantity takes of the stretch's slope. */
 static dea_status share_border(struct dea_context *ctx, struct work *w)
 {
@@ -425,13 +441,8 @@ static dea_status share_border(struct dea_context *ctx, struct work *w)
   const size_t width = dea_gradient_width(w->ask);
   const double V = w->owner->voltage_V, by_V = share_of_voltage * V;
   struct border *b = &w->border;
-  for (int side = -1; side <= 1; side += 2) {
-    double energy_J, *values = b->by_voltage + (side > 0 ? width : 0);
-    w->owner->solid->state.voltage_V = V + side * by_V;
-    DEA_TRY(ctx, dea_adjoint_assemble(ctx, w->adjoint, V + side * by_V, &energy_J));
-    DEA_TRY(ctx, add_quantities(ctx, w, V + side * by_V, energy_J, values));
-  }
-  w->owner->solid->state.voltage_V = V;
+  DEA_TRY(ctx, quantities_at(ctx, w, V - by_V, b->by_voltage));
+  DEA_TRY(ctx, quantities_at(ctx, w, V + by_V, b->by_voltage + width));
   for (size_t i = 0; i < width; i++) {
     double *slope = dea_adjoint_slope(w->adjoint, i);
     b->by_voltage[i] = (b->by_voltage[width + i] - b->by_voltage[i]) / (2 * by_V);

@@ -348,15 +348,21 @@ static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_perce
   return DEA_OK;
 }
 
+/* That of a large mesh takes seconds, and hears nothing. */
+static dea_status heed_before_factor(struct dea_context *ctx)
+{
+  return dea_interrupted_anywhere(ctx)
+             ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor")
+             : DEA_OK;
+}
+
 enum { ROOM = 25, ROOM_MAX = 400 };
 
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 {
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
-  if (dea_interrupted_anywhere(ctx)) { // that of a large mesh takes seconds, and hears nothing
-    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor");
-  }
+  DEA_TRY(ctx, heed_before_factor(ctx));
   for (PetscInt room = ROOM; room <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY; room *= 2) {
     if (room > ROOM) {
       MatDestroy(factor); // PETSc takes no second attempt with it
@@ -389,9 +395,7 @@ static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s,
       s->work.takes_small_pivots || s->work.no_fronts) {
     return DEA_OK;
   }
-  if (dea_interrupted_anywhere(ctx)) { // as dea_solid_factor
-    return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor");
-  }
+  DEA_TRY(ctx, heed_before_factor(ctx));
   if (s->work.fronts != NULL && !dea_fronts_fit(s->work.fronts, s->work.K)) {
     dea_fronts_destroy(ctx, s->work.fronts);
     s->work.fronts = NULL;

@@ -98,6 +98,17 @@ static dea_status set_load(struct dea_context *ctx, struct dea_solid_continuatio
              : dea_fail(ctx, status, "an element on the path has no energy at its end");
 }
 
+/* The plane of the weight that is set. */
+static void lay_plane(struct dea_solid_continuation *t, double load,
+                      const struct dea_continuation_path_point *from, double length, double enough)
+{
+  t->plane.load = load;
+  t->plane.u0 = from->state;
+  t->plane.tau0 = from->load;
+  t->plane.length = length;
+  t->plane.enough = enough;
+}
+
 /* A plane across a direction of any length, at a distance from a point of the path. enough: a step
  * that is this share of the distance is the last one. */
 static void set_plane(struct dea_solid_continuation *t, const double *direction, double load,
@@ -109,11 +120,7 @@ static void set_plane(struct dea_solid_continuation *t, const double *direction,
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->plane.weight[i] = t->metric[i] * direction[i] / size;
   }
-  t->plane.load = load / size;
-  t->plane.u0 = from->state;
-  t->plane.tau0 = from->load;
-  t->plane.length = distance;
-  t->plane.enough = enough;
+  lay_plane(t, load / size, from, distance, enough);
 }
 
 /* ---- corrector: an equilibrium in a plane, Newton on displacements and load together ---- */
@@ -565,11 +572,7 @@ dea_status dea_solid_continuation_across(struct dea_context *ctx, struct dea_sol
     to += weight[i] * t->last.state[i];
   }
   memcpy(t->plane.weight, weight, t->s->problem.dofs * sizeof *weight);
-  t->plane.load = 0;
-  t->plane.u0 = t->before.state;
-  t->plane.tau0 = t->before.load;
-  t->plane.length = value - from;
-  t->plane.enough = 0;
+  lay_plane(t, 0, &t->before, value - from, 0);
   DEA_TRY(ctx, solve_between(ctx, t, (value - from) / (to - from), point));
   return DEA_OK;
 }
