@@ -6,7 +6,9 @@
 
 #include "solid_fixture.h"
 
+#include <lapacke.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Nodes of a box, neighbours where they are one step apart along any axes; and some far links. */
 struct net {
@@ -112,14 +114,14 @@ static void test_solves(void **state)
       {{1, 1, 1}, 0, 1},   {{2, 1, 1}, 0, 1},      {{40, 1, 1}, 0, 0.1}, {{9, 8, 1}, 0, 0.1},
       {{7, 6, 3}, 0, 0.1}, {{12, 12, 2}, 60, 0.1}, {{1, 1, 200}, 3, 1}};
   for (size_t n = 0; n < sizeof nets / sizeof nets[0]; n++) {
-    bool definite;
+    int negative;
     struct dea_fronts *fronts;
     Mat K = make(&nets[n], 1);
     assert_int_equal(dea_fronts_create(ctx, K, &fronts), DEA_OK);
     assert_true(dea_fronts_fit(fronts, K));
     for (int k = 0; k < 2; k++) { // a second time with other numbers
-      assert_int_equal(dea_fronts_factor(ctx, fronts, K, &definite), DEA_OK);
-      assert_true(definite);
+      assert_int_equal(dea_fronts_factor(ctx, fronts, K, 0, &negative), DEA_OK);
+      assert_int_equal(negative, 0);
       assert_true(residual(fronts, K) < 1e-11);
       MatScale(K, 3);
     }
@@ -157,12 +159,12 @@ static void test_refuses(void **state)
 {
   (void)state;
   static const struct net free_net = {{6, 5, 2}, 0, 0};
-  bool definite;
+  int negative;
   struct dea_fronts *fronts;
   Mat K = make(&free_net, 2);
   assert_int_equal(dea_fronts_create(ctx, K, &fronts), DEA_OK);
-  assert_int_equal(dea_fronts_factor(ctx, fronts, K, &definite), DEA_OK);
-  assert_false(definite); // shifted all alike it has no stiffness
+  assert_int_equal(dea_fronts_factor(ctx, fronts, K, 0, &negative), DEA_OK);
+  assert_true(negative != 0); // shifted all alike it has no stiffness
   for (PetscInt node = 0; node < 60; node += 7) {
     static const double hold[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const double push[9] = {0, 0, 0, 0, -1000, 0, 0, 0, 0};
@@ -172,11 +174,67 @@ static void test_refuses(void **state)
       MatSetValuesBlocked(K, 1, &node, 1, &node, steps[k], ADD_VALUES);
       MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY);
       MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY);
-      assert_int_equal(dea_fronts_factor(ctx, fronts, K, &definite), DEA_OK);
-      assert_true(definite == (k == 0));
+      assert_int_equal(dea_fronts_factor(ctx, fronts, K, 0, &negative), DEA_OK);
+      assert_true((negative == 0) == (k == 0));
       assert_true(k > 0 || residual(fronts, K) < 1e-9);
     }
   }
+  dea_fronts_destroy(ctx, fronts);
+  MatDestroy(&K);
+}
+
+/* Eigenvalues of K below 0. */
+static int count_negative(Mat K)
+{
+  Vec x, y;
+  PetscInt n;
+  const PetscScalar *column;
+  int count = 0;
+  assert_int_equal(MatCreateVecs(K, &x, &y), 0);
+  VecGetSize(x, &n);
+  double *A = malloc((size_t)(n * n) * sizeof *A), *values = malloc((size_t)n * sizeof *values);
+  for (PetscInt i = 0; i < n; i++) {
+    VecZeroEntries(x);
+    VecSetValue(x, i, 1, INSERT_VALUES);
+    MatMult(K, x, y);
+    VecGetArrayRead(y, &column);
+    memcpy(A + i * n, column, (size_t)n * sizeof *A);
+    VecRestoreArrayRead(y, &column);
+  }
+  assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', n, A, n, values), 0);
+  for (PetscInt i = 0; i < n; i++) {
+    count += values[i] < 0 ? 1 : 0;
+  }
+  free(A);
+  free(values);
+  VecDestroy(&x);
+  VecDestroy(&y);
+  return count;
+}
+
+/* As many pivots below 0 as eigenvalues (Sylvester); no more than are asked for; and nothing of it
+ * is left in the next factor. */
+static void test_counts(void **state)
+{
+  (void)state;
+  static const struct net box = {{7, 6, 3}, 20, 0.1};
+  int negative, count = 0;
+  struct dea_fronts *fronts;
+  Mat K = make(&box, 4);
+  assert_int_equal(dea_fronts_create(ctx, K, &fronts), DEA_OK);
+  for (int k = 0; k < 4; k++) {
+    assert_int_equal(dea_fronts_factor(ctx, fronts, K, 1000, &negative), DEA_OK);
+    count = count_negative(K);
+    assert_int_equal(negative, count);
+    MatShift(K, -0.3);
+  }
+  print_message("%d of 378 below 0\n", count);
+  assert_int_equal(dea_fronts_factor(ctx, fronts, K, 4, &negative), DEA_OK);
+  assert_true(negative > 4 && negative < count);
+  MatShift(K, 4 * 0.3);
+  assert_int_equal(dea_fronts_factor(ctx, fronts, K, 4, &negative), DEA_OK);
+  assert_int_equal(negative, 0);
+  assert_true(residual(fronts, K) < 1e-9);
   dea_fronts_destroy(ctx, fronts);
   MatDestroy(&K);
 }
@@ -187,6 +245,7 @@ int main(void)
       cmocka_unit_test(test_solves),
       cmocka_unit_test(test_fits),
       cmocka_unit_test(test_refuses),
+      cmocka_unit_test(test_counts),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -13,12 +13,13 @@
 
 #include <petscblaslapack.h>
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
 enum { PER = 3 };                  // unknowns of a node
 static const double least = 1e-12; // pivot over K's diagonal that is more than rounding
-static const double one = 1, minus = -1, zero = 0;
+static const double one = 1, two = 2, minus = -1, zero = 0;
 static const PetscBLASInt unit = 1; // stride
 
 // triangular systems with one right side; PETSc's header lacks them
@@ -55,6 +56,8 @@ struct dea_fronts {
   double *update;     // of the present front
   double *stack;      // updates that wait for their parents
   int *waiting;       // [count] fronts that these are of
+  double *oo;         // [own]^2 of a front, as it was before its elimination
+  bool *below;        // [own] of a front: D has -1
   double *x, *beyond; // [PER nodes] and the rows of the largest front
 };
 
@@ -335,7 +338,7 @@ static void place_blocks(const struct analysis *a, struct dea_fronts *f, int *at
 /* Memory of the factor; the largest that waits at a time. */
 static dea_status make_room(struct dea_context *ctx, struct dea_fronts *f)
 {
-  size_t most = 0, rows = 0, depth = 0, deepest = 0, waiting = 0;
+  size_t most = 0, rows = 0, own = 0, depth = 0, deepest = 0, waiting = 0;
   f->waiting = dea_arena_alloc(&f->memory, f->count, sizeof *f->waiting);
   DEA_TRY(ctx, dea_arena_status(&f->memory));
   for (size_t n = 0; n < f->count; n++) {
@@ -349,12 +352,15 @@ static dea_status make_room(struct dea_context *ctx, struct dea_fronts *f)
     deepest = depth > deepest ? depth : deepest;
     most = beyond > most ? beyond : most;
     rows = (size_t)f->fronts[n].rows > rows ? (size_t)f->fronts[n].rows : rows;
+    own = (size_t)f->fronts[n].own > own ? (size_t)f->fronts[n].own : own;
   }
   f->L = dea_arena_alloc(&f->memory, f->entries, sizeof *f->L);
   f->update = dea_arena_alloc(&f->memory, most * most, sizeof *f->update);
   f->stack = dea_arena_alloc(&f->memory, deepest, sizeof *f->stack);
   f->x = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->x);
   f->beyond = dea_arena_alloc(&f->memory, rows, sizeof *f->beyond);
+  f->oo = dea_arena_alloc(&f->memory, own * own, sizeof *f->oo);
+  f->below = dea_arena_alloc(&f->memory, own, sizeof *f->below);
   DEA_TRY(ctx, dea_arena_status(&f->memory));
   return DEA_OK;
 }
@@ -491,63 +497,118 @@ static void take_updates(struct dea_fronts *f, size_t number, size_t *waiting, s
   }
 }
 
-/* Columns of L from what the panel holds, and their part of the update. false: not definite. */
-static bool eliminate(struct dea_fronts *f, const struct front *front)
+/* F_oo of the panel into f->oo, or back. */
+static void copy_own(struct dea_fronts *f, const struct front *front, bool back)
 {
-  const PetscBLASInt beyond = front->rows - front->own;
+  const size_t own = (size_t)front->own, rows = (size_t)front->rows;
   double *panel = f->L + front->panel;
-  PetscBLASInt failed = 0;
-  LAPACKpotrf_("L", &front->own, panel, &front->rows, &failed);
-  for (size_t i = 0; i < (size_t)front->own && failed == 0; i++) {
-    const double pivot = panel[i * ((size_t)front->rows + 1)];
-    failed = pivot * pivot > least * f->x[(size_t)front->first + i] ? 0 : 1;
+  for (size_t c = 0; c < own; c++) {
+    double *here = panel + c * rows + c, *kept = f->oo + c * own + c;
+    memcpy(back ? here : kept, back ? kept : here, (own - c) * sizeof *here);
   }
-  if (failed != 0 || beyond == 0) {
-    return failed == 0;
+}
+
+/* F_oo = L D L^T by columns, D of 1 and -1, which goes to `below`. false: a pivot is hardly more
+ * than rounding. */
+static bool eliminate_own(struct dea_fronts *f, const struct front *front, bool *below)
+{
+  const size_t own = (size_t)front->own, rows = (size_t)front->rows;
+  double *panel = f->L + front->panel;
+  for (size_t j = 0; j < own; j++) {
+    double *column = panel + j * rows, pivot = column[j];
+    below[j] = pivot < 0;
+    if (!(fabs(pivot) > least * fabs(f->x[(size_t)front->first + j]))) {
+      return false;
+    }
+    for (size_t i = j; i < own; i++) {
+      column[i] /= below[j] ? -sqrt(-pivot) : sqrt(pivot);
+    }
+    for (size_t c = j + 1; c < own; c++) {
+      double *to = panel + c * rows, share = below[j] ? -column[c] : column[c];
+      for (size_t i = c; i < own; i++) {
+        to[i] -= share * column[i];
+      }
+    }
   }
-  BLAStrsm_("R", "L", "T", "N", &beyond, &front->own, &one, panel, &front->rows, panel + front->own,
-            &front->rows);
-  BLASsyrk_("L", "N", &beyond, &front->own, &minus, panel + front->own, &front->rows, &one,
-            f->update, &beyond);
   return true;
 }
 
-static bool factorise(struct dea_fronts *f, const double *K)
+/* Whether the pivots of an L that Cholesky's method has found are more than rounding. */
+static bool are_above(const struct dea_fronts *f, const struct front *front)
+{
+  const double *panel = f->L + front->panel;
+  bool above = true;
+  for (size_t i = 0; i < (size_t)front->own && above; i++) {
+    const double pivot = panel[i * ((size_t)front->rows + 1)];
+    above = pivot * pivot > least * f->x[(size_t)front->first + i];
+  }
+  return above;
+}
+
+/* Columns of L from what the panel holds, and their part of the update. *negative: pivots below 0
+ * of this front; -1: one is hardly more than rounding, and there is nothing. */
+static void eliminate(struct dea_fronts *f, const struct front *front, int *negative)
+{
+  const PetscBLASInt beyond = front->rows - front->own;
+  double *panel = f->L + front->panel, *L_bo = panel + front->own;
+  PetscBLASInt failed = 0;
+  *negative = 0;
+  copy_own(f, front, false);
+  LAPACKpotrf_("L", &front->own, panel, &front->rows, &failed);
+  if (failed != 0) {
+    copy_own(f, front, true);
+  }
+  if (failed != 0 ? !eliminate_own(f, front, f->below) : !are_above(f, front)) {
+    *negative = -1;
+    return;
+  }
+  for (size_t c = 0; c < (size_t)front->own && failed != 0; c++) {
+    *negative += f->below[c] ? 1 : 0;
+  }
+  if (beyond == 0) {
+    return;
+  }
+  BLAStrsm_("R", "L", "T", "N", &beyond, &front->own, &one, panel, &front->rows, L_bo,
+            &front->rows);
+  BLASsyrk_("L", "N", &beyond, &front->own, &minus, L_bo, &front->rows, &one, f->update, &beyond);
+  for (size_t c = 0; c<(size_t)front->own && * negative> 0; c++) {
+    if (f->below[c]) { // where D has -1, what was taken off is added
+      BLASsyrk_("L", "N", &beyond, &unit, &two, L_bo + c * (size_t)front->rows, &front->rows, &one,
+                f->update, &beyond);
+    }
+  }
+}
+
+/* As dea_fronts_factor. */
+static int factorise(struct dea_fronts *f, const double *K, int most)
 {
   size_t waiting = 0, depth = 0;
-  for (size_t n = 0; n < f->count; n++) {
+  int negative = 0;
+  for (size_t n = 0; n < f->count && negative <= most; n++) {
+    int of_front;
     const struct front *front = &f->fronts[n];
     const size_t size = (size_t)(front->rows - front->own) * (size_t)(front->rows - front->own);
     fill_panel(f, front, K);
     take_updates(f, n, &waiting, &depth);
-    if (!eliminate(f, front)) {
-      return false;
+    eliminate(f, front, &of_front);
+    if (of_front < 0) {
+      return -1;
     }
+    negative += of_front;
     memcpy(f->stack + depth, f->update, size * sizeof *f->stack);
     depth += size;
     f->waiting[waiting++] = (int)n;
   }
-  return true;
+  return negative;
 }
 
-/* One more among the factors that PETSc counts. */
-static dea_status count_factor(struct dea_context *ctx, Mat K)
-{
-  PetscLogEvent event;
-  DEA_PETSC(ctx, PetscLogEventGetId("MatCholFctrNum", &event));
-  DEA_PETSC(ctx, PetscLogEventBegin(event, K, 0, 0, 0));
-  DEA_PETSC(ctx, PetscLogEventEnd(event, K, 0, 0, 0));
-  return DEA_OK;
-}
-
-dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K,
-                             bool *definite)
+dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K, int most,
+                             int *negative)
 {
   PetscScalar *values;
   DEA_PETSC(ctx, MatSeqSBAIJGetArray(K, &values));
-  *definite = factorise(fronts, values);
+  *negative = factorise(fronts, values, most);
   DEA_PETSC(ctx, MatSeqSBAIJRestoreArray(K, &values));
-  DEA_TRY(ctx, *definite ? count_factor(ctx, K) : DEA_OK);
   return DEA_OK;
 }
 

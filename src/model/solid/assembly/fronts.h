@@ -16,9 +16,10 @@ dea_status dea_fronts_create(struct dea_context *ctx, Mat K, struct dea_fronts *
 bool dea_fronts_fit(const struct dea_fronts *fronts, Mat K);
 /* NULL is fine. */
 void dea_fronts_destroy(struct dea_context *ctx, struct dea_fronts *fronts);
-/* *definite: there is a factor; else K is not positive definite, or singular but for rounding. */
-dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K,
-                             bool *definite);
+/* *negative: 0 where K is positive definite and has a factor now; how many pivots are below 0, of
+ * which no more are looked for after `most`; or -1 where one is hardly more than rounding. */
+dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K, int most,
+                             int *negative);
 /* x = K^-1 right with the last factor; vectors of K's rows, not the same. */
 dea_status dea_fronts_solve(struct dea_context *ctx, struct dea_fronts *fronts, Vec right, Vec x);
 

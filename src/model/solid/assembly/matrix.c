@@ -384,12 +384,14 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 /* Largest K that is tried by fronts: of larger ones nothing was measured. */
 static const size_t fronts_most = 60000;
 
-/* The factor by fronts, of a K that is positive definite (*there). */
-static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s, bool *there)
+/* The factor by fronts, as dea_fronts_factor; *negative: -1 also where that is not to be had. */
+static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s, int most,
+                                   int *negative)
 {
   const struct dea_solid_problem *p = &s->problem;
   PetscMPIInt ranks;
-  *there = s->work.by_fronts = false;
+  s->work.by_fronts = false;
+  *negative = -1;
   DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
   if (ranks > 1 || p->per_node != 3 || p->free_potentials > 0 || p->dofs > fronts_most ||
       s->work.takes_small_pivots || s->work.no_fronts) {
@@ -405,9 +407,9 @@ static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s,
     s->work.no_fronts = s->work.fronts == NULL;
   }
   if (s->work.fronts != NULL) {
-    DEA_TRY(ctx, dea_fronts_factor(ctx, s->work.fronts, s->work.K, there));
+    DEA_TRY(ctx, dea_fronts_factor(ctx, s->work.fronts, s->work.K, most, negative));
   }
-  s->work.by_fronts = *there;
+  s->work.by_fronts = *negative == 0;
   return DEA_OK;
 }
 
@@ -418,16 +420,10 @@ dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
-dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+/* The factor by MUMPS, as dea_solid_factorise. */
+static dea_status factor_by_pivots(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   PetscInt minus, zero, plus;
-  bool there;
-  s->found.stiff_factor_fits = false;
-  DEA_TRY(ctx, factor_by_fronts(ctx, s, &there));
-  if (there) {
-    *negative = 0;
-    return DEA_OK;
-  }
   if (s->work.factor == NULL) {
     DEA_TRY(ctx, analyse(ctx, s->work.K, ROOM, &s->work.factor));
   }
@@ -435,6 +431,33 @@ dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int
   DEA_TRY(ctx, dea_solid_factor_any(ctx, s));
   DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
   *negative = (int)(minus + zero) - (int)s->problem.free_potentials;
+  return DEA_OK;
+}
+
+/* One more among the factors that PETSc counts, which those by fronts are not. */
+static dea_status count_factor(struct dea_context *ctx, Mat K)
+{
+  PetscLogEvent event;
+  DEA_PETSC(ctx, PetscLogEventGetId("MatCholFctrNum", &event));
+  DEA_PETSC(ctx, PetscLogEventBegin(event, K, 0, 0, 0));
+  DEA_PETSC(ctx, PetscLogEventEnd(event, K, 0, 0, 0));
+  return DEA_OK;
+}
+
+dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
+{
+  s->found.stiff_factor_fits = false;
+  DEA_TRY(ctx, factor_by_fronts(ctx, s, 0, negative));
+  DEA_TRY(ctx, *negative == 0 ? count_factor(ctx, s->work.K) : factor_by_pivots(ctx, s, negative));
+  return DEA_OK;
+}
+
+dea_status dea_solid_factor_if_definite(struct dea_context *ctx, struct dea_solid *s, int most,
+                                        int *negative)
+{
+  s->found.stiff_factor_fits = false;
+  DEA_TRY(ctx, factor_by_fronts(ctx, s, most, negative));
+  DEA_TRY(ctx, *negative >= 0 ? count_factor(ctx, s->work.K) : factor_by_pivots(ctx, s, negative));
   return DEA_OK;
 }
 

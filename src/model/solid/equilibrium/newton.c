@@ -55,6 +55,7 @@ static double largest(const struct dea_solid *s, const double *v)
 static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                                      double *there)
 {
+  enum { SOME = 5, MANY = 20 }; // negative pivots
   const struct dea_solid_settings *o = &s->settings;
   for (int i = 0; i < o->shifts; i++) {
     int negative;
@@ -62,7 +63,7 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
       DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, d->shift_Pa - *there));
       *there = d->shift_Pa;
     }
-    DEA_TRY(ctx, dea_solid_factorise(ctx, s, &negative));
+    DEA_TRY(ctx, dea_solid_factor_if_definite(ctx, s, MANY, &negative));
     d->report->factorisations++;
     d->report->shifted += *there > 0;
     if (*there == 0) {
@@ -71,7 +72,7 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
     if (negative <= 0) {
       return DEA_OK;
     }
-    double more = o->shift_up * (negative > 20 ? 16 : negative > 5 ? 4 : 1);
+    double more = o->shift_up * (negative > MANY ? 16 : negative > SOME ? 4 : 1);
     d->shift_Pa = *there > 0 ? more * *there : o->shift_first * s->problem.modulus_Pa;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
@@ -338,7 +339,7 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
   dea_solid_keep_scales(s);
-  DEA_TRY(ctx, dea_solid_factorise(ctx, s, &report->unstable_modes));
+  DEA_TRY(ctx, dea_solid_factor_if_definite(ctx, s, 0, &report->unstable_modes));
   report->factorisations++;
   s->found.factor_fits = report->unstable_modes == 0;
   if (!s->found.factor_fits) { // of a solid that kappa leaves a little compressible
