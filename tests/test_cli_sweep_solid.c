@@ -274,7 +274,8 @@ static void test_tolerances_of_plies(void **state)
                    0);
 }
 
-/* Slopes of the lowest frequency with study modal, which the command names. */
+/* Slopes of the lowest frequency with study modal, which the command names; all that has a mass is
+ * the film. */
 static void test_frequency(void **state)
 {
   (void)state;
@@ -283,6 +284,40 @@ static void test_frequency(void **state)
   run_solid("run cone.yaml --study modal --study sensitivity -q -o ringing.run");
   command_read("ringing.run/3d_sensitivity_slopes.csv", bytes);
   assert_contains(bytes, "\n3,plies.film.thickness,0.0001,m,frequency_Hz,");
+  const char *row = strstr(bytes, "\n3,plies.film.density,");
+  double elasticity;
+  assert_non_null(row);
+  assert_int_equal(sscanf(strstr(row, ",frequency_Hz,"), ",frequency_Hz,%*f,%*f,%lf", &elasticity),
+                   1);
+  assert_close(elasticity, -0.5, 1e-6, 0);
+}
+
+/* The heaviest film that does not vibrate below a limit: f^2 times its density stays, as nothing
+ * else has a mass. */
+static void test_frequency_as_a_limit(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  double first_Hz, first, best;
+  command_write("disc.yaml",
+                "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.5\n"
+                "frame: {inner_diameter: 30 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+                "compute: {models: [3d], voltage: {values: [3 kV]}, modal: {},\n"
+                "  solid: {film: membrane, order: 1}}\n");
+  command_write(
+      "heavy.yaml",
+      "dea_explore: 1\nname: heavy\ndesign: disc.yaml\nmodel: 3d\nvoltages: [3 kV]\n"
+      "quantities: [frequency_Hz]\nmethod: slsqp\nstarts: 1\nevaluations: 30\n"
+      "objectives: [{quantity: frequency_Hz, goal: least}]\n"
+      "limits: [{quantity: frequency_Hz, above: 600 Hz}]\nvariables:\n"
+      "  - {name: film.density, low: 500 kg/m^3, high: 2000 kg/m^3, start: 700 kg/m^3}\n");
+  run_solid("optimise heavy.yaml -j 1 -q");
+  assert_contains(command_out, "gradients: of the model\n");
+  command_read("heavy.optimise/cases.csv", bytes);
+  assert_int_equal(sscanf(strchr(bytes, '\n'), "\n0,%*[^,],%lf,%lf", &first, &first_Hz), 2);
+  command_read("heavy.optimise/best.yaml", bytes);
+  assert_int_equal(sscanf(strstr(bytes, "density:\n"), "density:\n value: %lf", &best), 1);
+  assert_close(best, first * pow(first_Hz / 600, 2), 1e-5, 0);
 }
 
 int main(void)
@@ -291,7 +326,7 @@ int main(void)
       cmocka_unit_test(test_neighbours),       cmocka_unit_test(test_parts),
       cmocka_unit_test(test_critical_voltage), cmocka_unit_test(test_force),
       cmocka_unit_test(test_monitors),         cmocka_unit_test(test_tolerances_of_plies),
-      cmocka_unit_test(test_frequency),
+      cmocka_unit_test(test_frequency),        cmocka_unit_test(test_frequency_as_a_limit),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -15,7 +15,8 @@ enum dea_device_param_kind {
   DEA_DEVICE_KEY,
   DEA_DEVICE_LAW,
   DEA_DEVICE_PERMITTIVITY,
-  DEA_DEVICE_BRANCH, // of the film's viscosity: moduli have even numbers, times odd ones
+  DEA_DEVICE_DENSITY, // of the film
+  DEA_DEVICE_BRANCH,  // of the film's viscosity: moduli have even numbers, times odd ones
 };
 
 struct dea_device_param {

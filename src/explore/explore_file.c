@@ -16,8 +16,8 @@ static const struct dea_field variable_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = VARIABLE_AT(text.name),
      .required = true,
-     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, or "
-            "film.law.NAME of a parameter of the law",
+     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, "
+            "film.density, or film.law.NAME of a parameter of the law",
      .example = "film.thickness"},
     {.key = "values",
      .kind = DEA_FIELD_LABEL,
@@ -132,7 +132,8 @@ static const struct dea_field file_fields[] = {
      .required = true,
      .doc = "keys of the quantities that are kept, as dea compare --quantity has them, and "
             "MONITOR.KEY of what a monitor shows (plate.turn_y_rad); force_N: "
-            "with the tip of compute.force held at its first depth; slack_voltage_V, "
+            "with the tip of compute.force held at its first depth; frequency_Hz: of the lowest "
+            "mode (model 3d); slack_voltage_V, "
             "breakdown_voltage_V, pull_in_voltage_V, buckling_voltage_V: where the film comes to "
             "its end",
      .example = "[centre_z_m, breakdown_margin]"},

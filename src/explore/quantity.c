@@ -111,6 +111,7 @@ dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *d
   snprintf(out->key, sizeof out->key, "%.79s", label->text);
   if (out->column >= 0) {
     out->shown = dea_point_columns[out->column];
+    out->is_frequency = strcmp(out->key, "frequency_Hz") == 0;
     *good = true;
     return DEA_OK;
   }

@@ -16,6 +16,7 @@ struct dea_explored {
   struct dea_column shown;  // its key and header are the texts below
   char key[80], header[80]; // "centre_z_m", "plate.turn_y_rad"
   int column;               // of load points; -1: none of them
+  bool is_frequency;        // that of the lowest mode, which solving leaves out
   bool is_critical;         // a voltage of the event below
   enum dea_event_kind event;
   size_t monitor;             // of the layout

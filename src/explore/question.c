@@ -37,6 +37,7 @@ static void add_material(struct dea_text *out, const struct dea_material *film)
       out, "permittivity=%.12g,%.12g\nbreakdown=%.12g,%.12g\n", film->permittivity.at_rest,
       film->permittivity.slope, film->breakdown.known ? film->breakdown.at_rest_V_per_m : 0,
       film->breakdown.known && film->breakdown.exponent_known ? film->breakdown.exponent : 0);
+  dea_text_add(out, "density=%.12g\n", film->density_kg_per_m3);
 }
 
 /* What the listed values of a design of the general form leave out: shapes and materials. */
@@ -173,7 +174,7 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
                ->points[question->model.groups[dea_question_is_held(question, i) ? 1 : 0].first +
                         k];
       double *q = &io->q[k * count + i];
-      *q = question->quantities[i].column >= 0
+      *q = question->quantities[i].column >= 0 && !question->quantities[i].is_frequency
                ? dea_point_get(point, question->quantities[i].column)
                : question->seen[k][i];
       if (isnan(*q) && io->why[0] == '\0' && question->quantities[i].is_critical) {
@@ -218,7 +219,23 @@ static dea_status find_critical(struct dea_question *question,
   return DEA_OK;
 }
 
-/* Keeps what monitors show at a stop. */
+/* Where the model knows none, the quantity stays unknown. */
+static dea_status find_frequency(struct dea_question *question, struct dea_model *model,
+                                 size_t stop, double *out)
+{
+  struct dea_context *ctx = question->model.ctx;
+  const struct dea_load_point at = {.voltage_V = question->voltages_V[stop]};
+  struct dea_load_point mode;
+  struct dea_field_mesh *shapes;
+  if (question->model.type->modes != NULL) {
+    DEA_TRY(ctx, dea_model_modes(ctx, question->model.type, model, &at, 1, &mode, &shapes));
+    dea_field_mesh_destroy(ctx, shapes);
+    *out = mode.frequency_Hz;
+  }
+  return DEA_OK;
+}
+
+/* Keeps what monitors show at a stop, and the lowest frequency. */
 static dea_status stand(void *user, struct dea_model *model, const struct dea_design *design,
                         const struct dea_device *device, size_t stop)
 {
@@ -232,6 +249,8 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
         DEA_TRY(ctx, dea_model_observe(ctx, question->model.type, model, &observed));
       }
       question->seen[stop][i] = observed.monitor[quantity->monitor][quantity->observed];
+    } else if (quantity->is_frequency) {
+      DEA_TRY(ctx, find_frequency(question, model, stop, &question->seen[stop][i]));
     }
   }
   const struct dea_model_settings settings = dea_model_settings_of(design);

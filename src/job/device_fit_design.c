@@ -180,6 +180,8 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_va
       DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
     } else if (param->kind == DEA_DEVICE_LAW) {
       film->param[param->index] = value;
+    } else if (param->kind == DEA_DEVICE_DENSITY) {
+      film->density_kg_per_m3 = value;
     } else if (param->kind == DEA_DEVICE_BRANCH) {
       struct dea_branch *branch = &film->branches[param->index / 2];
       *(param->index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = value;

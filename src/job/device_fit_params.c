@@ -32,6 +32,8 @@ static void look_up(const struct dea_material_data *data, const struct dea_devic
   } else if (param->kind == DEA_DEVICE_PERMITTIVITY && data->permittivity_count > 0) {
     const struct dea_permittivity_set *set = &data->permittivity[0];
     *value = param->index == 0 ? set->at_rest.si : set->slope.si;
+  } else if (param->kind == DEA_DEVICE_DENSITY && data->has_density) {
+    *value = data->density.value_kg_per_m3.si;
   }
 }
 

@@ -54,13 +54,19 @@ static void add_materials(const struct dea_device *device, struct dea_design_num
                 numbers, count);
   add_of_device(device, "film.permittivity.slope", "", "1", AT(film.permittivity.slope), numbers,
                 count);
+  add_of_device(device, "film", DEA_DENSITY_KEY, "kg/m^3", AT(film.density_kg_per_m3), numbers,
+                count);
   if (device->electrode_thickness_m > 0) {
     add_law(device, "electrodes.law.", &device->electrode, AT(electrode), numbers, count);
+    add_of_device(device, "electrodes", DEA_DENSITY_KEY, "kg/m^3", AT(electrode.density_kg_per_m3),
+                  numbers, count);
   }
   if (device->fibre_count > 0) {
     add_of_device(device, "fibres.young_modulus", "", "Pa", AT(fibre.young_modulus_Pa), numbers,
                   count);
     add_of_device(device, "fibres.poisson_ratio", "", "1", AT(fibre.poisson_ratio), numbers, count);
+    add_of_device(device, "fibres", DEA_DENSITY_KEY, "kg/m^3", AT(fibre.density_kg_per_m3), numbers,
+                  count);
   }
 }
 
@@ -157,6 +163,25 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
   }
   add_materials(device, out, count);
   return DEA_OK;
+}
+
+static bool has_weight(const struct dea_device *device)
+{
+  const double *g = device->general ? device->layout->gravity_m_per_s2 : NULL;
+  return g != NULL ? g[0] != 0 || g[1] != 0 || g[2] != 0 : device->gravity != DEA_GRAVITY_OFF;
+}
+
+void dea_numbers_at_rest(const struct dea_device *device, struct dea_design_number *numbers,
+                         size_t *count)
+{
+  size_t kept = 0;
+  for (size_t i = 0; i < *count; i++) {
+    const char *end = strrchr(numbers[i].key, '.');
+    if (has_weight(device) || end == NULL || strcmp(end, DEA_DENSITY_KEY) != 0) {
+      numbers[kept++] = numbers[i];
+    }
+  }
+  *count = kept;
 }
 
 void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number *out,

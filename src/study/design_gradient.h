@@ -18,8 +18,8 @@ enum dea_number_of {
 
 /* One number: a key of the design file with a value ("film.thickness"), "voltage", or one of a
  * material: "film.law.PARAMETER", "film.permittivity.at_rest", "film.permittivity.slope",
- * "electrodes.law.PARAMETER", "fibres.young_modulus", "fibres.poisson_ratio"; of the general form
- * those of part_numbers.h. */
+ * "electrodes.law.PARAMETER", "fibres.young_modulus", "fibres.poisson_ratio", "film.density",
+ * "electrodes.density", "fibres.density"; of the general form those of part_numbers.h. */
 struct dea_design_number {
   char key[DEA_NUMBER_KEY_SIZE];
   double value;     // SI, as the file has it: a diameter is a diameter
@@ -32,12 +32,19 @@ struct dea_design_number {
   double reach;      // what small changes are shares of; 0: the value, which then is not 0
 };
 
+/* How the keys of densities end. */
+#define DEA_DENSITY_KEY ".density"
+
 /* All numbers of a design that its device depends on, but those that are 0; of the general form
  * with places of shapes that the file says to be 0. out:
  * [DEA_NUMBERS_MAX]. */
 dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *design,
                               const struct dea_device *device, double voltage_V,
                               struct dea_design_number *out, size_t *count);
+
+/* Takes those away that nothing but vibrations depends on: densities, where there is no weight. */
+void dea_numbers_at_rest(const struct dea_device *device, struct dea_design_number *numbers,
+                         size_t *count);
 
 /* Those of the tip that a model is pressed by, but those that are 0: "compute.force.depth", which
  * is here where it stands, and its radii; added to out [DEA_NUMBERS_MAX]. */

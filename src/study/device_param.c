@@ -11,7 +11,7 @@
 #include <string.h>
 
 static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.permittivity.",
-                  branch_prefix[] = "film.branch.";
+                  branch_prefix[] = "film.branch.", density_key[] = "film.density";
 static const char *const permittivity_keys[] = {"at_rest", "slope"};
 
 static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
@@ -200,6 +200,23 @@ static dea_status from_branch(struct dea_context *ctx, const struct dea_device_p
   return DEA_OK;
 }
 
+static dea_status from_density(struct dea_context *ctx,
+                               const struct dea_device_param_source *source,
+                               const struct dea_label *name, struct dea_device_param *out,
+                               bool *good)
+{
+  const double density_kg_per_m3 = source->device->film.density_kg_per_m3;
+  *good = density_kg_per_m3 > 0;
+  out->kind = DEA_DEVICE_DENSITY;
+  out->param.unit = "kg/m^3";
+  out->param.low = 0;
+  out->param.high = INFINITY;
+  out->designed = density_kg_per_m3;
+  return *good ? DEA_OK
+               : dea_device_param_unknown(ctx, source, name,
+                                          "is unknown: the film's material has none");
+}
+
 static dea_status from_material(struct dea_context *ctx,
                                 const struct dea_device_param_source *source,
                                 const struct dea_label *name, struct dea_device_param *out,
@@ -261,9 +278,10 @@ dea_status dea_device_param_find(struct dea_context *ctx,
   if (source->device->general) {
     return from_part(ctx, source, name, out, good);
   }
-  return of_branch     ? from_branch(ctx, source, name, out, good)
-         : of_material ? from_material(ctx, source, name, out, good)
-                       : from_key(ctx, source, name, out, good);
+  return of_branch                              ? from_branch(ctx, source, name, out, good)
+         : strcmp(name->text, density_key) == 0 ? from_density(ctx, source, name, out, good)
+         : of_material                          ? from_material(ctx, source, name, out, good)
+                                                : from_key(ctx, source, name, out, good);
 }
 
 dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
@@ -352,6 +370,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
       film->permittivity.at_rest = p[j];
     } else if (params[j].kind == DEA_DEVICE_PERMITTIVITY) {
       film->permittivity.slope = p[j];
+    } else if (params[j].kind == DEA_DEVICE_DENSITY) {
+      film->density_kg_per_m3 = p[j];
     } else if (params[j].kind == DEA_DEVICE_BRANCH) {
       struct dea_branch *branch = &film->branches[params[j].index / 2];
       *(params[j].index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = p[j];

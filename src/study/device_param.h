@@ -16,9 +16,10 @@ struct dea_device_param_source {
 /* Fills kind, index, list, state, unit, limits (infinite for none) and `designed` of a parameter,
  * whose other members are left alone. name: a dotted key that is a number ("film.thickness"),
  * film.law.NAME of a parameter of the film's law, film.permittivity.at_rest or .slope,
- * film.branch.N.modulus or .time of its viscosity, from 1; of a design of the general form numbers
- * of parts and shapes by the names of --set ("plies.film.thickness", "shapes.active.radius").
- * *good: false after a finding (an error at its place) that says why there is no such parameter. */
+ * film.density, film.branch.N.modulus or .time of its viscosity, from 1; of a design of the general
+ * form numbers of parts and shapes by the names of --set ("plies.film.thickness",
+ * "shapes.active.radius"). *good: false after a finding (an error at its place) that says why there
+ * is no such parameter. */
 dea_status dea_device_param_find(struct dea_context *ctx,
                                  const struct dea_device_param_source *source,
                                  const struct dea_label *name, struct dea_device_param *out,

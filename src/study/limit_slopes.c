@@ -173,6 +173,7 @@ static dea_status find(struct dea_context *ctx, const struct dea_critical_ask *a
   if (status == DEA_OK && !isnan(f->voltage_V)) {
     status = dea_design_numbers(ctx, result->design, result->device, f->voltage_V, f->numbers,
                                 &f->number_count);
+    dea_numbers_at_rest(result->device, f->numbers, &f->number_count);
     const struct dea_design_gradient of = {.type = ask->type,
                                            .design = result->design,
                                            .device = result->device,

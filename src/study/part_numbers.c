@@ -130,6 +130,7 @@ static void add_ply(const struct dea_layout *layout, size_t i, struct dea_design
     add_material(ply, i, "young_modulus", "", "Pa", AT(young_modulus_Pa), out, count);
     add_material(ply, i, "poisson_ratio", "", "1", AT(poisson_ratio), out, count);
   }
+  add_material(ply, i, "density", "", "kg/m^3", AT(density_kg_per_m3), out, count);
   if (dea_layout_is_dielectric(layout, i)) {
     add_material(ply, i, "permittivity.", "at_rest", "1", AT(permittivity.at_rest), out, count);
     add_material(ply, i, "permittivity.", "slope", "1", AT(permittivity.slope), out, count);

@@ -493,8 +493,12 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
                             struct dea_model *model, const struct dea_result *result,
                             struct stop *stop)
 {
+  DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
   DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V,
                                   stop->numbers, &stop->number_count));
+  if (!stop->vibrates) {
+    dea_numbers_at_rest(result->device, stop->numbers, &stop->number_count);
+  }
   if (stop->stretch > 0) {
     drop_voltage(stop);
   }
@@ -505,7 +509,6 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
     stop->columns[k] = dea_point_column_find(quantities[k]);
   }
   DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
-  DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
   DEA_TRY(ctx, find_slopes(ctx, type, model, result, stop));
   return DEA_OK;
 }

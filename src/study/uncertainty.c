@@ -57,8 +57,8 @@ static const struct dea_field given_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = offsetof(struct given, name),
      .required = true,
-     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, or "
-            "film.law.NAME of a parameter of the law",
+     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, "
+            "film.density, or film.law.NAME of a parameter of the law",
      .example = "film.thickness"},
     {.key = "std",
      .kind = DEA_FIELD_LABEL,
