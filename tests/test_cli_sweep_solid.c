@@ -174,10 +174,11 @@ static void test_force(void **state)
   assert_int_equal(sscanf(strchr(bytes, '\n'), "\n3,%*f,%*f,%*f,%*f,%*f,%*f,%*f,%lf", &force_mN),
                    1);
   assert_close(force_mN, 25, 1e-3, 0);
-  assert_int_equal(command_run("run tip.yaml --study sensitivity -q -o tip.run"), 0);
+  assert_int_equal(command_run("run tip.yaml --study modal --study sensitivity -q -o tip.run"), 0);
   command_read("tip.run/3d_sensitivity_slopes.csv", bytes);
   assert_contains(bytes, "\n3,compute.force.depth,0.0005,m,force,");
   assert_contains(bytes, "\n3,film.thickness,0.0001,m,force,");
+  assert_contains(bytes, "\n3,compute.force.depth,0.0005,m,frequency,");
 }
 
 static const char cone[] =

@@ -303,17 +303,22 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
   return DEA_OK;
 }
 
-/* Numbers by how much they matter to a quantity, most first; `put` adds the row of one. */
+/* Numbers by how much they matter to a quantity, most first, and last those that only the frequency
+ * depends on; `put` adds the row of one. */
 static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              dea_status (*put)(struct dea_context *ctx, const struct stop *stop,
                                                size_t lead, size_t number,
                                                struct dea_result_table *table),
                              struct dea_result_table *table)
 {
+  static const double least = 1e-100;
   double size[DEA_NUMBERS_MAX];
   size_t order[DEA_NUMBERS_MAX];
   for (size_t i = 0; i < stop->number_count; i++) {
     size[i] = fabs(elasticity(stop, i, lead));
+    if (size[i] == 0 && stop->vibrates) {
+      size[i] = least * fabs(elasticity(stop, i, FREQUENCY));
+    }
   }
   const size_t count = dea_numbers_order(size, stop->number_count, order);
   for (size_t n = 0; n < count; n++) {
@@ -424,7 +429,7 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
   struct dea_field_mesh *shapes;
   const bool asked =
       dea_modal_asked(result->design) || dea_result_find(result, type->name, "modal") != NULL;
-  stop->vibrates = type->modes != NULL && !stop->is_pressed && asked;
+  stop->vibrates = type->modes != NULL && asked;
   if (stop->vibrates) {
     DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, 1, &mode, &shapes));
     dea_field_mesh_destroy(ctx, shapes);

@@ -1,6 +1,7 @@
 #include "model/solid/adapter/gradient.h"
 
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/modes.h"
@@ -102,17 +103,17 @@ dea_status dea_gradient_rest_energy(struct dea_solid *s, const struct dea_gradie
 
 /* A motion that residuals are taken along. */
 struct way {
-  const double *v, *pressure; // [dofs], [pressures]; NULL: pressures stay
+  const double *v, *pressure; // [dofs], [multipliers]; NULL: pressures stay
   double step;                // of v, in differences
 };
 
 /* The lowest mode of small motions, whose frequency is asked for. */
 struct mode {
   bool known;
-  double *v, *pressure;  // [dofs], [pressures]: its motion, v . Mv = 1, and kappa M^-1 B^T v
+  double *v, *pressure;  // [dofs], [multipliers]: its motion, v . Mv = 1, and kappa M^-1 B^T v
   double square, rate;   // omega^2; slope of the frequency by it
   struct way way;        // both
-  double *gain, *motion; // [pressures], [dofs] room
+  double *gain, *motion; // [multipliers], [dofs] room
 };
 
 /* The electrode's stretch is held, and the voltage follows it. */
@@ -127,12 +128,11 @@ struct work {
   const struct dea_gradient_owner *owner;
   const struct dea_gradient_ask *ask;
   struct dea_adjoint *adjoint;
-  bool *known;    // [dea_gradient_width + 1] there is an answer; the last one: the border's
-  double *side;   // [2][dea_gradient_width]
-  double *motion; // [monitor_count]
-  double *u,
-      *multiplier;   // [dofs], [pressures] room for the state while residuals are taken elsewhere
-  double *force_way; // [dofs]
+  bool *known;          // [dea_gradient_width + 1] there is an answer; the last one: the border's
+  double *side;         // [2][dea_gradient_width]
+  double *motion;       // [monitor_count]
+  double *here, *there; // [state] room while residuals are taken elsewhere
+  double *force_way;    // [dofs]
   struct mode mode;
   struct border border;
   double *null_mode; // [dofs] of a limit point, as it is found
@@ -156,12 +156,10 @@ static dea_status find_mode(struct dea_context *ctx, struct work *w, struct dea_
   static const double apart = 1e-4, pi = 3.14159265358979323846;
   struct dea_solid *s = w->owner->solid;
   struct mode *m = &w->mode;
-  const size_t dofs = s->problem.dofs, pressures = dea_solid_pressure_count(s);
+  const size_t dofs = s->problem.dofs;
   double squares[2];
   m->v = dea_arena_alloc(memory, 2 * dofs, sizeof(double)); // the second one is only compared
   m->motion = dea_arena_alloc(memory, dofs, sizeof(double));
-  m->pressure = dea_arena_alloc(memory, pressures, sizeof(double));
-  m->gain = dea_arena_alloc(memory, pressures, sizeof(double));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
   DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, 2, squares, m->v));
   m->known = fabs(squares[1] - squares[0]) > apart * fabs(squares[0]) && squares[0] != 0;
@@ -193,11 +191,16 @@ static double step_along(const struct work *w, const double *v)
 }
 
 /* Its pressures. */
-static void prepare_mode(struct work *w)
+static dea_status prepare_mode(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
   struct mode *m = &w->mode;
+  const size_t multipliers = dea_adjoint_multipliers(w->adjoint);
+  m->pressure = dea_arena_alloc(memory, multipliers, sizeof(double));
+  m->gain = dea_arena_alloc(memory, multipliers, sizeof(double));
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
   dea_adjoint_mode_pressures(w->adjoint, m->v, m->pressure);
   m->way = (struct way){m->v, m->pressure, step_along(w, m->v)};
+  return DEA_OK;
 }
 
 /* Residuals at the unknowns as they are, moved by `steps` along a motion. */
@@ -205,18 +208,19 @@ static dea_status assemble_along(struct dea_context *ctx, struct work *w, const 
                                  double voltage_V, double steps)
 {
   struct dea_solid *s = w->owner->solid;
+  const size_t dofs = s->problem.dofs, multipliers = dea_adjoint_multipliers(w->adjoint);
   double energy_J;
-  memcpy(w->u, s->state.u, s->problem.dofs * sizeof(double)); // what is held may have been moved
-  memcpy(w->multiplier, s->state.multiplier, dea_solid_pressure_count(s) * sizeof(double));
-  for (size_t i = 0; i < s->problem.dofs; i++) {
-    s->state.u[i] = w->u[i] + steps * way->step * way->v[i];
+  dea_solid_state_get(s, w->here); // what is held may have been moved
+  for (size_t i = 0; i < dofs; i++) {
+    w->there[i] = w->here[i] + steps * way->step * way->v[i];
   }
-  for (size_t i = 0; i < dea_solid_pressure_count(s) && way->pressure != NULL; i++) {
-    s->state.multiplier[i] = w->multiplier[i] + steps * way->step * way->pressure[i];
+  for (size_t i = 0; i < multipliers; i++) {
+    w->there[dofs + i] =
+        w->here[dofs + i] + (way->pressure != NULL ? steps * way->step * way->pressure[i] : 0);
   }
+  dea_solid_state_set(s, w->there);
   dea_status status = dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J);
-  memcpy(s->state.u, w->u, s->problem.dofs * sizeof(double));
-  memcpy(s->state.multiplier, w->multiplier, dea_solid_pressure_count(s) * sizeof(double));
+  dea_solid_state_set(s, w->here);
   return status;
 }
 
@@ -250,6 +254,21 @@ static dea_status add_along(struct dea_context *ctx, struct work *w, const struc
   return DEA_OK;
 }
 
+/* The second derivative along the mode, times the frequency's slope by omega^2. What is held is so
+ * without the penalties of its own. */
+static dea_status add_along_mode(struct dea_context *ctx, struct work *w, double *out,
+                                 double *pressures)
+{
+  dea_status status = w->owner->hold != NULL ? w->owner->hold(ctx, w->owner->model) : DEA_OK;
+  if (status == DEA_OK) {
+    status = add_along(ctx, w, &w->mode.way, 2, w->mode.rate, out, pressures);
+  }
+  if (w->owner->hold != NULL) {
+    w->owner->leave(ctx, w->owner->model);
+  }
+  return status;
+}
+
 /* Slopes of a monitor's motion by the unknowns; of a force way . R they are those of R along the
  * way, as the tangent is symmetric. */
 static dea_status monitor_slope(struct dea_context *ctx, struct work *w, size_t i, size_t at)
@@ -276,7 +295,7 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltag
   struct dea_solid *s = w->owner->solid;
   const struct mode *m = &w->mode;
   double square = 0, pressed;
-  memset(m->gain, 0, dea_solid_pressure_count(s) * sizeof(double));
+  memset(m->gain, 0, dea_adjoint_multipliers(w->adjoint) * sizeof(double));
   for (int k = 0; k < PLACES; k++) {
     const double times = by_places[0][k] / m->way.step;
     if (k == PLACES / 2) {
@@ -284,11 +303,9 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltag
     }
     DEA_TRY(ctx, assemble_along(ctx, w, &m->way, voltage_V, k - PLACES / 2));
     square += times * dea_solid_dot(s, m->v, s->work.g);
-    for (size_t i = 0; i < dea_solid_pressure_count(s); i++) {
-      m->gain[i] += times * s->state.theta[i];
-    }
+    dea_adjoint_add_gains(w->adjoint, times, m->gain);
   }
-  DEA_TRY(ctx, dea_adjoint_volume_product(ctx, w->adjoint, m->pressure, m->gain, &pressed));
+  DEA_TRY(ctx, dea_adjoint_gain_product(ctx, w->adjoint, m->pressure, m->gain, &pressed));
   DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, m->v, m->motion));
   *out = m->rate * (square + pressed - m->square * dea_solid_dot(s, m->v, m->motion));
   return DEA_OK;
@@ -325,8 +342,7 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w)
     double *pressures = dea_adjoint_pressure_slope(w->adjoint, i);
     if (is_frequency(w->ask->columns[i])) {
       w->known[i] = w->mode.known;
-      DEA_TRY(ctx, w->known[i] ? add_along(ctx, w, &w->mode.way, 2, w->mode.rate, out, pressures)
-                               : DEA_OK);
+      DEA_TRY(ctx, w->known[i] ? add_along_mode(ctx, w, out, pressures) : DEA_OK);
     } else {
       DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], out, pressures,
                                    &w->known[i]));
@@ -528,6 +544,15 @@ static dea_status find_by_changes(struct dea_context *ctx, struct work *w, doubl
   return DEA_OK;
 }
 
+/* For what residuals are taken along. */
+static dea_status make_room(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+{
+  const size_t states = w->owner->solid->problem.dofs + dea_adjoint_multipliers(w->adjoint);
+  w->here = dea_arena_alloc(memory, states, sizeof(double));
+  w->there = dea_arena_alloc(memory, states, sizeof(double));
+  return dea_solid_agree(ctx, dea_arena_status(memory));
+}
+
 /* At the equilibrium. */
 static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_owner *owner,
                             const struct dea_gradient_ask *ask, double *out)
@@ -539,8 +564,6 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   w.known = dea_arena_alloc(&memory, dea_gradient_width(ask) + 1, sizeof *w.known);
   w.side = dea_arena_alloc(&memory, 2 * dea_gradient_width(ask), sizeof *w.side);
   w.motion = dea_arena_alloc(&memory, ask->monitor_count + 1, sizeof *w.motion);
-  w.u = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
-  w.multiplier = dea_arena_alloc(&memory, dea_solid_pressure_count(s), sizeof(double));
   w.force_way = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
   if (status == DEA_OK && dea_gradient_asks_mode(ask)) { // first: it needs a factor of its own
@@ -551,12 +574,9 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
     status = dea_adjoint_create(ctx, s, dea_gradient_width(ask) + 1, &w.adjoint);
     s->work.takes_small_pivots = false;
   }
-  if (status == DEA_OK) {
-    if (w.mode.known) {
-      prepare_mode(&w);
-    }
-    status = answer(ctx, &w, &memory);
-  }
+  status = status == DEA_OK ? make_room(ctx, &w, &memory) : status;
+  status = status == DEA_OK && w.mode.known ? prepare_mode(ctx, &w, &memory) : status;
+  status = status == DEA_OK ? answer(ctx, &w, &memory) : status;
   status = status == DEA_OK ? find_by_changes(ctx, &w, out) : status;
   dea_solid_hold_potential(s, owner->voltage_V, s->state.u);
   if (status == DEA_OK) { // scales and reactions are those of the equilibrium again

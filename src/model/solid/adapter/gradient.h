@@ -30,7 +30,10 @@ struct dea_gradient_owner {
    * DEA_E_ARGUMENT and DEA_E_UNSUPPORTED where the mesh cannot follow. */
   dea_status (*enter)(struct dea_context *ctx, void *model, const struct dea_design_change *change,
                       int side);
-  /* And back, also after a failure of `enter`. */
+  /* The own device, with what its loads hold by multipliers alone, without their penalties. NULL
+   * where no load holds anything. */
+  dea_status (*hold)(struct dea_context *ctx, void *model);
+  /* And back from both, also after a failure. */
   void (*leave)(struct dea_context *ctx, void *model);
   /* Quantities of the changed device at these unknowns; energy_J: of the solid there. */
   dea_status (*point)(struct dea_context *ctx, void *model, double voltage_V, double energy_J,

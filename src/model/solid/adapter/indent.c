@@ -39,7 +39,7 @@ static bool select_face(const void *self, int region, int ply, const double midd
 /* The contact with a probe at a depth. */
 static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *actuator,
                           const struct dea_grid *grid, const struct dea_pressed *pressed,
-                          double penalty_Pa_per_m, struct dea_indent *indent)
+                          struct dea_indent *indent)
 {
   static const enum dea_indenter_shape shapes[] = {[DEA_PROBE_SPHERE] = DEA_INDENTER_SPHERE,
                                                    [DEA_PROBE_FLAT] = DEA_INDENTER_FLAT,
@@ -56,7 +56,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *ac
               .axis = {0, 0, sign},
               .edge_radius_m = fmin(probe->edge_radius_m, probe->radius_m),
               .half_length_m = INFINITY},
-      .stiffness_Pa_per_m = penalty_Pa_per_m,
+      .stiffness_Pa_per_m = stiffness_Pa_per_m,
   };
   if (probe->shape == DEA_PROBE_CYLINDER) {
     options.tip.axis[0] = 1;
@@ -83,7 +83,7 @@ dea_status dea_indent_create(struct dea_context *ctx, const struct dea_actuator 
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = prepare(ctx, actuator, grid, &pressed, stiffness_Pa_per_m, *out);
+  dea_status status = prepare(ctx, actuator, grid, &pressed, *out);
   if (status == DEA_OK) {
     const struct dea_solid_load load = dea_contact_load((*out)->contact);
     status = dea_solid_add_load(ctx, solid, &load);
@@ -121,20 +121,17 @@ dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_a
                                      const struct dea_pressed *pressed,
                                      const struct dea_indent *other, struct dea_indent **out)
 {
-  static const double none = 0x1p-100; // of the penalty: its k g is no pressure of the state
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = prepare(ctx, actuator, grid, pressed, none * stiffness_Pa_per_m, *out);
+  dea_status status = prepare(ctx, actuator, grid, pressed, *out);
   if (status != DEA_OK) {
     dea_indent_destroy(ctx, *out);
     *out = NULL;
     return status;
   }
-  const struct dea_solid_load load = dea_contact_load((*out)->contact);
-  memcpy(load.multiplier, dea_contact_pressure(other->contact),
-         load.multiplier_count * sizeof *load.multiplier);
+  dea_contact_hold((*out)->contact, other->contact);
   replace(solid, other->contact, (*out)->contact);
   return DEA_OK;
 }

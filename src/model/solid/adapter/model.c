@@ -561,6 +561,19 @@ static dea_status change_weight(struct dea_context *ctx, struct dea_model *model
   return DEA_OK;
 }
 
+/* A tip that is pressed in holds what it touches, on the device that is there now. */
+static dea_status enter_tip(struct dea_context *ctx, struct dea_model *model,
+                            const struct dea_pressed *pressed)
+{
+  struct variant *v = model->variant;
+  const struct dea_pressed own = {model->indent->probe, model->indent->depth_m};
+  DEA_TRY(ctx,
+          dea_indent_create_variant(ctx, &model->actuator, model->grid, model->solid,
+                                    pressed != NULL ? pressed : &own, v->own.indent, &v->indent));
+  model->indent = v->indent;
+  return DEA_OK;
+}
+
 /* Mesh and constituents of a changed device. */
 static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
                                const struct dea_device *device)
@@ -591,12 +604,7 @@ static dea_status enter(struct dea_context *ctx, void *self, const struct dea_de
     DEA_TRY(ctx, enter_device(ctx, model, change->device[side]));
   }
   if (model->indent != NULL) {
-    const struct dea_pressed own = {model->indent->probe, model->indent->depth_m};
-    const struct dea_pressed *pressed =
-        change->pressed[side] != NULL ? change->pressed[side] : &own;
-    DEA_TRY(ctx, dea_indent_create_variant(ctx, &model->actuator, model->grid, model->solid,
-                                           pressed, v->own.indent, &v->indent));
-    model->indent = v->indent;
+    DEA_TRY(ctx, enter_tip(ctx, model, change->pressed[side]));
   }
   return DEA_OK;
 }
@@ -616,6 +624,11 @@ static void leave(struct dea_context *ctx, void *self)
   memcpy(s->state.force, v->force, s->problem.dofs * sizeof *s->state.force);
 }
 
+static dea_status hold(struct dea_context *ctx, void *self)
+{
+  return enter_tip(ctx, self, NULL);
+}
+
 static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_gradient_ask *ask, double *out)
 {
@@ -627,6 +640,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
                                            .voltage_V = model->at.voltage_V,
                                            .slope = slope,
                                            .enter = enter,
+                                           .hold = model->indent != NULL ? hold : NULL,
                                            .leave = leave,
                                            .point = variant_point};
   const struct dea_gradient_film film = film_of(model);
@@ -644,10 +658,6 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 {
   struct dea_arena memory = {.ctx = ctx};
   dea_standing_end_history(ctx, &model->at);
-  if (model->indent != NULL && dea_gradient_asks_mode(ask)) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "model 3d knows no gradients of a frequency with a tip pressed in");
-  }
   if (dea_gradient_asks_mode(ask)) {
     DEA_TRY(ctx, dea_actuator_check_mass(ctx, &model->actuator));
   }

@@ -484,6 +484,21 @@ double dea_adjoint_product(const struct dea_adjoint *a, size_t number)
 
 // Modes ------------------------------------------------------------------------------------------
 
+size_t dea_adjoint_multipliers(const struct dea_adjoint *a)
+{
+  return a->all;
+}
+
+void dea_adjoint_add_gains(const struct dea_adjoint *a, double times, double *out)
+{
+  for (size_t i = 0; i < a->pressures; i++) {
+    out[i] += times * a->s->state.theta[i];
+  }
+  for (size_t i = a->pressures; i < a->all; i++) {
+    out[i] += times * a->row[i - a->pressures].root * a->theta[i];
+  }
+}
+
 void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, double *out)
 {
   const struct dea_solid_problem *p = &a->s->problem;
@@ -497,6 +512,9 @@ void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, doub
       }
     }
   }
+  for (size_t i = a->pressures; i < a->all; i++) {
+    out[i] += times * a->row[i - a->pressures].root * a->theta[i];
+  }
 }
 
 void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, double *out)
@@ -504,7 +522,7 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
   const struct dea_solid_problem *p = &a->s->problem;
   size_t most = most_of(a);
   double own[DEA_HEX_DOFS_MAX];
-  memset(out, 0, a->pressures * sizeof *out);
+  memset(out, 0, a->all * sizeof *out);
   for (size_t k = 0; k < p->own_count && most > 0; k++) {
     size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
     const double *b = a->b + k * most * DEA_HEX_DOFS_MAX, *L = a->L + k * most * most;
@@ -522,10 +540,36 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
     }
   }
   dea_solid_sum(out, a->pressures);
+  for (size_t i = a->pressures; i < a->all; i++) {
+    const struct row *row = &a->row[i - a->pressures];
+    const double *at = v + 3 * row->node;
+    out[i] = row->root > 0 ? row->stiffness / row->root *
+                                 (row->b[0] * at[0] + row->b[1] * at[1] + row->b[2] * at[2])
+                           : 0;
+  }
 }
 
-dea_status dea_adjoint_volume_product(struct dea_context *ctx, struct dea_adjoint *a,
-                                      const double *p, const double *x, double *out)
+/* The share of what loads hold, with the weights that it has now. */
+static double gains_of_loads(const struct dea_adjoint *a, const double *p, const double *x)
+{
+  const struct dea_solid *s = a->s;
+  const struct row *row = a->row;
+  double sum = 0;
+  for (size_t k = 0, i = a->pressures; k < s->problem.load_count; k++) {
+    const struct dea_solid_load *load = &s->problem.loads[k];
+    for (size_t m = 0; m < load->multiplier_count; m++, i++, row++) {
+      struct dea_load_constraint c;
+      if (row->root > 0) {
+        load->constraint(load->self, m, s->state.u, &c);
+        sum += p[i] * (x[i] - c.weight * p[i] / row->stiffness);
+      }
+    }
+  }
+  return sum;
+}
+
+dea_status dea_adjoint_gain_product(struct dea_context *ctx, struct dea_adjoint *a, const double *p,
+                                    const double *x, double *out)
 {
   const struct dea_solid *s = a->s;
   size_t most = most_of(a);
@@ -553,6 +597,7 @@ dea_status dea_adjoint_volume_product(struct dea_context *ctx, struct dea_adjoin
     }
   }
   dea_solid_sum(out, 1);
+  *out += gains_of_loads(a, p, x);
   return dea_solid_agree(ctx, status);
 }
 

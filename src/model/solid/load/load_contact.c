@@ -13,6 +13,7 @@ struct dea_contact {
   struct dea_face_shape shape;
   struct dea_indenter tip;
   double stiffness, tolerance; // k, of the pressure
+  bool held;                   // what has a pressure stays in touch, of any sign, without k
   double now[3], goal[3];      // place of the tip
   double *weight, *pressure;   // [face_count][points] areas; p
 };
@@ -67,6 +68,13 @@ void dea_contact_place(const struct dea_contact *contact, double place_m[3])
   memcpy(place_m, contact->now, sizeof contact->now);
 }
 
+void dea_contact_hold(struct dea_contact *contact, const struct dea_contact *other)
+{
+  const size_t count = contact->surface->face_count * (size_t)contact->shape.points;
+  memcpy(contact->pressure, other->pressure, count * sizeof *contact->pressure);
+  contact->held = true;
+}
+
 const double *dea_contact_pressure(const struct dea_contact *contact)
 {
   return contact->pressure;
@@ -96,12 +104,13 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
     size_t at = piece * (size_t)points + (size_t)q;
     double n[3], H[9], w = c->weight[at], p = c->pressure[at];
     double gap = gap_at(c, piece, q, u, n, level >= DEA_TANGENT ? H : NULL);
-    double push = fmax(p - k * gap, 0); // NAN becomes 0 here: u is checked by the elements
+    // NAN becomes 0 here: u is checked by the elements
+    double push = c->held ? p : fmax(p - k * gap, 0);
     double bends = level == DEA_TANGENT_PREDICTED ? p : push;
     // (push^2 - p^2) / (2 k), without the difference where k is small
-    out->energy_J -= w * (push > 0 ? gap * (p + push) / 2 : p * p / (2 * k));
-    any = any || push > 0 || p != 0;
-    for (int i = 0; i < 3 && push > 0; i++) {
+    out->energy_J -= w * (push != 0 ? gap * (p + push) / 2 : p * p / (2 * k));
+    any = any || push != 0 || p != 0;
+    for (int i = 0; i < 3 && push != 0; i++) {
       out->g[3 * q + i] -= w * push * n[i];
       for (int j = 0; j < 3 && level >= DEA_TANGENT; j++) {
         out->K[(3 * q + i) * dofs + 3 * q + j] += w * (k * n[i] * n[j] - bends * H[3 * i + j]);

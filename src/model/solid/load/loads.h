@@ -102,6 +102,9 @@ void dea_contact_force_slope(const struct dea_contact *contact, const double *u,
                              double factor, double *by_u, double *by_pressure);
 /* Reference area in contact [m^2]. */
 double dea_contact_area(const struct dea_contact *contact);
+/* Of the same surface moved: what has a pressure in the other contact stays in touch, of any sign
+ * that its pressure comes to have, and without a penalty. For slopes at one state. */
+void dea_contact_hold(struct dea_contact *contact, const struct dea_contact *other);
 /* Contact pressures per reference area [face_count][points], at the nodes of each face of the
  * surface in their order; lent. */
 const double *dea_contact_pressure(const struct dea_contact *contact);
