@@ -57,7 +57,7 @@ struct dea_fronts {
   double *stack;      // updates that wait for their parents
   int *waiting;       // [count] fronts that these are of
   double *oo;         // [own]^2 of a front, as it was before its elimination
-  bool *below;        // [own] of a front: D has -1
+  bool *below;        // [PER nodes] rows where D has -1
   double *x, *beyond; // [PER nodes] and the rows of the largest front
 };
 
@@ -360,7 +360,7 @@ static dea_status make_room(struct dea_context *ctx, struct dea_fronts *f)
   f->x = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->x);
   f->beyond = dea_arena_alloc(&f->memory, rows, sizeof *f->beyond);
   f->oo = dea_arena_alloc(&f->memory, own * own, sizeof *f->oo);
-  f->below = dea_arena_alloc(&f->memory, own, sizeof *f->below);
+  f->below = dea_arena_alloc(&f->memory, PER * (size_t)f->nodes, sizeof *f->below);
   DEA_TRY(ctx, dea_arena_status(&f->memory));
   return DEA_OK;
 }
@@ -551,19 +551,21 @@ static void eliminate(struct dea_fronts *f, const struct front *front, int *nega
 {
   const PetscBLASInt beyond = front->rows - front->own;
   double *panel = f->L + front->panel, *L_bo = panel + front->own;
+  bool *below = f->below + front->first;
   PetscBLASInt failed = 0;
   *negative = 0;
+  memset(below, 0, (size_t)front->own * sizeof *below);
   copy_own(f, front, false);
   LAPACKpotrf_("L", &front->own, panel, &front->rows, &failed);
   if (failed != 0) {
     copy_own(f, front, true);
   }
-  if (failed != 0 ? !eliminate_own(f, front, f->below) : !are_above(f, front)) {
+  if (failed != 0 ? !eliminate_own(f, front, below) : !are_above(f, front)) {
     *negative = -1;
     return;
   }
-  for (size_t c = 0; c < (size_t)front->own && failed != 0; c++) {
-    *negative += f->below[c] ? 1 : 0;
+  for (size_t c = 0; c < (size_t)front->own; c++) {
+    *negative += below[c] ? 1 : 0;
   }
   if (beyond == 0) {
     return;
@@ -572,7 +574,7 @@ static void eliminate(struct dea_fronts *f, const struct front *front, int *nega
             &front->rows);
   BLASsyrk_("L", "N", &beyond, &front->own, &minus, L_bo, &front->rows, &one, f->update, &beyond);
   for (size_t c = 0; c<(size_t)front->own && * negative> 0; c++) {
-    if (f->below[c]) { // where D has -1, what was taken off is added
+    if (below[c]) { // where D has -1, what was taken off is added
       BLASsyrk_("L", "N", &beyond, &unit, &two, L_bo + c * (size_t)front->rows, &front->rows, &one,
                 f->update, &beyond);
     }
@@ -614,13 +616,23 @@ dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts,
 
 // Solution ---------------------------------------------------------------------------------------
 
-/* x = L^-1 x. */
+/* D times the own rows of x. */
+static void turn_signs(struct dea_fronts *f, const struct front *front)
+{
+  const size_t end = (size_t)front->first + (size_t)front->own;
+  for (size_t i = (size_t)front->first; i < end; i++) {
+    f->x[i] = f->below[i] ? -f->x[i] : f->x[i];
+  }
+}
+
+/* x = D L^-1 x. Below a front's own rows the panel has L D. */
 static void solve_down(struct dea_fronts *f)
 {
   for (const struct front *front = f->fronts; front < f->fronts + f->count; front++) {
     const PetscBLASInt beyond = front->rows - front->own;
     const double *panel = f->L + front->panel;
     dtrsv_("L", "N", "N", &front->own, panel, &front->rows, f->x + front->first, &unit);
+    turn_signs(f, front);
     if (beyond > 0) {
       BLASgemv_("N", &beyond, &front->own, &one, panel + front->own, &front->rows,
                 f->x + front->first, &unit, &zero, f->beyond, &unit);
@@ -640,10 +652,12 @@ static void solve_up(struct dea_fronts *f)
     for (PetscBLASInt i = 0; i < beyond; i++) {
       f->beyond[i] = f->x[front->row[i]];
     }
+    turn_signs(f, front);
     if (beyond > 0) {
       BLASgemv_("T", &beyond, &front->own, &minus, panel + front->own, &front->rows, f->beyond,
                 &unit, &one, f->x + front->first, &unit);
     }
+    turn_signs(f, front);
     dtrsv_("L", "T", "N", &front->own, panel, &front->rows, f->x + front->first, &unit);
   }
 }

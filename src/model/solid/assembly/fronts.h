@@ -16,8 +16,9 @@ dea_status dea_fronts_create(struct dea_context *ctx, Mat K, struct dea_fronts *
 bool dea_fronts_fit(const struct dea_fronts *fronts, Mat K);
 /* NULL is fine. */
 void dea_fronts_destroy(struct dea_context *ctx, struct dea_fronts *fronts);
-/* *negative: 0 where K is positive definite and has a factor now; how many pivots are below 0, of
- * which no more are looked for after `most`; or -1 where one is hardly more than rounding. */
+/* *negative: pivots below 0, of which no more are looked for after `most`; or -1 where one is
+ * hardly more than rounding. There is a factor where it is 0, and a rough one (of pivots that were
+ * not looked for) where it is up to `most`. */
 dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts, Mat K, int most,
                              int *negative);
 /* x = K^-1 right with the last factor; vectors of K's rows, not the same. */

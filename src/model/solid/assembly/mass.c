@@ -43,10 +43,17 @@ dea_status dea_solid_add_mass(struct dea_context *ctx, struct dea_solid *s, Mat 
   return DEA_OK;
 }
 
+/* 0 in K's pattern. */
+static dea_status create_like_tangent(struct dea_context *ctx, const struct dea_solid *s, Mat *A)
+{
+  DEA_PETSC(ctx, MatDuplicate(s->work.K, MAT_DO_NOT_COPY_VALUES, A));
+  DEA_PETSC(ctx, MatSetOption(*A, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  return DEA_OK;
+}
+
 dea_status dea_solid_create_mass(struct dea_context *ctx, struct dea_solid *s, Mat *M)
 {
-  DEA_PETSC(ctx, MatDuplicate(s->work.K, MAT_DO_NOT_COPY_VALUES, M));
-  DEA_PETSC(ctx, MatSetOption(*M, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+  DEA_TRY(ctx, create_like_tangent(ctx, s, M));
   DEA_TRY(ctx, dea_solid_add_mass(ctx, s, *M, 1));
   PetscReal size;
   DEA_PETSC(ctx, MatNorm(*M, NORM_INFINITY, &size));
@@ -113,6 +120,13 @@ dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, M
                                  double amount_Pa)
 {
   DEA_TRY(ctx, dea_solid_add_scalar(ctx, s, A, amount_Pa, laplace_of));
+  return DEA_OK;
+}
+
+dea_status dea_solid_create_laplace(struct dea_context *ctx, struct dea_solid *s, Mat *out)
+{
+  DEA_TRY(ctx, create_like_tangent(ctx, s, out));
+  DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, *out, 1));
   return DEA_OK;
 }
 

@@ -18,5 +18,7 @@ double dea_solid_volume_of(const struct dea_solid *s, size_t e);
 /* A += amount_Pa int grad : grad of the displacements; A as in dea_solid_add_scalar. */
 dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, Mat A,
                                  double amount_Pa);
+/* The same of 1 Pa as a matrix of K's pattern, owned by the caller. */
+dea_status dea_solid_create_laplace(struct dea_context *ctx, struct dea_solid *s, Mat *out);
 
 #endif

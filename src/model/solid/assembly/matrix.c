@@ -409,7 +409,7 @@ static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s,
   if (s->work.fronts != NULL) {
     DEA_TRY(ctx, dea_fronts_factor(ctx, s->work.fronts, s->work.K, most, negative));
   }
-  s->work.by_fronts = *negative == 0;
+  s->work.by_fronts = *negative >= 0 && *negative <= most;
   return DEA_OK;
 }
 
@@ -452,8 +452,8 @@ dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int
   return DEA_OK;
 }
 
-dea_status dea_solid_factor_if_definite(struct dea_context *ctx, struct dea_solid *s, int most,
-                                        int *negative)
+dea_status dea_solid_factor_roughly(struct dea_context *ctx, struct dea_solid *s, int most,
+                                    int *negative)
 {
   s->found.stiff_factor_fits = false;
   DEA_TRY(ctx, factor_by_fronts(ctx, s, most, negative));

@@ -52,10 +52,10 @@ dea_status dea_solid_add_scalar(struct dea_context *ctx, struct dea_solid *s, Ma
 dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor);
 /* Factor of K; *negative: its negative pivots beyond those of free potentials. */
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative);
-/* The same where a factor of a K that is not positive definite is of no use: there is none then,
- * and negative pivots beyond `most` may be left out. */
-dea_status dea_solid_factor_if_definite(struct dea_context *ctx, struct dea_solid *s, int most,
-                                        int *negative);
+/* The same where a K that is not positive definite is counted, and solved with roughly at most:
+ * negative pivots beyond `most` may be left out, and then there is no factor. */
+dea_status dea_solid_factor_roughly(struct dea_context *ctx, struct dea_solid *s, int most,
+                                    int *negative);
 /* Factor of K, of whatever definiteness. */
 dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s);
 /* x = K^-1 right with the present factor; vectors of K's rows, not the same. */

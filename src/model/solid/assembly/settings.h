@@ -39,6 +39,8 @@
   X(double, shift_least, 3e-5, "of the softest modulus", "shift below which there is none")        \
   X(double, shift_up, 4, "1", "factor to a larger shift")                                          \
   X(double, shift_down, 10, "1", "divisor to a smaller one")                                       \
+  X(int, shift_modes, 8, "1", "negative pivots whose lowest eigenvalue is looked for")             \
+  X(double, shift_margin, 2, "of the lowest eigenvalue", "next shift")                             \
   X(double, pair_residual, 0.03, "of the sum of element forces", "forces left in a valley")        \
   X(double, pair_gentle, 1, "of the slope",                                                        \
     "rise of a step up below which the shift is too large")                                        \

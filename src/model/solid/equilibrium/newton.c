@@ -6,6 +6,7 @@
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
+#include "model/solid/equilibrium/shift.h"
 
 #include <math.h>
 #include <string.h>
@@ -50,20 +51,44 @@ static double largest(const struct dea_solid *s, const double *v)
 
 /* ---- linear steps ---- */
 
-/* Factor of K, shifted by d->shift_Pa or as much more as makes it positive definite. *there: the
- * shift that K has; the count of unstable modes is set when that is none. */
-static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
-                                     double *there)
+enum { SOME = 5, MANY = 20 }; // negative pivots
+
+/* The next shift after one with which K has `negative` pivots: so that the lowest eigenvalue by L
+ * is as far above 0 as it is below, where it can be found; otherwise by how many there are. *L:
+ * what K is shifted by, made when it is first needed. */
+static dea_status raise_shift(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
+                              double there, int negative, Mat *L)
 {
-  enum { SOME = 5, MANY = 20 }; // negative pivots
   const struct dea_solid_settings *o = &s->settings;
-  for (int i = 0; i < o->shifts; i++) {
+  double lowest_Pa = 0, more = o->shift_up * (negative > MANY ? 16 : negative > SOME ? 4 : 1);
+  d->shift_Pa = there > 0 ? more * there : o->shift_first * s->problem.modulus_Pa;
+  if (negative > o->shift_modes) {
+    return DEA_OK;
+  }
+  if (*L == NULL) {
+    DEA_TRY(ctx, dea_solid_create_laplace(ctx, s, L));
+  }
+  DEA_TRY(ctx, dea_solid_lowest_by_laplace(ctx, s, *L, negative, &lowest_Pa));
+  if (lowest_Pa < 0) {
+    d->shift_Pa = there - o->shift_margin * lowest_Pa;
+  }
+  return DEA_OK;
+}
+
+/* factorise_definite with *L. */
+static dea_status search_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
+                                  double *there, Mat *L)
+{
+  for (int i = 0; i < s->settings.shifts; i++) {
     int negative;
-    if (d->shift_Pa != *there) {
-      DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, d->shift_Pa - *there));
-      *there = d->shift_Pa;
+    double more_Pa = d->shift_Pa - *there;
+    if (more_Pa != 0 && *L != NULL) {
+      DEA_TRY(ctx, dea_solid_add_matrix(ctx, s->work.K, more_Pa, *L));
+    } else if (more_Pa != 0) {
+      DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, more_Pa));
     }
-    DEA_TRY(ctx, dea_solid_factor_if_definite(ctx, s, MANY, &negative));
+    *there = d->shift_Pa;
+    DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, MANY, &negative));
     d->report->factorisations++;
     d->report->shifted += *there > 0;
     if (*there == 0) {
@@ -72,10 +97,20 @@ static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *
     if (negative <= 0) {
       return DEA_OK;
     }
-    double more = o->shift_up * (negative > MANY ? 16 : negative > SOME ? 4 : 1);
-    d->shift_Pa = *there > 0 ? more * *there : o->shift_first * s->problem.modulus_Pa;
+    DEA_TRY(ctx, raise_shift(ctx, s, d, *there, negative, L));
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no shift makes the tangent positive definite");
+}
+
+/* Factor of K, shifted by d->shift_Pa or as much more as makes it positive definite. *there: the
+ * shift that K has; the count of unstable modes is set when that is none. */
+static dea_status factorise_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
+                                     double *there)
+{
+  Mat L = NULL;
+  dea_status status = search_definite(ctx, s, d, there, &L);
+  MatDestroy(&L);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 /* step = -K^-1 g with the factor that is there. */
@@ -339,7 +374,7 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &report->energy_J));
   }
   dea_solid_keep_scales(s);
-  DEA_TRY(ctx, dea_solid_factor_if_definite(ctx, s, 0, &report->unstable_modes));
+  DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, 0, &report->unstable_modes));
   report->factorisations++;
   s->found.factor_fits = report->unstable_modes == 0;
   if (!s->found.factor_fits) { // of a solid that kappa leaves a little compressible

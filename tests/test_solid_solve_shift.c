@@ -1,0 +1,84 @@
+/* The shift that a tangent lacks: of a strip that is pushed together, to more and more unstable
+ * modes, what Lanczos' method finds against the inertia of K shifted by a tenth less and more. */
+// ctest: solid
+#include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/mass.h"
+#include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/shift.h"
+#include "solid_block.h"
+
+#include "solid_fixture.h"
+
+static const struct block strip = {{20, 3, 0.2}, {16, 3, 1}, 2, 2};
+static struct dea_constituent layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
+
+static int ends(const void *self, const double X[3])
+{
+  (void)self;
+  return X[0] < 1e-9 || X[0] > strip.size[0] - 1e-9 ? 1 | 2 | 4 : 0;
+}
+
+/* Pushed together by that share, at no change of volume to first order, and K of there. */
+static struct dea_solid *pushed(const struct dea_grid *grid, double share)
+{
+  double energy_J;
+  struct dea_solid *s = block_solid(ctx, grid, strip.order_z, &layer, ends);
+  for (size_t n = 0; n < grid->node_count; n++) {
+    s->state.u[3 * n] = -share * grid->X[3 * n];
+    s->state.u[3 * n + 2] = share * grid->X[3 * n + 2];
+  }
+  assert_int_equal(dea_solid_assemble(ctx, s, 0, DEA_TANGENT, &energy_J), DEA_OK);
+  return s;
+}
+
+/* Negative pivots of K + more_Pa L, which K is after that. */
+static int shifted(struct dea_solid *s, Mat L, double more_Pa)
+{
+  int negative;
+  assert_int_equal(dea_solid_add_matrix(ctx, s->work.K, more_Pa, L), DEA_OK);
+  assert_int_equal(dea_solid_factorise(ctx, s, &negative), DEA_OK);
+  return negative;
+}
+
+/* *negative: pivots of K. */
+static double check(const struct dea_grid *grid, double share, int *negative)
+{
+  struct dea_solid *s = pushed(grid, share);
+  double lowest_Pa, again_Pa;
+  Mat L;
+  assert_int_equal(dea_solid_create_laplace(ctx, s, &L), DEA_OK);
+  *negative = shifted(s, L, 0);
+  assert_int_equal(dea_solid_lowest_by_laplace(ctx, s, L, *negative, &lowest_Pa), DEA_OK);
+  assert_int_equal(dea_solid_lowest_by_laplace(ctx, s, L, *negative, &again_Pa), DEA_OK);
+  assert_true(again_Pa == lowest_Pa);
+  assert_true(lowest_Pa < 0);
+  assert_int_equal(shifted(s, L, -1.1 * lowest_Pa), 0);
+  assert_true(shifted(s, L, 0.2 * lowest_Pa) > 0); // - 0.9 of it
+  MatDestroy(&L);
+  dea_solid_destroy(ctx, s);
+  return lowest_Pa;
+}
+
+static void test_strip(void **state)
+{
+  (void)state;
+  static const double shares[] = {0.0036, 0.0045, 0.006, 0.008, 0.01};
+  layer.law = dea_law_find("neo-hookean");
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_grid *grid = block_grid(ctx, &strip);
+  int negative[5];
+  double before_Pa = 0;
+  for (int i = 0; i < 5; i++) {
+    double lowest_Pa = check(grid, shares[i], &negative[i]);
+    assert_true(lowest_Pa < before_Pa);
+    before_Pa = lowest_Pa;
+  }
+  assert_true(negative[0] < 3 && negative[4] == 6);
+  dea_grid_destroy(ctx, grid);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_strip)};
+  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
+}
