@@ -212,6 +212,72 @@ static void test_interrupted(void **state)
   assert_int_equal(lines_with("early/cases.csv", "\n"), kept); // each has one line for its head
 }
 
+/* The best design, and how many stand in the part of a search; none twice. */
+static int read_search(const char *folder, double *best_m)
+{
+  static char bytes[COMMAND_TEXT_MAX];
+  char name[64], variables[4000][48];
+  int count = 0;
+  snprintf(name, sizeof name, "%s/part-1-of-1.csv", folder);
+  command_read(name, bytes);
+  for (char *line = strchr(bytes, '\n') + 1; *line != '\0'; line = strchr(line, '\n') + 1) {
+    assert_in_range(count, 0, 3999);
+    const char *at = line;
+    for (int comma = 0; comma < 4; comma++) { // number, id, time, reason
+      at = strchr(at, ',') + 1;
+    }
+    assert_int_equal(sscanf(at, "%47[^,],", variables[count]), 1);
+    assert_non_null(strchr(line, '\n')); // whole
+    for (int i = 0; i < count; i++) {
+      assert_string_not_equal(variables[i], variables[count]);
+    }
+    count++;
+  }
+  if (best_m != NULL) {
+    snprintf(name, sizeof name, "%s/best.yaml", folder);
+    command_read(name, bytes);
+    assert_int_equal(sscanf(strstr(bytes, "electrode_edge_u_m = "), "%*s = %lf", best_m), 1);
+  }
+  return count;
+}
+
+/* Ctrl-C upon a search, on the command and its processes, once it has kept a few designs more: what
+ * it has made stays, and in the end is what one search makes, none of it twice. */
+static void test_interrupted_search(void **state)
+{
+  (void)state;
+  static const int more[] = {1, 20, 1, 100, 2};
+  double wanted_m, best_m;
+  char text[2000];
+  int kept = 0;
+  write_file("{name: film.thickness, low: 80 um, high: 300 um, start: 200 um}",
+             "objectives: [{quantity: electrode_edge_u_m}]\nstarts: 40\nevaluations: "
+             "4000\ntolerance: 1e-10\n"
+             "limits: [{quantity: breakdown_margin, above: 0.1}]");
+  assert_int_equal(command_run("optimise mine.yaml -j 2 -q -o whole"), 0);
+  const int all = read_search("whole", &wanted_m);
+
+  for (size_t i = 0; i < sizeof more / sizeof more[0]; i++) {
+    snprintf(
+        text, sizeof text,
+        "cd '%s'; setsid '%s' optimise mine.yaml -j 2 -q -o stopped >out.txt 2>err.txt & pid=$!; "
+        "cd '%s'; until [ $(cat stopped/part* 2>/dev/null | wc -l) -gt %d ] || ! kill -0 $pid; "
+        "do :; done; "
+        "kill -INT -$pid; wait $pid",
+        command_folder, DEA_COMMAND, command_folder, kept + more[i]);
+    const int status = system(text);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
+    const int now = read_search("stopped", NULL);
+    assert_in_range(now, kept + more[i], all - 1);
+    kept = now;
+  }
+  assert_int_equal(command_run("optimise mine.yaml -j 2 -o stopped"), 0);
+  snprintf(text, sizeof text, "designs: %d, %d of them computed before", all, kept);
+  assert_contains(command_out, text);
+  assert_int_equal(read_search("stopped", &best_m), all);
+  assert_close(best_m, wanted_m, 0, 0);
+}
+
 /* A search as a user runs it; docs/explore.md shows it. */
 static void test_optimise(void **state)
 {
@@ -314,11 +380,16 @@ static void test_page(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_errors),   cmocka_unit_test(test_grid),
-      cmocka_unit_test(test_killed),   cmocka_unit_test(test_interrupted),
-      cmocka_unit_test(test_optimise), cmocka_unit_test(test_critical_voltages),
-      cmocka_unit_test(test_page),     cmocka_unit_test(test_parts),
-      cmocka_unit_test(test_monitors), cmocka_unit_test(test_values_without_the_start)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors),
+                                     cmocka_unit_test(test_grid),
+                                     cmocka_unit_test(test_killed),
+                                     cmocka_unit_test(test_interrupted),
+                                     cmocka_unit_test(test_interrupted_search),
+                                     cmocka_unit_test(test_optimise),
+                                     cmocka_unit_test(test_critical_voltages),
+                                     cmocka_unit_test(test_page),
+                                     cmocka_unit_test(test_parts),
+                                     cmocka_unit_test(test_monitors),
+                                     cmocka_unit_test(test_values_without_the_start)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -67,6 +67,8 @@ struct at {
   bool again;                         // solved for once more, for what the first solution leaves
   double leaves;                      // what solutions leave of a quantity, over its size
   struct dea_model_settings settings; // of a critical voltage
+  const struct dea_control *control;  // that is moved at the voltage; NULL: none
+  double control_to;
 };
 
 static void read_design(struct at *at, const char *name, const char *text)
@@ -92,6 +94,8 @@ static void solve(struct at *at, const struct dea_device *device, double voltage
   settings.mesh_from = at->model;
   if (type->create(ctx, device, &settings, &model) != DEA_OK ||
       type->solve(ctx, model, voltage_V, &point) != DEA_OK ||
+      (at->control != NULL &&
+       type->move(ctx, model, at->control, at->control_to, &point) != DEA_OK) ||
       (at->again && type->solve(ctx, model, voltage_V, &point) != DEA_OK) ||
       dea_model_observe(ctx, type, model, &seen) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
@@ -277,7 +281,55 @@ static void test_frequency_of_the_cone(void **state)
   check(&at);
 }
 
-/* A diaphragm of two plies, the upper one without a field. */
+/* Its hub where study loading has brought it, and pushed by more than its own force: that is held.
+ */
+static void test_moved_hub(void **state)
+{
+  (void)state;
+  static const struct dea_control place = {.kind = DEA_CONTROL_PLACE, .component = 2},
+                                  force = {.kind = DEA_CONTROL_FORCE, .component = 2};
+  static const char *const of_place[] = {"voltage", "plies.film.thickness", "bodies.hub.mass",
+                                         "shapes.hub.radius", NULL},
+                           *const of_force[] = {"springs[0].stiffness", "bodies.hub.force_z", NULL};
+  struct at at = {.voltage_V = 3e3,
+                  .monitors = {0, 1},
+                  .monitor_count = 2,
+                  .motion = {DEA_OBSERVED_FORCE_Z, DEA_OBSERVED_Z},
+                  .asked = true,
+                  .only = of_place,
+                  .control = &place,
+                  .control_to = 2e-3};
+  read_design(&at, "cone.yaml", cone);
+  check(&at);
+  at = (struct at){.voltage_V = 3e3, .only = of_force, .control = &force, .control_to = 80e-3};
+  read_design(&at, "cone.yaml", cone);
+  check(&at);
+}
+
+/* Two plies under a pressure, the upper one without a field. */
+static const struct dea_override skin = {
+    "plies", "[{name: film, shape: film, material: elastosil-2030, thickness: 100 um, "
+             "pre_stretch: 1.1}, {name: skin, shape: active, material: elastosil-2030, "
+             "thickness: 50 um, pre_stretch: 1.05}]"};
+
+static void read_diaphragm(struct at *at)
+{
+  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/diaphragm.yaml", &skin, 1,
+                                   &at->design),
+                   DEA_OK);
+}
+
+/* Pressures half again as large as the design has them; the factor is held. */
+static void test_moved_pressure(void **state)
+{
+  (void)state;
+  static const struct dea_control pressure = {.kind = DEA_CONTROL_PRESSURE};
+  static const char *const only[] = {"pressures[0].pressure", "shapes.active.radius", NULL};
+  struct at at = {.voltage_V = 3e3, .only = only, .control = &pressure, .control_to = 1.5};
+  read_diaphragm(&at);
+  check(&at);
+}
+
 static void test_two_plies_under_pressure(void **state)
 {
   (void)state;
@@ -285,13 +337,7 @@ static void test_two_plies_under_pressure(void **state)
                                      "pressures[0].pressure", "shapes.active.radius",
                                      NULL}; // the others are like those of a cone
   struct at at = {.voltage_V = 3e3, .only = only};
-  const struct dea_override skin = {
-      "plies", "[{name: film, shape: film, material: elastosil-2030, thickness: 100 um, "
-               "pre_stretch: 1.1}, {name: skin, shape: active, material: elastosil-2030, "
-               "thickness: 50 um, pre_stretch: 1.05}]"};
-  assert_int_equal(
-      dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/diaphragm.yaml", &skin, 1, &at.design),
-      DEA_OK);
+  read_diaphragm(&at);
   /* voltage, two thicknesses and stretches, pressure, twice three of the law, permittivity, two
    * radii */
   assert_int_equal(check(&at), 15);
@@ -892,6 +938,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_frequency_of_the_cone),
+      cmocka_unit_test(test_moved_hub),
+      cmocka_unit_test(test_moved_pressure),
       cmocka_unit_test(test_two_plies_under_pressure),
       cmocka_unit_test(test_shapes),
       cmocka_unit_test(test_region),

@@ -64,11 +64,17 @@ struct dea_model {
   double *rest;             // u [3 node_count] where it was released, and multipliers there
   bool rest_is_one_of;      // several states there
   struct dea_control moved; // of the last move
-  bool was_moved;           // there was one
+  struct moved *controls;   // [body_count] components that moves have set
   struct variant *variant;  // a changed device is under the solid; NULL: its own
   double *answers;          // of the last response, as in model/model.h
   double *answer;           // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
   struct marks marks;       // of saved states, made by the first
+};
+
+/* Components of a body, as bits, that are where a control has brought them, and that have its force
+ * or moment, in place of what the design says. */
+struct moved {
+  int place, force;
 };
 
 /* What a changed device takes the place of. Mesh, constituents and loads of the changed device are
@@ -563,6 +569,7 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
   double *point_mass, *share = dea_arena_alloc(&model->memory, l->channel_count, sizeof *share);
   model->bodies = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->bodies);
   model->push = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->push);
+  model->controls = dea_arena_alloc(&model->memory, l->body_count, sizeof *model->controls);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   model->mesh_node_count = model->mesh.grid->node_count;
   DEA_TRY(ctx, add_bodies(ctx, model, &point_mass));
@@ -842,11 +849,13 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
   switch (control->kind) {
   case DEA_CONTROL_PLACE:
     place[control->component] = value;
+    model->controls[body].place |= 1 << control->component;
     DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, body, 1 << control->component, place,
                                           place + 3));
     break;
   case DEA_CONTROL_FORCE:
     model->push[body][control->component] = value;
+    model->controls[body].force |= 1 << control->component;
     push_body(model, body);
     break;
   case DEA_CONTROL_PRESSURE:
@@ -913,7 +922,6 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, check_control(ctx, model, control, value));
   dea_standing_end_history(ctx, &model->at);
   double from = where_control_is(model, control);
-  model->was_moved = true;
   DEA_TRY(ctx, set_control(ctx, model, control, value));
   dea_status status = follow_control(ctx, model, control, from, value);
   if (status != DEA_OK) {
@@ -974,6 +982,39 @@ static dea_status check_held(struct dea_context *ctx, const struct dea_model *mo
                          "the mesh cannot follow: supports and bodies would hold other nodes");
 }
 
+/* Loads stand where a solve would bring them. */
+static void place_loads(const struct dea_solid_problem *p)
+{
+  for (size_t i = 0; i < p->load_count; i++) {
+    if (p->loads[i].parameter_count > 0) {
+      memcpy(p->loads[i].now, p->loads[i].goal, p->loads[i].parameter_count * sizeof(double));
+    }
+  }
+}
+
+/* What controls have moved has their values, whatever the changed device says of it. */
+static void keep_controls(struct dea_model *model)
+{
+  const struct dea_model *own = &model->variant->own;
+  const struct dea_solid *from = own->solid;
+  struct dea_solid *to = model->solid;
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    for (size_t k = 0; k < 6; k++) {
+      const size_t at = 3 * to->problem.bodies[i].node + k;
+      if ((own->controls[i].place >> k) & 1) {
+        to->problem.held[at] = from->problem.held[at];
+        to->state.u_goal[at] = from->state.u_goal[at];
+      }
+      if ((own->controls[i].force >> k) & 1) {
+        model->push[i][k] = own->push[i][k];
+      }
+    }
+    push_body(model, i);
+  }
+  set_pressures(model, own->pressure_factor);
+  place_loads(&to->problem);
+}
+
 /* Mesh, constituents and loads of a changed device, with a solid that has them. */
 static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
 {
@@ -985,16 +1026,10 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, set_weight(ctx, model));
   DEA_TRY(ctx, hold_supports(ctx, model, true));
   DEA_TRY(ctx, load_bodies(ctx, model));
+  keep_controls(model);
   DEA_TRY(ctx, check_held(ctx, model));
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, &model->observer));
   find_thinnest(model);
-  set_pressures(model, 1);
-  const struct dea_solid_problem *p = &model->solid->problem;
-  for (size_t i = 0; i < p->load_count; i++) { // they stand where a solve would bring them
-    if (p->loads[i].parameter_count > 0) {
-      memcpy(p->loads[i].now, p->loads[i].goal, p->loads[i].parameter_count * sizeof(double));
-    }
-  }
   return DEA_OK;
 }
 
@@ -1150,6 +1185,30 @@ static dea_status take_monitors(struct dea_context *ctx, void *self, double *out
   return DEA_OK;
 }
 
+/* Pressures and forces that controls have moved as the design has them, which they were at rest, or
+ * as they are again. */
+static void load_as_at_rest(const struct dea_model *model, bool at_rest)
+{
+  struct dea_solid *s = model->solid;
+  set_pressures(model, at_rest ? 1 : model->pressure_factor);
+  place_loads(&s->problem);
+  for (size_t i = 0; i < model->layout->body_count; i++) {
+    const struct dea_layout_body *body = &model->layout->bodies[i];
+    const size_t first = 3 * s->problem.bodies[i].node;
+    double part[6];
+    for (size_t k = 0; k < 6; k++) {
+      const double own = k < 3 ? body->force_N[k] : body->moment_N_m[k - 3];
+      part[k] = (at_rest ? own : model->push[i][k]) / model->copies;
+    }
+    dea_solid_body_push(s, i, part, part + 3);
+    for (size_t k = 0; k < 6; k++) {
+      if ((model->variant->own.controls[i].force >> k) & 1) {
+        s->state.force[first + k] = s->state.force_goal[first + k];
+      }
+    }
+  }
+}
+
 static dea_status variant_point(struct dea_context *ctx, void *self, double voltage_V,
                                 double energy_J, struct dea_load_point *out)
 {
@@ -1161,9 +1220,11 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
     rest[i] = model->rest[i] + v->shift[i];
   }
   model->at.report.energy_J = energy_J;
+  load_as_at_rest(model, true);
   dea_status status =
       dea_gradient_rest_energy(model->solid, v->ask, rest, model->rest + model->solid->problem.dofs,
                                &model->at.rest_energy_J);
+  load_as_at_rest(model, false);
   describe(model, voltage_V, out);
   if (status == DEA_OK) {
     status = dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out);
@@ -1221,10 +1282,6 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
   struct dea_arena memory = {.ctx = ctx};
   const struct dea_solid_problem *p = &model->solid->problem;
   dea_standing_end_history(ctx, &model->at);
-  if (model->was_moved) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "model 3d knows no gradients where a body or a pressure has been moved");
-  }
   if (dea_gradient_asks_mode(ask)) {
     DEA_TRY(ctx, check_densities(ctx, model->layout));
   }
