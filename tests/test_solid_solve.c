@@ -127,6 +127,28 @@ static void test_steps_with_one_factor(void **state)
   disc_destroy(&alone);
 }
 
+/* A way in parts takes fewer of them with the bend of the part before, and ends in the same state.
+ */
+static void test_bend(void **state)
+{
+  (void)state;
+  struct disc bent = disc_create(100e-6, 1.5, 2, 4, 2e-4);
+  struct disc straight = disc_create(100e-6, 1.5, 2, 4, 2e-4);
+  struct dea_solid_report one, other;
+  dea_solid_settings_of(straight.solid)->follow_bend = 1e-12; // never
+  for (int step = 0; step < 2; step++) {
+    double V = 1e4 * step;
+    assert_int_equal(dea_load_steps_solve(ctx, bent.solid, V, &one), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, straight.solid, V, &other), DEA_OK);
+  }
+  const double *u = dea_solid_displacement(bent.solid) + 3 * bent.edge;
+  print_message("%d and %d factorisations\n", one.factorisations, other.factorisations);
+  assert_close(u[0], dea_solid_displacement(straight.solid)[3 * straight.edge], 1e-9, 0);
+  assert_true(one.shifted == 0 && one.factorisations < other.factorisations);
+  disc_destroy(&bent);
+  disc_destroy(&straight);
+}
+
 /* 0 to 11 kV in steps of 1 kV without help, no unstable mode on the way, within 0.4 % of the disc
  * without thickness. Elements of 0.2 mm at the electrode edge. */
 static void test_plain_disc_to_11_kV(void **state)
@@ -322,6 +344,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_steps_with_one_factor),
+      cmocka_unit_test(test_bend),
       cmocka_unit_test(test_plain_disc_to_11_kV),
       cmocka_unit_test(test_difference_goes_with_the_thickness),
       cmocka_unit_test(test_no_false_modes_at_rest),

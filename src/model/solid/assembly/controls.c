@@ -55,6 +55,8 @@ dea_status dea_load_steps_prepare(struct dea_context *ctx, struct dea_solid *s)
   path->controls_from = dea_arena_alloc(&path->memory, controls, sizeof(double));
   path->controls_goal = dea_arena_alloc(&path->memory, controls, sizeof(double));
   path->at = dea_arena_alloc(&path->memory, controls, sizeof(double));
+  path->before_last = dea_arena_alloc(&path->memory, states, sizeof(double));
+  path->last = dea_arena_alloc(&path->memory, states, sizeof(double));
   if (path->memory.failed) {
     dea_load_steps_release(path);
     return DEA_E_MEMORY;

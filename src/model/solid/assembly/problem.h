@@ -97,6 +97,11 @@ struct dea_load_steps {
   double *controls_from; // [control_count] start of a solve
   double *controls_goal; // [control_count] end of it
   double *at;            // [control_count] where it is
+  // two equilibria one after the other between which the voltage alone has changed, by
+  // dea_solid_follow; the same voltage twice: none
+  double *before_last; // [state_count] displacements and pressures at the first
+  double *last;        // [state_count] displacements at the second
+  double before_last_V, last_V;
 };
 
 /* Memory of the solvers: what stands in it is theirs from one call to the next, no longer. */

@@ -30,6 +30,8 @@
   X(double, follow_accuracy, 1e-8, "of the first step", "last step")                               \
   X(double, follow_on_the_way, 1e-3, "of the first step",                                          \
     "last step to no point that is asked for")                                                     \
+  X(double, follow_bend, 0.1, "of the first step", "what the step before adds to it, at most")     \
+  X(double, follow_bend_way, 3, "of the step before", "longest step that this adds to")            \
   X(double, follow_part, 0.02, "of the way asked for", "shortest way with it")                     \
   X(int, halvings, 12, "1", "of a step in the line search")                                        \
   X(double, uphill, 20, "of the slope", "rise of the energy along a step that is let pass")        \

@@ -23,7 +23,7 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
   report->factorisations++;
   s->found.stiff_factor_fits = negative == 0;
-  DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, NULL, there));
+  DEA_TRY(ctx, dea_solid_follow(ctx, s, NAN, false, report, NULL, there));
   if (!*there) {
     s->found.stiff_factor_fits = false;
     DEA_TRY(ctx, dea_solid_minimise(ctx, s, NULL, report));
@@ -48,7 +48,7 @@ dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
     double error = fmax(report->theta_max / o->theta, report->load_error);
     there = report->theta_max < o->theta && report->load_error <= 1;
     if (!there && report->theta_max < o->theta) {
-      DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, NULL, &there));
+      DEA_TRY(ctx, dea_solid_follow(ctx, s, NAN, false, report, NULL, &there));
     }
     if (there) {
       return DEA_OK;

@@ -51,6 +51,7 @@ struct follow {
   double accuracy;               // of the last f over the first
   double load_error;             // of the loads' multipliers, at most 1: they have followed
   bool equilibrium;              // forces and theta are to be those of one
+  double from_V;                 // voltage at the start; NAN: not only that has changed
   double stiff;                  // kappa of the factor over that of the solid
 };
 
@@ -177,6 +178,53 @@ static void advance(struct follow *w)
       w->x[i] -= share[k] * (w->dx[k][i] + w->df[k][i]);
     }
   }
+}
+
+/* ---- the bend of the way ---- */
+
+static bool knows_before(const struct follow *w)
+{
+  const struct dea_load_steps *path = &w->s->work.load_steps;
+  return !isnan(w->from_V) && path->last_V != path->before_last_V &&
+         memcmp(w->first, path->last, w->dofs * sizeof *w->first) == 0;
+}
+
+/* Adds to x, which the first step f has led to along the tangent at the start, how far the parabola
+ * in V^2 with that tangent and the equilibrium before lies beside it there:
+ *
+ *   r f - r^2 (x_last - x_before_last),   r = what V^2 changes by over what it changed by before.
+ */
+static void bend(struct follow *w)
+{
+  const struct dea_solid_settings *o = &w->s->settings;
+  const struct dea_load_steps *path = &w->s->work.load_steps;
+  double V = w->s->state.voltage_V, last = path->last_V, before = path->before_last_V;
+  double r = (V * V - last * last) / (last * last - before * before), beside = 0, along = 0;
+  for (size_t i = 0; i < w->dofs; i++) {
+    double d = r * w->f[i] - r * r * (w->first[i] - path->before_last[i]);
+    beside += d * d;
+    along += w->f[i] * w->f[i];
+  }
+  if (r > 0 && r <= o->follow_bend_way && sqrt(beside) < o->follow_bend * sqrt(along)) {
+    for (size_t i = 0; i < w->count; i++) {
+      w->x[i] += r * w->f[i] - r * r * (w->first[i] - path->before_last[i]);
+    }
+  }
+}
+
+/* For the next one, that the solid has come from the start to where it is. */
+static void keep_way(struct follow *w)
+{
+  struct dea_load_steps *path = &w->s->work.load_steps;
+  double V = w->s->state.voltage_V;
+  if (!isnan(w->from_V) && V != w->from_V) {
+    memcpy(path->before_last, w->first, w->count * sizeof *w->first);
+    path->before_last_V = w->from_V;
+  } else if (!knows_before(w)) {
+    path->before_last_V = V;
+  }
+  memcpy(path->last, w->s->state.u, w->dofs * sizeof *path->last);
+  path->last_V = V;
 }
 
 /* ---- the slope of theta at the start ---- */
@@ -357,6 +405,9 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
       remember(w);
     }
     advance(w);
+    if (k == 0 && knows_before(w)) {
+      bend(w);
+    }
     w->report->corrections++;
   }
   return DEA_OK;
@@ -464,14 +515,16 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
   return status;
 }
 
-dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool on_the_way,
-                            struct dea_solid_report *report, double *rate, bool *there)
+dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double from_V,
+                            bool on_the_way, struct dea_solid_report *report, double *rate,
+                            bool *there)
 {
   struct follow w = {.memory = {.ctx = ctx},
                      .s = s,
                      .accuracy =
                          on_the_way ? s->settings.follow_on_the_way : s->settings.follow_accuracy,
                      .equilibrium = !on_the_way,
+                     .from_V = from_V,
                      .report = report,
                      .dofs = s->problem.dofs,
                      .pressures = dea_solid_pressure_count(s),
@@ -488,6 +541,9 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, bool o
   dea_status status = iterate_all(ctx, &w, there);
   if (status == DEA_OK && *there) {
     status = count(ctx, &w, there);
+  }
+  if (status == DEA_OK && *there) {
+    keep_way(&w);
   }
   if (rate != NULL) {
     *rate = w.rate;

@@ -360,13 +360,18 @@ static double next_part(const struct dea_solid *s, double part, double rate, boo
 static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
                             struct dea_solid_report *report, bool *there)
 {
+  struct dea_load_steps *path = &s->work.load_steps;
+  const double *from = path->controls_from, *goal = path->controls_goal;
   double part = 1, rate = 0, from_here = INFINITY, to_end = INFINITY; // rates over root of part
   bool fits = true;
+  path->last_V = path->before_last_V; // no bend of another solve: a state that is kept has none
+  bool alone = memcmp(from + 1, goal + 1, (path->control_count - 1) * sizeof *from) == 0;
   while (report->way < 1 && part >= s->settings.follow_part && fits) {
     double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
     part = way - report->way;
+    double here_V = alone ? from[0] + report->way * (goal[0] - from[0]) : NAN;
     set_share(s, way);
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, way < 1, report, &rate, there));
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, here_V, way < 1, report, &rate, there));
     fits = (s->found.factor_fits || s->found.stiff_factor_fits) &&
            (*there || rate < sqrt(part) * (way < 1 ? from_here : fmin(from_here, to_end)));
     from_here = *there ? INFINITY : rate / sqrt(part);
@@ -378,7 +383,8 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   *there = report->way == 0 || report->way >= 1;
   fits = s->found.factor_fits || s->found.stiff_factor_fits;
   if (!*there && fits) { // it is only near one
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, false, report, NULL, there));
+    double here_V = alone ? s->state.voltage_V : NAN;
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, here_V, false, report, NULL, there));
   }
   return DEA_OK;
 }
