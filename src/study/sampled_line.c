@@ -6,6 +6,7 @@
  *   e_j       |Q(V_j) - p(V_j)|, p without the computed point j          as Q
  *   R         what Q changes by on the line                              as Q
  *   error     9/4 max(e_a, e_b) in the gap between the points a and b    as Q
+ *   D         energy that a gap has lost beyond the work of the supply   J
  */
 #include "study/sampled_line.h"
 
@@ -17,6 +18,7 @@ enum { STENCIL = 4, LEAST_POINTS = STENCIL + 1 };
 static const double of_held_back = 9.0 / 4; // estimated error over e: as large as that of a kink
 static const double of_others = 10;         // tolerance of what is not the force, over its own
 static const double least_change = 1e-3;    // of |Q|: R is at least that
+static const double energy_noise = 1e-9;    // of R: errors of computed energies
 
 /* What is done with a column. */
 enum treatment { LEFT, CUBIC, LARGER };
@@ -63,8 +65,9 @@ static size_t find_stencil(const struct dea_sampled_line *line, size_t k, size_t
   return n;
 }
 
-/* p at the k-th voltage (Lagrange), exact for what is constant: a depth that is held stays it. */
-static double cubic(const struct dea_sampled_line *line, int column, size_t k)
+/* p of the k-th point at a voltage (Lagrange), exact for what is constant: a depth that is held
+ * stays it. */
+static double cubic_at(const struct dea_sampled_line *line, int column, size_t k, double voltage_V)
 {
   const double *V = line->voltages_V;
   size_t at[STENCIL] = {0}, n = find_stencil(line, k, at);
@@ -72,11 +75,16 @@ static double cubic(const struct dea_sampled_line *line, int column, size_t k)
   for (size_t i = 0; i < n; i++) {
     double share = 1;
     for (size_t j = 0; j < n; j++) {
-      share *= j == i ? 1 : (V[k] - V[at[j]]) / (V[at[i]] - V[at[j]]);
+      share *= j == i ? 1 : (voltage_V - V[at[j]]) / (V[at[i]] - V[at[j]]);
     }
     sum += share * (dea_point_get(&line->points[at[i]], column) - first);
   }
   return sum;
+}
+
+static double cubic(const struct dea_sampled_line *line, int column, size_t k)
+{
+  return cubic_at(line, column, k, line->voltages_V[k]);
 }
 
 /* e of a computed point; 0 at an end, which has none. */
@@ -127,6 +135,24 @@ static size_t next_computed(const struct dea_sampled_line *line, size_t k)
   return k;
 }
 
+/* Whether the energy of a gap's ends is what the interpolated charge between them says, dE = -C V
+ * dV, to what that may be off by; a jump from state to state between them has released some,
+ * whatever the line is like beside it. Where there is no energy nothing is said. */
+static bool is_balanced(const struct dea_sampled_line *line, size_t a, size_t b,
+                        const double changes[DEA_LOAD_POINT_COLUMNS])
+{
+  static const double at[] = {-0.7745966692414834, 0, 0.7745966692414834}; // Gauss
+  static const double weight[] = {5.0 / 9, 8.0 / 9, 5.0 / 9};
+  const int E = dea_point_column_find("energy_J"), C = dea_point_column_find("capacitance_F");
+  const double *V = line->voltages_V, middle = 0.5 * (V[a] + V[b]), half = 0.5 * (V[b] - V[a]);
+  double D = dea_point_get(&line->points[b], E) - dea_point_get(&line->points[a], E);
+  for (int i = 0; i < 3; i++) {
+    double here_V = middle + at[i] * half;
+    D += half * weight[i] * cubic_at(line, C, a + 1, here_V) * here_V;
+  }
+  return !(fabs(D) > gap_error(line, C, a, b) * 2 * half * middle + energy_noise * changes[E]);
+}
+
 /* Whether a gap may be interpolated. changes: R of each column. */
 static bool is_good(const struct dea_sampled_line *line, size_t a, size_t b, double tolerance,
                     const enum treatment treatment[DEA_LOAD_POINT_COLUMNS],
@@ -140,7 +166,7 @@ static bool is_good(const struct dea_sampled_line *line, size_t a, size_t b, dou
     bool there = treatment[c] == CUBIC && !isnan(dea_point_get(&p[a], c));
     good = !there || gap_error(line, c, a, b) <= most;
   }
-  return good;
+  return good && is_balanced(line, a, b, changes);
 }
 
 size_t dea_sampled_line_halve(const struct dea_sampled_line *line, double tolerance, bool *wanted)
