@@ -345,6 +345,22 @@ static void test_parts_that_nothing_holds(void **state)
   assert_non_null(find_error(ctx, "nothing holds the part of the device at (92, 0) mm"));
 }
 
+/* A weight on a film that nothing else holds falls, but on a spring. */
+static void test_direction_that_nothing_holds(void **state)
+{
+  (void)state;
+  static const char *const held[] = {"bodies: [{name: hub, shape: active, free: [z]}]",
+                                     "bodies: [{name: hub, shape: active, free: [z]}]\n"
+                                     "springs: [{body: hub, direction: z, stiffness: 1 N/m}]"};
+  for (int i = 0; i < 2; i++) {
+    build(SUPPORTS, held[i]);
+    drop();
+    assert_true((find_finding(ctx, DEA_WARNING, "nothing holds the device along z") != NULL) ==
+                (i == 0));
+    assert_null(find_finding(ctx, DEA_WARNING, "along x"));
+  }
+}
+
 /* Keys of the general form in a file of the short one. */
 static void test_short_form_says_where_parts_belong(void **state)
 {
@@ -442,6 +458,7 @@ int main(void)
       TEST(test_one_error_each),
       TEST(test_electrodes_beyond_their_film),
       TEST(test_parts_that_nothing_holds),
+      TEST(test_direction_that_nothing_holds),
       TEST(test_short_form_says_where_parts_belong),
       TEST(test_override_by_name),
       TEST(test_failing_memory),

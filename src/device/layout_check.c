@@ -384,22 +384,51 @@ static bool part_is_held(const struct dea_layout *l, const struct dea_region *pa
   return held;
 }
 
-/* Each part of the device that hangs together is held somewhere; of a device without errors. One
- * that nothing holds at all can still be made. */
-static dea_status check_held(struct dea_context *ctx, const struct dea_layout *l)
+/* Directions, as bits 1, 2, 4, in which something is held: by a support, a body that may not go
+ * there, or a spring. */
+static int held_directions(const struct dea_layout *l)
 {
-  struct dea_region all = {.ctx = ctx};
-  dea_status status = DEA_OK;
-  bool held = l->support_count > 0;
-  for (size_t i = 0; i < l->body_count; i++) {
-    held |= l->bodies[i].free != 63;
+  int held = 0;
+  for (size_t i = 0; i < l->support_count; i++) {
+    held |= l->supports[i].components;
   }
-  if (!held) {
+  for (size_t i = 0; i < l->body_count; i++) {
+    held |= ~l->bodies[i].free;
+  }
+  for (size_t i = 0; i < l->spring_count; i++) {
+    held |= 1 << l->springs[i].component;
+  }
+  return held & 7;
+}
+
+/* What may go away as a whole can still be made. */
+static dea_status check_directions(struct dea_context *ctx, const struct dea_layout *l)
+{
+  static const char *const axes[] = {"x", "y", "z"};
+  int held = held_directions(l);
+  if (held == 0) {
     return dea_finding_add(ctx, DEA_WARNING, l->plies[0].location,
                            "nothing holds the device: it has neither a support nor a body that "
                            "may not do everything");
   }
-  if (dea_finding_count(ctx, DEA_ERROR) == 0) {
+  for (int i = 0; i < 3; i++) {
+    if ((held & 1 << i) == 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, l->plies[0].location,
+                                   "nothing holds the device along %s: it has no support, no body "
+                                   "that may not go there and no spring",
+                                   axes[i]));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Each part of the device that hangs together is held somewhere; of a device without errors that
+ * something holds. */
+static dea_status check_held(struct dea_context *ctx, const struct dea_layout *l)
+{
+  struct dea_region all = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  if (held_directions(l) != 0 && dea_finding_count(ctx, DEA_ERROR) == 0) {
     status = unite_plies(ctx, l, &all);
   }
   for (size_t c = 0; c < all.contour_count && status == DEA_OK; c++) {
@@ -483,8 +512,9 @@ static dea_status check_monitors(struct dea_context *ctx, const struct dea_layou
 dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout)
 {
   typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
-  static const check_fn checks[] = {check_electrodes, check_plies, check_overhang,  check_supports,
-                                    check_bodies,     check_held,  check_pressures, check_monitors};
+  static const check_fn checks[] = {check_electrodes, check_plies,     check_overhang,
+                                    check_supports,   check_bodies,    check_directions,
+                                    check_held,       check_pressures, check_monitors};
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));
   }
