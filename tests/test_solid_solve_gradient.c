@@ -319,6 +319,99 @@ static void test_frequency_of_all_lengths(void **state)
   }
 }
 
+enum { MODES = 3 };
+
+/* Frequencies of the lowest modes of a membrane, by itself or on the mesh of another one. */
+static void find_frequencies(const struct state *at, const struct dea_device *mesh_of,
+                             struct dea_model *near, struct dea_model **keep, double out[MODES])
+{
+  struct dea_load_point modes[MODES];
+  struct dea_field_mesh *shapes;
+  struct dea_model *model;
+  const struct dea_load_point point = solve(at, mesh_of, &linear_membrane, near, &model);
+  assert_int_equal(solid->modes(ctx, model, &point, MODES, modes, &shapes), DEA_OK);
+  dea_field_mesh_destroy(ctx, shapes);
+  for (int i = 0; i < MODES; i++) {
+    out[i] = modes[i].frequency_Hz;
+  }
+  if (keep != NULL) {
+    *keep = model;
+  } else {
+    solid->destroy(ctx, model);
+  }
+}
+
+/* Higher modes, the second beside the third and the lowest in one question. */
+static void test_higher_modes(void **state)
+{
+  (void)state;
+  enum { COUNT = 3 };
+  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const int numbers[COUNT] = {VOLTAGE, THICKNESS, FIBRE_DENSITY};
+  static const size_t modes[MODES] = {1, 2, 0};
+  const int column = dea_point_column_find("frequency_Hz");
+  const int columns[MODES] = {column, column, column};
+  const struct state at = heavy_star();
+  struct state sides[2 * COUNT];
+  struct dea_design_change changes[COUNT];
+  struct dea_model *model;
+  double base[MODES], moved[3][MODES], slopes[COUNT * MODES], left[3];
+  make_changes(&at, numbers, COUNT, sides, changes);
+  for (int i = 0; i < 2 * COUNT; i++) {
+    changes[i / 2].voltage_V[i % 2] = sides[i].voltage_V;
+  }
+  find_frequencies(&at, NULL, NULL, &model, base);
+  const struct dea_gradient_ask ask = {.changes = changes,
+                                       .change_count = COUNT,
+                                       .columns = columns,
+                                       .modes = modes,
+                                       .column_count = MODES};
+  assert_int_equal(solid->gradient(ctx, model, &ask, slopes), DEA_OK);
+  step_aside(&at, model);
+  for (int a = 0; a < COUNT; a++) {
+    for (int n = 0; n < 3; n++) {
+      const struct state there = changed(&at, numbers[a], shares[n]);
+      find_frequencies(&there, &at.device, model, NULL, moved[n]);
+    }
+    for (int k = 0; k < MODES; k++) {
+      const double from = base[modes[k]];
+      for (int n = 0; n < 3; n++) {
+        left[n] = (moved[n][modes[k]] - from - slopes[a * MODES + k] * shares[n]) / from;
+        const double wanted = left[0] * pow(shares[n] / shares[0], 2);
+        if (!(fabs(left[n] - wanted) <= 0.2 * fabs(wanted) + slope_accuracy * shares[n] + 2e-10)) {
+          fail_msg("mode %zu by %s at %.0e: %.3e, not %.3e", modes[k] + 1, names[numbers[a]],
+                   shares[n], left[n], wanted);
+        }
+      }
+    }
+  }
+  solid->destroy(ctx, model);
+}
+
+/* Two modes of the whole disc have the same frequency, by its symmetry: no slope of these. */
+static void test_pair_of_modes(void **state)
+{
+  (void)state;
+  static const int number = THICKNESS;
+  static const size_t modes[2] = {0, 1};
+  static const struct dea_model_settings whole = {
+      .film = DEA_FILM_MEMBRANE, .order = 1, .domain = DEA_DOMAIN_DISC};
+  const int column = dea_point_column_find("frequency_Hz"), columns[2] = {column, column};
+  const struct state at = heavy_star();
+  struct state sides[2];
+  struct dea_design_change change;
+  struct dea_model *model;
+  double slopes[2];
+  make_changes(&at, &number, 1, sides, &change);
+  change.voltage_V[0] = change.voltage_V[1] = at.voltage_V;
+  solve(&at, NULL, &whole, NULL, &model);
+  const struct dea_gradient_ask ask = {
+      .changes = &change, .change_count = 1, .columns = columns, .modes = modes, .column_count = 2};
+  assert_int_equal(solid->gradient(ctx, model, &ask, slopes), DEA_OK);
+  assert_true(!isnan(slopes[0]) && isnan(slopes[1]));
+  solid->destroy(ctx, model);
+}
+
 // A coupled field ---------------------------------------------------------------------------------
 
 static const struct dea_model_settings coupled[] = { // one element through the film, and two
@@ -488,6 +581,8 @@ int main(void)
       cmocka_unit_test(test_more_numbers),
       cmocka_unit_test(test_membrane_with_weight),
       cmocka_unit_test(test_frequency_of_all_lengths),
+      cmocka_unit_test(test_higher_modes),
+      cmocka_unit_test(test_pair_of_modes),
       cmocka_unit_test(test_coupled_field),
       cmocka_unit_test(test_laws_of_a_coupled_field),
       cmocka_unit_test(test_mesh_that_cannot_follow),

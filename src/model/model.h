@@ -137,6 +137,7 @@ struct dea_gradient_ask {
   size_t change_count;
   const int *columns; // [column_count]
   size_t column_count;
+  const size_t *modes;    // [column_count] of a frequency that of which mode, from 0; NULL: all 0
   const size_t *monitors; // [monitor_count]
   size_t monitor_count;
   const enum dea_observed *motions; // [monitor_count]; NULL: the main ones (dea_observed_main)

@@ -321,6 +321,7 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
                                               .change_count = ask->number_count,
                                               .columns = ask->columns,
                                               .column_count = ask->column_count,
+                                              .modes = ask->modes,
                                               .monitors = ask->monitors,
                                               .monitor_count = ask->monitor_count,
                                               .motions = ask->motions,

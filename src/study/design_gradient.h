@@ -66,6 +66,7 @@ struct dea_design_gradient {
   size_t number_count;
   const int *columns; // [column_count] of load points
   size_t column_count;
+  const size_t *modes;    // [column_count] of frequencies; NULL: the lowest
   const size_t *monitors; // [monitor_count] of the layout
   size_t monitor_count;
   const enum dea_observed *motions; // [monitor_count] of them; NULL: the main ones

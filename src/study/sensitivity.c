@@ -27,6 +27,7 @@ struct settings {
   size_t voltage_count;
   struct dea_quantity stretches[DEA_DESIGN_STOPS_MAX];
   size_t stretch_count;
+  struct dea_quantity modes;
 };
 
 #define AT(member) offsetof(struct settings, member)
@@ -48,13 +49,22 @@ static const struct dea_field fields[] = {
      .doc = "stretches of the electrode's edge (1 at rest) that the path is followed to, through "
             "limit points: what matters to the voltage and the rest at such a stretch",
      .example = "[1.2, 1.5]"},
+    {.key = "modes",
+     .kind = DEA_FIELD_INTEGER,
+     .offset = AT(modes),
+     .unit = "1",
+     .min = 1,
+     .max = DEA_DESIGN_MODES_MAX,
+     .default_text = "1",
+     .doc = "with study modal: of how many frequencies, from the lowest on, slopes are wanted",
+     .example = "3"},
 };
 
 static const struct dea_record record = {
     study_name,
     "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
     "displacements, field, tension, capacitance and energy by the numbers of the design; with "
-    "study modal also of the lowest frequency, with study force also of the force on the tip, at "
+    "study modal also of frequencies, with study force also of the force on the tip, at "
     "each of its stops; and of the voltages of loss of tension, breakdown and pull-in that the run "
     "has come to; at given stretches of the electrode also of the voltage",
     fields, COUNT(fields)};
@@ -94,6 +104,10 @@ enum {
 #define HELD_STRETCH                                                                               \
   DEA_NUMBER_COLUMN("held_stretch", "1", "1", 1, "held stretch",                                   \
                     "of the electrode, where that is held and the voltage follows")
+#define MODE                                                                                       \
+  {                                                                                                \
+    .key = "mode", .title = "mode", .meaning = "that a frequency is of, from 1, the lowest"        \
+  }
 #define ELASTICITY(its_key, its_title)                                                             \
   {                                                                                                \
     .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
@@ -120,6 +134,7 @@ static const struct dea_result_column slope_columns[] = {
      .kind = DEA_CELL_VALUE,
      .title = "change by tolerance",
      .meaning = "of the quantity"},
+    MODE,
     TIP_DEPTH,
     HELD_STRETCH,
 };
@@ -171,6 +186,7 @@ static const struct dea_result_column part_slope_columns[] = {
      .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
     DEA_NUMBER_TOLERANCE,
     {.key = "change", .title = "change by tolerance", .meaning = "of the quantity, in SI"},
+    MODE,
 };
 static const struct dea_result_table_type part_slope_table = {
     .study = study_name,
@@ -216,17 +232,20 @@ struct stop {
   struct dea_load_point point;
   const struct dea_layout *layout; // of the general form; NULL: a disc
   int columns[QUANTITIES];
-  size_t width;              // quantities: QUANTITIES, then monitors
-  size_t *monitors;          // [width - QUANTITIES]
-  enum dea_observed *motion; // [width - QUANTITIES] main ones
-  double *motion_value;      // [width - QUANTITIES]
+  size_t width;              // quantities: QUANTITIES, monitors, then higher modes
+  size_t seen;               // of these without the modes
+  size_t *monitors;          // [seen - QUANTITIES]
+  enum dea_observed *motion; // [seen - QUANTITIES] main ones
+  double *motion_value;      // [seen - QUANTITIES]
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
   bool is_pressed;
-  struct dea_pressed pressed; // by this tip
-  bool vibrates;              // the frequency is one of the quantities that are asked for
-  double stretch;             // that is held in place of the voltage; 0: none
-  double *slopes;             // [number_count][width]; NAN of what is not asked for
+  struct dea_pressed pressed;           // by this tip
+  bool vibrates;                        // frequencies are among the quantities that are asked for
+  double mode_Hz[DEA_DESIGN_MODES_MAX]; // [mode_count]
+  size_t mode_count;                    // at least 1
+  double stretch;                       // that is held in place of the voltage; 0: none
+  double *slopes;                       // [number_count][width]; NAN of what is not asked for
 };
 
 static double value_of(const struct stop *stop, size_t quantity)
@@ -234,8 +253,17 @@ static double value_of(const struct stop *stop, size_t quantity)
   if (quantity == FORCE && !stop->is_pressed) { // a bound, where a model knows one
     return NAN;
   }
-  return quantity < QUANTITIES ? dea_point_get(&stop->point, stop->columns[quantity])
-                               : stop->motion_value[quantity - QUANTITIES];
+  return quantity < QUANTITIES   ? dea_point_get(&stop->point, stop->columns[quantity])
+         : quantity < stop->seen ? stop->motion_value[quantity - QUANTITIES]
+                                 : stop->mode_Hz[quantity - stop->seen + 1];
+}
+
+/* From 1; NAN of what is no frequency. */
+static double mode_number(const struct stop *stop, size_t quantity)
+{
+  return quantity == FREQUENCY    ? 1
+         : quantity >= stop->seen ? (double)(quantity - stop->seen) + 2
+                                  : NAN;
 }
 
 static double slope_of(const struct stop *stop, size_t number, size_t quantity)
@@ -247,7 +275,7 @@ static double slope_of(const struct stop *stop, size_t number, size_t quantity)
 static double elasticity(const struct stop *stop, size_t number, size_t quantity)
 {
   double value = value_of(stop, quantity);
-  if (quantity >= QUANTITIES) {
+  if (quantity >= QUANTITIES && quantity < stop->seen) {
     const enum dea_observed motion = stop->motion[quantity - QUANTITIES];
     value -= motion == DEA_OBSERVED_STRETCH || motion == DEA_OBSERVED_AREA_STRETCH ? 1 : 0;
   }
@@ -330,7 +358,9 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
 /* "middle.z_m", or the key of a column. */
 static void name_of(const struct stop *stop, size_t quantity, char *out, size_t size)
 {
-  if (quantity < QUANTITIES) {
+  if (!isnan(mode_number(stop, quantity))) {
+    snprintf(out, size, "%s", quantities[FREQUENCY]);
+  } else if (quantity < QUANTITIES) {
     snprintf(out, size, "%s", dea_point_columns[stop->columns[quantity]].key);
   } else {
     const size_t i = quantity - QUANTITIES;
@@ -347,19 +377,21 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
-    const double slope = slope_of(stop, n, k);
+    const double slope = slope_of(stop, n, k), mode = mode_number(stop, k);
+    const int column = isnan(mode) && k < QUANTITIES ? stop->columns[k] : stop->columns[FREQUENCY];
     name_of(stop, k, name, sizeof name);
     const struct dea_result_table_value row[] = {
         {.number = stop->voltage_V},
         {.text = number->key},
         {.number = number->value},
         {.text = number->unit},
-        {.number = k < QUANTITIES ? (double)stop->columns[k] : NAN, .text = name},
+        {.number = k < QUANTITIES || !isnan(mode) ? (double)column : NAN, .text = name},
         {.number = value_of(stop, k)},
         {.number = slope},
         {.number = elasticity(stop, n, k)},
         {.number = number->tolerance},
         {.number = slope * number->tolerance},
+        {.number = mode},
         {.number = depth_of(stop)},
         {.number = held_by(stop)},
     };
@@ -400,7 +432,7 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
                                 struct stop *stop)
 {
   struct dea_observation seen;
-  stop->width = QUANTITIES;
+  stop->seen = QUANTITIES;
   if (!device->general) {
     return DEA_OK;
   }
@@ -411,7 +443,7 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   stop->motion_value = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion_value);
   DEA_TRY(ctx, dea_arena_status(&stop->memory));
   DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
-  stop->width += count;
+  stop->seen += count;
   for (size_t i = 0; i < count; i++) {
     stop->monitors[i] = i;
     stop->motion[i] = dea_observed_main(seen.monitor[i]);
@@ -420,20 +452,25 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   return DEA_OK;
 }
 
-/* The lowest mode, where study modal is asked for or has run by its name. */
+/* The lowest modes, where study modal is asked for or has run by its name. */
 static dea_status find_frequency(struct dea_context *ctx, const struct dea_model_type *type,
                                  struct dea_model *model, const struct dea_result *result,
                                  struct stop *stop)
 {
-  struct dea_load_point mode;
+  struct dea_load_point modes[DEA_DESIGN_MODES_MAX];
   struct dea_field_mesh *shapes;
+  const struct settings *settings = dea_design_settings(result->design, &section)->values;
   const bool asked =
       dea_modal_asked(result->design) || dea_result_find(result, type->name, "modal") != NULL;
   stop->vibrates = type->modes != NULL && asked;
   if (stop->vibrates) {
-    DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, 1, &mode, &shapes));
+    stop->mode_count = (size_t)settings->modes.si;
+    DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, stop->mode_count, modes, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
-    stop->point.frequency_Hz = mode.frequency_Hz;
+    for (size_t i = 0; i < stop->mode_count; i++) {
+      stop->mode_Hz[i] = modes[i].frequency_Hz;
+    }
+    stop->point.frequency_Hz = stop->mode_Hz[0];
   }
   return DEA_OK;
 }
@@ -443,15 +480,21 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_ty
                               struct dea_model *model, const struct dea_result *result,
                               struct stop *stop)
 {
-  int columns[QUANTITIES];
-  size_t place[QUANTITIES], asked = 0;
+  enum { MOST = QUANTITIES + DEA_DESIGN_MODES_MAX };
+  int columns[MOST];
+  size_t place[MOST], modes[MOST] = {0}, asked = 0;
   for (size_t k = 0; k < QUANTITIES; k++) {
     if ((k != FREQUENCY || stop->vibrates) && (k != FOLLOWING || stop->stretch > 0)) {
       place[asked] = k;
       columns[asked++] = stop->columns[k];
     }
   }
-  const size_t seen = stop->width - QUANTITIES, row = asked + seen;
+  for (size_t i = 1; i < stop->mode_count; i++) {
+    place[asked] = stop->seen + i - 1;
+    modes[asked] = i;
+    columns[asked++] = stop->columns[FREQUENCY];
+  }
+  const size_t seen = stop->seen - QUANTITIES, row = asked + seen;
   double *slopes = dea_arena_alloc(&stop->memory, stop->number_count * row, sizeof *slopes);
   stop->slopes =
       dea_arena_alloc(&stop->memory, stop->number_count * stop->width, sizeof *stop->slopes);
@@ -467,6 +510,7 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_ty
                                           .number_count = stop->number_count,
                                           .columns = columns,
                                           .column_count = asked,
+                                          .modes = modes,
                                           .monitors = stop->monitors,
                                           .monitor_count = seen};
   DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, slopes));
@@ -514,6 +558,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
     stop->columns[k] = dea_point_column_find(quantities[k]);
   }
   DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
+  stop->width = stop->seen + (stop->mode_count > 1 ? stop->mode_count - 1 : 0);
   DEA_TRY(ctx, find_slopes(ctx, type, model, result, stop));
   return DEA_OK;
 }
@@ -524,10 +569,9 @@ static dea_status put_part_stop(struct dea_context *ctx, const char *model, cons
                                 struct dea_result *result)
 {
   struct dea_result_table *table;
-  const bool seen = stop->width > QUANTITIES;
+  const bool seen = stop->seen > QUANTITIES;
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_matter_table, model, &table));
-  for (size_t k = seen ? QUANTITIES : CAPACITANCE; k < (seen ? stop->width : CAPACITANCE + 1);
-       k++) {
+  for (size_t k = seen ? QUANTITIES : CAPACITANCE; k < (seen ? stop->seen : CAPACITANCE + 1); k++) {
     DEA_TRY(ctx, put_sorted(ctx, stop, k, put_part_matter, table));
   }
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_slope_table, model, &table));

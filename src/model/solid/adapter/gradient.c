@@ -107,13 +107,12 @@ struct way {
   double step;                // of v, in differences
 };
 
-/* The lowest mode of small motions, whose frequency is asked for. */
+/* A mode of small motions, whose frequency is asked for. */
 struct mode {
   bool known;
-  double *v, *pressure;  // [dofs], [multipliers]: its motion, v . Mv = 1, and kappa M^-1 B^T v
-  double square, rate;   // omega^2; slope of the frequency by it
-  struct way way;        // both
-  double *gain, *motion; // [multipliers], [dofs] room
+  double *v, *pressure; // [dofs], [multipliers]: its motion, v . Mv = 1, and kappa M^-1 B^T v
+  double square, rate;  // omega^2; slope of the frequency by it
+  struct way way;       // both
 };
 
 /* The electrode's stretch is held, and the voltage follows it. */
@@ -133,12 +132,14 @@ struct work {
   double *motion;       // [monitor_count]
   double *here, *there; // [state] room while residuals are taken elsewhere
   double *force_way;    // [dofs]
-  struct mode mode;
+  struct mode *modes;   // [mode_count] from the lowest on, to the last that is asked for
+  size_t mode_count;
+  double *gain, *moving; // [multipliers], [dofs] room
   struct border border;
   double *null_mode; // [dofs] of a limit point, as it is found
 };
 
-// The lowest mode ---------------------------------------------------------------------------------
+// Modes -------------------------------------------------------------------------------------------
 
 static bool is_frequency(int column)
 {
@@ -150,26 +151,63 @@ bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask)
   return asks(ask, "frequency_Hz");
 }
 
-/* The mode by itself; without a slope where two have the same frequency. */
-static dea_status find_mode(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+/* Which mode a column is of. */
+static size_t mode_of(const struct dea_gradient_ask *ask, size_t column)
+{
+  return ask->modes != NULL ? ask->modes[column] : 0;
+}
+
+static bool is_asked(const struct dea_gradient_ask *ask, size_t mode)
+{
+  bool asked = false;
+  for (size_t i = 0; i < ask->column_count; i++) {
+    asked = asked || (is_frequency(ask->columns[i]) && mode_of(ask, i) == mode);
+  }
+  return asked;
+}
+
+/* One of them; without a slope where another one has the same frequency. squares: of all, with the
+ * one above. */
+static dea_status take_mode(struct dea_context *ctx, struct work *w, size_t i,
+                            const double *squares, double *v)
 {
   static const double apart = 1e-4, pi = 3.14159265358979323846;
+  const double square = squares[i], least = apart * fabs(square);
+  struct mode *m = &w->modes[i];
+  const bool alone =
+      fabs(squares[i + 1] - square) > least && (i == 0 || fabs(square - squares[i - 1]) > least);
+  m->v = v;
+  m->known = alone && square != 0 && is_asked(w->ask, i);
+  m->square = square;
+  m->rate = 1 / (4 * pi * sqrt(fabs(square)));
+  if (!alone && is_asked(w->ask, i)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: no gradient of the frequency of mode %zu: another one "
+                                 "has the same (a sector of the device has only one of them)",
+                                 i + 1));
+  }
+  return DEA_OK;
+}
+
+/* All up to the last that is asked for, by themselves. */
+static dea_status find_modes(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+{
   struct dea_solid *s = w->owner->solid;
-  struct mode *m = &w->mode;
   const size_t dofs = s->problem.dofs;
-  double squares[2];
-  m->v = dea_arena_alloc(memory, 2 * dofs, sizeof(double)); // the second one is only compared
-  m->motion = dea_arena_alloc(memory, dofs, sizeof(double));
+  for (size_t i = 0; i < w->ask->column_count; i++) {
+    if (is_frequency(w->ask->columns[i]) && mode_of(w->ask, i) >= w->mode_count) {
+      w->mode_count = mode_of(w->ask, i) + 1;
+    }
+  }
+  const size_t count = w->mode_count + 1; // the last one is only compared
+  double *v = dea_arena_alloc(memory, count * dofs, sizeof(double));
+  double *squares = dea_arena_alloc(memory, count, sizeof(double));
+  w->modes = dea_arena_alloc(memory, count, sizeof *w->modes);
+  w->moving = dea_arena_alloc(memory, dofs, sizeof(double));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
-  DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, 2, squares, m->v));
-  m->known = fabs(squares[1] - squares[0]) > apart * fabs(squares[0]) && squares[0] != 0;
-  m->square = squares[0];
-  m->rate = 1 / (4 * pi * sqrt(fabs(squares[0])));
-  if (!m->known) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                            "model 3d: no gradient of the frequency: the two lowest modes have "
-                            "the same one (a sector of the device has only one of them)"));
+  DEA_TRY(ctx, dea_solid_modes_whole(ctx, s, DEA_MODES_BY_MASS, count, squares, v));
+  for (size_t i = 0; i < w->mode_count; i++) {
+    DEA_TRY(ctx, take_mode(ctx, w, i, squares, v + i * dofs));
   }
   return DEA_OK;
 }
@@ -190,16 +228,19 @@ static double step_along(const struct work *w, const double *v)
   return share * thinnest_m / largest;
 }
 
-/* Its pressures. */
-static dea_status prepare_mode(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
+/* Their pressures. */
+static dea_status prepare_modes(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
-  struct mode *m = &w->mode;
   const size_t multipliers = dea_adjoint_multipliers(w->adjoint);
-  m->pressure = dea_arena_alloc(memory, multipliers, sizeof(double));
-  m->gain = dea_arena_alloc(memory, multipliers, sizeof(double));
+  double *pressure = dea_arena_alloc(memory, (w->mode_count + 1) * multipliers, sizeof(double));
+  w->gain = pressure + w->mode_count * multipliers;
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
-  dea_adjoint_mode_pressures(w->adjoint, m->v, m->pressure);
-  m->way = (struct way){m->v, m->pressure, step_along(w, m->v)};
+  for (size_t i = 0; i < w->mode_count; i++, pressure += multipliers) {
+    struct mode *m = &w->modes[i];
+    m->pressure = pressure;
+    dea_adjoint_mode_pressures(w->adjoint, m->v, m->pressure);
+    m->way = (struct way){m->v, m->pressure, step_along(w, m->v)};
+  }
   return DEA_OK;
 }
 
@@ -254,14 +295,14 @@ static dea_status add_along(struct dea_context *ctx, struct work *w, const struc
   return DEA_OK;
 }
 
-/* The second derivative along the mode, times the frequency's slope by omega^2. What is held is so
+/* The second derivative along a mode, times the frequency's slope by omega^2. What is held is so
  * without the penalties of its own. */
-static dea_status add_along_mode(struct dea_context *ctx, struct work *w, double *out,
-                                 double *pressures)
+static dea_status add_along_mode(struct dea_context *ctx, struct work *w, const struct mode *m,
+                                 double *out, double *pressures)
 {
   dea_status status = w->owner->hold != NULL ? w->owner->hold(ctx, w->owner->model) : DEA_OK;
   if (status == DEA_OK) {
-    status = add_along(ctx, w, &w->mode.way, 2, w->mode.rate, out, pressures);
+    status = add_along(ctx, w, &m->way, 2, m->rate, out, pressures);
   }
   if (w->owner->hold != NULL) {
     w->owner->leave(ctx, w->owner->model);
@@ -288,14 +329,14 @@ static dea_status monitor_slope(struct dea_context *ctx, struct work *w, size_t 
   return DEA_OK;
 }
 
-/* omega^2 of a changed device with the mode as it is, less omega^2 of its mass: what the frequency
+/* omega^2 of a changed device with a mode as it is, less omega^2 of its mass: what the frequency
  * changes by there, but for a constant. */
-static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltage_V, double *out)
+static dea_status mode_at(struct dea_context *ctx, struct work *w, const struct mode *m,
+                          double voltage_V, double *out)
 {
   struct dea_solid *s = w->owner->solid;
-  const struct mode *m = &w->mode;
   double square = 0, pressed;
-  memset(m->gain, 0, dea_adjoint_multipliers(w->adjoint) * sizeof(double));
+  memset(w->gain, 0, dea_adjoint_multipliers(w->adjoint) * sizeof(double));
   for (int k = 0; k < PLACES; k++) {
     const double times = by_places[0][k] / m->way.step;
     if (k == PLACES / 2) {
@@ -303,11 +344,11 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, double voltag
     }
     DEA_TRY(ctx, assemble_along(ctx, w, &m->way, voltage_V, k - PLACES / 2));
     square += times * dea_solid_dot(s, m->v, s->work.g);
-    dea_adjoint_add_gains(w->adjoint, times, m->gain);
+    dea_adjoint_add_gains(w->adjoint, times, w->gain);
   }
-  DEA_TRY(ctx, dea_adjoint_gain_product(ctx, w->adjoint, m->pressure, m->gain, &pressed));
-  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, m->v, m->motion));
-  *out = m->rate * (square + pressed - m->square * dea_solid_dot(s, m->v, m->motion));
+  DEA_TRY(ctx, dea_adjoint_gain_product(ctx, w->adjoint, m->pressure, w->gain, &pressed));
+  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, m->v, w->moving));
+  *out = m->rate * (square + pressed - m->square * dea_solid_dot(s, m->v, w->moving));
   return DEA_OK;
 }
 
@@ -341,8 +382,9 @@ static dea_status find_slopes(struct dea_context *ctx, struct work *w)
     double *out = dea_adjoint_slope(w->adjoint, i);
     double *pressures = dea_adjoint_pressure_slope(w->adjoint, i);
     if (is_frequency(w->ask->columns[i])) {
-      w->known[i] = w->mode.known;
-      DEA_TRY(ctx, w->known[i] ? add_along_mode(ctx, w, out, pressures) : DEA_OK);
+      const struct mode *m = &w->modes[mode_of(w->ask, i)];
+      w->known[i] = m->known;
+      DEA_TRY(ctx, m->known ? add_along_mode(ctx, w, m, out, pressures) : DEA_OK);
     } else {
       DEA_TRY(ctx, w->owner->slope(ctx, w->owner->model, w->ask->columns[i], out, pressures,
                                    &w->known[i]));
@@ -365,10 +407,11 @@ static dea_status add_quantities(struct dea_context *ctx, struct work *w, double
 {
   struct dea_load_point point;
   DEA_TRY(ctx, w->owner->point(ctx, w->owner->model, voltage_V, energy_J, &point));
-  if (w->mode.known) {
-    DEA_TRY(ctx, mode_at(ctx, w, voltage_V, &point.frequency_Hz));
-  }
   for (size_t i = 0; i < w->ask->column_count; i++) {
+    if (is_frequency(w->ask->columns[i]) && w->known[i]) {
+      const struct mode *m = &w->modes[mode_of(w->ask, i)];
+      DEA_TRY(ctx, mode_at(ctx, w, m, voltage_V, &point.frequency_Hz));
+    }
     out[i] += dea_point_get(&point, w->ask->columns[i]);
   }
   if (w->owner->monitors != NULL && w->ask->monitor_count > 0) {
@@ -567,7 +610,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
   w.force_way = dea_arena_alloc(&memory, s->problem.dofs, sizeof(double));
   dea_status status = dea_solid_agree(ctx, dea_arena_status(&memory));
   if (status == DEA_OK && dea_gradient_asks_mode(ask)) { // first: it needs a factor of its own
-    status = find_mode(ctx, &w, &memory);
+    status = find_modes(ctx, &w, &memory);
   }
   if (status == DEA_OK) {
     s->work.takes_small_pivots = ask->holds_stretch; // at a limit point there is one
@@ -575,7 +618,7 @@ static dea_status find_here(struct dea_context *ctx, const struct dea_gradient_o
     s->work.takes_small_pivots = false;
   }
   status = status == DEA_OK ? make_room(ctx, &w, &memory) : status;
-  status = status == DEA_OK && w.mode.known ? prepare_mode(ctx, &w, &memory) : status;
+  status = status == DEA_OK ? prepare_modes(ctx, &w, &memory) : status;
   status = status == DEA_OK ? answer(ctx, &w, &memory) : status;
   status = status == DEA_OK ? find_by_changes(ctx, &w, out) : status;
   dea_solid_hold_potential(s, owner->voltage_V, s->state.u);
