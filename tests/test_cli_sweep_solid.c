@@ -275,6 +275,41 @@ static void test_tolerances_of_plies(void **state)
                    0);
 }
 
+/* Where study loading ends, the force that holds the hub there: with all moduli and the
+ * permittivity s times as large it is s times as large, and the voltage comes in by eps V^2 only.
+ */
+static void test_end_of_a_line(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  enum { LAW = 3, PERMITTIVITY = LAW, VOLTAGE, NUMBERS_OF_LINE };
+  static const char *const keys[NUMBERS_OF_LINE] = {"plies.film.law.c1", "plies.film.law.c2",
+                                                    "plies.film.law.c3",
+                                                    "plies.film.permittivity.at_rest", "voltage"};
+  double by[NUMBERS_OF_LINE], sum = 0, to;
+  command_write("cone.yaml", cone);
+  run_solid("run cone.yaml --set 'compute.loading={body: hub, from: 0 mm, to: 3 mm, steps: 2}' "
+            "--set 'bodies=[{name: hub, shape: hub, free: [z]}]' "
+            "--set 'compute.voltage={values: [3 kV]}' --study sensitivity -q -o line.run");
+  command_read("line.run/3d_sensitivity_slopes.csv", bytes);
+  for (int i = 0; i < NUMBERS_OF_LINE; i++) {
+    char start[80];
+    snprintf(start, sizeof start, "\n3,%s,", keys[i]);
+    const char *row = bytes;
+    do { // the first are of the film that moves freely
+      row = strstr(row + 1, start);
+      assert_non_null(row);
+    } while (strstr(row, ",hub.force_z_N,") == NULL ||
+             strstr(row, ",hub.force_z_N,") > strchr(row + 1, '\n'));
+    row = strstr(row, ",hub.force_z_N,");
+    assert_int_equal(sscanf(row, ",hub.force_z_N,%*f,%*f,%lf,,,,%lf", &by[i], &to), 2);
+    assert_close(to, 3e-3, 1e-12, 0);
+    sum += i <= PERMITTIVITY ? by[i] : 0;
+  }
+  assert_close(sum, 1, 1e-5, 0);
+  assert_close(by[VOLTAGE], 2 * by[PERMITTIVITY], 1e-5, 0);
+}
+
 /* Slopes of the lowest frequency with study modal, which the command names; all that has a mass is
  * the film. */
 static void test_frequency(void **state)
@@ -330,10 +365,15 @@ static void test_frequency_as_a_limit(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_neighbours),       cmocka_unit_test(test_parts),
-      cmocka_unit_test(test_critical_voltage), cmocka_unit_test(test_force),
-      cmocka_unit_test(test_monitors),         cmocka_unit_test(test_tolerances_of_plies),
-      cmocka_unit_test(test_frequency),        cmocka_unit_test(test_frequency_as_a_limit),
+      cmocka_unit_test(test_neighbours),
+      cmocka_unit_test(test_parts),
+      cmocka_unit_test(test_critical_voltage),
+      cmocka_unit_test(test_force),
+      cmocka_unit_test(test_monitors),
+      cmocka_unit_test(test_tolerances_of_plies),
+      cmocka_unit_test(test_end_of_a_line),
+      cmocka_unit_test(test_frequency),
+      cmocka_unit_test(test_frequency_as_a_limit),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -2,9 +2,9 @@
  * force, or the pressures on the device change, at some voltages: curves of force against
  * displacement, and the blocked force. Each voltage starts from rest with a model of its own; a
  * line that stops leaves its points, and the next one has its turn. */
+#include "study/loading.h"
 #include "base/schema.h"
 #include "study/observe.h"
-#include "study/study.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -204,7 +204,7 @@ static const struct settings *settings_of(const struct dea_design *design)
   return given != NULL ? given->values : NULL;
 }
 
-static bool asked(const struct dea_design *design)
+bool dea_loading_asked(const struct dea_design *design)
 {
   const struct settings *settings = settings_of(design);
   return settings != NULL && range_of(settings) != RANGES;
@@ -464,9 +464,9 @@ static dea_status block(struct dea_context *ctx, struct loading *l)
   return DEA_OK;
 }
 
-static dea_status go(struct dea_context *ctx, struct loading *l)
+/* A model at the voltage, before the way of the control. */
+static dea_status begin(struct dea_context *ctx, struct loading *l)
 {
-  size_t steps = (size_t)l->settings->steps.si;
   struct dea_load_point at;
   bool upright = l->control.kind == DEA_CONTROL_PRESSURE || l->control.component == 2;
   DEA_TRY(ctx, (upright ? dea_model_create : dea_model_create_whole)(
@@ -476,6 +476,13 @@ static dea_status go(struct dea_context *ctx, struct loading *l)
   } else {
     DEA_TRY(ctx, l->type->solve(ctx, l->model, l->voltage_V, &at));
   }
+  return DEA_OK;
+}
+
+static dea_status go(struct dea_context *ctx, struct loading *l)
+{
+  size_t steps = (size_t)l->settings->steps.si;
+  DEA_TRY(ctx, begin(ctx, l));
   for (size_t i = 0; i <= steps; i++) {
     DEA_TRY(ctx, take(ctx, l, value_at(l, i), false));
   }
@@ -551,6 +558,31 @@ static void choose_control(struct loading *l)
                                               : DEA_LAYOUT_NONE;
   l->scale = l->range == PRESSURE ? 1 / largest_Pa(layout) : 1;
   l->control = (struct dea_control){kinds[l->range], l->body, l->settings->direction.value};
+}
+
+dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_result *result, double voltage_V, struct dea_model **out,
+                           struct dea_load_point *at, struct dea_loaded *loaded)
+{
+  const struct settings *settings = settings_of(result->design);
+  struct loading l = {.type = type,
+                      .result = result,
+                      .settings = settings,
+                      .range = range_of(settings),
+                      .voltage_V = voltage_V};
+  const size_t steps = (size_t)settings->steps.si;
+  choose_control(&l);
+  dea_status status = begin(ctx, &l);
+  for (size_t i = 0; i <= steps && status == DEA_OK; i++) {
+    status = dea_model_move(ctx, type, l.model, &l.control, l.scale * value_at(&l, i), at);
+  }
+  if (status != DEA_OK && l.model != NULL) {
+    type->destroy(ctx, l.model);
+    l.model = NULL;
+  }
+  *loaded = (struct dea_loaded){l.control, value_at(&l, steps)};
+  *out = l.model;
+  return status;
 }
 
 static dea_status add_tables(struct dea_context *ctx, struct loading *l)
@@ -769,7 +801,7 @@ static const struct dea_figure figures[] = {
 const struct dea_study dea_study_loading = {
     .name = study_name,
     .keys = &section,
-    .asked = asked,
+    .asked = dea_loading_asked,
     .needs = "compute.loading.from and to, or turn_, force_, pressure_from and to",
     .own_models = true,
     .any_layout = true,

@@ -5,6 +5,7 @@
 #include "study/design_gradient.h"
 #include "study/force.h"
 #include "study/limit_slopes.h"
+#include "study/loading.h"
 #include "study/modal.h"
 #include "study/number_rows.h"
 #include "study/observe.h"
@@ -65,8 +66,9 @@ static const struct dea_record record = {
     "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
     "displacements, field, tension, capacitance and energy by the numbers of the design; with "
     "study modal also of frequencies, with study force also of the force on the tip, at "
-    "each of its stops; and of the voltages of loss of tension, breakdown and pull-in that the run "
-    "has come to; at given stretches of the electrode also of the voltage",
+    "each of its stops, with study loading also where its lines end; and of the voltages of loss "
+    "of tension, breakdown and pull-in that the run has come to; at given stretches of the "
+    "electrode also of the voltage",
     fields, COUNT(fields)};
 
 static const struct dea_design_section section = {
@@ -104,6 +106,11 @@ enum {
 #define HELD_STRETCH                                                                               \
   DEA_NUMBER_COLUMN("held_stretch", "1", "1", 1, "held stretch",                                   \
                     "of the electrode, where that is held and the voltage follows")
+#define LOADED                                                                                     \
+  {                                                                                                \
+    .key = "loaded", .title = "loaded to",                                                         \
+    .meaning = "last value of compute.loading, SI, where its body or pressures are"                \
+  }
 #define MODE                                                                                       \
   {                                                                                                \
     .key = "mode", .title = "mode", .meaning = "that a frequency is of, from 1, the lowest"        \
@@ -187,6 +194,7 @@ static const struct dea_result_column part_slope_columns[] = {
     DEA_NUMBER_TOLERANCE,
     {.key = "change", .title = "change by tolerance", .meaning = "of the quantity, in SI"},
     MODE,
+    LOADED,
 };
 static const struct dea_result_table_type part_slope_table = {
     .study = study_name,
@@ -198,6 +206,7 @@ static const struct dea_result_table_type part_slope_table = {
 
 static const struct dea_result_column part_matter_columns[] = {
     VOLTAGE,
+    LOADED,
     DEA_TEXT_COLUMN("quantity", "quantity",
                     "that the rows are sorted by: main motion of a monitor"),
     DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
@@ -244,6 +253,7 @@ struct stop {
   bool vibrates;                        // frequencies are among the quantities that are asked for
   double mode_Hz[DEA_DESIGN_MODES_MAX]; // [mode_count]
   size_t mode_count;                    // at least 1
+  const struct dea_loaded *loaded;      // where study loading has ended; NULL: not there
   double stretch;                       // that is held in place of the voltage; 0: none
   double *slopes;                       // [number_count][width]; NAN of what is not asked for
 };
@@ -295,6 +305,11 @@ static size_t leading(const struct stop *stop)
 static double depth_of(const struct stop *stop)
 {
   return stop->is_pressed ? stop->pressed.depth_m : NAN;
+}
+
+static double loaded_to(const struct stop *stop)
+{
+  return stop->loaded != NULL ? stop->loaded->value : NAN;
 }
 
 static double held_by(const struct stop *stop)
@@ -392,7 +407,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
         {.number = number->tolerance},
         {.number = slope * number->tolerance},
         {.number = mode},
-        {.number = depth_of(stop)},
+        {.number = stop->layout != NULL ? loaded_to(stop) : depth_of(stop)},
         {.number = held_by(stop)},
     };
     if (!isnan(slope)) {
@@ -411,12 +426,13 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
   dea_number_text(number->value, number->unit, value, sizeof value);
   struct dea_result_table_value row[COUNT(part_matter_columns)] = {
       {.number = stop->voltage_V},
+      {.number = loaded_to(stop)},
       {.text = quantity},
       {.text = number->key},
       {.text = value},
       {.number = elasticity(stop, i, lead)}};
   const struct dea_tolerated tolerated = tolerate(stop, lead, i);
-  size_t n = 5;
+  size_t n = 6;
   for (size_t k = FIELD; k < FOLLOWING; k++) {
     row[n++].number = elasticity(stop, i, k);
   }
@@ -426,7 +442,19 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
   return DEA_OK;
 }
 
-/* Monitors of a device of the general form, with their main motions. */
+/* The motion that a monitor stands for: its main one, and of a body that study loading holds what
+ * that takes. */
+static enum dea_observed motion_of(const struct stop *stop, size_t i, const double *seen)
+{
+  const struct dea_layout_monitor *monitor = &stop->layout->monitors[i];
+  const struct dea_control *control = stop->loaded != NULL ? &stop->loaded->control : NULL;
+  const bool held = control != NULL && control->kind == DEA_CONTROL_PLACE &&
+                    monitor->kind == DEA_MONITOR_BODY && monitor->body == control->body;
+  return held ? (enum dea_observed)(DEA_OBSERVED_FORCE_X + control->component)
+              : dea_observed_main(seen);
+}
+
+/* Monitors of a device of the general form, with their motions. */
 static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_type *type,
                                 struct dea_model *model, const struct dea_device *device,
                                 struct stop *stop)
@@ -446,7 +474,7 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   stop->seen += count;
   for (size_t i = 0; i < count; i++) {
     stop->monitors[i] = i;
-    stop->motion[i] = dea_observed_main(seen.monitor[i]);
+    stop->motion[i] = motion_of(stop, i, seen.monitor[i]);
     stop->motion_value[i] = seen.monitor[i][stop->motion[i]];
   }
   return DEA_OK;
@@ -512,7 +540,8 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_ty
                                           .column_count = asked,
                                           .modes = modes,
                                           .monitors = stop->monitors,
-                                          .monitor_count = seen};
+                                          .monitor_count = seen,
+                                          .motions = stop->motion};
   DEA_TRY(ctx, dea_design_gradient_find(ctx, &ask, slopes));
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     stop->slopes[i] = NAN;
@@ -599,7 +628,8 @@ static dea_status put_stop(struct dea_context *ctx, const char *model, const str
  * place of the voltage, 0: none. */
 static dea_status look(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at,
-                       const struct dea_probe *tip, double stretch, struct dea_result *result)
+                       const struct dea_probe *tip, const struct dea_loaded *loaded, double stretch,
+                       struct dea_result *result)
 {
   struct stop *stop = dea_alloc(ctx, 1, sizeof *stop);
   if (stop == NULL) {
@@ -609,6 +639,7 @@ static dea_status look(struct dea_context *ctx, const struct dea_model_type *typ
   stop->voltage_V = at->voltage_V;
   stop->point = *at;
   stop->stretch = stretch;
+  stop->loaded = loaded;
   stop->is_pressed = tip != NULL;
   if (tip != NULL) {
     stop->pressed = (struct dea_pressed){*tip, at->tip_depth_m};
@@ -626,7 +657,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
 {
   (void)number;
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, at));
-  DEA_TRY(ctx, look(ctx, type, model, at, NULL, 0, result));
+  DEA_TRY(ctx, look(ctx, type, model, at, NULL, NULL, 0, result));
   return DEA_OK;
 }
 
@@ -642,9 +673,30 @@ static dea_status press(struct dea_context *ctx, const struct dea_model_type *ty
   dea_status status = dea_force_indent(ctx, type, model, result->design, number);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = type->solve(ctx, model, voltages_V[i], &at);
-    status = status == DEA_OK ? look(ctx, type, model, &at, &tip, 0, result) : status;
+    status = status == DEA_OK ? look(ctx, type, model, &at, &tip, NULL, 0, result) : status;
   }
   type->destroy(ctx, model);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+/* The end of a line of study loading. Where that ends before, there is a note. */
+static dea_status load(struct dea_context *ctx, const struct dea_model_type *type,
+                       struct dea_result *result, double voltage_V)
+{
+  struct dea_load_point at;
+  struct dea_model *model;
+  struct dea_loaded loaded;
+  dea_status status = dea_loading_end(ctx, type, result, voltage_V, &model, &at, &loaded);
+  if (status == DEA_OK) {
+    status = look(ctx, type, model, &at, NULL, &loaded, 0, result);
+    type->destroy(ctx, model);
+  } else if (status != DEA_E_MEMORY && status != DEA_E_INTERRUPTED) {
+    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                             "model %s: not known what matters where compute.loading ends at %.4g "
+                             "kV: %s",
+                             type->name, 1e-3 * voltage_V, dea_context_message(ctx));
+    dea_context_clear(ctx);
+  }
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
@@ -659,7 +711,7 @@ static dea_status follow(struct dea_context *ctx, const struct dea_model_type *t
   const bool ends = status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_NOT_CONVERGED ||
                     status == DEA_E_UNSUPPORTED;
   if (status == DEA_OK) {
-    status = look(ctx, type, model, &at, NULL, stretch, result);
+    status = look(ctx, type, model, &at, NULL, NULL, stretch, result);
   } else if (ends) {
     status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                              "model %s: not known what matters at an electrode stretch of %.4g: %s",
@@ -684,6 +736,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                                       take));
   for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
     DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
+  }
+  for (size_t i = 0; type->move != NULL && i < count && dea_loading_asked(result->design); i++) {
+    DEA_TRY(ctx, load(ctx, type, result, voltages_V[i]));
   }
   for (size_t i = 0; i < settings->stretch_count; i++) {
     DEA_TRY(ctx, follow(ctx, type, result, settings->stretches[i].si));

@@ -1,0 +1,21 @@
+/* Where study "loading" ends, for other studies. */
+#ifndef DEA_STUDY_LOADING_H
+#define DEA_STUDY_LOADING_H
+
+#include "study/study.h"
+
+/* What a line of it has brought to its last value. */
+struct dea_loaded {
+  struct dea_control control;
+  double value; // of the design's key, SI
+};
+
+/* Whether a design asks for it. */
+bool dea_loading_asked(const struct dea_design *design);
+/* A model at the end of the line at a voltage, the caller's, and where it is. On failure there is
+ * none. */
+dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,
+                           struct dea_result *result, double voltage_V, struct dea_model **out,
+                           struct dea_load_point *at, struct dea_loaded *loaded);
+
+#endif
