@@ -58,6 +58,8 @@
   X(int, approach_rounds, 12, "1", "times that load steps go on from a point of the path")         \
   X(int, approach_iterations, 15, "1",                                                             \
     "of one minimum of a taut film, before the path is followed")                                  \
+  X(int, slack_iterations, 160, "1", "of one minimum from a slack film")                           \
+  X(int, slack_iterations_free, 120, "1", "those that may go up in energy there")                  \
   X(int, approach_lost, 12, "1", "`lost` on the way to a voltage")                                 \
   X(int, approach_points, 40, "1", "points of the path on the way, twice that where it bends")     \
   X(double, approach_unit, 0.1, "of the displacement on the way", "counts as much as all of it")   \

@@ -287,13 +287,22 @@ static void take_fewer_iterations(struct dea_solid_settings *o)
   o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
 }
 
-/* Load steps, few and long ones, that end after fewer iterations where the film is taut. */
+/* A slack film has a long way down. */
+static void take_more_iterations(struct dea_solid_settings *o)
+{
+  o->iterations = o->slack_iterations;
+  o->iterations_free = o->slack_iterations_free;
+}
+
+/* Load steps, few and long ones. */
 static dea_status try_steps(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
 {
   struct dea_solid_settings *o = &a->s->settings;
   const struct dea_solid_settings own = *o;
   if (taut) {
     take_fewer_iterations(o);
+  } else {
+    take_more_iterations(o);
   }
   dea_status status =
       dea_load_steps_solve_within(ctx, a->s, voltage_V, o->approach_part, a->report);
