@@ -89,6 +89,18 @@ static void test_every_bad_file_has_its_exit_code(void **state)
   }
 }
 
+/* Under mpirun a command that computes in one process would wait for the others without end. */
+static void test_ranks_are_for_run_alone(void **state)
+{
+  (void)state;
+  command_before = "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0";
+  assert_int_equal(command_run("sweep @/examples/explore/grid.yaml"), 2);
+  assert_contains(command_err, "dea sweep runs in one process, and mpirun has started 2");
+  command_before = "OMPI_COMM_WORLD_SIZE=1 OMPI_COMM_WORLD_RANK=0";
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml"), 0);
+  command_before = "";
+}
+
 static void test_check_lists_values_and_what_follows(void **state)
 {
   (void)state;
@@ -268,6 +280,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_bad_file_has_its_exit_code),
+      cmocka_unit_test(test_ranks_are_for_run_alone),
       cmocka_unit_test(test_check_lists_values_and_what_follows),
       cmocka_unit_test(test_errors_in_the_order_of_the_file),
       cmocka_unit_test(test_only_what_was_changed),

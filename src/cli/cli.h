@@ -19,6 +19,7 @@ struct dea_cli {
   bool help;                                 // --help: say how it is used, and do nothing
   bool terminal;                             // stderr is a terminal
   bool follower; // a rank of mpirun other than 0: computes along, says and writes nothing
+  int ranks;     // that mpirun has started, this one among them
   bool colour;   // stderr takes colours (terminal, no NO_COLOR)
   const char *command_line; // the whole of it, for provenance
   struct {                  // for the progress that is shown

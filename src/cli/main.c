@@ -82,8 +82,12 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
     return cli_report(cli, cli_print_text(DEA_OK, &usage));
   }
   cli_watch(cli);
-  if (cli->follower && command != &cmd_run) {
-    return 0; // nothing to compute together
+  if (cli->ranks > 1 && command != &cmd_run) { // the first would wait for the others
+    fprintf(stderr,
+            "dea: error: dea %s runs in one process, and mpirun has started %d; of all commands "
+            "only dea run takes several ranks\n",
+            command->name, cli->ranks);
+    return dea_status_exit_code(DEA_E_USAGE);
   }
   char *request = dea_alloc(cli->ctx, 1, command->request_size);
   if (request == NULL) {
@@ -126,6 +130,14 @@ static bool is_follower(void)
   return false;
 }
 
+/* Processes that mpirun has started, 1 where it has not. */
+static int count_ranks(void)
+{
+  const char *count = getenv("OMPI_COMM_WORLD_SIZE");
+  count = count != NULL ? count : getenv("PMI_SIZE");
+  return count != NULL && atoi(count) > 1 ? atoi(count) : 1;
+}
+
 static bool silence(void)
 {
   return freopen("/dev/null", "w", stdout) != NULL && freopen("/dev/null", "w", stderr) != NULL;
@@ -162,7 +174,7 @@ static int finish_output(int code, bool wanted_closed)
 int main(int argc, char **argv)
 {
   bool closed = open_standard_files();
-  struct dea_cli cli = {.commands = commands, .follower = is_follower()};
+  struct dea_cli cli = {.commands = commands, .follower = is_follower(), .ranks = count_ranks()};
   if (cli.follower && !silence()) {
     return dea_status_exit_code(DEA_E_IO);
   }
