@@ -178,17 +178,8 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_va
     if (param->kind == DEA_DEVICE_KEY) {
       dea_device_param_text(param, value, with->digits, text);
       DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
-    } else if (param->kind == DEA_DEVICE_LAW) {
-      film->param[param->index] = value;
-    } else if (param->kind == DEA_DEVICE_DENSITY) {
-      film->density_kg_per_m3 = value;
-    } else if (param->kind == DEA_DEVICE_BRANCH) {
-      struct dea_branch *branch = &film->branches[param->index / 2];
-      *(param->index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = value;
-    } else if (param->index == 0) {
-      film->permittivity.at_rest = value;
     } else {
-      film->permittivity.slope = value;
+      dea_device_param_put(param, value, film);
     }
     *of_material = *of_material || param->kind != DEA_DEVICE_KEY;
   }

@@ -342,6 +342,21 @@ void dea_device_param_show(const struct dea_device_param *param, double value, c
   dea_device_param_text(param, value, 6, out);
 }
 
+void dea_device_param_put(const struct dea_device_param *param, double value,
+                          struct dea_material *film)
+{
+  if (param->kind == DEA_DEVICE_LAW) {
+    film->param[param->index] = value;
+  } else if (param->kind == DEA_DEVICE_PERMITTIVITY) {
+    *(param->index == 0 ? &film->permittivity.at_rest : &film->permittivity.slope) = value;
+  } else if (param->kind == DEA_DEVICE_DENSITY) {
+    film->density_kg_per_m3 = value;
+  } else if (param->kind == DEA_DEVICE_BRANCH) {
+    struct dea_branch *branch = &film->branches[param->index / 2];
+    *(param->index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = value;
+  }
+}
+
 dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_design_bytes *file,
                                    const struct dea_device_param *params, size_t count,
                                    const double *p, struct dea_design **design,
@@ -362,20 +377,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
   DEA_TRY(ctx, dea_design_read_memory(ctx, file->name, file->bytes, file->length, overrides, keys,
                                       design));
   DEA_TRY(ctx, dea_device_build(ctx, *design, device));
-  struct dea_material *film = &(*device)->film;
   for (size_t j = 0; j < count; j++) {
-    if (params[j].kind == DEA_DEVICE_LAW) {
-      film->param[params[j].index] = p[j];
-    } else if (params[j].kind == DEA_DEVICE_PERMITTIVITY && params[j].index == 0) {
-      film->permittivity.at_rest = p[j];
-    } else if (params[j].kind == DEA_DEVICE_PERMITTIVITY) {
-      film->permittivity.slope = p[j];
-    } else if (params[j].kind == DEA_DEVICE_DENSITY) {
-      film->density_kg_per_m3 = p[j];
-    } else if (params[j].kind == DEA_DEVICE_BRANCH) {
-      struct dea_branch *branch = &film->branches[params[j].index / 2];
-      *(params[j].index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = p[j];
-    }
+    dea_device_param_put(&params[j], p[j], &(*device)->film);
   }
   return DEA_OK;
 }

@@ -54,4 +54,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
                                    const double *p, struct dea_design **design,
                                    struct dea_device **device);
 
+/* A value of a parameter into the film's material; nothing of one that is a key of the design. */
+void dea_device_param_put(const struct dea_device_param *param, double value,
+                          struct dea_material *film);
+
 #endif

@@ -250,9 +250,8 @@ struct stop {
   size_t number_count;
   bool is_pressed;
   struct dea_pressed pressed;           // by this tip
-  bool vibrates;                        // frequencies are among the quantities that are asked for
   double mode_Hz[DEA_DESIGN_MODES_MAX]; // [mode_count]
-  size_t mode_count;                    // at least 1
+  size_t mode_count;                    // of frequencies that are asked for; 0: none
   const struct dea_loaded *loaded;      // where study loading has ended; NULL: not there
   double stretch;                       // that is held in place of the voltage; 0: none
   double *slopes;                       // [number_count][width]; NAN of what is not asked for
@@ -274,6 +273,14 @@ static double mode_number(const struct stop *stop, size_t quantity)
   return quantity == FREQUENCY    ? 1
          : quantity >= stop->seen ? (double)(quantity - stop->seen) + 2
                                   : NAN;
+}
+
+/* Of load points; -1 of what a monitor shows. */
+static int column_of(const struct stop *stop, size_t quantity)
+{
+  return quantity < QUANTITIES   ? stop->columns[quantity]
+         : quantity < stop->seen ? -1
+                                 : stop->columns[FREQUENCY];
 }
 
 static double slope_of(const struct stop *stop, size_t number, size_t quantity)
@@ -359,7 +366,7 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
   size_t order[DEA_NUMBERS_MAX];
   for (size_t i = 0; i < stop->number_count; i++) {
     size[i] = fabs(elasticity(stop, i, lead));
-    if (size[i] == 0 && stop->vibrates) {
+    if (size[i] == 0 && stop->mode_count > 0) {
       size[i] = least * fabs(elasticity(stop, i, FREQUENCY));
     }
   }
@@ -373,10 +380,9 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
 /* "middle.z_m", or the key of a column. */
 static void name_of(const struct stop *stop, size_t quantity, char *out, size_t size)
 {
-  if (!isnan(mode_number(stop, quantity))) {
-    snprintf(out, size, "%s", quantities[FREQUENCY]);
-  } else if (quantity < QUANTITIES) {
-    snprintf(out, size, "%s", dea_point_columns[stop->columns[quantity]].key);
+  const int column = column_of(stop, quantity);
+  if (column >= 0) {
+    snprintf(out, size, "%s", dea_point_columns[column].key);
   } else {
     const size_t i = quantity - QUANTITIES;
     snprintf(out, size, "%.40s.%s", stop->layout->monitors[stop->monitors[i]].name,
@@ -392,21 +398,21 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
-    const double slope = slope_of(stop, n, k), mode = mode_number(stop, k);
-    const int column = isnan(mode) && k < QUANTITIES ? stop->columns[k] : stop->columns[FREQUENCY];
+    const double slope = slope_of(stop, n, k);
+    const int column = column_of(stop, k);
     name_of(stop, k, name, sizeof name);
     const struct dea_result_table_value row[] = {
         {.number = stop->voltage_V},
         {.text = number->key},
         {.number = number->value},
         {.text = number->unit},
-        {.number = k < QUANTITIES || !isnan(mode) ? (double)column : NAN, .text = name},
+        {.number = column >= 0 ? (double)column : NAN, .text = name},
         {.number = value_of(stop, k)},
         {.number = slope},
         {.number = elasticity(stop, n, k)},
         {.number = number->tolerance},
         {.number = slope * number->tolerance},
-        {.number = mode},
+        {.number = mode_number(stop, k)},
         {.number = stop->layout != NULL ? loaded_to(stop) : depth_of(stop)},
         {.number = held_by(stop)},
     };
@@ -490,8 +496,7 @@ static dea_status find_frequency(struct dea_context *ctx, const struct dea_model
   const struct settings *settings = dea_design_settings(result->design, &section)->values;
   const bool asked =
       dea_modal_asked(result->design) || dea_result_find(result, type->name, "modal") != NULL;
-  stop->vibrates = type->modes != NULL && asked;
-  if (stop->vibrates) {
+  if (type->modes != NULL && asked) {
     stop->mode_count = (size_t)settings->modes.si;
     DEA_TRY(ctx, dea_model_modes(ctx, type, model, &stop->point, stop->mode_count, modes, &shapes));
     dea_field_mesh_destroy(ctx, shapes);
@@ -512,7 +517,7 @@ static dea_status find_slopes(struct dea_context *ctx, const struct dea_model_ty
   int columns[MOST];
   size_t place[MOST], modes[MOST] = {0}, asked = 0;
   for (size_t k = 0; k < QUANTITIES; k++) {
-    if ((k != FREQUENCY || stop->vibrates) && (k != FOLLOWING || stop->stretch > 0)) {
+    if ((k != FREQUENCY || stop->mode_count > 0) && (k != FOLLOWING || stop->stretch > 0)) {
       place[asked] = k;
       columns[asked++] = stop->columns[k];
     }
@@ -574,7 +579,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   DEA_TRY(ctx, find_frequency(ctx, type, model, result, stop));
   DEA_TRY(ctx, dea_design_numbers(ctx, result->design, result->device, stop->voltage_V,
                                   stop->numbers, &stop->number_count));
-  if (!stop->vibrates) {
+  if (stop->mode_count == 0) {
     dea_numbers_at_rest(result->device, stop->numbers, &stop->number_count);
   }
   if (stop->stretch > 0) {

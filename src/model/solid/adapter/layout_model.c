@@ -405,11 +405,11 @@ static void set_pressures(const struct dea_model *model, double factor)
 }
 
 /* The force and moment on a body, or the sector's part of them. */
-static void push_body(const struct dea_model *model, size_t body)
+static void push_body(const struct dea_model *model, size_t body, const double push[6])
 {
   double part[6];
   for (int k = 0; k < 6; k++) {
-    part[k] = model->push[body][k] / model->copies;
+    part[k] = push[k] / model->copies;
   }
   dea_solid_body_push(model->solid, body, part, part + 3);
 }
@@ -420,7 +420,7 @@ static dea_status load_bodies(struct dea_context *ctx, struct dea_model *model)
     const struct dea_layout_body *body = &model->layout->bodies[i];
     memcpy(model->push[i], body->force_N, sizeof body->force_N);
     memcpy(model->push[i] + 3, body->moment_N_m, sizeof body->moment_N_m);
-    push_body(model, i);
+    push_body(model, i, model->push[i]);
     if (body->moved != 0) {
       DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, i, body->moved, body->shift_m,
                                             body->turn_rad));
@@ -856,7 +856,7 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
   case DEA_CONTROL_FORCE:
     model->push[body][control->component] = value;
     model->controls[body].force |= 1 << control->component;
-    push_body(model, body);
+    push_body(model, body, model->push[body]);
     break;
   case DEA_CONTROL_PRESSURE:
     model->pressure_factor = value;
@@ -1009,7 +1009,7 @@ static void keep_controls(struct dea_model *model)
         model->push[i][k] = own->push[i][k];
       }
     }
-    push_body(model, i);
+    push_body(model, i, model->push[i]);
   }
   set_pressures(model, own->pressure_factor);
   place_loads(&to->problem);
@@ -1195,12 +1195,10 @@ static void load_as_at_rest(const struct dea_model *model, bool at_rest)
   for (size_t i = 0; i < model->layout->body_count; i++) {
     const struct dea_layout_body *body = &model->layout->bodies[i];
     const size_t first = 3 * s->problem.bodies[i].node;
-    double part[6];
-    for (size_t k = 0; k < 6; k++) {
-      const double own = k < 3 ? body->force_N[k] : body->moment_N_m[k - 3];
-      part[k] = (at_rest ? own : model->push[i][k]) / model->copies;
-    }
-    dea_solid_body_push(s, i, part, part + 3);
+    double own[6];
+    memcpy(own, body->force_N, sizeof body->force_N);
+    memcpy(own + 3, body->moment_N_m, sizeof body->moment_N_m);
+    push_body(model, i, at_rest ? own : model->push[i]);
     for (size_t k = 0; k < 6; k++) {
       if ((model->variant->own.controls[i].force >> k) & 1) {
         s->state.force[first + k] = s->state.force_goal[first + k];
