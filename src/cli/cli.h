@@ -40,6 +40,8 @@ struct dea_command {
   /* The struct that the options fill, and what it holds before; NULL: zeros. */
   size_t request_size;
   const void *defaults;
+  /* Whether what is asked for can be computed by several ranks of mpirun; NULL: none of it. */
+  bool (*on_ranks)(const void *request);
   /* request: filled from the command line. Returns the exit code. */
   int (*run)(struct dea_cli *cli, void *request);
 };

@@ -1,7 +1,8 @@
 /* dea optimise: the best of many designs. */
-#include "cli/cli.h"
+#include "cli/ranks.h"
 
 #include "explore/best.h"
+#include "explore/slopes.h"
 #include "result/columns.h"
 
 #include <stdio.h>
@@ -9,6 +10,7 @@
 struct request {
   const char *file;
   double processes; // 0: not given
+  struct cli_ranks ranks;
   struct dea_optimise_options options;
 };
 
@@ -66,10 +68,9 @@ static void print_report(const struct dea_question *question,
   fflush(stdout);
 }
 
-static dea_status optimise(struct dea_cli *cli, const struct request *request)
+static dea_status search(struct dea_cli *cli, const struct request *request,
+                         const struct dea_question *question)
 {
-  struct dea_question *question;
-  DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
   struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
   dea_status status =
       report != NULL ? dea_optimise_run(question, &request->options, report) : DEA_E_MEMORY;
@@ -77,6 +78,22 @@ static dea_status optimise(struct dea_cli *cli, const struct request *request)
     print_report(question, report, request->options.folder);
   }
   dea_free(cli->ctx, report);
+  return status;
+}
+
+static dea_status optimise(struct dea_cli *cli, const struct request *request)
+{
+  struct dea_question *question;
+  struct dea_ranks ranks;
+  DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
+  dea_status status =
+      cli_ranks_take(cli, &request->ranks, cmd_optimise.name, request->file, question, &ranks);
+  if (status == DEA_OK && request->ranks.serve) {
+    const struct dea_evaluator evaluator = dea_question_with_slopes(question);
+    status = cli_ranks_serve(cli, question, &evaluator);
+  } else if (status == DEA_OK) {
+    status = search(cli, request, question);
+  }
   dea_question_destroy(question);
   return status;
 }
@@ -85,7 +102,7 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
-  request->options.processes = cli_processes(request->processes);
+  request->options.processes = cli_ranks_processes(&request->ranks, request->processes);
   request->options.folder =
       cli_output_name(request->options.folder, request->file, "optimise", &folder);
   int code =
@@ -94,14 +111,20 @@ static int run(struct dea_cli *cli, void *user)
   return code;
 }
 
+static bool on_ranks(const void *request)
+{
+  return ((const struct request *)request)->ranks.serve;
+}
+
 static const struct request defaults = {.options = {.format = {.svg = true, .width_m = 85e-3}}};
 
 static const struct cli_option options[] = {
     CLI_ONE(CLI_DESIGN, "FILE", "file of a search", file, "a file is needed", "one file at a time"),
     {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .optimise)",
      CLI_AT(options.folder)},
-    {"jobs", 'j', CLI_TEXT, "N", "processes (default: one a core)", CLI_AT(processes),
+    {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
      cli_take_processes},
+    CLI_RANKS_ROWS,
     {"force", 'f', CLI_FLAG, NULL, "throw away the designs that are there", CLI_AT(options.force)},
     {"format", 0, CLI_FORMAT, "LIST",
      "formats of the figures with commas between, svg if not given", CLI_AT(options.format),
@@ -118,5 +141,6 @@ const struct dea_command cmd_optimise = {
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,
+    .on_ranks = on_ranks,
     .run = run,
 };

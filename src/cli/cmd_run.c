@@ -353,6 +353,12 @@ static int run(struct dea_cli *cli, void *user)
   return code;
 }
 
+static bool on_ranks(const void *request)
+{
+  (void)request;
+  return true;
+}
+
 static const struct cli_option options[] = {
     CLI_MANY(CLI_DESIGN, "DESIGN...",
              "design file; more of them are set beside the first in its figures and tables (study "
@@ -383,5 +389,6 @@ const struct dea_command cmd_run = {
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
     .options = options,
     .request_size = sizeof(struct request),
+    .on_ranks = on_ranks,
     .run = run,
 };

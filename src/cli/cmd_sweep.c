@@ -1,6 +1,5 @@
 /* dea sweep: many designs that differ in some values. */
-#define _DEFAULT_SOURCE // readlink
-#include "cli/cli.h"
+#include "cli/ranks.h"
 
 #include "explore/slurm.h"
 #include "explore/sweep.h"
@@ -8,12 +7,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct request {
   const char *file;
   double processes; // 0: not given
   double slurm;     // parts of an array of jobs; 0: none
+  struct cli_ranks ranks;
   struct dea_sweep_options options;
   struct dea_plot_format format; // of the figures
 };
@@ -68,15 +67,14 @@ static void print_report(const struct dea_sweep_report *report, const struct req
 /* Hands the sweep to Slurm. */
 static dea_status submit(struct dea_cli *cli, const struct request *request)
 {
-  char program[4096], array[32], merge[32];
-  const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-  program[length > 0 ? length : 0] = '\0';
+  char array[32], merge[32];
   const struct dea_slurm_options options = {
-      .program = length > 0 ? program : "dea",
+      .program = cli_own_program(),
       .file = request->file,
       .folder = request->options.folder,
       .parts = (size_t)request->slurm,
       .processes = request->processes > 0 ? (size_t)request->processes : 1,
+      .ranks = request->ranks.count > 1 ? (size_t)request->ranks.count : 1,
   };
   DEA_TRY(cli->ctx, dea_slurm_submit(cli->ctx, &options, array, merge));
   printf("job %s: an array of %zu parts; job %s: the tables, after all of them, in %s\n", array,
@@ -89,9 +87,16 @@ static dea_status sweep(struct dea_cli *cli, const struct request *request)
 {
   struct dea_question *question;
   struct dea_sweep_report report = {0};
+  struct dea_ranks ranks;
   DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
-  dea_status status = request->slurm > 0 ? submit(cli, request)
-                                         : dea_sweep_run(question, &request->options, &report);
+  dea_status status =
+      cli_ranks_take(cli, &request->ranks, cmd_sweep.name, request->file, question, &ranks);
+  if (status == DEA_OK && request->ranks.serve) {
+    status = cli_ranks_serve(cli, question, &question->evaluator);
+  } else if (status == DEA_OK) {
+    status = request->slurm > 0 ? submit(cli, request)
+                                : dea_sweep_run(question, &request->options, &report);
+  }
   if (report.planned > 0) {
     print_report(&report, request);
   }
@@ -104,12 +109,17 @@ static int run(struct dea_cli *cli, void *user)
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
   request->options.format = request->format;
-  request->options.processes = cli_processes(request->processes);
+  request->options.processes = cli_ranks_processes(&request->ranks, request->processes);
   request->options.folder =
       cli_output_name(request->options.folder, request->file, "sweep", &folder);
   int code = cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : sweep(cli, request));
   dea_text_free(&folder);
   return code;
+}
+
+static bool on_ranks(const void *request)
+{
+  return ((const struct request *)request)->ranks.serve;
 }
 
 static const struct request defaults = {.options = {.shard = {1, 1}},
@@ -119,8 +129,9 @@ static const struct cli_option options[] = {
     CLI_ONE(CLI_DESIGN, "FILE", "file of a sweep", file, "a file is needed", "one file at a time"),
     {"output", 'o', CLI_FOLDER, "DIR", "write into DIR (default: the file's name + .sweep)",
      CLI_AT(options.folder)},
-    {"jobs", 'j', CLI_TEXT, "N", "processes (default: one a core)", CLI_AT(processes),
+    {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
      cli_take_processes},
+    CLI_RANKS_ROWS,
     {"shard", 0, CLI_TEXT, "I/N", "only part I of N; each part may run on another computer",
      CLI_AT(options.shard), take_shard},
     {"slurm", 0, CLI_TEXT, "N",
@@ -143,5 +154,6 @@ const struct dea_command cmd_sweep = {
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,
+    .on_ranks = on_ranks,
     .run = run,
 };

@@ -69,6 +69,21 @@ static const struct dea_command *find_command(const char *name)
   return NULL;
 }
 
+/* 0, or the exit code where a command is not for several ranks: the first would wait for others. */
+static int check_ranks(const struct dea_cli *cli, const struct dea_command *command,
+                       const void *request)
+{
+  if (cli->ranks == 1 || (command->on_ranks != NULL && command->on_ranks(request))) {
+    return 0;
+  }
+  fprintf(stderr,
+          "dea: error: dea %s runs in one process, and mpirun has started %d; of all commands "
+          "only dea run takes several ranks, and dea sweep and dea optimise start them "
+          "themselves (--ranks)\n",
+          command->name, cli->ranks);
+  return dea_status_exit_code(DEA_E_USAGE);
+}
+
 static int run_command(struct dea_cli *cli, int argc, char **argv)
 {
   const struct dea_command *command = find_command(argv[0]);
@@ -82,13 +97,6 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
     return cli_report(cli, cli_print_text(DEA_OK, &usage));
   }
   cli_watch(cli);
-  if (cli->ranks > 1 && command != &cmd_run) { // the first would wait for the others
-    fprintf(stderr,
-            "dea: error: dea %s runs in one process, and mpirun has started %d; of all commands "
-            "only dea run takes several ranks\n",
-            command->name, cli->ranks);
-    return dea_status_exit_code(DEA_E_USAGE);
-  }
   char *request = dea_alloc(cli->ctx, 1, command->request_size);
   if (request == NULL) {
     return cli_report(cli, DEA_E_MEMORY);
@@ -97,6 +105,7 @@ static int run_command(struct dea_cli *cli, int argc, char **argv)
     memcpy(request, command->defaults, command->request_size);
   }
   int code = cli_parse(cli, command, argc, argv, request);
+  code = code != 0 ? code : check_ranks(cli, command, request);
   code = code != 0 ? code : command->run(cli, request);
   dea_free(cli->ctx, request);
   return code;

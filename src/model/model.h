@@ -162,6 +162,10 @@ struct dea_model_type {
   /* The same model of devices of the general form, with what it can there; NULL: it knows only a
    * disc in a round frame. */
   const struct dea_model_type *of_layouts;
+  /* Several processes that mpirun has started compute one such model together, all by the same
+   * calls: this one has bytes of the first of them become those of all. NULL: each computes alone.
+   */
+  dea_status (*tell)(struct dea_context *ctx, void *bytes, size_t length);
   /* device: lent, outlives the model. settings: copied; NULL: the defaults. */
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
                        const struct dea_model_settings *settings, struct dea_model **out);

@@ -72,6 +72,14 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   return DEA_OK;
 }
 
+static dea_status tell(struct dea_context *ctx, void *bytes, size_t length)
+{
+  const struct dea_model_type *type = NULL;
+  DEA_TRY(ctx, open_module(ctx, false, &type));
+  DEA_TRY(ctx, type->tell(ctx, bytes, length));
+  return DEA_OK;
+}
+
 /* Where a design asks for what the engine has not. */
 static dea_status refuse(struct dea_context *ctx, const struct dea_location *where,
                          const char *what)
@@ -298,6 +306,7 @@ static const struct dea_model_type of_layouts = {
     .name = "3d",
     .long_name = "3D solid",
     .check = check_layout,
+    .tell = tell,
     .create = create,
     .destroy = destroy,
     .limit = limit,
@@ -326,6 +335,7 @@ const struct dea_model_type dea_model_3d = {
     .name = "3d",
     .of_layouts = &of_layouts,
     .long_name = "3D solid",
+    .tell = tell,
     .create = create,
     .destroy = destroy,
     .check = check,

@@ -869,6 +869,7 @@ extern DEA_MODULE_SYMBOL const struct dea_model_type dea_solid_module;
 const struct dea_model_type dea_solid_module = {
     .name = "3d",
     .long_name = "3D solid",
+    .tell = dea_solid_tell,
     .create = create,
     .destroy = destroy,
     .solve = dea_standing_solve,
