@@ -208,6 +208,24 @@ static void check_patch(struct sample *s)
   }
 }
 
+/* The mass times motions, made and not made. */
+static void check_mass_times(const struct sample *s, const double *mass)
+{
+  double v[DEA_HEX_DOFS_MAX] = {0}, out[DEA_HEX_DOFS_MAX];
+  const int n = s->element->nodes;
+  for (int i = 0; i < 3 * n; i++) {
+    v[i] = sin(1.7 * i + 0.3);
+  }
+  assert_int_equal(s->element->type->mass_times(s->element, &s->film, s->X, v, out), DEA_OK);
+  for (int i = 0; i < 3 * n; i++) {
+    double force = 0;
+    for (int b = 0; b < n; b++) {
+      force += mass[i / 3 * n + b] * v[3 * b + i % 3];
+    }
+    assert_close(out[i], force, 0, 1e-12 * largest(mass, n * n));
+  }
+}
+
 /* Mass, metric and volume of the parallelogram of 4 (100 x 90 + 20 x 10) um^2. */
 static void check_integrals(struct sample *s)
 {
@@ -234,6 +252,7 @@ static void check_integrals(struct sample *s)
   assert_close(total, rho * exact, 1e-12, 0);
   assert_close(whole, exact, 1e-12, 0);
   assert_close(slope, exact, 1e-10, 0); // of x: |grad x| = 1
+  check_mass_times(s, mass);
 }
 
 /* A step of no length predicts the stresses that are there. */
@@ -262,6 +281,7 @@ static void check_constraint(struct sample *s)
 {
   enum { PRESSURES = DEA_HEX_PRESSURES_MAX };
   static double b[PRESSURES * DEA_HEX_DOFS_MAX], L[PRESSURES * PRESSURES];
+  static double alone[PRESSURES * PRESSURES];
   static double start[DEA_HEX_DOFS_MAX], way[DEA_HEX_DOFS_MAX], multiplier[PRESSURES];
   const struct dea_element_type *type = s->element->type;
   int count = s->element->pressures, dofs = 3 * s->element->nodes, per = type->per_node;
@@ -271,6 +291,8 @@ static void check_constraint(struct sample *s)
   }
   shake(s);
   assert_int_equal(type->constraint(s->element, &s->in, b, L), DEA_OK);
+  assert_int_equal(type->constraint(s->element, &s->in, NULL, alone), DEA_OK);
+  assert_memory_equal(alone, L, (size_t)(count * count) * sizeof *L);
   memcpy(start, s->u, sizeof start);
   memcpy(multiplier, s->in.multiplier, (size_t)count * sizeof *multiplier);
   const double *lent = s->in.multiplier;
@@ -352,6 +374,7 @@ static void check_inverted(struct sample *s)
   static struct dea_element_state state;
   static struct dea_element_strains strains;
   static double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], share[DEA_HEX_NODES_MAX];
+  double moved[DEA_HEX_DOFS_MAX];
   const struct dea_element_type *type = s->element->type;
   for (int a = 0; a < s->element->nodes; a++) {
     s->X[3 * a] *= -1;
@@ -362,6 +385,7 @@ static void check_inverted(struct sample *s)
   assert_int_equal(type->strains(s->element, &s->in, &strains), DEA_E_DOMAIN);
   assert_int_equal(type->state(s->element, &s->in, true, &state), DEA_E_DOMAIN);
   assert_int_equal(type->mass(s->element, &s->film, s->X, mass), DEA_E_DOMAIN);
+  assert_int_equal(type->mass_times(s->element, &s->film, s->X, s->u, moved), DEA_E_DOMAIN);
   assert_int_equal(type->metric(s->element, &s->film, s->X, mass, share), DEA_E_DOMAIN);
 }
 

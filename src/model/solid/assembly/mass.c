@@ -68,17 +68,15 @@ dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid 
   dea_status status = DEA_OK;
   memset(out, 0, 3 * p->grid->node_count * sizeof *out);
   for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
-    double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
+    double X[DEA_HEX_DOFS_MAX], moving[DEA_HEX_DOFS_MAX], force[DEA_HEX_DOFS_MAX];
     size_t e = p->own[k];
+    const struct dea_element *element = dea_solid_element(s, e);
     const int *nodes = p->grid->nodes + e * DEA_HEX_NODES_MAX;
-    int count = dea_grid_nodes_of(p->grid, e);
-    status = mass_of(s, e, mass);
-    for (int a = 0; a < count && status == DEA_OK; a++) {
-      for (int b = 0; b < count; b++) {
-        for (int i = 0; i < 3; i++) {
-          out[3 * nodes[a] + i] += mass[a * count + b] * v[3 * nodes[b] + i];
-        }
-      }
+    dea_solid_gather(s, e, p->grid->X, X);
+    const int count = dea_solid_gather(s, e, v, moving);
+    status = element->type->mass_times(element, dea_solid_constituent(s, e), X, moving, force);
+    for (int i = 0; i < 3 * count && status == DEA_OK; i++) {
+      out[3 * nodes[i / 3] + i % 3] += force[i];
     }
   }
   status = dea_solid_agree(NULL, status);

@@ -118,14 +118,17 @@ struct dea_element_type {
                         const double *step, double share, bool stresses, double *predicted);
   /* The slope of theta by u at u: b [pressures][dofs] and a lower triangle L
    * [pressures][pressures], all 0 of what takes no pressure. Pressures q push with b^T L^T q; theta
-   * grows by L^-T b du; the integral of a product of two pressures is q L L^T q'. NULL for a kind
-   * without pressures. */
+   * grows by L^-T b du; the integral of a product of two pressures is q L L^T q'. b: NULL where
+   * only L is wanted. NULL for a kind without pressures. */
   dea_status (*constraint)(const struct dea_element *e, const struct dea_element_input *in,
                            double *b, double *L);
   /* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the
    * displacement (docs/theory/vibration.md). [nodes][nodes] */
   dea_status (*mass)(const struct dea_element *e, const struct dea_constituent *constituent,
                      const double *X, double *mass);
+  /* That matrix times motions v [nodes][3], without making it; out: [nodes][3]. */
+  dea_status (*mass_times)(const struct dea_element *e, const struct dea_constituent *constituent,
+                           const double *X, const double *v, double *out);
   /* What a shift of K and a norm of displacements are made of: int grad N_a . grad N_b [m],
    * [nodes][nodes]; and the volume lumped to the nodes [m^3], all positive. */
   dea_status (*metric)(const struct dea_element *e, const struct dea_constituent *constituent,
@@ -170,6 +173,23 @@ static inline void dea_element_add_mass(int nodes, double kilograms, const doubl
     double share = kilograms * value[a];
     for (int b = 0; b < nodes; b++) {
       mass[a * nodes + b] += share * value[b];
+    }
+  }
+}
+
+/* out [nodes][3] += the same times v [nodes][3]. */
+static inline void dea_element_add_mass_times(int nodes, double kilograms, const double *value,
+                                              const double *v, double *out)
+{
+  double here[3] = {0};
+  for (int a = 0; a < nodes; a++) {
+    for (int i = 0; i < 3; i++) {
+      here[i] += value[a] * v[3 * a + i];
+    }
+  }
+  for (int a = 0; a < nodes; a++) {
+    for (int i = 0; i < 3; i++) {
+      out[3 * a + i] += kilograms * value[a] * here[i];
     }
   }
 }

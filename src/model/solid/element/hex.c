@@ -311,7 +311,9 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   double theta[DEA_HEX_PRESSURES_MAX];
   const struct dea_hex_shape *s = element->basis;
   size_t count = (size_t)s->pressures, dofs = 3 * (size_t)s->nodes;
-  memset(b, 0, count * dofs * sizeof *b);
+  if (b != NULL) {
+    memset(b, 0, count * dofs * sizeof *b);
+  }
   memset(L, 0, count * count * sizeof *L);
   if (!dea_constituent_takes_pressure(in->constituent)) {
     return DEA_OK;
@@ -323,6 +325,12 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   if (status != DEA_OK) {
     return status;
   }
+  for (size_t m = 0; m < count; m++) {
+    memcpy(L + m * count, work.factor[m], (m + 1) * sizeof *L);
+  }
+  if (b == NULL) {
+    return DEA_OK;
+  }
   work.columns = 3 + 3 * s->pressures;
   memset(work.flux, 0, (size_t)(3 * s->gauss * work.columns) * sizeof *work.flux);
   for (int q = 0; q < s->gauss; q++) {
@@ -333,9 +341,6 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   }
   dea_hex_sum_flux(s, work.columns, work.flux, work.sums);
   set_constraint(s, s->pressures, &work, b);
-  for (size_t m = 0; m < count; m++) {
-    memcpy(L + m * count, work.factor[m], (m + 1) * sizeof *L);
-  }
   return DEA_OK;
 }
 
@@ -472,6 +477,22 @@ dea_status dea_hex_mass(const struct dea_element *element,
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
     double kilograms = constituent->density_kg_per_m3 * points[q].weight;
     dea_element_add_mass(s->nodes, kilograms, s->value[q], mass);
+  }
+  return status;
+}
+
+dea_status dea_hex_mass_times(const struct dea_element *element,
+                              const struct dea_constituent *constituent, const double *X,
+                              const double *v, double *out)
+{
+  static const double rest[DEA_HEX_DOFS_MAX] = {0};
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  const struct dea_hex_shape *s = element->basis;
+  dea_status status = dea_hex_find_points(s, X, rest, points);
+  memset(out, 0, (size_t)(3 * s->nodes) * sizeof *out);
+  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+    double kilograms = constituent->density_kg_per_m3 * points[q].weight;
+    dea_element_add_mass_times(s->nodes, kilograms, s->value[q], v, out);
   }
   return status;
 }

@@ -53,6 +53,9 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
                            const double *step, double share, bool stresses, double *predicted);
 dea_status dea_hex_mass(const struct dea_element *element,
                         const struct dea_constituent *constituent, const double *X, double *mass);
+dea_status dea_hex_mass_times(const struct dea_element *element,
+                              const struct dea_constituent *constituent, const double *X,
+                              const double *v, double *out);
 dea_status dea_hex_metric(const struct dea_element *element,
                           const struct dea_constituent *constituent, const double *X,
                           double *laplace, double *volume);
@@ -71,8 +74,8 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
 #define DEA_HEX_MEMBERS                                                                            \
   .with_potential = DEA_ELEMENT_POTENTIAL_HEXAHEDRON, .basis_size = sizeof(struct dea_hex_shape),  \
   .create = dea_hex_create, .check = dea_hex_check, .predict = dea_hex_predict,                    \
-  .constraint = dea_hex_constraint, .mass = dea_hex_mass, .metric = dea_hex_metric,                \
-  .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state,                            \
+  .constraint = dea_hex_constraint, .mass = dea_hex_mass, .mass_times = dea_hex_mass_times,        \
+  .metric = dea_hex_metric, .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state,  \
   .recover = dea_hex_recover, .state = dea_hex_state
 
 #endif

@@ -14,11 +14,9 @@ enum {
   SUMS_MAX = DEA_HEX_GAUSS_MAX * DEA_HEX_COLUMNS_MAX,
 };
 
-/* One row of dea_hex_combine, where the time goes: four terms at once; those beyond the last are
- * zero times one. (Static: clang 14 gives clones with external linkage a name of its own.) */
-DEA_CLONES
-static void combine_row(size_t terms, const double *table, size_t width, const double *restrict in,
-                        double *restrict out)
+/* One row of dea_hex_combine: four terms at once; those beyond the last are zero times one. */
+static inline void combine_row(size_t terms, const double *table, size_t width,
+                               const double *restrict in, double *restrict out)
 {
   for (size_t k = 0; k < terms; k += 4) {
     double f[4];
@@ -40,12 +38,33 @@ static void combine_row(size_t terms, const double *table, size_t width, const d
   }
 }
 
+/* One of three terms, as those of elements of order 2 are. */
+static inline void combine_three(const double f[3], size_t width, const double *restrict in,
+                                 double *restrict out)
+{
+  for (size_t x = 0; x < width; x++) {
+    out[x] = f[0] * in[x] + f[1] * in[width + x] + f[2] * in[2 * width + x];
+  }
+}
+
+/* Where the time goes. (Static: clang 14 gives clones with external linkage a name of its own.) */
+DEA_CLONES
+static void combine(size_t rows, size_t terms, const double *table, size_t table_width,
+                    size_t width, const double *restrict in, double *restrict out)
+{
+  for (size_t r = 0; r < rows; r++) {
+    if (terms == 3) {
+      combine_three(table + r * table_width, width, in, out + r * width);
+    } else {
+      combine_row(terms, table + r * table_width, width, in, out + r * width);
+    }
+  }
+}
+
 void dea_hex_combine(size_t rows, size_t terms, const double *table, size_t table_width,
                      size_t width, const double *restrict in, double *restrict out)
 {
-  for (size_t r = 0; r < rows; r++) {
-    combine_row(terms, table + r * table_width, width, in, out + r * width);
-  }
+  combine(rows, terms, table, table_width, width, in, out);
 }
 
 /* The same along a middle axis: out[o][r][x] = sum_k table[r][k] in[o][k][x]. */

@@ -253,6 +253,24 @@ static dea_status mass(const struct dea_element *element, const struct dea_const
   return DEA_OK;
 }
 
+static dea_status mass_times(const struct dea_element *element,
+                             const struct dea_constituent *constituent, const double *X,
+                             const double *v, double *out)
+{
+  const struct dea_flat_shape *s = element->basis;
+  double gradient[2][DEA_FLAT_NODES_MAX];
+  memset(out, 0, (size_t)(3 * s->nodes) * sizeof *out);
+  for (int q = 0; q < s->gauss; q++) {
+    double area = gradients_at(s, q, X, gradient);
+    double kilograms = constituent->density_kg_per_m3 * constituent->thickness_m * area;
+    if (!(area > 0)) {
+      return DEA_E_DOMAIN;
+    }
+    dea_element_add_mass_times(s->nodes, kilograms, s->value[q], v, out);
+  }
+  return DEA_OK;
+}
+
 static dea_status strains(const struct dea_element *element, const struct dea_element_input *in,
                           struct dea_element_strains *out)
 {
@@ -387,6 +405,7 @@ const struct dea_element_type dea_element_membrane = {
     .takes = "isotropic hyperelastic laws only",
     .evaluate = evaluate,
     .mass = mass,
+    .mass_times = mass_times,
     .metric = metric,
     .neutral_stiffness = neutral_stiffness,
     .strains = strains,

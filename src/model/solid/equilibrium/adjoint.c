@@ -53,7 +53,6 @@ struct dea_adjoint {
   double (*largest)[KINDS];      // largest nu
   size_t *open;                  // numbers of those that are not there yet
   double *theta;                 // [all] L^T theta of the last assembly, of loads C / L
-  double *room;                  // of one element: b and L of another problem
   double stiff;                  // kappa of the factor over that of the solid
   int solutions;
   bool factorised;
@@ -132,7 +131,6 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
     *each[i] = dea_arena_alloc(&a->memory, a->count * a->all, sizeof(double));
   }
   a->theta = dea_arena_alloc(&a->memory, a->all, sizeof(double));
-  a->room = dea_arena_alloc(&a->memory, most * (DEA_HEX_DOFS_MAX + most), sizeof(double));
   a->before = dea_arena_alloc(&a->memory, a->count, sizeof(double));
   a->largest = dea_arena_alloc(&a->memory, a->count, sizeof *a->largest);
   a->open = dea_arena_alloc(&a->memory, a->count, sizeof *a->open);
@@ -573,7 +571,7 @@ dea_status dea_adjoint_gain_product(struct dea_context *ctx, struct dea_adjoint 
 {
   const struct dea_solid *s = a->s;
   size_t most = most_of(a);
-  double *L = a->room + most * DEA_HEX_DOFS_MAX;
+  double L[DEA_HEX_PRESSURES_MAX * DEA_HEX_PRESSURES_MAX];
   dea_status status = DEA_OK;
   *out = 0;
   for (size_t k = 0; k < s->problem.own_count && most > 0 && status == DEA_OK; k++) {
@@ -586,7 +584,7 @@ dea_status dea_adjoint_gain_product(struct dea_context *ctx, struct dea_adjoint 
       continue;
     }
     dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-    status = element->type->constraint(element, &in, a->room, L);
+    status = element->type->constraint(element, &in, NULL, L);
     for (size_t c = 0; c < count; c++) {
       double left = 0, right = 0;
       for (size_t m = c; m < count; m++) { // L^T p, L^T (x - p / kappa)
