@@ -72,7 +72,7 @@ static void test_parts(void **state)
   } cases[] = {
       {"film.law.c1", "'film.law.c1' is no number of a part of the design"},
       {"plies.film.thicknes", "did you mean 'plies.film.thickness'?"},
-      {"pressures[0].pressure", "'pressures[0].pressure' is no number of a part"},
+      {"pressures[7].pressure", "'pressures[7].pressure' is no number of a part"},
       {"shapes.active.width", "'shapes.active.width' is no number of a part"},
       {"plies.film.thickness", "needs a disc"}, // a good one: lumped is no model of this device
       {"shapes.active.radius", "needs a disc"},

@@ -290,6 +290,27 @@ static struct dea_node *item_of(const struct dea_node *list, const char *name, s
   return NULL;
 }
 
+/* Where the link to item N of a list is, of a key "LIST[N]" of a section; NULL: it is none such. */
+static struct dea_node **link_of_item(struct dea_node *section, const char *key, size_t length)
+{
+  const char *open = memchr(key, '[', length);
+  char *end;
+  if (open == NULL || open == key || !(open[1] >= '0' && open[1] <= '9')) {
+    return NULL;
+  }
+  unsigned long left = strtoul(open + 1, &end, 10);
+  struct dea_node *list = *link_of(section, key, (size_t)(open - key));
+  if (end != key + length - 1 || *end != ']' || list == NULL || list->kind != DEA_NODE_LIST) {
+    return NULL;
+  }
+  struct dea_node **link = &list->child;
+  for (; *link != NULL && left > 0; left--) {
+    link = &(*link)->next;
+  }
+  list->overridden = list->overridden || *link != NULL;
+  return *link != NULL ? link : NULL;
+}
+
 /* Walks to the section that holds the last key of the path, making sections on the way; items of a
  * list go by their names. */
 static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_location location,
@@ -298,7 +319,8 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
   struct dea_node *at = yaml->root;
   for (const char *dot; (dot = strchr(*path, '.')) != NULL;) {
     size_t length = (size_t)(dot - *path);
-    struct dea_node **link = link_of(at, *path, length);
+    struct dea_node **link = link_of_item(at, *path, length);
+    link = link != NULL ? link : link_of(at, *path, length);
     if (*link == NULL) {
       struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
       char *key = keep_text(ctx, yaml, *path, length);
@@ -321,9 +343,11 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
     }
     if (at->kind != DEA_NODE_SECTION) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "'%.60s' is %s, not a section%s",
-                                   at->key, at->kind == DEA_NODE_LIST ? "a list" : "a value",
+                                   at->key != NULL ? at->key : "it",
+                                   at->kind == DEA_NODE_LIST ? "a list" : "a value",
                                    end != NULL ? ", and has no item of that name" : ""));
-      return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is not a section", at->key);
+      return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is not a section",
+                      at->key != NULL ? at->key : "it");
     }
     at->overridden = true;
   }
@@ -336,6 +360,12 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
 static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_node *section,
                       const char *key, struct dea_location location, struct dea_node *node)
 {
+  struct dea_node **item = link_of_item(section, key, strlen(key));
+  if (item != NULL) {
+    node->next = (*item)->next;
+    *item = node;
+    return DEA_OK;
+  }
   struct dea_node **link = link_of(section, key, strlen(key)), *old = *link;
   if (node->kind == DEA_NODE_VALUE && node->empty) {
     *link = old != NULL ? old->next : NULL;

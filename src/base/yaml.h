@@ -46,7 +46,8 @@ struct dea_override {
 };
 
 /* Puts value, YAML text such as "200 um" or "[1 kV, 2 kV]", at a dotted path of sections, where an
- * item of a list goes by its `name` ("plies.film.thickness"); sections that are missing are made,
+ * item of a list goes by its `name` ("plies.film.thickness"), or its number from 0
+ * ("springs[0].stiffness"); sections that are missing are made,
  * "null" takes the key away. Places of new nodes are "--set PATH", line
  * 0. DEA_E_DESIGN after a finding. */
 dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, const char *path,

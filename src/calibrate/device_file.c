@@ -83,8 +83,7 @@ static const struct dea_field parameter_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = offsetof(struct dea_fit_parameter_text, name),
      .required = true,
-     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, "
-            "film.density, film.law.NAME of a parameter of the law, film.branch.N.modulus or .time",
+     .doc = DEA_DEVICE_PARAM_DOC ", or film.branch.N.modulus or .time",
      .example = "film.thickness"},
     DEA_FIT_PARAMETER_FIELD(start, "where the search begins", "100 um", "the design's"),
     DEA_FIT_PARAMETER_FIELD(low, "lower bound", "80 um", "the key's"),

@@ -13,22 +13,20 @@ enum { DEA_DEVICE_CURVES_MAX = 32, DEA_DEVICE_PAIRS_MAX = 8, DEA_DEVICE_DERIVED_
 /* What a parameter is in the design. */
 enum dea_device_param_kind {
   DEA_DEVICE_KEY,
-  DEA_DEVICE_LAW,
-  DEA_DEVICE_PERMITTIVITY,
-  DEA_DEVICE_DENSITY, // of the film
-  DEA_DEVICE_BRANCH,  // of the film's viscosity: moduli have even numbers, times odd ones
+  DEA_DEVICE_MATERIAL, // a number of a material (study/material_numbers.h)
+  DEA_DEVICE_BRANCH,   // of the film's viscosity: moduli have even numbers, times odd ones
 };
 
 struct dea_device_param {
   struct dea_fit_param param; // its name is the key; numbers in SI, as the key has them
   enum dea_device_param_kind kind;
-  const char *state; // " stretched", " unstretched" or ""; static storage
-  bool list;         // the key is a list of one number
-  bool whole;        // the key is a whole number
-  size_t index;      // of a law's parameter; of the permittivity 0: at_rest, 1: slope; of branch b
-                     // 2 b: modulus, 2 b + 1: time
-  double designed;   // the design's value; NAN: it has none
-  char prior_of[64]; // material of the catalogue that the prior is from; "": none
+  const char *state;       // " stretched", " unstretched" or ""; static storage
+  bool list;               // the key is a list of one number
+  bool whole;              // the key is a whole number
+  size_t index;            // of branch b 2 b: modulus, 2 b + 1: time
+  size_t material, offset; // of a number of a material: which one, and where in it
+  double designed;         // the design's value; NAN: it has none
+  char prior_of[64];       // material of the catalogue that the prior is from; "": none
 };
 
 /* One quantity of one file; arrays [rows]. */

@@ -16,8 +16,7 @@ static const struct dea_field variable_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = VARIABLE_AT(text.name),
      .required = true,
-     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, "
-            "film.density, or film.law.NAME of a parameter of the law",
+     .doc = DEA_DEVICE_PARAM_DOC,
      .example = "film.thickness"},
     {.key = "values",
      .kind = DEA_FIELD_LABEL,

@@ -38,6 +38,9 @@ static void add_material(struct dea_text *out, const struct dea_material *film)
       film->permittivity.slope, film->breakdown.known ? film->breakdown.at_rest_V_per_m : 0,
       film->breakdown.known && film->breakdown.exponent_known ? film->breakdown.exponent : 0);
   dea_text_add(out, "density=%.12g\n", film->density_kg_per_m3);
+  if (film->law == NULL && film->young_modulus_Pa > 0) {
+    dea_text_add(out, "elastic=%.12g,%.12g\n", film->young_modulus_Pa, film->poisson_ratio);
+  }
 }
 
 /* What the listed values of a design of the general form leave out: shapes and materials. */
@@ -72,6 +75,9 @@ static void resolve(const struct dea_question *question, const struct dea_design
   }
   add_material(out, &device->film);
   add_material(out, &device->fibre);
+  if (device->electrode_thickness_m > 0) {
+    add_material(out, &device->electrode);
+  }
   if (device->general) {
     add_layout(out, device->layout);
   }

@@ -5,6 +5,7 @@
 #include "base/version.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
+#include "study/material_numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,69 +56,89 @@ static void add_head(struct dea_text *out, const struct dea_device_fit *fit)
 }
 
 /* Ends a section with its source, in lines of their own. */
-static void add_source(struct dea_text *out, const char *indent, const struct dea_material *film)
+static void add_source(struct dea_text *out, const char *indent,
+                       const struct dea_material *material)
 {
   dea_text_add(out, "%ssource: \"this file; what it did not change is that of %s\"\n", indent,
-               film->name);
+               material->name);
 }
 
-static void add_rest(struct dea_text *out, const struct dea_material *film)
+static void add_rest(struct dea_text *out, const struct dea_material *material)
 {
-  if (film->density_kg_per_m3 > 0) {
-    dea_text_add(out, "    density:\n      value: %.10g kg/m^3\n", film->density_kg_per_m3);
-    add_source(out, "      ", film);
+  if (material->density_kg_per_m3 > 0) {
+    dea_text_add(out, "    density:\n      value: %.10g kg/m^3\n", material->density_kg_per_m3);
+    add_source(out, "      ", material);
   }
-  if (film->breakdown.known) {
+  if (material->breakdown.known) {
     dea_text_add(out, "    breakdown:\n      - id: fit\n        at_rest: %.10g V/m\n",
-                 film->breakdown.at_rest_V_per_m);
-    if (film->breakdown.exponent_known) {
-      dea_text_add(out, "        exponent: %.10g\n", film->breakdown.exponent);
+                 material->breakdown.at_rest_V_per_m);
+    if (material->breakdown.exponent_known) {
+      dea_text_add(out, "        exponent: %.10g\n", material->breakdown.exponent);
     }
-    add_source(out, "        ", film);
+    add_source(out, "        ", material);
   }
-  if (film->resistivity_ohm_m > 0) {
-    dea_text_add(out, "    resistivity:\n      value: %.10g ohm m\n", film->resistivity_ohm_m);
-    add_source(out, "      ", film);
+  if (material->resistivity_ohm_m > 0) {
+    dea_text_add(out, "    resistivity:\n      value: %.10g ohm m\n", material->resistivity_ohm_m);
+    add_source(out, "      ", material);
   }
-  if (film->branch_count > 0) {
+  if (material->branch_count > 0) {
     dea_text_add(out, "    viscosity:\n      - id: fit\n        assumed: %s\n        branches:\n",
-                 film->viscosity_assumed ? "yes" : "no");
-    for (size_t b = 0; b < film->branch_count; b++) {
+                 material->viscosity_assumed ? "yes" : "no");
+    for (size_t b = 0; b < material->branch_count; b++) {
       dea_text_add(out, "          - {modulus: %.10g Pa, time: %.10g s}\n",
-                   film->branches[b].modulus_Pa, film->branches[b].time_s);
+                   material->branches[b].modulus_Pa, material->branches[b].time_s);
     }
-    add_source(out, "        ", film);
+    add_source(out, "        ", material);
   }
 }
 
-/* The film's material with what was fitted, as an item of `materials`. */
-static void add_material(struct dea_text *out, const struct dea_device_values *with,
-                         const struct dea_material *film)
+static void add_law(struct dea_text *out, const struct dea_material *material)
 {
-  const struct dea_law *law = film->law;
-  dea_text_add(out, "  - name: %s-film\n    kind: elastomer\n", with->name);
+  const struct dea_law *law = material->law;
   dea_text_add(out, "    laws:\n      - id: fit\n        law: %s\n        parameters: {",
                law->name);
   for (size_t i = 0; i < law->param_count; i++) {
     const bool bare = strcmp(law->params[i].unit, "1") == 0;
-    dea_text_add(out, "%s%s: %.10g%s%s", i > 0 ? ", " : "", law->params[i].key, film->param[i],
+    dea_text_add(out, "%s%s: %.10g%s%s", i > 0 ? ", " : "", law->params[i].key, material->param[i],
                  bare ? "" : " ", bare ? "" : law->params[i].unit);
   }
   dea_text_add(out, "}\n");
   if (law->anisotropic) {
-    dea_text_add(out, "        fibre_angle: %.10g radian\n", film->fibre_angle_rad);
+    dea_text_add(out, "        fibre_angle: %.10g radian\n", material->fibre_angle_rad);
   }
-  add_source(out, "        ", film);
-  if (film->permittivity.at_rest > 0) {
-    dea_text_add(out, "    permittivity:\n      - id: fit\n        at_rest: %.10g\n",
-                 film->permittivity.at_rest);
-    dea_text_add(out, "        slope: %.10g\n", film->permittivity.slope);
-    add_source(out, "        ", film);
-  }
-  add_rest(out, film);
+  add_source(out, "        ", material);
 }
 
-/* Adds the material behind "materials:" of the written design, or with it at the end. */
+/* A material that is not the catalogue's. */
+struct changed {
+  size_t material; // of the device
+  char name[DEA_NAME_SIZE];
+  struct dea_material with; // what was found
+};
+
+/* One of them as an item of `materials`. */
+static void add_material(struct dea_text *out, const struct changed *changed)
+{
+  const struct dea_material *material = &changed->with;
+  dea_text_add(out, "  - name: %s\n    kind: %s\n", changed->name,
+               material->law != NULL ? "elastomer" : "plastic");
+  if (material->law != NULL) {
+    add_law(out, material);
+  } else {
+    dea_text_add(out, "    elastic:\n      young_modulus: %.10g Pa\n      poisson_ratio: %.10g\n",
+                 material->young_modulus_Pa, material->poisson_ratio);
+    add_source(out, "      ", material);
+  }
+  if (material->permittivity.at_rest > 0) {
+    dea_text_add(out, "    permittivity:\n      - id: fit\n        at_rest: %.10g\n",
+                 material->permittivity.at_rest);
+    dea_text_add(out, "        slope: %.10g\n", material->permittivity.slope);
+    add_source(out, "        ", material);
+  }
+  add_rest(out, material);
+}
+
+/* Adds materials behind "materials:" of the written design, or with that at the end. */
 static void add_with_material(struct dea_text *out, const char *design, const char *material)
 {
   static const char key[] = "\nmaterials:\n";
@@ -165,11 +186,60 @@ static void add_uncertainty(struct dea_text *out, const struct dea_device_fit *f
   }
 }
 
-/* Puts the fitted values of keys into the document, and takes the film's material from `materials`
- * where it was fitted. */
-static dea_status put_values(struct dea_context *ctx, const struct dea_device_values *with,
-                             struct dea_yaml *document, struct dea_material *film,
-                             bool *of_material)
+/* That of a parameter, as it is so far. */
+static struct changed *find_changed(const struct dea_device *device,
+                                    const struct dea_device_values *with, size_t material,
+                                    struct changed *all, size_t *count)
+{
+  size_t i = 0;
+  while (i < *count && all[i].material != material) {
+    i++;
+  }
+  if (i == *count) {
+    char prefix[48];
+    dea_material_prefix(device, material, prefix);
+    const char *dot = strchr(prefix, '.'); // plies.NAME
+    all[i] = (struct changed){.material = material, .with = *dea_material_of(device, material)};
+    snprintf(all[i].name, sizeof all[i].name, "%.30s-%.30s", with->name,
+             dot != NULL ? dot + 1 : prefix);
+    (*count)++;
+  }
+  return &all[i];
+}
+
+static dea_status put_key(struct dea_context *ctx, struct dea_yaml *document, const char *prefix,
+                          const char *key, const char *value)
+{
+  char path[80];
+  snprintf(path, sizeof path, "%.48s.%.20s", prefix, key);
+  DEA_TRY(ctx, dea_yaml_override(ctx, document, path, value));
+  return DEA_OK;
+}
+
+/* Has a part take a material from `materials`. */
+static dea_status put_material(struct dea_context *ctx, const struct dea_device *device,
+                               struct dea_yaml *document, const struct changed *changed)
+{
+  static const char *const gone[] = {"law", "permittivity", "breakdown"};
+  char prefix[48];
+  dea_material_prefix(device, changed->material, prefix);
+  DEA_TRY(ctx, put_key(ctx, document, prefix, "material", changed->name));
+  if (changed->material == DEA_OF_ELECTRODES || changed->material == DEA_OF_FIBRES) {
+    return DEA_OK; // they have no such keys
+  }
+  for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++) {
+    DEA_TRY(ctx, put_key(ctx, document, prefix, gone[k], "null"));
+  }
+  const bool viscous = changed->with.branch_count > 0;
+  DEA_TRY(ctx, put_key(ctx, document, prefix, "viscosity", viscous ? "null" : "none"));
+  return DEA_OK;
+}
+
+/* Puts the values of keys into the document, and has parts take their materials from `materials`
+ * where these have other numbers. */
+static dea_status put_values(struct dea_context *ctx, const struct dea_device *device,
+                             const struct dea_device_values *with, struct dea_yaml *document,
+                             struct changed *all, size_t *count)
 {
   char text[DEA_TITLE_SIZE + 8];
   for (size_t j = 0; j < with->count; j++) {
@@ -179,19 +249,12 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device_va
       dea_device_param_text(param, value, with->digits, text);
       DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
     } else {
-      dea_device_param_put(param, value, film);
+      struct changed *changed = find_changed(device, with, param->material, all, count);
+      dea_device_param_put(param, value, &changed->with);
     }
-    *of_material = *of_material || param->kind != DEA_DEVICE_KEY;
   }
-  if (*of_material) {
-    static const char *const gone[] = {"film.law", "film.permittivity", "film.breakdown"};
-    snprintf(text, sizeof text, "%.63s-film", with->name);
-    DEA_TRY(ctx, dea_yaml_override(ctx, document, "film.material", text));
-    for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++) {
-      DEA_TRY(ctx, dea_yaml_override(ctx, document, gone[k], "null"));
-    }
-    DEA_TRY(ctx, dea_yaml_override(ctx, document, "film.viscosity",
-                                   film->branch_count > 0 ? "null" : "none"));
+  for (size_t i = 0; i < *count; i++) {
+    DEA_TRY(ctx, put_material(ctx, device, document, &all[i]));
   }
   return DEA_OK;
 }
@@ -214,12 +277,19 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
                                   const struct dea_device *device,
                                   const struct dea_device_values *with, struct dea_text *out)
 {
-  struct dea_material film = device->film;
   struct dea_text design = {.ctx = ctx}, material = {.ctx = ctx};
   struct dea_yaml *document;
-  bool of_material = false;
-  DEA_TRY(ctx, dea_yaml_parse(ctx, file->name, file->bytes, file->length, &document));
-  dea_status status = put_values(ctx, with, document, &film, &of_material);
+  size_t count = 0;
+  struct changed *changed = dea_alloc(ctx, with->count + 1, sizeof *changed);
+  if (changed == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_yaml_parse(ctx, file->name, file->bytes, file->length, &document);
+  if (status != DEA_OK) {
+    dea_free(ctx, changed);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  status = put_values(ctx, device, with, document, changed, &count);
   if (status == DEA_OK && with->uncertainty[0] != '\0') {
     status = dea_yaml_override(ctx, document, "compute.uncertainty", with->uncertainty);
   }
@@ -229,8 +299,10 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   void *before = dea_c_locale_enter();
   if (status == DEA_OK) {
     dea_yaml_write(dea_yaml_root(document), &design);
-    if (of_material) {
-      add_material(&material, with, &film);
+    for (size_t i = 0; i < count; i++) {
+      add_material(&material, &changed[i]);
+    }
+    if (count > 0) {
       add_with_material(out, dea_text_get(&design), dea_text_get(&material));
     } else {
       dea_text_add(out, "%s", dea_text_get(&design));
@@ -241,6 +313,7 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   dea_text_free(&material);
   dea_text_free(&design);
   dea_yaml_destroy(ctx, document);
+  dea_free(ctx, changed);
   return status;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/units.h"
 #include "material/catalogue.h"
+#include "study/material_numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,24 +17,37 @@ struct work {
 
 // Priors ------------------------------------------------------------------------------------------
 
-/* What a material of the catalogue says of a parameter; NAN where it says nothing. */
+#define AT(member) offsetof(struct dea_material, member)
+
+/* What a material of the catalogue says of a parameter; NAN where it says nothing. law: that the
+ * material of the design has. */
 static void look_up(const struct dea_material_data *data, const struct dea_device_param *param,
                     const struct dea_law *law, double *value, double *std)
 {
+  const size_t offset = param->offset;
   *value = *std = NAN;
-  if (param->kind == DEA_DEVICE_LAW) {
+  if (param->kind != DEA_DEVICE_MATERIAL) {
+    return;
+  }
+  if (offset >= AT(param) && offset < AT(param) + DEA_LAW_PARAM_MAX * sizeof(double)) {
+    const size_t k = (offset - AT(param)) / sizeof(double);
     for (size_t i = 0; i < data->law_count; i++) {
       if (data->laws[i].law == law) {
-        *value = data->laws[i].param[param->index].si;
-        *std = data->laws[i].param_std[param->index].si;
+        *value = data->laws[i].param[k].si;
+        *std = data->laws[i].param_std[k].si;
         return;
       }
     }
-  } else if (param->kind == DEA_DEVICE_PERMITTIVITY && data->permittivity_count > 0) {
-    const struct dea_permittivity_set *set = &data->permittivity[0];
-    *value = param->index == 0 ? set->at_rest.si : set->slope.si;
-  } else if (param->kind == DEA_DEVICE_DENSITY && data->has_density) {
+  } else if (offset == AT(density_kg_per_m3) && data->has_density) {
     *value = data->density.value_kg_per_m3.si;
+  } else if (offset == AT(young_modulus_Pa) && data->has_elastic) {
+    *value = data->elastic.young_modulus_Pa.si;
+  } else if (offset == AT(poisson_ratio) && data->has_elastic) {
+    *value = data->elastic.poisson_ratio.si;
+  } else if (data->permittivity_count > 0 &&
+             (offset == AT(permittivity.at_rest) || offset == AT(permittivity.slope))) {
+    const struct dea_permittivity_set *set = &data->permittivity[0];
+    *value = offset == AT(permittivity.at_rest) ? set->at_rest.si : set->slope.si;
   }
 }
 
@@ -44,7 +58,7 @@ static dea_status prior_of_material(struct work *w, struct dea_fit_parameter_tex
   struct dea_catalogue_entry *entry;
   double value, std;
   DEA_TRY(w->ctx, dea_catalogue_read(w->ctx, text->prior.text, text->prior.location, &entry));
-  look_up(&entry->data, out, w->source.device->film.law, &value, &std);
+  look_up(&entry->data, out, dea_material_of(w->source.device, out->material)->law, &value, &std);
   dea_catalogue_destroy(w->ctx, entry);
   snprintf(out->prior_of, sizeof out->prior_of, "%.63s", text->prior.text);
   const bool unit = strcmp(out->param.unit, "1") != 0;

@@ -3,6 +3,7 @@
 #include "design/schema.h"
 #include "device/geometry.h"
 #include "result/columns.h"
+#include "study/material_numbers.h"
 #include "study/part_numbers.h"
 
 #include <math.h>
@@ -21,53 +22,26 @@ static void add_number(struct dea_design_number *numbers, size_t *count,
   }
 }
 
-/* A number of a material, which is no key of the design. */
-static void add_of_device(const struct dea_device *device, const char *key, const char *param,
-                          const char *unit, size_t offset, struct dea_design_number *numbers,
-                          size_t *count)
-{
-  struct dea_design_number number = {.unit = unit, .tolerance = NAN, .offset = offset, .scale = 1};
-  snprintf(number.key, sizeof number.key, "%.30s%.30s", key, param);
-  memcpy(&number.value, (const char *)device + offset, sizeof number.value);
-  add_number(numbers, count, &number);
-}
+/* What numbers of materials go to. */
+struct materials {
+  const struct dea_device *device;
+  struct dea_design_number *numbers;
+  size_t *count;
+};
 
-static void add_law(const struct dea_device *device, const char *key,
-                    const struct dea_material *material, size_t offset,
-                    struct dea_design_number *numbers, size_t *count)
+static void take_material(void *user, const struct dea_material_number *of)
 {
-  for (size_t i = 0; material->law != NULL && i < material->law->param_count; i++) {
-    const struct dea_law_param *param = &material->law->params[i];
-    add_of_device(device, key, param->key, param->unit,
-                  offset + offsetof(struct dea_material, param) + i * sizeof(double), numbers,
-                  count);
-  }
-}
-
-#define AT(member) offsetof(struct dea_device, member)
-
-static void add_materials(const struct dea_device *device, struct dea_design_number *numbers,
-                          size_t *count)
-{
-  add_law(device, "film.law.", &device->film, AT(film), numbers, count);
-  add_of_device(device, "film.permittivity.at_rest", "", "1", AT(film.permittivity.at_rest),
-                numbers, count);
-  add_of_device(device, "film.permittivity.slope", "", "1", AT(film.permittivity.slope), numbers,
-                count);
-  add_of_device(device, "film", DEA_DENSITY_KEY, "kg/m^3", AT(film.density_kg_per_m3), numbers,
-                count);
-  if (device->electrode_thickness_m > 0) {
-    add_law(device, "electrodes.law.", &device->electrode, AT(electrode), numbers, count);
-    add_of_device(device, "electrodes", DEA_DENSITY_KEY, "kg/m^3", AT(electrode.density_kg_per_m3),
-                  numbers, count);
-  }
-  if (device->fibre_count > 0) {
-    add_of_device(device, "fibres.young_modulus", "", "Pa", AT(fibre.young_modulus_Pa), numbers,
-                  count);
-    add_of_device(device, "fibres.poisson_ratio", "", "1", AT(fibre.poisson_ratio), numbers, count);
-    add_of_device(device, "fibres", DEA_DENSITY_KEY, "kg/m^3", AT(fibre.density_kg_per_m3), numbers,
-                  count);
-  }
+  const struct materials *to = user;
+  const char *material = (const char *)dea_material_of(to->device, of->material);
+  struct dea_design_number number = {.unit = of->unit,
+                                     .value = of->value,
+                                     .tolerance = NAN,
+                                     .of = DEA_NUMBER_OF_DEVICE,
+                                     .offset =
+                                         of->offset + (size_t)(material - (const char *)to->device),
+                                     .scale = 1};
+  snprintf(number.key, sizeof number.key, "%s", of->key);
+  add_number(to->numbers, to->count, &number);
 }
 
 /* A length of the workshop in a film state. */
@@ -161,7 +135,7 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
   for (size_t i = 0; i < design->values.count; i++) {
     add_key(design, &schema.disc.record, &design->values.items[i], out, count);
   }
-  add_materials(device, out, count);
+  dea_material_numbers(device, take_material, &(struct materials){device, out, count});
   return DEA_OK;
 }
 

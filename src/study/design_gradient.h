@@ -17,9 +17,7 @@ enum dea_number_of {
 };
 
 /* One number: a key of the design file with a value ("film.thickness"), "voltage", or one of a
- * material: "film.law.PARAMETER", "film.permittivity.at_rest", "film.permittivity.slope",
- * "electrodes.law.PARAMETER", "fibres.young_modulus", "fibres.poisson_ratio", "film.density",
- * "electrodes.density", "fibres.density"; of the general form those of part_numbers.h. */
+ * material (material_numbers.h); of the general form those of part_numbers.h. */
 struct dea_design_number {
   char key[DEA_NUMBER_KEY_SIZE];
   double value;     // SI, as the file has it: a diameter is a diameter

@@ -3,6 +3,7 @@
 #include "base/units.h"
 #include "base/write_file.h"
 #include "study/design_file.h"
+#include "study/material_numbers.h"
 #include "study/part_numbers.h"
 
 #include <math.h>
@@ -10,9 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char law_prefix[] = "film.law.", permittivity_prefix[] = "film.permittivity.",
-                  branch_prefix[] = "film.branch.", density_key[] = "film.density";
-static const char *const permittivity_keys[] = {"at_rest", "slope"};
+static const char branch_prefix[] = "film.branch.";
 
 static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
 {
@@ -160,8 +159,7 @@ static dea_status from_part(struct dea_context *ctx, const struct dea_device_par
   dea_status status = dea_part_numbers(ctx, source->design, source->device, true, numbers, &count);
   *good = false;
   for (size_t i = 0; i < count && status == DEA_OK && !*good; i++) {
-    if (numbers[i].of == DEA_NUMBER_OF_PART && strchr(numbers[i].key, '[') == NULL &&
-        strcmp(numbers[i].key, name->text) == 0) {
+    if (numbers[i].of == DEA_NUMBER_OF_PART && strcmp(numbers[i].key, name->text) == 0) {
       out->designed = numbers[i].value;
       out->param.unit = numbers[i].unit;
       *good = true;
@@ -200,63 +198,45 @@ static dea_status from_branch(struct dea_context *ctx, const struct dea_device_p
   return DEA_OK;
 }
 
-static dea_status from_density(struct dea_context *ctx,
-                               const struct dea_device_param_source *source,
-                               const struct dea_label *name, struct dea_device_param *out,
-                               bool *good)
+/* What a name is looked for by. */
+struct wanted {
+  const char *name;
+  struct dea_device_param *out;
+  bool found;
+};
+
+static void look(void *user, const struct dea_material_number *number)
 {
-  const double density_kg_per_m3 = source->device->film.density_kg_per_m3;
-  *good = density_kg_per_m3 > 0;
-  out->kind = DEA_DEVICE_DENSITY;
-  out->param.unit = "kg/m^3";
-  out->param.low = 0;
-  out->param.high = INFINITY;
-  out->designed = density_kg_per_m3;
-  return *good ? DEA_OK
-               : dea_device_param_unknown(ctx, source, name,
-                                          "is unknown: the film's material has none");
+  struct wanted *wanted = user;
+  if (strcmp(number->key, wanted->name) == 0) {
+    struct dea_device_param *out = wanted->out;
+    out->kind = DEA_DEVICE_MATERIAL;
+    out->material = number->material;
+    out->offset = number->offset;
+    out->param.unit = number->unit;
+    out->param.low = number->low;
+    out->param.high = number->high;
+    out->designed = number->value;
+    wanted->found = true;
+  }
 }
 
-static dea_status from_material(struct dea_context *ctx,
-                                const struct dea_device_param_source *source,
-                                const struct dea_label *name, struct dea_device_param *out,
-                                bool *good)
+/* Why a name that would be one of the film's material is none; NULL: it would not. */
+static const char *none_of_film(const char *name)
 {
-  const struct dea_material *film = &source->device->film;
-  *good = true;
-  if (strncmp(name->text, law_prefix, strlen(law_prefix)) == 0) {
-    const char *key = name->text + strlen(law_prefix);
-    for (size_t i = 0; i < film->law->param_count; i++) {
-      const struct dea_law_param *param = &film->law->params[i];
-      if (strcmp(param->key, key) == 0) {
-        out->kind = DEA_DEVICE_LAW;
-        out->index = i;
-        out->param.unit = param->unit;
-        out->param.low = param->min;
-        out->param.high = param->max;
-        out->designed = film->param[i];
-        return DEA_OK;
-      }
-    }
-    *good = false;
-    return dea_device_param_unknown(ctx, source, name,
-                                    "is no parameter of the law that the film has");
-  }
-  const char *key = name->text + strlen(permittivity_prefix);
-  for (size_t i = 0; i < 2; i++) {
-    if (strcmp(key, permittivity_keys[i]) == 0) {
-      out->kind = DEA_DEVICE_PERMITTIVITY;
-      out->index = i;
-      out->param.unit = "1";
-      out->param.low = i == 0 ? 1 : -INFINITY;
-      out->param.high = INFINITY;
-      out->designed = i == 0 ? film->permittivity.at_rest : film->permittivity.slope;
-      return DEA_OK;
+  static const struct {
+    const char *prefix, *why;
+  } all[] = {
+      {"film.law.", "is no parameter of the law that the film has"},
+      {"film.permittivity.", "is none of film.permittivity.at_rest and film.permittivity.slope"},
+      {"film.density", "is unknown: the film's material has none"},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    if (strncmp(name, all[i].prefix, strlen(all[i].prefix)) == 0) {
+      return all[i].why;
     }
   }
-  *good = false;
-  return dea_device_param_unknown(
-      ctx, source, name, "is none of film.permittivity.at_rest and film.permittivity.slope");
+  return NULL;
 }
 
 dea_status dea_device_param_find(struct dea_context *ctx,
@@ -264,24 +244,27 @@ dea_status dea_device_param_find(struct dea_context *ctx,
                                  const struct dea_label *name, struct dea_device_param *out,
                                  bool *good)
 {
-  const bool of_branch = strncmp(name->text, branch_prefix, strlen(branch_prefix)) == 0;
-  const bool of_material =
-      strncmp(name->text, law_prefix, strlen(law_prefix)) == 0 ||
-      strncmp(name->text, permittivity_prefix, strlen(permittivity_prefix)) == 0;
+  struct wanted wanted = {.name = name->text, .out = out};
   out->state = "";
   out->designed = NAN;
   *good = false;
   if (strlen(name->text) >= DEA_FIT_PARAM_NAME) {
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
-  snprintf(out->param.name, sizeof out->param.name, "%.39s", name->text);
+  snprintf(out->param.name, sizeof out->param.name, "%.63s", name->text);
+  dea_material_numbers(source->device, look, &wanted);
+  if (wanted.found) {
+    *good = true;
+    return DEA_OK;
+  }
   if (source->device->general) {
     return from_part(ctx, source, name, out, good);
   }
-  return of_branch                              ? from_branch(ctx, source, name, out, good)
-         : strcmp(name->text, density_key) == 0 ? from_density(ctx, source, name, out, good)
-         : of_material                          ? from_material(ctx, source, name, out, good)
-                                                : from_key(ctx, source, name, out, good);
+  const char *why = none_of_film(name->text);
+  return why != NULL ? dea_device_param_unknown(ctx, source, name, why)
+         : strncmp(name->text, branch_prefix, strlen(branch_prefix)) == 0
+             ? from_branch(ctx, source, name, out, good)
+             : from_key(ctx, source, name, out, good);
 }
 
 dea_status dea_device_param_std(struct dea_context *ctx, const struct dea_device_param *param,
@@ -343,16 +326,12 @@ void dea_device_param_show(const struct dea_device_param *param, double value, c
 }
 
 void dea_device_param_put(const struct dea_device_param *param, double value,
-                          struct dea_material *film)
+                          struct dea_material *material)
 {
-  if (param->kind == DEA_DEVICE_LAW) {
-    film->param[param->index] = value;
-  } else if (param->kind == DEA_DEVICE_PERMITTIVITY) {
-    *(param->index == 0 ? &film->permittivity.at_rest : &film->permittivity.slope) = value;
-  } else if (param->kind == DEA_DEVICE_DENSITY) {
-    film->density_kg_per_m3 = value;
+  if (param->kind == DEA_DEVICE_MATERIAL) {
+    memcpy((char *)material + param->offset, &value, sizeof value);
   } else if (param->kind == DEA_DEVICE_BRANCH) {
-    struct dea_branch *branch = &film->branches[param->index / 2];
+    struct dea_branch *branch = &material->branches[param->index / 2];
     *(param->index % 2 == 0 ? &branch->modulus_Pa : &branch->time_s) = value;
   }
 }
@@ -378,7 +357,7 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
                                       design));
   DEA_TRY(ctx, dea_device_build(ctx, *design, device));
   for (size_t j = 0; j < count; j++) {
-    dea_device_param_put(&params[j], p[j], &(*device)->film);
+    dea_device_param_put(&params[j], p[j], dea_material_at(*device, params[j].material));
   }
   return DEA_OK;
 }

@@ -14,9 +14,9 @@ struct dea_device_param_source {
 };
 
 /* Fills kind, index, list, state, unit, limits (infinite for none) and `designed` of a parameter,
- * whose other members are left alone. name: a dotted key that is a number ("film.thickness"),
- * film.law.NAME of a parameter of the film's law, film.permittivity.at_rest or .slope,
- * film.density, film.branch.N.modulus or .time of its viscosity, from 1; of a design of the general
+ * whose other members are left alone. name: a dotted key that is a number ("film.thickness"), a
+ * number of a material (material_numbers.h: "fibres.young_modulus"), film.branch.N.modulus or .time
+ * of the film's viscosity, from 1; of a design of the general
  * form numbers of parts and shapes by the names of --set ("plies.film.thickness",
  * "shapes.active.radius"). *good: false after a finding (an error at its place) that says why there
  * is no such parameter. */
@@ -54,8 +54,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
                                    const double *p, struct dea_design **design,
                                    struct dea_device **device);
 
-/* A value of a parameter into the film's material; nothing of one that is a key of the design. */
+/* A value of a parameter into its material (param->material); nothing of a key of the design. */
 void dea_device_param_put(const struct dea_device_param *param, double value,
-                          struct dea_material *film);
+                          struct dea_material *material);
 
 #endif

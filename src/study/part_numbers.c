@@ -1,6 +1,7 @@
 #include "study/part_numbers.h"
 
 #include "design/schema_parts.h"
+#include "study/material_numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -100,41 +101,24 @@ static void add_field(size_t at, size_t item, const char *base, const struct dea
 
 // Materials of plies -----------------------------------------------------------------------------
 
-static void add_material(const struct dea_layout_ply *ply, size_t item, const char *key,
-                         const char *param, const char *unit, size_t offset,
-                         struct dea_design_number *out, size_t *count)
+/* What they go to. */
+struct numbers {
+  struct dea_design_number *out;
+  size_t *count;
+};
+
+static void take_material(void *user, const struct dea_material_number *of)
 {
-  struct dea_design_number number = {.unit = unit,
+  const struct numbers *to = user;
+  struct dea_design_number number = {.unit = of->unit,
+                                     .value = of->value,
                                      .tolerance = NAN,
                                      .of = DEA_NUMBER_OF_PLY,
-                                     .item = item,
-                                     .offset = offset,
+                                     .item = of->material - DEA_OF_PLIES,
+                                     .offset = of->offset,
                                      .scale = 1};
-  snprintf(number.key, sizeof number.key, "plies.%.24s.%.16s%.14s", ply->name, key, param);
-  memcpy(&number.value, (const char *)&ply->material + offset, sizeof number.value);
-  add(out, count, &number);
-}
-
-#define AT(member) offsetof(struct dea_material, member)
-
-static void add_ply(const struct dea_layout *layout, size_t i, struct dea_design_number *out,
-                    size_t *count)
-{
-  const struct dea_layout_ply *ply = &layout->plies[i];
-  const struct dea_law *law = ply->material.law;
-  for (size_t k = 0; law != NULL && k < law->param_count; k++) {
-    add_material(ply, i, "law.", law->params[k].key, law->params[k].unit,
-                 AT(param) + k * sizeof(double), out, count);
-  }
-  if (law == NULL) {
-    add_material(ply, i, "young_modulus", "", "Pa", AT(young_modulus_Pa), out, count);
-    add_material(ply, i, "poisson_ratio", "", "1", AT(poisson_ratio), out, count);
-  }
-  add_material(ply, i, "density", "", "kg/m^3", AT(density_kg_per_m3), out, count);
-  if (dea_layout_is_dielectric(layout, i)) {
-    add_material(ply, i, "permittivity.", "at_rest", "1", AT(permittivity.at_rest), out, count);
-    add_material(ply, i, "permittivity.", "slope", "1", AT(permittivity.slope), out, count);
-  }
+  snprintf(number.key, sizeof number.key, "%s", of->key);
+  add(to->out, to->count, &number);
 }
 
 // Shapes -----------------------------------------------------------------------------------------
@@ -222,9 +206,7 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
       out[i].tolerance = tolerance_of(design, &out[i]);
     }
   }
-  for (size_t i = 0; i < device->layout->ply_count; i++) {
-    add_ply(device->layout, i, out, count);
-  }
+  dea_material_numbers(device, take_material, &(struct numbers){out, count});
   DEA_TRY(ctx, add_shapes(ctx, design->parts, device, all, out, count));
   return DEA_OK;
 }

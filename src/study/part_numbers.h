@@ -7,7 +7,7 @@
 
 /* Adds the numbers of plies, channels, bodies, springs and pressures that are not 0, under the keys
  * of --set ("plies.film.thickness"; of what has no name "springs[0].stiffness"), those of the
- * plies' materials ("plies.film.law.c1", "plies.film.density"), and those of shapes, of any value
+ * plies' materials (material_numbers.h), and those of shapes, of any value
  * ("shapes.hub.radius"; `all`: also places that are 0 where the file says nothing). What is held
  * and moved is not among them. out: [DEA_NUMBERS_MAX]. */
 dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *design,

@@ -16,6 +16,7 @@
 #include "base/schema.h"
 #include "base/yaml_write.h"
 #include "calibrate/fit_head.h"
+#include "study/material_numbers.h"
 #include "study/rerun.h"
 
 #include <math.h>
@@ -57,8 +58,7 @@ static const struct dea_field given_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = offsetof(struct given, name),
      .required = true,
-     .doc = "key of the design that is a number, film.permittivity.at_rest or .slope, "
-            "film.density, or film.law.NAME of a parameter of the law",
+     .doc = DEA_DEVICE_PARAM_DOC,
      .example = "film.thickness"},
     {.key = "std",
      .kind = DEA_FIELD_LABEL,
@@ -163,6 +163,13 @@ static dea_status add_given(struct work *w, const struct given *given, bool *goo
   return DEA_OK;
 }
 
+/* Whether it is parameter i of the film's law. */
+static bool is_of_law(const struct dea_device_param *param, size_t i)
+{
+  return param->kind == DEA_DEVICE_MATERIAL && param->material == DEA_OF_FILM &&
+         param->offset == offsetof(struct dea_material, param) + i * sizeof(double);
+}
+
 /* The parameters of the film's law that the section does not name. */
 static void add_law(struct work *w)
 {
@@ -171,14 +178,18 @@ static void add_law(struct work *w)
   for (size_t i = 0; film->law != NULL && i < film->law->param_count; i++) {
     bool named = false;
     for (size_t j = 0; j < first; j++) {
-      named = named || (w->params[j].kind == DEA_DEVICE_LAW && w->params[j].index == i);
+      named = named || (is_of_law(&w->params[j], i));
     }
     if (named || !(film->param_std[i] > 0)) {
       continue;
     }
     struct dea_device_param *param = &w->params[w->count];
-    *param = (struct dea_device_param){
-        .kind = DEA_DEVICE_LAW, .state = "", .index = i, .designed = film->param[i]};
+    *param = (struct dea_device_param){.kind = DEA_DEVICE_MATERIAL,
+                                       .state = "",
+                                       .material = DEA_OF_FILM,
+                                       .offset = offsetof(struct dea_material, param) +
+                                                 i * sizeof(double),
+                                       .designed = film->param[i]};
     param->param.unit = film->law->params[i].unit;
     snprintf(param->param.name, sizeof param->param.name, "film.law.%.30s",
              film->law->params[i].key);

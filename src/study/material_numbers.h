@@ -1,0 +1,32 @@
+/* Numbers of a device's materials that can change little by little, by their names: one table for
+ * what matters (study sensitivity), for searches, sweeps, fits and uncertainties. */
+#ifndef DEA_STUDY_MATERIAL_NUMBERS_H
+#define DEA_STUDY_MATERIAL_NUMBERS_H
+
+#include "device/device.h"
+
+/* Materials of a device: those of a disc, then those of the plies of its layout. */
+enum { DEA_OF_FILM, DEA_OF_ELECTRODES, DEA_OF_FIBRES, DEA_OF_PLIES };
+
+/* "film.law.PARAMETER", "electrodes.young_modulus", "fibres.density",
+ * "plies.NAME.permittivity.at_rest". */
+struct dea_material_number {
+  char key[64];
+  const char *unit; // SI; static storage
+  double value;     // SI
+  double low, high; // what it can be; infinite: anything
+  size_t material;  // number of it; DEA_OF_PLIES + i of ply i
+  size_t offset;    // in struct dea_material
+};
+
+/* Calls take with each of them that the device has and whose value is known, 0 among them. */
+void dea_material_numbers(const struct dea_device *device,
+                          void (*take)(void *user, const struct dea_material_number *number),
+                          void *user);
+/* A material of a device by its number; lent. */
+struct dea_material *dea_material_at(struct dea_device *device, size_t material);
+const struct dea_material *dea_material_of(const struct dea_device *device, size_t material);
+/* What keys of the design are about it begin with: "film", "plies.NAME". */
+void dea_material_prefix(const struct dea_device *device, size_t material, char out[48]);
+
+#endif
