@@ -369,12 +369,76 @@ static void check_state(struct sample *s)
   assert_close(work, forces, 0, 1e-4 * size);
 }
 
+/* 2 q . B^T v - q . M q / kappa by b and L, and the sum of the size of its terms. */
+static double stiffness_of_pressures(const struct sample *s, const double *v, const double *q,
+                                     double *size)
+{
+  enum { PRESSURES = DEA_HEX_PRESSURES_MAX };
+  static double b[PRESSURES * DEA_HEX_DOFS_MAX], L[PRESSURES * PRESSURES];
+  const int count = s->element->pressures, dofs = 3 * s->element->nodes;
+  double sum = 0;
+  *size = 0;
+  if (s->element->type->constraint == NULL) {
+    return 0;
+  }
+  assert_int_equal(s->element->type->constraint(s->element, &s->in, b, L), DEA_OK);
+  for (int c = 0; c < count; c++) {
+    double held = 0, gain = 0; // c of L^T q and of b v
+    for (int m = c; m < count; m++) {
+      held += L[m * count + c] * q[m];
+    }
+    for (int i = 0; i < dofs; i++) {
+      gain += b[c * dofs + i] * v[i];
+    }
+    sum += 2 * held * gain - held * held / s->film.kappa_Pa;
+    *size += fabs(2 * held * gain) + held * held / s->film.kappa_Pa;
+  }
+  return sum;
+}
+
+/* A small motion with pressures, against K without kappa, b and L, and the mass. */
+static void check_motion(struct sample *s)
+{
+  double v[DEA_HEX_DOFS_MAX] = {0}, psi[DEA_HEX_NODES_MAX], q[DEA_HEX_PRESSURES_MAX];
+  double all[DEA_ELEMENT_DOFS_MAX], force[DEA_HEX_DOFS_MAX], stiffness, kilograms, mass = 0, size;
+  const struct dea_element_type *type = s->element->type;
+  const struct dea_element_motion motion = {v, psi, q};
+  const int nodes = s->element->nodes, per = type->per_node, dofs = unknowns(s);
+  shake(s);
+  for (int i = 0; i < 3 * nodes; i++) {
+    all[per * (i / 3) + i % 3] = v[i] = 1e3 * sin(1.7 * i + 0.3);
+  }
+  for (int n = 0; n < nodes; n++) {
+    psi[n] = 3e2 * cos(0.9 * n);
+    all[per * n + per - 1] = per > 3 ? psi[n] : all[per * n + per - 1];
+  }
+  for (int m = 0; m < DEA_HEX_PRESSURES_MAX; m++) {
+    q[m] = 3e10 * cos(1.3 * m + 0.2);
+  }
+  assert_int_equal(type->motion(s->element, &s->in, &motion, &stiffness, &kilograms), DEA_OK);
+  double sum = stiffness_of_pressures(s, v, q, &size);
+  s->film.kappa_Pa = 0;
+  evaluate(s, &at);
+  for (int i = 0; i < dofs * dofs; i++) {
+    double bent = all[i / dofs] * at.K[i] * all[i % dofs];
+    sum += bent;
+    size += fabs(bent);
+  }
+  assert_close(stiffness, sum, 0, 1e-12 * size);
+  assert_int_equal(type->mass_times(s->element, &s->film, s->X, v, force), DEA_OK);
+  for (int i = 0; i < 3 * nodes; i++) {
+    mass += v[i] * force[i];
+  }
+  assert_close(kilograms, mass, 1e-12, 0);
+}
+
 static void check_inverted(struct sample *s)
 {
   static struct dea_element_state state;
   static struct dea_element_strains strains;
   static double mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], share[DEA_HEX_NODES_MAX];
-  double moved[DEA_HEX_DOFS_MAX];
+  double moved[DEA_HEX_DOFS_MAX], stiffness, kilograms;
+  const struct dea_element_motion motion = {s->u, s->psi, pressures};
   const struct dea_element_type *type = s->element->type;
   for (int a = 0; a < s->element->nodes; a++) {
     s->X[3 * a] *= -1;
@@ -386,6 +450,7 @@ static void check_inverted(struct sample *s)
   assert_int_equal(type->state(s->element, &s->in, true, &state), DEA_E_DOMAIN);
   assert_int_equal(type->mass(s->element, &s->film, s->X, mass), DEA_E_DOMAIN);
   assert_int_equal(type->mass_times(s->element, &s->film, s->X, s->u, moved), DEA_E_DOMAIN);
+  assert_int_equal(type->motion(s->element, &s->in, &motion, &stiffness, &kilograms), DEA_E_DOMAIN);
   assert_int_equal(type->metric(s->element, &s->film, s->X, mass, share), DEA_E_DOMAIN);
 }
 
@@ -397,8 +462,8 @@ static void test_every_kind(void **state)
     assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &set), DEA_OK);
     for (int kind = 0; kind < DEA_ELEMENT_COUNT; kind++) {
       static void (*const checks[])(struct sample * s) = {
-          check_derivatives, check_rigid_motion, check_patch,      check_integrals,
-          check_prediction,  check_state,        check_constraint, check_inverted};
+          check_derivatives, check_rigid_motion, check_patch,  check_integrals, check_prediction,
+          check_state,       check_constraint,   check_motion, check_inverted};
       for (size_t i = 0; i < 2 * sizeof checks / sizeof checks[0]; i++) {
         static struct sample s;
         fill(order, &set.of[kind], i % 2 == 1, &s);

@@ -2,6 +2,7 @@
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/controls.h"
+#include "model/solid/assembly/curvature.h"
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/adjoint.h"
 #include "model/solid/equilibrium/modes.h"
@@ -134,7 +135,7 @@ struct work {
   double *force_way;    // [dofs]
   struct mode *modes;   // [mode_count] from the lowest on, to the last that is asked for
   size_t mode_count;
-  double *gain, *moving; // [multipliers], [dofs] room
+  double *moving; // [dofs] room
   struct border border;
   double *null_mode; // [dofs] of a limit point, as it is found
 };
@@ -232,8 +233,7 @@ static double step_along(const struct work *w, const double *v)
 static dea_status prepare_modes(struct dea_context *ctx, struct work *w, struct dea_arena *memory)
 {
   const size_t multipliers = dea_adjoint_multipliers(w->adjoint);
-  double *pressure = dea_arena_alloc(memory, (w->mode_count + 1) * multipliers, sizeof(double));
-  w->gain = pressure + w->mode_count * multipliers;
+  double *pressure = dea_arena_alloc(memory, w->mode_count * multipliers, sizeof(double));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(memory)));
   for (size_t i = 0; i < w->mode_count; i++, pressure += multipliers) {
     struct mode *m = &w->modes[i];
@@ -335,20 +335,11 @@ static dea_status mode_at(struct dea_context *ctx, struct work *w, const struct 
                           double voltage_V, double *out)
 {
   struct dea_solid *s = w->owner->solid;
-  double square = 0, pressed;
-  memset(w->gain, 0, dea_adjoint_multipliers(w->adjoint) * sizeof(double));
-  for (int k = 0; k < PLACES; k++) {
-    const double times = by_places[0][k] / m->way.step;
-    if (k == PLACES / 2) {
-      continue;
-    }
-    DEA_TRY(ctx, assemble_along(ctx, w, &m->way, voltage_V, k - PLACES / 2));
-    square += times * dea_solid_dot(s, m->v, s->work.g);
-    dea_adjoint_add_gains(w->adjoint, times, w->gain);
-  }
-  DEA_TRY(ctx, dea_adjoint_gain_product(ctx, w->adjoint, m->pressure, w->gain, &pressed));
-  DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, m->v, w->moving));
-  *out = m->rate * (square + pressed - m->square * dea_solid_dot(s, m->v, w->moving));
+  double square, mass;
+  dea_solid_hold_potential(s, voltage_V, s->state.u);
+  memcpy(w->moving, m->v, s->problem.dofs * sizeof *w->moving);
+  DEA_TRY(ctx, dea_solid_motion(ctx, s, w->moving, m->pressure, &square, &mass));
+  *out = m->rate * (square - m->square * mass);
   return DEA_OK;
 }
 

@@ -177,3 +177,84 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
   }
   return DEA_OK;
 }
+
+/* ---- with pressures ---- */
+
+/* Of one element, added; with bodies its forces without kappa go to work.g. */
+static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, const double *q,
+                             double *stiffness, double *mass)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  double moving[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX], bent, moved;
+  const int *nodes;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  dea_solid_gather(s, e, v, moving);
+  const int count = dea_solid_nodes(s, e, &nodes);
+  for (int n = 0; n < count && element->type->per_node > 3; n++) {
+    potential[n] = v[dea_solid_at(s, nodes[n], 3)];
+  }
+  const struct dea_element_motion motion = {
+      .v = moving, .potential = potential, .pressure = q + e * (size_t)p->elements.pressures};
+  place.constituent.kappa_Pa *= s->settings.bulk_stiff;
+  dea_status status = element->type->motion(element, &in, &motion, &bent, &moved);
+  if (status == DEA_OK && p->body_count > 0) {
+    place.constituent.kappa_Pa = 0;
+    status = element->type->evaluate(element, &in, DEA_FORCE, s->work.element);
+  }
+  if (status == DEA_OK) {
+    *stiffness += bent;
+    *mass += moved;
+  }
+  if (status == DEA_OK && p->body_count > 0) {
+    add_forces(s, count, nodes, element->type->per_node, s->work.element->g);
+  }
+  return status;
+}
+
+/* 2 q . C_u v - w q^2 / k of the constraints of loads. */
+static double motion_of_constraints(const struct dea_solid *s, const double *v, const double *q)
+{
+  double sum = 0;
+  for (size_t l = 0; l < s->problem.load_count; l++) {
+    const struct dea_solid_load *load = &s->problem.loads[l];
+    for (size_t i = 0; i < load->multiplier_count; i++, q++) {
+      struct dea_load_constraint c;
+      if (*q != 0) {
+        load->constraint(load->self, i, s->state.u, &c);
+        const double *at = v + 3 * c.node;
+        sum += 2 * *q * (c.slope[0] * at[0] + c.slope[1] * at[1] + c.slope[2] * at[2]) -
+               c.weight * *q * *q / c.stiffness;
+      }
+    }
+  }
+  return sum;
+}
+
+dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double *v,
+                            const double *q, double *stiffness, double *mass)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  double sums[2] = {0};
+  dea_status status = DEA_OK;
+  memset(s->work.g, 0, p->dofs * sizeof *s->work.g);
+  dea_solid_bodies_place(s, s->state.u);
+  dea_solid_bodies_prepare(s);
+  dea_solid_bodies_carry(s, v);
+  for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
+    status = add_motion(s, p->own[k], v, q, &sums[0], &sums[1]);
+  }
+  status = status == DEA_OK ? add_loads(s, 1, v, &sums[0]) : status;
+  DEA_TRY(ctx, dea_solid_agree(ctx, status));
+  dea_solid_sum(sums, 2);
+  dea_solid_sum(s->work.g, p->body_count > 0 ? p->dofs : 0);
+  for (size_t i = 0; i < 3 * p->grid->node_count && p->point_mass != NULL; i++) {
+    sums[1] += p->point_mass[i / 3] * v[i] * v[i];
+  }
+  *stiffness = sums[0] + motion_of_constraints(s, v, q + dea_solid_pressure_count(s)) +
+               dea_solid_bodies_curvature(s, s->work.g, v);
+  *mass = sums[1];
+  return DEA_OK;
+}

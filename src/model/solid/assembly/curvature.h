@@ -10,4 +10,12 @@
 dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, size_t count,
                                 const double *v, double *out);
 
+/* v A v + 2 q . B^T v - q . M q / kappa and v . M v of a motion v [dofs] with pressures q
+ * [multipliers] of elements and of loads, at the state and its pressures alone, without kappa but
+ * in that term, where it is the one of the solid as good as incompressible
+ * (docs/theory/gradients.md, "Frequencies"). Followers of bodies are set in v, and in u. Leaves
+ * work.g undefined. */
+dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double *v,
+                            const double *q, double *stiffness, double *mass);
+
 #endif

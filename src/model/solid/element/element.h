@@ -83,6 +83,13 @@ struct dea_element_state {
   double P[DEA_HEX_GAUSS_MAX][9];     // first Piola-Kirchhoff stress, all of it [Pa]
 };
 
+/* A small motion of an element, as modes have it. All is lent. */
+struct dea_element_motion {
+  const double *v;         // [nodes][3]
+  const double *potential; // [nodes] psi; of a kind with a potential
+  const double *pressure;  // [pressures] q
+};
+
 /* What an element tells of itself at its nodes after a solve (docs/theory/recovery.md). Plane nodes
  * are those of one level through the thickness. */
 struct dea_recovered {
@@ -129,6 +136,11 @@ struct dea_element_type {
   /* That matrix times motions v [nodes][3], without making it; out: [nodes][3]. */
   dea_status (*mass_times)(const struct dea_element *e, const struct dea_constituent *constituent,
                            const double *X, const double *v, double *out);
+  /* v A v + 2 q . B^T v - q . M q / kappa of a small motion with its potentials and pressures, A at
+   * the pressures p_k alone, without kappa; and v . mass v [kg of v's unit squared]
+   * (docs/theory/gradients.md, "Frequencies"). */
+  dea_status (*motion)(const struct dea_element *e, const struct dea_element_input *in,
+                       const struct dea_element_motion *motion, double *stiffness, double *mass);
   /* What a shift of K and a norm of displacements are made of: int grad N_a . grad N_b [m],
    * [nodes][nodes]; and the volume lumped to the nodes [m^3], all positive. */
   dea_status (*metric)(const struct dea_element *e, const struct dea_constituent *constituent,

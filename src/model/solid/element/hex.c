@@ -61,6 +61,32 @@ dea_status dea_hex_find_points(const struct dea_hex_shape *s, const double *X, c
   return DEA_OK;
 }
 
+dea_status dea_hex_find_motion(const struct dea_hex_shape *s, const double *X, const double *u,
+                               const double *v, struct dea_hex_point *points, double (*H)[9])
+{
+  double values[DEA_HEX_NODES_MAX][9], slopes[3 * DEA_HEX_GAUSS_MAX * 9];
+  for (int n = 0; n < s->nodes; n++) {
+    memcpy(values[n], X + 3 * n, 3 * sizeof *X);
+    memcpy(values[n] + 3, u + 3 * n, 3 * sizeof *u);
+    memcpy(values[n] + 6, v + 3 * n, 3 * sizeof *v);
+  }
+  dea_hex_slopes(s, 9, values[0], slopes);
+  for (int q = 0; q < s->gauss; q++) {
+    const double *slope[3] = {slopes + 9 * q, slopes + 9 * (s->gauss + q),
+                              slopes + 9 * (2 * s->gauss + q)};
+    dea_status status = find_point(s->weight[q], slope, &points[q]);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (int a = 0; a < 9; a++) {
+      const double *local = points[q].local + a % 3;
+      H[q][a] = slope[0][6 + a / 3] * local[0] + slope[1][6 + a / 3] * local[3] +
+                slope[2][6 + a / 3] * local[6];
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, const double *u,
                               double (*gradient)[3][DEA_HEX_NODES_MAX],
                               struct dea_hex_point *points)
@@ -344,6 +370,76 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   return DEA_OK;
 }
 
+/* ---- small motions ---- */
+
+static double product(const double a[9], const double b[9])
+{
+  double sum = 0;
+  for (int k = 0; k < 9; k++) {
+    sum += a[k] * b[k];
+  }
+  return sum;
+}
+
+/* H A H of one Gauss point at a pressure, without weight. */
+static dea_status bend_point(const struct dea_constituent *constituent, int q,
+                             const struct dea_hex_point *at, double pressure, double field,
+                             const double H[9], double *out)
+{
+  struct dea_point point;
+  dea_status status =
+      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, true, &point);
+  if (status != DEA_OK) {
+    return status;
+  }
+  dea_viscous_add(constituent, q, at->F, at->cof, at->J, true, &point);
+  *out = 0;
+  for (int a = 0; a < 9; a++) {
+    *out += H[a] * product(point.A + 9 * a, H);
+  }
+  return DEA_OK;
+}
+
+/* |v|^2 at a Gauss point. */
+static double square_at(const struct dea_hex_shape *s, int q, const double *v)
+{
+  double x = 0, y = 0, z = 0;
+  for (int n = 0; n < s->nodes; n++) {
+    const double N = s->value[q][n];
+    x += N * v[3 * n];
+    y += N * v[3 * n + 1];
+    z += N * v[3 * n + 2];
+  }
+  return x * x + y * y + z * z;
+}
+
+dea_status dea_hex_motion(const struct dea_element *element, const struct dea_element_input *in,
+                          const struct dea_element_motion *motion, double *stiffness, double *mass)
+{
+  const struct dea_hex_shape *s = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  const bool projected = dea_constituent_takes_pressure(constituent);
+  const double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  double H[DEA_HEX_GAUSS_MAX][9];
+  dea_status status = dea_hex_find_motion(s, in->X, in->u, motion->v, points, H);
+  *stiffness = *mass = 0;
+  for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
+    const double weight = points[q].weight;
+    double pressure = 0, change = 0, bent = 0;
+    for (int m = 0; m < s->pressures && projected; m++) {
+      pressure += s->pressure[q][m] * in->multiplier[m];
+      change += s->pressure[q][m] * motion->pressure[m];
+    }
+    status = bend_point(constituent, q, &points[q], pressure, field, H[q], &bent);
+    bent += 2 * change * product(points[q].cof, H[q]);
+    bent -= change != 0 ? change * change / constituent->kappa_Pa : 0;
+    *stiffness += weight * bent;
+    *mass += constituent->density_kg_per_m3 * weight * square_at(s, q, motion->v);
+  }
+  return status;
+}
+
 /* ---- stresses at the end of a linear step ---- */
 
 /* H_iJ = sum_n step_ni dN_n/dX_J at a Gauss point. */
@@ -358,15 +454,6 @@ static void step_gradient(const struct dea_hex_shape *s, double gradient[3][DEA_
       }
     }
   }
-}
-
-static double product(const double a[9], const double b[9])
-{
-  double sum = 0;
-  for (int k = 0; k < 9; k++) {
-    sum += a[k] * b[k];
-  }
-  return sum;
 }
 
 /* M^-1 moment with M = L L^T. */
@@ -818,4 +905,5 @@ const struct dea_element_type dea_element_hexahedron = {
     .per_node = 3,
     .evaluate = dea_hex_evaluate,
     DEA_HEX_MEMBERS,
+    .motion = dea_hex_motion,
 };

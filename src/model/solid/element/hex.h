@@ -31,6 +31,10 @@ struct dea_hex_point {
 dea_status dea_hex_find_points(const struct dea_hex_shape *shape, const double *X, const double *u,
                                struct dea_hex_point *points);
 
+/* The same, and the gradient H_iJ = dv_i/dX_J of a motion v [nodes][3]. */
+dea_status dea_hex_find_motion(const struct dea_hex_shape *shape, const double *X, const double *u,
+                               const double *v, struct dea_hex_point *points, double (*H)[9]);
+
 /* The same, and gradients by X at every Gauss point, as rows [q][J][node]. */
 dea_status dea_hex_kinematics(const struct dea_hex_shape *shape, const double *X, const double *u,
                               double (*gradient)[3][DEA_HEX_NODES_MAX],
@@ -56,6 +60,8 @@ dea_status dea_hex_mass(const struct dea_element *element,
 dea_status dea_hex_mass_times(const struct dea_element *element,
                               const struct dea_constituent *constituent, const double *X,
                               const double *v, double *out);
+dea_status dea_hex_motion(const struct dea_element *element, const struct dea_element_input *in,
+                          const struct dea_element_motion *motion, double *stiffness, double *mass);
 dea_status dea_hex_metric(const struct dea_element *element,
                           const struct dea_constituent *constituent, const double *X,
                           double *laplace, double *volume);

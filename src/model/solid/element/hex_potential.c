@@ -190,6 +190,63 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
   return DEA_OK;
 }
 
+/* dcof/dF : H. */
+static void cofactors_along(const double F[9], const double H[9], double out[9])
+{
+  for (int i = 0; i < 3; i++) {
+    const int k = 3 * ((i + 1) % 3), m = 3 * ((i + 2) % 3);
+    for (int J = 0; J < 3; J++) {
+      const int L = (J + 1) % 3, N = (J + 2) % 3;
+      out[3 * i + J] =
+          F[k + L] * H[m + N] + H[k + L] * F[m + N] - F[k + N] * H[m + L] - H[k + N] * F[m + L];
+    }
+  }
+}
+
+/* Second derivative of |w|^2/2 along H and D, the changes of F and E: of w = cof(F) E they are w' =
+ * cof' E + cof D and w'' = 2 (cof(H) E + cof' D). */
+static double bend_field(const struct dea_hex_point *at, const struct field_point *field,
+                         const double H[9], const double D[3])
+{
+  double along[9], twice[9], sum = 0;
+  cofactors_along(at->F, H, along);
+  dea_cofactors(H, twice);
+  for (int i = 0; i < 3; i++) {
+    double first = 0, second = 0;
+    for (int J = 0; J < 3; J++) {
+      first += along[3 * i + J] * field->E[J] + at->cof[3 * i + J] * D[J];
+      second += 2 * (twice[3 * i + J] * field->E[J] + along[3 * i + J] * D[J]);
+    }
+    sum += first * first + field->w[i] * second;
+  }
+  return sum;
+}
+
+static dea_status motion(const struct dea_element *element, const struct dea_element_input *in,
+                         const struct dea_element_motion *motion, double *stiffness, double *mass)
+{
+  const struct dea_hex_shape *shape = element->basis;
+  const double c = in->potential_V_per_m, eps = in->constituent->permittivity_F_per_m;
+  double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX], H[DEA_HEX_GAUSS_MAX][9];
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  struct dea_element_input elastic = *in;
+  elastic.voltage_V = 0;
+  dea_status status = dea_hex_motion(element, &elastic, motion, stiffness, mass);
+  if (status == DEA_OK) {
+    status = dea_hex_find_motion(shape, in->X, in->u, motion->v, points, H);
+  }
+  if (status == DEA_OK) {
+    status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
+  }
+  for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
+    struct field_point field, change;
+    field_at(shape, &points[q], gradient[q], motion->potential, c, &change);
+    field_at(shape, &points[q], gradient[q], in->potential, c, &field);
+    *stiffness -= eps * points[q].weight * bend_field(&points[q], &field, H[q], change.E);
+  }
+  return status;
+}
+
 static dea_status capacity(const struct dea_element *element, const struct dea_element_input *in,
                            double *L)
 {
@@ -222,5 +279,6 @@ const struct dea_element_type dea_element_potential_hexahedron = {
     .per_node = 4,
     .evaluate = evaluate,
     DEA_HEX_MEMBERS,
+    .motion = motion,
     .capacity = capacity,
 };

@@ -271,6 +271,43 @@ static dea_status mass_times(const struct dea_element *element,
   return DEA_OK;
 }
 
+static dea_status motion(const struct dea_element *element, const struct dea_element_input *in,
+                         const struct dea_element_motion *motion, double *stiffness, double *mass)
+{
+  const struct dea_flat_shape *shape = element->basis;
+  const struct dea_constituent *constituent = in->constituent;
+  const double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  *stiffness = *mass = 0;
+  for (int q = 0; q < shape->gauss; q++) {
+    double gradient[2][DEA_FLAT_NODES_MAX], F[6], H[6] = {0}, here[3] = {0};
+    double weight = constituent->thickness_m * gradients_at(shape, q, in->X, gradient);
+    struct dea_membrane_point point;
+    if (!(weight > 0)) {
+      return DEA_E_DOMAIN;
+    }
+    in_plane_columns(shape->nodes, in->u, gradient, F);
+    for (int n = 0; n < shape->nodes; n++) {
+      for (int a = 0; a < 6; a++) {
+        H[a] += motion->v[3 * n + a / 2] * gradient[a % 2][n];
+      }
+      for (int i = 0; i < 3; i++) {
+        here[i] += shape->value[q][n] * motion->v[3 * n + i];
+      }
+    }
+    dea_status status = dea_membrane_point(constituent, F, field, &point);
+    if (status != DEA_OK) {
+      return status;
+    }
+    dea_viscous_add_flat(constituent, q, F, &point);
+    for (int a = 0; a < 36; a++) {
+      *stiffness += weight * H[a / 6] * point.A[a] * H[a % 6];
+    }
+    *mass += constituent->density_kg_per_m3 * weight *
+             (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
+  }
+  return DEA_OK;
+}
+
 static dea_status strains(const struct dea_element *element, const struct dea_element_input *in,
                           struct dea_element_strains *out)
 {
@@ -406,6 +443,7 @@ const struct dea_element_type dea_element_membrane = {
     .evaluate = evaluate,
     .mass = mass,
     .mass_times = mass_times,
+    .motion = motion,
     .metric = metric,
     .neutral_stiffness = neutral_stiffness,
     .strains = strains,

@@ -113,7 +113,8 @@ static dea_status evaluate(const void *self, size_t piece, const double *u,
     for (int i = 0; i < 3 && push != 0; i++) {
       out->g[3 * q + i] -= w * push * n[i];
       for (int j = 0; j < 3 && level >= DEA_TANGENT; j++) {
-        out->K[(3 * q + i) * dofs + 3 * q + j] += w * (k * n[i] * n[j] - bends * H[3 * i + j]);
+        out->K[(3 * q + i) * dofs + 3 * q + j] +=
+            w * ((c->held ? 0 : k) * n[i] * n[j] - bends * H[3 * i + j]);
       }
     }
   }
