@@ -89,6 +89,7 @@ dea_status dea_solid_settings_check(struct dea_context *ctx,
                       setting->name, value);
     }
   }
+  DEA_TRY(ctx, check_power(ctx, "bulk_soft", settings->bulk_soft));
   DEA_TRY(ctx, check_power(ctx, "bulk_stiff", settings->bulk_stiff));
   DEA_TRY(ctx, check_power(ctx, "path_bulk", settings->path_bulk));
   return DEA_OK;

@@ -48,6 +48,9 @@
     "rise of a step up below which the shift is too large")                                        \
   X(double, pair_wild, 5, "of the slope", "rise of a step up above which the shift stays")         \
   X(double, pair_down, 2, "1", "divisor of the shift of a step up; its cube after a gentle one")   \
+  X(double, bulk_soft, 1.0 / 16, "1", "power of 2, factor of kappa on the way down")               \
+  X(double, soft_end, 1e-3, "of theta, and of the sum of element forces",                          \
+    "what is left where it ends")                                                                  \
   X(double, bulk_stiff, 128, "1", "power of 2, factor of kappa where unstable modes are counted")  \
   /* ---- load steps, and the descent from an unstable equilibrium ---- */                         \
   X(double, load_step_least, 1.0 / 64, "of the way asked for", "shortest step")                    \

@@ -9,13 +9,13 @@
 /* A minimum; close to one whose pressures settle slowly, since the film there is far stiffer than
  * kappa (docs/theory/branches.md), steps with the factor of a raised kappa first. *there: they have
  * come to the equilibrium. */
-static dea_status minimise(struct dea_context *ctx, struct dea_solid *s,
+static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, bool soft,
                            struct dea_solid_report *report, bool *there)
 {
   bool slow = false;
   int negative;
   *there = false;
-  DEA_TRY(ctx, dea_solid_minimise(ctx, s, s->problem.field == NULL ? &slow : NULL, report));
+  DEA_TRY(ctx, dea_solid_minimise(ctx, s, soft, s->problem.field == NULL ? &slow : NULL, report));
   if (!slow) {
     return DEA_OK;
   }
@@ -26,7 +26,7 @@ static dea_status minimise(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_follow(ctx, s, NAN, false, report, NULL, there));
   if (!*there) {
     s->found.stiff_factor_fits = false;
-    DEA_TRY(ctx, dea_solid_minimise(ctx, s, NULL, report));
+    DEA_TRY(ctx, dea_solid_minimise(ctx, s, false, NULL, report));
   }
   return DEA_OK;
 }
@@ -40,7 +40,7 @@ dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
   double best = INFINITY;
   for (int i = 0, worse = 0; i < o->rounds && worse < o->rounds_worse; i++) {
     bool there;
-    DEA_TRY(ctx, minimise(ctx, s, report, &there));
+    DEA_TRY(ctx, minimise(ctx, s, i == 0 && !o->accept_unstable, report, &there));
     if (there) {
       return DEA_OK;
     }

@@ -31,6 +31,7 @@ struct newton {
   int unresolved;     // steps in a row whose change of the energy rounding hides
   int lost;           // iterates in a row whose forces are far out of balance
   int stuck;          // shifted steps in a row that are too small to matter
+  double softness;    // kappa over its own
   struct pair pair;
   struct dea_solid_report *report;
 };
@@ -260,6 +261,26 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
 
 /* ---- one minimum ---- */
 
+/* kappa over its own from now on. */
+static void soften(struct dea_solid *s, struct newton *d, double softness)
+{
+  dea_solid_scale_bulk_modulus(s, softness / d->softness);
+  d->softness = softness;
+}
+
+/* On the way down kappa is soft, and the valley wide (docs/theory/branches.md); where an unshifted
+ * step has left little of the volume and of the forces it is its own again. */
+static void choose_softness(struct dea_solid *s, struct newton *d, bool soft)
+{
+  const struct dea_solid_settings *o = &s->settings;
+  bool near =
+      d->shift_Pa == 0 && d->report->theta_max < o->soft_end && d->report->residual < o->soft_end;
+  if (!d->chord && s->problem.elements.pressures > 0) {
+    soften(s, d,
+           !soft || near || d->strict || d->shift_Pa > s->problem.modulus_Pa ? 1 : o->bulk_soft);
+  }
+}
+
 /* Takes the share of the step, with the stresses and the pressures that go with it. */
 static dea_status take_step(struct dea_context *ctx, struct dea_solid *s, const struct newton *d,
                             double share, bool stresses)
@@ -330,7 +351,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       begin_pair(d, there, slope, share, rise);
       adapt_shift(s, d, share, rise);
       d->chords = 0;
-      d->chord = quadratic && there == 0;
+      d->chord = quadratic && there == 0 && d->softness == 1;
       return DEA_OK;
     }
     if (start) {
@@ -405,43 +426,60 @@ static dea_status heed_divergence(struct dea_context *ctx, const struct dea_soli
                         d->report->residual);
 }
 
-dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool *slow,
-                              struct dea_solid_report *report)
+static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct newton *d, bool soft,
+                          bool *slow)
 {
-  double voltage_V = s->state.voltage_V;
   const struct dea_solid_settings *o = &s->settings;
-  struct newton d = {.voltage_V = voltage_V, .start = s->found.factor_fits, .report = report};
-  s->found.factor_fits = false;
-  DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
+  struct dea_solid_report *report = d->report;
   for (int i = 0; i < o->iterations; i++) {
     bool done = false;
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
     if (i == o->iterations_free) {
-      d.strict = true;
-      d.chord = s->found.predicted_fits = false;
+      d->strict = true;
+      d->chord = s->found.predicted_fits = false;
     }
-    DEA_TRY(ctx, evaluate(ctx, s, &d));
-    bool fits = d.strict || report->theta_max < o->theta;
-    if (i > 0 && fits && (report->residual < o->residual || d.unresolved > 2)) {
-      return dea_solid_count_unstable(
-          ctx, s, !d.chord && d.shift_Pa == 0 && !s->found.predicted_fits, report);
+    if (i > 0) {
+      choose_softness(s, d, soft && 2 * i < o->iterations_free);
     }
-    DEA_TRY(ctx, heed_divergence(ctx, s, &d));
-    if (slow != NULL && d.unresolved > 2 && !fits) {
+    DEA_TRY(ctx, evaluate(ctx, s, d));
+    bool fits = d->strict || report->theta_max < o->theta;
+    if (i > 0 && fits && (report->residual < o->residual || d->unresolved > 2)) {
+      bool tangent = !d->chord && d->shift_Pa == 0 && d->softness == 1 && !s->found.predicted_fits;
+      soften(s, d, 1);
+      return dea_solid_count_unstable(ctx, s, tangent, report);
+    }
+    DEA_TRY(ctx, heed_divergence(ctx, s, d));
+    if (slow != NULL && d->unresolved > 2 && !fits) {
       *slow = true;
       return DEA_OK;
     }
-    if (d.chord) {
-      DEA_TRY(ctx, chord_step(ctx, s, &d));
+    if (d->chord) {
+      DEA_TRY(ctx, chord_step(ctx, s, d));
     } else {
-      DEA_TRY(ctx, newton_step(ctx, s, &d, &done));
+      DEA_TRY(ctx, newton_step(ctx, s, d, &done));
     }
     if (done && fits) {
+      soften(s, d, 1);
       return dea_solid_count_unstable(ctx, s, false, report);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",
                   o->iterations, report->residual);
+}
+
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool soft, bool *slow,
+                              struct dea_solid_report *report)
+{
+  double voltage_V = s->state.voltage_V;
+  struct newton d = {
+      .voltage_V = voltage_V, .start = s->found.factor_fits, .softness = 1, .report = report};
+  s->found.factor_fits = false;
+  dea_status status = dea_solid_solve_potential(ctx, s, voltage_V, s->state.u);
+  if (status == DEA_OK) {
+    status = descend(ctx, s, &d, soft, slow);
+  }
+  soften(s, &d, 1);
+  return status;
 }
 
 /* ---- held components that move ---- */
