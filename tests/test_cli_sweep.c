@@ -321,6 +321,23 @@ static void test_optimise(void **state)
   assert_contains(command_err, "best-3.yaml");
 }
 
+/* No design has a value: that is said with the reasons, and all evaluations stay. */
+static void test_none_with_values(void **state)
+{
+  (void)state;
+  command_write("lost.yaml", "dea_explore: 1\nname: lost\ndesign: " DEA_SOURCE_DIR
+                             "/examples/frdea-4.yaml\nmodel: lumped\nvoltages: [1 kV]\n"
+                             "quantities: [pull_in_voltage_V]\n"
+                             "variables: [{name: pre_stretch, values: [1.5, 1.55, 1.6]}]\n"
+                             "objectives: [{quantity: pull_in_voltage_V, goal: most}]\n");
+  command_expect("optimise lost.yaml", 4,
+                 "none of the 3 designs that were tried could be computed");
+  assert_contains(command_err, "3 of 3 designs: pull_in_voltage_V: the path has none up to ");
+  assert_int_equal(lines_with("lost.optimise/cases.csv", "the path has none"), 3);
+  command_expect("optimise lost.yaml", 4, "could be computed");
+  assert_contains(command_out, "designs: 3, 3 of them computed before, 3 without all values");
+}
+
 /* What is counted off begins at one of its values, not at the design's four fibres. */
 static void test_values_without_the_start(void **state)
 {
@@ -386,6 +403,7 @@ int main(void)
                                      cmocka_unit_test(test_interrupted),
                                      cmocka_unit_test(test_interrupted_search),
                                      cmocka_unit_test(test_optimise),
+                                     cmocka_unit_test(test_none_with_values),
                                      cmocka_unit_test(test_critical_voltages),
                                      cmocka_unit_test(test_page),
                                      cmocka_unit_test(test_parts),

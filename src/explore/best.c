@@ -381,11 +381,17 @@ static dea_status draw(struct work *w, const char *name, const char *caption, in
   return status;
 }
 
+/* Whether any design has all values. */
+static bool has_values(const struct work *w)
+{
+  return w->report->failed < dea_store_count(w->store);
+}
+
 static dea_status draw_all(struct work *w)
 {
   static const char *const names[] = {"progress", "front"};
   const bool front = w->question->file->objective_count > 1;
-  if (dea_store_count(w->store) == 0) {
+  if (!has_values(w)) {
     return DEA_OK;
   }
   DEA_TRY(w->ctx, draw(w, names[0], "designs in the order of their evaluation", -1, 0));
@@ -393,6 +399,66 @@ static dea_status draw_all(struct work *w)
     DEA_TRY(w->ctx, draw(w, names[1], "all designs, and the front of the two objectives", 0, 1));
   }
   return dea_gnuplot_draw(w->ctx, w->options->folder, names, front ? 2 : 1);
+}
+
+// Why there is none -------------------------------------------------------------------------------
+
+static const char digits[] = "0123456789.";
+
+/* Whether two reasons are the same but for their numbers, as far as they were kept. */
+static bool is_alike(const char *a, const char *b)
+{
+  const bool cut = strlen(a) == DEA_CASE_WHY_SIZE - 1 || strlen(b) == DEA_CASE_WHY_SIZE - 1;
+  while (*a != '\0' && *b != '\0') {
+    const size_t of_a = strspn(a, digits), of_b = strspn(b, digits);
+    if ((of_a > 0) != (of_b > 0) || (of_a == 0 && *a != *b)) {
+      return false;
+    }
+    a += of_a > 0 ? of_a : 1;
+    b += of_b > 0 ? of_b : 1;
+  }
+  return *a == *b || cut;
+}
+
+/* Reasons of designs without all values by count, in the order in which they came. */
+static dea_status add_reasons(const struct work *w)
+{
+  enum { MOST = 5 };
+  const char *why[MOST];
+  size_t counts[MOST + 1] = {0}, kinds = 0; // the last one: of others
+  for (size_t i = 0; i < dea_store_count(w->store); i++) {
+    const char *now = dea_store_get(w->store, i)->why;
+    size_t k = 0;
+    while (k < kinds && !is_alike(why[k], now)) {
+      k++;
+    }
+    if (k == kinds && kinds < MOST) {
+      why[kinds++] = now;
+    }
+    counts[k]++;
+  }
+  for (size_t k = 0; k < kinds; k++) {
+    DEA_TRY(w->ctx,
+            dea_finding_add(w->ctx, DEA_NOTE, (struct dea_location){0}, "%zu of %zu designs: %s",
+                            counts[k], dea_store_count(w->store), why[k]));
+  }
+  return counts[MOST] == 0 ? DEA_OK
+                           : dea_finding_add(w->ctx, DEA_NOTE, (struct dea_location){0},
+                                             "%zu of %zu designs: other reasons", counts[MOST],
+                                             dea_store_count(w->store));
+}
+
+static dea_status fail_without(const struct work *w)
+{
+  if (has_values(w)) {
+    return dea_fail(w->ctx, DEA_E_NO_EQUILIBRIUM,
+                    "none of the %zu designs that were tried is within all limits",
+                    w->report->evaluations);
+  }
+  DEA_TRY(w->ctx, add_reasons(w));
+  return dea_fail(w->ctx, DEA_E_NO_EQUILIBRIUM,
+                  "none of the %zu designs that were tried could be computed",
+                  w->report->evaluations);
 }
 
 // All of it ---------------------------------------------------------------------------------------
@@ -457,9 +523,7 @@ static dea_status run(struct work *w)
     DEA_TRY(w->ctx, written);
   }
   if (status == DEA_OK && w->report->count == 0) {
-    return dea_fail(w->ctx, DEA_E_NO_EQUILIBRIUM,
-                    "none of the %zu designs that were tried is within all limits",
-                    w->report->evaluations);
+    return fail_without(w);
   }
   return status == DEA_OK ? DEA_OK : dea_fail(w->ctx, status, "%s", message);
 }
