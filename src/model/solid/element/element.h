@@ -125,8 +125,8 @@ struct dea_element_type {
                         const double *step, double share, bool stresses, double *predicted);
   /* The slope of theta by u at u: b [pressures][dofs] and a lower triangle L
    * [pressures][pressures], all 0 of what takes no pressure. Pressures q push with b^T L^T q; theta
-   * grows by L^-T b du; the integral of a product of two pressures is q L L^T q'. b: NULL where
-   * only L is wanted. NULL for a kind without pressures. */
+   * grows by L^-T b du; the integral of a product of two pressures is q L L^T q'. NULL for a kind
+   * without pressures. */
   dea_status (*constraint)(const struct dea_element *e, const struct dea_element_input *in,
                            double *b, double *L);
   /* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the

@@ -337,9 +337,7 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   double theta[DEA_HEX_PRESSURES_MAX];
   const struct dea_hex_shape *s = element->basis;
   size_t count = (size_t)s->pressures, dofs = 3 * (size_t)s->nodes;
-  if (b != NULL) {
-    memset(b, 0, count * dofs * sizeof *b);
-  }
+  memset(b, 0, count * dofs * sizeof *b);
   memset(L, 0, count * count * sizeof *L);
   if (!dea_constituent_takes_pressure(in->constituent)) {
     return DEA_OK;
@@ -353,9 +351,6 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   }
   for (size_t m = 0; m < count; m++) {
     memcpy(L + m * count, work.factor[m], (m + 1) * sizeof *L);
-  }
-  if (b == NULL) {
-    return DEA_OK;
   }
   work.columns = 3 + 3 * s->pressures;
   memset(work.flux, 0, (size_t)(3 * s->gauss * work.columns) * sizeof *work.flux);

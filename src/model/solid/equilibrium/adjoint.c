@@ -487,16 +487,6 @@ size_t dea_adjoint_multipliers(const struct dea_adjoint *a)
   return a->all;
 }
 
-void dea_adjoint_add_gains(const struct dea_adjoint *a, double times, double *out)
-{
-  for (size_t i = 0; i < a->pressures; i++) {
-    out[i] += times * a->s->state.theta[i];
-  }
-  for (size_t i = a->pressures; i < a->all; i++) {
-    out[i] += times * a->row[i - a->pressures].root * a->theta[i];
-  }
-}
-
 void dea_adjoint_add_constraints(const struct dea_adjoint *a, double times, double *out)
 {
   const struct dea_solid_problem *p = &a->s->problem;
@@ -545,58 +535,6 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
                                  (row->b[0] * at[0] + row->b[1] * at[1] + row->b[2] * at[2])
                            : 0;
   }
-}
-
-/* The share of what loads hold, with the weights that it has now. */
-static double gains_of_loads(const struct dea_adjoint *a, const double *p, const double *x)
-{
-  const struct dea_solid *s = a->s;
-  const struct row *row = a->row;
-  double sum = 0;
-  for (size_t k = 0, i = a->pressures; k < s->problem.load_count; k++) {
-    const struct dea_solid_load *load = &s->problem.loads[k];
-    for (size_t m = 0; m < load->multiplier_count; m++, i++, row++) {
-      struct dea_load_constraint c;
-      if (row->root > 0) {
-        load->constraint(load->self, m, s->state.u, &c);
-        sum += p[i] * (x[i] - c.weight * p[i] / row->stiffness);
-      }
-    }
-  }
-  return sum;
-}
-
-dea_status dea_adjoint_gain_product(struct dea_context *ctx, struct dea_adjoint *a, const double *p,
-                                    const double *x, double *out)
-{
-  const struct dea_solid *s = a->s;
-  size_t most = most_of(a);
-  double L[DEA_HEX_PRESSURES_MAX * DEA_HEX_PRESSURES_MAX];
-  dea_status status = DEA_OK;
-  *out = 0;
-  for (size_t k = 0; k < s->problem.own_count && most > 0 && status == DEA_OK; k++) {
-    size_t e = s->problem.own[k], count = (size_t)dea_solid_element(s, e)->pressures;
-    const struct dea_element *element = dea_solid_element(s, e);
-    const double kappa_Pa = s->settings.bulk_stiff * dea_solid_bulk_modulus(s, e);
-    struct dea_solid_element_place place;
-    struct dea_element_input in;
-    if (element->type->constraint == NULL || !(kappa_Pa > 0)) {
-      continue;
-    }
-    dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-    status = element->type->constraint(element, &in, NULL, L);
-    for (size_t c = 0; c < count; c++) {
-      double left = 0, right = 0;
-      for (size_t m = c; m < count; m++) { // L^T p, L^T (x - p / kappa)
-        left += L[m * count + c] * p[e * most + m];
-        right += L[m * count + c] * (x[e * most + m] - p[e * most + m] / kappa_Pa);
-      }
-      *out += left * right;
-    }
-  }
-  dea_solid_sum(out, 1);
-  *out += gains_of_loads(a, p, x);
-  return dea_solid_agree(ctx, status);
 }
 
 int dea_adjoint_solutions(const struct dea_adjoint *a)

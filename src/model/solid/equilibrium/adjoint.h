@@ -47,16 +47,9 @@ size_t dea_adjoint_multipliers(const struct dea_adjoint *adjoint);
 /* The constraints C of the last assembly of the problem that the answers are of, added `times`
  * times to out [multipliers]. */
 void dea_adjoint_add_constraints(const struct dea_adjoint *adjoint, double times, double *out);
-/* The same over the product of pressures of the problem that is now under the solid: theta, and of
- * loads C itself. */
-void dea_adjoint_add_gains(const struct dea_adjoint *adjoint, double times, double *out);
 /* Multipliers with which the solid as good as incompressible and the penalties of what is held
  * answer a motion v, out [multipliers]: kappa M^-1 B^T v. */
 void dea_adjoint_mode_pressures(const struct dea_adjoint *adjoint, const double *v, double *out);
-/* Of a problem that is now under the solid, the integral of pressures p times (x - p / kappa),
- * kappa as there; of loads p . x - w p^2 / k. p, x: [multipliers]. */
-dea_status dea_adjoint_gain_product(struct dea_context *ctx, struct dea_adjoint *adjoint,
-                                    const double *p, const double *x, double *out);
 /* Solutions with the factor that all answers took, and whether it is a new one. */
 int dea_adjoint_solutions(const struct dea_adjoint *adjoint);
 bool dea_adjoint_factorised(const struct dea_adjoint *adjoint);
