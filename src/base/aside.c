@@ -63,6 +63,13 @@ bool dea_send_all(int socket, const void *bytes, size_t length)
   return true;
 }
 
+const char *dea_ended_by(int how, char out[DEA_ENDED_BY])
+{
+  snprintf(out, DEA_ENDED_BY, "%s %d", WIFSIGNALED(how) ? "signal" : "exit code",
+           WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
+  return out;
+}
+
 /* The whole of the other process; returns its exit code. */
 static int work_aside(struct dea_context *ctx, dea_aside_work work, void *user, int socket)
 {

@@ -42,5 +42,8 @@ void dea_aside_end(struct dea_aside *aside);
 dea_status dea_fork_beside(struct dea_context *ctx, pid_t *process, int *socket);
 /* All bytes [length] through a socket; false where the other end is gone. */
 bool dea_send_all(int socket, const void *bytes, size_t length);
+/* "signal 9" or "exit code 1", of what waitpid says; out, filled. */
+enum { DEA_ENDED_BY = 24 };
+const char *dea_ended_by(int how, char out[DEA_ENDED_BY]);
 
 #endif

@@ -114,23 +114,28 @@ dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, cons
   return dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(reason));
 }
 
+bool dea_write_all(int file, const void *bytes, size_t length)
+{
+  for (const char *from = bytes; length > 0;) {
+    const ssize_t n = write(file, from, length);
+    if (n < 0 && errno != EINTR) {
+      return false;
+    }
+    from += n > 0 ? n : 0;
+    length -= n > 0 ? (size_t)n : 0;
+  }
+  return true;
+}
+
 /* Writes all of a new file; errno says what went wrong. */
-static bool write_all(const char *path, const char *bytes, size_t length)
+static bool write_new(const char *path, const char *bytes, size_t length)
 {
   unlink(path); // left by a process of the same number that was killed
   int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) {
     return false;
   }
-  bool good = true;
-  for (size_t done = 0; done < length && good;) {
-    ssize_t n = write(file, bytes + done, length - done);
-    if (n >= 0) {
-      done += (size_t)n;
-    } else {
-      good = errno == EINTR;
-    }
-  }
+  bool good = dea_write_all(file, bytes, length);
   int reason = errno;
   if (close(file) != 0 && good) {
     return false;
@@ -147,7 +152,7 @@ dea_status dea_file_write(struct dea_context *ctx, const char *path, const char 
     return DEA_E_MEMORY;
   }
   dea_status status;
-  if (write_all(partial, bytes, length)) {
+  if (write_new(partial, bytes, length)) {
     status = dea_partial_finish(ctx, partial, path);
   } else {
     status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(errno));

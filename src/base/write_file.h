@@ -17,6 +17,8 @@ dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const
 dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, const char *name,
                              bool force);
 
+/* All bytes [length] to an open file; false where that fails, and errno says why. */
+bool dea_write_all(int file, const void *bytes, size_t length);
 /* Writes a file as a whole: the bytes go to a hidden file beside it, which then takes the name, so
  * that no interruption leaves half a file. Replaces an existing file. */
 dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,

@@ -105,9 +105,9 @@ static void end(const struct dea_pool *pool, struct worker *worker, char why[DEA
     }
     close(worker->socket);
     if (why != NULL) {
-      snprintf(why, DEA_CASE_WHY_SIZE, "the process of this case ended by %s %d",
-               WIFSIGNALED(how) ? "signal" : "exit code",
-               WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how));
+      char by[DEA_ENDED_BY];
+      snprintf(why, DEA_CASE_WHY_SIZE, "the process of this case ended by %s",
+               dea_ended_by(how, by));
     }
   }
   worker->process = 0;

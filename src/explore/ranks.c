@@ -3,6 +3,7 @@
 
 #include "base/aside.h"
 #include "base/clock.h"
+#include "base/write_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -33,19 +34,6 @@ void dea_reply_find(struct dea_context *ctx, const struct dea_evaluator *evaluat
 }
 
 // Lines -------------------------------------------------------------------------------------------
-
-static bool write_all(int to, const char *bytes, size_t length)
-{
-  while (length > 0) {
-    const ssize_t n = write(to, bytes, length);
-    if (n < 0 && errno != EINTR) {
-      return false;
-    }
-    bytes += n > 0 ? n : 0;
-    length -= n > 0 ? (size_t)n : 0;
-  }
-  return true;
-}
 
 /* Bytes as a line, two letters each; returns its length. */
 static size_t spell(const void *bytes, size_t length, char line[DEA_RANKS_LINE])
@@ -234,11 +222,10 @@ void dea_ranks_end(struct dea_ranks_running *ranks, char why[DEA_CASE_WHY_SIZE])
   }
   close(ranks->socket);
   if (why != NULL) {
-    char said[DEA_CASE_WHY_SIZE];
+    char said[DEA_CASE_WHY_SIZE], by[DEA_ENDED_BY];
     quote(ranks->said, true, said);
-    snprintf(why, DEA_CASE_WHY_SIZE, "the ranks of this case ended by %s %d: %.100s",
-             WIFSIGNALED(how) ? "signal" : "exit code",
-             WIFSIGNALED(how) ? WTERMSIG(how) : WEXITSTATUS(how), said);
+    snprintf(why, DEA_CASE_WHY_SIZE, "the ranks of this case ended by %s: %.100s",
+             dea_ended_by(how, by), said);
   }
   fclose(ranks->said);
   *ranks = (struct dea_ranks_running){.socket = -1};
@@ -281,7 +268,7 @@ dea_status dea_ranks_serve(struct dea_context *ctx, const struct dea_evaluator *
   memset(&reply, 0, sizeof reply);               // all bytes of both are sent
   DEA_TRY(ctx, tell(ctx, &order, sizeof order)); // all are there
   const int length = snprintf(line, sizeof line, "%s%.64s\n", hello, question);
-  bool good = !first || write_all(to, line, (size_t)length);
+  bool good = !first || dea_write_all(to, line, (size_t)length);
   while (good) {
     if (first) {
       wait_for_order(&from, &order);
@@ -292,7 +279,7 @@ dea_status dea_ranks_serve(struct dea_context *ctx, const struct dea_evaluator *
     }
     reply.done = order.now;
     dea_reply_find(ctx, evaluator, &reply);
-    good = !first || write_all(to, line, spell(&reply, sizeof reply, line));
+    good = !first || dea_write_all(to, line, spell(&reply, sizeof reply, line));
   }
   close(to);
   return DEA_OK;

@@ -248,15 +248,10 @@ static dea_status read_part(struct dea_context *ctx, void *user, const char *pat
 
 static dea_status write_all(struct dea_store *store, const char *bytes, size_t length)
 {
-  while (length > 0) {
-    const ssize_t n = write(store->file, bytes, length);
-    if (n < 0 && errno != EINTR) {
-      return dea_fail(store->ctx, DEA_E_IO, "cannot write '%s': %s", store->path, strerror(errno));
-    }
-    bytes += n > 0 ? n : 0;
-    length -= n > 0 ? (size_t)n : 0;
-  }
-  return DEA_OK;
+  return dea_write_all(store->file, bytes, length)
+             ? DEA_OK
+             : dea_fail(store->ctx, DEA_E_IO, "cannot write '%s': %s", store->path,
+                        strerror(errno));
 }
 
 static dea_status sync_now(struct dea_store *store)

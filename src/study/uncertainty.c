@@ -178,7 +178,7 @@ static void add_law(struct work *w)
   for (size_t i = 0; film->law != NULL && i < film->law->param_count; i++) {
     bool named = false;
     for (size_t j = 0; j < first; j++) {
-      named = named || (is_of_law(&w->params[j], i));
+      named = named || is_of_law(&w->params[j], i);
     }
     if (named || !(film->param_std[i] > 0)) {
       continue;

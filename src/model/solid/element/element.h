@@ -13,6 +13,7 @@
 #include "model/solid/point/constituent.h"
 
 #include <stddef.h>
+#include <string.h>
 
 enum {
   DEA_HEX_ORDER_MAX = 3,
@@ -189,16 +190,23 @@ static inline void dea_element_add_mass(int nodes, double kilograms, const doubl
   }
 }
 
+/* v [nodes][3] at a Gauss point, value being those of the shape functions there. */
+static inline void dea_element_at(int nodes, const double *value, const double *v, double out[3])
+{
+  memset(out, 0, 3 * sizeof *out);
+  for (int a = 0; a < nodes; a++) {
+    for (int i = 0; i < 3; i++) {
+      out[i] += value[a] * v[3 * a + i];
+    }
+  }
+}
+
 /* out [nodes][3] += the same times v [nodes][3]. */
 static inline void dea_element_add_mass_times(int nodes, double kilograms, const double *value,
                                               const double *v, double *out)
 {
-  double here[3] = {0};
-  for (int a = 0; a < nodes; a++) {
-    for (int i = 0; i < 3; i++) {
-      here[i] += value[a] * v[3 * a + i];
-    }
-  }
+  double here[3];
+  dea_element_at(nodes, value, v, here);
   for (int a = 0; a < nodes; a++) {
     for (int i = 0; i < 3; i++) {
       out[3 * a + i] += kilograms * value[a] * here[i];

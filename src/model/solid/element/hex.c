@@ -41,50 +41,46 @@ static dea_status find_point(double weight, const double *slope[3], struct dea_h
   return at->J > 0 ? DEA_OK : DEA_E_DOMAIN;
 }
 
-dea_status dea_hex_find_points(const struct dea_hex_shape *s, const double *X, const double *u,
-                               struct dea_hex_point *points)
+/* Of `count` fields [nodes][3]: X, u, and v where there are three, of which H then is the gradient
+ * by X. */
+static inline dea_status find(const struct dea_hex_shape *s, const double *const *fields, int count,
+                              struct dea_hex_point *points, double (*H)[9])
 {
-  double values[DEA_HEX_NODES_MAX][6], slopes[3 * DEA_HEX_GAUSS_MAX * 6];
+  enum { MOST = 9 };
+  const int width = 3 * count;
+  double values[DEA_HEX_NODES_MAX * MOST], slopes[3 * DEA_HEX_GAUSS_MAX * MOST];
   for (int n = 0; n < s->nodes; n++) {
-    memcpy(values[n], X + 3 * n, 3 * sizeof *X);
-    memcpy(values[n] + 3, u + 3 * n, 3 * sizeof *u);
+    for (int f = 0; f < count; f++) {
+      memcpy(values + width * n + 3 * f, fields[f] + 3 * n, 3 * sizeof *values);
+    }
   }
-  dea_hex_slopes(s, 6, values[0], slopes);
+  dea_hex_slopes(s, width, values, slopes);
   for (int q = 0; q < s->gauss; q++) {
-    const double *slope[3] = {slopes + 6 * q, slopes + 6 * (s->gauss + q),
-                              slopes + 6 * (2 * s->gauss + q)};
+    const double *slope[3] = {slopes + width * q, slopes + width * (s->gauss + q),
+                              slopes + width * (2 * s->gauss + q)};
     dea_status status = find_point(s->weight[q], slope, &points[q]);
     if (status != DEA_OK) {
       return status;
     }
-  }
-  return DEA_OK;
-}
-
-dea_status dea_hex_find_motion(const struct dea_hex_shape *s, const double *X, const double *u,
-                               const double *v, struct dea_hex_point *points, double (*H)[9])
-{
-  double values[DEA_HEX_NODES_MAX][9], slopes[3 * DEA_HEX_GAUSS_MAX * 9];
-  for (int n = 0; n < s->nodes; n++) {
-    memcpy(values[n], X + 3 * n, 3 * sizeof *X);
-    memcpy(values[n] + 3, u + 3 * n, 3 * sizeof *u);
-    memcpy(values[n] + 6, v + 3 * n, 3 * sizeof *v);
-  }
-  dea_hex_slopes(s, 9, values[0], slopes);
-  for (int q = 0; q < s->gauss; q++) {
-    const double *slope[3] = {slopes + 9 * q, slopes + 9 * (s->gauss + q),
-                              slopes + 9 * (2 * s->gauss + q)};
-    dea_status status = find_point(s->weight[q], slope, &points[q]);
-    if (status != DEA_OK) {
-      return status;
-    }
-    for (int a = 0; a < 9; a++) {
+    for (int a = 0; a < 9 && count == 3; a++) {
       const double *local = points[q].local + a % 3;
       H[q][a] = slope[0][6 + a / 3] * local[0] + slope[1][6 + a / 3] * local[3] +
                 slope[2][6 + a / 3] * local[6];
     }
   }
   return DEA_OK;
+}
+
+dea_status dea_hex_find_points(const struct dea_hex_shape *s, const double *X, const double *u,
+                               struct dea_hex_point *points)
+{
+  return find(s, (const double *const[]){X, u}, 2, points, NULL);
+}
+
+dea_status dea_hex_find_motion(const struct dea_hex_shape *s, const double *X, const double *u,
+                               const double *v, struct dea_hex_point *points, double (*H)[9])
+{
+  return find(s, (const double *const[]){X, u, v}, 3, points, H);
 }
 
 dea_status dea_hex_kinematics(const struct dea_hex_shape *s, const double *X, const double *u,
@@ -349,9 +345,6 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   if (status != DEA_OK) {
     return status;
   }
-  for (size_t m = 0; m < count; m++) {
-    memcpy(L + m * count, work.factor[m], (m + 1) * sizeof *L);
-  }
   work.columns = 3 + 3 * s->pressures;
   memset(work.flux, 0, (size_t)(3 * s->gauss * work.columns) * sizeof *work.flux);
   for (int q = 0; q < s->gauss; q++) {
@@ -362,6 +355,9 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   }
   dea_hex_sum_flux(s, work.columns, work.flux, work.sums);
   set_constraint(s, s->pressures, &work, b);
+  for (size_t m = 0; m < count; m++) {
+    memcpy(L + m * count, work.factor[m], (m + 1) * sizeof *L);
+  }
   return DEA_OK;
 }
 
@@ -395,33 +391,20 @@ static dea_status bend_point(const struct dea_constituent *constituent, int q,
   return DEA_OK;
 }
 
-/* |v|^2 at a Gauss point. */
-static double square_at(const struct dea_hex_shape *s, int q, const double *v)
-{
-  double x = 0, y = 0, z = 0;
-  for (int n = 0; n < s->nodes; n++) {
-    const double N = s->value[q][n];
-    x += N * v[3 * n];
-    y += N * v[3 * n + 1];
-    z += N * v[3 * n + 2];
-  }
-  return x * x + y * y + z * z;
-}
-
-dea_status dea_hex_motion(const struct dea_element *element, const struct dea_element_input *in,
-                          const struct dea_element_motion *motion, double *stiffness, double *mass)
+dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea_element_input *in,
+                             const struct dea_element_motion *motion,
+                             const struct dea_hex_point *points, double (*H)[9], double *stiffness,
+                             double *mass)
 {
   const struct dea_hex_shape *s = element->basis;
   const struct dea_constituent *constituent = in->constituent;
   const bool projected = dea_constituent_takes_pressure(constituent);
   const double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
-  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  double H[DEA_HEX_GAUSS_MAX][9];
-  dea_status status = dea_hex_find_motion(s, in->X, in->u, motion->v, points, H);
+  dea_status status = DEA_OK;
   *stiffness = *mass = 0;
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
     const double weight = points[q].weight;
-    double pressure = 0, change = 0, bent = 0;
+    double pressure = 0, change = 0, bent = 0, here[3];
     for (int m = 0; m < s->pressures && projected; m++) {
       pressure += s->pressure[q][m] * in->multiplier[m];
       change += s->pressure[q][m] * motion->pressure[m];
@@ -430,9 +413,22 @@ dea_status dea_hex_motion(const struct dea_element *element, const struct dea_el
     bent += 2 * change * product(points[q].cof, H[q]);
     bent -= change != 0 ? change * change / constituent->kappa_Pa : 0;
     *stiffness += weight * bent;
-    *mass += constituent->density_kg_per_m3 * weight * square_at(s, q, motion->v);
+    dea_element_at(s->nodes, s->value[q], motion->v, here);
+    *mass += constituent->density_kg_per_m3 * weight *
+             (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
   }
   return status;
+}
+
+static dea_status motion_of(const struct dea_element *element, const struct dea_element_input *in,
+                            const struct dea_element_motion *motion, double *stiffness,
+                            double *mass)
+{
+  struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
+  double H[DEA_HEX_GAUSS_MAX][9];
+  dea_status status = dea_hex_find_motion(element->basis, in->X, in->u, motion->v, points, H);
+  return status == DEA_OK ? dea_hex_motion_at(element, in, motion, points, H, stiffness, mass)
+                          : status;
 }
 
 /* ---- stresses at the end of a linear step ---- */
@@ -900,5 +896,5 @@ const struct dea_element_type dea_element_hexahedron = {
     .per_node = 3,
     .evaluate = dea_hex_evaluate,
     DEA_HEX_MEMBERS,
-    .motion = dea_hex_motion,
+    .motion = motion_of,
 };

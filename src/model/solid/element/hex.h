@@ -60,8 +60,11 @@ dea_status dea_hex_mass(const struct dea_element *element,
 dea_status dea_hex_mass_times(const struct dea_element *element,
                               const struct dea_constituent *constituent, const double *X,
                               const double *v, double *out);
-dea_status dea_hex_motion(const struct dea_element *element, const struct dea_element_input *in,
-                          const struct dea_element_motion *motion, double *stiffness, double *mass);
+/* element->type->motion, but for a potential, with what dea_hex_find_motion has found. */
+dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea_element_input *in,
+                             const struct dea_element_motion *motion,
+                             const struct dea_hex_point *points, double (*H)[9], double *stiffness,
+                             double *mass);
 dea_status dea_hex_metric(const struct dea_element *element,
                           const struct dea_constituent *constituent, const double *X,
                           double *laplace, double *volume);

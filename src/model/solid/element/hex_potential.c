@@ -231,9 +231,9 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   struct dea_element_input elastic = *in;
   elastic.voltage_V = 0;
-  dea_status status = dea_hex_motion(element, &elastic, motion, stiffness, mass);
+  dea_status status = dea_hex_find_motion(shape, in->X, in->u, motion->v, points, H);
   if (status == DEA_OK) {
-    status = dea_hex_find_motion(shape, in->X, in->u, motion->v, points, H);
+    status = dea_hex_motion_at(element, &elastic, motion, points, H, stiffness, mass);
   }
   if (status == DEA_OK) {
     status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);

@@ -279,7 +279,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
   const double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
   *stiffness = *mass = 0;
   for (int q = 0; q < shape->gauss; q++) {
-    double gradient[2][DEA_FLAT_NODES_MAX], F[6], H[6] = {0}, here[3] = {0};
+    double gradient[2][DEA_FLAT_NODES_MAX], F[6], H[6] = {0}, here[3];
     double weight = constituent->thickness_m * gradients_at(shape, q, in->X, gradient);
     struct dea_membrane_point point;
     if (!(weight > 0)) {
@@ -290,10 +290,8 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
       for (int a = 0; a < 6; a++) {
         H[a] += motion->v[3 * n + a / 2] * gradient[a % 2][n];
       }
-      for (int i = 0; i < 3; i++) {
-        here[i] += shape->value[q][n] * motion->v[3 * n + i];
-      }
     }
+    dea_element_at(shape->nodes, shape->value[q], motion->v, here);
     dea_status status = dea_membrane_point(constituent, F, field, &point);
     if (status != DEA_OK) {
       return status;

@@ -276,8 +276,7 @@ static void choose_softness(struct dea_solid *s, struct newton *d, bool soft)
   bool near =
       d->shift_Pa == 0 && d->report->theta_max < o->soft_end && d->report->residual < o->soft_end;
   if (!d->chord && s->problem.elements.pressures > 0) {
-    soften(s, d,
-           !soft || near || d->strict || d->shift_Pa > s->problem.modulus_Pa ? 1 : o->bulk_soft);
+    soften(s, d, soft && !near && d->shift_Pa <= s->problem.modulus_Pa ? o->bulk_soft : 1);
   }
 }
 
@@ -426,6 +425,15 @@ static dea_status heed_divergence(struct dea_context *ctx, const struct dea_soli
                         d->report->residual);
 }
 
+/* At the equilibrium, with kappa's own value. tangent: K is there, but for that. */
+static dea_status count_there(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
+                              bool tangent)
+{
+  tangent = tangent && d->softness == 1;
+  soften(s, d, 1);
+  return dea_solid_count_unstable(ctx, s, tangent, d->report);
+}
+
 static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct newton *d, bool soft,
                           bool *slow)
 {
@@ -444,9 +452,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
     DEA_TRY(ctx, evaluate(ctx, s, d));
     bool fits = d->strict || report->theta_max < o->theta;
     if (i > 0 && fits && (report->residual < o->residual || d->unresolved > 2)) {
-      bool tangent = !d->chord && d->shift_Pa == 0 && d->softness == 1 && !s->found.predicted_fits;
-      soften(s, d, 1);
-      return dea_solid_count_unstable(ctx, s, tangent, report);
+      return count_there(ctx, s, d, !d->chord && d->shift_Pa == 0 && !s->found.predicted_fits);
     }
     DEA_TRY(ctx, heed_divergence(ctx, s, d));
     if (slow != NULL && d->unresolved > 2 && !fits) {
@@ -459,8 +465,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
       DEA_TRY(ctx, newton_step(ctx, s, d, &done));
     }
     if (done && fits) {
-      soften(s, d, 1);
-      return dea_solid_count_unstable(ctx, s, false, report);
+      return count_there(ctx, s, d, false);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",
