@@ -121,6 +121,20 @@ static void test_rank_killed(void **state)
   assert_int_equal(left_processes(), 0);
 }
 
+/* What mpirun says may come in one piece with what the ranks do. */
+static void test_other_lines(void **state)
+{
+  (void)state;
+  begin("dea_explore: 1\nname: noisy\ndesign: membrane.yaml\nmodel: 3d\nvoltages: [1 kV]\n"
+        "quantities: [electrode_edge_u_m]\nvariables:\n"
+        "  - {name: film.thickness, values: [100 um, 110 um]}\n");
+  command_write("noisy.sh", "mpirun \"$@\" | while IFS= read -r line; do\n"
+                            "  printf 'a warning\\n%s\\n' \"$line\"\ndone\n");
+  command_before = MPI "env DEA_MPIRUN='sh noisy.sh'";
+  run("sweep together.yaml -j 1 --ranks 2 -q -o noisy");
+  assert_contains(command_out, "designs: 2 of 2 are there, 2 of them computed now");
+}
+
 /* Ctrl-C ends all ranks; the same command goes on, with however many. */
 static void test_interrupted(void **state)
 {
@@ -178,8 +192,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_same_table),  cmocka_unit_test(test_rank_killed),
-      cmocka_unit_test(test_interrupted), cmocka_unit_test(test_search),
-      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_other_lines), cmocka_unit_test(test_interrupted),
+      cmocka_unit_test(test_search),      cmocka_unit_test(test_refused),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

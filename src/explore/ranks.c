@@ -62,26 +62,29 @@ static bool read_bytes(const char *line, void *bytes, size_t length)
   return true;
 }
 
-/* Some of what comes; a line that is whole into out [DEA_RANKS_LINE], "" where none is. false at
- * the end. */
-static bool read_line(struct dea_ranks_running *ranks, char *out)
+/* Some of what comes, for which this waits; false at the end. */
+static bool receive(struct dea_ranks_running *ranks)
 {
-  const size_t room = sizeof ranks->line - ranks->used;
-  const ssize_t n = read(ranks->socket, ranks->line + ranks->used, room);
-  out[0] = '\0';
-  if (n <= 0) {
-    return n < 0 && errno == EINTR;
+  if (ranks->used == sizeof ranks->line) {
+    ranks->used = 0; // none of ours is so long
   }
-  ranks->used += (size_t)n;
+  const ssize_t n =
+      read(ranks->socket, ranks->line + ranks->used, sizeof ranks->line - ranks->used);
+  ranks->used += n > 0 ? (size_t)n : 0;
+  return n > 0 || (n < 0 && errno == EINTR);
+}
+
+/* The next line of what has come, into out [DEA_RANKS_LINE]; false: none is whole. */
+static bool take_line(struct dea_ranks_running *ranks, char *out)
+{
   const char *end = memchr(ranks->line, '\n', ranks->used);
   if (end == NULL) {
-    ranks->used = ranks->used < sizeof ranks->line ? ranks->used : 0; // none of ours is so long
-    return true;
+    return false;
   }
   size_t length = (size_t)(end - ranks->line);
   memcpy(out, ranks->line, length);
   ranks->used -= length + 1;
-  memmove(ranks->line, ranks->line + length + 1, ranks->used);
+  memmove(ranks->line, end + 1, ranks->used);
   while (length > 0 && out[length - 1] == '\r') { // of a terminal
     length--;
   }
@@ -153,12 +156,14 @@ static dea_status greet(struct dea_context *ctx, const struct dea_ranks *ranks,
     if (poll(&polled, 1, ASK_MS) <= 0) {
       continue;
     }
-    there = read_line(running, line);
-    if (strncmp(line, hello, strlen(hello)) == 0) {
-      return strcmp(line + strlen(hello), ranks->question) == 0
-                 ? DEA_OK
-                 : dea_fail(ctx, DEA_E_IO, "'%.200s' or its design has been changed meanwhile",
-                            ranks->file);
+    there = receive(running);
+    while (take_line(running, line)) {
+      if (strncmp(line, hello, strlen(hello)) == 0) {
+        return strcmp(line + strlen(hello), ranks->question) == 0
+                   ? DEA_OK
+                   : dea_fail(ctx, DEA_E_IO, "'%.200s' or its design has been changed meanwhile",
+                              ranks->file);
+      }
     }
   }
   quote(running->said, false, why);
@@ -199,10 +204,13 @@ bool dea_ranks_give(const struct dea_ranks_running *ranks, const struct dea_case
 enum dea_ranks_heard dea_ranks_hear(struct dea_ranks_running *ranks, struct dea_reply *out)
 {
   char line[DEA_RANKS_LINE];
-  if (!read_line(ranks, line)) {
-    return DEA_RANKS_GONE;
+  const bool there = receive(ranks);
+  while (take_line(ranks, line)) { // what else they say may come in one piece with it
+    if (read_bytes(line, out, sizeof *out)) {
+      return DEA_RANKS_REPLY;
+    }
   }
-  return read_bytes(line, out, sizeof *out) ? DEA_RANKS_REPLY : DEA_RANKS_NOTHING;
+  return there ? DEA_RANKS_NOTHING : DEA_RANKS_GONE;
 }
 
 void dea_ranks_end(struct dea_ranks_running *ranks, char why[DEA_CASE_WHY_SIZE])
@@ -243,9 +251,11 @@ static void wait_for_order(struct dea_ranks_running *from, struct order *out)
 {
   char line[DEA_RANKS_LINE];
   out->more = false;
-  while (!out->more && read_line(from, line)) {
-    out->more = read_bytes(line, &out->now, sizeof out->now);
-  }
+  do {
+    while (!out->more && take_line(from, line)) {
+      out->more = read_bytes(line, &out->now, sizeof out->now);
+    }
+  } while (!out->more && receive(from));
 }
 
 dea_status dea_ranks_serve(struct dea_context *ctx, const struct dea_evaluator *evaluator,
