@@ -60,6 +60,21 @@ static void test_lengths_are_those_of_the_stretched_film(void **state)
   assert_close(device->fibre_overlap_m, 0, 0, 1e-18);
 }
 
+/* Editors on Windows put a mark first, end lines by CR LF, or both. */
+static void test_files_of_other_editors(void **state)
+{
+  (void)state;
+  read_good("\xef\xbb\xbf" GOOD_DESIGN, NULL, 0);
+  assert_int_equal(listed("pre_stretch")->location.line, 3);
+  assert_int_equal(listed("dea")->location.column, 6);
+  read_good("\xef\xbb\xbf"
+            "dea: 1\r\nfilm: {material: film, thickness: 100 um}\r\npre_stretch: 1.5\r\n"
+            "frame: {inner_diameter: 30 mm}\r\nelectrodes: {diameter: 5 mm unstretched}\r\n"
+            "fibres: {count: 4, material: stiff}\r\n" FILM_MATERIAL,
+            NULL, 0);
+  assert_int_equal(listed("pre_stretch")->location.line, 3);
+}
+
 static void test_materials_of_the_file(void **state)
 {
   (void)state;
@@ -473,6 +488,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
   const struct CMUnitTest tests[] = {
       TEST(test_lengths_are_those_of_the_stretched_film),
+      TEST(test_files_of_other_editors),
       TEST(test_materials_of_the_file),
       TEST(test_breakdown_without_a_known_exponent_is_noted),
       TEST(test_breakdown_fits_the_film),

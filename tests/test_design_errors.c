@@ -171,7 +171,14 @@ static void test_not_yaml(void **state)
       {"# only a comment\n", {1, 1, "the file is empty"}},
       {"just text", {1, 1, "must be 'key: value' lines"}},
       {"- 1\n- 2\n", {1, 1, "must be 'key: value' lines"}},
-      {"dea: [1", {2, 1, "this is not YAML"}},
+      {"dea: [1", {2, 1, "while parsing a flow sequence that begins in line 1"}},
+      {"dea: [1]]", {1, 9, "this is not YAML"}},
+      {"dea: 1\ntitle: \"x\nfilm: {}\n", {2, 8, "the quote that begins here does not end"}},
+      {"dea: 1\ntitle: A: B\n", {2, 9, "a text with ': ' in it stands in quotes"}},
+      {"dea: 1\ntitle: @x\n", {2, 8, "a text that does stands in quotes"}},
+      {"dea: 1\nfilm:\n  law: a\n  thickness 1 um\nx: 1\n", {4, 3, "'KEY: VALUE' is due here"}},
+      {"dea: 1\nfilm:\n  law: a\n  id:1 um\nx: 1\n", {4, 3, "with a space after the colon"}},
+      {" dea: 1\ntitle: x\n", {2, 1, "indented like the first of them?"}},
       {"dea: 1\nfilm: {}\n  law: a\n", {3, 3, "is the line indented like its neighbours?"}},
       {"dea: 1\n  film: 2\n", {2, 7, "is the line indented like its neighbours?"}},
       {"dea: 1\nx: \xff\n", {2, 4, "not a text file in UTF-8"}},
@@ -418,6 +425,8 @@ static void test_bad_overrides(void **state)
   check_override("materials.name", "x", "'materials' is a list, not a section");
   check_override("fibres.count", "64", "overlap each other");
   check_override("compute.voltage.values", "[1 kV, nan]", "not a finite number");
+  check_override("compute.voltage.values", "[1 kV, 2]", "write for example '2 V' or '2 kV'");
+  check_override("compute.force.depth", "[1]", "write for example '1 mm'");
 }
 
 int main(void)

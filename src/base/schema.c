@@ -161,8 +161,12 @@ static dea_status read_list(const struct dea_reader *reader, const struct dea_fi
 {
   size_t *count = (size_t *)(void *)(base + field->count_offset);
   if (node->child_count < field->list_min || node->child_count > field->list_max) {
-    return dea_schema_error(reader, node->location, "%s must have %zu to %zu items, not %zu",
-                            field->key, field->list_min, field->list_max, node->child_count);
+    char due[40] = "";
+    if (field->list_min < field->list_max) {
+      snprintf(due, sizeof due, "%zu to ", field->list_min);
+    }
+    return dea_schema_error(reader, node->location, "%s must have %s%zu items, not %zu", field->key,
+                            due, field->list_max, node->child_count);
   }
   *count = 0;
   for (const struct dea_node *item = node->child; item != NULL; item = item->next) {

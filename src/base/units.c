@@ -141,14 +141,13 @@ static bool is_plain_unit(const char *text)
          strstr(text, "from") == NULL && strstr(text, "after") == NULL;
 }
 
-/* Unit of an example such as "100 um"; "" for a bare number. */
-static const char *example_unit(const struct dea_measure *due)
+/* Unit of an example such as "100 um" or "[0 kV, 1 kV]", *length bytes; none of a bare number. */
+static const char *example_unit(const struct dea_measure *due, size_t *length)
 {
   const char *end;
-  dea_text_to_double(due->example, &end);
-  while (*end == ' ') {
-    end++;
-  }
+  dea_text_to_double(due->example + strspn(due->example, "["), &end);
+  end += strspn(end, " ");
+  *length = strcspn(end, ",]");
   return end;
 }
 
@@ -211,9 +210,11 @@ static bool convert(const ut_system *system, const char *text, const char *unit,
 {
   ut_unit *from = ut_parse(system, unit, UT_UTF8), *to = ut_parse(system, due->unit, UT_UTF8);
   bool number_due = strcmp(due->unit, "1") == 0, percent = unit[0] == '%';
+  size_t length;
+  const char *shown = example_unit(due, &length);
+  bool as_shown = strlen(unit) == length && memcmp(unit, shown, length) == 0;
   bool known = from != NULL && to != NULL && ut_are_convertible(from, to) != 0 &&
-               !(number_due && strcmp(unit, example_unit(due)) != 0) &&
-               !(strcmp(due->unit, "radian") == 0 && percent);
+               !(number_due && !as_shown) && !(strcmp(due->unit, "radian") == 0 && percent);
   cv_converter *converter = known ? ut_get_converter(from, to) : NULL;
   if (converter != NULL && cv_convert_double(converter, 2) < cv_convert_double(converter, 1)) {
     cv_free(converter); // udunits takes 2 s for 0.5 Hz; who writes that means something else
@@ -238,13 +239,14 @@ static void explain_bare(const char *text, double value, const struct dea_measur
                          char why[DEA_WHY_SIZE])
 {
   static const double least_V = 100; // below it a number may have been meant in kV
-  const char *unit = example_unit(due);
+  size_t length;
+  const char *unit = example_unit(due, &length);
   bool voltage = strcmp(due->unit, "V") == 0, other = voltage && fabs(value) < least_V;
-  int length =
-      snprintf(why, DEA_WHY_SIZE, "'%.60s' has no unit: %s is due; write for example '%.40s %s'",
-               text, dimension_name(due->unit), text, voltage ? "V" : unit);
-  if (other && strcmp(unit, "V") != 0) {
-    snprintf(why + length, DEA_WHY_SIZE - (size_t)length, " or '%.40s %s'", text, unit);
+  int used = snprintf(
+      why, DEA_WHY_SIZE, "'%.60s' has no unit: %s is due; write for example '%.40s %.*s'", text,
+      dimension_name(due->unit), text, voltage ? 1 : (int)length, voltage ? "V" : unit);
+  if (other && !(length == 1 && *unit == 'V')) {
+    snprintf(why + used, DEA_WHY_SIZE - (size_t)used, " or '%.40s %.*s'", text, (int)length, unit);
   }
 }
 

@@ -186,6 +186,11 @@ static dea_status take_node(struct reading *r, int index, struct dea_node **out)
 static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, const char *bytes,
                              size_t length, const struct dea_location *fixed, struct dea_node **out)
 {
+  if (length >= 3 &&
+      memcmp(bytes, "\xef\xbb\xbf", 3) == 0) { // the mark that some editors put first
+    bytes += 3;
+    length -= 3;
+  }
   const struct dea_yaml_text text = {yaml->name, bytes, length, fixed};
   yaml_parser_t parser;
   yaml_document_t document;
