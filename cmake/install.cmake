@@ -5,11 +5,10 @@ install(TARGETS libdea dea
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-foreach(module IN ITEMS dea_solid_module dea_cairo_module dea_geos_module dea_matio_module)
-  if(TARGET ${module})
-    install(TARGETS ${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
-  endif()
-endforeach()
+get_property(modules GLOBAL PROPERTY DEA_MODULES)
+if(modules)
+  install(TARGETS ${modules} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
+endif()
 
 # The one public header.
 install(FILES ${PROJECT_SOURCE_DIR}/src/api/dea.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

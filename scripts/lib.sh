@@ -68,3 +68,12 @@ build_release() {
   cmake -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release "$@" >&2
   cmake --build "$build" >&2
 }
+
+# build_program: the command and what it opens, optimised, without tests, benchmarks and verification; it is $dea.
+build_program() {
+  # shellcheck disable=SC2034 # for the caller
+  dea=$root/build/release/src/dea
+  say "building (build/release/)"
+  cmake -G Ninja -S "$root" -B "$root/build/release" -DCMAKE_BUILD_TYPE=Release -DDEA_BUILD_TESTS=OFF >&2
+  cmake --build "$root/build/release" --target dea >&2
+}

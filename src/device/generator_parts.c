@@ -399,7 +399,7 @@ static bool lies_there(const struct dea_layout *l, size_t ply, const struct dea_
     return false;
   }
   if (to->kind == DEA_MONITOR_REGION) {
-    return to->region != DEA_LAYOUT_NONE && dea_layout_overlap_m2(l, to->region, own) > 0;
+    return to->region != DEA_LAYOUT_NONE && !(dea_layout_overlap_m2(l, to->region, own) <= 0);
   }
   int points = to->kind == DEA_MONITOR_LINE ? 2 : 1;
   for (int k = 0; k < points; k++) {

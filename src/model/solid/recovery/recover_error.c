@@ -281,7 +281,18 @@ static double add_element(const struct work *w, size_t e, size_t k, const double
   return sum;
 }
 
-/* What the elements add around the corners of the plane mesh, none of it against another's. */
+/* The larger of what raises a number and what lowers it: their difference is not more than that. */
+static double larger_side(const double *around, size_t columns)
+{
+  double raised = 0, lowered = 0;
+  for (size_t c = 0; c < columns; c++) {
+    raised += fmax(around[c], 0);
+    lowered += fmax(-around[c], 0);
+  }
+  return fmax(raised, lowered);
+}
+
+/* What the elements add around the corners of the plane mesh. */
 static void estimate(struct work *w, double *error, double *part)
 {
   const size_t elements = w->in->grid->element_count, columns = dea_grid_columns(w->in->grid);
@@ -296,10 +307,7 @@ static void estimate(struct work *w, double *error, double *part)
     }
   }
   for (size_t k = 0; k < w->count; k++) {
-    error[k] = 0;
-    for (size_t c = 0; c < columns; c++) {
-      error[k] += fabs(w->around[k * columns + c]);
-    }
+    error[k] = larger_side(w->around + k * columns, columns);
   }
 }
 
