@@ -247,6 +247,20 @@ static void test_several_designs(void **state)
   assert_contains(command_err, "did you mean 'sweep'?");
 }
 
+/* A path that was asked for alone has no table of a sweep. */
+static void test_path_alone(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      command_run("run @/examples/plain-disc.yaml -m lumped --study path --no-figures -o path"), 0);
+  assert_contains(command_out, "\nlumped\n  path of ");
+  assert_contains(command_out, "electrode stretch ");
+  assert_null(strstr(command_out, "margin   tension"));
+  command_expect("run @/examples/plain-disc.yaml -m lumped --no-figures -o swept", 0,
+                 "lumped sweep 116/116\n");
+  assert_contains(command_out, "margin   tension");
+}
+
 static void test_unknown_model(void **state)
 {
   (void)state;
@@ -424,6 +438,7 @@ int main(void)
       cmocka_unit_test(test_pull_in_keeps_what_was_computed),
       cmocka_unit_test(test_pull_in_of_a_slack_film),
       cmocka_unit_test(test_several_designs),
+      cmocka_unit_test(test_path_alone),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),

@@ -122,6 +122,27 @@ static void test_other_files(void **state)
   tear_down_result();
 }
 
+/* A design with plies, beside a disc. */
+static void test_other_form(void **state)
+{
+  (void)state;
+  char text[4000];
+  FILE *file = fopen(in_folder("layers.yaml"), "w");
+  assert_non_null(file);
+  fputs("dea: 1\nshapes: [{name: film, kind: circle, radius: 9 mm}]\n"
+        "plies: [{name: film, shape: film, material: film, thickness: 50 um}]\n"
+        "supports: [{edge: film}]\n" FILM_MATERIAL,
+        file);
+  fclose(file);
+  snprintf(text, sizeof text, "%s",
+           GOOD_DESIGN VOLTAGES "  compare: [{name: itself}, {name: layers, file: layers.yaml}]\n");
+  assert_int_equal(
+      dea_design_read_memory(ctx, in_folder("first.yaml"), text, strlen(text), NULL, 0, &design),
+      DEA_E_DESIGN);
+  assert_non_null(find_error(ctx, "a design with 'plies' is set beside no other in one run"));
+  dea_finding_clear(ctx);
+}
+
 static void test_errors_have_their_places(void **state)
 {
   (void)state;
@@ -224,6 +245,7 @@ int main(void)
       cmocka_unit_test(test_changes_reach_the_designs),
       cmocka_unit_test(test_designs_stand_beside_each_other),
       cmocka_unit_test(test_other_files),
+      cmocka_unit_test(test_other_form),
       cmocka_unit_test(test_errors_have_their_places),
       cmocka_unit_test(test_is_kept),
       cmocka_unit_test(test_failing_memory),

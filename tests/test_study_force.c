@@ -13,11 +13,13 @@ struct dea_model {
 static int created; // models
 
 static const double k = 50, c = 5e6, b = 2e-9;
+static double passed_m = 1; // from that depth on the tip has passed the spring
 
 static double force(const struct dea_model *model)
 {
   double d = model->depth_m;
-  return d > 0 ? k * d + c * d * d * d - b * model->voltage_V * model->voltage_V : 0;
+  return d > 0 && d < passed_m ? k * d + c * d * d * d - b * model->voltage_V * model->voltage_V
+                               : 0;
 }
 
 static dea_status create(struct dea_context *context, const struct dea_device *device,
@@ -134,6 +136,38 @@ static void test_depths_and_preloads(void **state)
     }
   }
   dea_plot_destroy(ctx, plot);
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+/* A tip that has passed what it was pressed against, and a model that knows none. */
+static void test_nothing_touched(void **state)
+{
+  (void)state;
+  static const struct dea_override sets[] = {
+      {"compute.voltage", "{to: 2 kV, step: 1 kV}"},
+      {"compute.force", "{tip: flat, radius: 2 mm, side: back, depth: [-1 mm, 1 mm, 3 mm]}"}};
+  static const char *const name = "force";
+  static const struct dea_model_type bare = {
+      .name = "bare", .create = create, .destroy = destroy, .solve = solve};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  assert_int_equal(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  passed_m = 2e-3;
+  assert_int_equal(dea_study_run(ctx, &spring, &name, 1, result), DEA_OK);
+  passed_m = 1;
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
+  assert_non_null(find_finding(ctx, DEA_WARNING, "at a depth of 3 mm the tip touches no film"));
+  assert_int_equal(dea_study_run(ctx, &bare, &name, 1, result), DEA_OK);
+  assert_non_null(
+      find_finding(ctx, DEA_NOTE, "model bare knows no tip that is pressed in: no study 'force'"));
+  assert_null(dea_result_find(result, "bare", "force"));
   dea_result_destroy(ctx, result);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
@@ -501,6 +535,7 @@ int main(void)
       cmocka_unit_test(test_depths_and_preloads),
       cmocka_unit_test(test_deeper),
       cmocka_unit_test(test_nothing_asked),
+      cmocka_unit_test(test_nothing_touched),
       cmocka_unit_test(test_interpolated),
       cmocka_unit_test(test_all_computed),
       cmocka_unit_test(test_back),

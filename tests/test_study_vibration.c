@@ -146,7 +146,13 @@ static void test_points(void **state)
     assert_close(p->mode, (double)(i % 3 + 1), 0, 0);
   }
   assert_close(curve->points[0].frequency_Hz, rest_Hz, 1e-12, 0);
-  assert_true(curve->points[14].frequency_Hz < 0); // beyond slack_V
+  assert_true(curve->points[14].frequency_Hz < 0);           // beyond slack_V
+  const struct dea_result_table *table = &result->tables[0]; // what the terminal shows
+  assert_string_equal(table->type.title, "modes in vacuo");
+  assert_int_equal(table->row_count, 15);
+  assert_close(dea_result_table_number(table, 14, "voltage_V", 0), 8e3, 0, 0);
+  assert_close(dea_result_table_number(table, 14, "mode", 0), 3, 0, 0);
+  assert_close(dea_result_table_number(table, 0, "frequency_Hz", 0), rest_Hz, 1e-12, 0);
   curve = dea_result_find(result, "spring", "frequency");
   assert_non_null(curve);
   assert_int_equal(curve->count, 62);

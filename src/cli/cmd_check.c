@@ -7,6 +7,7 @@
 #include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 #include "study/study.h"
+#include "study/uncertainty.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -226,6 +227,9 @@ static int run(struct dea_cli *cli, void *user)
     status = dea_device_build(cli->ctx, design, &device);
     status = status != DEA_OK ? status : known;
     known = dea_study_check(cli->ctx, NULL, 0, design);
+    status = status != DEA_OK ? status : known;
+    known = device != NULL ? dea_uncertainty_check(cli->ctx, design, device, &dea_rerun_designs)
+                           : DEA_OK;
     status = status != DEA_OK ? status : known;
     known = device != NULL ? dea_models_check(cli->ctx, design, device) : DEA_OK;
     status = status != DEA_OK ? status : known;

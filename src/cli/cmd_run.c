@@ -239,7 +239,25 @@ static size_t row_step(size_t count)
   }
 }
 
-/* A few rows of the sweep, the last one among them, and the events of the path. */
+/* A few rows of the sweep, the last one among them. */
+static void print_sweep(const struct dea_curve *sweep, bool general)
+{
+  if (general) {
+    printf("%9s%12s%12s%12s%10s%10s\n", "V", "lowest z", "highest z", "field", "margin", "tension");
+    printf("%9s%12s%12s%12s%10s%10s\n", "kV", "um", "um", "V/um", "%", "N/m");
+  } else {
+    printf("%9s%10s%12s%12s%12s%10s%10s\n", "V", "stretch", "u edge", "z tip", "field", "margin",
+           "tension");
+    printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
+  }
+  size_t step = row_step(sweep->count);
+  for (size_t i = 0; i + 1 < sweep->count; i += step) {
+    print_row(&sweep->points[i], general);
+  }
+  print_row(&sweep->points[sweep->count - 1], general);
+}
+
+/* The sweep, or how long the path is where that was asked for alone, and the path's events. */
 static void print_model(const struct dea_result *result, const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
@@ -247,23 +265,15 @@ static void print_model(const struct dea_result *result, const char *model)
   if (sweep == NULL && path == NULL) {
     return;
   }
-  bool general = result->device->general;
-  if (general) {
-    printf("\n%s\n%9s%12s%12s%12s%10s%10s\n", model, "V", "lowest z", "highest z", "field",
-           "margin", "tension");
-    printf("%9s%12s%12s%12s%10s%10s\n", "kV", "um", "um", "V/um", "%", "N/m");
-  } else {
-    printf("\n%s\n%9s%10s%12s%12s%12s%10s%10s\n", model, "V", "stretch", "u edge", "z tip", "field",
-           "margin", "tension");
-    printf("%9s%10s%12s%12s%12s%10s%10s\n", "kV", "", "um", "um", "V/um", "%", "N/m");
-  }
-  size_t count = sweep != NULL ? sweep->count : 0;
-  size_t step = count > 0 ? row_step(count) : 1;
-  for (size_t i = 0; i + 1 < count; i += step) {
-    print_row(&sweep->points[i], general);
-  }
-  if (count > 0) {
-    print_row(&sweep->points[count - 1], general);
+  printf("\n%s\n", model);
+  if (sweep != NULL && sweep->count > 0) {
+    print_sweep(sweep, result->device->general);
+  } else if (sweep == NULL && path->count > 0) {
+    double highest_V = 0;
+    for (size_t i = 0; i < path->count; i++) {
+      highest_V = fmax(highest_V, path->points[i].voltage_V);
+    }
+    printf("  path of %zu points, up to %.4g kV\n", path->count, 1e-3 * highest_V);
   }
   const struct dea_curve *limits = path != NULL ? path : sweep;
   for (size_t i = 0; i < limits->event_count; i++) {

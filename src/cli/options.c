@@ -182,6 +182,9 @@ int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, 
     }
     const struct cli_option *option =
         found >= FIRST_LONG ? &command->options[found - FIRST_LONG] : find_letter(command, found);
+    if (option->kind != CLI_FLAG && optarg[0] == '\0') { // "$NAME" of a shell that knows no NAME
+      return cli_usage_error(cli, command, "option '--%s' has an empty value", option->name);
+    }
     given[option - command->options] = true;
     code = take(cli, command, option, optarg, request);
   }

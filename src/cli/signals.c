@@ -59,16 +59,17 @@ static void add_times(struct dea_cli *cli, const char *what, size_t done, size_t
 static void show_progress(void *user, const char *what, size_t done, size_t total)
 {
   struct dea_cli *cli = user;
-  char times[64];
+  char times[64], count[48];
   add_times(cli, what, done, total, times);
+  snprintf(count, sizeof count, total > 0 ? "%zu/%zu" : "%zu", done, total);
   if (cli->quiet || (voltage_flag != 0 && !has_room())) {
     return;
   }
   if (cli->terminal) {
-    fprintf(stderr, "\r\033[K%s %zu/%zu%s%s", what, done, total, times, done == total ? "\n" : "");
+    fprintf(stderr, "\r\033[K%s %s%s%s", what, count, times, done == total ? "\n" : "");
     fflush(stderr);
   } else if (done == total) {
-    fprintf(stderr, "%s: %zu points%s\n", what, done, times);
+    fprintf(stderr, "%s %s%s\n", what, count, times);
   }
 }
 

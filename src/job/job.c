@@ -3,6 +3,7 @@
 
 #include "output/run_folder.h"
 #include "study/rerun.h"
+#include "study/uncertainty.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -39,6 +40,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   char message[1024] = "";
   *began = false;
   DEA_TRY(ctx, dea_study_check(ctx, job->studies, job->study_count, result->design));
+  DEA_TRY(ctx, dea_uncertainty_check(ctx, result->design, result->device, &dea_rerun_designs));
   DEA_TRY(ctx, open_folder(ctx, job, result));
   *began = true;
   result->rerun = &dea_rerun_designs;

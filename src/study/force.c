@@ -380,7 +380,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
   if (type->indent == NULL) {
-    return DEA_OK;
+    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                           "model %s knows no tip that is pressed in: no study '%s'", type->name,
+                           study_name);
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
   snprintf(what, sizeof what, "%s force", type->name);
@@ -612,6 +614,20 @@ static const struct dea_result_table_type line_table = {
     .columns = line_columns,
     .column_count = sizeof line_columns / sizeof line_columns[0]};
 
+/* A film that is pressed further than it stretches lets the tip pass: no force, and nothing amiss
+ * in its state. */
+static dea_status warn_of_no_touch(struct dea_context *ctx, const char *model,
+                                   const struct dea_load_point *first)
+{
+  if (!(first->tip_depth_m > 0) || first->force_N > 0) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                         "model %s: at a depth of %.4g mm the tip touches no film at %.4g kV: it "
+                         "has passed it, or the film hangs away from it",
+                         model, 1e3 * first->tip_depth_m, 1e-3 * first->voltage_V);
+}
+
 static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
 {
   struct stops stops;
@@ -637,6 +653,7 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
                                                  {.number = force_N},
                                                  {.number = rest}};
     DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, warn_of_no_touch(ctx, model, &part.points[0]));
   }
   return DEA_OK;
 }

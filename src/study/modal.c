@@ -85,6 +85,46 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
+// Table ------------------------------------------------------------------------------------------
+
+static const struct dea_result_column mode_columns[] = {
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage that it vibrates about"),
+    {.key = "mode", .kind = DEA_CELL_COUNT, .title = "mode", .meaning = "from the lowest on"},
+    DEA_NUMBER_COLUMN("frequency_Hz", "Hz", "Hz", 1, "frequency", "in vacuo; negative: unstable"),
+    DEA_NUMBER_COLUMN("mode_out_of_plane", "1", "%", 100, "out of plane",
+                      "share of its kinetic energy that is out of the plane"),
+    DEA_NUMBER_COLUMN("mode_centre", "1", "%", 100, "centre",
+                      "displacement of the centre out of the plane over its largest one"),
+    DEA_TEXT_COLUMN("flags", "flags", "why the state that it vibrates about is not to be trusted"),
+};
+static const struct dea_result_table_type mode_table = {
+    .study = study_name,
+    .name = "modes",
+    .title = "modes in vacuo",
+    .where = DEA_IN_SCREEN, // CSV and JSON have its points
+    .columns = mode_columns,
+    .column_count = sizeof mode_columns / sizeof mode_columns[0]};
+
+static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
+{
+  const struct dea_curve *curve = dea_result_find(result, model, study_name);
+  struct dea_result_table *table;
+  if (curve == NULL || curve->count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &mode_table, model, 0, &table));
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    char flags[DEA_FLAGS_SIZE];
+    const struct dea_result_table_value row[] = {
+        {.number = p->voltage_V},    {.number = p->mode},
+        {.number = p->frequency_Hz}, {.number = p->mode_out_of_plane},
+        {.number = p->mode_centre},  {.text = dea_flags_text(dea_load_point_flags(p), flags)}};
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
 // Figures ----------------------------------------------------------------------------------------
 
 enum { COLOURS = 6, MARKERS = 5 }; // the first of them
@@ -150,6 +190,7 @@ const struct dea_study dea_study_modal = {
     .own_models = true,
     .any_layout = true,
     .run = run,
+    .tables = tables,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],
 };

@@ -445,7 +445,7 @@ static dea_status one_step(struct dea_context *ctx, struct player *p, double end
 
 static void tell(struct dea_context *ctx, struct player *p)
 {
-  static const size_t whole = 1000;
+  static const size_t whole = 100;
   size_t done = p->time_s < p->until_s ? (size_t)((double)whole * p->time_s / p->until_s) : whole;
   if (done > p->told) {
     dea_progress(ctx, p->what, done, whole);
@@ -615,7 +615,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                            type->name);
   }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
-  snprintf(p.what, sizeof p.what, "%s transient", type->name);
+  snprintf(p.what, sizeof p.what, "%s transient (%%)", type->name);
   dea_status status = make_room(ctx, result, &p);
   status = status == DEA_OK ? make_sources(ctx, result, &p) : status;
   status = status == DEA_OK ? dea_model_create(ctx, type, result->design, result->device, &p.model)

@@ -479,6 +479,25 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
   return add_table(w);
 }
 
+dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_design *design,
+                                 const struct dea_device *device, const struct dea_rerun *rerun)
+{
+  const struct dea_settings *given = dea_design_settings(design, &section);
+  if (given == NULL || !given->written || device->general) {
+    return DEA_OK;
+  }
+  struct work *w = dea_alloc(ctx, 1, sizeof *w);
+  if (w == NULL) {
+    return DEA_E_MEMORY;
+  }
+  struct dea_result nothing = {.design = design, .device = device, .rerun = rerun};
+  *w = (struct work){.ctx = ctx, .result = &nothing};
+  dea_status status = find_params(w, given->values);
+  dea_free(ctx, w);
+  DEA_TRY(ctx, status);
+  return DEA_OK;
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
