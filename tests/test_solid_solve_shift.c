@@ -4,10 +4,13 @@
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
+#include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/shift.h"
 #include "solid_block.h"
 
 #include "solid_fixture.h"
+
+#include <math.h>
 
 static const struct block strip = {{20, 3, 0.2}, {16, 3, 1}, 2, 2};
 static struct dea_constituent layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
@@ -77,8 +80,37 @@ static void test_strip(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
+/* The same end where the lowest of more modes is looked for than are counted by default. */
+static void test_many_modes(void **state)
+{
+  (void)state;
+  static const int modes[] = {8, 40};
+  layer.law = dea_law_find("neo-hookean");
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_grid *grid = block_grid(ctx, &strip);
+  double energy_J[2];
+  int negative;
+  for (int i = 0; i < 2; i++) {
+    struct dea_solid *s = pushed(grid, 0.02);
+    struct dea_solid_report report;
+    assert_int_equal(dea_solid_factor_roughly(ctx, s, 40, &negative), DEA_OK);
+    assert_true(negative > 20 && negative <= 40);
+    for (size_t n = 0; n < grid->node_count; n++) {
+      s->state.u[3 * n + 2] = 0.05 * (1 - cos(2 * acos(-1) * grid->X[3 * n] / strip.size[0]));
+    }
+    s->settings.shift_modes = modes[i];
+    assert_int_equal(dea_load_steps_solve(ctx, s, 0, &report), DEA_OK);
+    assert_int_equal(report.unstable_modes, 0);
+    energy_J[i] = report.energy_J;
+    dea_solid_destroy(ctx, s);
+  }
+  assert_close(energy_J[1], energy_J[0], 1e-10, 0);
+  dea_grid_destroy(ctx, grid);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_strip)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_strip),
+                                     cmocka_unit_test(test_many_modes)};
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -80,6 +80,7 @@ static dea_status raise_shift(struct dea_context *ctx, struct dea_solid *s, stru
 static dea_status search_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                                   double *there, Mat *L)
 {
+  const int most = s->settings.shift_modes > MANY ? s->settings.shift_modes : MANY;
   for (int i = 0; i < s->settings.shifts; i++) {
     int negative;
     double more_Pa = d->shift_Pa - *there;
@@ -89,7 +90,7 @@ static dea_status search_definite(struct dea_context *ctx, struct dea_solid *s, 
       DEA_TRY(ctx, dea_solid_add_laplace(ctx, s, s->work.K, more_Pa));
     }
     *there = d->shift_Pa;
-    DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, MANY, &negative));
+    DEA_TRY(ctx, dea_solid_factor_roughly(ctx, s, most, &negative));
     d->report->factorisations++;
     d->report->shifted += *there > 0;
     if (*there == 0) {
