@@ -177,7 +177,7 @@ static void go_straight_on(struct dea_solid *s, const struct way *way, double de
     steps->keep[i] = last[i] + share * (last[i] - before[i]);
   }
   dea_solid_state_set(s, share > 0 ? steps->keep : last);
-  s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+  dea_solid_forget(s);
 }
 
 /* One step of the tip, from the last state where it fails from the one ahead. */

@@ -214,7 +214,7 @@ static dea_status ease_rest(struct dea_context *ctx, struct dea_model *model, do
   while (share < 1) {
     double next = fmin(share + part, 1);
     status = dea_actuator_lay_electrodes(&model->actuator, next);
-    s->found.factor_fits = s->found.predicted_fits = s->found.stiff_factor_fits = false;
+    dea_solid_forget(s);
     if (status == DEA_OK) {
       status = dea_load_steps_solve(ctx, s, 0, &model->at.report);
     }

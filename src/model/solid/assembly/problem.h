@@ -156,6 +156,12 @@ struct dea_solid {
   struct dea_solid_found found;
 };
 
+/* The solid is elsewhere, or another one: what was made of where it was is of no use any more. */
+static inline void dea_solid_forget(struct dea_solid *s)
+{
+  s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+}
+
 /* All multipliers of a solid. */
 static inline size_t dea_solid_pressure_count(const struct dea_solid *s)
 {

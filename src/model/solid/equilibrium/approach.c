@@ -133,7 +133,7 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
   if (at->load >= 1) {
     dea_solid_controls_set(s, a->goal);
   }
-  s->found.factor_fits = s->found.predicted_fits = false;
+  dea_solid_forget(s);
   dea_status status = dea_solid_descend_unstable(ctx, s, 0, &report);
   if (status == DEA_OK && report.unstable_modes == 0) {
     *a->report = report;
@@ -263,7 +263,7 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   if (!a->went_on && !(a->looks && a->stuck)) {
     dea_solid_state_set(a->s, a->state);
     dea_solid_controls_set(a->s, a->from);
-    a->s->found.factor_fits = a->s->found.predicted_fits = false;
+    dea_solid_forget(a->s);
   }
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -368,7 +368,7 @@ static dea_status leap(struct dea_context *ctx, struct search *a, double voltage
   dea_context_clear(ctx);
   dea_solid_state_set(a->s, a->state);
   dea_solid_controls_set(a->s, a->from);
-  a->s->found.factor_fits = a->s->found.predicted_fits = false;
+  dea_solid_forget(a->s);
   return end_at_limit(ctx, a);
 }
 
@@ -630,7 +630,7 @@ void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at
 {
   dea_solid_state_set(s, at->state);
   dea_solid_controls_set(s, at->controls);
-  s->found.factor_fits = s->found.predicted_fits = false;
+  dea_solid_forget(s);
 }
 
 /* The solid on its side of a leap: near, which it leaps from, and far, where it leaps to. */

@@ -233,11 +233,11 @@ static dea_status fade(struct dea_context *ctx, struct dea_solid *s, struct hold
   for (double k = hold_first; k > hold_least && status == DEA_OK; k /= hold_less) {
     struct dea_solid_report report = {.way = 1};
     hold->k = k * unit;
-    s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+    dea_solid_forget(s);
     status = dea_solid_equilibrate(ctx, s, &report);
   }
   s->problem.load_count--;
-  s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+  dea_solid_forget(s);
   return status;
 }
 
@@ -341,7 +341,7 @@ dea_status dea_solid_carry(struct dea_context *ctx, struct dea_solid *s, double 
       dea_solid_controls_set(s, c.controls);
       dea_solid_state_set(s, c.state);
       *report = before;
-      s->found.factor_fits = s->found.predicted_fits = false;
+      dea_solid_forget(s);
     }
   }
   dea_arena_free(&c.memory);

@@ -336,7 +336,7 @@ static dea_status return_to(struct dea_context *ctx, struct dea_solid_continuati
                             const struct dea_continuation_path_point *place)
 {
   dea_solid_state_set(t->s, place->state);
-  t->s->found.predicted_fits = t->s->found.factor_fits = false;
+  dea_solid_forget(t->s);
   DEA_TRY(ctx, set_load(ctx, t, place->load));
   return DEA_OK;
 }
@@ -885,7 +885,7 @@ dea_status dea_solid_continuation_locate(struct dea_context *ctx, struct dea_sol
   dea_free(ctx, b.way);
   if (status != DEA_OK) {
     dea_solid_state_set(t->s, t->last.state);
-    t->s->found.predicted_fits = t->s->found.factor_fits = false;
+    dea_solid_forget(t->s);
     set_controls(NULL, t, t->last.load); // where it was
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }

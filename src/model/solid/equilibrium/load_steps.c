@@ -179,7 +179,7 @@ static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int sid
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
     dea_solid_state_set(s, state);
-    s->found.factor_fits = s->found.predicted_fits = false;
+    dea_solid_forget(s);
     *report = before;
     status = descend(ctx, s, side, true, mode, report);
   }
@@ -203,7 +203,7 @@ static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int
     } else {
       dea_solid_state_set(s, state);
       *report = before;
-      s->found.factor_fits = s->found.predicted_fits = false;
+      dea_solid_forget(s);
     }
   }
   dea_free(ctx, mode);
@@ -276,7 +276,7 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
   if (!*found) {
     dea_solid_state_set(s, state);
     *report = before;
-    s->found.factor_fits = s->found.predicted_fits = false;
+    dea_solid_forget(s);
   }
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -401,7 +401,7 @@ static dea_status follow_in_steps(struct dea_context *ctx, struct dea_solid *s,
     report->way = 0;
     set_share(s, 0);
     dea_solid_state_set(s, path->keep);
-    s->found.factor_fits = s->found.stiff_factor_fits = s->found.predicted_fits = false;
+    dea_solid_forget(s);
   }
   memcpy(path->controls, path->at, path->control_count * sizeof(double));
   return status;

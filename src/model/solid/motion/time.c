@@ -235,6 +235,7 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
   t->solid->state.inertia = NULL;
   t->solid->settings.accept_unstable = t->stay;
   t->solid->state.bulk_factor = 1;
+  dea_solid_forget(t->solid); // what it has is of the step
   dea_internal_variables_destroy(ctx, t->variables);
   dea_arena_free(&t->memory);
   dea_free(ctx, t->keep);
