@@ -203,6 +203,41 @@ static void test_spring(void **state)
   assert_close(z_m[1], 50e-3 / stiffness[1], 1e-4, 0);
 }
 
+/* Plies are told apart by the ends of long names too, in the numbers and in the design that is
+ * written: C = eps_0 pi r^2 l^2 (eps_1 / h_1 + eps_2 / h_2) at next to no voltage. */
+static void test_long_names(void **state)
+{
+  (void)state;
+#define LONG "silicone-film-of-the-stack-in-the-middle-"
+  static const double eps_0 = 8.8541878128e-12, radius_m = 10e-3, l = 1.2;
+  const double wanted_F =
+      eps_0 * acos(-1) * radius_m * radius_m * (3 / (100e-6 / (l * l)) + 6 / (50e-6 / (l * l)));
+  command_write("long.yaml",
+                "dea: 1\ntitle: long\nshapes:\n  - {name: film, kind: circle, radius: 20 mm}\n"
+                "  - {name: active, kind: circle, radius: 10 mm}\nplies:\n"
+                "  - {name: " LONG "lower, shape: film, material: elastosil-2030, "
+                "thickness: 100 um, pre_stretch: 1.2}\n"
+                "  - {name: " LONG "upper, shape: film, material: elastosil-2030, "
+                "thickness: 50 um, pre_stretch: 1.2}\nelectrodes:\n"
+                "  - {ply: " LONG "lower, side: bottom, shape: active, channel: ground}\n"
+                "  - {ply: " LONG "lower, side: top, shape: active, channel: drive}\n"
+                "  - {ply: " LONG "upper, side: top, shape: active, channel: ground}\n"
+                "supports: [{edge: film}]\n"
+                "compute: {models: [3d], voltage: {values: [1 V]}, solid: {film: membrane}}\n");
+  command_write("long-best.yaml",
+                "dea_explore: 1\nname: long\ndesign: long.yaml\nmodel: 3d\nvoltages: [1 V]\n"
+                "quantities: [capacitance_F]\nstarts: 1\nmethod: slsqp\n"
+                "objectives: [{quantity: capacitance_F, goal: most}]\nvariables:\n"
+                "  - {name: plies." LONG "lower.permittivity.at_rest, low: 2, high: 3}\n"
+                "  - {name: plies." LONG "upper.permittivity.at_rest, low: 2, high: 6}\n");
+#undef LONG
+  run_solid("optimise long-best.yaml -j 1 -q -o long");
+  run_solid("run long/best.yaml --study sweep -q --no-figures --json");
+  const char *point = strstr(command_out, "\"capacitance_F\": ");
+  assert_non_null(point);
+  assert_close(strtod(point + strlen("\"capacitance_F\": "), NULL), wanted_F, 1e-6, 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -210,6 +245,7 @@ int main(void)
       cmocka_unit_test(test_permittivity_of_a_ply),
       cmocka_unit_test(test_modulus_of_the_fibres),
       cmocka_unit_test(test_spring),
+      cmocka_unit_test(test_long_names),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "calibrate/fit_model.h"
 
-enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4, DEA_FIT_WEAK_SIZE = 200 };
+enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4, DEA_FIT_WEAK_SIZE = 400 };
 /* A law that is stable over the range of the tests is taken before one that is not, unless that one
  * foretells held-out tests so many times better; and laws that foretell them so many times as badly
  * at most are compared where no test was made. */

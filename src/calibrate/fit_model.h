@@ -6,7 +6,7 @@
 #include "calibrate/fit_data.h"
 #include "calibrate/least_squares.h"
 
-enum { DEA_FIT_PARAM_NAME = 64 };
+enum { DEA_FIT_PARAM_NAME = 128 };
 
 /* A parameter. Numbers are those that the search sees: the logarithm of a relaxation time. */
 struct dea_fit_param {

@@ -244,7 +244,7 @@ static bool find_ply(const struct dea_layout *layout, const char *key, struct of
   for (size_t i = 0; i < layout->ply_count; i++) {
     for (size_t k = 0; k < 2 * DEA_PLY_DEVIATIONS; k++) {
       const size_t d = k % DEA_PLY_DEVIATIONS;
-      snprintf(own, sizeof own, "plies.%.30s.%s", layout->plies[i].name,
+      snprintf(own, sizeof own, "plies.%.80s.%s", layout->plies[i].name,
                names[k / DEA_PLY_DEVIATIONS][d]);
       if (strcmp(own, key) == 0) {
         *out = (struct of_ply){i, (enum dea_ply_deviation)d};

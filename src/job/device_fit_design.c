@@ -196,12 +196,17 @@ static struct changed *find_changed(const struct dea_device *device,
     i++;
   }
   if (i == *count) {
-    char prefix[48];
+    char prefix[DEA_MATERIAL_PREFIX_SIZE];
     dea_material_prefix(device, material, prefix);
     const char *dot = strchr(prefix, '.'); // plies.NAME
+    const char *part = dot != NULL ? dot + 1 : prefix;
     all[i] = (struct changed){.material = material, .with = *dea_material_of(device, material)};
-    snprintf(all[i].name, sizeof all[i].name, "%.30s-%.30s", with->name,
-             dot != NULL ? dot + 1 : prefix);
+    if (strlen(part) <= 30) {
+      snprintf(all[i].name, sizeof all[i].name, "%.30s-%.30s", with->name, part);
+    } else { // others may begin alike
+      snprintf(all[i].name, sizeof all[i].name, "%.30s-%.20s-%zu", with->name, part,
+               material % 1000);
+    }
     (*count)++;
   }
   return &all[i];
@@ -210,8 +215,8 @@ static struct changed *find_changed(const struct dea_device *device,
 static dea_status put_key(struct dea_context *ctx, struct dea_yaml *document, const char *prefix,
                           const char *key, const char *value)
 {
-  char path[80];
-  snprintf(path, sizeof path, "%.48s.%.20s", prefix, key);
+  char path[DEA_NUMBER_KEY_SIZE];
+  snprintf(path, sizeof path, "%.90s.%.20s", prefix, key);
   DEA_TRY(ctx, dea_yaml_override(ctx, document, path, value));
   return DEA_OK;
 }
@@ -221,7 +226,7 @@ static dea_status put_material(struct dea_context *ctx, const struct dea_device 
                                struct dea_yaml *document, const struct changed *changed)
 {
   static const char *const gone[] = {"law", "permittivity", "breakdown"};
-  char prefix[48];
+  char prefix[DEA_MATERIAL_PREFIX_SIZE];
   dea_material_prefix(device, changed->material, prefix);
   DEA_TRY(ctx, put_key(ctx, document, prefix, "material", changed->name));
   if (changed->material == DEA_OF_ELECTRODES || changed->material == DEA_OF_FIBRES) {

@@ -3,7 +3,6 @@
 #include "design/schema.h"
 #include "device/geometry.h"
 #include "result/columns.h"
-#include "study/material_numbers.h"
 #include "study/part_numbers.h"
 
 #include <math.h>
@@ -110,7 +109,7 @@ static void add_key(const struct dea_design *design, const struct dea_record *re
       .offset = offset + (inplane ? offsetof(struct dea_inplane_length, length) : 0) +
                 offsetof(struct dea_quantity, si)};
   if (item->origin != DEA_ABSENT && quantity->origin != DEA_ABSENT) {
-    snprintf(number.key, sizeof number.key, "%.63s", item->path);
+    snprintf(number.key, sizeof number.key, "%.127s", item->path);
     number.value = quantity->si / number.scale;
     number.tolerance =
         tolerance_of(design, number.key, number.value, inplane ? length->state : DEA_STRETCHED);

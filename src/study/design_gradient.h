@@ -4,8 +4,9 @@
 #define DEA_STUDY_DESIGN_GRADIENT_H
 
 #include "study/critical.h"
+#include "study/material_numbers.h"
 
-enum { DEA_NUMBERS_MAX = 256, DEA_NUMBER_KEY_SIZE = 64 };
+enum { DEA_NUMBERS_MAX = 256 };
 
 /* Where a number is kept. */
 enum dea_number_of {

@@ -251,7 +251,7 @@ dea_status dea_device_param_find(struct dea_context *ctx,
   if (strlen(name->text) >= DEA_FIT_PARAM_NAME) {
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
-  snprintf(out->param.name, sizeof out->param.name, "%.63s", name->text);
+  snprintf(out->param.name, sizeof out->param.name, "%.127s", name->text);
   dea_material_numbers(source->device, look, &wanted);
   if (wanted.found) {
     *good = true;

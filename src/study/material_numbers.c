@@ -37,13 +37,15 @@ const struct dea_material *dea_material_of(const struct dea_device *device, size
   return dea_material_at((struct dea_device *)device, material);
 }
 
-void dea_material_prefix(const struct dea_device *device, size_t material, char out[48])
+void dea_material_prefix(const struct dea_device *device, size_t material,
+                         char out[DEA_MATERIAL_PREFIX_SIZE])
 {
   static const char *const prefixes[] = {"film", "electrodes", "fibres"};
   if (material < DEA_OF_PLIES) {
-    snprintf(out, 48, "%s", prefixes[material]);
+    snprintf(out, DEA_MATERIAL_PREFIX_SIZE, "%s", prefixes[material]);
   } else {
-    snprintf(out, 48, "plies.%.40s", device->layout->plies[material - DEA_OF_PLIES].name);
+    snprintf(out, DEA_MATERIAL_PREFIX_SIZE, "plies.%.80s",
+             device->layout->plies[material - DEA_OF_PLIES].name);
   }
 }
 
@@ -66,9 +68,9 @@ static bool is_dielectric(const struct dea_device *device, size_t material)
 static void fill(const struct dea_device *device, const char *name, const char *param,
                  struct dea_material_number *out)
 {
-  char prefix[48];
+  char prefix[DEA_MATERIAL_PREFIX_SIZE];
   dea_material_prefix(device, out->material, prefix);
-  snprintf(out->key, sizeof out->key, "%.30s.%.20s%.12s", prefix, name, param);
+  snprintf(out->key, sizeof out->key, "%s.%.20s%.15s", prefix, name, param);
   memcpy(&out->value, (const char *)dea_material_of(device, out->material) + out->offset,
          sizeof out->value);
 }

@@ -8,10 +8,13 @@
 /* Materials of a device: those of a disc, then those of the plies of its layout. */
 enum { DEA_OF_FILM, DEA_OF_ELECTRODES, DEA_OF_FIBRES, DEA_OF_PLIES };
 
+/* Rooms of keys, for names of parts up to 80 letters. */
+enum { DEA_NUMBER_KEY_SIZE = 128, DEA_MATERIAL_PREFIX_SIZE = 88 };
+
 /* "film.law.PARAMETER", "electrodes.young_modulus", "fibres.density",
  * "plies.NAME.permittivity.at_rest". */
 struct dea_material_number {
-  char key[64];
+  char key[DEA_NUMBER_KEY_SIZE];
   const char *unit; // SI; static storage
   double value;     // SI
   double low, high; // what it can be; infinite: anything
@@ -27,6 +30,7 @@ void dea_material_numbers(const struct dea_device *device,
 struct dea_material *dea_material_at(struct dea_device *device, size_t material);
 const struct dea_material *dea_material_of(const struct dea_device *device, size_t material);
 /* What keys of the design are about it begin with: "film", "plies.NAME". */
-void dea_material_prefix(const struct dea_device *device, size_t material, char out[48]);
+void dea_material_prefix(const struct dea_device *device, size_t material,
+                         char out[DEA_MATERIAL_PREFIX_SIZE]);
 
 #endif

@@ -63,7 +63,7 @@ static void add_field(size_t at, size_t item, const char *base, const struct dea
   static const double reach = 0.1; // of its size or of a radian, where a shape's number is smaller
   const struct list *list = &lists[at];
   size_t own = 1;
-  char name[DEA_NAME_SIZE];
+  char name[DEA_MATERIAL_PREFIX_SIZE + 8];
   if (!dea_field_varies(field)) {
     return;
   }
@@ -74,7 +74,7 @@ static void add_field(size_t at, size_t item, const char *base, const struct dea
     snprintf(name, sizeof name, "%s[%zu]", list->key, item);
   } else {
     const struct dea_label *label = (const void *)(base + list->name);
-    snprintf(name, sizeof name, "%s.%.30s", list->key, label->text);
+    snprintf(name, sizeof name, "%.12s.%.80s", list->key, label->text);
   }
   for (size_t k = 0; k < own; k++) {
     const size_t offset = field->offset + k * sizeof(struct dea_quantity);
@@ -90,7 +90,7 @@ static void add_field(size_t at, size_t item, const char *base, const struct dea
     if (at == SHAPES) {
       number.reach = fmax(fabs(number.value), reach * (strcmp(field->unit, "m") == 0 ? size_m : 1));
     }
-    snprintf(number.key, sizeof number.key, "%.42s.%.18s", name, field->key);
+    snprintf(number.key, sizeof number.key, "%s.%.18s", name, field->key);
     if (own > 1) {
       const size_t length = strlen(number.key);
       snprintf(number.key + length, sizeof number.key - length, "[%zu]", k);
