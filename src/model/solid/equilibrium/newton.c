@@ -262,9 +262,10 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
 
 /* ---- one minimum ---- */
 
-/* kappa over its own from now on. */
+/* kappa over its own from now on. Another one has steps of its own before rounding hides them. */
 static void soften(struct dea_solid *s, struct newton *d, double softness)
 {
+  d->unresolved = softness == d->softness ? d->unresolved : 0;
   dea_solid_scale_bulk_modulus(s, softness / d->softness);
   d->softness = softness;
 }
