@@ -45,6 +45,9 @@ expect 2 "two names" dea examples frdea-4 frdea-8
 expect 0 "copy" dea examples --copy "$folder/new/deep"
 cmp -s "$folder/new/deep/paper/fig02.yaml" "$source/examples/paper/fig02.yaml" ||
   { echo "the copy differs"; failed=1; }
+for example in silicone breakdown device; do # with the measurements that they name
+  expect 0 "copy of fit/$example" dea fit "$folder/new/deep/fit/$example.yaml" -o "$folder/$example.fit"
+done
 expect 5 "copy over what is there" dea examples --copy "$folder/new/deep"
 has err "--force"
 expect 0 "copy by force" dea examples --force --copy "$folder/new/deep"

@@ -63,8 +63,9 @@ static dea_status find_in(struct dea_context *ctx, const char *folder, const cha
 {
   glob_t found = {.gl_pathc = 0};
   dea_status status = glob_folder(ctx, folder, "/*", 0, &found);
-  if (status == DEA_OK) {
-    status = glob_folder(ctx, folder, "/*/*", GLOB_APPEND, &found);
+  static const char *const deeper[] = {"/*/*", "/*/*/*"}; // fit/silicone/uniaxial.csv
+  for (size_t i = 0; i < sizeof deeper / sizeof deeper[0] && status == DEA_OK; i++) {
+    status = glob_folder(ctx, folder, deeper[i], GLOB_APPEND, &found);
   }
   if (status == DEA_OK) {
     status = take_files(ctx, folder, ending, &found, list);
