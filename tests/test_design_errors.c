@@ -427,6 +427,8 @@ static void test_bad_overrides(void **state)
   check_override("compute.voltage.values", "[1 kV, nan]", "not a finite number");
   check_override("compute.voltage.values", "[1 kV, 2]", "write for example '2 V' or '2 kV'");
   check_override("compute.force.depth", "[1]", "write for example '1 mm'");
+  check_override("film.thickness", "5e-05", "write for example '5e-05 m'");
+  check_override("compute.voltage", "{to:[1 kV]}", "a space is due after the colon");
 }
 
 int main(void)

@@ -239,8 +239,13 @@ static void explain_bare(const char *text, double value, const struct dea_measur
                          char why[DEA_WHY_SIZE])
 {
   static const double least_V = 100; // below it a number may have been meant in kV
+  static const double least = 1e-3;  // below it one in um or mm was meant in SI
   size_t length;
   const char *unit = example_unit(due, &length);
+  if (value != 0 && fabs(value) < least) {
+    unit = due->unit;
+    length = strlen(unit);
+  }
   bool voltage = strcmp(due->unit, "V") == 0, other = voltage && fabs(value) < least_V;
   int used = snprintf(
       why, DEA_WHY_SIZE, "'%.60s' has no unit: %s is due; write for example '%.40s %.*s'", text,

@@ -89,6 +89,9 @@ static const char *in_words(const struct dea_yaml_text *text, const yaml_parser_
     return "this is not YAML: no value begins with this character; a text that does stands in "
            "quotes";
   }
+  if (strcmp(problem, "found unexpected ':'") == 0) {
+    return "this is not YAML: a space is due after the colon of 'KEY: VALUE'";
+  }
   if (strcmp(problem, "could not find expected ':'") == 0) {
     *place = parser->context_mark;
     return "this is not YAML: 'KEY: VALUE' is due here, with a space after the colon";
