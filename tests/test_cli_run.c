@@ -261,6 +261,32 @@ static void test_path_alone(void **state)
   assert_contains(command_out, "margin   tension");
 }
 
+/* The operating map is printed by a few rows and is in CSV with all; the folder has no figures of
+ * it, and none are said to be there. */
+static void test_operating_map(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml -m lumped --study operating-map "
+                               "-o map"),
+                   0);
+  assert_contains(command_out, "lumped: operating map\n  highest voltage 11.5 kV, end 17.25 kV");
+  assert_contains(command_out, "\n  pre-stretch  slack above (kV)  breakdown above (kV)\n"
+                               "            1                 0 ");
+  assert_contains(command_out, "\n         2.55 "); // the last of 33
+  assert_null(strstr(command_out, "1.0484"));       // the second
+  assert_contains(command_out, "  and 24 more (summary.json)\n");
+  assert_contains(command_out, "results: map (summary.json, results.h5, CSV)\n");
+  command_read("map/lumped_operating-map_pre_stretch.csv", command_out);
+  assert_contains(command_out, "pre-stretch,slack above (kV),breakdown above (kV),pull-in (kV),"
+                               "level 1 (kV),level 2 (kV),");
+  assert_contains(command_out, "\n1.0484375,");
+  command_read("map/lumped_operating-map_film_thickness.csv", command_out);
+  assert_contains(command_out, "film thickness (um),slack above (kV),");
+  char path[600];
+  snprintf(path, sizeof path, "%s/map/figures", command_folder);
+  assert_int_not_equal(access(path, F_OK), 0);
+}
+
 static void test_unknown_model(void **state)
 {
   (void)state;
@@ -439,6 +465,7 @@ int main(void)
       cmocka_unit_test(test_pull_in_of_a_slack_film),
       cmocka_unit_test(test_several_designs),
       cmocka_unit_test(test_path_alone),
+      cmocka_unit_test(test_operating_map),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),

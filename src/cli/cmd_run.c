@@ -1,11 +1,13 @@
 /* dea run: design -> models -> studies -> run folder, or JSON on stdout. */
 #include "base/file.h"
 #include "base/text.h"
+#include "base/write_file.h"
 #include "base/yaml.h"
 #include "cli/models.h"
 #include "cli/print_tables.h"
 #include "job/job.h"
 #include "material/plane.h"
+#include "output/csv.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "result/provenance.h"
@@ -284,6 +286,16 @@ static void print_model(const struct dea_result *result, const char *model)
   }
 }
 
+/* Names what the folder has got. */
+static void print_folder(struct dea_cli *cli, const struct run *run)
+{
+  char *figures = dea_path_join(cli->ctx, run->job.folder, DEA_FIGURE_FOLDER);
+  bool drawn = !run->job.no_figures && figures != NULL && dea_path_is_folder(figures);
+  printf("\nresults: %s (summary.json, results.h5%s%s)\n", run->job.folder,
+         dea_csv_has(run->result) ? ", CSV" : "", drawn ? ", " DEA_FIGURE_FOLDER "/" : "");
+  dea_free(cli->ctx, figures);
+}
+
 /* Writes what there is, whatever happened before: partial results are results. */
 static dea_status deliver(struct dea_cli *cli, const struct request *request, struct run *run)
 {
@@ -303,8 +315,7 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
     }
     if (!cli->quiet &&
         (status == DEA_OK || status == DEA_E_TOOL)) { // without gnuplot the data are there
-      printf("\nresults: %s (summary.json, results.h5, CSV%s)\n", run->job.folder,
-             request->no_figures ? "" : ", " DEA_FIGURE_FOLDER "/");
+      print_folder(cli, run);
     }
   }
   return status;

@@ -67,13 +67,25 @@ static void add_cell(const struct dea_result_table *table, size_t row, size_t co
   }
 }
 
+/* Rows that are shown of a table are `every` rows apart. */
+static size_t row_step(const struct dea_result_table *table)
+{
+  return table->type.every > 0 ? table->type.every : 1;
+}
+
+/* The row of a line, SIZE_MAX for the titles in the first. */
+static size_t row_of_line(const struct dea_result_table *table, size_t line)
+{
+  return line == 0 ? SIZE_MAX : (line - 1) * row_step(table);
+}
+
 static int column_width(struct dea_context *ctx, const struct dea_result_table *table,
                         size_t column, size_t value, size_t rows)
 {
   size_t width = 0;
   for (size_t i = 0; i <= rows; i++) {
     struct dea_text text = {.ctx = ctx};
-    add_cell(table, i == 0 ? SIZE_MAX : i - 1, column, value, &text);
+    add_cell(table, row_of_line(table, i), column, value, &text);
     width = text.length > width ? text.length : width;
     dea_text_free(&text);
   }
@@ -82,7 +94,8 @@ static int column_width(struct dea_context *ctx, const struct dea_result_table *
 
 static dea_status print_rows(struct dea_context *ctx, const struct dea_result_table *table)
 {
-  size_t rows = table->row_count < ROWS_SHOWN ? table->row_count : ROWS_SHOWN;
+  const size_t step = row_step(table), all = (table->row_count + step - 1) / step;
+  const size_t rows = all < ROWS_SHOWN ? all : ROWS_SHOWN;
   struct dea_text *lines = dea_alloc(ctx, rows + 1, sizeof *lines);
   bool failed = lines == NULL;
   for (size_t i = 0; i <= rows && !failed; i++) {
@@ -96,7 +109,7 @@ static dea_status print_rows(struct dea_context *ctx, const struct dea_result_ta
                   table->type.columns[c].kind == DEA_CELL_QUANTITY;
       for (size_t i = 0; i <= rows; i++) {
         struct dea_text cell = {.ctx = ctx};
-        add_cell(table, i == 0 ? SIZE_MAX : i - 1, c, k, &cell);
+        add_cell(table, row_of_line(table, i), c, k, &cell);
         dea_text_add(&lines[i], "  %*s", text ? -width : width, dea_text_get(&cell));
         failed = failed || cell.failed || lines[i].failed;
         dea_text_free(&cell);
@@ -149,7 +162,7 @@ dea_status cli_print_tables(struct dea_context *ctx, const struct dea_result *re
   for (size_t i = 0; i < result->table_count; i++) {
     const struct dea_result_table *table = &result->tables[i];
     bool wanted = strcmp(table->model, model) == 0 && table->row_count > 0 &&
-                  (table->type.where & DEA_IN_SCREEN) != 0;
+                  (table->type.where & (DEA_IN_SCREEN | DEA_IN_TERMINAL)) != 0;
     if (wanted) {
       printf("\n%s: %s\n", model, table->type.title);
       DEA_TRY(ctx, table->type.one_row ? print_line(ctx, table) : print_rows(ctx, table));

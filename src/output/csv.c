@@ -267,6 +267,19 @@ static bool in_csv(const struct dea_result_column *column)
   return (column->hidden & DEA_IN_CSV) == 0 && column->kind != DEA_CELL_POINTS;
 }
 
+/* "level 2 (kV)": the title of the number-th column of a list; 0: of a column that is none. */
+static void add_list_title(const struct dea_result_column *column, size_t number,
+                           struct dea_text *out)
+{
+  char title[96];
+  struct dea_result_column one = *column;
+  if (number > 0) {
+    snprintf(title, sizeof title, "%s %zu", column->title, number);
+    one.title = title;
+  }
+  dea_result_table_column_title(&one, out);
+}
+
 /* Header (row SIZE_MAX) or a row. */
 static void add_table_row(struct dea_text *text, const struct dea_result_table *table, size_t row)
 {
@@ -277,7 +290,7 @@ static void add_table_row(struct dea_text *text, const struct dea_result_table *
          k++, first = false) {
       struct dea_text cell = {.ctx = text->ctx};
       if (row == SIZE_MAX) {
-        dea_result_table_column_title(column, &cell);
+        add_list_title(column, dea_result_table_values(table, c) > 1 ? k + 1 : 0, &cell);
       } else {
         dea_result_table_cell_text(table, row, c, k, 12, &cell);
       }
@@ -314,4 +327,13 @@ void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESUL
 {
   snprintf(out, DEA_RESULT_TABLE_FILE_SIZE, "%s_%s_%s.csv", table->model, table->type.study,
            table->type.name);
+}
+
+bool dea_csv_has(const struct dea_result *result)
+{
+  bool any = result->curve_count + result->variant_count + result->profile_count > 0;
+  for (size_t i = 0; i < result->table_count; i++) {
+    any = any || (result->tables[i].type.where & DEA_IN_CSV) != 0;
+  }
+  return any;
 }

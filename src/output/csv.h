@@ -32,6 +32,8 @@ dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct 
 /* Writes directory/MODEL_STUDY_TABLE.csv of a table that is for CSV; else nothing. */
 dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
                                const char *directory);
+/* Whether a result has anything that is written as CSV. */
+bool dea_csv_has(const struct dea_result *result);
 /* The name of that file. */
 enum { DEA_RESULT_TABLE_FILE_SIZE = 3 * DEA_NAME_SIZE + 8 };
 void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE]);

@@ -6,6 +6,7 @@
 #include "study/figures.h"
 
 #include <string.h>
+#include <unistd.h>
 
 #define FIGURE_DECLARE(name) extern const struct dea_figure dea_figure_##name;
 DEA_FIGURE_LIST(FIGURE_DECLARE)
@@ -107,6 +108,7 @@ dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *r
   const char *names[DEA_FIGURES_MAX];
   size_t count = 0;
   DEA_TRY(ctx, check_names(ctx, options));
+  const bool was_there = dea_path_exists(directory);
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   const struct dea_figure *figure;
   for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && count < DEA_FIGURES_MAX; f++) {
@@ -118,7 +120,10 @@ dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *r
       names[count++] = figure->name;
     }
   }
-  if (options->format.svg || options->format.pdf || options->format.png) {
+  if (count == 0 && !was_there) {
+    rmdir(directory); // one with something in it stays
+  }
+  if (count > 0 && (options->format.svg || options->format.pdf || options->format.png)) {
     DEA_TRY(ctx, dea_gnuplot_draw(ctx, directory, names, count));
   }
   return DEA_OK;

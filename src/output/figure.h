@@ -24,7 +24,7 @@ struct dea_figure_options {
 };
 
 /* Writes NAME.gp, NAME.dat and the pictures of every figure that has something to show. A figure
- * asked for by name that has nothing to show gives a note. */
+ * asked for by name that has nothing to show gives a note; no folder is left where none has. */
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
                              const char *directory, const struct dea_figure_options *options);
 

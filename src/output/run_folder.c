@@ -79,6 +79,11 @@ static void forget_figures(struct dea_context *ctx, const char *directory)
       forget(ctx, directory, name);
     }
   }
+  char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
+  if (folder != NULL) {
+    rmdir(folder); // one with other files in it stays
+  }
+  dea_free(ctx, folder);
 }
 
 void dea_run_folder_clear(struct dea_context *ctx, const char *directory)

@@ -32,8 +32,9 @@ enum dea_cell_kind {
     .key = name, .kind = DEA_CELL_TEXT, .title = head, .meaning = what                             \
   }
 
-/* Who writes a table; HDF5 has every table and column. SCREEN: the terminal and the report. */
-enum { DEA_IN_JSON = 1, DEA_IN_CSV = 2, DEA_IN_SCREEN = 4 };
+/* Who writes a table; HDF5 has every table and column. SCREEN: the terminal and the report;
+ * TERMINAL: that alone, of what the report draws by itself. */
+enum { DEA_IN_JSON = 1, DEA_IN_CSV = 2, DEA_IN_SCREEN = 4, DEA_IN_TERMINAL = 8 };
 
 struct dea_result_column {
   const char *key; // as in JSON and HDF5: "rise_time_s"
@@ -55,6 +56,7 @@ struct dea_result_table_type {
   const char *title; // a heading for people
   int where;         // DEA_IN_*
   bool one_row;      // in JSON an object, not a list
+  size_t every;      // the terminal shows the first row and each so-manieth on; 0: all
   const struct dea_result_column *columns; // [column_count]
   size_t column_count;
 };

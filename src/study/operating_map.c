@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
+enum { IN_ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_TERMINAL };
 enum { ROWS = 33, LEVELS = DEA_RESULT_TABLE_WIDTH_MAX, PATH_POINTS = 3000 };
 
 // Tables -----------------------------------------------------------------------------------------
@@ -23,7 +24,7 @@ enum { ROWS = 33, LEVELS = DEA_RESULT_TABLE_WIDTH_MAX, PATH_POINTS = 3000 };
       VOLTAGE("pull_in_V", "pull-in", "voltage of pull-in"),                                       \
   {                                                                                                \
     .key = "level_V", .si_unit = "V", .display_unit = "kV", .factor = 1e-3, .list = true,          \
-    .title = "level",                                                                              \
+    .hidden = DEA_IN_SCREEN, .title = "level",                                                     \
     .meaning = "voltages at which displacement or strain reaches 1, 2, ... of its steps"           \
   }
 
@@ -56,7 +57,7 @@ static const char study_name[] = "operating-map";
 static const struct dea_result_table_type scale_table = {.study = study_name,
                                                          .name = "",
                                                          .title = "operating map",
-                                                         .where = DEA_IN_JSON,
+                                                         .where = DEA_IN_JSON | DEA_IN_TERMINAL,
                                                          .one_row = true,
                                                          .columns = scale_columns,
                                                          .column_count = COUNT(scale_columns)};
@@ -73,7 +74,8 @@ static const struct parameter parameters[] = {
     {{.study = study_name,
       .name = "pre_stretch",
       .title = "limits against the pre-stretch",
-      .where = DEA_IN_JSON,
+      .where = IN_ALL, // the report draws it
+      .every = 4,
       .columns = pre_stretch_columns,
       .column_count = COUNT(pre_stretch_columns)},
      offsetof(struct dea_design, pre_stretch),
@@ -84,7 +86,8 @@ static const struct parameter parameters[] = {
     {{.study = study_name,
       .name = "film_thickness",
       .title = "limits against the thickness of the unstretched film",
-      .where = DEA_IN_JSON,
+      .where = IN_ALL, // the report draws it
+      .every = 4,
       .columns = thickness_columns,
       .column_count = COUNT(thickness_columns)},
      offsetof(struct dea_design, film.thickness_m),
