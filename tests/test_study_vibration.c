@@ -164,6 +164,33 @@ static void test_points(void **state)
   release();
 }
 
+/* The terminal shows what moves at the lowest frequency and at the peak of a mass on a spring,
+ * which is at f^2 = (1 - 2 D^2) f0^2 and 1 / (2 D sqrt(1 - D^2)) times as high: D = 0.1. */
+static void test_peaks(void **state)
+{
+  (void)state;
+  compute();
+  const struct dea_result_table *table =
+      dea_result_find_table(result, "spring", "frequency", "peaks");
+  assert_non_null(table);
+  assert_true((table->type.where & DEA_IN_SCREEN) != 0);
+  assert_int_equal(table->row_count, 8); // two biases, centre and fibre tip, lowest and peak
+  for (size_t row = 0; row < 8; row += 2) {
+    double bias_V = row < 4 ? 1e3 : 2e3;
+    assert_close(dea_result_table_number(table, row, "voltage_V", 0), bias_V, 0, 0);
+    assert_string_equal(dea_result_table_cell(table, row, 1)->text,
+                        row % 4 == 0 ? "centre" : "fibre tip");
+    assert_string_equal(dea_result_table_cell(table, row, 2)->text, "lowest frequency");
+    assert_close(dea_result_table_number(table, row, "frequency_Hz", 0), 1, 1e-12, 0);
+    assert_close(dea_result_table_number(table, row, "gain", 0), 1, 0, 0);
+    assert_string_equal(dea_result_table_cell(table, row + 1, 2)->text, "peak");
+    assert_close(dea_result_table_number(table, row + 1, "frequency_Hz", 0),
+                 sqrt(0.98 * square_Hz2(bias_V)), 0.13, 0); // half a step of the frequencies
+    assert_close(dea_result_table_number(table, row + 1, "gain", 0), 5.025, 0.25, 0);
+  }
+  release();
+}
+
 /* Phases of the figure go on from where they begin, near 180 and near 0 degrees. */
 static void check_phases(void)
 {
@@ -259,9 +286,8 @@ static void test_wrong_range(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_points),
-      cmocka_unit_test(test_files),
-      cmocka_unit_test(test_models_without_mass),
+      cmocka_unit_test(test_points),      cmocka_unit_test(test_peaks),
+      cmocka_unit_test(test_files),       cmocka_unit_test(test_models_without_mass),
       cmocka_unit_test(test_wrong_range),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

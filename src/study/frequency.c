@@ -503,6 +503,153 @@ static const struct dea_figure figures[] = {
     },
 };
 
+// Peaks, for the terminal ------------------------------------------------------------------------
+
+static const struct dea_result_column peak_columns[] = {
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "bias"),
+    DEA_TEXT_COLUMN("moves", "moves", "centre, fibre tip, or a monitor and its axis"),
+    DEA_TEXT_COLUMN("at", "at",
+                    "the lowest frequency, a peak, or the highest where it still rises"),
+    DEA_NUMBER_COLUMN("frequency_Hz", "Hz", "Hz", 1, "frequency", "the computed one"),
+    DEA_NUMBER_COLUMN("amplitude_m", "m", "nm", 1e9, "amplitude", "that the excitation makes"),
+    DEA_NUMBER_COLUMN("phase_rad", "rad", "deg", 57.29577951308232, "phase",
+                      "against the excitation"),
+    DEA_NUMBER_COLUMN("gain", "1", "1", 1, "times the lowest",
+                      "amplitude over that at the lowest frequency"),
+    DEA_TEXT_COLUMN("flags", "flags", "why the state at the bias is not to be trusted"),
+};
+static const struct dea_result_table_type peak_table = {
+    .study = study_name,
+    .name = "peaks",
+    .title = "amplitudes and their peaks, among the computed frequencies",
+    .where = DEA_IN_SCREEN, // CSV and JSON have its points
+    .columns = peak_columns,
+    .column_count = sizeof peak_columns / sizeof peak_columns[0]};
+
+static const double least_peak = 1e-3; // of the line's largest amplitude: less is not listed
+
+/* What the line says at index i: NULL for nothing. */
+static const char *peak_word(const struct line *line, size_t i, double most)
+{
+  const double *a = line->amplitude_m;
+  const bool rises = i > 0 && a[i] > a[i - 1], last = i + 1 == line->count;
+  if (i == 0) {
+    return "lowest frequency";
+  }
+  if (last) {
+    return rises && a[i] >= most ? "highest, still rising" : NULL;
+  }
+  return rises && a[i] >= a[i + 1] && a[i] >= least_peak * most ? "peak" : NULL;
+}
+
+/* Rows of a line about the bias of `at`, whose flags they have. */
+static dea_status add_peaks(struct dea_context *ctx, const struct line *line, const char *moves,
+                            const struct dea_load_point *at, struct dea_result_table *table)
+{
+  double most = 0;
+  for (size_t i = 0; i < line->count; i++) {
+    most = fmax(most, line->amplitude_m[i]);
+  }
+  for (size_t i = 0; i < line->count; i++) {
+    const char *word = peak_word(line, i, most);
+    char flags[DEA_FLAGS_SIZE];
+    const struct dea_result_table_value row[] = {
+        {.number = at->voltage_V},
+        {.text = moves},
+        {.text = word},
+        {.number = line->frequency_Hz[i]},
+        {.number = line->amplitude_m[i]},
+        {.number = line->phase_rad[i]},
+        {.number = line->amplitude_m[i] / line->amplitude_m[0]},
+        {.text = dea_flags_text(dea_load_point_flags(at), flags)}};
+    if (word != NULL) {
+      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Of a monitor, which stands `offset` rows after the first of each frequency, along its main axis;
+ * nothing of one that moves less than `least`. points: of the bias. */
+static dea_status add_monitor_peaks(struct dea_context *ctx, const struct dea_result_table *told,
+                                    size_t first, size_t monitors_there, size_t offset,
+                                    double least, const struct dea_load_point *points,
+                                    struct line *line, struct dea_result_table *table)
+{
+  size_t column = Z;
+  double most = 0;
+  char moves[DEA_NAME_SIZE + 8];
+  for (size_t c = X; c <= Z; c += 2) {
+    for (size_t i = 0; i < line->count; i++) {
+      double a = dea_result_table_cell(told, first + i * monitors_there + offset, c)->number;
+      column = a > most ? c : column; // not NAN
+      most = fmax(most, a);
+    }
+  }
+  if (!(most > least)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < line->count; i++) {
+    size_t row = first + i * monitors_there + offset;
+    line->frequency_Hz[i] = points[i].frequency_Hz;
+    line->amplitude_m[i] = dea_result_table_cell(told, row, column)->number;
+    line->phase_rad[i] = dea_result_table_cell(told, row, column + 1)->number;
+  }
+  snprintf(moves, sizeof moves, "%.60s, %c",
+           dea_result_table_cell(told, first + offset, MONITOR)->text, "xyz"[(column - X) / 2]);
+  DEA_TRY(ctx, add_peaks(ctx, line, moves, points, table));
+  return DEA_OK;
+}
+
+/* All that moves about one bias; `from`: its first point in the curve. */
+static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curve, size_t from,
+                           const struct dea_result_table *told, struct line *line,
+                           struct dea_result_table *table)
+{
+  const struct dea_load_point *points = curve->points + from;
+  for (int tip = 0; tip < 2; tip++) {
+    for (size_t i = 0; i < line->count; i++) {
+      line->frequency_Hz[i] = points[i].frequency_Hz;
+      line->amplitude_m[i] = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
+      line->phase_rad[i] = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
+    }
+    if (isfinite(line->amplitude_m[0])) {
+      DEA_TRY(ctx, add_peaks(ctx, line, tip ? "fibre tip" : "centre", points, table));
+    }
+  }
+  double largest = 0;
+  size_t there = told != NULL ? told->row_count / curve->count : 0;
+  if (there > 0) {
+    main_column(told, &largest);
+  }
+  for (size_t k = 0; k < there; k++) {
+    DEA_TRY(ctx, add_monitor_peaks(ctx, told, from * there, there, k, least_share * largest, points,
+                                   line, table));
+  }
+  return DEA_OK;
+}
+
+static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
+{
+  struct dea_result_table *table;
+  const struct dea_curve *curve = dea_result_find(result, model, study_name);
+  dea_status status = DEA_OK;
+  if (curve == NULL || curve->count == 0) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &peak_table, model, 0, &table));
+  const struct dea_result_table *told =
+      dea_result_find_table(result, model, study_name, monitors.name);
+  for (size_t from = 0, count; from < curve->count && status == DEA_OK; from += count) {
+    struct line line;
+    count = count_bias(curve, from);
+    DEA_TRY(ctx, line_create(ctx, count, &line));
+    status = add_bias(ctx, curve, from, told, &line, table);
+    dea_free(ctx, line.frequency_Hz);
+  }
+  return status;
+}
+
 // The study --------------------------------------------------------------------------------------
 
 static bool asked(const struct dea_design *design)
@@ -519,6 +666,7 @@ const struct dea_study dea_study_frequency = {
     .own_models = true,
     .any_layout = true,
     .run = run,
+    .tables = tables,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],
 };
