@@ -44,12 +44,10 @@ static dea_status look_at_uncertainties(struct work *w)
     }
     if (series->time_s != NULL && series->rows > 0 && dea_fit_series_used(series)) {
       const double last = series->time_s[series->rows - 1];
-      double first = series->time_s[0];
-      if (series->test->kind.value == DEA_FIT_RELAXATION && series->rows > 1) {
-        first = fmax(0, series->time_s[1] - series->time_s[0]); // after the peak
-      } else {
-        first = last / 30;
-      }
+      const bool relaxes = series->test->kind.value == DEA_FIT_RELAXATION && series->rows > 1;
+      const double first = relaxes
+                               ? fmax(0, series->time_s[1] - series->time_s[0]) // after the peak
+                               : last / 30;
       w->from_s = w->timed ? fmin(w->from_s, fmax(first, 1e-6 * last)) : fmax(first, 1e-6 * last);
       w->to_s = w->timed ? fmax(w->to_s, last) : last;
       w->timed = true;

@@ -62,6 +62,7 @@ static dea_status choose_models(struct dea_cli *cli, const struct request *reque
                                 const struct dea_design *design, struct dea_job *job)
 {
   bool given = request->models.count > 0, bad = false;
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a design without errors is there
   job->model_count = given ? request->models.count : design->compute.model_count;
   for (size_t i = 0; i < job->model_count; i++) {
     const struct dea_label *label = &design->compute.models[i];

@@ -179,7 +179,7 @@ static dea_status move_tips(struct dea_context *ctx, const struct standing *s, i
 {
   const double by_m =
       dea_length_stretched_m(&s->design->fabrication.tolerance.fibre, s->device->pre_stretch);
-  double low, high;
+  double low = NAN, high = NAN;
   DEA_TRY(ctx, ask_moved(ctx, s, column, -by_m, out->voltage_V, &low));
   DEA_TRY(ctx, ask_moved(ctx, s, column, by_m, out->voltage_V, &high));
   out->effect_m[DEA_DEVIATION_FIBRE] = 0.5 * (high - low);

@@ -249,6 +249,7 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device *d
   char text[DEA_TITLE_SIZE + 8];
   for (size_t j = 0; j < with->count; j++) {
     const struct dea_device_param *param = &with->params[j];
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): as many values as parameters
     const double value = with->values[j];
     if (param->kind == DEA_DEVICE_KEY) {
       dea_device_param_text(param, value, with->digits, text);

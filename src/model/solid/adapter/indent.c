@@ -174,6 +174,7 @@ static void go_straight_on(struct dea_solid *s, const struct way *way, double de
   const double *last = way->last.state, *before = way->before.state;
   double share = before != NULL ? (depth_m - way->last_m) / (way->last_m - way->before_m) : 0;
   for (size_t i = 0; i < steps->state_count && share > 0; i++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): else the share is 0
     steps->keep[i] = last[i] + share * (last[i] - before[i]);
   }
   dea_solid_state_set(s, share > 0 ? steps->keep : last);

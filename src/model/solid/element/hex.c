@@ -137,6 +137,7 @@ dea_status dea_hex_project(const struct dea_hex_shape *s, const struct dea_hex_p
     for (int b = a + 1; b < m; b++) {
       theta[a] -= factor[b][a] * theta[b];
     }
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): the triangle above has set it
     theta[a] /= factor[a][a];
   }
   return DEA_OK;
@@ -726,6 +727,7 @@ static void coupled_field(const struct dea_hex_shape *s, double gradient[3][DEA_
   for (int J = 0; J < 3; J++) {
     E[J] = 0;
     for (int n = 0; n < s->nodes; n++) {
+      // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a field has psi
       E[J] -= c * psi[n] * gradient[J][n];
     }
   }
@@ -862,6 +864,7 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
     const struct dea_hex_point *at = &points.at[q];
     double field;
     memcpy(out->F[q], at->F, sizeof at->F);
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): find_state has set it
     out->volume_m3[q] = at->weight;
     out->J[q] = at->J;
     out->pressure[q] = points.pressure[q];

@@ -137,6 +137,7 @@ static void tangent_collect(const struct dea_hex_shape *s, double eps,
     contract(s, work->turn[i], gradient, work->block);
     for (int a = 0; a < n; a++) {
       for (int b = 0; b < n; b++) {
+        // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): cblas_dgemm has set it
         K[(4 * a + k) * dofs + 4 * b + m] += work->block[a * n + b];
         K[(4 * a + m) * dofs + 4 * b + k] -= work->block[a * n + b];
       }

