@@ -287,6 +287,41 @@ static void test_operating_map(void **state)
   assert_int_not_equal(access(path, F_OK), 0);
 }
 
+/* A study or a device that none of the models knows is an error before anything is made. */
+static void test_models_that_cannot(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *arguments;
+    int code;
+    const char *message;
+  } cases[] = {
+      {"plain-disc.yaml -m lumped --study modal", 2,
+       "no study 'modal' of model lumped, which knows no vibrations; there is one of 3d"},
+      {"plain-disc.yaml -m lumped -m axisymmetric --study sweep --study convergence", 2,
+       "no study 'convergence' of model lumped or axisymmetric, which know no mesh to refine"},
+      {"plain-disc.yaml -m lumped --study load-line", 2, "no load line of this actuator\n"},
+      {"plain-disc.yaml -m 3d --study path", 2, "no path without compute.solid.path; there is"},
+      {"devices/cone-mass.yaml -m lumped", 3, "knows only a disc in a round frame"},
+  };
+  char path[600];
+  snprintf(path, sizeof path, "%s/cannot", command_folder);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char arguments[300];
+    snprintf(arguments, sizeof arguments, "run @/examples/%s -o cannot", cases[i].arguments);
+    command_expect(arguments, cases[i].code, cases[i].message);
+    assert_string_equal(command_out, "");
+    assert_int_not_equal(access(path, F_OK), 0);
+  }
+  // one of the models is enough, and what a design asks for is for those that can
+  command_expect("run @/examples/plain-disc.yaml -m lumped --set compute.modal={} --no-figures "
+                 "-o able",
+                 0, "model lumped knows no vibrations: no study 'modal'");
+  command_expect("run @/examples/frdea-4.yaml -m axisymmetric -m lumped --study load-line "
+                 "--no-figures -o able --force",
+                 0, "model axisymmetric knows no load line of this actuator");
+}
+
 static void test_unknown_model(void **state)
 {
   (void)state;
@@ -466,6 +501,7 @@ int main(void)
       cmocka_unit_test(test_several_designs),
       cmocka_unit_test(test_path_alone),
       cmocka_unit_test(test_operating_map),
+      cmocka_unit_test(test_models_that_cannot),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),

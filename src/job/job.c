@@ -32,6 +32,38 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
   return DEA_OK;
 }
 
+static dea_status check_model(struct dea_context *ctx, const struct dea_model_type *type,
+                              const struct dea_result *result)
+{
+  if (result->device->general && type->of_layouts == NULL) {
+    return dea_fail(ctx, DEA_E_DESIGN,
+                    "the model '%s' knows only a disc in a round frame; a design with 'plies' is "
+                    "computed by 3d",
+                    type->name);
+  }
+  DEA_TRY(ctx, dea_model_check(ctx, type, result->design, result->device));
+  return DEA_OK;
+}
+
+/* Whether some model takes the design; what each lacks is said where none does, else by its run. */
+static dea_status check_models(struct dea_context *ctx, const struct dea_job *job,
+                               const struct dea_result *result)
+{
+  size_t able = 0;
+  const size_t errors = dea_finding_trial_begin(ctx);
+  for (size_t i = 0; i < job->model_count; i++) {
+    able += check_model(ctx, job->models[i], result) == DEA_OK;
+  }
+  dea_finding_trial_end(ctx, errors);
+  dea_context_clear(ctx);
+  dea_status first = DEA_OK;
+  for (size_t i = 0; i < job->model_count && able == 0; i++) {
+    dea_status status = check_model(ctx, job->models[i], result);
+    first = first == DEA_OK ? status : first;
+  }
+  return first;
+}
+
 dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,
                        bool *began)
 {
@@ -40,6 +72,9 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   char message[1024] = "";
   *began = false;
   DEA_TRY(ctx, dea_study_check(ctx, job->studies, job->study_count, result->design));
+  DEA_TRY(ctx, check_models(ctx, job, result));
+  DEA_TRY(ctx, dea_study_check_models(ctx, job->models, job->model_count, job->studies,
+                                      job->study_count, result));
   DEA_TRY(ctx, dea_uncertainty_check(ctx, result->design, result->device, &dea_rerun_designs));
   DEA_TRY(ctx, open_folder(ctx, job, result));
   *began = true;

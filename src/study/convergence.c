@@ -74,12 +74,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   char what[DEA_NAME_SIZE + 16], name[DEA_NAME_SIZE];
   dea_status first = DEA_OK;
-  if (type->size == NULL) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                            "model %s has no mesh to refine: no study of convergence", type->name));
-    return DEA_OK;
-  }
   result->convergence_tolerance = settings->tolerance.si;
   snprintf(what, sizeof what, "%s convergence", type->name);
   struct dea_variant_run one = {.study = study_name,
@@ -511,10 +505,18 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->size != NULL;
+}
+
 const struct dea_study dea_study_convergence = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
+    .ability = "mesh to refine",
+    .able = able,
     .run = run,
     .tables = tables,
     .figures = figures,

@@ -379,11 +379,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   size_t stops = dea_force_stops(result->design);
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
-  if (type->indent == NULL) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s knows no tip that is pressed in: no study '%s'", type->name,
-                           study_name);
-  }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
   snprintf(what, sizeof what, "%s force", type->name);
   dea_status status = take_lines(ctx, &press, stops, what, &lines, curve);
@@ -665,12 +660,20 @@ static bool asked(const struct dea_design *design)
   return dea_force_stops(design) > 0;
 }
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->indent != NULL;
+}
+
 const struct dea_study dea_study_force = {
     .name = study_name,
     .keys = &section,
     .asked = asked,
     .needs = "compute.force.depth or compute.force.preload",
     .own_models = true,
+    .ability = "tip that is pressed in",
+    .able = able,
     .run = run,
     .tables = tables,
     .figures = figures,

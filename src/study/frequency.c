@@ -244,8 +244,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   for (size_t i = 0; i < settings->bias_count; i++) {
     biases_V[i] = settings->biases_V[i].si;
   }
-  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, type->respond != NULL, true,
-                                      biases_V, settings->bias_count, take));
+  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, biases_V,
+                                      settings->bias_count, take));
   return DEA_OK;
 }
 
@@ -658,6 +658,12 @@ static bool asked(const struct dea_design *design)
   return settings != NULL && settings->bias_count > 0;
 }
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->respond != NULL;
+}
+
 const struct dea_study dea_study_frequency = {
     .name = study_name,
     .keys = &section,
@@ -665,6 +671,8 @@ const struct dea_study dea_study_frequency = {
     .needs = "compute.frequency.bias",
     .own_models = true,
     .any_layout = true,
+    .ability = "vibrations",
+    .able = able,
     .run = run,
     .tables = tables,
     .figures = figures,

@@ -85,11 +85,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   (void)model; // none: each line starts from rest
   double highest_V = dea_study_highest_V(result);
   struct dea_result_table *table;
-  if (type->hold == NULL || result->device->fibre_count == 0) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s knows no load line of this actuator: no study '%s'",
-                           type->name, study_name);
-  }
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &force_table, type->name, 0, &table));
   for (int n = 1; n <= LINES && highest_V > 0; n++) {
     DEA_TRY(ctx, add_line(ctx, type, result, highest_V * n / LINES, table));
@@ -97,5 +92,14 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
-const struct dea_study dea_study_load_line = {
-    .name = study_name, .by_name_only = true, .own_models = true, .run = run};
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  return type->hold != NULL && result->device->fibre_count > 0;
+}
+
+const struct dea_study dea_study_load_line = {.name = study_name,
+                                              .by_name_only = true,
+                                              .own_models = true,
+                                              .ability = "load line of this actuator",
+                                              .able = able,
+                                              .run = run};

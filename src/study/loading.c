@@ -611,11 +611,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t count = dea_study_stops(result->design, settings->voltages_V, settings->voltage_count,
                                  true, voltages_V);
-  if (type->move == NULL) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s knows no bodies and pressures: no study '%s'", type->name,
-                           study_name);
-  }
   choose_control(&l);
   l.total = count * ((size_t)settings->steps.si * (settings->back.value == 1 ? 2 : 1) + 1);
   DEA_TRY(ctx, add_tables(ctx, &l));
@@ -798,6 +793,12 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->move != NULL;
+}
+
 const struct dea_study dea_study_loading = {
     .name = study_name,
     .keys = &section,
@@ -805,6 +806,8 @@ const struct dea_study dea_study_loading = {
     .needs = "compute.loading.from and to, or turn_, force_, pressure_from and to",
     .own_models = true,
     .any_layout = true,
+    .ability = "bodies and pressures",
+    .able = able,
     .run = run,
     .figures = figures,
     .figure_count = COUNT(figures),

@@ -80,8 +80,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, true, voltages_V);
-  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, type->modes != NULL, true,
-                                      voltages_V, count, take));
+  DEA_TRY(ctx,
+          dea_study_stop_by_stop(ctx, type, result, study_name, true, voltages_V, count, take));
   return DEA_OK;
 }
 
@@ -184,11 +184,19 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->modes != NULL;
+}
+
 const struct dea_study dea_study_modal = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
     .any_layout = true,
+    .ability = "vibrations",
+    .able = able,
     .run = run,
     .tables = tables,
     .figures = figures,

@@ -274,11 +274,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                     .highest_V = highest_V,
                     .end_V = 1.5 * highest_V,
                     .lift = result->device->fibre_count > 0};
-  if (type->path == NULL) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s knows no equilibrium path: no study '%s'", type->name,
-                           study_name);
-  }
   if (!(highest_V > 0)) {
     return DEA_OK;
   }
@@ -291,5 +286,15 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-const struct dea_study dea_study_operating_map = {
-    .name = study_name, .by_name_only = true, .own_models = true, .run = run};
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->path != NULL;
+}
+
+const struct dea_study dea_study_operating_map = {.name = study_name,
+                                                  .by_name_only = true,
+                                                  .own_models = true,
+                                                  .ability = "equilibrium path",
+                                                  .able = able,
+                                                  .run = run};

@@ -76,10 +76,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 {
   struct target target = {.ctx = ctx};
   bool is_long = type->path == NULL && type->long_path != NULL;
-  if ((type->path == NULL && !is_long) ||
-      (is_long && result->design->compute.solid.path.value == 0)) {
-    return DEA_OK;
-  }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
   struct dea_path_options options = {.max_voltage_V = INFINITY, .max_points = DEA_PATH_POINTS_MAX};
   if (is_long) {
@@ -93,4 +89,11 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return DEA_OK;
 }
 
-const struct dea_study dea_study_path = {.name = "path", .run = run};
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  return type->path != NULL ||
+         (type->long_path != NULL && result->design->compute.solid.path.value != 0);
+}
+
+const struct dea_study dea_study_path = {
+    .name = "path", .ability = "path without compute.solid.path", .able = able, .run = run};

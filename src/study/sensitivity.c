@@ -737,8 +737,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                      ? dea_study_stops(result->design, settings->voltages_V,
                                        settings->voltage_count, false, voltages_V)
                      : 1;
-  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, false, voltages_V, count,
-                                      take));
+  DEA_TRY(ctx,
+          dea_study_stop_by_stop(ctx, type, result, study_name, false, voltages_V, count, take));
   for (size_t i = 0; type->indent != NULL && i < dea_force_stops(result->design); i++) {
     DEA_TRY(ctx, press(ctx, type, result, i, voltages_V, count));
   }

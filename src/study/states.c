@@ -1114,12 +1114,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   const struct dea_design *design = result->design;
   const struct settings *settings = dea_design_settings(design, &section)->values;
   struct search s = {.ctx = ctx, .type = type, .settings = settings, .result = result};
-  if (type->push == NULL) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                                 "model %s knows one state at a voltage: no study of states",
-                                 type->name));
-    return DEA_OK;
-  }
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, false, s.voltages_V);
   qsort(s.voltages_V, count, sizeof *s.voltages_V, compare_numbers);
@@ -1329,11 +1323,19 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->push != NULL;
+}
+
 const struct dea_study dea_study_states = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
     .any_layout = true,
+    .ability = "other states at a voltage",
+    .able = able,
     .run = run,
     .figures = figures,
     .figure_count = COUNT(figures),

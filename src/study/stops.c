@@ -58,7 +58,7 @@ dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model
 
 dea_status dea_study_stop_by_stop(
     struct dea_context *ctx, const struct dea_model_type *type, struct dea_result *result,
-    const char *kind, bool able, bool whole, const double *voltages_V, size_t count,
+    const char *kind, bool whole, const double *voltages_V, size_t count,
     dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at, size_t stop,
                        struct dea_result *result, struct dea_curve *curve))
@@ -66,10 +66,6 @@ dea_status dea_study_stop_by_stop(
   struct dea_model *model = NULL;
   struct dea_curve *curve;
   char what[2 * DEA_NAME_SIZE];
-  if (!able) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s knows no vibrations: no study '%s'", type->name, kind);
-  }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, kind, &curve));
   curve->listed = true;
   snprintf(what, sizeof what, "%s %s", type->name, kind);

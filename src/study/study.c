@@ -128,6 +128,63 @@ static dea_status check_sections(struct dea_context *ctx, const struct dea_desig
   return status;
 }
 
+/* Whether a model knows what the study needs of it. */
+static bool is_known_to(const struct dea_study *study, const struct dea_model_type *type,
+                        const struct dea_result *result)
+{
+  return study->able == NULL || study->able(dea_model_of_device(type, result->device), result);
+}
+
+/* A note, but not of a study that all designs ask for. */
+static dea_status say_unknown(struct dea_context *ctx, const struct dea_study *study,
+                              const char *model, bool named)
+{
+  if (!named && study->asked == NULL && study->keys == NULL) {
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                         "model %s knows no %s: no study '%s'", model, study->ability, study->name);
+}
+
+static dea_status known_to_none(struct dea_context *ctx, const struct dea_study *study,
+                                const struct dea_model_type *const types[], size_t type_count,
+                                const struct dea_result *result)
+{
+  size_t count;
+  const struct dea_model_type *const *all = dea_model_all(&count);
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "no study '%s' of model ", study->name);
+  for (size_t i = 0; i < type_count; i++) {
+    dea_text_add(&text, "%s%s", i > 0 ? " or " : "", types[i]->name);
+  }
+  dea_text_add(&text, ", which %s no %s", type_count > 1 ? "know" : "knows", study->ability);
+  for (size_t i = 0, able = 0; i < count; i++) {
+    if (is_known_to(study, all[i], result)) {
+      dea_text_add(&text, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);
+    }
+  }
+  dea_status status = dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
+  dea_text_free(&text);
+  return status;
+}
+
+dea_status dea_study_check_models(struct dea_context *ctx,
+                                  const struct dea_model_type *const types[], size_t type_count,
+                                  const char *const names[], size_t name_count,
+                                  const struct dea_result *result)
+{
+  for (size_t k = 0; names != NULL && k < STUDIES; k++) {
+    bool known = !is_wanted(studies[k], names, name_count, result->design);
+    for (size_t i = 0; i < type_count; i++) {
+      known = known || is_known_to(studies[k], types[i], result);
+    }
+    if (!known) {
+      return known_to_none(ctx, studies[k], types, type_count, result);
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design)
 {
@@ -198,6 +255,10 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
   for (size_t i = 0; i < STUDIES; i++) {
     if (!is_wanted(studies[i], names, name_count, result->design) ||
         !is_able(studies[i], result->design)) { // the path, that every design asks for
+      continue;
+    }
+    if (!is_known_to(studies[i], type, result)) {
+      take(ctx, say_unknown(ctx, studies[i], type->name, names != NULL), &first);
       continue;
     }
     if (!studies[i]->own_models && model == NULL) {

@@ -17,6 +17,10 @@ struct dea_study {
   bool by_name_only; // no design asks for it
   bool own_models;   // makes its own: `run` gets none
   bool any_layout;   // takes devices of the general form; else only a disc in a round frame
+  /* What a model has to know for it ("vibrations"), and whether one does of the result's device;
+   * both NULL: all do. `run` is not called with one that does not. */
+  const char *ability;
+  bool (*able)(const struct dea_model_type *type, const struct dea_result *result);
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
@@ -37,6 +41,12 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
  * the general form also for a study of a disc, after a finding at what asks for it. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
+/* DEA_E_ARGUMENT where none of the models knows what one of these studies needs, of the device of a
+ * result. names: NULL: fine, what a design asks for is for those models that can. */
+dea_status dea_study_check_models(struct dea_context *ctx,
+                                  const struct dea_model_type *const types[], size_t type_count,
+                                  const char *const names[], size_t name_count,
+                                  const struct dea_result *result);
 /* Whether a design asks for the study of that name. */
 bool dea_study_asked(const struct dea_design *design, const char *name);
 /* Highest voltage that the result's curves have reached, or without any that of its design [V]. */
@@ -75,10 +85,10 @@ dea_status dea_study_rising(struct dea_context *ctx, double from,
                             const struct dea_quantity *refinements, size_t count);
 /* A model of its own goes through voltages [count] in their order; `take` adds what there is at
  * each stop to the curve of that kind. whole: of all of a device of the general form, not a sector.
- * Nothing but a note where the model is not `able`. */
+ */
 dea_status dea_study_stop_by_stop(
     struct dea_context *ctx, const struct dea_model_type *type, struct dea_result *result,
-    const char *kind, bool able, bool whole, const double *voltages_V, size_t count,
+    const char *kind, bool whole, const double *voltages_V, size_t count,
     dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at, size_t stop,
                        struct dea_result *result, struct dea_curve *curve));

@@ -609,11 +609,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 {
   (void)model; // none: this starts from rest
   struct player p = {.type = type, .inertia = settings_of(result->design)->inertia.value == 1};
-  if (type->advance == NULL) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s knows no time: drive.waveform is without effect there",
-                           type->name);
-  }
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient (%%)", type->name);
   dea_status status = make_room(ctx, result, &p);
@@ -1052,6 +1047,12 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
+static bool able(const struct dea_model_type *type, const struct dea_result *result)
+{
+  (void)result;
+  return type->advance != NULL;
+}
+
 const struct dea_study dea_study_transient = {
     .name = study_name,
     .keys = &section,
@@ -1059,6 +1060,8 @@ const struct dea_study dea_study_transient = {
     .needs = "drive.waveform or channels[].waveform",
     .own_models = true,
     .any_layout = true,
+    .ability = "time",
+    .able = able,
     .run = run,
     .tables = tables,
     .figures = figures,
