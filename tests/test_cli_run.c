@@ -381,6 +381,35 @@ static size_t interrupt_after(double delay_s)
   return lines;
 }
 
+/* One run at a time writes into a folder; a run that was killed holds it no longer. */
+static void test_one_run_a_folder(void **state)
+{
+  (void)state;
+  char text[4096], path[600];
+  snprintf(text, sizeof text,
+           "cd '%s' && { '%s' run '%s/examples/plain-disc.yaml' --model 3d --no-figures "
+           "-o shared --set 'compute.voltage={from: 0 kV, to: 5 kV, step: 1 V}' "
+           ">/dev/null 2>&1 & echo $! >pid; i=0; while [ ! -s shared/.running ] && "
+           "[ $i -lt 1000 ]; do sleep 0.01; i=$((i+1)); done; }",
+           command_folder, DEA_COMMAND, DEA_SOURCE_DIR);
+  assert_int_equal(system(text), 0);
+  const char again[] = "run @/examples/plain-disc.yaml -m lumped --no-figures -o shared --force";
+  int code = command_run(again);
+  command_read("pid", command_out);
+  long pid = strtol(command_out, NULL, 10);
+  assert_true(pid > 1);
+  kill((pid_t)pid, SIGKILL);
+  assert_int_equal(code, 5);
+  snprintf(path, sizeof path, "another run writes into shared (process %ld on ", pid);
+  assert_contains(command_err, path);
+  for (int i = 0; i < 1000 && (code = command_run(again)) == 5; i++) {
+    usleep(10000); // until the process is gone
+  }
+  assert_int_equal(code, 0);
+  snprintf(path, sizeof path, "%s/shared/.running", command_folder);
+  assert_int_not_equal(access(path, F_OK), 0);
+}
+
 /* A full disk behind standard output is an error of exit code 5, said on stderr. */
 static void test_lost_output(void **state)
 {
@@ -505,6 +534,7 @@ int main(void)
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),
+      cmocka_unit_test(test_one_run_a_folder),
       cmocka_unit_test(test_lost_output),
       cmocka_unit_test(test_closed_output),
       cmocka_unit_test(test_linked_figures),

@@ -24,6 +24,7 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
     DEA_TRY(ctx, dea_checkpoint_restore(ctx, job->folder, result));
   }
   DEA_TRY(ctx, dea_run_folder_prepare(ctx, job->folder, job->force || job->resume));
+  DEA_TRY(ctx, dea_folder_lock(ctx, job->folder, &job->lock));
   if (job->force) {
     dea_run_folder_clear(ctx, job->folder);
   }
@@ -111,4 +112,6 @@ void dea_job_end(struct dea_context *ctx, struct dea_job *job)
 {
   dea_checkpoint_destroy(ctx, job->keep);
   job->keep = NULL;
+  dea_folder_unlock(ctx, job->lock);
+  job->lock = NULL;
 }

@@ -2,6 +2,7 @@
 #ifndef DEA_JOB_JOB_H
 #define DEA_JOB_JOB_H
 
+#include "base/folder_lock.h"
 #include "output/checkpoint.h"
 #include "result/result.h"
 
@@ -15,8 +16,9 @@ struct dea_job {
   bool force;         // replace the results in it
   bool resume;        // go on from them
   bool no_figures;
-  size_t processes;      // that a study may take at the same time; 0 or 1: this one
-  struct dea_keep *keep; // of a job that has begun
+  size_t processes;             // that a study may take at the same time; 0 or 1: this one
+  struct dea_keep *keep;        // of a job that has begun
+  struct dea_folder_lock *lock; // of the folder, until the job ends
 };
 
 /* Checks names, makes the folder ready and runs every model. The first failure of a study comes
