@@ -283,6 +283,28 @@ static void test_layout(void **state)
   assert_contains(command_err, "this needs a disc in a round frame");
 }
 
+/* What only a disc has is refused, not passed over. */
+static void test_keys_of_a_disc(void **state)
+{
+  (void)state;
+  static const char cone[] = "@/examples/devices/cone-mass.yaml --json --set compute.";
+  static const char *const keys[][2] = {{"solid.path", "yes"},
+                                        {"solid.buckling_branch", "fibres"},
+                                        {"solid.tip_refinement", "2"},
+                                        {"path.max_stretch", "2"}};
+  for (size_t i = 0; i < 4; i++) {
+    char arguments[200], message[200];
+    snprintf(message, sizeof message,
+             "--set compute.%s: error: model 3d: compute.%s is of a disc in a frame", keys[i][0],
+             keys[i][0]);
+    snprintf(arguments, sizeof arguments, "check %s%s=%s", cone, keys[i][0], keys[i][1]);
+    command_expect(arguments, 3, message);
+    snprintf(arguments, sizeof arguments, "run %s%s=%s", cone, keys[i][0], keys[i][1]);
+    command_expect(arguments, 3, message);
+  }
+  command_expect("check @/examples/devices/cone-mass.yaml --set compute.solid.path=no", 0, "");
+}
+
 static void test_materials(void **state)
 {
   (void)state;
@@ -313,6 +335,7 @@ int main(void)
       cmocka_unit_test(test_schema),
       cmocka_unit_test(test_reference_is_that_of_the_table),
       cmocka_unit_test(test_layout),
+      cmocka_unit_test(test_keys_of_a_disc),
       cmocka_unit_test(test_materials),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

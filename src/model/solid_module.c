@@ -120,10 +120,42 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
   return DEA_OK;
 }
 
-/* Of devices of any layout: the monitor that a mesh is refined for is there. */
+/* Keys that a design with `plies` may have and that only a disc in a frame has a use for. */
+static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_design *design)
+{
+  const struct dea_choice *path = &design->compute.solid.path;
+  const struct dea_choice *side = &design->compute.solid.buckling_branch;
+  const struct dea_quantity *tips = &design->compute.solid.tip_refinement;
+  const struct dea_quantity *end = &design->compute.path_max_stretch;
+  const struct {
+    bool asked;
+    const struct dea_location *where;
+    const char *key;
+  } keys[] = {
+      {path->value != 0, &path->location, "solid.path"},
+      {side->value != DEA_BRANCH_ANY, &side->location, "solid.buckling_branch"},
+      {tips->origin == DEA_GIVEN || tips->origin == DEA_OVERRIDE, &tips->location,
+       "solid.tip_refinement"},
+      {end->origin == DEA_GIVEN || end->origin == DEA_OVERRIDE, &end->location, "path.max_stretch"},
+  };
+  dea_status first = DEA_OK;
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+    char message[160];
+    snprintf(message, sizeof message,
+             "model 3d: compute.%s is of a disc in a frame, not of devices made of `plies`",
+             keys[i].key);
+    dea_status status = keys[i].asked ? refuse(ctx, keys[i].where, message) : DEA_OK;
+    first = first == DEA_OK ? status : first;
+  }
+  return first;
+}
+
+/* Of devices of any layout: no key of a disc, and the monitor that a mesh is refined for is there.
+ */
 static dea_status check_layout(struct dea_context *ctx, const struct dea_design *design,
                                const struct dea_device *device)
 {
+  DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
   const struct dea_layout *l = device->layout;
   const char *name = design->compute.solid.adapt.monitor.text;
   for (size_t i = 0; i < l->monitor_count; i++) {
