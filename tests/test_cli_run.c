@@ -302,7 +302,7 @@ static void test_models_that_cannot(void **state)
        "no study 'convergence' of model lumped or axisymmetric, which know no mesh to refine"},
       {"plain-disc.yaml -m lumped --study load-line", 2, "no load line of this actuator\n"},
       {"plain-disc.yaml -m 3d --study path", 2, "no path without compute.solid.path; there is"},
-      {"devices/cone-mass.yaml -m lumped", 3, "knows only a disc in a round frame"},
+      {"devices/cone-mass.yaml -m lumped", 3, "this needs a disc in a round frame"},
   };
   char path[600];
   snprintf(path, sizeof path, "%s/cannot", command_folder);

@@ -36,11 +36,8 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
 static dea_status check_model(struct dea_context *ctx, const struct dea_model_type *type,
                               const struct dea_result *result)
 {
-  if (result->device->general && type->of_layouts == NULL) {
-    return dea_fail(ctx, DEA_E_DESIGN,
-                    "the model '%s' knows only a disc in a round frame; a design with 'plies' is "
-                    "computed by 3d",
-                    type->name);
+  if (type->of_layouts == NULL) {
+    DEA_TRY(ctx, dea_device_check(ctx, result->device));
   }
   DEA_TRY(ctx, dea_model_check(ctx, type, result->design, result->device));
   return DEA_OK;
