@@ -322,6 +322,23 @@ static void test_models_that_cannot(void **state)
                  0, "model axisymmetric knows no load line of this actuator");
 }
 
+/* A figure that a run has nothing for is an error, and a quantity that is none names those that
+ * are.
+ */
+static void test_nothing_to_draw(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml -m lumped --no-figures -o bare"), 0);
+  command_expect("plot bare --figure map", 2, "nothing to show in figure 'map'");
+  assert_contains(command_err, "nothing is drawn");
+  assert_null(strstr(command_err, "figures are in"));
+  command_expect("plot bare --figure map --figure stretch", 0, "figures are in bare/figures");
+  assert_contains(command_err, "nothing to show in figure 'map'");
+  command_expect("compare bare bare --quantity foo", 2,
+                 "'foo' is not a quantity; there are voltage_V");
+  command_expect("compare bare bare --quantity centre_z", 2, "did you mean 'centre_z_m'?");
+}
+
 static void test_unknown_model(void **state)
 {
   (void)state;
@@ -531,6 +548,7 @@ int main(void)
       cmocka_unit_test(test_path_alone),
       cmocka_unit_test(test_operating_map),
       cmocka_unit_test(test_models_that_cannot),
+      cmocka_unit_test(test_nothing_to_draw),
       cmocka_unit_test(test_unknown_model),
       cmocka_unit_test(test_usage_errors),
       cmocka_unit_test(test_missing_file),

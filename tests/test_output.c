@@ -306,8 +306,8 @@ static char *read_all(const char *path)
 static void test_figures_are_the_same_every_time(void **state)
 {
   (void)state;
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &svg_only), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("two"), &svg_only), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &svg_only, NULL), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("two"), &svg_only, NULL), DEA_OK);
   static const char *const names[] = {"displacement", "stretch", "field",
                                       "tension",      "force",   "profile"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -340,7 +340,7 @@ static void test_script_runs_by_itself_in_its_folder(void **state)
   struct dea_figure_options options = svg_only;
   options.names = names;
   options.name_count = 1;
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options, NULL), DEA_OK);
   char *drawn = read_all(in_folder("one/stretch.svg"));
   assert_int_equal(unlink(in_folder("one/stretch.svg")), 0);
   char command[600]; // in a locale of plain ASCII gnuplot warns that it has no degree sign
@@ -368,11 +368,11 @@ static void test_figure_without_content_is_skipped(void **state)
   struct dea_figure_options options = {.names = wanted, .name_count = 1};
   assert_int_equal(dea_result_create(ctx, NULL, NULL, &bare), DEA_OK);
   assert_int_equal(fake_add_model(ctx, bare, "axisymmetric", 1.0, false), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, bare, in_folder("f"), &options), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, bare, in_folder("f"), &options, NULL), DEA_OK);
   assert_false(dea_path_exists(in_folder("f/force.gp")));
   assert_int_equal(dea_finding_count(ctx, DEA_NOTE), 1);
   options.name_count = 2;
-  assert_int_equal(dea_figures_write(ctx, bare, in_folder("f"), &options), DEA_E_ARGUMENT);
+  assert_int_equal(dea_figures_write(ctx, bare, in_folder("f"), &options, NULL), DEA_E_ARGUMENT);
   assert_string_equal(dea_context_message(ctx),
                       "there is no figure 'strech'; did you mean 'stretch'?");
   dea_result_destroy(ctx, bare);
@@ -405,7 +405,7 @@ static void test_gnuplot_that_fails_is_reported(void **state)
   snprintf(path, sizeof path, "%s", getenv("PATH"));
   snprintf(with, sizeof with, "%s:%s", folder, path);
   setenv("PATH", with, 1);
-  dea_status status = dea_figures_write(ctx, result, in_folder("f"), &svg_only);
+  dea_status status = dea_figures_write(ctx, result, in_folder("f"), &svg_only, NULL);
   setenv("PATH", path, 1);
   assert_int_equal(status, DEA_E_TOOL);
   assert_non_null(strstr(dea_context_message(ctx), "line 3: no such thing"));

@@ -1,6 +1,7 @@
 /* What a run with fields leaves: surfaces in results.h5, and drawings of them. */
 // ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
+#include "design_text.h"
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "fake_surface.h"
@@ -220,9 +221,9 @@ static void test_figures(void **state)
   struct dea_figure_options animation = options;
   animation.names = &names[3];
   animation.name_count = 1;
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &options), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &options, NULL), DEA_OK);
   assert_false(there("figures/animation.gp")); // on request only
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &animation), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &animation, NULL), DEA_OK);
   static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
   for (size_t i = 0; i < 4; i++) {
     for (size_t k = 0; k < 6; k++) {
@@ -240,6 +241,7 @@ static void test_figures(void **state)
   assert_non_null(fgets(text, sizeof text, script)); // the nearest voltage, and how much z is drawn
   assert_non_null(strstr(text, "at 1 kV, z drawn 2000 times larger"));
   fclose(script);
+  assert_non_null(find_finding(ctx, DEA_NOTE, "figure 'surface' shows 1 kV"));
   dea_result_destroy(ctx, result);
 }
 
@@ -252,10 +254,10 @@ static void test_figures_of_little(void **state)
   struct dea_result *result;
   design = fake_design();
   assert_int_equal(dea_result_create(ctx, &design, NULL, &result), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("none"), &options), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("none"), &options, NULL), DEA_OK);
   assert_false(there("none/map.gp"));
   assert_int_equal(dea_result_add_surface(ctx, result, "fake", 0, 0, fake_surface(ctx, 0)), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &options, NULL), DEA_OK);
   assert_true(there("one/map.svg") && there("one/surface.svg") && there("one/section.svg"));
   assert_false(there("one/animation.gp"));
   dea_result_destroy(ctx, result);
@@ -280,7 +282,7 @@ static void test_figures_in_the_plane(void **state)
     most_um = fmax(most_um, 1e6 * fabs(moved->values[3 * i]));
   }
   assert_int_equal(dea_result_add_surface(ctx, result, "fake", 1, 0, mesh), DEA_OK);
-  assert_int_equal(dea_figures_write(ctx, result, in_folder("plane"), &options), DEA_OK);
+  assert_int_equal(dea_figures_write(ctx, result, in_folder("plane"), &options, NULL), DEA_OK);
   for (size_t k = 0; k < 2; k++) {
     char name[64], text[8192];
     snprintf(name, sizeof name, "plane/%s.gp", names[k]);
@@ -320,7 +322,7 @@ static void draw(struct dea_context *failing)
   struct dea_result *result = NULL;
   dea_status status = make_result(failing, &result);
   if (status == DEA_OK) {
-    status = dea_figures_write(failing, result, in_folder("memory"), &options);
+    status = dea_figures_write(failing, result, in_folder("memory"), &options, NULL);
   }
   failing_check(failing, status);
   dea_result_destroy(failing, result);

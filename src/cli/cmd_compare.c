@@ -46,7 +46,10 @@ static int take_quantity(struct dea_cli *cli, const struct dea_command *command,
   struct columns *columns = target;
   int column = dea_point_column_find(text);
   (void)option;
-  if (column >= 0 && columns->count < QUANTITIES_MAX) {
+  if (column >= 0) {
+    if (columns->count == QUANTITIES_MAX) {
+      return cli_usage_error(cli, command, "too many quantities");
+    }
     columns->at[columns->count++] = column;
     return 0;
   }
@@ -55,9 +58,16 @@ static int take_quantity(struct dea_cli *cli, const struct dea_command *command,
     keys[c] = dea_point_columns[c].key;
   }
   const char *nearest = dea_nearest_name(text, keys, DEA_LOAD_POINT_COLUMNS);
-  return cli_usage_error(cli, command, "'%s' is not a quantity; %s%s%s", text,
-                         nearest != NULL ? "did you mean '" : "see 'dea compare --help'",
-                         nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+  struct dea_text all = {.ctx = cli->ctx};
+  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && nearest == NULL; c++) {
+    dea_text_add(&all, "%s%s", c > 0 ? ", " : "", keys[c]);
+  }
+  int code =
+      cli_usage_error(cli, command, "'%s' is not a quantity; %s%s%s", text,
+                      nearest != NULL ? "did you mean '" : "there are ",
+                      nearest != NULL ? nearest : dea_text_get(&all), nearest != NULL ? "'?" : "");
+  dea_text_free(&all);
+  return code;
 }
 
 /* "5%" or "0.05". */

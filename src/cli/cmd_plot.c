@@ -41,6 +41,7 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_run *data = NULL;
+  size_t drawn = 0;
   char *folder = request->output != NULL ? NULL : figure_folder(cli->ctx, request->run);
   const char *target = request->output != NULL ? request->output : folder;
   dea_status status = target == NULL ? DEA_E_MEMORY : dea_run_read(cli->ctx, request->run, &data);
@@ -51,7 +52,12 @@ static int run(struct dea_cli *cli, void *user)
                                          .name_count = request->names.count,
                                          .format = request->format,
                                          .voltage_V = request->voltage_V};
-    status = dea_figures_write(cli->ctx, data->result, target, &options);
+    status = dea_figures_write(cli->ctx, data->result, target, &options, &drawn);
+  }
+  if (status == DEA_OK && drawn == 0) {
+    status =
+        dea_fail(cli->ctx, DEA_E_ARGUMENT, "nothing is drawn: the run has nothing to show in %s",
+                 request->names.count > 0 ? "what was asked for" : "any figure");
   }
   if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "figures are in %s\n", target);

@@ -44,6 +44,19 @@ const struct dea_surface_record *dea_surface_choose(const struct dea_result *res
   return best;
 }
 
+dea_status dea_surface_say(struct dea_context *ctx, const char *figure,
+                           const struct dea_surface_record *record, double voltage_V)
+{
+  const double rounding = 1e-9; // relative, of voltages in steps
+  if (!(fabs(record->voltage_V - voltage_V) > rounding * fabs(voltage_V))) { // or NAN
+    return DEA_OK;
+  }
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
+                         "figure '%s' shows %.6g kV: of those that the run has kept the nearest to "
+                         "%.6g kV",
+                         figure, 1e-3 * record->voltage_V, 1e-3 * voltage_V);
+}
+
 size_t dea_surface_spread(const struct dea_result *result, size_t max,
                           const struct dea_surface_record *out[])
 {

@@ -103,7 +103,8 @@ static dea_status write_one(struct dea_context *ctx, const struct dea_result *re
 }
 
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
-                             const char *directory, const struct dea_figure_options *options)
+                             const char *directory, const struct dea_figure_options *options,
+                             size_t *drawn)
 {
   const char *names[DEA_FIGURES_MAX];
   size_t count = 0;
@@ -112,13 +113,16 @@ dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *r
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   const struct dea_figure *figure;
   for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && count < DEA_FIGURES_MAX; f++) {
-    bool drawn = false;
+    bool shows = false;
     if (is_wanted(options, figure)) {
-      DEA_TRY(ctx, write_one(ctx, result, directory, options, figure, &drawn));
+      DEA_TRY(ctx, write_one(ctx, result, directory, options, figure, &shows));
     }
-    if (drawn) {
+    if (shows) {
       names[count++] = figure->name;
     }
+  }
+  if (drawn != NULL) {
+    *drawn = count;
   }
   if (count == 0 && !was_there) {
     rmdir(directory); // one with something in it stays

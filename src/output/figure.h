@@ -24,8 +24,10 @@ struct dea_figure_options {
 };
 
 /* Writes NAME.gp, NAME.dat and the pictures of every figure that has something to show. A figure
- * asked for by name that has nothing to show gives a note; no folder is left where none has. */
+ * asked for by name that has nothing to show gives a note; no folder is left where none has.
+ * drawn: their number; NULL where it is not wanted. */
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
-                             const char *directory, const struct dea_figure_options *options);
+                             const char *directory, const struct dea_figure_options *options,
+                             size_t *drawn);
 
 #endif

@@ -165,6 +165,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   if (!*drawn) {
     return DEA_OK;
   }
+  DEA_TRY(ctx, dea_surface_say(ctx, name, record, options->voltage_V));
   dea_status status = make_maps(ctx, result, record, &maps);
   if (status == DEA_OK) {
     status = write_maps(ctx, &maps, &options->format, directory);

@@ -143,7 +143,7 @@ static dea_status write_figures(struct dea_context *ctx, const struct dea_result
   if (folder == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = dea_figures_write(ctx, result, folder, &options);
+  dea_status status = dea_figures_write(ctx, result, folder, &options, NULL);
   dea_free(ctx, folder);
   return status;
 }
