@@ -305,6 +305,26 @@ static void test_keys_of_a_disc(void **state)
   command_expect("check @/examples/devices/cone-mass.yaml --set compute.solid.path=no", 0, "");
 }
 
+/* A module that this build has, but not its folders, is no matter of packages. */
+static void test_doctor_without_modules(void **state)
+{
+  (void)state;
+#if defined __SANITIZE_ADDRESS__ // whose library wants to be the first
+  skip();
+#endif
+  assert_int_equal(command_run("doctor"), 0);
+  if (strstr(command_out, "ok       booleans of regions") == NULL) {
+    skip(); // it was not configured
+  }
+  command_before = "LD_PRELOAD='" DEA_FAKE_FOLDER "/fake_access.so'";
+  int code = command_run("doctor");
+  command_before = "";
+  assert_int_equal(code, 0);
+  assert_contains(command_out, "missing  booleans of regions    not found\n");
+  assert_contains(command_out, "dea_geos_module.so belongs to this build");
+  assert_null(strstr(command_out, "install libgeos-dev"));
+}
+
 static void test_materials(void **state)
 {
   (void)state;
@@ -336,6 +356,7 @@ int main(void)
       cmocka_unit_test(test_reference_is_that_of_the_table),
       cmocka_unit_test(test_layout),
       cmocka_unit_test(test_keys_of_a_disc),
+      cmocka_unit_test(test_doctor_without_modules),
       cmocka_unit_test(test_materials),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

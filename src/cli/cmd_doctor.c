@@ -141,29 +141,50 @@ static void check_terminal(struct report *report, const char *terminal)
       "(fonts-dejavu-core)");
 }
 
+/* A module: of this build where its packages were there when that was configured. */
+static void say_module(struct report *report, const char *what, const char *path, const char *file,
+                       const char *packages, const char *without)
+{
+  char advice[400];
+  const bool of_build = strstr(DEA_MODULES_OF_BUILD, file) != NULL;
+  if (of_build) {
+    snprintf(advice, sizeof advice,
+             "%s.so belongs to this build, but is in none of its folders: build all of it, or "
+             "install it again; without it %s",
+             file, without);
+  } else {
+    snprintf(advice, sizeof advice, "install %s, and build again; without it %s", packages,
+             without);
+  }
+  say(report, WISHED, path != NULL, what,
+      path != NULL ? path
+      : of_build   ? "not found"
+                   : "not built",
+      advice);
+}
+
 static void check_engine(struct report *report)
 {
   char path[4096];
   bool ok = dea_solid_module_find(path, sizeof path);
-  say(report, WISHED, ok, "3D engine", ok ? path : "not built",
-      "install libpetsc-real-dev and libslepc-real-dev, and build again; without it there is no "
-      "model 3d");
+  say_module(report, "3D engine", ok ? path : NULL, "dea_solid_module",
+             "libpetsc-real-dev and libslepc-real-dev", "there is no model 3d");
 }
 
 static void check_cairo(struct report *report)
 {
   char path[4096];
   bool ok = dea_canvas_find(path, sizeof path);
-  say(report, WISHED, ok, "drawings of dea fab", ok ? path : "not built",
-      "install libcairo2-dev, and build again; without it dea fab writes DXF and SVG only");
+  say_module(report, "drawings of dea fab", ok ? path : NULL, "dea_cairo_module", "libcairo2-dev",
+             "dea fab writes DXF and SVG only");
 }
 
 static void check_geos(struct report *report)
 {
   char path[4096];
   bool ok = dea_boolean_find(path, sizeof path);
-  say(report, WISHED, ok, "booleans of regions", ok ? path : "not built",
-      "install libgeos-dev, and build again; without it regions are not united or cut");
+  say_module(report, "booleans of regions", ok ? path : NULL, "dea_geos_module", "libgeos-dev",
+             "regions are not united or cut");
 }
 
 static void check_nlopt(struct report *report)
@@ -177,8 +198,8 @@ static void check_matio(struct report *report)
 {
   char path[4096];
   bool ok = dea_mat_find(path, sizeof path);
-  say(report, WISHED, ok, ".mat files", ok ? path : "not built",
-      "install libmatio-dev, and build again; without it files are exchanged as CSV");
+  say_module(report, ".mat files", ok ? path : NULL, "dea_matio_module", "libmatio-dev",
+             "files are exchanged as CSV");
 }
 
 static void check_explorer(struct report *report)
