@@ -60,20 +60,25 @@ need() {
   } || die "could not install the packages; as root: apt-get install --no-install-recommends$missing"
 }
 
-# build_release FOLDER [CMAKE OPTION...]: an optimised build there. What runs without tests has a
-# folder of its own: the same one would leave old test programs behind that still pass.
-build_release() {
+# configure_release FOLDER [CMAKE OPTION...]: an optimised build there, still to be made; it is $build.
+configure_release() {
   build=$1
   shift
   cmake -G Ninja -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release "$@" >&2
+}
+
+# build_release FOLDER [CMAKE OPTION...]: an optimised build there. What runs without tests has a
+# folder of its own: the same one would leave old test programs behind that still pass.
+build_release() {
+  configure_release "$@"
   cmake --build "$build" >&2
 }
 
 # build_program: the command and what it opens, optimised, without tests, benchmarks and verification; it is $dea.
 build_program() {
-  # shellcheck disable=SC2034 # for the caller
-  dea=$root/build/release/src/dea
   say "building (build/release/)"
-  cmake -G Ninja -S "$root" -B "$root/build/release" -DCMAKE_BUILD_TYPE=Release -DDEA_BUILD_TESTS=OFF >&2
-  cmake --build "$root/build/release" --target dea >&2
+  configure_release "$root/build/release" -DDEA_BUILD_TESTS=OFF
+  cmake --build "$build" --target dea >&2
+  # shellcheck disable=SC2034 # for the caller
+  dea=$build/src/dea
 }

@@ -91,6 +91,23 @@ static const struct dea_model_type spring = {.name = "spring",
 
 extern const struct dea_study dea_study_force;
 
+static void make(const struct dea_override *sets, size_t set_count, struct dea_design **design,
+                 struct dea_device **device, struct dea_result **result)
+{
+  assert_int_equal(dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets,
+                                          set_count, design),
+                   DEA_OK);
+  assert_int_equal(dea_device_build(ctx, *design, device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, *design, *device, result), DEA_OK);
+}
+
+static void end(struct dea_design *design, struct dea_device *device, struct dea_result *result)
+{
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
 static void test_depths_and_preloads(void **state)
 {
   (void)state;
@@ -101,11 +118,7 @@ static void test_depths_and_preloads(void **state)
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  make(sets, 2, &design, &device, &result);
   assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_non_null(curve);
@@ -136,9 +149,7 @@ static void test_depths_and_preloads(void **state)
     }
   }
   dea_plot_destroy(ctx, plot);
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
+  end(design, device, result);
 }
 
 /* A tip that has passed what it was pressed against, and a model that knows none. */
@@ -154,11 +165,7 @@ static void test_nothing_touched(void **state)
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  make(sets, 2, &design, &device, &result);
   passed_m = 2e-3;
   assert_int_equal(dea_study_run(ctx, &spring, &name, 1, result), DEA_OK);
   passed_m = 1;
@@ -168,9 +175,7 @@ static void test_nothing_touched(void **state)
   assert_non_null(
       find_finding(ctx, DEA_NOTE, "model bare knows no tip that is pressed in: no study 'force'"));
   assert_null(dea_result_find(result, "bare", "force"));
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
+  end(design, device, result);
 }
 
 /* Without the section nothing is computed. */
@@ -180,16 +185,10 @@ static void test_nothing_asked(void **state)
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), NULL, 0, &design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  make(NULL, 0, &design, &device, &result);
   assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
   assert_null(dea_result_find(result, "spring", "force"));
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
+  end(design, device, result);
 }
 
 /* A tip goes on from the depth before where the next one is deeper; the numbers are those of a
@@ -295,21 +294,9 @@ static dea_status run_film(const char *const settings[3], struct dea_design **de
   type.solve = film_solve;
   film.solves = 0;
   jumped = false;
-  assert_int_equal(dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets,
-                                          settings[2] != NULL ? 3 : 2, design),
-                   DEA_OK);
-  assert_int_equal(dea_device_build(ctx, *design, device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, *design, *device, result), DEA_OK);
+  make(sets, settings[2] != NULL ? 3 : 2, design, device, result);
   (*result)->processes = film.processes;
   return dea_study_run(ctx, &type, &name, 1, *result);
-}
-
-static void end_film(struct dea_design *design, struct dea_device *device,
-                     struct dea_result *result)
-{
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
 }
 
 #define TO_8_KV "{from: 0 kV, to: 8 kV, step: 0.1 kV}"
@@ -357,7 +344,7 @@ static void test_interpolated(void **state)
   assert_close(dea_result_table_number(table, 0, "first_force_N", 0), taut_force(0), 1e-14, 0);
   assert_close(dea_result_table_number(table, 0, "last_force_N", 0), taut_force(8000) - 0.02, 1e-14,
                0);
-  end_film(design, device, result);
+  end(design, device, result);
 }
 
 /* With a tolerance of 0, with bands, of few voltages, of falling ones: every one is computed. */
@@ -384,7 +371,7 @@ static void test_all_computed(void **state)
     for (size_t i = 0; i < curve->count; i++) {
       assert_false(dea_load_point_interpolated(&curve->points[i]));
     }
-    end_film(design, device, result);
+    end(design, device, result);
   }
 }
 
@@ -407,7 +394,7 @@ static void test_back(void **state)
     assert_close(curve->points[i].force_N, taut_force(V) - (V > 5200 ? 0.02 : 0), 1e-14, 0);
   }
   assert_true(dea_load_point_interpolated(&curve->points[3]));
-  end_film(design, device, result);
+  end(design, device, result);
 }
 
 /* A line that stops has its points up to there, and says why. */
@@ -433,7 +420,7 @@ static void test_stops(void **state)
       assert_close(curve->points[n].force_N, taut_force(V) - (V > jump_V ? 0.02 : 0), 1e-3, 0);
     }
     assert_true(counts[i] == 0 || dea_load_point_interpolated(&curve->points[3]));
-    end_film(design, device, result);
+    end(design, device, result);
     dea_context_clear(ctx);
   }
 }
@@ -453,7 +440,7 @@ static void test_hidden(void **state)
   for (size_t i = 0; i < 81; i++) {
     assert_false(dea_load_point_interpolated(&curve->points[i]));
   }
-  end_film(design, device, result);
+  end(design, device, result);
 }
 
 static bool interrupted(void *user)
@@ -481,7 +468,7 @@ static void test_interrupted(void **state)
     assert_true(i == 0 || curve->points[i].voltage_V > curve->points[i - 1].voltage_V);
     assert_true(curve->points[i].force_N > 0);
   }
-  end_film(design, device, result);
+  end(design, device, result);
   dea_context_clear(ctx);
 }
 
@@ -523,7 +510,7 @@ static void test_beside(void **state)
       }
     }
     for (int i = 0; i < 3; i++) {
-      end_film(designs[i], devices[i], results[i]);
+      end(designs[i], devices[i], results[i]);
     }
     dea_context_clear(ctx);
   }
