@@ -172,6 +172,13 @@ static void test_cut_off(void **state)
   copy_as("five.mat", "more.mat", (size_t)s.st_size, "12345678");
   assert_int_equal(read_back("more.mat", &columns), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "is cut off or damaged"));
+  // of a version that there is not: libmatio would read it as version 4, and take text for lengths
+  FILE *other = fopen(in_folder("five.mat"), "r+b");
+  assert_true(other != NULL && fseek(other, 124, SEEK_SET) == 0);
+  assert_int_equal(fwrite("\0\3", 1, 2, other), 2);
+  fclose(other);
+  assert_int_equal(read_back("five.mat", &columns), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "the variable at byte 0 is none"));
   copy_as("five.mat", "first.mat", 128, ""); // nothing but the head
   assert_int_not_equal(read_back("first.mat", &columns), DEA_OK);
 }

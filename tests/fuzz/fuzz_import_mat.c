@@ -2,7 +2,10 @@
 #define _GNU_SOURCE // memfd_create
 #include "fuzz_import.h"
 
+#include "lab/import/mat.h"
+
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -15,6 +18,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     return 0;
   }
   if (file < 0) {
+    char module[4096];
+    if (!dea_mat_find(module, sizeof module)) {
+      fprintf(stderr, "what reads .mat files was not built: nothing would be tried\n");
+      exit(1);
+    }
     file = memfd_create("fuzz.mat", 0);
     snprintf(name, sizeof name, "/proc/self/fd/%d", file);
   }

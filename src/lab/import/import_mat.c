@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { HEADER_SIZE = 128, TAG_SIZE = 8, MATRIX = 14, COMPRESSED = 15, OLD_HEADER_SIZE = 20 };
+enum { VERSION_5 = 0x100, VERSION_73 = 0x200 }; // as they stand in the file
 
 /* Version 5 and 7.3 begin with 116 bytes of text that say so, and a version and the mark "IM" or
  * "MI" at byte 124. Version 4 has no mark: its name decides. */
@@ -97,10 +98,11 @@ static dea_status check_file(struct dea_context *ctx, const char *file)
   size_t n = fread(head, 1, HEADER_SIZE, stream);
   bool big = n == HEADER_SIZE && memcmp(head + 126, "MI", 2) == 0;
   bool marked = big || (n == HEADER_SIZE && memcmp(head + 126, "IM", 2) == 0);
-  if (!marked) {
-    status = check_old(ctx, file, stream);
-  } else if (head[big ? 124 : 125] == 1) {
+  unsigned version = marked ? head[big ? 124 : 125] * 256U + head[big ? 125 : 124] : 0;
+  if (version == VERSION_5) {
     status = check_variables(ctx, file, stream, big);
+  } else if (version != VERSION_73) { // libmatio takes it for version 4, whatever its mark
+    status = check_old(ctx, file, stream);
   }
   fclose(stream);
   return status;

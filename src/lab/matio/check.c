@@ -247,7 +247,8 @@ dea_status dea_matio_check(struct dea_context *ctx, const char *file)
   uint64_t at = HEADER_SIZE;
   dea_status status = DEA_OK;
   // that each variable lies within the file was looked at before
-  while (marked && bytes[big ? 124 : 125] == 1 && status == DEA_OK) {
+  bool five = marked && bytes[big ? 124 : 125] == 1 && bytes[big ? 125 : 124] == 0;
+  while (five && status == DEA_OK) {
     unsigned char tag[TAG_SIZE];
     if (fseek(stream, (long)at, SEEK_SET) != 0 || fread(tag, 1, TAG_SIZE, stream) != TAG_SIZE) {
       break;
