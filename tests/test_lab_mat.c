@@ -5,6 +5,7 @@
 #include "testing.h"
 
 #include <string.h>
+#include <unistd.h>
 
 enum { COUNT = 1000 };
 
@@ -91,17 +92,22 @@ static void test_no_place(void **state)
   }
 }
 
-static dea_status read_back(const char *name, size_t *columns)
+static dea_status read_file(const char *file, size_t *columns)
 {
   struct dea_table *table;
   dea_finding_clear(ctx);
   dea_context_clear(ctx);
-  dea_status status = dea_table_read(ctx, in_folder(name), NULL, &table);
+  dea_status status = dea_table_read(ctx, file, NULL, &table);
   *columns = status == DEA_OK ? table->column_count : 0;
   if (status == DEA_OK) {
     dea_table_destroy(ctx, table);
   }
   return status;
+}
+
+static dea_status read_back(const char *name, size_t *columns)
+{
+  return read_file(in_folder(name), columns);
 }
 
 /* The first `most` bytes of a file, and one more where `more` says so, under another name. */
@@ -172,15 +178,24 @@ static void test_cut_off(void **state)
   copy_as("five.mat", "more.mat", (size_t)s.st_size, "12345678");
   assert_int_equal(read_back("more.mat", &columns), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "is cut off or damaged"));
-  // of a version that there is not: libmatio would read it as version 4, and take text for lengths
-  FILE *other = fopen(in_folder("five.mat"), "r+b");
-  assert_true(other != NULL && fseek(other, 124, SEEK_SET) == 0);
-  assert_int_equal(fwrite("\0\3", 1, 2, other), 2);
-  fclose(other);
-  assert_int_equal(read_back("five.mat", &columns), DEA_E_IO);
-  assert_non_null(strstr(dea_context_message(ctx), "the variable at byte 0 is none"));
   copy_as("five.mat", "first.mat", 128, ""); // nothing but the head
   assert_int_not_equal(read_back("first.mat", &columns), DEA_OK);
+}
+
+/* Files that made libmatio take gigabytes of memory: each is refused before. */
+static void test_claims(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"version", "order", "opaque", "sparse", "sparse-alone"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    char file[512];
+    size_t columns;
+    snprintf(file, sizeof file, "%s/tests/fuzz/seeds/import_mat/claims-%s.mat", DEA_SOURCE_DIR,
+             names[i]);
+    assert_int_equal(access(file, R_OK), 0);
+    assert_int_equal(read_file(file, &columns), DEA_E_IO);
+    assert_non_null(strstr(dea_context_message(ctx), "damaged"));
+  }
 }
 
 int main(void)
@@ -192,6 +207,7 @@ int main(void)
       cmocka_unit_test(test_too_large),
       cmocka_unit_test(test_recognised),
       cmocka_unit_test(test_cut_off),
+      cmocka_unit_test(test_claims),
       cmocka_unit_test(test_no_place),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -55,8 +55,8 @@ static dea_status check_variables(struct dea_context *ctx, const char *file, FIL
 }
 
 /* Version 4: headers of five integers (type, rows, columns, complex, length of the name), the name,
- * the values. The type is MOPT in decimal: byte order, nothing, form of a number, kind of matrix.
- */
+ * the values. The type is MOPT in decimal: byte order (1: the most significant byte first, as the
+ * integers themselves), nothing, form of a number, kind of matrix. */
 static dea_status check_old(struct dea_context *ctx, const char *file, FILE *stream)
 {
   static const uint64_t sizes[] = {8, 4, 4, 2, 2, 1};
@@ -71,10 +71,10 @@ static dea_status check_old(struct dea_context *ctx, const char *file, FILE *str
       return damaged(ctx, file, at, false);
     }
     bool big = integer(head, false) > 4052;
-    uint32_t type = integer(head, big) % 1000, form = type / 10;
+    uint32_t order = integer(head, big) / 1000, type = integer(head, big) % 1000, form = type / 10;
     uint64_t rows = integer(head + 4, big), columns = integer(head + 8, big);
     uint64_t complex = integer(head + 12, big), name = integer(head + 16, big);
-    if (integer(head, big) > 4052 || form > 5 || type % 10 > 2 || complex > 1 || name == 0) {
+    if (order != (big ? 1 : 0) || form > 5 || type % 10 > 2 || complex > 1 || name == 0) {
       return damaged(ctx, file, at, false);
     }
     // both below 2^32

@@ -20,6 +20,7 @@ enum {
   RANK_MAX = 32,
   CHUNK = 4096,
   RATIO_MAX = 1100, // what deflate makes smaller at best
+  COMPLEX = 0x800,  // among a matrix's flags
 };
 enum { TYPE_INT8 = 1, TYPE_INT32 = 5, TYPE_UINT32 = 6, TYPE_MATRIX = 14, TYPE_COMPRESSED = 15 };
 
@@ -125,6 +126,9 @@ static bool take_tag(struct source *source, uint64_t *room, struct tag *tag)
   tag->type = first;
   tag->length = integer(bytes + 4, source->big);
   tag->padded = ((uint64_t)tag->length + 7) / 8 * 8;
+  if (tag->type != TYPE_MATRIX && tag->padded > *room && tag->length <= *room) {
+    tag->padded = *room; // the last one may end without
+  }
   return tag->padded <= *room || tag->type == TYPE_MATRIX;
 }
 
@@ -169,6 +173,21 @@ static bool take_fields(struct source *source, uint64_t *room, uint64_t *count)
   return each > 0 || tag.length == 0;
 }
 
+/* The numbers of a matrix, at least so many elements: libmatio allocates what they say, and reads
+ * on in what follows the matrix where there are less. */
+static bool skip_numbers(struct source *source, uint64_t room, unsigned least)
+{
+  struct tag tag;
+  unsigned found = 0;
+  while (room >= TAG_SIZE) {
+    if (!take_tag(source, &room, &tag) || !skip_data(source, &room, &tag)) {
+      return false;
+    }
+    found++;
+  }
+  return found >= least && skip(source, room);
+}
+
 /* A matrix of `length` bytes, whose tag was taken. */
 static bool check_matrix(struct source *source, uint64_t length, int depth)
 {
@@ -182,9 +201,9 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
       tag.length != 8 || !take_data(source, &room, &tag, data, sizeof data)) {
     return false;
   }
-  unsigned class = integer(data, source->big) & 0xff;
-  if (class == MAT_C_OPAQUE) { // has no dimensions
-    return skip(source, room);
+  unsigned flags = integer(data, source->big), class = flags & 0xff;
+  if (class == MAT_C_OPAQUE) { // has no dimensions, but libmatio would read some
+    return take_tag(source, &room, &tag) && tag.type == TYPE_INT8 && skip(source, room);
   }
   if (!take_tag(source, &room, &tag) || tag.type != TYPE_INT32 || tag.length < 8 ||
       !take_data(source, &room, &tag, data, sizeof data)) {
@@ -208,7 +227,9 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
     return false;
   }
   if (!parts) {
-    return class != MAT_C_OBJECT && skip(source, room);
+    // rows and columns of a sparse one; real and imaginary part
+    unsigned least = (class == MAT_C_SPARSE ? 2U : 0U) + ((flags & COMPLEX) != 0 ? 2U : 1U);
+    return class != MAT_C_OBJECT && skip_numbers(source, room, count > 0 ? least : 0);
   }
   if (fields > 0 && count > room / TAG_SIZE / fields) {
     return false;
