@@ -40,9 +40,12 @@ void dea_lobatto_nodes(size_t order, double *x)
   for (size_t i = 1; i < order; i++) {
     double at = -cos(pi * (double)i / n);
     for (int k = 0; k < 10; k++) { // Newton on P', with (1 - x^2) P'' = 2 x P' - n (n + 1) P
-      double p, dp;
+      double p, dp, before = at;
       legendre(order, at, &p, &dp);
       at -= dp * (1 - at * at) / (2 * at * dp - n * (n + 1) * p);
+      if (at == before) {
+        break;
+      }
     }
     x[i] = at;
   }

@@ -27,15 +27,20 @@ static bool text_reserve(struct dea_text *text, size_t more)
 void dea_text_add(struct dea_text *text, const char *format, ...)
 {
   va_list args, again;
+  size_t room = text->room - text->length;
   va_start(args, format);
   va_copy(again, args);
-  int needed = vsnprintf(NULL, 0, format, args);
+  int needed = vsnprintf(room > 0 ? text->data + text->length : NULL, room, format, args);
   va_end(args);
   if (needed < 0) {
     text->failed = true;
+  } else if ((size_t)needed < room) {
+    text->length += (size_t)needed;
   } else if (text_reserve(text, (size_t)needed)) {
     vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
     text->length += (size_t)needed;
+  } else if (room > 0) { // what did not fit whole is not there
+    text->data[text->length] = '\0';
   }
   va_end(again);
 }

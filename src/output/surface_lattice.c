@@ -28,32 +28,49 @@ static dea_status check(struct dea_context *ctx, const struct dea_field_mesh *me
 
 /* ---- points ---- */
 
-/* An element of a copy, and a place in it: s along its first axis, t along the second, in [-1, 1].
- */
-static void evaluate(const struct dea_field_mesh *mesh, const struct dea_mesh_block *block,
-                     size_t element, const struct dea_copy *copy, double s, double t,
+/* An element of a copy. */
+struct element {
+  const struct dea_field_mesh *mesh;
+  const struct dea_copy *copy;
+  const double *u;  // displacement of the mesh's points
+  const int *nodes; // n x n
+  size_t n;
+  double places[DEA_MESH_ORDER_MAX + 1]; // of its nodes along an axis
+};
+
+static struct element element_at(const struct dea_field_mesh *mesh,
+                                 const struct dea_mesh_block *block, size_t number,
+                                 const struct dea_copy *copy)
+{
+  struct element out = {.mesh = mesh,
+                        .copy = copy,
+                        .u = displacement_of(mesh),
+                        .nodes = block->nodes + number * (size_t)dea_mesh_block_nodes(block),
+                        .n = (size_t)block->order + 1};
+  dea_lobatto_nodes(out.n - 1, out.places);
+  return out;
+}
+
+/* At a place in it: s along its first axis, t along the second, in [-1, 1]. */
+static void evaluate(const struct element *element, double s, double t,
                      double out[DEA_LATTICE_COLUMNS])
 {
-  const double *u = displacement_of(mesh);
-  const int *nodes = block->nodes + element * (size_t)dea_mesh_block_nodes(block);
-  double places[DEA_MESH_ORDER_MAX + 1], slope[DEA_MESH_ORDER_MAX + 1];
   double along[DEA_MESH_ORDER_MAX + 1], across[DEA_MESH_ORDER_MAX + 1];
-  double X[3] = {0}, v[3] = {0}, moved[3];
-  size_t n = (size_t)block->order + 1;
-  dea_lobatto_nodes(n - 1, places);
-  dea_lagrange(n, places, s, along, slope);
-  dea_lagrange(n, places, t, across, slope);
+  double slope[DEA_MESH_ORDER_MAX + 1], X[3] = {0}, v[3] = {0}, moved[3];
+  const size_t n = element->n;
+  dea_lagrange(n, element->places, s, along, slope);
+  dea_lagrange(n, element->places, t, across, slope);
   for (size_t k = 0; k < n * n; k++) {
     double share = along[k % n] * across[k / n];
     for (int i = 0; i < 3; i++) {
-      X[i] += share * mesh->X[3 * nodes[k] + i];
-      v[i] += share * u[3 * nodes[k] + i];
+      X[i] += share * element->mesh->X[3 * element->nodes[k] + i];
+      v[i] += share * element->u[3 * element->nodes[k] + i];
     }
   }
-  dea_copy_move(copy, X, moved);
+  dea_copy_move(element->copy, X, moved);
   out[DEA_LATTICE_X] = moved[0];
   out[DEA_LATTICE_Y] = moved[1];
-  dea_copy_move(copy, v, moved);
+  dea_copy_move(element->copy, v, moved);
   out[DEA_LATTICE_UX] = moved[0];
   out[DEA_LATTICE_UY] = moved[1];
   out[DEA_LATTICE_UZ] = moved[2];
@@ -110,15 +127,13 @@ static size_t choose_lattices(const struct dea_field_mesh *mesh, double piece_m,
 }
 
 /* Fills a patch and takes its extremes. */
-static void fill_patch(const struct dea_field_mesh *mesh, const struct dea_mesh_block *block,
-                       size_t element, const struct dea_copy *copy, struct dea_patch *patch,
+static void fill_patch(const struct element *element, struct dea_patch *patch,
                        struct dea_surface_lattice *out)
 {
   int row = patch->n + 1;
   for (int k = 0; k < row * (patch->m + 1); k++) {
     double *at = patch->at[k];
-    evaluate(mesh, block, element, copy, 2.0 * (k % row) / patch->n - 1,
-             2.0 * (k / row) / patch->m - 1, at);
+    evaluate(element, 2.0 * (k % row) / patch->n - 1, 2.0 * (k / row) / patch->m - 1, at);
     out->radius_m = fmax(out->radius_m, hypot(at[DEA_LATTICE_X], at[DEA_LATTICE_Y]));
     const double x_m[2] = {at[DEA_LATTICE_X], at[DEA_LATTICE_Y]};
     for (int i = 0; i < 2; i++) {
@@ -159,7 +174,8 @@ dea_status dea_surface_lattice_create(struct dea_context *ctx, const struct dea_
         *patch = out->patches[(out->patch_count - 1) % cells];
         patch->at = to;
         to += (patch->n + 1) * (patch->m + 1);
-        fill_patch(mesh, &mesh->blocks[b], e, &copy, patch, out);
+        const struct element element = element_at(mesh, &mesh->blocks[b], e, &copy);
+        fill_patch(&element, patch, out);
       }
     }
   }
@@ -242,13 +258,14 @@ static bool is_outline(const struct dea_field_mesh *mesh, const struct edge *edg
 static void draw_edge(const struct dea_field_mesh *mesh, const struct edge *edge,
                       const struct dea_copy *copy, struct dea_outline *out)
 {
+  const struct element element = element_at(mesh, edge->block, edge->element, copy);
   int pieces = OUTLINE_PIECES * edge->block->order;
   out->count = pieces + 1;
   for (int k = 0; k <= pieces; k++) {
     double along = 2.0 * k / pieces - 1;
     double s = edge->side == 1 ? 1 : edge->side == 3 ? -1 : along;
     double t = edge->side == 0 ? -1 : edge->side == 2 ? 1 : along;
-    evaluate(mesh, edge->block, edge->element, copy, s, t, out->at[k]);
+    evaluate(&element, s, t, out->at[k]);
   }
 }
 

@@ -118,12 +118,12 @@ void dea_view3d_add_settings(struct dea_text *gp, const struct dea_view3d *space
 }
 
 /* One part of the command: the data sets from..to (to < from: up to the last), and how they look.
- */
+ * gnuplot reads columns in half the time of expressions. */
 static void add_part(struct dea_text *gp, const struct dea_view3d *space, bool first, size_t from,
                      size_t to, const char *colour, const char *look)
 {
   const char *place =
-      space->flat ? "1:2:(0)"
+      space->flat ? "1:2:3"
                   : "(a($1,$2)):(b($1,$2,z($3,column(4+k)))):(depth($1,$2,z($3,column(4+k))))";
   dea_text_add(gp, "%s data index ", first ? "  splot" : ", \\\n   ");
   if (to == SIZE_MAX) {
@@ -131,7 +131,7 @@ static void add_part(struct dea_text *gp, const struct dea_view3d *space, bool f
   } else {
     dea_text_add(gp, "%zu:%zu", from, to);
   }
-  dea_text_add(gp, " using %s:(%s) with pm3d%s notitle", place, colour, look);
+  dea_text_add(gp, " using %s%s with pm3d%s notitle", place, colour, look);
 }
 
 void dea_view3d_add_margins(struct dea_text *gp, double words)
@@ -146,12 +146,12 @@ void dea_view3d_add_margins(struct dea_text *gp, double words)
 void dea_view3d_add_command(struct dea_text *gp, const struct dea_view3d *space)
 {
   size_t frame = space->frame_lines, lines = space->lines;
-  add_part(gp, space, true, lines, SIZE_MAX, "column(4+k)", "");
+  add_part(gp, space, true, lines, SIZE_MAX, ":4+k", "");
   if (frame > 0) {
-    add_part(gp, space, false, 0, frame - 1, "0", " fc rgb \"black\"");
+    add_part(gp, space, false, 0, frame - 1, "", " fc rgb \"black\"");
   }
   if (lines > frame) {
-    add_part(gp, space, false, frame, lines - 1, "0", " fc rgb \"#404040\"");
+    add_part(gp, space, false, frame, lines - 1, "", " fc rgb \"#404040\"");
   }
   dea_text_add(gp, "\n");
 }
