@@ -188,6 +188,31 @@ static void test_pull_in_keeps_what_was_computed(void **state)
                   "axisymmetric: pull-in of a slack film: not predictive (pull-in at ");
 }
 
+/* Slopes at a voltage have the flags of the state there. */
+static void test_what_matters_has_flags(void **state)
+{
+  (void)state;
+  char bytes[COMMAND_TEXT_MAX];
+  size_t safe = 0, beyond = 0;
+  assert_int_equal(
+      command_run("run @/examples/plain-disc.yaml -m axisymmetric --no-figures -o m.run "
+                  "--set 'compute.sensitivity={voltage: [1 kV, 7 kV]}'"),
+      0);
+  const char *table = strstr(command_out, "what matters");
+  assert_non_null(table);
+  assert_contains(table, "breakdown\n");
+  command_read("m.run/axisymmetric_sensitivity_slopes.csv", bytes);
+  char *rest = NULL;
+  for (char *line = strtok_r(bytes, "\n", &rest); line != NULL;
+       line = strtok_r(NULL, "\n", &rest)) {
+    const char *flags = strrchr(line, ',') + 1;
+    safe += strncmp(line, "1,", 2) == 0 && *flags == '\0';
+    beyond += strncmp(line, "7,", 2) == 0 && strcmp(flags, "breakdown") == 0;
+    assert_true(strncmp(line, "7,", 2) != 0 || strstr(flags, "breakdown") != NULL);
+  }
+  assert_true(safe > 20 && beyond == safe);
+}
+
 /* Without pre-stretch the film has no tension at rest and less under a voltage, and with little it
  * has lost it where its pull-in is: that of a flat one is marked wherever it is said, and only
  * there. */
@@ -543,6 +568,7 @@ int main(void)
       cmocka_unit_test(test_run_folder),
       cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),
       cmocka_unit_test(test_pull_in_keeps_what_was_computed),
+      cmocka_unit_test(test_what_matters_has_flags),
       cmocka_unit_test(test_pull_in_of_a_slack_film),
       cmocka_unit_test(test_several_designs),
       cmocka_unit_test(test_path_alone),

@@ -119,6 +119,7 @@ enum {
   {                                                                                                \
     .key = its_key, .title = its_title, .meaning = "its change in per cent by one per cent"        \
   }
+#define FLAGS DEA_TEXT_COLUMN("flags", "flags", "why the state there is not to be trusted")
 #define SLOPE                                                                                      \
   {                                                                                                \
     .key = "slope", .title = "slope", .meaning = "of the quantity by the number, SI units of both" \
@@ -144,6 +145,7 @@ static const struct dea_result_column slope_columns[] = {
     MODE,
     TIP_DEPTH,
     HELD_STRETCH,
+    FLAGS,
 };
 static const struct dea_result_table_type slope_table = {.study = study_name,
                                                          .name = "slopes",
@@ -173,6 +175,7 @@ static const struct dea_result_column matter_columns[] = {
     DEA_TEXT_COLUMN("change_text", "changes",
                     "by the tolerance, of the displacement that comes first in the row, or of the "
                     "voltage"),
+    FLAGS,
 };
 static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .name = "matters",
@@ -195,6 +198,7 @@ static const struct dea_result_column part_slope_columns[] = {
     {.key = "change", .title = "change by tolerance", .meaning = "of the quantity, in SI"},
     MODE,
     LOADED,
+    FLAGS,
 };
 static const struct dea_result_table_type part_slope_table = {
     .study = study_name,
@@ -220,6 +224,7 @@ static const struct dea_result_column part_matter_columns[] = {
     ELASTICITY("frequency_Hz", "frequency, %"),
     DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
     DEA_TEXT_COLUMN("change_text", "changes", "of the row's quantity, by the tolerance"),
+    FLAGS,
 };
 static const struct dea_result_table_type part_matter_table = {.study = study_name,
                                                                .name = "matters",
@@ -324,6 +329,12 @@ static double held_by(const struct stop *stop)
   return stop->stretch > 0 ? stop->stretch : NAN;
 }
 
+/* Returns out. */
+static const char *flags_of(const struct stop *stop, char out[DEA_FLAGS_SIZE])
+{
+  return dea_flags_text(dea_load_point_flags(&stop->point), out);
+}
+
 static struct dea_tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
 {
   const char *unit = quantity < QUANTITIES ? dea_point_columns[stop->columns[quantity]].si_unit
@@ -340,7 +351,7 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
                                                               {.number = held_by(stop)},
                                                               {.text = number->key}};
   const struct dea_tolerated tolerated = tolerate(stop, lead, i);
-  char value[48];
+  char value[48], flags[DEA_FLAGS_SIZE];
   size_t n = 4;
   dea_number_text(number->value, number->unit, value, sizeof value);
   row[n++].text = value;
@@ -349,6 +360,7 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
   }
   row[n++].text = tolerated.tolerance;
   row[n++].text = tolerated.change;
+  row[n++].text = flags_of(stop, flags);
   DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   return DEA_OK;
 }
@@ -390,11 +402,12 @@ static void name_of(const struct stop *stop, size_t quantity, char *out, size_t 
   }
 }
 
-/* All slopes; the table of the general form has no columns of tips and stretches, the last two. */
+/* All slopes; the table of the general form has one column less: none of held stretches. */
 static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
-  char name[80];
+  char name[80], flags[DEA_FLAGS_SIZE];
+  flags_of(stop, flags);
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
@@ -414,7 +427,9 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
         {.number = slope * number->tolerance},
         {.number = mode_number(stop, k)},
         {.number = stop->layout != NULL ? loaded_to(stop) : depth_of(stop)},
-        {.number = held_by(stop)},
+        stop->layout != NULL ? (struct dea_result_table_value){.text = flags}
+                             : (struct dea_result_table_value){.number = held_by(stop)},
+        {.text = flags}, // beyond the table of a device of plies
     };
     if (!isnan(slope)) {
       DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
@@ -427,7 +442,7 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
                                   size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
-  char quantity[80], value[48];
+  char quantity[80], value[48], flags[DEA_FLAGS_SIZE];
   name_of(stop, lead, quantity, sizeof quantity);
   dea_number_text(number->value, number->unit, value, sizeof value);
   struct dea_result_table_value row[COUNT(part_matter_columns)] = {
@@ -444,6 +459,7 @@ static dea_status put_part_matter(struct dea_context *ctx, const struct stop *st
   }
   row[n++].text = tolerated.tolerance;
   row[n++].text = tolerated.change;
+  row[n++].text = flags_of(stop, flags);
   DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   return DEA_OK;
 }
