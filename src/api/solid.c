@@ -175,8 +175,10 @@ static void take_bodies(const dea_solid_options *o, dea_body *copies, struct dea
     size_t size = o->bodies[i]->size;
     copies[i] = all;
     memcpy(&copies[i], o->bodies[i], size < sizeof all ? size : sizeof all);
+    // NOLINTBEGIN(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c): as it was made
     bool everywhere = memcmp(copies[i].low_m, copies[i].high_m, sizeof all.low_m) == 0 &&
                       memcmp(copies[i].low_m, all.low_m, sizeof all.low_m) == 0;
+    // NOLINTEND(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
     bodies[i] = (struct dea_body_spec){.low_m = everywhere ? NULL : copies[i].low_m,
                                        .high_m = everywhere ? NULL : copies[i].high_m,
                                        .curve = copies[i].curve,

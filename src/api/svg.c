@@ -64,14 +64,16 @@ static double add_key(struct dea_text *out, const char *fragment, double y)
   int count = 0;
   for (const char *at = fragment; next_drawing(at, "<svg class=\"sample\"", &sample); count++) {
     const char *end = strstr(sample.after, "</li>");
-    double x = MARGIN + count % 2 * KEY_COLUMN, line = y + count / 2 * KEY_LINE;
+    const int row = count / 2;
+    double x = MARGIN + count % 2 * KEY_COLUMN, line = y + row * KEY_LINE;
     int length = end != NULL ? (int)(end - sample.after) : 0;
     add_drawing(out, &sample, x, line);
     dea_text_add(out, "<text x=\"%.0f\" y=\"%.0f\">%.*s</text>\n", x + 36, line + 11, length,
                  sample.after);
     at = sample.after;
   }
-  return y + (count + 1) / 2 * KEY_LINE;
+  const int rows = (count + 1) / 2;
+  return y + rows * KEY_LINE;
 }
 
 void door_svg_add(struct dea_text *out, const char *fragment)

@@ -275,6 +275,8 @@ dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml,
 static struct dea_node **link_of(struct dea_node *section, const char *key, size_t length)
 {
   struct dea_node **link = &section->child;
+  // a member of a section, or of a node before it
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference)
   while (*link != NULL &&
          !(strlen((*link)->key) == length && memcmp((*link)->key, key, length) == 0)) {
     link = &(*link)->next;

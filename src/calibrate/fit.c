@@ -333,6 +333,7 @@ static dea_status find_statistics(struct work *w)
                                           fit->scale_known, &fit->statistics));
   double squares = 0;
   for (size_t i = 0; i < at; i++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a fit that was found has residuals
     squares += fit->least_squares.r[i] * fit->least_squares.r[i];
   }
   fit->scatter_Pa *= fit->scale_known ? 1 : sqrt(squares / (double)at);

@@ -30,7 +30,7 @@ static int term_of(const char *key)
   while (n > 0 && isdigit((unsigned char)key[n - 1])) {
     n--;
   }
-  return atoi(key + n);
+  return (int)strtol(key + n, NULL, 10);
 }
 
 /* Shear modulus that the largest stress of the used series speaks of. */
@@ -127,7 +127,7 @@ static const struct dea_law *find_law(const char *name, int *terms)
   snprintf(stem, sizeof stem, "%s", name);
   char *dash = strrchr(stem, '-');
   if (law == NULL && dash != NULL && isdigit((unsigned char)dash[1])) {
-    *terms = atoi(dash + 1);
+    *terms = (int)strtol(dash + 1, NULL, 10);
     *dash = '\0';
     law = dea_law_find(stem);
     for (size_t j = 0; law != NULL && j < law->param_count; j++) {

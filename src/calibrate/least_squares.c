@@ -296,6 +296,7 @@ static dea_status profile_at(struct dea_context *ctx, const struct dea_lsq_probl
   held[j] = true;
   from[j] = value;
   DEA_TRY(ctx, dea_lsq_solve(ctx, problem, from, held, &moved));
+  // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): dea_lsq_solve sets it or fails
   memcpy(from, moved.p, fit->params * sizeof *from);
   *out = sqrt(fmax(0, moved.chi2 - fit->chi2) / unit) - 1;
   dea_lsq_free(&moved);
@@ -333,7 +334,7 @@ static dea_status profile_side(struct dea_context *ctx, const struct dea_lsq_pro
     return DEA_OK;
   }
   for (int k = 0; k < 40 && fabs(b - a) > 1e-4 * fabs(b - fit->p[j]); k++) {
-    double share = k % 4 == 3 || fb > 100 ? 0.5 : fa / (fa - fb), f;
+    double share = k % 4 == 3 || fb > 100 ? 0.5 : fa / (fa - fb), f = NAN;
     double at = a + fmin(fmax(share, 0.02), 0.98) * (b - a);
     dea_status status = profile_at(ctx, problem, fit, j, at, unit, from, &f);
     if (status == DEA_E_DOMAIN || status == DEA_E_NOT_CONVERGED) {

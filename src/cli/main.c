@@ -144,7 +144,8 @@ static int count_ranks(void)
 {
   const char *count = getenv("OMPI_COMM_WORLD_SIZE");
   count = count != NULL ? count : getenv("PMI_SIZE");
-  return count != NULL && atoi(count) > 1 ? atoi(count) : 1;
+  const long ranks = count != NULL ? strtol(count, NULL, 10) : 1;
+  return ranks > 1 ? (int)ranks : 1;
 }
 
 static bool silence(void)

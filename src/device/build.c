@@ -10,8 +10,9 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
                        struct dea_device *device)
 {
   size_t errors = dea_finding_count(ctx, DEA_ERROR), i = 0;
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the last one takes all
   while (!generators[i]->takes(design)) {
-    i++; // the last one takes all
+    i++;
   }
   DEA_TRY(ctx, generators[i]->fill(ctx, design, device));
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;

@@ -140,6 +140,8 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
   LIKE_ONES(s, layout->support_count,
             s[j].edge == s[i].edge && s[j].components == s[i].components &&
                 s[j].hinged == s[i].hinged &&
+                // written alike
+                // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
                 memcmp(s[j].move_m, s[i].move_m, sizeof s[i].move_m) == 0);
   for (size_t i = 0; i < layout->support_count; i++) {
     if (s[i].within != DEA_LAYOUT_NONE) {

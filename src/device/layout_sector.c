@@ -117,7 +117,8 @@ size_t dea_layout_sector_copies(const struct dea_layout_sector *sector)
 
 struct dea_motion dea_layout_sector_copy(const struct dea_layout_sector *sector, size_t number)
 {
-  double turn = sector->fold > 0 ? pi * (double)(number / 2) / sector->fold : 0;
+  const size_t pair = number / 2;
+  double turn = sector->fold > 0 ? pi * (double)pair / sector->fold : 0;
   // a turn by t after a mirror at an angle is a mirror at t/2 more
   return number % 2 == 1 ? dea_motion_mirror(sector->centre_m, sector->angle_rad + turn)
                          : dea_motion_rotation(sector->centre_m, 2 * turn);

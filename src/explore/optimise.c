@@ -501,7 +501,7 @@ static dea_status search_all(struct work *w, const double *extra)
 static dea_status find_scale(struct work *w)
 {
   const struct dea_search *search = w->search;
-  double looked[DEA_SEARCH_VALUES_MAX];
+  double looked[DEA_SEARCH_VALUES_MAX] = {0};
   for (size_t s = 0; s < scattered(search); s++) {
     scatter(search, search->start, s, w->around + s * search->evaluator->param_count);
   }

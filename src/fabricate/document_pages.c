@@ -122,7 +122,9 @@ static void rule(struct writer *w, double thickness, unsigned colour)
 static double row_height(const struct writer *w, const struct dea_document_block *row, bool bold)
 {
   int lines = 1;
-  for (size_t c = 0; c < row->cells; c++) {
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a table has its head
+  for (size_t c = 0; c < row->cells && c < w->head->cells; c++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a table has its head
     double room = w->head->width[c] * (width - 2 * left) - 3;
     int its = flow(w, false, 0, bold, room, row->cell[c]);
     lines = its > lines ? its : lines;

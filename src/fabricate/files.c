@@ -131,6 +131,7 @@ static dea_status forget_sheet(struct dea_context *ctx, const char *directory, c
   }
   if (strcmp(start, ours) == 0) {
     unlink(path);
+    // NOLINTNEXTLINE(bugprone-not-null-terminated-result): its end stays
     memcpy(path + strlen(path) - 3, "svg", 3);
     unlink(path); // one that is not there is fine
   }
@@ -208,8 +209,8 @@ static dea_status write_drawing(struct dea_context *ctx, const struct dea_canvas
                                 const struct drawing *drawing)
 {
   struct dea_canvas *canvas = NULL;
-  const char *bytes;
-  size_t length;
+  const char *bytes = NULL;
+  size_t length = 0;
   dea_status status = draw(ctx, type, workshop, drawing, &canvas, &bytes, &length);
   if (status == DEA_OK) {
     status = dea_file_write_into(ctx, directory, drawing->name, bytes, length);
@@ -222,8 +223,8 @@ static dea_status write_process_pdf(struct dea_context *ctx, const struct dea_ca
                                     const struct dea_document *document, const char *directory)
 {
   struct dea_paper paper = {.type = type};
-  const char *bytes;
-  size_t length;
+  const char *bytes = NULL;
+  size_t length = 0;
   DEA_TRY(ctx,
           type->create(ctx, DEA_CANVAS_PDF, 210, 297, document->block[0].cell[0], &paper.canvas));
   dea_document_pages(&paper, document);
@@ -241,8 +242,8 @@ static dea_status write_process_html(struct dea_context *ctx, const struct dea_c
                                      const struct dea_document *document, const char *directory)
 {
   struct dea_canvas *canvas = NULL;
-  const char *bytes;
-  size_t length;
+  const char *bytes = NULL;
+  size_t length = 0;
   struct dea_text svg = {.ctx = ctx}, html = {.ctx = ctx};
   dea_status status = draw(ctx, type, workshop, &drawings[0], &canvas, &bytes, &length);
   if (status == DEA_OK) {

@@ -138,6 +138,7 @@ static dea_status find_circles(struct work *w)
 
 static double apart(const double a[2], const double b[2])
 {
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): nodes that were found have their points
   return hypot(a[0] - b[0], a[1] - b[1]);
 }
 
@@ -459,6 +460,7 @@ static size_t join_pieces(const struct work *w, struct found *p, size_t count)
          goes_on(w, &p[(start + count - 1) % count], &p[start], &p[(start + 1) % count])) {
     start++;
   }
+  // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): called with pieces
   for (size_t turns = start % count; turns > 0; turns--) { // begin at a corner, if there is one
     struct found head = p[0];
     memmove(p, p + 1, (count - 1) * sizeof *p);

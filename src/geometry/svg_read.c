@@ -384,6 +384,7 @@ static dea_status draw(struct pen *pen, char kind, bool relative, double *v, int
     v[0] = x;
   } else {
     for (int k = kind == 'A' ? 5 : 0; k < count; k++) {
+      // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): as many numbers were read
       v[k] += origin[(kind == 'A' ? k - 5 : k) % 2];
     }
   }

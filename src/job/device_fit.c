@@ -520,6 +520,7 @@ static dea_status copy_points(struct work *w, size_t j, double by, struct dea_lo
   const struct dea_load_point *points;
   *out = NULL;
   memcpy(p, w->fit->least_squares.p, w->problem.params * sizeof *p);
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): j < params
   p[j] = p[j] + by;
   dea_status status = dea_device_model_points(&w->model, p, &points);
   if (status == DEA_E_DOMAIN) {

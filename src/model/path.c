@@ -36,6 +36,8 @@ static double dot(const struct dea_path *path, const double *a, const double *b)
 {
   double sum = 0;
   for (size_t i = 0; i < path->system.unknowns; i++) {
+    // vectors of the path are set
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
     sum += a[i] * b[i];
   }
   return sum / (double)path->system.unknowns;

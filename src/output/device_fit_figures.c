@@ -177,7 +177,7 @@ dea_status dea_device_fit_draw(struct dea_context *ctx, const struct dea_device_
   const char *list[2 * DEA_LOAD_POINT_COLUMNS];
   size_t count = 0;
   for (int k = 0; k < 2 * DEA_LOAD_POINT_COLUMNS; k++) {
-    bool drawn;
+    bool drawn = false;
     DEA_TRY(ctx, draw(ctx, fit, k / 2, k % 2 == 1, format, directory, names[count], &drawn));
     list[count] = names[count];
     count += drawn ? 1U : 0U;

@@ -99,7 +99,8 @@ static void add_map(struct dea_text *gp, const struct dea_view3d *space, const s
 {
   enum { HEAD = 14 }; // per cent of a cell's height for words
   double wide = 1.0 / ACROSS, high = 1.0 / (double)rows;
-  double left = wide * (double)(k % ACROSS), top = 1 - high * (double)(k / ACROSS);
+  const size_t row = k / ACROSS;
+  double left = wide * (double)(k % ACROSS), top = 1 - high * (double)row;
   dea_text_add(gp,
                "  set lmargin at screen %.4f\n  set rmargin at screen %.4f\n"
                "  set tmargin at screen %.4f\n  set bmargin at screen %.4f\n"

@@ -174,7 +174,7 @@ dea_status dea_fit_draw(struct dea_context *ctx, const struct dea_fit *fit,
   const char *names[2];
   size_t count = 0;
   for (size_t k = 0; k < 2; k++) {
-    bool drawn;
+    bool drawn = false;
     DEA_TRY(ctx, draw(ctx, fit, k == 1, all[k], format, directory, &drawn));
     if (drawn) {
       names[count++] = all[k];

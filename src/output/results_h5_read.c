@@ -45,6 +45,7 @@ static void get_points(struct h5 *h, hid_t group, struct dea_load_point **points
     if (dea_h5_has(h, group, dea_point_columns[c].key)) {
       dea_h5_get_array(h, group, dea_point_columns[c].key, H5T_NATIVE_DOUBLE, n, buffer);
       for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): else there is an error
         dea_point_set(&(*points)[i], c, buffer[i]);
       }
     }
@@ -352,6 +353,7 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
     dea_h5_fail(&h, "cannot read");
   }
   check_schema(&h, file);
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made before
   get_all(&h, file, "curves", true, get_curve, run->result);
   get_all(&h, file, "profiles", true, get_profile, run->result);
   get_all(&h, file, "surfaces", false, get_surface, run->result);

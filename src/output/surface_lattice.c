@@ -133,7 +133,8 @@ static void fill_patch(const struct element *element, struct dea_patch *patch,
   int row = patch->n + 1;
   for (int k = 0; k < row * (patch->m + 1); k++) {
     double *at = patch->at[k];
-    evaluate(element, 2.0 * (k % row) / patch->n - 1, 2.0 * (k / row) / patch->m - 1, at);
+    const int line = k / row;
+    evaluate(element, 2.0 * (k % row) / patch->n - 1, 2.0 * line / patch->m - 1, at);
     out->radius_m = fmax(out->radius_m, hypot(at[DEA_LATTICE_X], at[DEA_LATTICE_Y]));
     const double x_m[2] = {at[DEA_LATTICE_X], at[DEA_LATTICE_Y]};
     for (int i = 0; i < 2; i++) {

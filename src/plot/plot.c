@@ -69,6 +69,7 @@ dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, si
                             const struct dea_series *look, struct dea_series **out)
 {
   DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): dea_panel_add sets it or fails
   double *values = (*out)->values;
   **out = *look;
   (*out)->count = count;

@@ -155,6 +155,7 @@ dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *res
 {
   struct dea_result_table *to;
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &table->type, table->model, table->width, &to));
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): dea_result_add_table sets it or fails
   *to = *table;
   table->cells = NULL;
   table->own_columns = NULL;

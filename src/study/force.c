@@ -232,7 +232,7 @@ struct press {
 static bool goes_deeper(const struct dea_design *design, size_t stop)
 {
   const struct settings *force = settings_of(design);
-  return stop > 0 && stop < force->depth_count &&
+  return force != NULL && stop > 0 && stop < force->depth_count &&
          force->depths_m[stop].si > force->depths_m[stop - 1].si;
 }
 

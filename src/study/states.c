@@ -208,6 +208,7 @@ static double distance_m(const double *u, const double *v, size_t count)
 {
   double sum = 0;
   for (size_t i = 0; i < 3 * count; i++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): films that were found
     sum += (u[i] - v[i]) * (u[i] - v[i]);
   }
   return sqrt(sum / (double)count);
@@ -323,7 +324,7 @@ static dea_status sweep_up(struct search *s, size_t voltage_count)
 {
   for (size_t i = 0; i < voltage_count; i++) {
     struct dea_load_point point;
-    int at;
+    int at = 0;
     if (dea_interrupted_anywhere(s->ctx)) {
       return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted before the search for states");
     }

@@ -72,6 +72,7 @@ dea_status dea_mat_write(struct dea_context *ctx, const char *file,
     return DEA_E_MEMORY;
   }
   unlink(partial); // left by a process of the same number that was killed
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
   dea_status status = type->write(ctx, partial, variables, count, version);
   if (status == DEA_OK) {
     status = dea_partial_finish(ctx, partial, file);
@@ -86,5 +87,6 @@ dea_status dea_mat_read(struct dea_context *ctx, const char *file, struct dea_ta
 {
   const struct dea_mat_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, &type));
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
   return type->read(ctx, file, out);
 }

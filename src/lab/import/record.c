@@ -90,7 +90,7 @@ static dea_status find_origin(struct work *work)
 {
   double first = INFINITY;
   for (size_t i = 0; i < work->table->column_count; i++) {
-    struct dea_clock clock;
+    struct dea_clock clock = {0};
     if (work->roles[i].use == DEA_USE_CHANNEL || work->roles[i].use == DEA_USE_PROFILE) {
       DEA_TRY(work->ctx, clock_get(work, i, &clock));
       first = fmin(first, clock.start_s);
@@ -162,7 +162,7 @@ static dea_status add_channel(struct work *work, size_t column)
   const struct dea_table_column *c = &work->table->columns[column];
   const struct dea_column_role *role = &work->roles[column];
   const struct dea_mapped *mapped = mapped_get(work, column);
-  struct dea_clock clock;
+  struct dea_clock clock = {0};
   if (recording->channel_count == DEA_CHANNELS_MAX) {
     return dea_fail(work->ctx, DEA_E_IO,
                     "'%s' gives more than %d channels: name those that matter in a mapping",

@@ -77,6 +77,7 @@ double dea_spread(double *values, size_t count, double centre)
 static size_t sorted_change(double *sorted, size_t n, double value, bool in)
 {
   size_t at = 0;
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): n of them are there
   while (at < n && sorted[at] < value) {
     at++;
   }

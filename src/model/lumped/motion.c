@@ -75,9 +75,12 @@ static dea_status residual(const struct equation *e, double l, struct evaluation
                            double *slope)
 {
   dea_status status = evaluate(e->lumped, e->motion, e->circuit, e->step, l, at);
+  if (status != DEA_OK) {
+    return status;
+  }
   *r = e->inertia_Pa * (l - e->start) + e->weight * at->imbalance_Pa + e->known_Pa;
   *slope = e->inertia_Pa + e->weight * at->slope_Pa;
-  return status;
+  return DEA_OK;
 }
 
 /* The stable root that one comes to from l downhill. Newton, kept between where the residual still

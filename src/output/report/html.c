@@ -79,7 +79,7 @@ void dea_html_number(struct dea_text *out, double value, int digits)
   if (power != NULL) {
     *power = '\0';
     dea_text_add(out, "%s\302\26710<sup>%s%d</sup>", number, power[1] == '-' ? "\342\210\222" : "",
-                 abs(atoi(power + 1)));
+                 abs((int)strtol(power + 1, NULL, 10)));
   } else {
     dea_text_add(out, "%s", number);
   }

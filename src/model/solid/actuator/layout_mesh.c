@@ -383,6 +383,7 @@ static void find_fields(struct dea_layout_mesh *mesh)
     *field = (struct dea_layout_field){-1, -1};
     if (mesh->present[i]) {
       int top = channel_at(mesh, i / plies, i % plies, true);
+      // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a mesh has plies
       int bottom = channel_at(mesh, i / plies, i % plies, false);
       if (top >= 0 && bottom >= 0 && top != bottom) {
         *field = (struct dea_layout_field){top, bottom};

@@ -491,6 +491,7 @@ static dea_status hold(struct dea_context *ctx, struct dea_solid_object *object,
   DEA_TRY(ctx, find_nodes(ctx, object, place, &on));
   dea_status status = DEA_OK;
   for (size_t n = 0; n < object->mesh_node_count && status == DEA_OK; n++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): find_nodes sets it or fails
     if (on[n]) {
       status = displacement_m != NULL
                    ? dea_solid_prescribe(ctx, object->solid, n, components, displacement_m)

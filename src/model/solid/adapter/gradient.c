@@ -281,12 +281,13 @@ static dea_status add_along(struct dea_context *ctx, struct work *w, const struc
                             int order, double factor, double *out, double *pressures)
 {
   const struct dea_solid *s = w->owner->solid;
+  const int middle = PLACES / 2;
   for (int k = 0; k < PLACES; k++) {
     const double times = by_places[order - 1][k] * factor / pow(way->step, order);
     if (times == 0) {
       continue;
     }
-    DEA_TRY(ctx, assemble_along(ctx, w, way, w->owner->voltage_V, k - PLACES / 2));
+    DEA_TRY(ctx, assemble_along(ctx, w, way, w->owner->voltage_V, k - middle));
     for (size_t i = 0; i < s->problem.dofs; i++) {
       out[i] += times * s->work.g[i];
     }

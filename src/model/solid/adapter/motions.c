@@ -227,6 +227,7 @@ static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *
 static void amplitude_of(answer first, answer second, double ripple_V, double *amplitude_m,
                          double *phase_rad)
 {
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): both have answered
   double re = 0.5 * (first[0][2] + second[0][2]);
   double im = 0.5 * (first[1][2] + second[1][2]);
   *amplitude_m = ripple_V * hypot(re, im);
@@ -246,6 +247,7 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
   answer *out = dea_alloc(ctx, count * PROBES, sizeof *out);
   dea_status status = dea_solid_any(rad_per_s == NULL || out == NULL) ? DEA_E_MEMORY : DEA_OK;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): else there is an error
     rad_per_s[i] = 2 * pi * frequency_Hz[i];
   }
   if (status == DEA_OK) {

@@ -261,6 +261,8 @@ static dea_status fail_element(struct dea_context *ctx, const struct dea_solid *
   bool inverted = status == DEA_E_DOMAIN && element->type->strains(element, &in, strains) != DEA_OK;
   dea_free(ctx, strains);
   for (int i = 0; i < 3 * count; i++) {
+    // dea_solid_gather has set it
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
     x[i % 3] += 1e3 * X[i] / count;
   }
   return dea_fail(ctx, inverted ? DEA_E_INVERTED : status,

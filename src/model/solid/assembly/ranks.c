@@ -175,6 +175,7 @@ dea_status dea_solid_tell(struct dea_context *ctx, void *bytes, size_t length)
        MPI_Test(&request, &there, MPI_STATUS_IGNORE)) { // MPI_Bcast would keep a core busy
     nanosleep(&nap, NULL);
   }
+  MPI_Wait(&request, MPI_STATUS_IGNORE); // it is there
   return DEA_OK;
 }
 

@@ -43,6 +43,7 @@ static inline void combine_three(const double f[3], size_t width, const double *
                                  double *restrict out)
 {
   for (size_t x = 0; x < width; x++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): three rows are set
     out[x] = f[0] * in[x] + f[1] * in[width + x] + f[2] * in[2 * width + x];
   }
 }
@@ -105,6 +106,7 @@ void dea_hex_sum_flux(const struct dea_hex_shape *s, int columns, const double *
     along(nz, n, line->at_node[a == 1], n * c, x, xy[a]);
   }
   for (size_t i = 0; i < all; i++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): along has set both
     xy[0][i] += xy[1][i];
   }
   along(1, nz, line_z->at_node[0], n * n * c, xy[0], sums);

@@ -519,6 +519,8 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
     for (size_t m = count; m-- > 0 && L[0] > 0;) { // L^T out = kappa b v
       double sum = 0;
       for (size_t i = 0; i < dofs; i++) {
+        // dea_solid_gather has set it
+        // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult)
         sum += kappa_Pa * b[m * dofs + i] * own[i];
       }
       for (size_t c = m + 1; c < count; c++) {

@@ -140,7 +140,7 @@ static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, b
     double low = f->value[f->order[k - 1]];
     double high = k < f->count ? f->value[f->order[k]] : low + fabs(low);
     if (high - low > f->solid->settings.mode_apart * (fabs(low) + fabs(high))) {
-      int below;
+      int below = 0;
       DEA_TRY(ctx, count_below(ctx, f, 0.5 * (low + high), &below));
       *all = below == k;
       return DEA_OK;

@@ -107,7 +107,7 @@ static bool says(const struct lanczos *z, int count, int negative, double *lowes
 static dea_status iterate(struct dea_context *ctx, struct lanczos *z, int negative,
                           double *lowest_Pa)
 {
-  double length;
+  double length = 0;
   DEA_TRY(ctx, begin(ctx, z, &length));
   for (int k = 0; k < z->steps && length > 0; k++) {
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));

@@ -581,6 +581,7 @@ static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *
                            struct dea_plane_mesh *mesh)
 {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a mesh that was read
   for (size_t i = 0; i < 2 * mesh->node_count; i++) {
     low[i % 2] = fmin(low[i % 2], mesh->x[i]);
     high[i % 2] = fmax(high[i % 2], mesh->x[i]);

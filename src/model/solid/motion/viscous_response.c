@@ -39,6 +39,7 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
 {
   struct dea_solid *s = y->solid;
   struct dea_internal_variables *variables;
+  // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): of the caller
   memset(only, 0, s->problem.constituent_count * sizeof *only);
   only[which] = y->branches[which];
   DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &variables));

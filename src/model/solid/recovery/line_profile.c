@@ -46,6 +46,7 @@ static void add_edge(struct work *w, const int *points, int count, double c, dou
       return;
     }
   }
+  // NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): a line has points
   const double *first = w->surface->X + 3 * points[0];
   const double *last = w->surface->X + 3 * points[count - 1];
   dea_lobatto_nodes((size_t)count - 1, places);

@@ -235,8 +235,9 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
   DEA_TRY(w->ctx, add_fields(w->ctx, mesh, &to));
   memcpy(nodes, w->nodes, w->column_count * (size_t)((order + 1) * (order + 1)) * sizeof *nodes);
   for (size_t c = 0; c < w->column_count; c++) {
+    const int half = w->group[c] / 2;
     to.between[c] = w->group[c] % 2;
-    to.under[c] = w->group[c] / 2;
+    to.under[c] = half;
   }
   for (size_t p = 0; p < w->point_count; p++) {
     fill_point(w, p, mesh->X + 3 * p, &to);
