@@ -123,8 +123,9 @@ static const struct dea_field fields[] = {
      .offset = AT(field),
      .choices = electrostatics,
      .default_text = "thin",
-     .doc = "electric field: V/h where electrodes face each other, or from the potential as an "
-            "unknown, with the fringe at the electrode's edge (solid film only)",
+     .doc =
+         "electric field: V/h where electrodes face each other, or from the potential as an "
+         "unknown, with the fringe at the electrode's edge (solid film of a disc in a frame only)",
      .example = "coupled"},
     {.key = "buckling_branch",
      .alias = "side",

@@ -127,6 +127,7 @@ static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_
 {
   const struct dea_choice *path = &design->compute.solid.path;
   const struct dea_choice *side = &design->compute.solid.buckling_branch;
+  const struct dea_choice *field = &design->compute.solid.field;
   const struct dea_quantity *tips = &design->compute.solid.tip_refinement;
   const struct dea_quantity *end = &design->compute.path_max_stretch;
   const struct {
@@ -136,6 +137,7 @@ static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_
   } keys[] = {
       {path->value != 0, &path->location, "solid.path"},
       {side->value != DEA_BRANCH_ANY, &side->location, "solid.buckling_branch"},
+      {field->value == DEA_FIELD_COUPLED, &field->location, "solid.field: coupled"},
       {tips->origin == DEA_GIVEN || tips->origin == DEA_OVERRIDE, &tips->location,
        "solid.tip_refinement"},
       {end->origin == DEA_GIVEN || end->origin == DEA_OVERRIDE, &end->location, "path.max_stretch"},

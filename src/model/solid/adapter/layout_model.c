@@ -667,11 +667,6 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
   model->settings = *settings;
   model->memory.ctx = ctx;
   model->pressure_factor = 1;
-  if (settings->field == DEA_FIELD_COUPLED) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "compute.solid.field: coupled is known of the disc with one pair of electrodes "
-                    "only; take compute.solid.field: thin");
-  }
   DEA_TRY(ctx, make_plies(ctx, model));
   model->answer =
       dea_arena_alloc(&model->memory, device->layout->monitor_count * DEA_OBSERVED_MOTIONS + 1,
