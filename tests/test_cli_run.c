@@ -265,11 +265,35 @@ static void test_several_designs(void **state)
   assert_int_equal(json_array_size(json_object_get(fibres, "points")), 1);
   assert_true(isnan(number(a, "centre_z_m")) && number(b, "centre_z_m") > 1e-3);
   json_decref(root);
-  assert_int_equal(command_run("run @/examples/plain-disc.yaml not-there.yaml --json"), 3);
-  assert_contains(command_err, "not-there.yaml");
   assert_int_equal(command_run("run @/examples/plain-disc.yaml --study compare-design"), 3);
   assert_int_equal(command_run("run @/examples/plain-disc.yaml --study sweeep"), 2);
   assert_contains(command_err, "did you mean 'sweep'?");
+}
+
+/* What is wrong with another design file is told of that file, not of the option it stands for. */
+static void test_errors_of_several_designs(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *files, *place, *words;
+  } bad[] = {
+      {"not-there.yaml", "dea: error: cannot open ", "/not-there.yaml'"},
+      {"@/examples/devices/cone-mass.yaml",
+       "/cone-mass.yaml:9:1: error: ", "a design with 'plies'"},
+      {"@/examples/frdea-8.yaml frdea-8.yaml", "/frdea-8.yaml: error: ", "'frdea-8' stands twice"},
+      {"a-name-of-more-than-sixty-three-characters-is-none-for-a-design-file.yaml", "/a-name-of-",
+       "at most 63"},
+  };
+  const char *const long_name = bad[3].files;
+  command_write("frdea-8.yaml", "dea: 1\n");
+  command_write(long_name, "dea: 1\n");
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    char arguments[200];
+    snprintf(arguments, sizeof arguments, "run @/examples/plain-disc.yaml %s --json", bad[i].files);
+    command_expect(arguments, 3, bad[i].words);
+    assert_contains(command_err, bad[i].place);
+    assert_null(strstr(command_err, "compute.compare"));
+  }
 }
 
 /* A path that was asked for alone has no table of a sweep. */
@@ -571,6 +595,7 @@ int main(void)
       cmocka_unit_test(test_what_matters_has_flags),
       cmocka_unit_test(test_pull_in_of_a_slack_film),
       cmocka_unit_test(test_several_designs),
+      cmocka_unit_test(test_errors_of_several_designs),
       cmocka_unit_test(test_path_alone),
       cmocka_unit_test(test_operating_map),
       cmocka_unit_test(test_models_that_cannot),

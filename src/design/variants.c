@@ -5,6 +5,18 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Place of what is wrong with a variant. The command line has none of its own (a line counts from
+ * 1): there it is the design file that was named. */
+static struct dea_location place_of(struct dea_context *ctx,
+                                    const struct dea_design_variant *variant,
+                                    const struct dea_location *own)
+{
+  const char *file = own->line == 0 && variant->file.origin != DEA_ABSENT
+                         ? dea_intern(ctx, variant->file.text)
+                         : NULL;
+  return file != NULL ? (struct dea_location){file, 0, 0} : *own;
+}
+
 /* Another design, which compares itself with none. */
 static dea_status read_other(struct dea_context *ctx, const struct dea_design_source *source,
                              struct dea_design_variant *variant)
@@ -24,8 +36,10 @@ static dea_status read_other_file(struct dea_context *ctx, const struct dea_desi
   }
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &bytes, &other.length);
   if (status == DEA_E_IO) {
-    status = dea_finding_add(ctx, DEA_ERROR, variant->file.location, "file: %s",
-                             dea_context_message(ctx));
+    const bool in_file = variant->file.location.line > 0; // else said as of a first file
+    status = dea_finding_add(ctx, DEA_ERROR,
+                             in_file ? variant->file.location : (struct dea_location){"", 0, 0},
+                             "%s", dea_context_message(ctx));
     status = status == DEA_OK ? DEA_E_DESIGN : status;
   } else if (status == DEA_OK) {
     other.name = path;
@@ -40,14 +54,15 @@ static dea_status read_other_file(struct dea_context *ctx, const struct dea_desi
 static dea_status check_name(struct dea_context *ctx, const struct dea_design *design, size_t i)
 {
   const struct dea_label *name = &design->compute.compare[i].name;
+  const struct dea_location place = place_of(ctx, &design->compute.compare[i], &name->location);
   if (strlen(name->text) >= DEA_NAME_SIZE || strchr(name->text, '/') != NULL) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
-                                 "name: at most %d characters, and no '/'", DEA_NAME_SIZE - 1));
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place, "name: at most %d characters, and no '/'",
+                                 DEA_NAME_SIZE - 1));
   }
   for (size_t k = 0; k < i && name->text[0] != '\0'; k++) {
     if (strcmp(design->compute.compare[k].name.text, name->text) == 0) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
-                                   "the name '%.60s' stands twice in the list", name->text));
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, place,
+                                   "the name '%.60s' stands twice among the designs", name->text));
     }
   }
   return DEA_OK;
@@ -61,9 +76,10 @@ static dea_status check_form(struct dea_context *ctx, const struct dea_design *d
   if (design->parts == NULL ? !other : i > 0) {
     return DEA_OK;
   }
-  return dea_finding_add(ctx, DEA_ERROR,
-                         variant->file.origin != DEA_ABSENT ? variant->file.location
-                                                            : variant->name.location,
+  const struct dea_location *own =
+      variant->file.origin != DEA_ABSENT ? &variant->file.location : &variant->name.location;
+  const struct dea_design *general = other ? variant->design : design;
+  return dea_finding_add(ctx, DEA_ERROR, own->line > 0 ? *own : general->parts->place,
                          "a design with 'plies' is set beside no other in one run; run each, and "
                          "compare their folders: dea compare RUN RUN");
 }
