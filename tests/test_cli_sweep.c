@@ -308,7 +308,8 @@ static void test_optimise(void **state)
   assert_contains(command_out, best);
   assert_int_equal(command_run("check best/best.yaml"), 0);
   assert_contains(command_out, "pre_stretch");
-  command_write("best/best-3.yaml", "of a front that was longer\n");
+  command_write("best/best-3.yaml", "# Written by dea 0.1.0 optimise, a front that was longer\n");
+  command_write("best/best-4.yaml", "# written by hand\n");
   assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
   assert_contains(command_out, best);
   const char *at = strstr(command_out, "designs: ");
@@ -319,6 +320,31 @@ static void test_optimise(void **state)
   assert_int_equal(lines_with("best/progress.svg", "<svg"), 1);
   assert_int_equal(command_run("check best/best-3.yaml"), 5); // it is gone
   assert_contains(command_err, "best-3.yaml");
+  command_expect("check best/best-4.yaml", 3, "best-4.yaml");
+}
+
+/* A search that finds nothing leaves no best design of an earlier one in its folder, and no file
+ * that is not a search's goes. */
+static void test_nothing_found_after_a_best(void **state)
+{
+  (void)state;
+  static const char file[] = "objectives: [{quantity: breakdown_margin, goal: most}]\n"
+                             "limits: [{quantity: breakdown_margin, above: %g}]\n"
+                             "evaluations: 20\nstarts: 1";
+  static char kept[COMMAND_TEXT_MAX];
+  char text[300];
+  snprintf(text, sizeof text, file, -10.0);
+  write_file("{name: pre_stretch, low: 1.2, high: 1.8}", text);
+  assert_int_equal(command_run("optimise mine.yaml -o once"), 0);
+  assert_int_equal(command_run("check once/best.yaml"), 0);
+  snprintf(text, sizeof text, file, 0.99);
+  write_file("{name: pre_stretch, low: 1.2, high: 1.8}", text);
+  command_expect("optimise mine.yaml -o once", 4, "is within all limits");
+  command_expect("check once/best.yaml", 5, "cannot open");
+  command_write("once/best.yaml", "# mine\n");
+  command_expect("optimise mine.yaml -o once", 4, "is within all limits");
+  command_read("once/best.yaml", kept);
+  assert_string_equal(kept, "# mine\n");
 }
 
 /* No design has a value: that is said with the reasons, and all evaluations stay. */
@@ -403,6 +429,7 @@ int main(void)
                                      cmocka_unit_test(test_interrupted),
                                      cmocka_unit_test(test_interrupted_search),
                                      cmocka_unit_test(test_optimise),
+                                     cmocka_unit_test(test_nothing_found_after_a_best),
                                      cmocka_unit_test(test_none_with_values),
                                      cmocka_unit_test(test_critical_voltages),
                                      cmocka_unit_test(test_page),

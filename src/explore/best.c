@@ -237,15 +237,26 @@ static dea_status write_cases(const struct work *w)
   return status;
 }
 
-/* The design of an optimum. number: in the front, 0 where there is one only. */
+static const char written_by[] = "# Written by dea ";
+enum { BEST_SIZE = 40 };
+
+/* number: in the front, 0 where there is one only. */
+static void name_best(size_t number, char name[BEST_SIZE])
+{
+  if (number > 0) {
+    snprintf(name, BEST_SIZE, "best-%zu.yaml", number);
+  } else {
+    snprintf(name, BEST_SIZE, "best.yaml");
+  }
+}
+
+/* The design of an optimum, of that number. */
 static dea_status write_design(const struct work *w, const struct dea_optimum *best, size_t number)
 {
   const struct dea_question *question = w->question;
   struct dea_text text = {.ctx = w->ctx};
-  char name[32] = "best.yaml", label[DEA_NAME_SIZE];
-  if (number > 0) {
-    snprintf(name, sizeof name, "best-%zu.yaml", number);
-  }
+  char name[BEST_SIZE], label[DEA_NAME_SIZE];
+  name_best(number, name);
   snprintf(label, sizeof label, "%.50s", question->file->head.name.text);
   const struct dea_device_values with = {question->params,
                                          best->p,
@@ -255,7 +266,7 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
                                          question->file->head.title.text,
                                          ""};
   const struct dea_design_bytes file = {question->path, question->bytes, question->length};
-  dea_text_add(&text, "# Written by dea %s optimise: the best of %s for %s.\n", DEA_VERSION,
+  dea_text_add(&text, "%s%s optimise: the best of %s for %s.\n", written_by, DEA_VERSION,
                dea_path_name(question->path), dea_path_name(question->file->head.file));
   for (size_t k = 0; k < question->file->objective_count; k++) {
     const struct dea_column *column = &question->quantities[question->objectives[k]].shown;
@@ -463,30 +474,46 @@ static dea_status fail_without(const struct work *w)
 
 // All of it ---------------------------------------------------------------------------------------
 
+/* Takes away a design that an earlier search has written into the folder; most are not there. */
+static void remove_written(const struct work *w, size_t number)
+{
+  struct dea_text path = {.ctx = w->ctx};
+  char name[BEST_SIZE], head[sizeof written_by] = "";
+  name_best(number, name);
+  dea_text_add(&path, "%s/%s", w->options->folder, name);
+  FILE *file = path.failed ? NULL : fopen(dea_text_get(&path), "rb");
+  if (file != NULL) {
+    size_t length = fread(head, 1, sizeof head - 1, file);
+    head[length] = '\0';
+    fclose(file);
+  }
+  if (strcmp(head, written_by) == 0) {
+    remove(dea_text_get(&path));
+  }
+  dea_text_free(&path);
+}
+
 /* Takes away designs of an earlier search in the folder that had more of them, or of the other
- * kind.
- */
-static void remove_older(const struct work *w)
+ * kind. ended: to its end, so that what is not found is none. */
+static void remove_older(const struct work *w, bool ended)
 {
   const bool front = w->question->file->objective_count > 1;
   for (size_t i = front ? w->report->count + 1 : 1; i <= DEA_EXPLORE_FRONT_MAX + 1; i++) {
-    struct dea_text path = {.ctx = w->ctx};
-    dea_text_add(&path, "%s/best-%zu.yaml", w->options->folder, i);
-    if (!path.failed) {
-      remove(dea_text_get(&path)); // most are not there
-    }
-    dea_text_free(&path);
+    remove_written(w, i);
+  }
+  if (front || (ended && w->report->count == 0)) {
+    remove_written(w, 0);
   }
 }
 
-static dea_status write_all(struct work *w)
+static dea_status write_all(struct work *w, bool ended)
 {
   const bool front = w->question->file->objective_count > 1;
   for (size_t i = 0; i < dea_store_count(w->store); i++) {
     w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
   }
   DEA_TRY(w->ctx, write_cases(w));
-  remove_older(w);
+  remove_older(w, ended);
   for (size_t i = 0; i < w->report->count; i++) {
     DEA_TRY(w->ctx, write_design(w, &w->report->optima[i], front ? i + 1 : 0));
   }
@@ -518,7 +545,7 @@ static dea_status run(struct work *w)
   w->report->evaluations = dea_store_count(w->store);
   if (status == DEA_OK || status == DEA_E_INTERRUPTED) {
     void *before = dea_c_locale_enter();
-    dea_status written = write_all(w);
+    dea_status written = write_all(w, status == DEA_OK);
     dea_c_locale_leave(before);
     DEA_TRY(w->ctx, written);
   }
