@@ -49,6 +49,20 @@ static void test_guesses(void **state)
   assert_true(is_said(DEA_WARNING, "'voltage' has no unit"));
   assert_true(is_said(DEA_WARNING, "never exceeds 3 V"));
   dea_recording_destroy(ctx, recording);
+  // how far a column may be off is not that column, nor a time
+  recording = record_text("t (s);V (kV);V std (kV);z_centre (um);z_centre_SD (um);laser error (um);"
+                          "laser sigma;Stdev force (mN);uncertainty of F (mN);t err (s);"
+                          "\xcf\x83 z (um);standard (um)\n"
+                          "0;0;1;0;1;1;1;1;1;1;1;0\n0,1;0,5;1;10;1;1;1;1;1;1;1;10\n"
+                          "0,2;1;1;20;1;1;1;1;1;1;1;20\n",
+                          NULL);
+  assert_channel(recording, "V", DEA_CHANNEL_VOLTAGE, v, 3);
+  assert_channel(recording, "z_centre", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_channel(recording, "standard", DEA_CHANNEL_DISPLACEMENT, z, 3);
+  assert_int_equal(recording->channel_count, 3);
+  assert_close(recording->channels[0].interval_s, 0.1, 1e-12, 0);
+  assert_true(is_said(DEA_NOTE, "'V std' (by its name an uncertainty of something; if"));
+  dea_recording_destroy(ctx, recording);
   // a rate in the preamble; a sensor in volts is not taken for a length
   recording = record_text("Sample rate: 2 kHz\nHV (kV),laser (V)\n0,1\n1,2\n2,3\n", NULL);
   assert_close(recording->channels[0].interval_s, 5e-4, 1e-12, 0);

@@ -17,6 +17,7 @@ enum {
   IS_RATE,
   IS_INTERVAL,
   IS_AMPERE,
+  IS_UNCERTAINTY,
 };
 
 static const struct word {
@@ -65,6 +66,9 @@ static const struct word *find_word(const char *name, int first, int last)
 
 int dea_guess_by_name(const char *name)
 {
+  if (find_word(name, IS_UNCERTAINTY, IS_UNCERTAINTY) != NULL) {
+    return DEA_GUESS_UNCERTAINTY;
+  }
   const struct word *word = find_word(name, DEA_GUESS_TIME, DEA_CHANNEL_OTHER);
   return word != NULL ? word->kind : DEA_GUESS_NOTHING;
 }

@@ -5,7 +5,8 @@
 #include "lab/import/import.h"
 #include "lab/import/slices.h"
 
-enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2 }; // beside enum dea_channel_kind
+// Beside enum dea_channel_kind; UNCERTAINTY: of another column, "z std".
+enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2, DEA_GUESS_UNCERTAINTY = -3 };
 
 int dea_guess_by_name(const char *name);
 /* si: SI unit of the column's unit. */

@@ -6,8 +6,23 @@
 // X(language, word in lower case, where it stands in a name, what that then is)
 // where: PART anywhere; WORD as a word of its own; WHOLE it is the whole name
 // what: TIME; RATE [Hz] or INTERVAL [s] between samples, of a single number; POSITION where
-// something is, not how it moves; AMPERE a bare 'A' behind it is a unit; else a kind of channel
+// something is, not how it moves; AMPERE a bare 'A' behind it is a unit; UNCERTAINTY how far the
+// rest of the name may be off, whatever that is; else a kind of channel
 #define DEA_GUESS_LIST(X)                                                                          \
+  X(ENGLISH, "std", WORD, UNCERTAINTY)                                                             \
+  X(ENGLISH, "stdev", WORD, UNCERTAINTY)                                                           \
+  X(ENGLISH, "stddev", WORD, UNCERTAINTY)                                                          \
+  X(ENGLISH, "sd", WORD, UNCERTAINTY)                                                              \
+  X(ENGLISH, "sem", WORD, UNCERTAINTY)                                                             \
+  X(ENGLISH, "deviation", WORD, UNCERTAINTY)                                                       \
+  X(ENGLISH, "error", WORD, UNCERTAINTY)                                                           \
+  X(ENGLISH, "err", WORD, UNCERTAINTY)                                                             \
+  X(ENGLISH, "uncertainty", WORD, UNCERTAINTY)                                                     \
+  X(GERMAN, "standardabweichung", WORD, UNCERTAINTY)                                               \
+  X(GERMAN, "fehler", WORD, UNCERTAINTY)                                                           \
+  X(GERMAN, "unsicherheit", WORD, UNCERTAINTY)                                                     \
+  X(SYMBOL, "sigma", WORD, UNCERTAINTY)                                                            \
+  X(SYMBOL, "\xcf\x83", WORD, UNCERTAINTY) /* the letter */                                        \
   X(ENGLISH, "timestamp", PART, TIME)                                                              \
   X(ENGLISH, "time", PART, TIME)                                                                   \
   X(GERMAN, "zeit", PART, TIME)                                                                    \

@@ -206,8 +206,9 @@ static void guess_times(struct work *work)
       }
       continue;
     }
-    bool named = dea_guess_by_name(column->name) == DEA_GUESS_TIME;
-    bool seconds = si != NULL && strcmp(si, "s") == 0;
+    int kind = dea_guess_by_name(column->name);
+    bool named = kind == DEA_GUESS_TIME;
+    bool seconds = kind != DEA_GUESS_UNCERTAINTY && si != NULL && strcmp(si, "s") == 0;
     if (column->count > 1 && (seconds || (named && column->unit[0] == '\0'))) {
       role->use = DEA_USE_TIME;
       role->factor = seconds ? factor : 1;
@@ -235,6 +236,10 @@ static void guess_channel(struct work *work, size_t i)
   const char *si = dea_title_unit(work->ctx, column->unit, &factor);
   int kind = dea_guess_by_name(column->name);
   if (role->use != DEA_USE_LEFT || column->count < 2 || role->why == odd_unit) {
+    return;
+  }
+  if (kind == DEA_GUESS_UNCERTAINTY) {
+    role->why = "by its name an uncertainty of something; if it is not, say so in a mapping";
     return;
   }
   if (is_of_matrix(work, i)) {
