@@ -210,7 +210,27 @@ static void test_summary(void **state)
   assert_int_equal(command_run("mesh @/examples/plain-disc.yaml --set compute.solid.domain=disc"),
                    0);
   assert_contains(command_out, "360 degrees");
-  assert_contains(command_out, "unknowns");
+}
+
+/* The mesh that is written has the size that a run tells of it. */
+static void test_size_is_that_of_a_run(void **state)
+{
+  (void)state;
+  static const char *const designs[] = {"@/examples/frdea-4.yaml",
+                                        "@/examples/devices/two-electrodes.yaml"};
+  for (size_t i = 0; i < 2; i++) {
+    char arguments[300], size[100];
+    unsigned long long elements, unknowns;
+    snprintf(arguments, sizeof arguments, "mesh %s", designs[i]);
+    assert_int_equal(command_run(arguments), 0);
+    assert_int_equal(sscanf(strstr(command_out, "\nelements ") + 10, "%llu", &elements), 1);
+    assert_int_equal(sscanf(strstr(command_out, "\nunknowns ") + 10, "%llu", &unknowns), 1);
+    snprintf(size, sizeof size, "model 3d: %llu elements, %llu unknowns", elements, unknowns);
+    snprintf(arguments, sizeof arguments,
+             "run %s -m 3d --set 'compute.voltage={values: [1 kV]}' --no-figures -o %zu.run",
+             designs[i], i);
+    command_expect(arguments, 0, size);
+  }
 }
 
 static void test_what_goes_wrong(void **state)
@@ -242,6 +262,7 @@ int main(void)
       cmocka_unit_test(test_file),
       cmocka_unit_test(test_file_of_a_membrane),
       cmocka_unit_test(test_summary),
+      cmocka_unit_test(test_size_is_that_of_a_run),
       cmocka_unit_test(test_what_goes_wrong),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

@@ -13,17 +13,6 @@ struct request {
   bool json, force;
 };
 
-/* Displacement components that nothing holds. */
-static size_t count_unknowns(const struct dea_fibre_disc *plate, const struct dea_grid *grid)
-{
-  size_t count = 3 * grid->node_count;
-  for (size_t n = 0; n < grid->node_count; n++) {
-    int held = dea_fibre_disc_held(plate, grid->X + 3 * n);
-    count -= (size_t)((held & 1) + ((held >> 1) & 1) + ((held >> 2) & 1));
-  }
-  return count;
-}
-
 /* Elements of a membrane. */
 static size_t count_flat(const struct dea_grid *grid)
 {
@@ -34,8 +23,14 @@ static size_t count_flat(const struct dea_grid *grid)
   return count;
 }
 
+/* Displacements of all nodes, those that are held too, as model 3d counts them. */
+static size_t count_unknowns(const struct dea_grid *grid)
+{
+  return 3 * grid->node_count;
+}
+
 /* Elements, nodes and their quality, as all meshes have them. */
-static void print_size(const struct dea_grid *grid, size_t unknowns)
+static void print_size(const struct dea_grid *grid)
 {
   int face = (grid->order + 1) * (grid->order + 1); // nodes
   size_t flat = count_flat(grid);
@@ -45,7 +40,7 @@ static void print_size(const struct dea_grid *grid, size_t unknowns)
   }
   printf("of %d nodes\n", face * (grid->order_z + 1));
   printf("%-20s %zu\n", "nodes", grid->node_count);
-  printf("%-20s %zu\n", "unknowns", unknowns);
+  printf("%-20s %zu\n", "unknowns", count_unknowns(grid));
 }
 
 static void print_quality(const struct request *request, const struct dea_grid *grid)
@@ -64,7 +59,7 @@ static void print_layout(const struct request *request, const struct dea_layout_
     cli_print_json(json_pack(
         "{s:I, s:I, s:I, s:I, s:f}", "elements", (json_int_t)grid->element_count, "flat_elements",
         (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
-        3 * (json_int_t)grid->node_count, "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
+        (json_int_t)count_unknowns(grid), "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
     return;
   }
   size_t copies = dea_layout_sector_copies(&mesh->sector);
@@ -73,7 +68,7 @@ static void print_layout(const struct request *request, const struct dea_layout_
   } else {
     printf("%-20s the whole device, a free mesh\n", "domain");
   }
-  print_size(grid, 3 * grid->node_count);
+  print_size(grid);
   print_quality(request, grid);
 }
 
@@ -82,18 +77,18 @@ static void print_summary(const struct request *request, const struct dea_fibre_
 {
   double degrees = dea_fibre_disc_angle(plate) * 180 / acos(-1);
   double jacobian = dea_grid_smallest_jacobian(grid);
-  size_t unknowns = count_unknowns(plate, grid), flat = count_flat(grid);
+  size_t flat = count_flat(grid);
   if (request->json) {
-    json_t *json = json_pack("{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements",
-                             (json_int_t)grid->element_count, "flat_elements", (json_int_t)flat,
-                             "nodes", (json_int_t)grid->node_count, "unknowns",
-                             (json_int_t)unknowns, "smallest_jacobian", jacobian, "angle_deg",
-                             degrees, "size_m", plate->size, "edge_size_m", plate->edge);
+    json_t *json = json_pack(
+        "{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements", (json_int_t)grid->element_count,
+        "flat_elements", (json_int_t)flat, "nodes", (json_int_t)grid->node_count, "unknowns",
+        (json_int_t)count_unknowns(grid), "smallest_jacobian", jacobian, "angle_deg", degrees,
+        "size_m", plate->size, "edge_size_m", plate->edge);
     cli_print_json(json);
     return;
   }
   printf("%-20s %g degrees\n", "domain", degrees);
-  print_size(grid, unknowns);
+  print_size(grid);
   printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
          1e3 * plate->size, 1e3 * plate->edge);
   print_quality(request, grid);
