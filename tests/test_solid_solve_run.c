@@ -63,6 +63,28 @@ static void test_plain_disc(void **state)
   }
 }
 
+/* A result names the libraries that have computed it, of this model PETSc with what it brings:
+ * once, and not where another model alone has computed. */
+static void test_libraries(void **state)
+{
+  (void)state;
+  static const char *const designs[] = {
+      "plain-disc.yaml -m lumped", "plain-disc.yaml -m lumped -m 3d", "devices/cone-mass.yaml"};
+  for (size_t i = 0; i < 3; i++) {
+    char text[200];
+    snprintf(text, sizeof text, "run @/examples/%s --json --set 'compute.voltage={values: [0 kV]}'",
+             designs[i]);
+    assert_int_equal(command_run(text), 0);
+    const char *at = strstr(command_out, "\"libraries\": \"libyaml 0.");
+    assert_non_null(at);
+    const char *petsc = strstr(at, ", PETSc 3."), *slepc = strstr(at, ", SLEPc 3.");
+    const char *mumps = strstr(at, ", MUMPS 5.");
+    assert_true((petsc != NULL && slepc != NULL && mumps != NULL) == (i > 0));
+    assert_true(petsc == NULL ||
+                (petsc < strchr(at, '\n') && strstr(petsc + 2, ", PETSc") == NULL));
+  }
+}
+
 /* Last point of a run in 3D, owned by *root. */
 static const json_t *last_point(const char *arguments, json_t **root)
 {
@@ -208,9 +230,13 @@ static void test_study_of_convergence(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_four_fibres),  cmocka_unit_test(test_plain_disc),
-      cmocka_unit_test(test_eight_fibres), cmocka_unit_test(test_mesh_of_the_design),
-      cmocka_unit_test(test_preview),      cmocka_unit_test(test_study_of_convergence),
+      cmocka_unit_test(test_four_fibres),
+      cmocka_unit_test(test_plain_disc),
+      cmocka_unit_test(test_libraries),
+      cmocka_unit_test(test_eight_fibres),
+      cmocka_unit_test(test_mesh_of_the_design),
+      cmocka_unit_test(test_preview),
+      cmocka_unit_test(test_study_of_convergence),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -2,10 +2,12 @@
 #include "job/job.h"
 
 #include "output/run_folder.h"
+#include "result/provenance.h"
 #include "study/rerun.h"
 #include "study/uncertainty.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 static bool has_folder(const struct dea_job *job)
@@ -62,6 +64,22 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_job *jo
   return first;
 }
 
+/* Adds what has computed a model's results to where they come from. */
+static dea_status name_libraries(struct dea_context *ctx, const struct dea_model_type *type,
+                                 struct dea_result *result)
+{
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  for (size_t i = 0; i < count && type->libraries != NULL; i++) {
+    if (strcmp(models[i], type->name) == 0) {
+      char text[sizeof result->provenance.libraries];
+      DEA_TRY(ctx, type->libraries(ctx, text, sizeof text));
+      dea_provenance_add_libraries(text, &result->provenance);
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,
                        bool *began)
 {
@@ -87,6 +105,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
       first = status;
       snprintf(message, sizeof message, "%s: %s", job->models[i]->name, dea_context_message(ctx));
     }
+    DEA_TRY(ctx, name_libraries(ctx, job->models[i], result));
   }
   clock_gettime(CLOCK_MONOTONIC, &end);
   result->provenance.wall_s =

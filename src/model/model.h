@@ -166,6 +166,9 @@ struct dea_model_type {
    * calls: this one has bytes of the first of them become those of all. NULL: each computes alone.
    */
   dea_status (*tell)(struct dea_context *ctx, void *bytes, size_t length);
+  /* Names and versions of the libraries that compute it and that the program itself has not, "PETSc
+   * 3.18.5", into out [size], once a model was made. NULL: there are none. */
+  dea_status (*libraries)(struct dea_context *ctx, char *out, size_t size);
   /* device: lent, outlives the model. settings: copied; NULL: the defaults. */
   dea_status (*create)(struct dea_context *ctx, const struct dea_device *device,
                        const struct dea_model_settings *settings, struct dea_model **out);

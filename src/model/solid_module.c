@@ -82,6 +82,14 @@ static dea_status tell(struct dea_context *ctx, void *bytes, size_t length)
   return DEA_OK;
 }
 
+static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
+{
+  const struct dea_model_type *type = NULL;
+  DEA_TRY(ctx, open_module(ctx, false, &type));
+  DEA_TRY(ctx, type->libraries(ctx, out, size));
+  return DEA_OK;
+}
+
 /* Where a design asks for what the engine has not. */
 static dea_status refuse(struct dea_context *ctx, const struct dea_location *where,
                          const char *what)
@@ -372,6 +380,7 @@ const struct dea_model_type dea_model_3d = {
     .of_layouts = &of_layouts,
     .long_name = "3D solid",
     .tell = tell,
+    .libraries = libraries,
     .create = create,
     .destroy = destroy,
     .check = check,

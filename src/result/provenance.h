@@ -11,6 +11,8 @@
 dea_status dea_provenance_fill(struct dea_context *ctx, const char *input, size_t input_length,
                                const struct dea_override *overrides, size_t override_count,
                                const char *command, struct dea_provenance *provenance);
+/* Adds libraries, "PETSc 3.18.5, ...", to those that are there, once. */
+void dea_provenance_add_libraries(const char *libraries, struct dea_provenance *provenance);
 /* SHA-256 of some bytes in hexadecimal. */
 void dea_sha256_hex(const void *bytes, size_t length, char out[65]);
 /* Names and versions, found at run time, of the libraries in use: "libyaml 0.2.5, HDF5 1.10.8". */

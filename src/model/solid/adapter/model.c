@@ -870,6 +870,7 @@ const struct dea_model_type dea_solid_module = {
     .name = "3d",
     .long_name = "3D solid",
     .tell = dea_solid_tell,
+    .libraries = dea_solid_libraries,
     .create = create,
     .destroy = destroy,
     .solve = dea_standing_solve,

@@ -2,6 +2,7 @@
 #include "model/solid/assembly/ranks.h"
 
 #include <lapacke.h>
+#include <petscpkg_version.h>
 #include <slepcsys.h>
 
 #include <stdio.h>
@@ -105,6 +106,19 @@ void dea_solid_stop(void)
     SlepcFinalize(); // PETSc was started first and goes last
     PetscFinalize();
   }
+}
+
+dea_status dea_solid_libraries(struct dea_context *ctx, char *out, size_t size)
+{
+  PetscInt petsc[3] = {0}, slepc[3] = {0}, release;
+  (void)ctx;
+  PetscGetVersionNumber(&petsc[0], &petsc[1], &petsc[2], &release);
+  SlepcGetVersionNumber(&slepc[0], &slepc[1], &slepc[2], &release);
+  snprintf(out, size, "PETSc %d.%d.%d, SLEPc %d.%d.%d, MUMPS %d.%d.%d", (int)petsc[0],
+           (int)petsc[1], (int)petsc[2], (int)slepc[0], (int)slepc[1], (int)slepc[2],
+           PETSC_PKG_MUMPS_VERSION_MAJOR, PETSC_PKG_MUMPS_VERSION_MINOR,
+           PETSC_PKG_MUMPS_VERSION_SUBMINOR);
+  return DEA_OK;
 }
 
 int dea_solid_rank(void)

@@ -13,6 +13,9 @@
 /* PETSc for this process; harmless when it runs already. */
 dea_status dea_solid_start(struct dea_context *ctx);
 void dea_solid_stop(void);
+/* "PETSc 3.18.5, SLEPc 3.18.2, MUMPS 5.5.1": those that are loaded, of MUMPS what PETSc's headers
+ * say. */
+dea_status dea_solid_libraries(struct dea_context *ctx, char *out, size_t size);
 /* Number of this process among those that mpirun started, from 0. */
 int dea_solid_rank(void);
 /* Whether it is so on any rank. */
