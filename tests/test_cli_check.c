@@ -103,6 +103,43 @@ static void test_what_cannot_be_uncertain(void **state)
   assert_null(strstr(command_err, "sweep"));
 }
 
+/* A study that none of the design's own models knows is left out of a run, and check says so where
+ * the study is asked for; with a model that knows it there is nothing to say. */
+static void test_studies_of_no_model(void **state)
+{
+  (void)state;
+  static char text[COMMAND_TEXT_MAX];
+  command_read_in(DEA_SOURCE_DIR, "examples/plain-disc.yaml", text);
+  char *models = strstr(text, "models: [lumped, axisymmetric]");
+  assert_non_null(models);
+  size_t line = 2, length = strlen(text);
+  for (const char *at = text; at < models; at++) {
+    line += *at == '\n';
+  }
+  snprintf(text + length, sizeof text - length,
+           "\ndrive: {waveform: {kind: square, high: 1 kV, "
+           "frequency: 1 Hz}}\n");
+  memcpy(models, "models: [axisymmetric]        ", 30);
+  command_write("drive.yaml", text);
+  memcpy(models, "models: [lumped]\n  modal: {}  ", 30);
+  command_write("modal.yaml", text);
+  char wanted[200];
+  snprintf(
+      wanted, sizeof wanted,
+      "modal.yaml:%zu:3: warning: no study 'modal' of model lumped, which knows no vibrations; "
+      "there is one of 3d (compute.models)\n",
+      line);
+  command_expect("check modal.yaml", 0, wanted);
+  assert_null(strstr(command_err, "'transient'"));
+  assert_null(strstr(command_err, "'path'"));
+  command_expect("run modal.yaml -o modal --no-figures --study sweep", 0, "");
+  command_expect("check modal.yaml --set 'compute.models=[lumped, 3d]'", 0, "");
+  assert_null(strstr(command_err, "warning"));
+  snprintf(wanted, sizeof wanted, "drive.yaml:%zu:12: warning: no study 'transient' of model axi",
+           line - 1);
+  command_expect("check drive.yaml", 0, wanted);
+}
+
 /* "$NAME" of a shell that knows no NAME. */
 static void test_empty_value(void **state)
 {
@@ -345,6 +382,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_every_bad_file_has_its_exit_code),
       cmocka_unit_test(test_what_cannot_be_uncertain),
+      cmocka_unit_test(test_studies_of_no_model),
       cmocka_unit_test(test_empty_value),
       cmocka_unit_test(test_ranks_are_for_run_alone),
       cmocka_unit_test(test_check_lists_values_and_what_follows),

@@ -6,6 +6,7 @@
 #include "base/yaml_write.h"
 #include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
+#include "study/study.h"
 #include "study/uncertainty.h"
 
 #include <math.h>
@@ -361,6 +362,8 @@ dea_status dea_design_check(dea_context *ctx, const dea_design *design)
   dea_status models = inner != NULL ? check_models(inner_ctx, inner) : DEA_OK;
   status = status != DEA_OK ? status : models;
   models = status == DEA_OK ? dea_models_check(inner_ctx, inner, device) : DEA_OK;
+  status = status != DEA_OK ? status : models;
+  models = status == DEA_OK ? dea_study_warn(inner_ctx, inner, device) : DEA_OK;
   status = status != DEA_OK ? status : models;
   models = status == DEA_OK ? dea_uncertainty_check(inner_ctx, inner, device, &dea_rerun_designs)
                             : DEA_OK;

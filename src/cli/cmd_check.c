@@ -233,6 +233,8 @@ static int run(struct dea_cli *cli, void *user)
     status = status != DEA_OK ? status : known;
     known = device != NULL ? dea_models_check(cli->ctx, design, device) : DEA_OK;
     status = status != DEA_OK ? status : known;
+    known = device != NULL ? dea_study_warn(cli->ctx, design, device) : DEA_OK;
+    status = status != DEA_OK ? status : known;
     known = cli_variants_check(cli, design);
     status = status != DEA_OK ? status : known;
   }

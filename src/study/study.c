@@ -146,26 +146,36 @@ static dea_status say_unknown(struct dea_context *ctx, const struct dea_study *s
                          "model %s knows no %s: no study '%s'", model, study->ability, study->name);
 }
 
-static dea_status known_to_none(struct dea_context *ctx, const struct dea_study *study,
-                                const struct dea_model_type *const types[], size_t type_count,
-                                const struct dea_result *result)
+/* What there is to say of a study that none of these models knows, added to *text. */
+static void add_known_to_none(const struct dea_study *study,
+                              const struct dea_model_type *const types[], size_t type_count,
+                              const struct dea_result *result, struct dea_text *out)
 {
   size_t count;
   const struct dea_model_type *const *all = dea_model_all(&count);
-  struct dea_text text = {.ctx = ctx};
-  dea_text_add(&text, "no study '%s' of model ", study->name);
+  dea_text_add(out, "no study '%s' of model ", study->name);
   for (size_t i = 0; i < type_count; i++) {
-    dea_text_add(&text, "%s%s", i > 0 ? " or " : "", types[i]->name);
+    dea_text_add(out, "%s%s", i > 0 ? " or " : "", types[i]->name);
   }
-  dea_text_add(&text, ", which %s no %s", type_count > 1 ? "know" : "knows", study->ability);
+  dea_text_add(out, ", which %s no %s", type_count > 1 ? "know" : "knows", study->ability);
   for (size_t i = 0, able = 0; i < count; i++) {
     if (is_known_to(study, all[i], result)) {
-      dea_text_add(&text, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);
+      dea_text_add(out, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);
     }
   }
-  dea_status status = dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
-  dea_text_free(&text);
-  return status;
+}
+
+/* Whether some of the models knows what the study needs of it. */
+static bool is_known_to_some(const struct dea_study *study,
+                             const struct dea_model_type *const types[], size_t type_count,
+                             const struct dea_result *result)
+{
+  for (size_t i = 0; i < type_count; i++) {
+    if (is_known_to(study, types[i], result)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 dea_status dea_study_check_models(struct dea_context *ctx,
@@ -174,12 +184,49 @@ dea_status dea_study_check_models(struct dea_context *ctx,
                                   const struct dea_result *result)
 {
   for (size_t k = 0; names != NULL && k < STUDIES; k++) {
-    bool known = !is_wanted(studies[k], names, name_count, result->design);
-    for (size_t i = 0; i < type_count; i++) {
-      known = known || is_known_to(studies[k], types[i], result);
+    if (is_wanted(studies[k], names, name_count, result->design) &&
+        !is_known_to_some(studies[k], types, type_count, result)) {
+      struct dea_text text = {.ctx = ctx};
+      add_known_to_none(studies[k], types, type_count, result, &text);
+      dea_status status = dea_fail(ctx, DEA_E_ARGUMENT, "%s", dea_text_get(&text));
+      dea_text_free(&text);
+      return status;
     }
-    if (!known) {
-      return known_to_none(ctx, studies[k], types, type_count, result);
+  }
+  return DEA_OK;
+}
+
+/* What of a design asks for a study: its section, or what else does without one. */
+static struct dea_location place_of(const struct dea_study *study, const struct dea_design *design)
+{
+  const struct dea_node *compute = dea_node_find(dea_yaml_root(design->document), "compute");
+  const struct dea_node *section =
+      study->keys != NULL ? dea_node_find(compute, study->keys->key) : NULL;
+  return section != NULL ? section->key_place : design->compute.models[0].location;
+}
+
+dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *design,
+                          const struct dea_device *device)
+{
+  const struct dea_model_type *types[DEA_DESIGN_MODELS_MAX];
+  const struct dea_result result = {.design = design, .device = device};
+  const size_t count = design->compute.model_count;
+  for (size_t i = 0; i < count; i++) {
+    types[i] = dea_model_find(design->compute.models[i].text);
+    if (types[i] == NULL) {
+      return DEA_OK; // an error already
+    }
+  }
+  for (size_t k = 0; k < STUDIES; k++) {
+    const bool of_all = studies[k]->asked == NULL && studies[k]->keys == NULL;
+    if (!of_all && is_wanted(studies[k], NULL, 0, design) && is_able(studies[k], design) &&
+        !is_known_to_some(studies[k], types, count, &result)) {
+      struct dea_text text = {.ctx = ctx};
+      add_known_to_none(studies[k], types, count, &result, &text);
+      dea_status status = dea_finding_add(ctx, DEA_WARNING, place_of(studies[k], design),
+                                          "%s (compute.models)", dea_text_get(&text));
+      dea_text_free(&text);
+      DEA_TRY(ctx, status);
     }
   }
   return DEA_OK;

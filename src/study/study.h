@@ -47,6 +47,9 @@ dea_status dea_study_check_models(struct dea_context *ctx,
                                   const struct dea_model_type *const types[], size_t type_count,
                                   const char *const names[], size_t name_count,
                                   const struct dea_result *result);
+/* A warning at each study that a design asks for and that none of the models it names knows. */
+dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *design,
+                          const struct dea_device *device);
 /* Whether a design asks for the study of that name. */
 bool dea_study_asked(const struct dea_design *design, const char *name);
 /* Highest voltage that the result's curves have reached, or without any that of its design [V]. */
