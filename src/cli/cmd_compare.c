@@ -20,6 +20,8 @@ struct models {
 struct columns {
   size_t count;
   int at[QUANTITIES_MAX];
+  size_t monitor_count;
+  const char *monitors[QUANTITIES_MAX]; // "hub.z_m"
 };
 
 struct request {
@@ -51,6 +53,13 @@ static int take_quantity(struct dea_cli *cli, const struct dea_command *command,
       return cli_usage_error(cli, command, "too many quantities");
     }
     columns->at[columns->count++] = column;
+    return 0;
+  }
+  if (strchr(text, '.') != NULL) { // of a monitor; of which there are the runs say
+    if (columns->monitor_count == QUANTITIES_MAX) {
+      return cli_usage_error(cli, command, "too many quantities");
+    }
+    columns->monitors[columns->monitor_count++] = text;
     return 0;
   }
   const char *keys[DEA_LOAD_POINT_COLUMNS];
@@ -278,7 +287,7 @@ static void print_head(const char *title, const char *at, bool std)
 static void print_row(const char *name, const struct dea_misfit *m, double at_factor,
                       double tolerance)
 {
-  double factor = dea_point_columns[m->column].factor;
+  double factor = m->quantity->factor;
   printf("  %-26s %6zu %11.5g %11.5g %8.4g %11.5g %8.3g %% %11.3g %%", name, m->count,
          factor * m->rms, factor * m->largest, at_factor * m->largest_at, factor * m->bias,
          100.0 * m->relative_rms, 100.0 * m->relative_largest);
@@ -316,6 +325,30 @@ static bool print_quantity(const struct dea_compare_set *set, int column, double
     }
   }
   return std;
+}
+
+/* A table for each thing that a monitor shows, in the order in which they come first. */
+static void print_monitors(const struct dea_compare_set *set, double tolerance)
+{
+  for (size_t i = 0; i < set->monitor_count; i++) {
+    const char *key = set->monitors[i]->quantity.key;
+    bool first = true;
+    for (size_t k = 0; k < i; k++) {
+      first = first && strcmp(set->monitors[k]->quantity.key, key) != 0;
+    }
+    if (!first) {
+      continue;
+    }
+    char title[96];
+    dea_column_title(&set->monitors[i]->quantity, title, sizeof title);
+    print_head(title, "at kV", false);
+    for (size_t k = i; k < set->monitor_count; k++) {
+      const struct dea_set_monitor *m = set->monitors[k];
+      if (strcmp(m->quantity.key, key) == 0) {
+        print_row(set->curves[m->curve].name, dea_set_monitor_misfit(m), 1e-3, tolerance);
+      }
+    }
+  }
 }
 
 static bool print_profiles(const struct dea_compare_set *set)
@@ -367,14 +400,20 @@ static bool print_pair(const struct dea_compare_set *set, size_t curve, double t
   char beside[DEA_LABEL_SIZE], title[96];
   bool std = false;
   dea_compare_set_beside(set, curve, beside);
-  for (size_t i = 0; i < c->misfit_count; i++) {
+  for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
     std = std || c->misfits[i].std_count > 0;
   }
   printf("a: %s\nb: %s", set->curves[curve].name, beside);
   print_head("a - b", "at kV", std);
-  for (size_t i = 0; i < c->misfit_count; i++) {
-    dea_column_title(&dea_point_columns[c->misfits[i].column], title, sizeof title);
+  for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
+    dea_column_title(c->misfits[i].quantity, title, sizeof title);
     print_row(title, &c->misfits[i], 1e-3, tolerance);
+  }
+  for (size_t i = 0; i < set->monitor_count; i++) {
+    if (set->monitors[i]->curve == curve) {
+      dea_column_title(&set->monitors[i]->quantity, title, sizeof title);
+      print_row(title, dea_set_monitor_misfit(set->monitors[i]), 1e-3, tolerance);
+    }
   }
   return std;
 }
@@ -406,6 +445,9 @@ static void print_tables(const struct dea_compare_set *set, double tolerance)
   for (int c = 0; !set->pairs && c < DEA_LOAD_POINT_COLUMNS; c++) {
     std = print_quantity(set, c, tolerance) || std;
   }
+  if (!set->pairs) {
+    print_monitors(set, tolerance);
+  }
   std = print_profiles(set) || std;
   print_histories(set);
   if (std) {
@@ -436,7 +478,7 @@ static dea_status judge(struct dea_context *ctx, const struct dea_compare_set *s
                         "tolerance")
              : dea_fail(ctx, DEA_E_DIFFERS,
                         "%s of %s differs by %.3g %% of its range, more than %.3g %%",
-                        dea_point_columns[worst->column].key, set->curves[curve].name,
+                        worst->quantity->key, set->curves[curve].name,
                         100.0 * worst->relative_largest, 100.0 * tolerance);
 }
 
@@ -445,7 +487,10 @@ static dea_status compare(struct dea_context *ctx, const struct request *request
 {
   DEA_TRY(ctx,
           set->pairs ? fill_pairs(ctx, request, sides, set) : fill_set(ctx, request, sides, set));
-  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, request->columns.at, request->columns.count));
+  const struct columns *columns = &request->columns;
+  const struct dea_compare_ask ask = {columns->at, columns->count, columns->monitors,
+                                      columns->monitor_count};
+  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, &ask));
   if (request->json) {
     char *text;
     DEA_TRY(ctx, dea_json_text(ctx, dea_compare_set_json(set, request->tolerance), &text));
@@ -499,8 +544,8 @@ static const struct cli_option options[] = {
     {"tolerance", 0, CLI_TEXT, "SHARE", "largest difference allowed, such as 5%", CLI_AT(tolerance),
      take_tolerance},
     {"quantity", 0, CLI_QUANTITY, "KEY",
-     "only this quantity, such as fibre_tip_z_m; can be repeated", CLI_AT(columns), take_quantity,
-     .most = QUANTITIES_MAX},
+     "only this quantity, such as fibre_tip_z_m, or hub.z_m of a monitor; can be repeated",
+     CLI_AT(columns), take_quantity, .most = QUANTITIES_MAX},
     {"model", 0, CLI_MODEL, "MODEL",
      "only this model; can be repeated. lumped:axisymmetric takes one of A, the other of B. There "
      "are",

@@ -43,8 +43,12 @@ void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *se
   for (size_t i = 0; i < set->history_count; i++) {
     dea_misfit_free(&set->histories[i].misfit);
   }
+  for (size_t i = 0; i < set->monitor_count; i++) {
+    dea_set_monitor_destroy(ctx, set->monitors[i]);
+  }
   dea_free(ctx, set->profiles);
   dea_free(ctx, set->histories);
+  dea_free(ctx, set->monitors);
   dea_free(ctx, set);
 }
 
@@ -182,8 +186,7 @@ static dea_status note_few(struct dea_context *ctx, const struct dea_set_curve *
              : dea_finding_add(ctx, DEA_NOTE, nowhere,
                                "%zu of %zu measured points of '%s' lie outside the voltages of %s "
                                "and are left out of its misfit",
-                               measured - m->count, measured, dea_point_columns[m->column].header,
-                               curve->name);
+                               measured - m->count, measured, m->quantity->header, curve->name);
 }
 
 /* Whether a and b point to different sides where b is largest. */
@@ -199,7 +202,7 @@ static bool signs_differ(const struct dea_misfit *m)
 static dea_status note_sign(struct dea_context *ctx, const struct dea_compare_set *set,
                             const struct dea_set_curve *curve, const struct dea_misfit *m)
 {
-  const char *key = dea_point_columns[m->column].key;
+  const char *key = m->quantity->key;
   bool is_z = strcmp(key, "centre_z_m") == 0 || strcmp(key, "fibre_tip_z_m") == 0;
   if (!is_z || !signs_differ(m)) {
     return DEA_OK;
@@ -208,7 +211,7 @@ static dea_status note_sign(struct dea_context *ctx, const struct dea_compare_se
   return dea_finding_add(ctx, DEA_NOTE, nowhere,
                          "%s of %s and of %s have opposite signs; nothing was turned round: z is "
                          "positive towards the fibres%s",
-                         dea_point_columns[m->column].header, curve->name, set->reference,
+                         m->quantity->header, curve->name, set->reference,
                          lumped ? ", and model lumped, an upper bound, knows no side"
                                 : "; was the sensor on the other side?");
 }
@@ -415,22 +418,44 @@ static dea_status compute_histories(struct dea_context *ctx, struct dea_compare_
   return DEA_OK;
 }
 
-dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
-                                   const int *columns, size_t count)
+/* Fails for what a monitor shows that was asked for and that no curve has. */
+static dea_status check_monitors_asked(struct dea_context *ctx, const struct dea_compare_set *set,
+                                       const struct dea_compare_ask *ask)
 {
+  for (size_t q = 0; q < ask->monitor_count; q++) {
+    bool found = false;
+    for (size_t i = 0; i < set->monitor_count && !found; i++) {
+      found = strcmp(set->monitors[i]->quantity.key, ask->monitors[q]) == 0;
+    }
+    if (!found) {
+      return dea_fail(ctx, DEA_E_ARGUMENT, "no curve has %s of a monitor in common with %s",
+                      ask->monitors[q], set->reference);
+    }
+  }
+  return DEA_OK;
+}
+
+dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
+                                   const struct dea_compare_ask *ask)
+{
+  const int *columns = ask->columns;
+  const size_t count = ask->column_count;
+  const bool points = count > 0 || ask->monitor_count == 0; // else monitors alone
   size_t found = 0;
   for (size_t i = 0; i < set->curve_count; i++) {
-    DEA_TRY(ctx, compute_curve(ctx, set, &set->curves[i], columns, count));
+    DEA_TRY(ctx, points ? compute_curve(ctx, set, &set->curves[i], columns, count) : DEA_OK);
+    DEA_TRY(ctx, dea_compare_set_add_monitors(ctx, set, i, ask));
     found += set->curves[i].comparison != NULL ? set->curves[i].comparison->misfit_count : 0;
   }
-  if (set->measured != NULL) {
+  if (set->measured != NULL && points) {
     DEA_TRY(ctx, is_wanted(dea_point_column_find("centre_z_m"), columns, count)
                      ? compute_profiles(ctx, set)
                      : DEA_OK);
     DEA_TRY(ctx, compute_histories(ctx, set, columns, count));
   }
   DEA_TRY(ctx, check_asked(ctx, set, columns, count));
-  return found + set->profile_count + set->history_count > 0
+  DEA_TRY(ctx, check_monitors_asked(ctx, set, ask));
+  return found + set->profile_count + set->history_count + set->monitor_count > 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_ARGUMENT, "the runs have nothing in common with %s",
                         set->reference);
@@ -448,6 +473,13 @@ const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set
       }
     }
   }
+  for (size_t i = 0; i < set->monitor_count; i++) {
+    const struct dea_misfit *m = dea_set_monitor_misfit(set->monitors[i]);
+    if (worst == NULL || m->relative_largest > worst->relative_largest) {
+      worst = m;
+      *curve = set->monitors[i]->curve;
+    }
+  }
   return worst;
 }
 
@@ -455,7 +487,7 @@ const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set
 
 static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, double tolerance)
 {
-  const struct dea_column *column = &dea_point_columns[m->column];
+  const struct dea_column *column = m->quantity;
   char at[32];
   json_t *object = json_object();
   snprintf(at, sizeof at, "largest_at_%s", at_unit);
@@ -490,8 +522,14 @@ static json_t *curve_json(const struct dea_compare_set *set, size_t curve, doubl
   dea_compare_set_beside(set, curve, beside);
   dea_json_put_text(object, "a", set->curves[curve].name);
   dea_json_put_text(object, "b", beside);
-  for (size_t i = 0; i < comparison->misfit_count; i++) {
+  for (size_t i = 0; comparison != NULL && i < comparison->misfit_count; i++) {
     json_array_append_new(quantities, misfit_json(&comparison->misfits[i], "V", tolerance));
+  }
+  for (size_t i = 0; i < set->monitor_count; i++) {
+    if (set->monitors[i]->curve == curve) {
+      const struct dea_misfit *m = dea_set_monitor_misfit(set->monitors[i]);
+      json_array_append_new(quantities, misfit_json(m, "V", tolerance));
+    }
   }
   json_object_set_new(object, "quantities", quantities);
   return object;
@@ -507,8 +545,11 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
   }
   dea_json_put_text(root, "reference", set->reference);
   for (size_t i = 0; i < set->curve_count; i++) {
-    if (set->curves[i].comparison != NULL) {
-      json_array_append_new(curves, curve_json(set, i, tolerance));
+    json_t *curve = curve_json(set, i, tolerance);
+    if (json_array_size(json_object_get(curve, "quantities")) > 0) {
+      json_array_append_new(curves, curve);
+    } else {
+      json_decref(curve); // nothing in common
     }
   }
   for (size_t i = 0; i < set->profile_count; i++) {

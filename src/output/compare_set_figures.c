@@ -10,8 +10,8 @@
 
 enum {
   DEA_SET_FIGURES_MAX = DEA_LOAD_POINT_COLUMNS * DEA_DESIGN_MODELS_MAX + DEA_MEASURED_COLUMNS + 1,
-  DEA_SET_FIGURE_SIZE = 64
-};
+  DEA_SET_FIGURE_SIZE = 192
+}; // beside those of monitors
 
 /* What is drawn so far. */
 struct dea_set_figures {
@@ -19,8 +19,8 @@ struct dea_set_figures {
   const struct dea_compare_set *set;
   const struct dea_plot_format *format;
   const char *directory;
-  char names[DEA_SET_FIGURES_MAX][DEA_SET_FIGURE_SIZE];
-  size_t count;
+  char (*names)[DEA_SET_FIGURE_SIZE]; // [room]
+  size_t count, room;
 };
 
 static const char band_title[] = "\302\261 1 std";
@@ -33,9 +33,22 @@ static dea_status begin_figure(struct dea_set_figures *f, const char *name, cons
   return dea_plot_create(f->ctx, name, caption, plot);
 }
 
+/* "compare_hub_z_m_3d": names of monitors are of any letters. model: "" for none. */
+static void name_figure(const struct dea_column *quantity, const char *model,
+                        char out[DEA_SET_FIGURE_SIZE])
+{
+  snprintf(out, DEA_SET_FIGURE_SIZE, "compare_%s%s%.30s", quantity->key,
+           model[0] != '\0' ? "_" : "", model);
+  for (char *at = out; *at != '\0'; at++) {
+    bool plain = (*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') ||
+                 (*at >= '0' && *at <= '9') || *at == '-';
+    *at = plain ? *at : '_';
+  }
+}
+
 static dea_status finish_figure(struct dea_set_figures *f, struct dea_plot *plot, dea_status status)
 {
-  if (status == DEA_OK && dea_plot_shows(plot) && f->count < DEA_SET_FIGURES_MAX) {
+  if (status == DEA_OK && dea_plot_shows(plot) && f->count < f->room) {
     snprintf(f->names[f->count++], DEA_SET_FIGURE_SIZE, "%s", plot->name);
     status = dea_plot_write(f->ctx, plot, f->format, f->directory);
   }
@@ -81,6 +94,16 @@ static void set_key_above(const struct dea_set_figures *f, struct dea_panel *pan
   double columns = fmax(floor(room_mm / (letter_mm * (double)longest + sample_mm)), 1.0);
   double rows = fmin(ceil((double)entries / columns), ROWS_MAX);
   panel->key = keys[rows > 1.0 ? (size_t)rows - 1 : 0];
+}
+
+/* An axis, with names of monitors as they are. */
+static void label_quantity(const struct dea_column *quantity, char *out, size_t size)
+{
+  struct dea_column plain = *quantity;
+  char header[DEA_LABEL_SIZE];
+  dea_label_escape(quantity->header, header, sizeof header);
+  plain.header = header;
+  dea_figure_label(&plain, out, size);
 }
 
 // Against the voltage -----------------------------------------------------------------------------
@@ -172,9 +195,66 @@ static dea_status fill_quantity(struct dea_set_figures *f, int column, struct de
                             : add_reference(f->ctx, panel, set, column));
   dea_figure_label(&dea_point_columns[column], panel->y_label, sizeof panel->y_label);
   dea_panel_voltage_axis(panel);
-  dea_panel_even_tics(panel, 7);
   set_range(panel);
+  dea_panel_even_tics(panel, 7);
   dea_panel_place_key(panel);
+  return DEA_OK;
+}
+
+/* All that show the same as the first of them, a monitor of the set. */
+static dea_status fill_monitors(struct dea_set_figures *f, size_t first, struct dea_panel *panel)
+{
+  const struct dea_compare_set *set = f->set;
+  const struct dea_set_monitor *of = set->monitors[first];
+  const int column = dea_set_monitor_misfit(of)->column;
+  for (int side = 0; side < 2; side++) { // the runs, then what they are set against
+    for (size_t i = first; i < set->monitor_count; i++) {
+      const struct dea_set_monitor *m = set->monitors[i];
+      struct dea_series look = dea_figure_style(set->curves[m->curve].name, m->curve);
+      if (side == 1) {
+        char title[DEA_LABEL_SIZE];
+        look = (struct dea_series){
+            .style = DEA_LINE_MARKED, .colour = DEA_BLACK, .marker = 5 + (int)m->curve};
+        dea_compare_set_beside(set, m->curve, title);
+        dea_label_escape(title, look.title, sizeof look.title);
+      }
+      if (strcmp(m->quantity.key, of->quantity.key) == 0 && (side == 0 || i == first)) {
+        DEA_TRY(f->ctx, dea_figure_add(f->ctx, panel, side == 0 ? &m->a : &m->b, column,
+                                       of->quantity.factor, 0.0, &look));
+      }
+    }
+  }
+  label_quantity(&of->quantity, panel->y_label, sizeof panel->y_label);
+  dea_panel_voltage_axis(panel);
+  set_range(panel);
+  dea_panel_even_tics(panel, 7);
+  dea_panel_place_key(panel);
+  return DEA_OK;
+}
+
+/* Whether no monitor of the set before that one shows the same. */
+static bool is_first_of_its_kind(const struct dea_compare_set *set, size_t monitor)
+{
+  for (size_t i = 0; i < monitor; i++) {
+    if (strcmp(set->monitors[i]->quantity.key, set->monitors[monitor]->quantity.key) == 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+static dea_status draw_monitors(struct dea_set_figures *f)
+{
+  for (size_t i = 0; i < f->set->monitor_count; i++) {
+    const struct dea_column *quantity = &f->set->monitors[i]->quantity;
+    struct dea_plot *plot;
+    char name[DEA_SET_FIGURE_SIZE];
+    if (is_first_of_its_kind(f->set, i)) {
+      name_figure(quantity, "", name);
+      DEA_TRY(f->ctx, begin_figure(f, name, quantity->header, &plot));
+      DEA_TRY(f->ctx, finish_figure(f, plot, fill_monitors(f, i, &plot->panels[0])));
+    }
+  }
   return DEA_OK;
 }
 
@@ -298,8 +378,8 @@ static dea_status fill_profile(struct dea_set_figures *f, const struct dea_measu
   snprintf(panel->y_label, sizeof panel->y_label, "{/:Italic z} at %.4g kV (\302\265m)",
            1e-3 * m->voltage_V);
   set_key_above(f, panel);
-  dea_panel_even_tics(panel, 7);
   set_range(panel);
+  dea_panel_even_tics(panel, 7);
   return DEA_OK;
 }
 
@@ -323,7 +403,7 @@ static dea_status add_values(struct dea_context *ctx, struct dea_panel *panel,
                              const double *std, struct dea_series **out)
 {
   DEA_TRY(ctx, dea_panel_add(ctx, panel, m->count, out));
-  double factor = dea_point_columns[m->column].factor;
+  double factor = m->quantity->factor;
   for (size_t i = 0; i < m->count; i++) {
     (*out)->values[i] = 1e-3 * m->at[i];
     (*out)->values[m->count + i] = factor * (values[i] - (less != NULL ? less[i] : 0.0));
@@ -350,7 +430,7 @@ static dea_status add_pair_band(struct dea_context *ctx, struct dea_panel *panel
   if (!has_std_of(m, m->a_std)) {
     return DEA_OK;
   }
-  const double factor = dea_point_columns[m->column].factor;
+  const double factor = m->quantity->factor;
   DEA_TRY(ctx, dea_panel_add(ctx, panel, m->count, &band));
   band->style = DEA_BAND;
   band->colour = DEA_BLUE;
@@ -374,8 +454,7 @@ static dea_status add_side(struct dea_context *ctx, struct dea_panel *panel,
                                                          : DEA_MARKERS,
                             .colour = first ? DEA_BLUE : DEA_VERMILLION};
   dea_label_escape(name, look.title, sizeof look.title);
-  return dea_figure_add(ctx, panel, curve, m->column, dea_point_columns[m->column].factor, 0.0,
-                        &look);
+  return dea_figure_add(ctx, panel, curve, m->column, m->quantity->factor, 0.0, &look);
 }
 
 /* What was measured, with a band of its scatter, or with bars where the model has a band. */
@@ -414,36 +493,52 @@ static dea_status fill_pair(struct dea_context *ctx, const struct dea_set_curve 
   series->style = bars ? DEA_ERROR_BARS : DEA_LINE_MARKED;
   series->colour = DEA_BLACK;
   dea_panel_mark(low, false, 0.0, "");
-  dea_figure_label(&dea_point_columns[m->column], top->y_label, sizeof top->y_label);
+  label_quantity(m->quantity, top->y_label, sizeof top->y_label);
   snprintf(low->y_label, sizeof low->y_label, "Difference");
   dea_panel_voltage_axis(top);
   dea_panel_voltage_axis(low);
   low->x_min = top->x_min;
   low->x_max = top->x_max;
+  set_range(top);
   dea_panel_even_tics(top, 7);
   dea_panel_even_tics(low, 3);
-  set_range(top);
   dea_panel_place_key(top);
+  return DEA_OK;
+}
+
+/* A misfit of a pair whose curves are those of c. */
+static dea_status draw_misfit(struct dea_set_figures *f, const struct dea_set_curve *c,
+                              const char *beside, const struct dea_misfit *m)
+{
+  const struct dea_measurement *measured =
+      f->set->measured != NULL ? f->set->measured->points : NULL;
+  bool alone = f->set->curve_count == 1;
+  char name[DEA_SET_FIGURE_SIZE], caption[4 * DEA_LABEL_SIZE];
+  struct dea_plot *plot;
+  name_figure(m->quantity, alone ? "" : c->model, name);
+  snprintf(caption, sizeof caption, "%s of %s and %s, and the first minus the second",
+           m->quantity->header, c->name, beside);
+  DEA_TRY(f->ctx, dea_plot_create(f->ctx, name, caption, &plot));
+  DEA_TRY(f->ctx, finish_figure(f, plot, fill_pair(f->ctx, c, measured, m, beside, plot)));
   return DEA_OK;
 }
 
 static dea_status draw_pair(struct dea_set_figures *f, size_t curve)
 {
   const struct dea_set_curve *c = &f->set->curves[curve];
-  const struct dea_measurement *measured =
-      f->set->measured != NULL ? f->set->measured->points : NULL;
-  bool alone = f->set->curve_count == 1;
-  char name[DEA_SET_FIGURE_SIZE], beside[DEA_LABEL_SIZE], caption[3 * DEA_LABEL_SIZE];
+  char beside[DEA_LABEL_SIZE];
   dea_compare_set_beside(f->set, curve, beside);
   for (size_t i = 0; c->comparison != NULL && i < c->comparison->misfit_count; i++) {
-    const struct dea_misfit *m = &c->comparison->misfits[i];
-    struct dea_plot *plot;
-    snprintf(name, sizeof name, "compare_%s%s%.30s", dea_point_columns[m->column].key,
-             alone ? "" : "_", alone ? "" : c->model);
-    snprintf(caption, sizeof caption, "%s of %s and %s, and the first minus the second",
-             dea_point_columns[m->column].header, c->name, beside);
-    DEA_TRY(f->ctx, dea_plot_create(f->ctx, name, caption, &plot));
-    DEA_TRY(f->ctx, finish_figure(f, plot, fill_pair(f->ctx, c, measured, m, beside, plot)));
+    DEA_TRY(f->ctx, draw_misfit(f, c, beside, &c->comparison->misfits[i]));
+  }
+  for (size_t i = 0; i < f->set->monitor_count; i++) {
+    const struct dea_set_monitor *m = f->set->monitors[i];
+    if (m->curve == curve) {
+      struct dea_set_curve shown = *c;
+      shown.curve = &m->a;
+      shown.reference = &m->b;
+      DEA_TRY(f->ctx, draw_misfit(f, &shown, beside, dea_set_monitor_misfit(m)));
+    }
   }
   return DEA_OK;
 }
@@ -570,8 +665,8 @@ static dea_status fill_history(struct dea_set_figures *f, enum dea_measured_colu
     panel->x_max = span[1];
     snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
     dea_figure_label(&dea_point_columns[of_point], panel->y_label, sizeof panel->y_label);
-    dea_panel_even_tics(panel, 5);
     set_range(panel);
+    dea_panel_even_tics(panel, 5);
     set_key_above(f, panel);
   }
   return DEA_OK;
@@ -602,16 +697,27 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
                                 const struct dea_plot_format *format, const char *directory)
 {
   struct dea_set_figures *f = dea_alloc(ctx, 1, sizeof *f);
-  const char *names[DEA_SET_FIGURES_MAX];
-  if (f == NULL) {
+  const size_t room = DEA_SET_FIGURES_MAX + set->monitor_count;
+  const char **names = dea_alloc(ctx, room, sizeof *names);
+  char(*texts)[DEA_SET_FIGURE_SIZE] = dea_alloc(ctx, room, sizeof *texts);
+  if (f == NULL || names == NULL || texts == NULL) {
+    dea_free(ctx, f);
+    dea_free(ctx, names);
+    dea_free(ctx, texts);
     return DEA_E_MEMORY;
   }
-  *f = (struct dea_set_figures){.ctx = ctx, .set = set, .format = format, .directory = directory};
+  *f = (struct dea_set_figures){.ctx = ctx,
+                                .set = set,
+                                .format = format,
+                                .directory = directory,
+                                .names = texts,
+                                .room = room};
   dea_status status = dea_folder_make(ctx, directory);
   for (size_t i = 0; status == DEA_OK && set->pairs && i < set->curve_count; i++) {
     status = draw_pair(f, i);
   }
   status = status == DEA_OK && !set->pairs ? draw_quantities(f) : status;
+  status = status == DEA_OK && !set->pairs ? draw_monitors(f) : status;
   status = status == DEA_OK ? draw_profile(f) : status;
   status = status == DEA_OK ? draw_histories(f) : status;
   for (size_t i = 0; i < f->count; i++) {
@@ -621,5 +727,7 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
     status = dea_gnuplot_draw(ctx, directory, names, f->count);
   }
   dea_free(ctx, f);
+  dea_free(ctx, names);
+  dea_free(ctx, texts);
   return status;
 }

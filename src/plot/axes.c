@@ -92,6 +92,8 @@ void dea_panel_even_tics(struct dea_panel *panel, int most)
   if (!dea_panel_range(panel, false, &low, &high) || !(high > low)) {
     return;
   }
+  low = isfinite(panel->y_min) ? fmin(low, panel->y_min) : low; // what is shown may be more
+  high = isfinite(panel->y_max) ? fmax(high, panel->y_max) : high;
   panel->y_step = nice_above((high - low) / most);
   int decimals = (int)-floor(log10(panel->y_step) + 1e-9);
   panel->y_format = decimals > 4 ? NULL : formats[decimals > 0 ? decimals : 0];

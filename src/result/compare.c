@@ -134,7 +134,8 @@ static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
 
 dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room, struct dea_misfit *out)
 {
-  *out = (struct dea_misfit){.column = column, .memory = {.ctx = ctx}};
+  *out = (struct dea_misfit){
+      .column = column, .quantity = &dea_point_columns[column], .memory = {.ctx = ctx}};
   out->at = dea_arena_alloc(&out->memory, room, sizeof *out->at);
   out->a = dea_arena_alloc(&out->memory, room, sizeof *out->a);
   out->b = dea_arena_alloc(&out->memory, room, sizeof *out->b);

@@ -3,12 +3,14 @@
 #define DEA_RESULT_COMPARE_H
 
 #include "base/arena.h"
+#include "result/columns.h"
 #include "result/result.h"
 
 /* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these places (the
  * largest |b| when all are equal); relative values are over it. Arrays [count] in its memory. */
 struct dea_misfit {
-  int column; // of dea_point_columns
+  int column;                        // of dea_point_columns
+  const struct dea_column *quantity; // that, or what a monitor shows in its place; lent
   size_t count;
   double *at; // voltage [V]; time [s] of a history, place [m] of a profile
   double *a, *b;
