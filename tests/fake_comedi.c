@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #define API __attribute__((visibility("default")))
-enum { AI = 0, AO = 1 };
+enum { AI = 0, AO = 1, FROM_PHYSICAL = 1 };
 
 struct command { // as comedi_cmd
   unsigned subdevice, flags, sources[10], *channels, channel_count;
@@ -204,21 +204,26 @@ API int comedi_get_hardcal_converter(void *device, unsigned subdevice, unsigned 
 int comedi_get_hardcal_converter(void *device, unsigned subdevice, unsigned channel, unsigned range,
                                  int direction, struct polynomial *out)
 {
-  (void)device, (void)subdevice, (void)channel, (void)direction;
-  *out = (struct polynomial){.order = range};
+  const struct span *span = &spans[range];
+  double numbers_of_volt = 65535 / (span->max - span->min);
+  (void)device, (void)subdevice, (void)channel;
+  *out = direction == FROM_PHYSICAL
+             ? (struct polynomial){.coefficients = {fake.offset, numbers_of_volt},
+                                   .origin = span->min,
+                                   .order = 1}
+             : (struct polynomial){.coefficients = {span->min, 1 / numbers_of_volt}, .order = 1};
   return 0;
+}
+
+static double apply(const struct polynomial *p, double at)
+{
+  return p->coefficients[0] + p->coefficients[1] * (at - p->origin);
 }
 
 API double comedi_to_physical(unsigned data, const struct polynomial *converter);
 double comedi_to_physical(unsigned data, const struct polynomial *converter)
 {
-  return volts_of(data, &spans[converter->order]);
-}
-
-API unsigned comedi_from_physical(double volts, const struct polynomial *converter);
-unsigned comedi_from_physical(double volts, const struct polynomial *converter)
-{
-  return number_of(volts, &spans[converter->order]);
+  return apply(converter, data);
 }
 
 API int comedi_data_write(void *device, unsigned subdevice, unsigned channel, unsigned range,

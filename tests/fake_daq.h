@@ -13,6 +13,7 @@ struct fake_daq {
   int code;
   int fails_after;    // calls of it that are good before
   double rate_factor; // actual rate over asked rate; 0: 1
+  double offset;      // number of the lowest voltage, by its calibration
   int dry_after;      // samples after which the output runs dry; 0: never
   /* What happened. */
   char log[FAKE_DAQ_LOG];

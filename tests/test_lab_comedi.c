@@ -64,6 +64,26 @@ static void test_starts_with_first_sample(void **state)
   daq_bench_end(ctx, &b);
 }
 
+/* By its calibration a board has no number for the ends of its range: what is nearest is played. */
+static void test_calibration_beyond_the_numbers(void **state)
+{
+  (void)state;
+  static const double volts[300] = {1, -10, 10};
+  for (double offset = -3; offset <= 3; offset += 6) {
+    static struct daq_bench b;
+    daq_bench_begin(&b, library);
+    b.fake->offset = offset;
+    assert_int_equal(begin(&b), DEA_OK);
+    assert_int_equal(b.instrument->type->start(ctx, b.instrument), DEA_OK);
+    assert_int_equal(b.instrument->type->put(ctx, b.instrument, volts, 300), DEA_OK);
+    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 0, 300), DEA_OK);
+    assert_close(b.fake->played[0], 1, 0, 4 * step_V);
+    assert_close(b.fake->played[1], -10, 0, 4 * step_V);
+    assert_close(b.fake->played[2], 10, 0, 4 * step_V);
+    daq_bench_end(ctx, &b);
+  }
+}
+
 static void test_runs_dry(void **state)
 {
   (void)state;
@@ -165,9 +185,13 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays_and_measures), cmocka_unit_test(test_starts_with_first_sample),
-      cmocka_unit_test(test_runs_dry),           cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_what_it_has_not),    cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_plays_and_measures),
+      cmocka_unit_test(test_starts_with_first_sample),
+      cmocka_unit_test(test_calibration_beyond_the_numbers),
+      cmocka_unit_test(test_runs_dry),
+      cmocka_unit_test(test_errors),
+      cmocka_unit_test(test_what_it_has_not),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -37,6 +37,7 @@ struct dea_comedi_span {
   unsigned unit;
 };
 
+/* The sum of coefficients[i] (x - origin)^i up to i = order. */
 struct dea_comedi_polynomial {
   double coefficients[4], origin;
   unsigned order;
@@ -71,8 +72,6 @@ struct dea_comedi_polynomial {
      struct dea_comedi_polynomial *out))                                                           \
   X(to_physical, "comedi_to_physical", double,                                                     \
     (unsigned data, const struct dea_comedi_polynomial *converter))                                \
-  X(from_physical, "comedi_from_physical", unsigned,                                               \
-    (double volts, const struct dea_comedi_polynomial *converter))                                 \
   X(data_write, "comedi_data_write", int,                                                          \
     (void *device, unsigned subdevice, unsigned channel, unsigned range, unsigned reference,       \
      unsigned data))                                                                               \

@@ -210,20 +210,24 @@ static dea_status make_command(struct dea_context *ctx, struct comedi *c, struct
                   writes ? "play" : "measure", rate_Hz, result);
 }
 
-/* The number of a voltage, within its range whatever is asked. */
-static unsigned number_of(const struct comedi *c, const struct channel *channel, double volts)
+/* The number of a voltage, within its range whatever is asked. Not by comedi_from_physical: by a
+ * calibration the lowest voltage may have a number below 0, and that makes the largest of it. */
+static unsigned number_of(const struct channel *channel, double volts)
 {
+  const struct dea_comedi_polynomial *p = &channel->converter;
   double inside = fmin(fmax(volts, channel->span.min), channel->span.max); // NAN: the lowest
-  inside = isnan(volts) ? 0 : inside;
-  double number = c->library.from_physical(inside, &channel->converter);
-  return number < channel->most ? (unsigned)number : channel->most;
+  double at = (isnan(volts) ? 0 : inside) - p->origin, number = 0;
+  for (unsigned i = p->order < 3 ? p->order + 1 : 4; i-- > 0;) {
+    number = number * at + p->coefficients[i];
+  }
+  return (unsigned)fmin(fmax(nearbyint(number), 0), channel->most);
 }
 
 static bool set_zero(struct comedi *c)
 {
   const struct channel *channel = &c->output.channels[0];
   return c->library.data_write(c->device, c->output.subdevice, channel->number, channel->range, 0,
-                               number_of(c, channel, 0)) >= 0;
+                               number_of(channel, 0)) >= 0;
 }
 
 /* Opens the device and puts 0 V out. */
@@ -400,7 +404,7 @@ static dea_status write_samples(struct dea_context *ctx, struct comedi *c, const
   size_t size = c->output.sample_size, most = sizeof bytes / size;
   size_t part = *count < most ? *count : most;
   for (size_t i = 0; i < part; i++) {
-    uint32_t number = number_of(c, &c->output.channels[0], volts[i]);
+    uint32_t number = number_of(&c->output.channels[0], volts[i]);
     uint16_t half = (uint16_t)number;
     memcpy(bytes + i * size, size == 4 ? (void *)&number : (void *)&half, size);
   }
