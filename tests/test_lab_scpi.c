@@ -550,6 +550,37 @@ static void test_read_back_that_is_off(void **state)
       "it measures 1 kV where 2 kV was set, off by more than safety.readback_error of 5 %");
 }
 
+/* When a supply that stays at past_V is found to be wrong, where now_V were sent at 10 s and
+ * nothing since; it is measured every 0.1 s. */
+static double wrong_at(double past_V, double now_V)
+{
+  struct dea_timed_output o = {.behind_s = 0.5, .rate_Hz = 100};
+  dea_timed_start(&o, 0);
+  dea_timed_sent(&o, past_V, 1);
+  for (int i = 11; i < 1000; i++) {
+    o.measured_s = 0.1 * i;
+    if (i == 100) {
+      dea_timed_sent(&o, now_V, o.measured_s);
+    } else if (dea_timed_measured(&o, past_V, 200, 1e9, 1e9) == DEA_TIMED_WRONG) {
+      return o.measured_s;
+    }
+  }
+  return (double)INFINITY;
+}
+
+/* A supply that does not follow a jump, to 0 V for one, is found although nothing else is sent. */
+static void test_stays_where_it_was(void **state)
+{
+  (void)state;
+  assert_true(isinf(wrong_at(5000, 5000)));
+  static const double to_V[] = {0, 1000, 6000, -5000};
+  for (size_t i = 0; i < 4; i++) {
+    double found_s = wrong_at(5000, to_V[i]);
+    print_message("from 5 kV to %g kV at 10 s: found at %g s\n", 1e-3 * to_V[i], found_s);
+    assert_true(found_s > 10.5 && found_s < 11.5);
+  }
+}
+
 /* A generator of Siglent or BK before an amplifier, set as a direct voltage: what it gets are
  * numbers in its own words, and off comes before 0 V. */
 static void test_generator(void **state)
@@ -625,6 +656,7 @@ int main(void)
       cmocka_unit_test(test_numbers),
       cmocka_unit_test(test_reads),
       cmocka_unit_test(test_read_back_that_is_off),
+      cmocka_unit_test(test_stays_where_it_was),
       cmocka_unit_test(test_late_samples),
       cmocka_unit_test(test_plays),
       cmocka_unit_test(test_makes_no_sense),

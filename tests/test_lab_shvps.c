@@ -82,6 +82,30 @@ static void test_faults(void **state)
   }
 }
 
+/* A square wave whose supply stays at 2 kV when 0 V are set, where nothing else is sent for 10 s.
+ */
+static void test_stuck_in_a_pause(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  s = (struct line_supply){0};
+  shvps_begin(&s);
+  shvps_protocol_of(s.device, "kind: square, low: 0 kV, high: 2 kV, cycles: 1, frequency: 0.05 Hz",
+                    ", behind: 0.5 s");
+  pid_t child = shvps_arm("stuck.h5");
+  assert_true(line_supply_reaches(&s, 1900, 10));
+  double since_s = dea_clock_s();
+  atomic_store(&s.fault, LINE_SUPPLY_STUCK);
+  int code = supply_wait(child, 40);
+  double after_s = dea_clock_s() - since_s - 10;
+  check_said(&s, code);
+  print_message("said %.1f s after 0 V were set\n", after_s);
+  assert_int_equal(code, 6);
+  assert_contains(command_err, "kV where 0 kV was set");
+  assert_true(after_s < 3 + 3); // found, and tried to bring to 0 V for zero_time
+  line_supply_stop(&s);
+}
+
 /* Its reading stands at 0 V while the output moves: what it reads back at the end says nothing. */
 static void test_lie_from_the_start(void **state)
 {
@@ -332,6 +356,7 @@ int main(int count, char **arguments)
       cmocka_unit_test(test_zero),
       cmocka_unit_test(test_killed_and_stopped),
       cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_stuck_in_a_pause),
       cmocka_unit_test(test_lie_from_the_start),
       cmocka_unit_test(test_neighbour),
       cmocka_unit_test(test_faults_at_random_moments),

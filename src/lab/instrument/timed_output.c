@@ -133,14 +133,23 @@ static void follow(struct dea_timed_output *o, double volts, double now_s)
   o->highs_V[0] = fmax(o->highs_V[0], volts);
 }
 
+/* A window ends after `behind`, also while nothing is sent: then it has what stands there. */
+static void turn_windows(struct dea_timed_output *o, double now_s)
+{
+  double gone_s = now_s - o->window_s;
+  if (gone_s < o->behind_s) {
+    return;
+  }
+  bool long_ago = gone_s >= 2 * o->behind_s;
+  o->lowest_V[1] = long_ago ? o->sent_V : o->lowest_V[0];
+  o->highest_V[1] = long_ago ? o->sent_V : o->highest_V[0];
+  o->lowest_V[0] = o->highest_V[0] = o->sent_V;
+  o->window_s = now_s;
+}
+
 void dea_timed_sent(struct dea_timed_output *o, double volts, double now_s)
 {
-  if (!(now_s - o->window_s < o->behind_s)) {
-    o->lowest_V[1] = o->lowest_V[0];
-    o->highest_V[1] = o->highest_V[0];
-    o->lowest_V[0] = o->highest_V[0] = o->sent_V;
-    o->window_s = now_s;
-  }
+  turn_windows(o, now_s);
   follow(o, volts, now_s);
   o->largest_V = fmax(o->largest_V, fabs(volts));
   o->lowest_V[0] = fmin(o->lowest_V[0], volts);
@@ -165,7 +174,7 @@ static bool is_off(struct dea_timed_output *o, double volts, double share, doubl
 {
   double since_s = fmin(o->measured_s - o->looked_s, 2 * measure_at_least_s);
   double lowest_V = INFINITY, highest_V = -INFINITY;
-  follow(o, o->sent_V, o->measured_s); // when it was asked for
+  follow(o, o->sent_V, o->measured_s);
   o->looked_s = o->measured_s;
   for (int i = 0; i < DEA_TIMED_TIMES; i++) {
     lowest_V = fmin(lowest_V, o->lows_V[i]);
@@ -184,6 +193,7 @@ static bool is_off(struct dea_timed_output *o, double volts, double share, doubl
 enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *o, double volts, double error_V,
                                           double share, double least_V)
 {
+  turn_windows(o, o->measured_s); // when it was asked for
   double lowest_V = fmin(o->lowest_V[0], o->lowest_V[1]);
   double highest_V = fmax(o->highest_V[0], o->highest_V[1]);
   bool wrong = volts < lowest_V - error_V || volts > highest_V + error_V;
