@@ -106,6 +106,36 @@ static void test_stuck_in_a_pause(void **state)
   line_supply_stop(&s);
 }
 
+static void answer_off(struct line_supply *s, const char *command, char out[LINE_SUPPLY_ANSWER])
+{
+  shvps_answer(s, command, out);
+  if (strcmp(command, "QVnow") == 0) {
+    snprintf(out, LINE_SUPPLY_ANSWER, "%.0f", 1.08 * s->lied_V);
+  }
+}
+
+/* It reads 8 % too much, on the ramp that this ends with too: that is begun once only. */
+static void test_ramp_of_one_that_is_off(void **state)
+{
+  (void)state;
+  static struct line_supply s;
+  s = (struct line_supply){.answer = answer_off, .error = "Err", .buffer = LINE_SUPPLY_BUFFER};
+  line_supply_start(&s);
+  shvps_protocol_of(s.device, "kind: square, low: 0 kV, high: 2 kV, cycles: 1, frequency: 0.01 Hz",
+                    ", interval: 10 ms");
+  pid_t child = shvps_arm("off.h5");
+  assert_true(line_supply_reaches(&s, 1990, 10));
+  assert_int_equal(supply_wait(child, 40), 6);
+  assert_contains(command_err, "off by more than safety.readback_error");
+  assert_true(supply_said_zero());
+  const char *ended = strstr(command_err, "ended after ");
+  assert_non_null(ended);
+  double played_s = strtod(ended + strlen("ended after "), NULL);
+  print_message("ended after %g s\n", played_s);
+  assert_true(played_s > 4.5 && played_s < 9); // none of its 5 s is taken off again and again
+  line_supply_stop(&s);
+}
+
 /* Its reading stands at 0 V while the output moves: what it reads back at the end says nothing. */
 static void test_lie_from_the_start(void **state)
 {
@@ -357,6 +387,7 @@ int main(int count, char **arguments)
       cmocka_unit_test(test_killed_and_stopped),
       cmocka_unit_test(test_refused),
       cmocka_unit_test(test_stuck_in_a_pause),
+      cmocka_unit_test(test_ramp_of_one_that_is_off),
       cmocka_unit_test(test_lie_from_the_start),
       cmocka_unit_test(test_neighbour),
       cmocka_unit_test(test_faults_at_random_moments),

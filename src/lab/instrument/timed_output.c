@@ -201,7 +201,9 @@ enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *o, double vol
   if (o->deviations >= DEVIATIONS_MAX) {
     return DEA_TIMED_WRONG;
   }
-  return is_off(o, volts, share, least_V) ? DEA_TIMED_OFF : DEA_TIMED_FOLLOWS;
+  bool told = o->off_told;
+  o->off_told = is_off(o, volts, share, least_V) || told;
+  return o->off_told && !told ? DEA_TIMED_OFF : DEA_TIMED_FOLLOWS;
 }
 
 bool dea_timed_contradicted(const struct dea_timed_output *o)

@@ -42,6 +42,7 @@ struct dea_timed_output {
   double largest_V; // that was sent, by amount
   double looked_s;  // when what was measured was compared last
   double off_s;     // for how long what was measured has been off by a share of it
+  bool off_told;    // that it was for too long: the ramp, which it ends with, is not begun anew
   double turned_s;  // when it was played last
 };
 
@@ -71,8 +72,8 @@ enum dea_timed_verdict {
   DEA_TIMED_FOLLOWS,
   DEA_TIMED_WRONG, // two in a row were more than error_V from all that was sent within `behind`:
                    // one may be taken while it moves
-  DEA_TIMED_OFF // for 5 s off by more than a share, and more than least_V, from all that was sent
-                // within half of that
+  DEA_TIMED_OFF // once: for 5 s off by more than a share, and more than least_V, from all that was
+                // sent within half of that
 };
 /* A measured voltage. */
 enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *output, double volts,
