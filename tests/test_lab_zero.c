@@ -134,6 +134,47 @@ static void test_other_words_for_volts(void **state)
   }
 }
 
+/* A protocol that calls anything 0 V: `--arm` refuses it, and `--zero` believes it no more. */
+static void test_much_that_is_called_zero(void **state)
+{
+  (void)state;
+  static const char *const called[] = {"drive", "p.yaml", "--zero", "--set", "safety.at_zero=9 kV",
+                                       NULL};
+  static const char *const arm[] = {"drive",
+                                    "p.yaml",
+                                    "--arm",
+                                    "--set",
+                                    "safety.at_zero=9 kV",
+                                    "--set",
+                                    "amplifier.max_voltage=1 MV",
+                                    NULL};
+  static struct supply s;
+  s = (struct supply){.deaf = true, .on = true, .set_V = 2000};
+  supply_start(&s);
+  supply_protocol(&s, 1, SUPPLY_MEASURES);
+  assert_true(supply_reaches(&s, 1900, 10));
+  assert_int_equal(supply_run_dea(called, 20), 6);
+  assert_contains(command_out, "not known to be at 0 V (2e+03 V read back)");
+  assert_int_equal(supply_run_dea(arm, 20), 6); // more than gain and control voltage make
+  assert_contains(command_err, "refused: 9000 V would be called 0 V; at most 100 V are");
+  supply_stop(&s);
+}
+
+/* 0 V does not wait for what the film would do, nor for a design that is there. */
+static void test_zero_without_its_design(void **state)
+{
+  (void)state;
+  static const char *const wrong[] = {"drive", "p.yaml", "--zero", "--set", "design=no.yaml", NULL};
+  static struct supply s;
+  s = (struct supply){.on = true, .set_V = 2000};
+  supply_start(&s);
+  supply_protocol(&s, 1, SUPPLY_MEASURES);
+  assert_true(supply_reaches(&s, 1900, 10));
+  assert_int_equal(supply_run_dea(wrong, 20), 0);
+  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  supply_stop(&s);
+}
+
 static void test_checked_by_somebody(void **state)
 {
   (void)state;
@@ -155,9 +196,14 @@ static void test_checked_by_somebody(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_slow_supply),         cmocka_unit_test(test_hung_supply),
-      cmocka_unit_test(test_other_faults),        cmocka_unit_test(test_without_measure),
-      cmocka_unit_test(test_checked_by_somebody), cmocka_unit_test(test_other_words_for_volts),
+      cmocka_unit_test(test_much_that_is_called_zero),
+      cmocka_unit_test(test_zero_without_its_design),
+      cmocka_unit_test(test_slow_supply),
+      cmocka_unit_test(test_hung_supply),
+      cmocka_unit_test(test_other_faults),
+      cmocka_unit_test(test_without_measure),
+      cmocka_unit_test(test_checked_by_somebody),
+      cmocka_unit_test(test_other_words_for_volts),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

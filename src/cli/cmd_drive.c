@@ -326,17 +326,22 @@ static void print_report(const struct dea_drive_report *report, const char *file
 
 // The command ------------------------------------------------------------------------------------
 
-/* Reads and checks; *protocol is owned by the caller, also after a failure. */
+/* Reads and checks; *protocol is owned by the caller, also after a failure. For 0 V neither film
+ * nor sequence matters. */
 static dea_status read_and_check(struct dea_cli *cli, const struct request *request,
                                  struct dea_protocol **protocol, struct dea_protocol_plan *plan,
                                  bool *planned)
 {
   struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_protocol_read(ctx, &dea_film_of_design, request->protocol, request->overrides.at,
+  const struct dea_bench_film_type *films = request->zero ? NULL : &dea_film_of_design;
+  DEA_TRY(ctx, dea_protocol_read(ctx, films, request->protocol, request->overrides.at,
                                  request->overrides.count, protocol));
   DEA_TRY(ctx, dea_instrument_check(ctx, *protocol));
   if (dea_finding_count(ctx, DEA_ERROR) > 0) {
     return dea_fail(ctx, DEA_E_DESIGN, "the instruments of '%s' have errors", (*protocol)->file);
+  }
+  if (request->zero) {
+    return DEA_OK;
   }
   dea_status status = dea_protocol_check(ctx, *protocol, plan);
   *planned = status == DEA_OK || status == DEA_E_INTERLOCK;
@@ -365,7 +370,7 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_text name = {.ctx = cli->ctx};
   bool planned = false, played = false;
   dea_status status = read_and_check(cli, request, &protocol, &plan, &planned);
-  if (request->zero && planned) {
+  if (request->zero && status == DEA_OK) {
     return zero(cli, request, protocol);
   }
   if (planned && !request->json) {

@@ -191,6 +191,9 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
     out->state = DEA_ZERO_UNKNOWN; // what was read back says nothing of what that one will set
   }
   out->volts *= protocol->amplifier.gain.si;
+  if (fabs(out->volts) > dea_protocol_zero_most_V(protocol)) { // its protocol was not checked
+    out->state = DEA_ZERO_UNKNOWN;
+  }
   dea_zero_text(*out, known);
   bool clean = armed.supply.left[0] == '\0';
   if (status == DEA_OK &&

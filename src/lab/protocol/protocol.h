@@ -98,8 +98,8 @@ struct dea_protocol {
   struct dea_listing values;
 };
 
-/* Reads a protocol and, with `films`, the design it names. Errors are findings; DEA_E_DESIGN after
- * the whole file was looked at. out: owned by the caller, NULL on failure. */
+/* Reads a protocol and, with `films` (NULL: without), the design it names. Errors are findings;
+ * DEA_E_DESIGN after the whole file was looked at. out: owned by the caller, NULL on failure. */
 dea_status dea_protocol_read(struct dea_context *ctx, const struct dea_bench_film_type *films,
                              const char *file, const struct dea_override *overrides,
                              size_t override_count, struct dea_protocol **out);
@@ -128,6 +128,8 @@ void dea_protocol_cap(const struct dea_protocol *protocol, double *lowest_V, dou
  * control voltages is beyond the cap or no number. Nothing of them may go out then. */
 dea_status dea_protocol_guard(struct dea_context *ctx, const struct dea_protocol *protocol,
                               const double *volts, size_t count);
+/* The largest voltage [V] that may be called 0 V, whatever safety.at_zero says. */
+double dea_protocol_zero_most_V(const struct dea_protocol *protocol);
 /* Whether a number that is sent for 1 V of control voltage can be right: an instrument takes the
  * control voltage in V, or the amplifier's output in V or kV. */
 bool dea_protocol_factor_is_known(const struct dea_protocol *protocol, double factor);

@@ -249,7 +249,7 @@ static dea_status take_design(struct dea_context *ctx, const struct dea_bench_fi
                               struct dea_protocol *protocol)
 {
   size_t length;
-  if (protocol->design_file.text[0] == '\0') {
+  if (films == NULL || protocol->design_file.text[0] == '\0') {
     return DEA_OK;
   }
   char *path = dea_path_beside(ctx, protocol->file, protocol->design_file.text);
