@@ -18,6 +18,22 @@ static void test_dry_run(void **state)
   assert_contains(command_err, "the largest jump, 8 kV, takes 58.9 us");
 }
 
+/* What plays the voltage is called so, whatever keys its kind has. */
+static void test_who_plays(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      command_run("drive " EXAMPLE " --set channels=null --set 'amplifier.min_voltage=0 V' --set "
+                  "'instruments=[{kind: shvps, device: /dev/ttyACM0}, {kind: scpi, address: a, "
+                  "output: VOLT %g}, {kind: scpi, address: b, readings: [{name: leakage, query: "
+                  "\"MEAS:CURR?\", quantity: current}]}, {kind: comedi}]'"),
+      0);
+  assert_contains(command_out, "1  shvps             plays the output, gives readings\n");
+  assert_contains(command_out, "2  scpi              plays the output, gives readings\n");
+  assert_contains(command_out, "3  scpi              gives readings\n");
+  assert_contains(command_out, "4  comedi            plays the output, reads the channels\n");
+}
+
 /* The paper's 16 kV for the film of 200 um are more than its amplifier gives. */
 static void test_too_much(void **state)
 {
@@ -128,9 +144,10 @@ static void test_schema(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dry_run), cmocka_unit_test(test_too_much),
-      cmocka_unit_test(test_json),    cmocka_unit_test(test_simulated),
-      cmocka_unit_test(test_usage),   cmocka_unit_test(test_schema),
+      cmocka_unit_test(test_dry_run),   cmocka_unit_test(test_who_plays),
+      cmocka_unit_test(test_too_much),  cmocka_unit_test(test_json),
+      cmocka_unit_test(test_simulated), cmocka_unit_test(test_usage),
+      cmocka_unit_test(test_schema),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -104,18 +104,20 @@ static void print_film(const struct dea_protocol_plan *plan)
   }
 }
 
-/* What an instrument of the protocol does: a slow supply plays only when its `output` is given. */
-static unsigned roles_of(const struct dea_instrument_type *type, const struct dea_node *section)
+/* What an instrument of the protocol does: some kinds play only where their section says so. */
+static unsigned roles_of(struct dea_cli *cli, const struct dea_protocol *protocol, size_t index,
+                         const struct dea_instrument_type *type)
 {
-  if (type == NULL) {
+  char address[DEA_INSTRUMENT_ADDRESS_SIZE] = "";
+  const struct dea_protocol_instrument *section = &protocol->instruments[index];
+  if (type == NULL || dea_instrument_address(cli->ctx, section, protocol, address) != DEA_OK) {
     return 0;
   }
-  bool supply = (type->roles & DEA_READS_INPUTS) == 0;
-  bool idle = supply && dea_node_find(section, "output") == NULL;
-  return idle ? type->roles & ~(unsigned)DEA_PLAYS_OUTPUT : type->roles;
+  return address[0] != '\0' ? type->roles : type->roles & ~(unsigned)DEA_PLAYS_OUTPUT;
 }
 
-static void print_plan(const struct dea_protocol *protocol, const struct dea_protocol_plan *plan)
+static void print_plan(struct dea_cli *cli, const struct dea_protocol *protocol,
+                       const struct dea_protocol_plan *plan)
 {
   double gain = protocol->amplifier.gain.si;
   printf("%s%s%s\n\n", protocol->file, protocol->title.text[0] != '\0' ? ": " : "",
@@ -134,7 +136,7 @@ static void print_plan(const struct dea_protocol *protocol, const struct dea_pro
     const struct dea_node *kind = dea_node_find(protocol->instruments[i].section, "kind");
     const struct dea_instrument_type *type = dea_instrument_find(kind != NULL ? kind->text : "");
     char roles[96] = "";
-    roles_text(roles_of(type, protocol->instruments[i].section), roles);
+    roles_text(roles_of(cli, protocol, i, type), roles);
     printf("  %zu  %-16s  %s\n", i + 1, type != NULL ? type->name : "?", roles);
   }
   if (protocol->instrument_count == 0) {
@@ -374,7 +376,7 @@ static int run(struct dea_cli *cli, void *user)
     return zero(cli, request, protocol);
   }
   if (planned && !request->json) {
-    print_plan(protocol, &plan);
+    print_plan(cli, protocol, &plan);
     fflush(stdout);
   }
   const char *file = cli_output_name(request->output, request->protocol, "h5", &name);
