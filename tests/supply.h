@@ -285,6 +285,14 @@ static inline void supply_stop(struct supply *s)
   close(s->listener);
 }
 
+static inline bool supply_is_on(struct supply *s)
+{
+  pthread_mutex_lock(&s->lock);
+  bool on = s->on;
+  pthread_mutex_unlock(&s->lock);
+  return on;
+}
+
 /* The output, by amount: now, and the highest since this was asked last. */
 static inline double supply_volts(struct supply *s)
 {

@@ -175,6 +175,35 @@ static void test_zero_without_its_design(void **state)
   supply_stop(&s);
 }
 
+/* It hangs while another instrument is waited for: nothing is played, and that it is not known to
+ * be at 0 V is said all the same. */
+static void test_hangs_before_anything_is_played(void **state)
+{
+  (void)state;
+  static struct supply s, mute;
+  char more[200];
+  s = mute = (struct supply){0};
+  atomic_store(&mute.fault, SUPPLY_HANGS);
+  supply_start(&s);
+  supply_start(&mute);
+  snprintf(more, sizeof more,
+           SUPPLY_MEASURES "}\n  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 3 s, "
+                           "readings: [{name: a, query: \"A?\", quantity: current}]",
+           mute.port);
+  supply_protocol(&s, 1, more);
+  pid_t child = supply_arm("none.h5");
+  for (double until_s = dea_clock_s() + 10; !supply_is_on(&s) && dea_clock_s() < until_s;) {
+    dea_clock_wait(0.01);
+  }
+  dea_clock_wait(0.5);
+  atomic_store(&s.fault, SUPPLY_HANGS);
+  assert_int_equal(supply_wait(child, 20), 6);
+  assert_contains(command_err, "did not answer '*IDN?' within 3 s");
+  assert_contains(command_err, "the output is not known to be at 0 V: switch the supply off");
+  supply_stop(&s);
+  supply_stop(&mute);
+}
+
 static void test_checked_by_somebody(void **state)
 {
   (void)state;
@@ -198,6 +227,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_much_that_is_called_zero),
       cmocka_unit_test(test_zero_without_its_design),
+      cmocka_unit_test(test_hangs_before_anything_is_played),
       cmocka_unit_test(test_slow_supply),
       cmocka_unit_test(test_hung_supply),
       cmocka_unit_test(test_other_faults),

@@ -133,9 +133,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_protocol *protoc
   } else {
     out->zero.state = status == DEA_E_INTERLOCK ? DEA_ZERO_UNKNOWN : DEA_ZERO_NONE;
     // what is set up already must not stay as it is: a supply's output may be on
-    for (size_t i = 0; i < opened.count; i++) {
-      dea_drive_take_zero(protocol, dea_instrument_stop(ctx, opened.instruments[i]), out);
-    }
+    status = dea_drive_give_up(ctx, protocol, opened.instruments, opened.count, status, out);
   }
   for (size_t i = opened.count; i-- > 0;) {
     opened.instruments[i]->type->close(ctx, opened.instruments[i]);

@@ -603,12 +603,30 @@ static void start_all(struct loop *loop)
   }
 }
 
-void dea_drive_take_zero(const struct dea_protocol *protocol, struct dea_zero known,
-                         struct dea_drive_report *report)
+/* What an instrument says after its stop; nothing of one without output. */
+static void take_zero(const struct dea_protocol *protocol, struct dea_zero known,
+                      struct dea_drive_report *report)
 {
   if (known.state != DEA_ZERO_NONE) {
     report->zero = (struct dea_zero){known.state, known.volts * protocol->amplifier.gain.si};
   }
+}
+
+dea_status dea_drive_give_up(struct dea_context *ctx, const struct dea_protocol *protocol,
+                             struct dea_instrument *const *instruments, size_t count,
+                             dea_status status, struct dea_drive_report *out)
+{
+  char why[512];
+  bool said = out->zero.state == DEA_ZERO_UNKNOWN;
+  for (size_t i = 0; i < count; i++) {
+    take_zero(protocol, dea_instrument_stop(ctx, instruments[i]), out);
+  }
+  if (said || out->zero.state != DEA_ZERO_UNKNOWN) {
+    return status;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  return dea_fail(ctx, DEA_E_INSTRUMENT,
+                  "%s; the output is not known to be at 0 V: switch the supply off", why);
 }
 
 /* What the voltage channels show, until it is 0 V, nothing comes any more, or the time is over. */
@@ -637,7 +655,7 @@ static void stop_all(struct loop *loop)
     if (&loop->sources[i] != loop->player) {
       continue;
     }
-    dea_drive_take_zero(loop->protocol, known, loop->report);
+    take_zero(loop->protocol, known, loop->report);
     if (apart) { // it measures on, also what could not be played to its end
       loop->output.over = true;
       m->seen = 0;
@@ -804,9 +822,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     dea_context_set_interrupt(ctx, interrupt);
     status = finish(&loop);
   } else {
-    for (size_t i = 0; i < bench->count; i++) {
-      dea_drive_take_zero(protocol, dea_instrument_stop(ctx, bench->instruments[i]), out);
-    }
+    status = dea_drive_give_up(ctx, protocol, bench->instruments, bench->count, status, out);
   }
   dea_free(ctx, loop.asked);
   dea_free(ctx, loop.volts);
