@@ -316,7 +316,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
     status = set_up(ctx, c);
   }
   if (status != DEA_OK) {
-    (void)dea_instrument_stop(ctx, &c->base);
+    status = dea_instrument_give_up(ctx, &c->base, status);
     close_it(ctx, &c->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }

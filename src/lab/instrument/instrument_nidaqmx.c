@@ -86,6 +86,7 @@ struct nidaqmx {
   char device[DEA_TITLE_SIZE];
   const struct dea_protocol *protocol;
   void *output, *input; // tasks; NULL: none
+  bool found;           // its output is there, at whatever voltage
 };
 
 static dea_status check(const struct dea_reader *reader, const void *data,
@@ -151,6 +152,7 @@ static dea_status set_zero(struct dea_context *ctx, struct nidaqmx *n)
   clear(n, &n->output);
   dea_status status = make_output(ctx, n);
   if (status == DEA_OK) {
+    n->found = true;
     int32_t code = n->driver.WriteAnalogF64(n->output, 1, 1, DEA_DAQ_PATIENCE_S, BY_CHANNEL, &zero,
                                             NULL, NULL);
     status = judge(ctx, n, code, "put 0 V out");
@@ -253,6 +255,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
     status = set_up(ctx, n, wiring_values[raw->wiring.value]);
   }
   if (status != DEA_OK) {
+    status = n->found ? dea_instrument_give_up(ctx, &n->base, status) : status;
     close_it(ctx, &n->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }

@@ -303,16 +303,8 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
     status = status == DEA_OK ? set_up(ctx, s) : status;
   }
   if (status != DEA_OK) {
-    struct dea_zero zero = {DEA_ZERO_NONE, NAN};
-    if (s->link.socket.descriptor >= 0) {
-      zero = dea_instrument_stop(ctx, &s->base);
-    }
-    if (zero.state == DEA_ZERO_UNKNOWN) {
-      char why[512];
-      snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-      status = dea_fail(ctx, DEA_E_INTERLOCK,
-                        "%s; its output is not known to be at 0 V: switch it off", why);
-    }
+    status =
+        s->link.socket.descriptor >= 0 ? dea_instrument_give_up(ctx, &s->base, status) : status;
     close_it(ctx, &s->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }

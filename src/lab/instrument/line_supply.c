@@ -162,19 +162,6 @@ static dea_status set_up(struct dea_context *ctx, struct dea_line_supply *s)
   return check_range(ctx, s);
 }
 
-/* What its output is after it could not be set up. */
-static dea_status give_up(struct dea_context *ctx, struct dea_line_supply *s, dea_status status)
-{
-  char why[512];
-  if (s->link.socket.descriptor >= 0 &&
-      dea_instrument_stop(ctx, &s->base).state == DEA_ZERO_UNKNOWN) {
-    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-    status = dea_fail(ctx, DEA_E_INTERLOCK,
-                      "%s; its output is not known to be at 0 V: switch it off", why);
-  }
-  return status;
-}
-
 dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instrument_type *type,
                                 const struct dea_line_supply_language *language, const void *raw,
                                 const struct dea_protocol *protocol, struct dea_instrument **out)
@@ -210,7 +197,8 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
     status = set_up(ctx, s);
   }
   if (status != DEA_OK) {
-    status = give_up(ctx, s, status);
+    status =
+        s->link.socket.descriptor >= 0 ? dea_instrument_give_up(ctx, &s->base, status) : status;
     dea_line_supply_close(ctx, &s->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
