@@ -418,6 +418,16 @@ static void test_warnings(void **state)
       {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "safety: {voltage_error: 2 kV}\nwaveform: {kind: constant, voltage: 1 kV}\n",
        "safety.voltage_error of 2000 V is not below the largest voltage, 1000 V", 3, 25},
+      {PROTOCOL_HEAD "channels:\n"
+                     "  - {name: V, quantity: voltage, input: ai0, per_volt: 1 kV, range: 5 V}\n"
+                     "waveform: {kind: constant, voltage: 4.9 kV}\n",
+       "the input of 'V' shows 5 kV at most, so that an amplifier that gives more than the 4.9 kV",
+       6, 69},
+      {PROTOCOL_HEAD "channels:\n"
+                     "  - {name: V, quantity: voltage, input: ai0, per_volt: -1 kV, range: 5 V}\n"
+                     "waveform: {kind: constant, voltage: -5 kV}\n",
+       "the input of 'V' shows -5 kV at least, so that an amplifier that gives more than the -5 kV",
+       6, 70},
   };
   for (size_t i = 0; i < sizeof warnings / sizeof warnings[0]; i++) {
     const struct refusal *r = &warnings[i];
@@ -441,6 +451,19 @@ static dea_status check_in_folder(struct dea_context *context)
   }
   dea_protocol_destroy(context, p);
   return status;
+}
+
+/* An input that shows voltage_error above what is asked is fine. */
+static void test_input_that_shows_more(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      check(PROTOCOL_HEAD
+            "channels:\n"
+            "  - {name: V, quantity: voltage, input: ai0, per_volt: 1 kV, range: 5 V}\n"
+            "waveform: {kind: square, low: -1 kV, high: 4.7 kV, frequency: 1 Hz}\n"),
+      DEA_OK);
+  assert_null(find_finding(ctx, DEA_WARNING, "the input of 'V' shows"));
 }
 
 /* 2 pi f C V of a sine, on both sides of 60 % and of 90 % of the amplifier's current. */
@@ -512,6 +535,7 @@ int main(void)
       cmocka_unit_test(test_interlocks_at_their_bounds),
       cmocka_unit_test(test_specimen),
       cmocka_unit_test(test_warnings),
+      cmocka_unit_test(test_input_that_shows_more),
       cmocka_unit_test(test_current_that_charging_takes),
       cmocka_unit_test(test_memory),
       cmocka_unit_test(test_export_memory),

@@ -73,13 +73,35 @@ static dea_status check_current_input(struct dea_context *ctx, const struct dea_
                          1e3 * least_of_range * range_A);
 }
 
+/* What is at the end of an input's range is cut off there, and looks like what was asked. */
+static dea_status check_reach(struct dea_context *ctx, const struct dea_protocol *protocol,
+                              const struct dea_protocol_input *input,
+                              const struct dea_protocol_plan *plan)
+{
+  double error_V = protocol->safety.voltage_error_V.si;
+  double reach_V = (1 - DEA_CHANNEL_END) * fabs(input->range_V.si * input->per_volt);
+  double highest_V = input->at_zero + reach_V, lowest_V = input->at_zero - reach_V;
+  bool high = plan->highest_V > 0 && highest_V <= plan->highest_V + error_V;
+  bool low = plan->lowest_V < 0 && lowest_V >= plan->lowest_V - error_V;
+  return high || low
+             ? dea_finding_add(
+                   ctx, DEA_WARNING, input->range_V.location,
+                   "the input of '%s' shows %.4g kV at %s, so that an amplifier that gives "
+                   "more than the %g kV that are asked is not noticed by "
+                   "safety.voltage_error of %g V; give it a larger range",
+                   input->name.text, 1e-3 * (high ? highest_V : lowest_V), high ? "most" : "least",
+                   1e-3 * (high ? plan->highest_V : plan->lowest_V), error_V)
+             : DEA_OK;
+}
+
 static dea_status check_voltage_input(struct dea_context *ctx, const struct dea_protocol *protocol,
-                                      const struct dea_protocol_input *input)
+                                      const struct dea_protocol_input *input,
+                                      const struct dea_protocol_plan *plan)
 {
   double error_V = protocol->safety.voltage_error_V.si;
   double range_V = fabs(input->range_V.si * input->per_volt);
   if (error_V >= least_of_range * range_V) {
-    return DEA_OK;
+    return check_reach(ctx, protocol, input, plan);
   }
   return dea_finding_add(ctx, DEA_ERROR, input->per_volt_text.location,
                          "refused: the input of '%s' reaches to %.4g kV, in whose noise "
@@ -212,7 +234,7 @@ dea_status dea_protocol_check_interlocks(struct dea_context *ctx,
     if (input->kind.value == DEA_CHANNEL_CURRENT) {
       DEA_TRY(ctx, check_current_input(ctx, protocol, input));
     } else if (input->kind.value == DEA_CHANNEL_VOLTAGE) {
-      DEA_TRY(ctx, check_voltage_input(ctx, protocol, input));
+      DEA_TRY(ctx, check_voltage_input(ctx, protocol, input, plan));
     }
   }
   DEA_TRY(ctx, check_trip_time(ctx, protocol, largest_V));
