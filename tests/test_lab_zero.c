@@ -204,6 +204,30 @@ static void test_hangs_before_anything_is_played(void **state)
   supply_stop(&mute);
 }
 
+/* Where what was left cannot be kept or read, 0 V is commanded all the same, and not believed. */
+static void test_zero_without_a_place(void **state)
+{
+  (void)state;
+  static struct supply s;
+  s = (struct supply){.on = true, .set_V = 2000};
+  supply_start(&s);
+  supply_protocol(&s, 1, SUPPLY_MEASURES);
+  assert_true(supply_reaches(&s, 1900, 10));
+  char state_folder[600], kept[600];
+  snprintf(state_folder, sizeof state_folder, "%s/state", command_folder);
+  snprintf(kept, sizeof kept, "%s/kept", command_folder);
+  bool there = rename(state_folder, kept) == 0;
+  command_write("state", "a file where a folder should be");
+  int code = supply_run_dea(zero, 20);
+  double volts = supply_volts(&s);
+  assert_true(remove(state_folder) == 0 && (!there || rename(kept, state_folder) == 0));
+  assert_true(volts <= supply_zero_V);
+  assert_int_equal(code, 6);
+  assert_contains(command_err, "cannot make the folder");
+  assert_contains(command_out, "not known to be at 0 V (0 V read back)");
+  supply_stop(&s);
+}
+
 static void test_checked_by_somebody(void **state)
 {
   (void)state;
@@ -227,6 +251,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_much_that_is_called_zero),
       cmocka_unit_test(test_zero_without_its_design),
+      cmocka_unit_test(test_zero_without_a_place),
       cmocka_unit_test(test_hangs_before_anything_is_played),
       cmocka_unit_test(test_slow_supply),
       cmocka_unit_test(test_hung_supply),

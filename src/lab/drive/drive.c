@@ -171,22 +171,25 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
                           const char *state_folder, bool checked, struct dea_zero *out)
 {
   struct armed armed;
-  char known[DEA_ZERO_TEXT_SIZE], driven[512] = "";
+  char known[DEA_ZERO_TEXT_SIZE], doubt[512] = "";
   *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
   dea_status status = find_supply(ctx, protocol, state_folder, longest_end_s(protocol), &armed);
-  if (status == DEA_E_INTERLOCK) { // no reason not to command 0 V
-    snprintf(driven, sizeof driven, "%s, and did not end; ", dea_context_message(ctx));
+  bool driven = status == DEA_E_INTERLOCK;
+  if (driven || (status == DEA_E_IO && armed.section != NULL)) { // no reason not to command 0 V
+    snprintf(doubt, sizeof doubt, "%s%s; ", dea_context_message(ctx),
+             driven ? ", and did not end" : "");
     dea_context_clear(ctx);
   } else if (status != DEA_OK) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   const struct dea_instrument_past past = {checked ? "" : armed.supply.mark, 0,
-                                           driven[0] == '\0' ? protocol->safety.zero_time_s.si : 0};
+                                           driven ? 0 : protocol->safety.zero_time_s.si};
   status = armed.section != NULL ? dea_instrument_zero(ctx, armed.section, protocol, &past, out)
                                  : dea_fail(ctx, DEA_E_INSTRUMENT,
                                             "%s names no instrument that plays", protocol->file);
-  if (driven[0] != '\0' && out->state != DEA_ZERO_NONE) {
-    out->state = DEA_ZERO_UNKNOWN; // what was read back says nothing of what that one will set
+  if (doubt[0] != '\0' && out->state != DEA_ZERO_NONE) {
+    // what was read back says nothing of what another program will set, or may be another supply's
+    out->state = DEA_ZERO_UNKNOWN;
   }
   out->volts *= protocol->amplifier.gain.si;
   if (fabs(out->volts) > dea_protocol_zero_most_V(protocol)) { // its protocol was not checked
@@ -199,7 +202,7 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
     status = dea_supply_leave(ctx, &armed.supply, "");
   } else if (status == DEA_OK && (out->state == DEA_ZERO_UNKNOWN || !clean)) {
     status = dea_fail(ctx, DEA_E_INSTRUMENT,
-                      "%sthe output is %s: switch the supply off and look at it%s", driven, known,
+                      "%sthe output is %s: switch the supply off and look at it%s", doubt, known,
                       clean ? "" : "; then --zero --checked says that you have");
   }
   dea_supply_close(&armed.supply);

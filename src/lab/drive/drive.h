@@ -36,9 +36,9 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
                          const struct dea_drive_options *options, struct dea_drive_report *out);
 /* Brings the output of the protocol's supply to 0 V and says what is known then (volts: at the
  * amplifier's output). A program that drives it is asked to end, and waited for; where it does not,
- * 0 V is commanded all the same, and the output is not known to be there. What was kept of an
- * unclean end goes once 0 V was read back, or was commanded and `checked`. DEA_E_INSTRUMENT when it
- * is not known to be at 0 V. */
+ * or where what was kept cannot be read, 0 V is commanded all the same, and the output is not known
+ * to be there. What was kept of an unclean end goes once 0 V was read back, or was commanded and
+ * `checked`. DEA_E_INSTRUMENT when it is not known to be at 0 V. */
 dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
                           const char *state_folder, bool checked, struct dea_zero *out);
 
