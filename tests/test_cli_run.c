@@ -270,6 +270,21 @@ static void test_several_designs(void **state)
   assert_contains(command_err, "did you mean 'sweep'?");
 }
 
+/* At rest alone there is no range of voltages, and figures all the same. */
+static void test_figures_at_rest(void **state)
+{
+  (void)state;
+  command_expect("run @/examples/plain-disc.yaml -m lumped --study sweep -o rest --set "
+                 "'compute.voltage={values: [0 kV]}'",
+                 0, "");
+  static char script[COMMAND_TEXT_MAX];
+  command_read("rest/figures/stretch.gp", script);
+  assert_contains(script, "set xrange [0:1]\n");
+  command_expect("run @/examples/plain-disc.yaml -m 3d -o rest --force --set "
+                 "'compute.voltage={values: [0 kV]}'",
+                 0, "");
+}
+
 /* What is wrong with another design file is told of that file, not of the option it stands for. */
 static void test_errors_of_several_designs(void **state)
 {
@@ -596,6 +611,7 @@ int main(void)
       cmocka_unit_test(test_pull_in_of_a_slack_film),
       cmocka_unit_test(test_several_designs),
       cmocka_unit_test(test_errors_of_several_designs),
+      cmocka_unit_test(test_figures_at_rest),
       cmocka_unit_test(test_path_alone),
       cmocka_unit_test(test_operating_map),
       cmocka_unit_test(test_models_that_cannot),

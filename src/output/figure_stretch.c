@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Largest voltage of the sweeps [kV], to which the figures beside this one go; NAN: there are none.
+/* Largest voltage of the sweeps [kV], to which the figures beside this one go; NAN: none above 0.
  */
 static double sweep_end(const struct dea_result *result)
 {
@@ -16,7 +16,7 @@ static double sweep_end(const struct dea_result *result)
       end = fmax(end, 1e-3 * curve->points[k].voltage_V); // NAN counts as nothing
     }
   }
-  return end;
+  return end > 0 ? end : NAN;
 }
 
 static dea_status build(struct dea_context *ctx, const struct dea_result *result,

@@ -80,7 +80,7 @@ void dea_panel_voltage_axis(struct dea_panel *panel)
     }
   }
   panel->x_min = 0.0;
-  panel->x_max = largest > 0.0 ? largest : NAN;
+  panel->x_max = largest > 0.0 ? largest : 1.0; // gnuplot has no axis from 0 to 0
   snprintf(panel->x_label, sizeof panel->x_label, "Voltage {/:Italic V} (kV)");
   dea_panel_limit(panel);
 }
