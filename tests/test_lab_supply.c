@@ -162,6 +162,22 @@ static void test_given_away(void **state)
   dea_supply_close(&one);
 }
 
+/* What cannot be read does not say "at 0 V". */
+static void test_unreadable(void **state)
+{
+  (void)state;
+  struct dea_supply supply;
+  assert_int_equal(dea_supply_open(ctx, folder, "scpi unreadable", &supply), DEA_OK);
+  snprintf(path, sizeof path, "%s", supply.path);
+  dea_supply_close(&supply);
+  assert_true(remove(path) == 0 && mkfifo(path, 0600) == 0); // opened, and no place of it is read
+  dea_status status = dea_supply_open(ctx, folder, "scpi unreadable", &supply);
+  assert_true(status == DEA_OK);
+  assert_non_null(strstr(supply.left, "cannot be read"));
+  dea_supply_close(&supply);
+  assert_int_equal(remove(path), 0);
+}
+
 /* On a disk that is full what stood there still says that the supply was not left at 0 V. */
 static void test_full_disk(void **state)
 {
@@ -201,6 +217,7 @@ int main(void)
       cmocka_unit_test(test_supplies_are_apart),
       cmocka_unit_test(test_asked_for),
       cmocka_unit_test(test_given_away),
+      cmocka_unit_test(test_unreadable),
       cmocka_unit_test(test_full_disk),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

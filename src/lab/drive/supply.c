@@ -55,6 +55,9 @@ static void read_left(struct dea_supply *supply)
   text[got > 0 ? got : 0] = '\0';
   const char *second = text + strcspn(text, "\n");
   snprintf(supply->left, sizeof supply->left, "%.*s", (int)(second - text), text);
+  if (got < 0) { // which does not say that nothing was left
+    snprintf(supply->left, sizeof supply->left, "its file cannot be read: %s", strerror(errno));
+  }
   second += *second != '\0';
   snprintf(supply->mark, sizeof supply->mark, "%.*s", (int)strcspn(second, "\n"), second);
 }
