@@ -153,12 +153,13 @@ static void test_python_ends_at_zero(void **state)
   (void)state;
   static const struct {
     const char *environment, *part;
-  } ways[] = {{"STUB_FAIL=60", "the device was taken away"},
-              {"STUB_FAIL=650", "the device was taken away"},
-              {"STUB_SIGNAL=610", "signal 2; the output is at 0 V"},
-              {"STUB_NAME=SIGHUP STUB_SIGNAL=610", "signal 1; the output is at 0 V"},
-              {"STUB_NAME=SIGTERM STUB_SIGNAL=610", "signal 15; the output is at 0 V"},
-              {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
+  } ways[] = {
+      {"STUB_FAIL=60", "the device was taken away"},
+      {"STUB_FAIL=650", "the device was taken away"},
+      {"STUB_SIGNAL=610", "signal 2; the output was set to 0 V, not read back"},
+      {"STUB_NAME=SIGHUP STUB_SIGNAL=610", "signal 1; the output was set to 0 V, not read back"},
+      {"STUB_NAME=SIGTERM STUB_SIGNAL=610", "signal 15; the output was set to 0 V, not read back"},
+      {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
   make_files();
   for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
     assert_int_equal(run_script(ways[i].environment, PYTHON), 1);

@@ -47,7 +47,8 @@ data = record(d, p, wave, state, file);
 clear guard close_file % the output goes to 0 V, and the file is complete
 save_recording(fullfile(folder, 'recording.mat'), p, wave, data);
 if ~isempty(state('why'))
-  error('ended after %g s: %s; the output is at 0 V', size(data, 1) / p.rate_Hz, state('why'));
+  error('ended after %g s: %s; the output was set to 0 V, not read back', ...
+        size(data, 1) / p.rate_Hz, state('why'));
 end
 disp('recording.csv and recording.mat are complete. Next:  dea import recording.csv');
 end

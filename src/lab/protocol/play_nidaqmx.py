@@ -169,7 +169,10 @@ def play(device):
         ramp_to_zero(device, last)
         print()
     if why:
-        sys.exit("ended after %g s: %s; the output is at 0 V" % (state["read"] / RATE_HZ, why))
+        sys.exit(
+            "ended after %g s: %s; the output was set to 0 V, not read back"
+            % (state["read"] / RATE_HZ, why)
+        )
     print("recording.csv is complete. Next:  dea import recording.csv")
 
 
