@@ -84,6 +84,21 @@ static void test_calibration_beyond_the_numbers(void **state)
   }
 }
 
+/* A calibration that cannot be right is refused before anything is played by it. */
+static void test_calibration_that_cannot_be(void **state)
+{
+  (void)state;
+  static const double offsets[] = {NAN, INFINITY, -20000, 20000};
+  for (size_t i = 0; i < sizeof offsets / sizeof offsets[0]; i++) {
+    static struct daq_bench b;
+    daq_bench_begin(&b, library);
+    b.fake->offset = offsets[i];
+    assert_message(begin(&b), DEA_E_INSTRUMENT, "is off by more than a tenth of the range");
+    assert_close(b.fake->level_V, 3, 0, 0); // as it was: nothing was played by it
+    daq_bench_end(ctx, &b);
+  }
+}
+
 static void test_runs_dry(void **state)
 {
   (void)state;
@@ -191,6 +206,7 @@ int main(void)
       cmocka_unit_test(test_plays_and_measures),
       cmocka_unit_test(test_starts_with_first_sample),
       cmocka_unit_test(test_calibration_beyond_the_numbers),
+      cmocka_unit_test(test_calibration_that_cannot_be),
       cmocka_unit_test(test_runs_dry),
       cmocka_unit_test(test_errors),
       cmocka_unit_test(test_what_it_has_not),

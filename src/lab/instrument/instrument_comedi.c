@@ -125,6 +125,33 @@ static dea_status find_part(struct dea_context *ctx, struct comedi *c, int type,
   return DEA_OK;
 }
 
+/* The number of a voltage without calibration. */
+static double plain_number(const struct channel *channel, double volts)
+{
+  return (volts - channel->span.min) / (channel->span.max - channel->span.min) * channel->most;
+}
+
+static double number_by(const struct dea_comedi_polynomial *p, double volts)
+{
+  double number = 0;
+  for (unsigned i = p->order < 3 ? p->order + 1 : 4; i-- > 0;) {
+    number = number * (volts - p->origin) + p->coefficients[i];
+  }
+  return number;
+}
+
+/* Whether the numbers that are played are those of the range to a tenth of it. */
+static bool is_plausible(const struct channel *channel)
+{
+  const double volts[] = {channel->span.min, 0, channel->span.max};
+  bool good = true;
+  for (int i = 0; i < 3; i++) {
+    double off = number_by(&channel->converter, volts[i]) - plain_number(channel, volts[i]);
+    good = good && fabs(off) <= 0.1 * channel->most; // not where it is no number
+  }
+  return good;
+}
+
 /* The polynomial between numbers and volts: from the calibration of boards that need one. */
 static dea_status find_converter(struct dea_context *ctx, struct comedi *c, const struct part *part,
                                  int direction, struct channel *channel)
@@ -149,6 +176,12 @@ static dea_status find_converter(struct dea_context *ctx, struct comedi *c, cons
   if (found < 0) {
     found = c->library.get_hardcal_converter(c->device, part->subdevice, channel->number,
                                              channel->range, direction, &channel->converter);
+  }
+  if (found >= 0 && direction == DEA_COMEDI_FROM_PHYSICAL && !is_plausible(channel)) {
+    return dea_fail(ctx, DEA_E_INSTRUMENT,
+                    "the calibration of %s is off by more than a tenth of the range; calibrate it "
+                    "anew (comedi_soft_calibrate)",
+                    c->name);
   }
   return found >= 0 ? DEA_OK : failed(ctx, c, "tell its calibration");
 }
@@ -214,12 +247,9 @@ static dea_status make_command(struct dea_context *ctx, struct comedi *c, struct
  * calibration the lowest voltage may have a number below 0, and that makes the largest of it. */
 static unsigned number_of(const struct channel *channel, double volts)
 {
-  const struct dea_comedi_polynomial *p = &channel->converter;
   double inside = fmin(fmax(volts, channel->span.min), channel->span.max); // NAN: the lowest
-  double at = (isnan(volts) ? 0 : inside) - p->origin, number = 0;
-  for (unsigned i = p->order < 3 ? p->order + 1 : 4; i-- > 0;) {
-    number = number * at + p->coefficients[i];
-  }
+  inside = isnan(volts) ? 0 : inside;
+  double number = number_by(&channel->converter, inside);
   return (unsigned)fmin(fmax(nearbyint(number), 0), channel->most);
 }
 
