@@ -280,7 +280,7 @@ static void test_figures_at_rest(void **state)
   static char script[COMMAND_TEXT_MAX];
   command_read("rest/figures/stretch.gp", script);
   assert_contains(script, "set xrange [0:1]\n");
-  command_expect("run @/examples/plain-disc.yaml -m 3d -o rest --force --set "
+  command_expect("run @/examples/plain-disc.yaml -m axisymmetric -o rest --force --set "
                  "'compute.voltage={values: [0 kV]}'",
                  0, "");
 }

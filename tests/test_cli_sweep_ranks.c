@@ -10,7 +10,7 @@
 /* Tests may run as root, and on fewer cores than ranks. */
 #define MPI                                                                                        \
   "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "                                     \
-  "OMPI_MCA_rmaps_base_oversubscribe=1 timeout 120 "
+  "OMPI_MCA_rmaps_base_oversubscribe=1 timeout 600 "
 
 enum { DESIGNS = 4, NUMBERS = 5 };
 
