@@ -117,12 +117,20 @@ void dea_set_monitor_destroy(struct dea_context *ctx, struct dea_set_monitor *mo
   }
 }
 
+enum { KEY_SIZE = 2 * DEA_NAME_SIZE };
+
+/* "hub.z_m". */
+static void name_key(const struct dea_result_column *column, const char *name, char out[KEY_SIZE])
+{
+  snprintf(out, KEY_SIZE, "%.63s.%.40s", name, column->key);
+}
+
 /* "hub.z_m" and "hub, z". */
 static dea_status name_quantity(struct dea_context *ctx, const struct dea_result_column *column,
                                 const char *name, struct dea_column *out)
 {
-  char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE];
-  snprintf(key, sizeof key, "%.63s.%.40s", name, column->key);
+  char key[KEY_SIZE], header[KEY_SIZE];
+  name_key(column, name, key);
   snprintf(header, sizeof header, "%.63s, %.40s", name, column->title);
   *out = (struct dea_column){.key = dea_intern(ctx, key),
                              .si_unit = column->si_unit,
@@ -206,8 +214,8 @@ dea_status dea_compare_set_add_monitors(struct dea_context *ctx, struct dea_comp
     const char *name = name_of(tables[0], row);
     for (size_t k = 0; k < tables[0]->type.column_count && is_first(tables[0], row); k++) {
       const struct dea_result_column *column = &tables[0]->type.columns[k];
-      char key[2 * DEA_NAME_SIZE];
-      snprintf(key, sizeof key, "%.63s.%.40s", name, column->key);
+      char key[KEY_SIZE];
+      name_key(column, name, key);
       if (is_shown(column) && (all ? !is_rounding(tables, column, name) : is_asked(ask, key))) {
         DEA_TRY(ctx, add(ctx, set, curve, tables, column, name));
       }
