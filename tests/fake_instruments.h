@@ -132,7 +132,7 @@ static inline struct dea_zero fake_stop(struct dea_context *context,
 {
   (void)context;
   ((struct fake_daq *)instrument)->stops++;
-  return (struct dea_zero){DEA_ZERO_COMMANDED, (double)NAN};
+  return (struct dea_zero){DEA_ZERO_COMMANDED, (double)NAN, NULL};
 }
 
 static inline void fake_close(struct dea_context *context, struct dea_instrument *instrument)
@@ -173,7 +173,7 @@ static inline struct dea_zero fake_sensor_stop(struct dea_context *context,
 {
   (void)context;
   ((struct fake_sensor *)instrument)->stops++;
-  return (struct dea_zero){DEA_ZERO_NONE, (double)NAN};
+  return (struct dea_zero){DEA_ZERO_NONE, (double)NAN, NULL};
 }
 
 static const struct dea_instrument_type fake_daq_type = {.name = "fake DAQ",

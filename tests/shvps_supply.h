@@ -35,7 +35,7 @@ static inline void shvps_answer(struct line_supply *s, const char *command,
 }
 
 /* More keys of `safety`. */
-static const char *shvps_safety = "zero_time: 3 s, guard_time: 2 s";
+static const char *shvps_safety = "zero_time: 6 s, guard_time: 2 s";
 
 /* Longer times than usual, as the machine may be busy; more: keys of the supply. */
 #define SHVPS_PATIENT ", behind: 1.5 s"

@@ -30,7 +30,7 @@ static inline void supply_protocol(const struct supply *s, int seconds, const ch
            "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: %d, frequency: 1 Hz}\n"
            "amplifier: {gain: 1000, max_voltage: 5 kV}\n"
            "rate: 100 Hz\n"
-           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s%s}\n"
+           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 4 s%s}\n"
            "instruments:\n"
            "  - {kind: scpi, address: %s, port: %d, timeout: 1 s, setup: [OUTP ON],\n"
            "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF,\n"

@@ -34,10 +34,10 @@ static void begin(struct line_supply *s, const char *connect)
   line_supply_start(s);
   snprintf(text, sizeof text,
            "dea-protocol: 1\n"
-           "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: 2, frequency: 0.25 Hz}\n"
+           "waveform: {kind: square, high: 2 kV, rise_time: 1 s, cycles: 2, frequency: 0.25 Hz}\n"
            "amplifier: {gain: 1000, max_voltage: 5 kV, min_voltage: 0 V}\n"
            "rate: 100 Hz\n"
-           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s}\n"
+           "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 6 s}\n"
            "instruments:\n"
            "  - {kind: ochvps, device: %s, connect: [\"%s\"], channel: supply, queue: 1 s,\n"
            "     behind: 1.5 s, timeout: 3 s}\n",

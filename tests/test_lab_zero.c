@@ -56,9 +56,11 @@ static void test_hung_supply(void **state)
   assert_int_equal(code, 6);
   assert_contains(command_out, "SWITCH THE SUPPLY OFF: it is not known to be at 0 V");
   assert_contains(command_err, "did not answer '*OPC?' within 1 s");
-  assert_contains(command_err, "not known to be at 0 V: switch the supply off");
+  assert_contains(command_err,
+                  "not known to be at 0 V (no answer that can be believed): switch the "
+                  "supply off");
   assert_int_equal(command_run("recording hung.h5"), 0);
-  assert_contains(command_out, "output         not known to be at 0 V");
+  assert_contains(command_out, "output         not known to be at 0 V (no answer");
   // the next program knows, while the supply hangs and afterwards
   assert_int_equal(supply_run_dea(zero, 20), 6);
   assert_contains(command_out, "not known to be at 0 V");

@@ -226,11 +226,19 @@ static dea_status state_folder(struct dea_cli *cli, char **out)
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
+/* Why an output is not known to be at 0 V. */
+static void put_why(json_t *json, struct dea_zero zero)
+{
+  if (zero.state == DEA_ZERO_UNKNOWN && zero.why != NULL) {
+    dea_json_put_text(json, "output_why", zero.why);
+  }
+}
+
 /* Brings the output to 0 V, whatever the protocol would play. */
 static int zero(struct dea_cli *cli, const struct request *request, struct dea_protocol *protocol)
 {
   char *folder = NULL, known[DEA_ZERO_TEXT_SIZE];
-  struct dea_zero output = {DEA_ZERO_NONE, NAN};
+  struct dea_zero output = {DEA_ZERO_NONE, NAN, NULL};
   dea_finding_clear(cli->ctx); // of what would be played
   dea_status status = state_folder(cli, &folder);
   if (status == DEA_OK) {
@@ -241,6 +249,7 @@ static int zero(struct dea_cli *cli, const struct request *request, struct dea_p
     json_t *json = json_object();
     dea_json_put_text(json, "output", dea_zero_name(output.state));
     dea_json_put(json, "output_V", output.volts);
+    put_why(json, output);
     cli_print_json(json);
   } else {
     printf("  %-16s  %s\n", "output", known);
@@ -301,6 +310,7 @@ static json_t *report_json(const struct dea_drive_report *report, const char *fi
   dea_json_put_count(json, "lost", report->lost);
   dea_json_put_text(json, "output", dea_zero_name(report->zero.state));
   dea_json_put(json, "output_V", report->zero.volts);
+  put_why(json, report->zero);
   json_object_set_new(json, "reached_zero", json_boolean(report->zero.state == DEA_ZERO_READ_BACK));
   dea_json_put(json, "largest_current_A", report->largest_current_A);
   dea_json_put_text(json, "ended", report->ended);

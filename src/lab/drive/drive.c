@@ -172,7 +172,7 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
 {
   struct armed armed;
   char known[DEA_ZERO_TEXT_SIZE], doubt[512] = "";
-  *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
+  *out = (struct dea_zero){DEA_ZERO_NONE, NAN, NULL};
   dea_status status = find_supply(ctx, protocol, state_folder, longest_end_s(protocol), &armed);
   bool driven = status == DEA_E_INTERLOCK;
   if (driven || (status == DEA_E_IO && armed.section != NULL)) { // no reason not to command 0 V
@@ -189,11 +189,11 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
                                             "%s names no instrument that plays", protocol->file);
   if (doubt[0] != '\0' && out->state != DEA_ZERO_NONE) {
     // what was read back says nothing of what another program will set, or may be another supply's
-    out->state = DEA_ZERO_UNKNOWN;
+    dea_zero_doubt(out, NULL);
   }
   out->volts *= protocol->amplifier.gain.si;
   if (fabs(out->volts) > dea_protocol_zero_most_V(protocol)) { // its protocol was not checked
-    out->state = DEA_ZERO_UNKNOWN;
+    dea_zero_doubt(out, NULL);
   }
   dea_zero_text(*out, known);
   bool clean = armed.supply.left[0] == '\0';

@@ -608,7 +608,8 @@ static void take_zero(const struct dea_protocol *protocol, struct dea_zero known
                       struct dea_drive_report *report)
 {
   if (known.state != DEA_ZERO_NONE) {
-    report->zero = (struct dea_zero){known.state, known.volts * protocol->amplifier.gain.si};
+    report->zero = known;
+    report->zero.volts *= protocol->amplifier.gain.si;
   }
 }
 
@@ -668,9 +669,11 @@ static void stop_all(struct loop *loop)
     return;
   }
   if (m->zero && !loop->watch.contradicted) { // else it may be the channel that is wrong
-    *zero = (struct dea_zero){DEA_ZERO_READ_BACK, m->volts};
+    *zero = (struct dea_zero){DEA_ZERO_READ_BACK, m->volts, NULL};
   } else if (zero->state == DEA_ZERO_COMMANDED || isfinite(m->volts)) { // the channel is to show it
-    *zero = (struct dea_zero){DEA_ZERO_UNKNOWN, m->volts};
+    const char *why = m->zero ? "it had shown another voltage than was asked" : NULL;
+    *zero = (struct dea_zero){DEA_ZERO_UNKNOWN, m->volts,
+                              isnan(m->volts) ? "the voltage channel does not show it" : why};
   }
 }
 

@@ -100,7 +100,7 @@ static void guard(const struct dea_protocol *protocol,
 {
   const struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si};
   struct dea_context *ctx;
-  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
   char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE];
   let_go(pipe, &supply);
   if (wait_for_end(pipe, signs)) {

@@ -121,7 +121,7 @@ dea_status dea_instrument_zero(struct dea_context *ctx,
 {
   const struct dea_instrument_type *type;
   void *raw;
-  *out = (struct dea_zero){DEA_ZERO_NONE, NAN};
+  *out = (struct dea_zero){DEA_ZERO_NONE, NAN, NULL};
   DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
   if (type->zero != NULL) {
     *out = type->zero(ctx, raw, protocol, past);

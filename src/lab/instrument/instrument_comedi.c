@@ -312,7 +312,7 @@ static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *inst
   if (c->daq.running && c->input.count > 0) {
     c->library.cancel(c->device, c->input.subdevice);
   }
-  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};
+  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN, NULL};
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -360,7 +360,7 @@ static struct dea_zero zero(struct dea_context *ctx, const void *data,
 {
   (void)past; // its name is of the device, and stays with it
   const struct dea_daq_raw *raw = data;
-  struct dea_zero result = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_zero result = {DEA_ZERO_UNKNOWN, NAN, NULL};
   struct comedi *c = dea_alloc(ctx, 1, sizeof *c);
   if (c == NULL) {
     return result;

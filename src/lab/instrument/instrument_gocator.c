@@ -345,7 +345,7 @@ static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *inst
     dea_gocator_command(DEA_GOCATOR_STOP, command);
     dea_socket_write_if_possible(&g->control, command, sizeof command);
   }
-  return (struct dea_zero){DEA_ZERO_NONE, NAN};
+  return (struct dea_zero){DEA_ZERO_NONE, NAN, NULL};
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)

@@ -53,7 +53,7 @@ struct dea_zero dea_instrument_stop(struct dea_context *ctx, struct dea_instrume
 {
   char message[1024];
   if (instrument->type->stop == NULL) {
-    return (struct dea_zero){DEA_ZERO_NONE, NAN};
+    return (struct dea_zero){DEA_ZERO_NONE, NAN, NULL};
   }
   dea_status status = dea_context_status(ctx);
   const volatile sig_atomic_t *interrupt = dea_context_get_interrupt(ctx);

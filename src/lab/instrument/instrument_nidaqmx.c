@@ -204,7 +204,7 @@ static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *inst
   clear(n, &n->output);
   clear(n, &n->input);
   bool zero = set_zero(ctx, n) == DEA_OK;
-  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};
+  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN, NULL};
 }
 
 static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
@@ -233,7 +233,7 @@ static struct dea_zero zero(struct dea_context *ctx, const void *data,
   (void)past; // its name is of the device, and stays with it
   struct nidaqmx n = {.protocol = protocol};
   bool good = load(ctx, data, &n) == DEA_OK && set_zero(ctx, &n) == DEA_OK;
-  return (struct dea_zero){good ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN};
+  return (struct dea_zero){good ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN, NULL};
 }
 
 static dea_status open_it(struct dea_context *ctx, const void *data,

@@ -191,7 +191,9 @@ static dea_status check(const struct dea_reader *reader, const void *data,
                             protocol->amplifier.gain.si, 1e-3 * protocol->amplifier.gain.si,
                             raw->output_factor.si);
   }
-  return DEA_OK;
+  return plays && raw->measure.origin != DEA_ABSENT
+             ? dea_timed_check(reader->ctx, &raw->behind_s, &protocol->safety.zero_time_s)
+             : DEA_OK;
 }
 
 /* Whether it took its setup: looks at its error queue, which was empty before. */

@@ -332,7 +332,7 @@ static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *inst
 {
   (void)ctx;
   ((struct sim *)instrument)->stopped = true;
-  return (struct dea_zero){DEA_ZERO_COMMANDED, NAN};
+  return (struct dea_zero){DEA_ZERO_COMMANDED, NAN, NULL};
 }
 
 const struct dea_instrument_type dea_instrument_sim = {

@@ -90,6 +90,7 @@ dea_status dea_line_supply_check(const struct dea_reader *reader, const void *da
                              "this supply gives one sign only: write 'min_voltage: 0 V' in the "
                              "protocol's amplifier"));
   }
+  DEA_TRY(reader->ctx, dea_timed_check(reader->ctx, &raw->behind_s, &protocol->safety.zero_time_s));
   return raw->channel.origin != DEA_ABSENT
              ? dea_instrument_check_reading(reader, protocol, &raw->channel, &sketch)
              : DEA_OK;

@@ -38,6 +38,12 @@ static double wait_until(const struct zeroing *z)
   return now_s + fmin(z->raw->behind_s.si, share * fmax(z->until_s - now_s, 0));
 }
 
+/* The same while it is read back: where there is no time for another try, all that is left. */
+static double read_until(const struct zeroing *z)
+{
+  return z->until_s - dea_clock_s() > z->raw->behind_s.si ? wait_until(z) : z->until_s;
+}
+
 /* Whatever it answers, or not. False: nothing can be sent. */
 static bool command(struct dea_context *ctx, const struct zeroing *z, const char *text)
 {
@@ -75,7 +81,7 @@ static void tell(struct dea_context *ctx, struct zeroing *z, const char *answer)
 static bool read_voltage(struct dea_context *ctx, struct zeroing *z, double *volts)
 {
   const char *answer;
-  double until_s = wait_until(z);
+  double until_s = read_until(z);
   if (dea_line_supply_send(ctx, z->link, poll_s, z->language->sync) != DEA_OK) {
     return false;
   }
@@ -90,11 +96,12 @@ static bool read_voltage(struct dea_context *ctx, struct zeroing *z, double *vol
     return false;
   }
   return dea_line_supply_send(ctx, z->link, poll_s, z->language->measure) == DEA_OK &&
-         dea_line_supply_wait(ctx, z->link, wait_until(z), &answer) == DEA_OK && answer != NULL &&
+         dea_line_supply_wait(ctx, z->link, read_until(z), &answer) == DEA_OK && answer != NULL &&
          !z->language->is_error(answer) && z->language->voltage(answer, volts);
 }
 
-/* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
+/* Reads the voltage back until it stays at 0 V or the time is over, then with why that is not
+ * known. False: it does not answer. */
 static bool read_back(struct dea_context *ctx, struct zeroing *z, struct dea_zero *zero)
 {
   double since_s = NAN;
@@ -114,6 +121,7 @@ static bool read_back(struct dea_context *ctx, struct zeroing *z, struct dea_zer
     }
     dea_clock_wait(poll_s);
   }
+  zero->why = isnan(since_s) ? NULL : dea_zero_not_for_long;
   return true;
 }
 
@@ -153,7 +161,7 @@ static void tell_of_other(struct dea_context *ctx, const struct dea_socket *line
 /* On connections of its own, until one has said something or the time is over. */
 static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
 {
-  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, dea_zero_no_answer};
   struct dea_serial_turn turn = {.wait_s = z->past.wait_s, .program = z->past.program};
   bool told = false;
   while (!told && dea_clock_s() < z->until_s) {
@@ -168,6 +176,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
       told = command_zero(ctx, z) && (turn.beside || (is_same(ctx, z) && read_back(ctx, z, &zero)));
       if (turn.beside) {
         tell_of_other(ctx, &link.socket, turn.holder);
+        zero.why = "another program has its line";
       }
       dea_socket_close(&link.socket);
     }
@@ -182,7 +191,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
 struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct dea_line_supply *s = (struct dea_line_supply *)instrument;
-  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
   struct zeroing z = {.link = &s->link,
                       .language = s->language,
                       .raw = &s->raw,
@@ -200,7 +209,9 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
     dea_socket_close(&s->link.socket);
   }
   zero = told ? zero : zero_anew(ctx, &z);
-  zero.state = dea_timed_contradicted(&s->output) ? DEA_ZERO_UNKNOWN : zero.state;
+  if (dea_timed_contradicted(&s->output)) {
+    dea_zero_doubt(&zero, dea_zero_contradicted);
+  }
   return zero;
 }
 

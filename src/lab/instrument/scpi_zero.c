@@ -67,7 +67,8 @@ static bool ask_off(struct dea_context *ctx, struct dea_line_link *link,
   return true;
 }
 
-/* Reads the voltage back until it stays at 0 V or the time is over. False: it does not answer. */
+/* Reads the voltage back until it stays at 0 V or the time is over, then with why that is not
+ * known. False: it does not answer. */
 static bool read_back(struct dea_context *ctx, struct dea_line_link *link,
                       const struct dea_scpi_raw *raw, const struct dea_protocol *protocol,
                       double until_s, struct dea_zero *zero)
@@ -75,9 +76,12 @@ static bool read_back(struct dea_context *ctx, struct dea_line_link *link,
   double since_s = NAN;
   for (;;) {
     const char *answer;
-    double asked_s = dea_clock_s(), volts, wait_s = fmax(share * (until_s - asked_s), poll_s);
+    double asked_s = dea_clock_s(), volts, left_s = until_s - asked_s;
+    // all that is left, where there is no time for another try
+    double wait_s = left_s > raw->behind_s.si ? share * left_s : fmax(left_s, poll_s);
     bool off = false;
     if (asked_s >= until_s) {
+      zero->why = isnan(since_s) ? NULL : dea_zero_not_for_long;
       return true;
     }
     if (dea_scpi_ask(ctx, link, wait_s, raw->measure.text, &answer) != DEA_OK || answer == NULL ||
@@ -156,7 +160,7 @@ static bool is_driven(struct dea_context *ctx, const struct dea_socket *connecti
 static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, double until_s)
 {
   const struct dea_scpi_raw *raw = m->raw;
-  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, dea_zero_no_answer};
   bool told = false, driven = false;
   for (double left_s = until_s - dea_clock_s(); left_s > 0 && !told;) {
     struct dea_line_link link;
@@ -172,20 +176,22 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, doubl
       dea_clock_wait(fmin(again_s, left_s));
     }
   }
-  zero.state = driven ? DEA_ZERO_UNKNOWN : zero.state;
+  if (driven) {
+    dea_zero_doubt(&zero, "another program drives it");
+  }
   return zero;
 }
 
 struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *instrument)
 {
   struct dea_scpi *s = (struct dea_scpi *)instrument;
-  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN};
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
   double now_s = dea_clock_s(), until_s = now_s + s->protocol->safety.zero_time_s.si;
   struct meant m = {&s->raw, s->protocol, s->base.mark, false, true};
   bool told = false;
   if ((s->base.roles & DEA_PLAYS_OUTPUT) == 0) {
     command_end(&s->link, &s->raw, true);
-    return (struct dea_zero){DEA_ZERO_NONE, NAN};
+    return (struct dea_zero){DEA_ZERO_NONE, NAN, NULL};
   }
   if (s->link.socket.descriptor >= 0) {
     const char *answer = NULL;
@@ -203,7 +209,9 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
     dea_socket_close(&s->link.socket); // some supplies have one connection only
     zero = zero_anew(ctx, &m, until_s);
   }
-  zero.state = dea_timed_contradicted(&s->output) ? DEA_ZERO_UNKNOWN : zero.state;
+  if (dea_timed_contradicted(&s->output)) {
+    dea_zero_doubt(&zero, dea_zero_contradicted);
+  }
   return zero;
 }
 
@@ -214,6 +222,6 @@ struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,
   const struct dea_scpi_raw *raw = data;
   struct meant m = {raw, protocol, past->mark, false, past->program != 0};
   return raw->output.origin == DEA_ABSENT
-             ? (struct dea_zero){DEA_ZERO_NONE, NAN}
+             ? (struct dea_zero){DEA_ZERO_NONE, NAN, NULL}
              : zero_anew(ctx, &m, dea_clock_s() + protocol->safety.zero_time_s.si);
 }

@@ -5,8 +5,25 @@
 enum { DEVIATIONS_MAX = 2 };
 static const double off_most_s = 5, off_forgets = 0.1; // as of lab/drive/drive_watch.c
 static const double off_from = 0.2;
+static const double zero_least = 4; // times `behind`: two tries, and a late answer in each
 // an output that can be read back is, however seldom that is recorded
 static const double measure_at_least_s = 1;
+
+dea_status dea_timed_check(struct dea_context *ctx, const struct dea_quantity *behind,
+                           const struct dea_quantity *zero_time)
+{
+  double least_s = zero_least * behind->si;
+  return zero_time->si >= least_s * (1 - 1e-9)
+             ? DEA_OK
+             : dea_finding_add(
+                   ctx, DEA_WARNING, behind->location,
+                   "at the end the output must be read back at 0 V for as long as that, "
+                   "%g s, within %g s, so that %s; write zero_time: %g s in `safety`",
+                   behind->si, zero_time->si,
+                   zero_time->si > behind->si ? "a late answer leaves it not known to be at 0 V"
+                                              : "it will never be known to be at 0 V",
+                   least_s);
+}
 
 dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *o)
 {

@@ -3,6 +3,10 @@
 #include <math.h>
 #include <stdio.h>
 
+const char dea_zero_no_answer[] = "no answer that can be believed",
+           dea_zero_not_for_long[] = "not for as long as `behind` within `zero_time`",
+           dea_zero_contradicted[] = "it had measured another voltage than was set";
+
 const char *dea_zero_name(enum dea_zero_state state)
 {
   switch (state) {
@@ -17,12 +21,25 @@ const char *dea_zero_name(enum dea_zero_state state)
   }
 }
 
+void dea_zero_doubt(struct dea_zero *zero, const char *why)
+{
+  if (zero->state != DEA_ZERO_UNKNOWN || zero->why == NULL) {
+    zero->why = why;
+  }
+  zero->state = DEA_ZERO_UNKNOWN;
+}
+
 void dea_zero_text(struct dea_zero zero, char out[DEA_ZERO_TEXT_SIZE])
 {
-  if (isnan(zero.volts)) {
+  const char *why = zero.state == DEA_ZERO_UNKNOWN ? zero.why : NULL;
+  char volts[32] = "";
+  if (!isnan(zero.volts)) {
+    snprintf(volts, sizeof volts, "%.3g V read back", zero.volts);
+  }
+  if (volts[0] == '\0' && why == NULL) {
     snprintf(out, DEA_ZERO_TEXT_SIZE, "%s", dea_zero_name(zero.state));
   } else {
-    snprintf(out, DEA_ZERO_TEXT_SIZE, "%s (%.3g V read back)", dea_zero_name(zero.state),
-             zero.volts);
+    snprintf(out, DEA_ZERO_TEXT_SIZE, "%s (%s%s%s)", dea_zero_name(zero.state), volts,
+             volts[0] != '\0' && why != NULL ? "; " : "", why != NULL ? why : "");
   }
 }

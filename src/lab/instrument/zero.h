@@ -12,14 +12,22 @@ enum dea_zero_state {
 
 struct dea_zero {
   enum dea_zero_state state;
-  double volts; // that was measured last; NAN: none
+  double volts;    // that was measured last; NAN: none
+  const char *why; // it is not known, as the end of a sentence; static. NULL: nothing more is known
 };
 
-enum { DEA_ZERO_TEXT_SIZE = 128 };
+enum { DEA_ZERO_TEXT_SIZE = 160 };
+
+extern const char dea_zero_no_answer[], dea_zero_not_for_long[], dea_zero_contradicted[]; // why
+
+/* What was measured is not believed; why: NULL where what is said anyway tells it. */
+void dea_zero_doubt(struct dea_zero *zero, const char *why);
 
 /* "at 0 V", "commanded to 0 V, not read back", "not known to be at 0 V", "not armed". */
 const char *dea_zero_name(enum dea_zero_state state);
-/* The same with the voltage: "at 0 V (2.1 V read back)". volts: at the output. */
+/* The same with the voltage, "at 0 V (2.1 V read back)", and with why it is not known: "not known
+ * to be at 0 V (2.1 V read back; it had measured another voltage than was set)". volts: at the
+ * output. */
 void dea_zero_text(struct dea_zero zero, char out[DEA_ZERO_TEXT_SIZE]);
 
 #endif
