@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#define PI 3.14159265358979323846
+
 static struct dea_waveform *make(const char *text)
 {
   dea_finding_clear(ctx);
@@ -108,6 +110,54 @@ static void test_every_kind(void **state)
     struct dea_waveform *w = make(due[i].text);
     assert_close(dea_waveform_value(w, due[i].time_s), due[i].value_V, 0, 1e-6);
     assert_close(w->end_s, due[i].end_s, 0, 1e-12);
+    dea_waveform_destroy(w);
+  }
+}
+
+/* Lowest and highest voltage and the steepest slope of every kind, beside what 400 looks a cycle
+ * find of the first cycles; and of so many cycles, or of bursts so far apart, that nobody looks at
+ * all. */
+static void test_extent(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *text;
+    double lowest_V, highest_V, slope_V_per_s;
+  } due[] = {
+      {"kind: ramp\nfrom: 8 kV\nto: -2 kV\nduration: 4 s\n", -2000, 8000, 2500},
+      {"kind: square\nlow: 1 kV\nhigh: 4 kV\nfrequency: 2 Hz\n", 1000, 4000, 0},
+      {"kind: triangle\nhigh: 4 kV\nfrequency: 2 Hz\nduty: 25 %\ncycles: 3\n", 0, 4000, 32000},
+      {"kind: sine\namplitude: 6 kV\nfrequency: 1 Hz\ncycles: 1000000\n", -6000, 6000, 12e3 * PI},
+      {"kind: sine\nmean: -3 kV\namplitude: -3 kV\nfrequency: 1 Hz\ncycles: 1000000\n", -6000, 0,
+       6e3 * PI},
+      {"kind: sine\nmean: 3 kV\namplitude: 3 kV\nfrequency: 1 Hz\nphase: -90 degree\ncycles: 1\n",
+       0, 6000, 6e3 * PI},
+      {"kind: burst\namplitude: 9 kV\nfrequency: 1 kHz\ncycles: 1\nperiod: 3600 s\nbursts: 100\n",
+       -9000, 9000, 18e6 * PI},
+      {"kind: burst\nmean: 2 kV\namplitude: 1 kV\nfrequency: 10 Hz\ncycles: 2\nperiod: 1 s\n", 1000,
+       3000, 20e3 * PI},
+      {"kind: chirp\nmean: 1 kV\namplitude: 2 kV\nfrom: 100 Hz\nto: 1 kHz\nduration: 100000 s\n",
+       -1000, 3000, 4e6 * PI},
+      // a quarter of a cycle, and a half of one
+      {"kind: chirp\namplitude: 2 kV\nfrom: 1 Hz\nto: 1 Hz\nduration: 0.25 s\n", 0, 2000, 4e3 * PI},
+      {"kind: chirp\namplitude: 2 kV\nfrom: 1 Hz\nto: 1 Hz\nduration: 0.0625 s\n", 0,
+       765.3668647301796, 4e3 * PI},
+      {"kind: chirp\namplitude: -2 kV\nfrom: 0.5 Hz\nto: 1.5 Hz\nduration: 0.5 s\nspacing: "
+       "linear\n",
+       -2000, 0, 6e3 * PI},
+  };
+  for (size_t i = 0; i < sizeof due / sizeof due[0]; i++) {
+    struct dea_waveform *w = make(due[i].text);
+    struct dea_wave_extent extent;
+    dea_waveform_extent(w, &extent);
+    assert_close(extent.lowest_V, due[i].lowest_V, 1e-12, 1e-9);
+    assert_close(extent.highest_V, due[i].highest_V, 1e-12, 1e-9);
+    assert_close(extent.slope_V_per_s, due[i].slope_V_per_s, 1e-12, 0);
+    double each_s = fmin(w->longest_step_s / 20, w->end_s / 4000);
+    for (double n = 0; n <= 4000; n++) {
+      double value_V = dea_waveform_value(w, fmin(n * each_s, w->end_s));
+      assert_true(value_V >= extent.lowest_V && value_V <= extent.highest_V);
+    }
     dea_waveform_destroy(w);
   }
 }
@@ -252,6 +302,7 @@ int main(void)
       cmocka_unit_test(test_corners_do_not_drift),
       cmocka_unit_test(test_staircase),
       cmocka_unit_test(test_every_kind),
+      cmocka_unit_test(test_extent),
       cmocka_unit_test(test_chirp_frequency),
       cmocka_unit_test(test_table),
       cmocka_unit_test(test_slow_supply),

@@ -108,6 +108,34 @@ double dea_waveform_corner(const struct dea_waveform *waveform, double time_s)
   return waveform->end_s > time_s ? fmin(next, waveform->end_s) : INFINITY;
 }
 
+static void piece_extent(const struct dea_waveform *w, struct dea_wave_extent *out)
+{
+  *out = (struct dea_wave_extent){INFINITY, -INFINITY, 0};
+  for (size_t i = 0; i < w->block_count; i++) { // every cycle of a block is like the first one
+    const struct dea_wave_block *b = &w->blocks[i];
+    for (size_t k = 0; k < b->count; k++) {
+      const struct dea_wave_knot *knot = &w->knots[b->first + k], *next = knot + 1;
+      out->lowest_V = fmin(out->lowest_V, knot->value_V);
+      out->highest_V = fmax(out->highest_V, knot->value_V);
+      double time_s = k + 1 < b->count ? (next->phase - knot->phase) / b->frequency_Hz +
+                                             next->offset_s - knot->offset_s
+                                       : 0;
+      if (time_s > 0) {
+        out->slope_V_per_s = fmax(out->slope_V_per_s, fabs(next->value_V - knot->value_V) / time_s);
+      }
+    }
+  }
+}
+
+void dea_waveform_extent(const struct dea_waveform *waveform, struct dea_wave_extent *out)
+{
+  if (waveform->type->extent != NULL) {
+    waveform->type->extent(waveform, out);
+  } else {
+    piece_extent(waveform, out);
+  }
+}
+
 bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
                         struct dea_wave_cycle *out)
 {
@@ -178,8 +206,26 @@ dea_status dea_wave_check_rise(const struct dea_reader *reader, const struct dea
                          rise_s->si, room);
 }
 
+static const double two_pi = 6.28318530717958647692;
+
 double dea_wave_sine_of(double cycles)
 {
-  static const double two_pi = 6.28318530717958647692;
   return sin(two_pi * (cycles - floor(cycles))); // exact where the cycles are whole
+}
+
+/* Whether a number of cycles with this fraction lies between two. */
+static bool passes(double fraction, double from_cycles, double to_cycles)
+{
+  return floor(to_cycles - fraction) >= ceil(from_cycles - fraction);
+}
+
+void dea_wave_sine_extent(double mean_V, double amplitude_V, double from_cycles, double to_cycles,
+                          double highest_Hz, struct dea_wave_extent *out)
+{
+  double from = dea_wave_sine_of(from_cycles), to = dea_wave_sine_of(to_cycles);
+  double top = passes(0.25, from_cycles, to_cycles) ? 1 : fmax(from, to);
+  double bottom = passes(0.75, from_cycles, to_cycles) ? -1 : fmin(from, to);
+  *out = (struct dea_wave_extent){mean_V + fmin(amplitude_V * top, amplitude_V * bottom),
+                                  mean_V + fmax(amplitude_V * top, amplitude_V * bottom),
+                                  two_pi * fabs(amplitude_V) * highest_Hz};
 }

@@ -61,10 +61,17 @@ static double value(const struct dea_waveform *w, double t)
   return cycles < p[CYCLES] ? p[MEAN] + p[AMPLITUDE] * dea_wave_sine_of(cycles) : p[MEAN];
 }
 
+static void extent(const struct dea_waveform *w, struct dea_wave_extent *out)
+{
+  const double *p = w->numbers;
+  dea_wave_sine_extent(p[MEAN], p[AMPLITUDE], 0, p[CYCLES], p[FREQUENCY], out); // whole ones
+}
+
 const struct dea_wave_type dea_wave_burst = {
     .name = "burst",
     .record = &dea_wave_burst_record,
     .raw_size = sizeof(struct raw),
     .make = make,
     .value = value,
+    .extent = extent,
 };

@@ -54,13 +54,24 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
+static double cycles_until(const double *p, double t)
+{
+  double T = p[DURATION], rate = log(p[TO] / p[FROM]);
+  return p[LOGARITHMIC] != 0 ? p[FROM] * T / rate * expm1(rate * t / T)
+                             : p[FROM] * t + (p[TO] - p[FROM]) * t * t / (2 * T);
+}
+
 static double value(const struct dea_waveform *w, double t)
 {
   const double *p = w->numbers;
-  double T = p[DURATION], rate = log(p[TO] / p[FROM]);
-  double cycles = p[LOGARITHMIC] != 0 ? p[FROM] * T / rate * expm1(rate * t / T)
-                                      : p[FROM] * t + (p[TO] - p[FROM]) * t * t / (2 * T);
-  return p[MEAN] + p[AMPLITUDE] * dea_wave_sine_of(cycles);
+  return p[MEAN] + p[AMPLITUDE] * dea_wave_sine_of(cycles_until(p, t));
+}
+
+static void extent(const struct dea_waveform *w, struct dea_wave_extent *out)
+{
+  const double *p = w->numbers;
+  dea_wave_sine_extent(p[MEAN], p[AMPLITUDE], 0, cycles_until(p, p[DURATION]), fmax(p[FROM], p[TO]),
+                       out);
 }
 
 static bool cycle(const struct dea_waveform *w, size_t number, struct dea_wave_cycle *out)
@@ -77,5 +88,6 @@ const struct dea_wave_type dea_wave_chirp = {
     .raw_size = sizeof(struct raw),
     .make = make,
     .value = value,
+    .extent = extent,
     .cycle = cycle,
 };

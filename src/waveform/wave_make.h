@@ -61,5 +61,9 @@ dea_status dea_wave_check_rise(const struct dea_reader *reader, const struct dea
                                double frequency_Hz, double duty);
 /* sin of 2 pi times a number of cycles, which may be large. */
 double dea_wave_sine_of(double cycles);
+/* Extent of a sine about a mean whose phase goes from one number of cycles up to another, at a
+ * frequency of at most highest_Hz. */
+void dea_wave_sine_extent(double mean_V, double amplitude_V, double from_cycles, double to_cycles,
+                          double highest_Hz, struct dea_wave_extent *out);
 
 #endif

@@ -54,6 +54,12 @@ static double value(const struct dea_waveform *w, double time_s)
   return p[MEAN] + p[AMPLITUDE] * dea_wave_sine_of(p[FREQUENCY] * time_s + p[PHASE]);
 }
 
+static void extent(const struct dea_waveform *w, struct dea_wave_extent *out)
+{
+  const double *p = w->numbers;
+  dea_wave_sine_extent(p[MEAN], p[AMPLITUDE], 0, p[CYCLES], p[FREQUENCY], out); // whole ones
+}
+
 static bool cycle(const struct dea_waveform *w, size_t number, struct dea_wave_cycle *out)
 {
   const double *p = w->numbers;
@@ -69,5 +75,6 @@ const struct dea_wave_type dea_wave_sine = {
     .raw_size = sizeof(struct raw),
     .make = make,
     .value = value,
+    .extent = extent,
     .cycle = cycle,
 };

@@ -27,7 +27,13 @@ struct dea_wave_block {
   size_t cycles, first, count; // knots [first, first + count) of the waveform
 };
 
-/* A kind of waveform. value and cycle are NULL for one that is made of straight pieces. */
+/* How far a waveform goes, and how fast. */
+struct dea_wave_extent {
+  double lowest_V, highest_V;
+  double slope_V_per_s; // fastest change between jumps, >= 0; of a part of a cycle at most that
+};
+
+/* A kind of waveform. value, extent and cycle are NULL for one that is made of straight pieces. */
 struct dea_wave_type {
   const char *name;                // "square"
   const struct dea_record *record; // its keys, "kind" among them
@@ -37,6 +43,7 @@ struct dea_wave_type {
   dea_status (*make)(const struct dea_reader *reader, const void *raw, const char *beside,
                      struct dea_waveform *out);
   double (*value)(const struct dea_waveform *waveform, double time_s);
+  void (*extent)(const struct dea_waveform *waveform, struct dea_wave_extent *out);
   bool (*cycle)(const struct dea_waveform *waveform, size_t number, struct dea_wave_cycle *out);
 };
 
@@ -65,6 +72,9 @@ double dea_waveform_value(const struct dea_waveform *waveform, double time_s);
 double dea_waveform_before(const struct dea_waveform *waveform, double time_s);
 /* The next time after time_s at which the waveform bends, jumps or ends; INFINITY after its end. */
 double dea_waveform_corner(const struct dea_waveform *waveform, double time_s);
+/* How far and how fast it goes from its start to its end, by its numbers: however long it is,
+ * nothing lies between two looks. */
+void dea_waveform_extent(const struct dea_waveform *waveform, struct dea_wave_extent *out);
 /* Cycle of that number, counted over the whole waveform; false when it has no more of them. */
 bool dea_waveform_cycle(const struct dea_waveform *waveform, size_t number,
                         struct dea_wave_cycle *out);

@@ -139,50 +139,6 @@ static dea_status count_cycles(struct dea_context *ctx, struct dea_protocol_step
                          "this waveform takes no time; give it a duration");
 }
 
-/* Largest value of sign * waveform within half_s of a time: of a smooth piece by golden section. */
-static double refine(const struct dea_waveform *w, double sign, double time_s, double half_s)
-{
-  static const double golden = 0.6180339887498949;
-  double a = fmax(time_s - half_s, 0), b = fmin(time_s + half_s, w->end_s);
-  for (int i = 0; i < 60; i++) {
-    double x = b - golden * (b - a), y = a + golden * (b - a);
-    if (sign * dea_waveform_value(w, x) < sign * dea_waveform_value(w, y)) {
-      a = x;
-    } else {
-      b = y;
-    }
-  }
-  return dea_waveform_value(w, 0.5 * (a + b));
-}
-
-/* Lowest and highest voltage of a waveform: of knots, or of a curved one looked at eighty times a
- * cycle and then closer. */
-static void take_extremes(struct dea_protocol_step *step)
-{
-  static const double looks_max = 2e6;
-  const struct dea_waveform *w = step->waveform;
-  double low = INFINITY, high = -INFINITY, low_s = 0, high_s = 0;
-  if (w->type->value == NULL) {
-    for (size_t i = 0; i < w->knot_count; i++) {
-      low = fmin(low, w->knots[i].value_V);
-      high = fmax(high, w->knots[i].value_V);
-    }
-  } else {
-    double looks = ceil(fmin(4 * w->end_s / w->longest_step_s, looks_max)), each = w->end_s / looks;
-    for (double i = 0; i <= looks; i++) {
-      double value = dea_waveform_value(w, i * each);
-      low_s = value < low ? i * each : low_s;
-      high_s = value > high ? i * each : high_s;
-      low = fmin(low, value);
-      high = fmax(high, value);
-    }
-    low = fmin(low, refine(w, -1, low_s, each));
-    high = fmax(high, refine(w, 1, high_s, each));
-  }
-  step->lowest_V = low;
-  step->highest_V = high;
-}
-
 /* What every step begins at; longer than numbers can count is an error. */
 static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *raw)
 {
@@ -234,7 +190,10 @@ static dea_status take_sequence(const struct dea_reader *reader, struct dea_prot
                                      &raw->steps[i].waveform));
     }
     if (raw->steps[i].waveform != NULL) {
-      take_extremes(&raw->steps[i]);
+      struct dea_wave_extent extent;
+      dea_waveform_extent(raw->steps[i].waveform, &extent);
+      raw->steps[i].lowest_V = extent.lowest_V;
+      raw->steps[i].highest_V = extent.highest_V;
       DEA_TRY(ctx, count_cycles(ctx, &raw->steps[i]));
     }
   }

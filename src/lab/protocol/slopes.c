@@ -11,11 +11,12 @@ static void add_jump(struct dea_protocol_slopes *out, size_t step, double jump_V
   }
 }
 
-static void add_slope(struct dea_protocol_slopes *out, size_t step, double change_V, double time_s)
+static void add_slope(struct dea_protocol_slopes *out, size_t step, const struct dea_waveform *w)
 {
-  double slope = fabs(change_V) / time_s;
-  if (slope > out->slope_V_per_s) {
-    out->slope_V_per_s = slope;
+  struct dea_wave_extent extent;
+  dea_waveform_extent(w, &extent);
+  if (extent.slope_V_per_s > out->slope_V_per_s) {
+    out->slope_V_per_s = extent.slope_V_per_s;
     out->slope_step = step;
   }
 }
@@ -46,30 +47,13 @@ static void look_at_pieces(struct dea_protocol_slopes *out, size_t step,
     for (const struct dea_wave_knot *k = first; k < last; k++) {
       // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a block has knots
       double time_s = (k[1].phase - k->phase) / b->frequency_Hz + k[1].offset_s - k->offset_s;
-      double change_V = k[1].value_V - k->value_V;
-      if (time_s > 0) {
-        add_slope(out, step, change_V, time_s);
-      } else {
-        add_jump(out, step, change_V);
+      if (!(time_s > 0)) {
+        add_jump(out, step, k[1].value_V - k->value_V);
       }
     }
     add_cycle(out, step, 1 / b->frequency_Hz);
     before = last;
   }
-}
-
-static void look_at_curve(struct dea_protocol_slopes *out, size_t step,
-                          const struct dea_waveform *w)
-{
-  static const double looks_max = 2e6;
-  double looks = ceil(fmin(4 * w->end_s / w->longest_step_s, looks_max));
-  double each_s = w->end_s / looks, before_V = dea_waveform_value(w, 0);
-  for (double i = 1; i <= looks; i++) {
-    double value_V = dea_waveform_before(w, i * each_s);
-    add_slope(out, step, value_V - before_V, each_s);
-    before_V = value_V;
-  }
-  add_cycle(out, step, 20 * w->longest_step_s);
 }
 
 void dea_protocol_slopes_find(const struct dea_protocol *protocol, struct dea_protocol_slopes *out)
@@ -84,8 +68,9 @@ void dea_protocol_slopes_find(const struct dea_protocol *protocol, struct dea_pr
     if (step->repeat.si > 1) {
       add_jump(out, i, start_V - end_V);
     }
+    add_slope(out, i, w);
     if (w->type->value != NULL) {
-      look_at_curve(out, i, w);
+      add_cycle(out, i, 20 * w->longest_step_s);
     } else {
       look_at_pieces(out, i, w);
     }
