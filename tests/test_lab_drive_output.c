@@ -309,6 +309,39 @@ static void test_read_back_that_is_off(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
+/* A current that has ended it, and goes on, hides no voltage channel behind it: one that shows 0 V
+ * while 2 kV are asked says nothing of the output, whichever of them the protocol names first. Nor
+ * does the voltage hide the current. */
+static void test_no_channel_hides_another(void **state)
+{
+  (void)state;
+  for (int voltage = 0; voltage < 2; voltage++) { // number of its channel
+    struct dea_protocol *p = good_protocol(
+        ctx, voltage == 0 ? WATCHED
+                          : "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
+                            "safety: {trip_current: 1 mA, trip_time: 5 ms, voltage_error: 300 V}\n"
+                            "rate: 1 kHz\nwaveform: {kind: constant, voltage: 2 kV}\nchannels:\n"
+                            "  - {name: current, quantity: current, input: ai0, per_volt: 1 mA}\n"
+                            "  - {name: voltage, quantity: voltage, input: ai1, per_volt: 1 kV}\n");
+    struct dea_drive_watch w;
+    char why[DEA_WHY_ENDED_SIZE] = "", later[DEA_WHY_ENDED_SIZE];
+    long ended = -1;
+    dea_drive_watch_start(&w, p, 0.02, 0);
+    for (long i = 0; i < 200; i++) {
+      double values[2];
+      values[voltage] = 0;
+      values[1 - voltage] = i < 100 ? 2e-3 : 3e-3;
+      bool good = dea_drive_watch_sample(&w, 2000, values, ended < 0 ? why : later);
+      ended = !good && ended < 0 ? i : ended;
+    }
+    assert_int_equal(ended, 4);
+    assert_non_null(strstr(why, "the current is 2000 uA"));
+    assert_true(w.contradicted);
+    assert_true(w.largest_current_A == 3e-3 && w.sample == 200);
+    dea_protocol_destroy(ctx, p);
+  }
+}
+
 static void test_run_checks_first(void **state)
 {
   (void)state;
@@ -338,6 +371,7 @@ int main(void)
       cmocka_unit_test(test_examples_do_not_trip),
       cmocka_unit_test(test_voltage_above_the_cap),
       cmocka_unit_test(test_read_back_that_is_off),
+      cmocka_unit_test(test_no_channel_hides_another),
       cmocka_unit_test(test_run_checks_first),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

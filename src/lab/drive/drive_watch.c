@@ -213,31 +213,45 @@ static bool check_missing(struct dea_drive_watch *watch, size_t i, char why[DEA_
   return false;
 }
 
+/* All of a channel of the current that is no lost sample; why: of the first that ends it. */
+static bool check_currents(struct dea_drive_watch *watch, size_t i, double asked_V, double change_V,
+                           double current_A, char why[DEA_WHY_ENDED_SIZE])
+{
+  char later[DEA_WHY_ENDED_SIZE];
+  bool no_arcs = check_arcs(watch, i, change_V, current_A, why);
+  bool below = check_current(watch, i, current_A, no_arcs ? why : later);
+  return no_arcs && below && check_leak(watch, i, asked_V, current_A, why);
+}
+
+/* One channel of the current or the voltage. */
+static bool check_channel(struct dea_drive_watch *watch, size_t i, double asked_V, double change_V,
+                          double value, char why[DEA_WHY_ENDED_SIZE])
+{
+  bool current = watch->protocol->inputs[i].kind.value == DEA_CHANNEL_CURRENT;
+  if (isnan(value)) { // neither good nor bad
+    return (!current || check_arcs(watch, i, change_V, value, why)) && check_missing(watch, i, why);
+  }
+  watch->missing[i] = 0;
+  return current ? check_currents(watch, i, asked_V, change_V, value, why)
+                 : check_voltage(watch, i, asked_V, value, why) &&
+                       check_readback(watch, i, asked_V, value, why);
+}
+
 bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,
                             char why[DEA_WHY_ENDED_SIZE])
 {
   bool good = true;
+  char later[DEA_WHY_ENDED_SIZE];
   double change_V = asked_V - watch->asked_V;
   watch->asked_V = asked_V;
   watch->event_count = 0;
   follow(watch, asked_V);
-  for (size_t i = 0; i < watch->protocol->input_count && good; i++) {
+  // all of them, also once one has ended it: what the others show counts until the output is at 0 V
+  for (size_t i = 0; i < watch->protocol->input_count; i++) {
     int kind = watch->protocol->inputs[i].kind.value;
-    if (kind != DEA_CHANNEL_CURRENT && kind != DEA_CHANNEL_VOLTAGE) {
-      continue;
+    if (kind == DEA_CHANNEL_CURRENT || kind == DEA_CHANNEL_VOLTAGE) {
+      good = check_channel(watch, i, asked_V, change_V, values[i], good ? why : later) && good;
     }
-    if (kind == DEA_CHANNEL_CURRENT && !check_arcs(watch, i, change_V, values[i], why)) {
-      return false;
-    }
-    if (isnan(values[i])) { // neither good nor bad
-      good = check_missing(watch, i, why);
-      continue;
-    }
-    watch->missing[i] = 0;
-    good = kind == DEA_CHANNEL_CURRENT ? check_current(watch, i, values[i], why) &&
-                                             check_leak(watch, i, asked_V, values[i], why)
-                                       : check_voltage(watch, i, asked_V, values[i], why) &&
-                                             check_readback(watch, i, asked_V, values[i], why);
   }
   watch->sample++;
   return good;
