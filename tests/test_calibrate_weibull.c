@@ -147,6 +147,7 @@ static void test_area_scales(void **state)
 static void test_coverage(void **state)
 {
   (void)state;
+  skip_sanitized();
   const double truth[DEA_WEIBULL_PARAMS] = {1.2e8, 9, 0.63, -0.25};
   int held[DEA_WEIBULL_PARAMS] = {0};
   seed = 20;

@@ -133,6 +133,7 @@ static void check_band(void)
 static void test_example(void **state)
 {
   (void)state;
+  skip_sanitized();
   static char page[COMMAND_TEXT_MAX];
   command_page("fit.md", "schema --fit-device --markdown", page);
   assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device"), 0);

@@ -246,6 +246,7 @@ static int read_search(const char *folder, double *best_m)
 static void test_interrupted_search(void **state)
 {
   (void)state;
+  skip_sanitized();
   static const int more[] = {1, 20, 1, 100, 2};
   double wanted_m, best_m;
   char text[2000];

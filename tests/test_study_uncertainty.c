@@ -216,12 +216,16 @@ static void test_is_kept(void **state)
   tear_down_result();
 }
 
+/* Few numbers, as it runs once for each allocation. */
 static void run_once(struct dea_context *failing)
 {
   struct dea_design *mine = NULL;
   struct dea_device *its = NULL;
   struct dea_result *found = NULL;
-  dea_status status = read_and_build(failing, GOOD_DESIGN GIVEN, NULL, 0, &mine, &its);
+  dea_status status = read_and_build(
+      failing,
+      GOOD_DESIGN VOLTAGES "  uncertainty: {parameters: [{name: film.thickness, std: 2 um}]}\n",
+      NULL, 0, &mine, &its);
   if (status == DEA_OK) {
     status = dea_result_create(failing, mine, its, &found);
   }
