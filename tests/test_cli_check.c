@@ -33,6 +33,10 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"run @/examples/frdea-4.yaml -m lumped -m lumped", 2, "--model lumped is given twice"},
       {"check coupled.yaml", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
       {"run coupled.yaml --json", 3, "coupled.yaml:7:18: error: model 3d: a coupled field needs a"},
+      {"check answer.yaml", 3,
+       "answer.yaml:7:18: error: the study 'frequency' needs the field V/h"},
+      {"run answer.yaml --json", 3,
+       "answer.yaml:7:18: error: the study 'frequency' needs the field"},
       {"check turned.yaml", 3, "turned.yaml:2:18: error: model 3d: the film's law has a direction"},
       {"run turned.yaml -m axisymmetric --json", 3, "turned.yaml:2:18: error: model axisymmetric"},
       {"check tab.yaml", 3, "tab.yaml:3:1: error: a tab stands here; YAML indents with spaces"},
@@ -61,6 +65,13 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       "electrodes: {radius: 5 mm stretched}\n"
       "compute: {models: [3d],\n"
       "  solid: {field: coupled}}\n");
+  command_write("answer.yaml", "dea: 1\n"
+                               "film: {material: elastosil-2030, thickness: 1 mm}\n"
+                               "pre_stretch: 1.5\n"
+                               "frame: {inner_radius: 15 mm}\n"
+                               "electrodes: {radius: 5 mm stretched}\n"
+                               "compute: {models: [3d], frequency: {bias: [1 kV]},\n"
+                               "  solid: {field: coupled}}\n");
   command_write("turned.yaml", "dea: 1\n"
                                "film: {material: own, thickness: 1 mm}\n"
                                "materials:\n"

@@ -664,6 +664,18 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
   return type->respond != NULL;
 }
 
+static dea_status refuse(struct dea_context *ctx, const struct dea_design *design)
+{
+  static const char why[] = "the study 'frequency' needs the field V/h: take compute.solid.field: "
+                            "thin, or leave compute.frequency away";
+  const struct dea_choice *field = &design->compute.solid.field;
+  if (field->value != DEA_FIELD_COUPLED) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, field->location, "%s", why));
+  return dea_fail(ctx, DEA_E_DESIGN, "%s", why);
+}
+
 const struct dea_study dea_study_frequency = {
     .name = study_name,
     .keys = &section,
@@ -673,6 +685,7 @@ const struct dea_study dea_study_frequency = {
     .any_layout = true,
     .ability = "vibrations",
     .able = able,
+    .refuse = refuse,
     .run = run,
     .tables = tables,
     .figures = figures,

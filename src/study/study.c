@@ -178,6 +178,20 @@ static bool is_known_to_some(const struct dea_study *study,
   return false;
 }
 
+/* What of a design the studies that are wanted do not go with. */
+static dea_status refuse(struct dea_context *ctx, const struct dea_model_type *const types[],
+                         size_t type_count, const char *const names[], size_t name_count,
+                         const struct dea_result *result)
+{
+  for (size_t k = 0; k < STUDIES; k++) {
+    if (studies[k]->refuse != NULL && is_wanted(studies[k], names, name_count, result->design) &&
+        is_known_to_some(studies[k], types, type_count, result)) {
+      DEA_TRY(ctx, studies[k]->refuse(ctx, result->design));
+    }
+  }
+  return DEA_OK;
+}
+
 dea_status dea_study_check_models(struct dea_context *ctx,
                                   const struct dea_model_type *const types[], size_t type_count,
                                   const char *const names[], size_t name_count,
@@ -193,6 +207,7 @@ dea_status dea_study_check_models(struct dea_context *ctx,
       return status;
     }
   }
+  DEA_TRY(ctx, refuse(ctx, types, type_count, names, name_count, result));
   return DEA_OK;
 }
 
@@ -229,6 +244,7 @@ dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *desi
       DEA_TRY(ctx, status);
     }
   }
+  DEA_TRY(ctx, refuse(ctx, types, count, NULL, 0, &result));
   return DEA_OK;
 }
 

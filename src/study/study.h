@@ -21,6 +21,9 @@ struct dea_study {
    * both NULL: all do. `run` is not called with one that does not. */
   const char *ability;
   bool (*able)(const struct dea_model_type *type, const struct dea_result *result);
+  /* What a design has that models that are able do not take with it: a finding at its place, and
+   * DEA_E_DESIGN. NULL: nothing. */
+  dea_status (*refuse)(struct dea_context *ctx, const struct dea_design *design);
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
@@ -42,12 +45,14 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
 /* DEA_E_ARGUMENT where none of the models knows what one of these studies needs, of the device of a
- * result. names: NULL: fine, what a design asks for is for those models that can. */
+ * result. names: NULL: fine, what a design asks for is for those models that can. DEA_E_DESIGN,
+ * after a finding, where one that can does not take it of that design. */
 dea_status dea_study_check_models(struct dea_context *ctx,
                                   const struct dea_model_type *const types[], size_t type_count,
                                   const char *const names[], size_t name_count,
                                   const struct dea_result *result);
-/* A warning at each study that a design asks for and that none of the models it names knows. */
+/* A warning at each study that a design asks for and that none of the models it names knows;
+ * DEA_E_DESIGN as above. */
 dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *design,
                           const struct dea_device *device);
 /* Whether a design asks for the study of that name. */
