@@ -4,6 +4,7 @@
 #include "lab/drive/drive.h"
 #include "lab/drive/drive_output.h"
 #include "lab/drive/drive_watch.h"
+#include "lab/protocol/export.h"
 #include "protocol_text.h"
 
 #include <math.h>
@@ -41,6 +42,50 @@ static void test_corners_fall_on_samples(void **state)
     }
     assert_true(asked_V == 0);
     assert_int_equal(i, (size_t)ceil((80 / 9.0 + 1) * rates[k] - 1e-6) + 1);
+    dea_protocol_destroy(ctx, p);
+  }
+}
+
+/* What the scripts of an export play is what `dea drive` plays, sample by sample: with corners that
+ * fall on samples but for rounding, on either side of them. */
+static void test_export_plays_the_same(void **state)
+{
+  (void)state;
+  static const struct {
+    double rate_Hz;
+    const char *wave;
+  } cases[] = {
+      {700, "waveform: {kind: square, high: 2 kV, frequency: 0.7 Hz, cycles: 10}\n"},
+      {333.3, "waveform: {kind: square, high: 2 kV, frequency: 0.3 Hz, cycles: 2}\n"},
+      {3000, "waveform: {kind: staircase, from: 0 kV, to: 2 kV, step: 0.5 kV, frequency: 9 Hz, "
+             "cycles: 9}\n"},
+      {1234.5, "sequence:\n  - {waveform: {kind: square, high: 2 kV, low: 1 kV, frequency: 3 Hz, "
+               "cycles: 10}, repeat: 3, pause: 0.1 s}\n  - {waveform: {kind: ramp, from: 2 kV, to: "
+               "1 kV, duration: 0.3 s}}\n"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    char text[1024], line[128];
+    double asked_V, time_s, kV;
+    struct dea_drive_output output;
+    snprintf(text, sizeof text,
+             "dea-protocol: 1\n" PROTOCOL_AMPLIFIER "rate: %.17g Hz\n%schannels:\n"
+             "  - {name: voltage, quantity: voltage, input: ai0, per_volt: 1 kV}\n",
+             cases[k].rate_Hz, cases[k].wave);
+    struct dea_protocol *p = good_protocol(ctx, text);
+    assert_int_equal(dea_protocol_export(ctx, p, in_folder("ex")), DEA_OK);
+    FILE *file = fopen(in_folder("ex/waveform.csv"), "rb");
+    assert_non_null(file);
+    assert_non_null(fgets(line, sizeof line, file)); // the titles
+    dea_drive_output_start(&output, p);
+    for (size_t i = 0; dea_drive_output_next(&output, 1, &asked_V) == 1; i++) {
+      assert_non_null(fgets(line, sizeof line, file));
+      assert_int_equal(sscanf(line, "%lf,%lf", &time_s, &kV), 2);
+      if (fabs(1000 * kV - asked_V) > 1e-6) {
+        fail_msg("case %zu, sample %zu: %g V, not %g V", k, i, 1000 * kV, asked_V);
+      }
+    }
+    assert_null(fgets(line, sizeof line, file));
+    fclose(file);
     dea_protocol_destroy(ctx, p);
   }
 }
@@ -362,17 +407,12 @@ static void test_run_checks_first(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_corners_fall_on_samples),
-      cmocka_unit_test(test_ramp_from_any_sample),
-      cmocka_unit_test(test_longest_ramp),
-      cmocka_unit_test(test_what_ends_a_measurement),
-      cmocka_unit_test(test_arcs_that_come_and_go),
-      cmocka_unit_test(test_charging_is_no_arc),
-      cmocka_unit_test(test_examples_do_not_trip),
-      cmocka_unit_test(test_voltage_above_the_cap),
-      cmocka_unit_test(test_read_back_that_is_off),
-      cmocka_unit_test(test_no_channel_hides_another),
-      cmocka_unit_test(test_run_checks_first),
+      cmocka_unit_test(test_corners_fall_on_samples),  cmocka_unit_test(test_export_plays_the_same),
+      cmocka_unit_test(test_ramp_from_any_sample),     cmocka_unit_test(test_longest_ramp),
+      cmocka_unit_test(test_what_ends_a_measurement),  cmocka_unit_test(test_arcs_that_come_and_go),
+      cmocka_unit_test(test_charging_is_no_arc),       cmocka_unit_test(test_examples_do_not_trip),
+      cmocka_unit_test(test_voltage_above_the_cap),    cmocka_unit_test(test_read_back_that_is_off),
+      cmocka_unit_test(test_no_channel_hides_another), cmocka_unit_test(test_run_checks_first),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -2,29 +2,19 @@
 
 #include <math.h>
 
-// of a sample's distance to the next: times that differ by less are the same, rounded
-static const double rounding = 1e-6;
-
 void dea_drive_output_start(struct dea_drive_output *output, const struct dea_protocol *protocol)
 {
-  double rate_Hz = protocol->rate_Hz.si;
   *output = (struct dea_drive_output){.protocol = protocol};
-  output->total = (size_t)ceil(dea_protocol_duration_s(protocol) * rate_Hz - rounding) + 1;
-  output->step_V = protocol->safety.ramp_V_per_s.si / rate_Hz;
-  output->corner_s = dea_protocol_corner(protocol, 0);
+  dea_protocol_samples_start(&output->samples, protocol);
+  output->step_V = protocol->safety.ramp_V_per_s.si / protocol->rate_Hz.si;
 }
 
 static double next_of_sequence(struct dea_drive_output *output)
 {
-  double rate_Hz = output->protocol->rate_Hz.si;
-  double time_s = (double)output->played / rate_Hz;
-  while (output->corner_s <= time_s + rounding / rate_Hz) {
-    time_s = fmax(time_s, output->corner_s);
-    output->corner_s = dea_protocol_corner(output->protocol, output->corner_s);
-  }
+  double asked_V = dea_protocol_samples_next(&output->samples);
   output->played++;
-  output->over = output->played == output->total;
-  return output->over ? 0 : dea_protocol_value(output->protocol, time_s);
+  output->over = output->samples.next == output->samples.total;
+  return asked_V;
 }
 
 static double next_of_ramp(struct dea_drive_output *output)

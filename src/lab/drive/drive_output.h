@@ -1,5 +1,5 @@
 /* What is asked of the amplifier, sample after sample: the protocol's sequence, and from any of
- * them on a ramp to 0 V. Sample i is at i / rate; a corner that falls on a sample is at it. */
+ * them on a ramp to 0 V. */
 #ifndef DEA_LAB_DRIVE_DRIVE_OUTPUT_H
 #define DEA_LAB_DRIVE_DRIVE_OUTPUT_H
 
@@ -7,10 +7,10 @@
 
 struct dea_drive_output {
   const struct dea_protocol *protocol; // lent
-  size_t played, total; // samples of the sequence, the last one 0 V; so far, and in all
-  double corner_s;      // the next one
-  double last_V;        // that was asked; 0 before the first
-  double step_V;        // largest change from sample to sample of the ramp
+  struct dea_protocol_samples samples; // of the sequence
+  size_t played;                       // of them, so far
+  double last_V;                       // that was asked; 0 before the first
+  double step_V;                       // largest change from sample to sample of the ramp
   bool ramping, over;
 };
 

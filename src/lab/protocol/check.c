@@ -301,7 +301,7 @@ static dea_status check_size(struct dea_context *ctx, const struct dea_protocol 
                              struct dea_protocol_plan *plan)
 {
   static const double much_B = 4e9, too_much = 1e12;
-  double samples = ceil(plan->duration_s * protocol->rate_Hz.si * (1 - 1e-12));
+  double samples = dea_protocol_sample_count(protocol);
   double bytes = samples * (double)(protocol->input_count + 1) * (double)sizeof(double);
   if (samples > too_much) {
     return dea_finding_add(ctx, DEA_ERROR, protocol->rate_Hz.location,

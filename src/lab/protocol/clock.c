@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+// of a sample's distance to the next: times that differ by less are the same, rounded
+static const double rounding = 1e-6;
+
 /* Where a time falls. */
 struct spot {
   const struct dea_protocol_step *step;
@@ -76,6 +79,33 @@ double dea_protocol_corner(const struct dea_protocol *protocol, double time_s)
   }
   const struct dea_protocol_step *last = protocol->steps + protocol->step_count - 1;
   return spot.step == last ? dea_protocol_duration_s(protocol) : spot.step[1].start_s;
+}
+
+double dea_protocol_sample_count(const struct dea_protocol *protocol)
+{
+  return ceil(dea_protocol_duration_s(protocol) * protocol->rate_Hz.si - rounding);
+}
+
+void dea_protocol_samples_start(struct dea_protocol_samples *samples,
+                                const struct dea_protocol *protocol)
+{
+  *samples = (struct dea_protocol_samples){
+      .protocol = protocol,
+      .total = (size_t)dea_protocol_sample_count(protocol) + 1,
+      .corner_s = dea_protocol_corner(protocol, 0),
+  };
+}
+
+double dea_protocol_samples_next(struct dea_protocol_samples *samples)
+{
+  // i / rate, not i times an interval, which is rounded
+  double rate_Hz = samples->protocol->rate_Hz.si, time_s = (double)samples->next / rate_Hz;
+  while (samples->corner_s <= time_s + rounding / rate_Hz) {
+    time_s = fmax(time_s, samples->corner_s);
+    samples->corner_s = dea_protocol_corner(samples->protocol, samples->corner_s);
+  }
+  samples->next++;
+  return samples->next == samples->total ? 0 : dea_protocol_value(samples->protocol, time_s);
 }
 
 size_t dea_protocol_cycles(const struct dea_protocol *protocol)

@@ -247,15 +247,16 @@ struct waveform {
 static dea_status sample(struct dea_context *ctx, const struct dea_protocol *protocol,
                          struct waveform *out)
 {
-  double rate_Hz = protocol->rate_Hz.si;
-  double samples = ceil(dea_protocol_duration_s(protocol) * rate_Hz * (1 - 1e-12));
+  struct dea_protocol_samples next;
+  double samples = dea_protocol_sample_count(protocol);
   if (samples >= DEA_EXPORT_SAMPLES_MAX) {
     return dea_fail(
         ctx, DEA_E_ARGUMENT,
         "%.3g samples are too many for the scripts, which take %d; choose a lower `rate`", samples,
         DEA_EXPORT_SAMPLES_MAX);
   }
-  out->count = (size_t)samples + 1;
+  dea_protocol_samples_start(&next, protocol);
+  out->count = next.total;
   out->time_s = dea_alloc(ctx, out->count, sizeof *out->time_s);
   out->voltage_V = dea_alloc(ctx, out->count, sizeof *out->voltage_V);
   out->control_V = dea_alloc(ctx, out->count, sizeof *out->control_V);
@@ -263,8 +264,8 @@ static dea_status sample(struct dea_context *ctx, const struct dea_protocol *pro
     return DEA_E_MEMORY;
   }
   for (size_t i = 0; i < out->count; i++) {
-    out->time_s[i] = (double)i / rate_Hz;
-    out->voltage_V[i] = i + 1 < out->count ? dea_protocol_value(protocol, out->time_s[i]) : 0;
+    out->time_s[i] = (double)i / protocol->rate_Hz.si;
+    out->voltage_V[i] = dea_protocol_samples_next(&next);
     out->control_V[i] = out->voltage_V[i] / protocol->amplifier.gain.si;
   }
   return DEA_OK;

@@ -136,11 +136,23 @@ bool dea_protocol_factor_is_known(const struct dea_protocol *protocol, double fa
 
 /* The sequence on one clock from 0 on. */
 double dea_protocol_duration_s(const struct dea_protocol *protocol);
-/* Asked voltage [V] at a time; 0 in pauses and after the end. Where it jumps: after the jump. Of
- * sample i ask for time i / rate, not i times an interval, which is rounded. */
+/* Asked voltage [V] at a time; 0 in pauses and after the end. Where it jumps: after the jump. */
 double dea_protocol_value(const struct dea_protocol *protocol, double time_s);
 /* Next time after time_s at which it bends, jumps or ends; INFINITY after the end. */
 double dea_protocol_corner(const struct dea_protocol *protocol, double time_s);
+/* The samples in which it is played, by a bench and by scripts alike: sample i is at i / rate, a
+ * corner that falls on a sample but for rounding is at it, and the last one is 0 V. */
+struct dea_protocol_samples {
+  const struct dea_protocol *protocol; // lent
+  size_t next, total;                  // number of the next one; of all of them
+  double corner_s;                     // the next one
+};
+/* How many there are before the last one; a number, as it may be more than can be counted. */
+double dea_protocol_sample_count(const struct dea_protocol *protocol);
+void dea_protocol_samples_start(struct dea_protocol_samples *samples,
+                                const struct dea_protocol *protocol);
+/* The next one's voltage [V], while next < total. */
+double dea_protocol_samples_next(struct dea_protocol_samples *samples);
 /* Number of cycles of the whole sequence. */
 size_t dea_protocol_cycles(const struct dea_protocol *protocol);
 /* Cycle of that number, counted over the whole sequence; false when it has no more. A waveform
