@@ -148,6 +148,26 @@ static void check_edited(const char *program)
   }
 }
 
+/* As those of dea drive: a current ends it once it was above its limit for trip_time, in whole
+ * samples, and a ramp of 4 s is one of longest_ramp. */
+static void check_interlocks(const char *program)
+{
+  make_files(); // 20 ms, 1 kHz
+  assert_int_equal(run_script("STUB_TRIP=982", program), 0);
+  assert_int_equal(run_script("STUB_TRIP=981", program), 1); // the last 20 samples of 1001
+  assert_contains(command_err, "was above its limit");
+  assert_int_equal(command_run(EXPORT " --set safety.ramp=1kV/s --set safety.longest_ramp=0.2s"),
+                   0);
+  assert_int_equal(run_script("STUB_FAIL=650", program), 1);
+  check_ramp(4);
+  size_t count = 0; // every 2 ms at most
+  for (const char *at = log_text; (at = strstr(at, "\nwrite ")) != NULL; at++) {
+    count++;
+  }
+  assert_true(count <= 102);
+  make_files();
+}
+
 static void test_python_ends_at_zero(void **state)
 {
   (void)state;
@@ -167,6 +187,7 @@ static void test_python_ends_at_zero(void **state)
     check_ramp(i == 0 ? 0 : 4);
     assert_true(recorded() < 1001);
   }
+  check_interlocks(PYTHON);
   assert_int_equal(run_script("", "touch recording.csv; " PYTHON), 1);
   assert_contains(command_err, "rename it first");
   check_edited(PYTHON);
@@ -221,6 +242,7 @@ static void test_matlab_ends_at_zero(void **state)
     assert_contains(command_err, ways[i].part);
     check_ramp(4);
   }
+  check_interlocks(OCTAVE);
   check_edited(OCTAVE);
 }
 

@@ -82,7 +82,7 @@ static double display_factor(const struct dea_protocol_input *input)
 
 static double trip_samples(const struct dea_protocol *protocol)
 {
-  return ceil(protocol->safety.trip_time_s.si * protocol->rate_Hz.si * (1 - 1e-12));
+  return fmax(ceil(protocol->safety.trip_time_s.si * protocol->rate_Hz.si * (1 - 1e-12)), 1);
 }
 
 // Scripts ----------------------------------------------------------------------------------------
@@ -117,9 +117,11 @@ static void write_python(const struct dea_protocol *protocol, struct dea_text *o
                "HIGHEST_V = %.17g\nOUTPUT = ",
                protocol->amplifier.control_V.si, low_V, high_V);
   add_quoted(out, protocol->amplifier.terminal.text);
-  dea_text_add(out, "\nRAMP_V_PER_S = %.17g  # of the amplifier's output, when it ends early\n",
-               protocol->safety.ramp_V_per_s.si);
-  dea_text_add(out, "TRIP_SAMPLES = %.0f  # above the limit `trip` of a current\n",
+  dea_text_add(out,
+               "\nRAMP_V_PER_S = %.17g  # of the amplifier's output, when it ends early\n"
+               "LONGEST_RAMP_S = %.17g  # faster where that would take longer\n",
+               protocol->safety.ramp_V_per_s.si, protocol->safety.longest_ramp_s.si);
+  dea_text_add(out, "TRIP_SAMPLES = %.0f  # in a row above the limit `trip` of a current\n",
                trip_samples(protocol));
   dea_text_add(out, "# value in the unit of the title = volts * scale + offset\nCHANNELS = [\n");
   for (size_t i = 0; i < protocol->input_count; i++) {
@@ -164,9 +166,11 @@ static void write_matlab(const struct dea_protocol *protocol, struct dea_text *o
                "p.highest_V = %.17g;\np.output = ",
                low_V, high_V);
   add_quoted(out, protocol->amplifier.terminal.text);
-  dea_text_add(out, ";\np.ramp_V_per_s = %.17g; %% of the amplifier's output, when it ends early\n",
-               protocol->safety.ramp_V_per_s.si);
-  dea_text_add(out, "p.trip_samples = %.0f; %% above the limit `trip` of a current\n",
+  dea_text_add(out,
+               ";\np.ramp_V_per_s = %.17g; %% of the amplifier's output, when it ends early\n"
+               "p.longest_ramp_s = %.17g; %% faster where that would take longer\n",
+               protocol->safety.ramp_V_per_s.si, protocol->safety.longest_ramp_s.si);
+  dea_text_add(out, "p.trip_samples = %.0f; %% in a row above the limit `trip` of a current\n",
                trip_samples(protocol));
   dea_text_add(
       out,

@@ -79,7 +79,7 @@ while state('read') < total
       else
         above(k) = 0;
       end
-      if above(k) > p.trip_samples
+      if above(k) >= p.trip_samples
         state('why') = ['the current ''', p.channels(k).title, ''' was above its limit'];
         data = data(1:last, :);
         return
@@ -108,10 +108,11 @@ addoutput(output, module, terminal, 'Voltage');
 zero = onCleanup(@() write(output, 0));
 began = tic;
 left = abs(last);
+speed = max(p.ramp_V_per_s / p.gain, left / p.longest_ramp_s);
 while left > 0
   write(output, sign(last) * left);
   pause(0.002);
-  left = abs(last) - p.ramp_V_per_s / p.gain * toc(began);
+  left = abs(last) - speed * toc(began);
 end
 end
 

@@ -53,10 +53,11 @@ def ramp_to_zero(device, start):
         try:
             began = time.monotonic()
             left = abs(start)
+            speed = max(RAMP_V_PER_S / GAIN, left / LONGEST_RAMP_S)
             while left > 0:
                 output.write(math.copysign(left, start), auto_start=True)
                 time.sleep(0.002)
-                left = abs(start) - RAMP_V_PER_S / GAIN * (time.monotonic() - began)
+                left = abs(start) - speed * (time.monotonic() - began)
         finally:
             output.write(0.0, auto_start=True)
 
@@ -72,7 +73,7 @@ class Trip:
             for i, channel in enumerate(CHANNELS):
                 above = channel["trip"] is not None and abs(row[i]) > channel["trip"]
                 self.run[i] = self.run[i] + 1 if above else 0
-                if self.run[i] > TRIP_SAMPLES:
+                if self.run[i] >= TRIP_SAMPLES:
                     return "the current '%s' was above its limit" % channel["title"]
         return None
 
