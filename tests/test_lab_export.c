@@ -232,6 +232,7 @@ static void test_matlab_ends_at_zero(void **state)
   static const struct {
     const char *environment, *part;
   } ways[] = {{"STUB_FAIL=660", "the device was taken away"},
+              {"STUB_STOP=1 STUB_FAIL=660", "the device was taken away"}, // and does not stop either
               {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
   if (no_octave()) {
     skip();

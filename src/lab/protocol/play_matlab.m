@@ -100,8 +100,14 @@ if count > 0
   [~, nearest] = min(abs(tail));
   last = tail(nearest);
 end
-stop(d);
-delete(d); % which holds the output
+try % one that does not stop is told 0 V, too
+  stop(d);
+catch
+end
+try
+  delete(d); % which holds the output
+catch
+end
 output = daq('ni');
 [module, terminal] = physical(device, p.output);
 addoutput(output, module, terminal, 'Voltage');

@@ -1,5 +1,6 @@
 % Stands in for the Data Acquisition Toolbox in tests: what was written goes to the file STUB_LOG,
-% inputs follow the output. STUB_FAIL, STUB_TRIP: number of the sample at which something happens.
+% inputs follow the output. STUB_FAIL, STUB_TRIP: number of the sample at which something happens;
+% STUB_STOP: it does not stop.
 classdef daq < handle
   properties
     Rate = 0;
@@ -29,6 +30,9 @@ classdef daq < handle
     end
     function stop(this)
       stub_log('stop');
+      if ~isempty(getenv('STUB_STOP'))
+        error('the device does not stop');
+      end
     end
     function delete(this)
       stub_log('delete');
