@@ -231,9 +231,10 @@ static void test_matlab_ends_at_zero(void **state)
   (void)state;
   static const struct {
     const char *environment, *part;
-  } ways[] = {{"STUB_FAIL=660", "the device was taken away"},
-              {"STUB_STOP=1 STUB_FAIL=660", "the device was taken away"}, // and does not stop either
-              {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
+  } ways[] = {
+      {"STUB_FAIL=660", "the device was taken away"},
+      {"STUB_STOP=1 STUB_FAIL=660", "the device was taken away"}, // and does not stop either
+      {"STUB_TRIP=605", "the current 'amplifier current (uA)' was above its limit"}};
   if (no_octave()) {
     skip();
   }
@@ -269,6 +270,58 @@ static void test_quotes_in_names(void **state)
   assert_null(strstr(command_out, "a'b"));
 }
 
+/* Channels that the files could not tell apart are numbered: by signs that are left out, by letters
+ * that are none of a variable's, by their unit alone, by what the files have beside them. */
+static void test_names_stay_apart(void **state)
+{
+  (void)state;
+  static const char head[] =
+      "dea-protocol: 1\n"
+      "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: 1, frequency: 1 Hz}\n"
+      "amplifier: {gain: 1000, max_voltage: 5 kV}\nrate: 1 kHz\nchannels:\n";
+  static const struct {
+    const char *channel, *title, *variable;
+  } channels[] = {
+      {"name: amplifier voltage, quantity: voltage, per_volt: 1 kV", "amplifier voltage (kV)",
+       "amplifier_voltage_V"},
+      {"name: laser 1, quantity: displacement, per_volt: 1 mm", "laser 1 (um)", "laser_1_m"},
+      {"name: laser-1, quantity: displacement, per_volt: 1 mm", "laser-1 2 (um)", "laser_1_2_m"},
+      {"name: 'laser,1', quantity: displacement, per_volt: 1 mm", "laser 1 3 (um)", "laser_1_3_m"},
+      {"name: 'laser;1', quantity: other, unit: um, per_volt: 1", "laser 1 2 (um)", "laser_1_2_um"},
+      {"name: time, quantity: other, unit: s, per_volt: 1", "time 2 (s)", "time_2_s"},
+      {"name: command, quantity: other, unit: V, per_volt: 1", "command 2 (V)", "command_2_V"},
+      {"name: \xe5\x8a\x9b, quantity: other, per_volt: 1", "\xe5\x8a\x9b", "x"},
+      {"name: \xe6\xb8\xa9, quantity: other, per_volt: 1", "\xe6\xb8\xa9 2", "x_2"},
+      {"name: very long name of a laser that looks at the centre of the film, quantity: "
+       "displacement, per_volt: 1 mm",
+       "very long name of a laser that looks at the centre of the film (um)",
+       "very_long_name_of_a_laser_that_looks_at_the_centre_of_the_f_m"},
+      {"name: very long name of a laser that looks at the centre of the fil, quantity: "
+       "displacement, per_volt: 1 mm",
+       "very long name of a laser that looks at the centre of the fil 2 (um)",
+       "very_long_name_of_a_laser_that_looks_at_the_centre_of_the_2_m"},
+  };
+  char text[4096], line[512];
+  size_t used = (size_t)snprintf(text, sizeof text, "%s", head);
+  for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
+    used += (size_t)snprintf(text + used, sizeof text - used, "  - {input: ai%zu, %s}\n", i,
+                             channels[i].channel);
+  }
+  command_write("names.yaml", text);
+  assert_int_equal(command_run("drive names.yaml --force --export ex"), 0);
+  command_read("ex/play_matlab.m", command_out);
+  for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
+    snprintf(line, sizeof line, "struct('title', '%s', 'variable', '%s', ", channels[i].title,
+             channels[i].variable);
+    assert_contains(command_out, line);
+  }
+  command_read("ex/play_nidaqmx.py", command_out);
+  for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
+    snprintf(line, sizeof line, "\"title\": '%s',", channels[i].title);
+    assert_contains(command_out, line);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -278,6 +331,7 @@ int main(void)
       cmocka_unit_test(test_matlab),
       cmocka_unit_test(test_matlab_ends_at_zero),
       cmocka_unit_test(test_quotes_in_names),
+      cmocka_unit_test(test_names_stay_apart),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

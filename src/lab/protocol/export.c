@@ -10,21 +10,24 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TITLE_SIZE = 2 * DEA_CHANNEL_NAME_SIZE + 32 };
+enum { TITLE_SIZE = 2 * DEA_CHANNEL_NAME_SIZE + 48, VARIABLE_SIZE = 63 };
 
 // Names ------------------------------------------------------------------------------------------
 
-/* What a channel's column is called: its name, what it is when the name does not say so, its unit.
- * Signs that would end a column or a text are left out. */
-static void column_title(const struct dea_protocol_input *input, bool si, char out[TITLE_SIZE])
+/* What a channel is called in recording.csv, and in recording.mat. */
+struct column {
+  char title[TITLE_SIZE], variable[VARIABLE_SIZE];
+};
+/* What is in both beside the channels. */
+static const struct column others[] = {{"time (s)", "time_s"}, {"command (kV)", "command_V"}};
+enum { OTHERS = sizeof others / sizeof others[0] };
+
+/* Signs that would end a column or a text are left out. */
+static void make_title(const char *label, const char *number, const char *unit,
+                       char out[TITLE_SIZE])
 {
-  const struct dea_channel_meaning *meaning = &dea_channel_meanings[input->kind.value];
-  bool other = input->kind.value == DEA_CHANNEL_OTHER;
-  const char *unit = other ? input->unit.text : si ? meaning->si_unit : meaning->display_unit;
-  bool says = other || dea_guess_by_name(input->name.text) == input->kind.value;
-  snprintf(out, TITLE_SIZE, "%.63s%s%s%s%.63s%s", input->name.text, says ? "" : " ",
-           says ? "" : meaning->name, unit[0] != '\0' ? " (" : "", unit,
-           unit[0] != '\0' ? ")" : "");
+  snprintf(out, TITLE_SIZE, "%.90s%s%s%s%.63s%s", label, number[0] != '\0' ? " " : "", number,
+           unit[0] != '\0' ? " (" : "", unit, unit[0] != '\0' ? ")" : "");
   for (char *c = out; *c != '\0'; c++) {
     if (strchr(",;\"'\\%", *c) != NULL || (unsigned char)*c < ' ') {
       *c = ' ';
@@ -32,25 +35,66 @@ static void column_title(const struct dea_protocol_input *input, bool si, char o
   }
 }
 
-/* The title as a name of a variable. */
-static void variable_name(const char *title, char out[TITLE_SIZE])
+/* Appends the letters and digits of a text to a name of `most` characters at most, with '_' before
+ * it and for all that is neither. */
+static void add_part(const char *text, size_t most, char out[VARIABLE_SIZE])
 {
-  size_t used = 0;
-  if (!isalpha((unsigned char)title[0])) {
-    out[used++] = 'x';
-  }
-  for (const char *c = title; *c != '\0' && used < 62; c++) {
+  size_t used = strlen(out);
+  bool apart = used > 0;
+  for (const char *c = text; *c != '\0'; c++) {
     bool good = isalnum((unsigned char)*c) && (unsigned char)*c < 0x80;
-    if (good) {
-      out[used++] = *c;
-    } else if (used > 0 && out[used - 1] != '_') {
+    if (good && used + apart >= most) {
+      break;
+    }
+    if (good && apart) {
       out[used++] = '_';
     }
-  }
-  while (used > 1 && out[used - 1] == '_') {
-    used--;
+    if (good) {
+      out[used++] = *c;
+    }
+    apart = used > 0 && !good;
   }
   out[used] = '\0';
+}
+
+/* The unit is at the end, whatever is cut off before it. */
+static void make_variable(const char *label, const char *number, const char *unit,
+                          char out[VARIABLE_SIZE])
+{
+  static const size_t unit_most = 20;
+  size_t most = VARIABLE_SIZE - 1, length = strlen(unit);
+  size_t before_unit = most - 1 - (length < unit_most ? length : unit_most);
+  snprintf(out, VARIABLE_SIZE, "%s", isalpha((unsigned char)label[0]) ? "" : "x");
+  add_part(label, before_unit - 1 - strlen(number), out);
+  add_part(number, before_unit, out);
+  add_part(unit, most, out);
+}
+
+/* Names of all channels: its own, what it is when that does not say so, a number where another one
+ * would be called the same, its unit. */
+static void name_columns(const struct dea_protocol *protocol,
+                         struct column out[DEA_PROTOCOL_INPUTS_MAX])
+{
+  for (size_t i = 0; i < protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &protocol->inputs[i];
+    const struct dea_channel_meaning *meaning = &dea_channel_meanings[input->kind.value];
+    bool other = input->kind.value == DEA_CHANNEL_OTHER;
+    bool says = other || dea_guess_by_name(input->name.text) == input->kind.value;
+    char label[TITLE_SIZE], number[8] = "";
+    snprintf(label, sizeof label, "%.63s%s%s", input->name.text, says ? "" : " ",
+             says ? "" : meaning->name);
+    for (int again = 2, unique = 0; !unique; again++) {
+      make_title(label, number, other ? input->unit.text : meaning->display_unit, out[i].title);
+      make_variable(label, number, other ? input->unit.text : meaning->si_unit, out[i].variable);
+      unique = 1;
+      for (size_t k = 0; k < i + OTHERS; k++) {
+        const struct column *there = k < i ? &out[k] : &others[k - i];
+        unique = unique && strcmp(there->title, out[i].title) != 0 &&
+                 strcmp(there->variable, out[i].variable) != 0;
+      }
+      snprintf(number, sizeof number, "%d", again % 100);
+    }
+  }
 }
 
 /* Text within single quotes of both languages. */
@@ -100,8 +144,9 @@ static void find_control(const struct dea_protocol *protocol, double *low_V, dou
 
 static void write_python(const struct dea_protocol *protocol, struct dea_text *out)
 {
-  char title[TITLE_SIZE];
+  struct column columns[DEA_PROTOCOL_INPUTS_MAX];
   double low_V, high_V;
+  name_columns(protocol, columns);
   find_control(protocol, &low_V, &high_V);
   dea_text_add(
       out, "#!/usr/bin/env python3\n"
@@ -127,9 +172,8 @@ static void write_python(const struct dea_protocol *protocol, struct dea_text *o
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_protocol_input *input = &protocol->inputs[i];
     double factor = display_factor(input);
-    column_title(input, false, title);
     dea_text_add(out, "    {\n        \"title\": ");
-    add_quoted(out, title);
+    add_quoted(out, columns[i].title);
     dea_text_add(out, ",\n        \"terminal\": ");
     add_quoted(out, input->terminal.text);
     dea_text_add(out,
@@ -147,8 +191,9 @@ static void write_python(const struct dea_protocol *protocol, struct dea_text *o
 
 static void write_matlab(const struct dea_protocol *protocol, struct dea_text *out)
 {
-  char title[TITLE_SIZE], variable[TITLE_SIZE];
+  struct column columns[DEA_PROTOCOL_INPUTS_MAX];
   double low_V, high_V;
+  name_columns(protocol, columns);
   find_control(protocol, &low_V, &high_V);
   dea_text_add(
       out, "function play_matlab(device)\n"
@@ -180,12 +225,9 @@ static void write_matlab(const struct dea_protocol *protocol, struct dea_text *o
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_protocol_input *input = &protocol->inputs[i];
     double factor = display_factor(input);
-    column_title(input, true, title);
-    variable_name(title, variable);
-    column_title(input, false, title);
     dea_text_add(out, "p.channels(end + 1) = struct('title', ");
-    add_quoted(out, title);
-    dea_text_add(out, ", 'variable', '%s', 'terminal', ", variable);
+    add_quoted(out, columns[i].title);
+    dea_text_add(out, ", 'variable', '%s', 'terminal', ", columns[i].variable);
     add_quoted(out, input->terminal.text);
     dea_text_add(out, ", ...\n    'range', %.17g, 'scale', %.17g, 'offset', %.17g, 'trip', ",
                  input->range_V.si, factor * input->per_volt, factor * input->at_zero);
