@@ -377,6 +377,20 @@ static void test_refused(void **state)
   shvps_protocol(&s, 2, 1, SHVPS_PATIENT ", name: rack");
   assert_int_equal(supply_wait(shvps_arm("r.h5"), 20), 6);
   assert_contains(command_err, "is a 'bench 5', not a 'rack'");
+  shvps_protocol(&s, 2, 1, SHVPS_PATIENT);
+  static const char *const much[] = {"drive",
+                                     "p.yaml",
+                                     "--arm",
+                                     "-o",
+                                     "r.h5",
+                                     "--set",
+                                     "amplifier.max_voltage=10 kV",
+                                     "--set",
+                                     "safety.at_zero=90 V",
+                                     NULL};
+  assert_int_equal(supply_run_dea(much, 20), 6);
+  assert_contains(command_err,
+                  "safety.at_zero calls 90 V 0 V, and of the 2.5 kV that the SHVPS at");
   assert_true(line_supply_highest(&s) == 0);
   static const char *const negative[] = {"drive", "p.yaml", "--set", "amplifier.min_voltage=-5 kV",
                                          NULL};

@@ -117,10 +117,17 @@ static dea_status wake(struct dea_context *ctx, struct dea_line_supply *s)
                   s->link.socket.name, sync);
 }
 
-/* Whether the sequence stays within what it gives. */
+/* Whether the sequence stays within what it gives, and what is called 0 V is little of that: the
+ * protocol may name an amplifier that gives more. */
 static dea_status check_range(struct dea_context *ctx, const struct dea_line_supply *s)
 {
-  double highest_V = 0;
+  double highest_V = 0, zero_V = s->protocol->safety.at_zero_V.si;
+  if (zero_V > dea_zero_most_V(s->range_V)) {
+    return dea_fail(ctx, DEA_E_INSTRUMENT,
+                    "safety.at_zero calls %g V 0 V, and of the %g kV that %s says it gives at most "
+                    "%g V may be",
+                    zero_V, 1e-3 * s->range_V, s->link.socket.name, dea_zero_most_V(s->range_V));
+  }
   for (size_t i = 0; i < s->protocol->step_count; i++) {
     highest_V = fmax(highest_V, s->protocol->steps[i].highest_V);
   }

@@ -187,11 +187,16 @@ static dea_status check_leak(struct dea_context *ctx, const struct dea_protocol 
                                1e6 * least->si, 1e6 * most_A, 100 * leak_share);
 }
 
+double dea_zero_most_V(double range_V)
+{
+  return fmax(zero_most_V, zero_share * range_V);
+}
+
 double dea_protocol_zero_most_V(const struct dea_protocol *protocol)
 {
   double reach_V = protocol->amplifier.gain.si * protocol->amplifier.control_V.si;
   double range_V = fmax(protocol->amplifier.highest_V.si, -protocol->amplifier.lowest_V.si);
-  return fmax(zero_most_V, zero_share * fmin(range_V, reach_V));
+  return dea_zero_most_V(fmin(range_V, reach_V));
 }
 
 /* What is read back and still called 0 V. */

@@ -128,7 +128,9 @@ void dea_protocol_cap(const struct dea_protocol *protocol, double *lowest_V, dou
  * control voltages is beyond the cap or no number. Nothing of them may go out then. */
 dea_status dea_protocol_guard(struct dea_context *ctx, const struct dea_protocol *protocol,
                               const double *volts, size_t count);
-/* The largest voltage [V] that may be called 0 V, whatever safety.at_zero says. */
+/* The largest voltage [V] that may be called 0 V of an output that gives so much, and of the
+ * protocol's amplifier, whatever safety.at_zero says. */
+double dea_zero_most_V(double range_V);
 double dea_protocol_zero_most_V(const struct dea_protocol *protocol);
 /* Whether a number that is sent for 1 V of control voltage can be right: an instrument takes the
  * control voltage in V, or the amplifier's output in V or kV. */
