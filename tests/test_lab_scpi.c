@@ -3,11 +3,13 @@
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "lab/instrument/line_reader.h"
-#include "lab/instrument/scpi_parse.h"
+#include "lab/instrument/scpi.h"
 #include "lab/instrument/timed_output.h"
 
 #include "message_fixture.h"
 
+#include <dlfcn.h>
+#include <netdb.h>
 #include <sys/syscall.h>
 #include <time.h>
 
@@ -19,6 +21,21 @@ int clock_gettime(clockid_t clock, struct timespec *out)
   long result = syscall(SYS_clock_gettime, clock, out);
   out->tv_sec += clock == CLOCK_BOOTTIME ? atomic_load(&slept_s) : 0;
   return (int)result;
+}
+
+/* The system's look-up of names; who answers for names may be gone. */
+static atomic_bool no_names;
+
+int getaddrinfo(const char *name, const char *service, const struct addrinfo *hints,
+                struct addrinfo **out)
+{
+  static int (*real)(const char *, const char *, const struct addrinfo *, struct addrinfo **);
+  unsigned char number[sizeof(struct in6_addr)];
+  if (real == NULL) {
+    *(void **)&real = dlsym(RTLD_NEXT, "getaddrinfo");
+  }
+  bool is_name = inet_pton(AF_INET, name, number) != 1 && inet_pton(AF_INET6, name, number) != 1;
+  return is_name && atomic_load(&no_names) ? EAI_AGAIN : real(name, service, hints, out);
 }
 
 /* How the emulated instrument behaves. */
@@ -638,6 +655,58 @@ static void work(struct dea_context *context)
   }
 }
 
+/* A supply that was opened by its name is brought to 0 V on a new connection where nobody knows
+ * that name any more, or takes longer to say so than there is time: by itself, and by its guard.
+ * One of which that is kept is found by it, and by its name where it is an old one. */
+static void test_name_that_nobody_knows(void **state)
+{
+  (void)state;
+  static struct bench b;
+  static const char plays[] =
+      "kind: scpi\naddress: localhost\nport: %d\ntimeout: 5 s\noutput: \"SOUR:VOLT %%g\"\n"
+      "behind: 0.1 s\nmeasure: \"MEAS:CURR?\"\n";
+  struct behaviour behaviour = usual;
+  struct dea_yaml *yaml;
+  struct dea_zero zero;
+  behaviour.current = "0";
+  b.protocol.rate_Hz.si = 100;
+  b.protocol.safety.at_zero_V.si = 50;
+  b.protocol.safety.voltage_error_V.si = 200;
+  b.protocol.safety.readback_error.si = 0.05;
+  b.protocol.safety.zero_time_s.si = 10;
+  assert_int_equal(begin(&b, &behaviour, plays), DEA_OK);
+  char host[DEA_INSTRUMENT_HOST_SIZE];
+  memcpy(host, b.instrument->host, sizeof host);
+  atomic_store(&no_names, true);
+  shutdown(((struct dea_scpi *)b.instrument)->link.socket.descriptor, SHUT_RDWR);
+  zero = dea_instrument_stop(ctx, b.instrument);
+  assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
+  b.instrument->type->close(ctx, b.instrument);
+  b.instrument = NULL;
+  dea_context_clear(ctx);
+  assert_int_equal(dea_yaml_parse(ctx, "protocol.yaml", b.text, strlen(b.text), &yaml), DEA_OK);
+  b.protocol.document = yaml;
+  b.protocol.instruments[0].section = dea_yaml_root(yaml);
+  for (int program = 0; program < 2; program++) { // of which it is the guard
+    const struct dea_instrument_past past = {usual.identity, program, 1, host};
+    assert_int_equal(
+        dea_instrument_zero(ctx, &b.protocol.instruments[0], &b.protocol, &past, &zero), DEA_OK);
+    assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
+    dea_context_clear(ctx);
+  }
+  atomic_store(&no_names, false);
+  const struct dea_instrument_past moved = {usual.identity, 0, 1, "127.0.0.99"},
+                                   fresh = {"", 0, 1, ""};
+  assert_int_equal(dea_instrument_zero(ctx, &b.protocol.instruments[0], &b.protocol, &moved, &zero),
+                   DEA_OK);
+  assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
+  assert_int_equal(dea_instrument_zero(ctx, &b.protocol.instruments[0], &b.protocol, &fresh, &zero),
+                   DEA_OK);
+  assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
+  dea_yaml_destroy(ctx, yaml);
+  end(&b);
+}
+
 static void test_memory(void **state)
 {
   (void)state;
@@ -668,6 +737,7 @@ int main(void)
       cmocka_unit_test(test_not_there),
       cmocka_unit_test(test_refuses),
       cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_name_that_nobody_knows),
       cmocka_unit_test(test_memory),
       cmocka_unit_test(test_changes_its_unit),
       cmocka_unit_test(test_generator),

@@ -178,6 +178,32 @@ static void test_unreadable(void **state)
   assert_int_equal(remove(path), 0);
 }
 
+/* What tells the supply, and where it was, are kept with what was left, also one without the other.
+ */
+static void test_what_is_kept(void **state)
+{
+  (void)state;
+  static const char *const cases[][2] = {
+      {"ACME,5 kV,0815", "192.168.1.20"}, {"", "fe80::1%eth0"}, {"397.25", ""}, {"", ""}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_supply supply;
+    assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+    snprintf(supply.mark, sizeof supply.mark, "%s", cases[i][0]);
+    snprintf(supply.host, sizeof supply.host, "%s", cases[i][1]);
+    assert_int_equal(dea_supply_leave(ctx, &supply, "armed"), DEA_OK);
+    dea_supply_close(&supply);
+    assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+    assert_true(strncmp(supply.left, "armed (", 7) == 0);
+    assert_string_equal(supply.mark, cases[i][0]);
+    assert_string_equal(supply.host, cases[i][1]);
+    assert_int_equal(dea_supply_leave(ctx, &supply, ""), DEA_OK);
+    dea_supply_close(&supply);
+    assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
+    assert_true(supply.left[0] == '\0' && supply.mark[0] == '\0' && supply.host[0] == '\0');
+    dea_supply_close(&supply);
+  }
+}
+
 /* On a disk that is full what stood there still says that the supply was not left at 0 V. */
 static void test_full_disk(void **state)
 {
@@ -218,6 +244,7 @@ int main(void)
       cmocka_unit_test(test_asked_for),
       cmocka_unit_test(test_given_away),
       cmocka_unit_test(test_unreadable),
+      cmocka_unit_test(test_what_is_kept),
       cmocka_unit_test(test_full_disk),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -78,7 +78,7 @@ static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protoc
                     "%s; look at supply and specimen, then 'dea drive --zero %s', or --checked",
                     armed->supply.left, protocol->file);
   }
-  armed->supply.mark[0] = '\0'; // that of what was left before
+  armed->supply.mark[0] = armed->supply.host[0] = '\0'; // those of what was left before
   snprintf(armed->left, sizeof armed->left, "armed by process %ld with %.100s, which did not end",
            (long)getpid(), dea_path_name(protocol->file));
   DEA_TRY(ctx, dea_supply_leave(ctx, &armed->supply, armed->left));
@@ -87,14 +87,16 @@ static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protoc
              : DEA_OK;
 }
 
-/* Keeps what tells the supply from another one, now that it is open. */
+/* Keeps what tells the supply from another one, and where it is, now that it is open. */
 static dea_status know(struct dea_context *ctx, const struct opened *opened, struct armed *armed)
 {
   for (size_t i = 0; armed->section != NULL && i < opened->count; i++) {
     const struct dea_instrument *instrument = opened->instruments[i];
-    if ((instrument->roles & DEA_PLAYS_OUTPUT) != 0 && instrument->mark[0] != '\0') {
+    if ((instrument->roles & DEA_PLAYS_OUTPUT) != 0 &&
+        (instrument->mark[0] != '\0' || instrument->host[0] != '\0')) {
       memcpy(armed->supply.mark, instrument->mark, sizeof armed->supply.mark);
-      dea_guard_know(armed->guard, instrument->mark);
+      memcpy(armed->supply.host, instrument->host, sizeof armed->supply.host);
+      dea_guard_know(armed->guard, instrument);
       return dea_supply_leave(ctx, &armed->supply, armed->left);
     }
   }
@@ -183,7 +185,8 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   const struct dea_instrument_past past = {checked ? "" : armed.supply.mark, 0,
-                                           driven ? 0 : protocol->safety.zero_time_s.si};
+                                           driven ? 0 : protocol->safety.zero_time_s.si,
+                                           armed.supply.host};
   status = armed.section != NULL ? dea_instrument_zero(ctx, armed.section, protocol, &past, out)
                                  : dea_fail(ctx, DEA_E_INSTRUMENT,
                                             "%s names no instrument that plays", protocol->file);

@@ -27,8 +27,8 @@ struct signs {
   atomic_uint beats, limit_ms; // of the program; the second 0: none
   atomic_uint turns;           // of the guard
   atomic_bool taken;           // the guard has begun to bring the output to 0 V
-  atomic_bool known;           // the mark is there
-  char mark[DEA_INSTRUMENT_MARK_SIZE];
+  atomic_bool known;           // mark and host are there
+  char mark[DEA_INSTRUMENT_MARK_SIZE], host[DEA_INSTRUMENT_HOST_SIZE];
 };
 
 struct dea_guard {
@@ -98,7 +98,8 @@ static void guard(const struct dea_protocol *protocol,
                   const struct dea_protocol_instrument *section, struct dea_supply supply,
                   struct signs *signs, int pipe)
 {
-  const struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si};
+  const struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si,
+                                           supply.host};
   struct dea_context *ctx;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
   char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE];
@@ -109,6 +110,7 @@ static void guard(const struct dea_protocol *protocol,
   atomic_store(&signs->taken, true);
   if (atomic_load(&signs->known)) {
     memcpy(supply.mark, signs->mark, sizeof supply.mark);
+    memcpy(supply.host, signs->host, sizeof supply.host);
   }
   if (dea_context_create(NULL, &ctx) != DEA_OK) {
     return;
@@ -171,10 +173,11 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
   return DEA_OK;
 }
 
-void dea_guard_know(struct dea_guard *guard, const char mark[DEA_INSTRUMENT_MARK_SIZE])
+void dea_guard_know(struct dea_guard *guard, const struct dea_instrument *instrument)
 {
   if (guard != NULL) {
-    memcpy(guard->signs->mark, mark, DEA_INSTRUMENT_MARK_SIZE);
+    memcpy(guard->signs->mark, instrument->mark, sizeof guard->signs->mark);
+    memcpy(guard->signs->host, instrument->host, sizeof guard->signs->host);
     atomic_store(&guard->signs->known, true);
   }
 }

@@ -20,9 +20,9 @@ enum dea_guard_state {
 dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
                            const struct dea_protocol_instrument *section,
                            const struct dea_supply *supply, struct dea_guard **out);
-/* What tells the supply, now that it is open, from another one that gets its address (struct
- * dea_instrument); the guard believes no other. */
-void dea_guard_know(struct dea_guard *guard, const char mark[DEA_INSTRUMENT_MARK_SIZE]);
+/* What tells the supply, now that it is open, from another one that gets its address, and where it
+ * is (struct dea_instrument); the guard believes no other. */
+void dea_guard_know(struct dea_guard *guard, const struct dea_instrument *instrument);
 /* From here on no two signs of life may be farther apart; 0: it waits for the end only. */
 void dea_guard_limit(struct dea_guard *guard, double silence_s);
 /* A sign of life, and whether the guard gives one: it is gone when it has ended, or was silent for

@@ -50,7 +50,7 @@ static dea_status open_files(struct dea_context *ctx, const char *folder, const 
 
 static void read_left(struct dea_supply *supply)
 {
-  char text[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE];
+  char text[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE + DEA_INSTRUMENT_HOST_SIZE];
   ssize_t got = pread(supply->file, text, sizeof text - 1, 0);
   text[got > 0 ? got : 0] = '\0';
   const char *second = text + strcspn(text, "\n");
@@ -59,7 +59,10 @@ static void read_left(struct dea_supply *supply)
     snprintf(supply->left, sizeof supply->left, "its file cannot be read: %s", strerror(errno));
   }
   second += *second != '\0';
-  snprintf(supply->mark, sizeof supply->mark, "%.*s", (int)strcspn(second, "\n"), second);
+  const char *third = second + strcspn(second, "\n");
+  snprintf(supply->mark, sizeof supply->mark, "%.*s", (int)(third - second), second);
+  third += *third != '\0';
+  snprintf(supply->host, sizeof supply->host, "%.*s", (int)strcspn(third, "\n"), third);
 }
 
 /* Tries until the time is over. */
@@ -145,7 +148,8 @@ bool dea_supply_give(struct dea_supply *supply, double within_s)
 
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text)
 {
-  char line[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE], stamp[32] = "";
+  char line[DEA_SUPPLY_LEFT_SIZE + DEA_INSTRUMENT_MARK_SIZE + DEA_INSTRUMENT_HOST_SIZE];
+  char stamp[32] = "";
   time_t now = time(NULL);
   struct tm utc;
   if (supply->file < 0) {
@@ -154,8 +158,9 @@ dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, 
   if (gmtime_r(&now, &utc) != NULL) {
     strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%SZ", &utc);
   }
-  int length = snprintf(line, sizeof line, "%.180s (%s)\n%s%s", text, stamp, supply->mark,
-                        supply->mark[0] != '\0' ? "\n" : "");
+  bool more = supply->mark[0] != '\0' || supply->host[0] != '\0';
+  int length = snprintf(line, sizeof line, "%.180s (%s)\n%s%s%s%s", text, stamp, supply->mark,
+                        more ? "\n" : "", supply->host, supply->host[0] != '\0' ? "\n" : "");
   length = text[0] != '\0' ? length : 0;
   // over what stood there, which stays on a disk that is full: an empty file would say "at 0 V"
   if (pwrite(supply->file, line, (size_t)length, 0) != (ssize_t)length ||

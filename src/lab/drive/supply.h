@@ -23,6 +23,7 @@ struct dea_supply {
   /* Of the supply that it is about (struct dea_instrument); "": not known. Read with `left`, and
    * written with what is left. */
   char mark[DEA_INSTRUMENT_MARK_SIZE];
+  char host[DEA_INSTRUMENT_HOST_SIZE]; // and where it was
 };
 
 /* Opens the file of a supply, made with its folders where there is none, and locks it. folder: NULL

@@ -36,7 +36,7 @@ struct dea_sink {
   dea_status (*reading)(void *user, size_t reading, double time_s, double value_SI);
 };
 
-enum { DEA_INSTRUMENT_MARK_SIZE = 128 };
+enum { DEA_INSTRUMENT_MARK_SIZE = 128, DEA_INSTRUMENT_HOST_SIZE = 64 };
 
 /* An opened one; a kind's own struct begins with it. */
 struct dea_instrument {
@@ -50,6 +50,8 @@ struct dea_instrument {
   size_t lost;           // samples, frames or replies that did not arrive or made no sense
   /* One line that tells the supply from another one that gets its address; "": nothing does. */
   char mark[DEA_INSTRUMENT_MARK_SIZE];
+  /* Number of the host that it is connected to: 0 V must not wait for a name. "": there is none. */
+  char host[DEA_INSTRUMENT_HOST_SIZE];
 };
 
 /* What is known of an instrument that is not open, of the time when it was. */
@@ -57,6 +59,7 @@ struct dea_instrument_past {
   const char *mark; // as above; "": whatever has its address and, where there is one, its name
   long program;     // process that may still have its line, but plays nothing any more; 0: none
   double wait_s;    // how long its line is waited for where another program has it
+  const char *host; // as above; "": only its name is known
 };
 
 struct dea_instrument_type {

@@ -297,10 +297,11 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
     status = dea_scpi_output_begin(ctx, s);
   }
   if (status == DEA_OK) {
-    status = dea_scpi_connect(ctx, &s->raw, s->raw.timeout_s.si, &s->link);
+    status = dea_scpi_connect(ctx, &s->raw, "", s->raw.timeout_s.si, &s->link);
   }
   if (status == DEA_OK) {
     snprintf(s->name, sizeof s->name, "%s", s->link.socket.name);
+    memcpy(s->base.host, s->link.socket.host, sizeof s->base.host);
     status = claim(ctx, s);
     status = status == DEA_OK ? set_up(ctx, s) : status;
   }

@@ -56,8 +56,9 @@ struct dea_scpi {
   int claim;    // of what it plays through; -1: none
 };
 
+/* host: its number; "": by its name. */
 dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,
-                            double timeout_s, struct dea_line_link *link);
+                            const char *host, double timeout_s, struct dea_line_link *link);
 dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_line_link *link,
                          double timeout_s, const char *command);
 /* Sends what goes without waiting. */

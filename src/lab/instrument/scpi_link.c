@@ -5,11 +5,11 @@
 #include <string.h>
 
 dea_status dea_scpi_connect(struct dea_context *ctx, const struct dea_scpi_raw *raw,
-                            double timeout_s, struct dea_line_link *link)
+                            const char *host, double timeout_s, struct dea_line_link *link)
 {
   *link = (struct dea_line_link){.socket.descriptor = -1};
-  return dea_socket_connect(ctx, "the instrument", raw->address.text, (int)raw->port.si, timeout_s,
-                            &link->socket);
+  return dea_socket_connect(ctx, "the instrument", host[0] != '\0' ? host : raw->address.text,
+                            (int)raw->port.si, timeout_s, &link->socket);
 }
 
 dea_status dea_scpi_send(struct dea_context *ctx, const struct dea_line_link *link,

@@ -23,6 +23,7 @@ struct meant {
   const char *mark; // what it said of itself; "": it was not asked
   bool told;        // that another one may be there
   bool alone;       // no other program may have it: it has it itself, or is the guard of one
+  const char *host; // its number; "": its name must be looked up
 };
 
 static const double poll_s = 0.05, again_s = 0.1;
@@ -156,21 +157,25 @@ static bool is_driven(struct dea_context *ctx, const struct dea_socket *connecti
   return true;
 }
 
-/* On connections of its own, until one has said something or the time is over. */
+/* On connections of its own, until one has said something or the time is over. A name is looked up
+ * only where no number is known, or from the second time on where that may be an old one: who looks
+ * it up may have to wait for longer than there is time. */
 static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, double until_s)
 {
   const struct dea_scpi_raw *raw = m->raw;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, dea_zero_no_answer};
-  bool told = false, driven = false;
+  bool told = false, driven = false, number = true;
   for (double left_s = until_s - dea_clock_s(); left_s > 0 && !told;) {
     struct dea_line_link link;
-    if (dea_scpi_connect(ctx, raw, left_s, &link) == DEA_OK) {
+    double wait_s = number && !m->alone && m->host[0] != '\0' ? share * left_s : left_s;
+    if (dea_scpi_connect(ctx, raw, number ? m->host : "", wait_s, &link) == DEA_OK) {
       driven = driven || (!m->alone && is_driven(ctx, &link.socket));
       command_zero(&link, raw);
       told = find_out(ctx, &link, m, true, until_s, &zero);
       command_end(&link, raw, zero.state != DEA_ZERO_UNKNOWN);
       dea_socket_close(&link.socket);
     }
+    number = m->alone || !number;
     left_s = until_s - dea_clock_s();
     if (!told) {
       dea_clock_wait(fmin(again_s, left_s));
@@ -187,7 +192,7 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
   struct dea_scpi *s = (struct dea_scpi *)instrument;
   struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
   double now_s = dea_clock_s(), until_s = now_s + s->protocol->safety.zero_time_s.si;
-  struct meant m = {&s->raw, s->protocol, s->base.mark, false, true};
+  struct meant m = {&s->raw, s->protocol, s->base.mark, false, true, s->base.host};
   bool told = false;
   if ((s->base.roles & DEA_PLAYS_OUTPUT) == 0) {
     command_end(&s->link, &s->raw, true);
@@ -220,7 +225,7 @@ struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,
                               const struct dea_instrument_past *past)
 {
   const struct dea_scpi_raw *raw = data;
-  struct meant m = {raw, protocol, past->mark, false, past->program != 0};
+  struct meant m = {raw, protocol, past->mark, false, past->program != 0, past->host};
   return raw->output.origin == DEA_ABSENT
              ? (struct dea_zero){DEA_ZERO_NONE, NAN, NULL}
              : zero_anew(ctx, &m, dea_clock_s() + protocol->safety.zero_time_s.si);

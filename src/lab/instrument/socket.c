@@ -69,6 +69,7 @@ dea_status dea_socket_connect(struct dea_context *ctx, const char *what, const c
   struct addrinfo *found = NULL;
   char service[16];
   out->descriptor = -1;
+  out->host[0] = '\0';
   snprintf(service, sizeof service, "%d", port);
   snprintf(out->name, sizeof out->name, "%.40s at %.250s, port %d", what, host, port);
   int unknown = getaddrinfo(host, service, &hints, &found);
@@ -80,6 +81,10 @@ dea_status dea_socket_connect(struct dea_context *ctx, const char *what, const c
   int error = ETIMEDOUT;
   for (const struct addrinfo *a = found; a != NULL && out->descriptor < 0; a = a->ai_next) {
     error = connect_to(a, until_s, &out->descriptor);
+    if (out->descriptor >= 0 && getnameinfo(a->ai_addr, a->ai_addrlen, out->host, sizeof out->host,
+                                            NULL, 0, NI_NUMERICHOST) != 0) {
+      out->host[0] = '\0';
+    }
   }
   freeaddrinfo(found);
   if (out->descriptor < 0) {
