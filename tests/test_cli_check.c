@@ -5,6 +5,47 @@
 
 #include <jansson.h>
 
+static void write_bad_files(void)
+{
+  command_write("text.yaml", "hello\n");
+  command_write("design.yaml", "my own\n");
+  command_write(
+      "coupled.yaml",
+      "dea: 1\n"
+      "film: {material: elastosil-2030, permittivity: stretch-dependent, thickness: 1 mm}\n"
+      "pre_stretch: 1.5\n"
+      "frame: {inner_radius: 15 mm}\n"
+      "electrodes: {radius: 5 mm stretched}\n"
+      "compute: {models: [3d],\n"
+      "  solid: {field: coupled}}\n");
+  command_write("answer.yaml", "dea: 1\n"
+                               "film: {material: elastosil-2030, thickness: 1 mm}\n"
+                               "pre_stretch: 1.5\n"
+                               "frame: {inner_radius: 15 mm}\n"
+                               "electrodes: {radius: 5 mm stretched}\n"
+                               "compute: {models: [3d], frequency: {bias: [1 kV]},\n"
+                               "  solid: {field: coupled}}\n");
+  command_write("turned.yaml", "dea: 1\n"
+                               "film: {material: own, thickness: 1 mm}\n"
+                               "materials:\n"
+                               "  - name: own\n"
+                               "    kind: elastomer\n"
+                               "    laws: [{id: a, law: holzapfel-gasser-ogden, parameters: {mu: "
+                               "100 kPa, k1: 50 kPa}, source: t}]\n"
+                               "    permittivity: [{id: a, at_rest: 3, source: t}]\n"
+                               "pre_stretch: 1.5\n"
+                               "frame: {inner_radius: 15 mm}\n"
+                               "electrodes: {radius: 5 mm stretched}\n"
+                               "compute: {models: [3d]}\n");
+  command_write("tab.yaml", "dea: 1\nfilm: # für VHB\n\tthickness: 100 um\n");
+  command_write("binary.yaml", "\x7f"
+                               "ELF\x02\x01\xff\xfe");
+  char text[600];
+  snprintf(text, sizeof text, "cd '%s' && mkfifo pipe && truncate -s 100000000 big.yaml",
+           command_folder);
+  assert_int_equal(system(text), 0);
+}
+
 static void test_every_bad_file_has_its_exit_code(void **state)
 {
   (void)state;
@@ -54,43 +95,7 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"sweep @/examples/fit/device.yaml", 3, "this is a fit, not a file of many designs"},
       {"drive @/examples/fit/silicone.yaml", 3, "this is a fit, not a protocol"},
   };
-  command_write("text.yaml", "hello\n");
-  command_write("design.yaml", "my own\n");
-  command_write(
-      "coupled.yaml",
-      "dea: 1\n"
-      "film: {material: elastosil-2030, permittivity: stretch-dependent, thickness: 1 mm}\n"
-      "pre_stretch: 1.5\n"
-      "frame: {inner_radius: 15 mm}\n"
-      "electrodes: {radius: 5 mm stretched}\n"
-      "compute: {models: [3d],\n"
-      "  solid: {field: coupled}}\n");
-  command_write("answer.yaml", "dea: 1\n"
-                               "film: {material: elastosil-2030, thickness: 1 mm}\n"
-                               "pre_stretch: 1.5\n"
-                               "frame: {inner_radius: 15 mm}\n"
-                               "electrodes: {radius: 5 mm stretched}\n"
-                               "compute: {models: [3d], frequency: {bias: [1 kV]},\n"
-                               "  solid: {field: coupled}}\n");
-  command_write("turned.yaml", "dea: 1\n"
-                               "film: {material: own, thickness: 1 mm}\n"
-                               "materials:\n"
-                               "  - name: own\n"
-                               "    kind: elastomer\n"
-                               "    laws: [{id: a, law: holzapfel-gasser-ogden, parameters: {mu: "
-                               "100 kPa, k1: 50 kPa}, source: t}]\n"
-                               "    permittivity: [{id: a, at_rest: 3, source: t}]\n"
-                               "pre_stretch: 1.5\n"
-                               "frame: {inner_radius: 15 mm}\n"
-                               "electrodes: {radius: 5 mm stretched}\n"
-                               "compute: {models: [3d]}\n");
-  command_write("tab.yaml", "dea: 1\nfilm: # für VHB\n\tthickness: 100 um\n");
-  command_write("binary.yaml", "\x7f"
-                               "ELF\x02\x01\xff\xfe");
-  char text[600];
-  snprintf(text, sizeof text, "cd '%s' && mkfifo pipe && truncate -s 100000000 big.yaml",
-           command_folder);
-  assert_int_equal(system(text), 0);
+  write_bad_files();
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     int code = command_run(bad[i].arguments);
     if (code != bad[i].code) {
