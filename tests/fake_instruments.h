@@ -3,6 +3,7 @@
 #ifndef DEA_TESTS_FAKE_INSTRUMENTS_H
 #define DEA_TESTS_FAKE_INSTRUMENTS_H
 
+#include "base/clock.h"
 #include "lab/drive/drive_loop.h"
 #include "testing.h"
 
@@ -26,9 +27,10 @@ struct fake_script {
   bool inputs;                         // it reads them
   long leak_from;                      // sample from which the current is 0.2 mA; 0: never
   void (*after_interrupt)(void); // in the next call, when the signal was heeded; NULL: nothing
+  double start_s;                // that its start takes
 };
-static const struct fake_script fake_good = {-1, -1, -1, -1, -1,   -1, -1,  -1,
-                                             -1, -1, 37, 1,  true, 0,  NULL};
+static const struct fake_script fake_good = {-1, -1, -1, -1, -1,   -1, -1,   -1,
+                                             -1, -1, 37, 1,  true, 0,  NULL, 0};
 
 struct fake_daq {
   struct dea_instrument common;
@@ -37,6 +39,7 @@ struct fake_daq {
   double out[FAKE_SAMPLES_MAX]; // control voltages
   size_t put, got, puts, gets, starts, stops;
   volatile sig_atomic_t *flag; // that a signal sets
+  double begun_s, stopped_s;   // by the computer's clock
 };
 
 struct fake_sensor {
@@ -56,6 +59,8 @@ static inline dea_status fake_fail(struct dea_context *context, const char *what
 static inline dea_status fake_start(struct dea_context *context, struct dea_instrument *instrument)
 {
   struct fake_daq *daq = (struct fake_daq *)instrument;
+  dea_clock_wait(daq->script.start_s);
+  daq->begun_s = dea_clock_s();
   return (long)daq->starts++ == daq->script.fail_start ? fake_fail(context, "start") : DEA_OK;
 }
 
@@ -132,6 +137,7 @@ static inline struct dea_zero fake_stop(struct dea_context *context,
 {
   (void)context;
   ((struct fake_daq *)instrument)->stops++;
+  ((struct fake_daq *)instrument)->stopped_s = dea_clock_s();
   return (struct dea_zero){DEA_ZERO_COMMANDED, (double)NAN, NULL};
 }
 

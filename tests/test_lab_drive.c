@@ -89,6 +89,21 @@ static void test_without_channels_the_clock_paces(void **state)
   trial_close(&t);
 }
 
+/* A DAQ without channels that takes its time to start plays to its end before it is stopped. */
+static void test_slow_start_without_channels(void **state)
+{
+  (void)state;
+  struct trial t;
+  struct fake_script script = fake_good;
+  script.inputs = false;
+  script.start_s = 0.5;
+  trial_open(&t, SQUARE, &script);
+  trial_play(&t, false);
+  assert_int_equal(t.status, DEA_OK);
+  assert_true(t.daq->stopped_s - t.daq->begun_s >= (double)LENGTH / RATE);
+  trial_close(&t);
+}
+
 // What fails -------------------------------------------------------------------------------------
 
 /* Plays with a fault and checks what must hold in all of them but those of the DAQ itself. */
@@ -489,6 +504,7 @@ int main(void)
       cmocka_unit_test(test_plays_and_records_the_protocol),
       cmocka_unit_test(test_instruments_of_any_pace),
       cmocka_unit_test(test_without_channels_the_clock_paces),
+      cmocka_unit_test(test_slow_start_without_channels),
       cmocka_unit_test(test_signals),
       cmocka_unit_test(test_faults_at_the_end),
       cmocka_unit_test(test_current_trips),

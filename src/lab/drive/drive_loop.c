@@ -601,6 +601,7 @@ static void start_all(struct loop *loop)
       instrument_failed(loop, source);
     }
   }
+  loop->started_s = dea_clock_s(); // of the one that plays: its start may have taken a while
 }
 
 /* What an instrument says after its stop; nothing of one without output. */
