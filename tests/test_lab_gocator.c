@@ -280,9 +280,53 @@ static void test_garbage(void **state)
   b.sensor.count = 3;
   assert_int_equal(begin(&b, usual, serve_data), DEA_OK);
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 1, 0), DEA_OK);
+  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 0, 2, 0), DEA_OK);
   assert_true(b.instrument->lost >= 1);
+  // the profile without a time of its own has that of its arrival, and moves no other
+  assert_int_equal(b.sink.profiles, 2);
+  assert_true(b.sink.profile_time_s[0] >= 0 && b.sink.profile_time_s[0] < 20);
+  assert_close(b.sink.profile_time_s[1], 2e-6 * LATER_US, 0, 15);
   end(&b);
+}
+
+/* Two frames, then one after the other without end. */
+static void serve_without_end(struct emulator *e, int connection)
+{
+  struct sensor *s = e->user;
+  static struct gocator_bytes frame;
+  emulator_send(e, connection, s->frames[0]->bytes, s->frames[0]->length);
+  for (int i = 1; !atomic_load(&e->ended); i++) {
+    frame.length = 0;
+    gocator_frame(&frame, i, LATER_US + 10000 * i);
+    const struct gocator_bytes *next = i == 1 ? s->frames[1] : &frame;
+    while (!atomic_load(&s->goes_on) && !atomic_load(&e->ended)) {
+      dea_clock_wait(0.001);
+    }
+    emulator_send(e, connection, next->bytes, next->length);
+    dea_clock_wait(0.01);
+  }
+}
+
+/* A time that cannot be, of the frame before the start or of the one after it, leaves no other that
+ * counts: that is silence, which ends it, and not a recording without profiles. */
+static void test_times_that_cannot_be(void **state)
+{
+  (void)state;
+  static struct bench b;
+  for (int wrong = 0; wrong < 2; wrong++) {
+    memset(&b, 0, sizeof b);
+    b.sensor.status = 1;
+    for (int i = 0; i < 2; i++) {
+      gocator_frame(&b.frames[i], i, LATER_US * i);
+      b.sensor.frames[i] = &b.frames[i];
+    }
+    b.frames[wrong].bytes[22 + 6] = 0x40; // 2^54 us later
+    assert_int_equal(begin(&b, hasty, serve_without_end), DEA_OK);
+    assert_message(emulator_get(ctx, b.instrument, &b.sink, 0, 1000, 0), DEA_E_INSTRUMENT,
+                   "no profile came");
+    assert_true(b.sink.profiles <= 1);
+    end(&b);
+  }
 }
 
 static void test_not_there(void **state)
@@ -422,11 +466,17 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_frames),         cmocka_unit_test(test_invalid_and_other_grid),
-      cmocka_unit_test(test_start_and_stop), cmocka_unit_test(test_goes_silent),
-      cmocka_unit_test(test_hangs_up),       cmocka_unit_test(test_garbage),
-      cmocka_unit_test(test_not_there),      cmocka_unit_test(test_polled),
-      cmocka_unit_test(test_text),           cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_frames),
+      cmocka_unit_test(test_invalid_and_other_grid),
+      cmocka_unit_test(test_start_and_stop),
+      cmocka_unit_test(test_goes_silent),
+      cmocka_unit_test(test_hangs_up),
+      cmocka_unit_test(test_garbage),
+      cmocka_unit_test(test_times_that_cannot_be),
+      cmocka_unit_test(test_not_there),
+      cmocka_unit_test(test_polled),
+      cmocka_unit_test(test_text),
+      cmocka_unit_test(test_wrong_keys),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -102,23 +102,25 @@ void dea_gocator_frames_see(struct dea_gocator_frames *frames, const struct dea_
 }
 
 bool dea_gocator_frames_time(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
-                             double start_s, double *time_s, size_t *lost)
+                             double arrived_s, double start_s, double *time_s, size_t *lost)
 {
-  *time_s = 1e-6 * (double)stamp->time_us + frames->offset_s - start_s;
+  uint64_t frame = stamp != NULL ? stamp->frame : frames->last_frame + 1;
+  double clock_s = stamp != NULL ? 1e-6 * (double)stamp->time_us + frames->offset_s : arrived_s;
+  *time_s = clock_s - start_s;
   if (!frames->running) {
     if (*time_s < 0) {
       return false;
     }
-    frames->running = frames->anchored = true;
+    frames->running = true;
   } else if (!(*time_s > frames->last_s)) {
     ++*lost;
     return false;
-  } else if (stamp->frame > frames->last_frame + 1 &&
-             stamp->frame - frames->last_frame < missing_most) {
-    *lost += (size_t)(stamp->frame - frames->last_frame - 1);
+  } else if (frame > frames->last_frame + 1 && frame - frames->last_frame < missing_most) {
+    *lost += (size_t)(frame - frames->last_frame - 1);
   }
+  frames->anchored = frames->anchored || stamp != NULL;
   frames->last_s = *time_s;
-  frames->last_frame = stamp->frame;
+  frames->last_frame = frame;
   return true;
 }
 

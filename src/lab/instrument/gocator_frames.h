@@ -32,10 +32,11 @@ void dea_gocator_frames_place(struct dea_gocator_frames *frames,
 /* Sees a stamp that arrived at a time of the computer's clock, before it counts. */
 void dea_gocator_frames_see(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
                             double arrived_s);
-/* Time of a frame after start_s (of the computer's clock). false: it is from before that, or not
- * after the last one. Adds the frames that are missing before it to *lost. */
+/* Time of a frame after start_s (of the computer's clock). stamp: NULL for one without, whose
+ * arrival must do. false: it is from before that, or not after the last one. Adds the frames that
+ * are missing before it to *lost. */
 bool dea_gocator_frames_time(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
-                             double start_s, double *time_s, size_t *lost);
+                             double arrived_s, double start_s, double *time_s, size_t *lost);
 void dea_gocator_frames_free(struct dea_context *ctx, struct dea_gocator_frames *frames);
 
 #endif

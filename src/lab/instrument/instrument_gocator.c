@@ -92,8 +92,9 @@ struct gocator {
   struct dea_socket data, control;
   struct dea_line_reader lines;
   struct dea_gocator_frames frames;
-  double start_s;        // computer's clock at start; NAN before
-  double heard_s;        // when the last sense was heard
+  double start_s;                              // computer's clock at start; NAN before
+  double heard_s;                              // when the last sense was heard
+  double value_s[DEA_INSTRUMENT_READINGS_MAX]; // time of the last value of each
   double asked_s, due_s; // polled: when it was asked last, NAN: not waiting; when next
   bool started;          // by us
   bool noted_odd, noted_grid;
@@ -182,11 +183,16 @@ static dea_status take_value(struct gocator *g, long id, double thousandths, dou
   for (size_t i = 0; i < g->raw.measurement_count; i++) {
     const struct raw_measurement *m = &g->raw.measurements[i];
     if ((long)m->id.si == id) {
-      g->heard_s = dea_clock_s();
       double time_s = clock_s - g->start_s;
       if (sink == NULL || !(time_s >= 0)) {
         return DEA_OK;
       }
+      if (time_s <= g->value_s[i]) {
+        g->base.lost++;
+        return DEA_OK;
+      }
+      g->value_s[i] = time_s;
+      g->heard_s = dea_clock_s();
       g->frames.anchored = true;
       g->base.lost += isnan(thousandths) ? 1 : 0;
       return sink->reading(sink->user, i, time_s, thousandths * m->factor.si);
@@ -210,15 +216,15 @@ static dea_status take_profiles(struct dea_context *ctx, struct gocator *g, doub
   if (g->frames.points == 0 || p->source != g->frames.source) {
     return DEA_OK;
   }
-  g->heard_s = arrived_s;
   size_t count = p->count == g->stream.stamp_count ? p->count : 1;
   for (size_t k = 0; k < count && sink != NULL; k++) {
-    // Without a stamp the time of arrival must do.
-    const struct dea_gdp_stamp arrival = {g->frames.last_frame + 1, (uint64_t)(1e6 * arrived_s)};
-    const struct dea_gdp_stamp *stamp = g->stream.stamp_count > 0 ? &g->stream.stamps[k] : &arrival;
+    const struct dea_gdp_stamp *stamp = g->stream.stamp_count > 0 ? &g->stream.stamps[k] : NULL;
     double time_s;
-    dea_gocator_frames_see(&g->frames, stamp, arrived_s);
-    if (dea_gocator_frames_time(&g->frames, stamp, g->start_s, &time_s, &g->base.lost)) {
+    if (stamp != NULL) {
+      dea_gocator_frames_see(&g->frames, stamp, arrived_s);
+    }
+    if (dea_gocator_frames_time(&g->frames, stamp, arrived_s, g->start_s, &time_s, &g->base.lost)) {
+      g->heard_s = arrived_s; // what has no time that can be is none
       dea_gocator_frames_place(&g->frames, p, k);
       DEA_TRY(ctx, sink->profile(sink->user, time_s, g->frames.z_m));
     }
@@ -449,6 +455,9 @@ static dea_status start_gocator(struct dea_context *ctx, struct dea_instrument *
     DEA_TRY(ctx, receive(ctx, g, 0, NULL, &length));
   }
   g->start_s = g->heard_s = g->due_s = dea_clock_s();
+  for (size_t i = 0; i < DEA_INSTRUMENT_READINGS_MAX; i++) {
+    g->value_s[i] = -INFINITY;
+  }
   return DEA_OK;
 }
 
