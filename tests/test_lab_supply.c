@@ -7,7 +7,19 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+
+/* Folders that were brought to the disk; beside the system's own. */
+static int folders_synced;
+
+int fsync(int file)
+{
+  struct stat info;
+  folders_synced += fstat(file, &info) == 0 && S_ISDIR(info.st_mode) ? 1 : 0;
+  return (int)syscall(SYS_fsync, file);
+}
 
 static const char address[] = "scpi 127.0.0.1 5025";
 
@@ -162,6 +174,23 @@ static void test_given_away(void **state)
   dea_supply_close(&one);
 }
 
+/* A name that is new is brought to the disk with its folders: what was left up would be forgotten
+ * with it when the power fails. */
+static void test_new_names_reach_the_disk(void **state)
+{
+  (void)state;
+  struct dea_supply supply;
+  char deep[600];
+  snprintf(deep, sizeof deep, "%s/new/dea/supplies", folder);
+  for (int i = 0; i < 2; i++) {
+    folders_synced = 0;
+    assert_int_equal(dea_supply_open(ctx, deep, address, &supply), DEA_OK);
+    assert_int_equal(dea_supply_leave(ctx, &supply, "armed"), DEA_OK);
+    dea_supply_close(&supply);
+    assert_true(i == 0 ? folders_synced >= 4 : folders_synced == 0); // supplies, dea, new, ours
+  }
+}
+
 /* What cannot be read does not say "at 0 V". */
 static void test_unreadable(void **state)
 {
@@ -244,6 +273,7 @@ int main(void)
       cmocka_unit_test(test_asked_for),
       cmocka_unit_test(test_given_away),
       cmocka_unit_test(test_unreadable),
+      cmocka_unit_test(test_new_names_reach_the_disk),
       cmocka_unit_test(test_what_is_kept),
       cmocka_unit_test(test_full_disk),
   };

@@ -95,6 +95,23 @@ dea_status dea_folder_make(struct dea_context *ctx, const char *directory)
   return status;
 }
 
+void dea_folder_sync(const char *path)
+{
+  char folder[4096];
+  const char *slash = strrchr(path, '/');
+  size_t length = slash == NULL ? 0 : slash == path ? 1 : (size_t)(slash - path);
+  if (length >= sizeof folder) {
+    return;
+  }
+  memcpy(folder, path, length);
+  folder[length] = '\0';
+  int file = open(length > 0 ? folder : ".", O_RDONLY | O_CLOEXEC | O_DIRECTORY);
+  if (file >= 0) {
+    (void)fsync(file);
+    close(file);
+  }
+}
+
 char *dea_partial_name(struct dea_context *ctx, const char *path)
 {
   const char *slash = strrchr(path, '/');

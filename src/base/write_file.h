@@ -8,6 +8,9 @@
 char *dea_path_join(struct dea_context *ctx, const char *directory, const char *name);
 /* Makes a folder and those above it; fine when it is there. DEA_E_IO otherwise. */
 dea_status dea_folder_make(struct dea_context *ctx, const char *directory);
+/* A new name is in its folder, which has to reach the disk too: brings the folder that `path` lies
+ * in there. Some file systems cannot. */
+void dea_folder_sync(const char *path);
 /* True when something of that name exists. */
 bool dea_path_exists(const char *path);
 bool dea_path_is_folder(const char *path);

@@ -23,6 +23,20 @@ static dea_status cannot(struct dea_context *ctx, const char *what, const struct
                   what, supply->path, strerror(errno));
 }
 
+/* Brings a new name to the disk, with all folders that may be new. */
+static void sync_name(const struct dea_supply *supply)
+{
+  char name[sizeof supply->path], *slash;
+  memcpy(name, supply->path, sizeof name);
+  do {
+    dea_folder_sync(name);
+    slash = strrchr(name, '/');
+    if (slash != NULL) {
+      *slash = '\0';
+    }
+  } while (slash != NULL && name[0] != '\0');
+}
+
 /* Opens both files, and locks nothing. folder: not NULL. */
 static dea_status open_files(struct dea_context *ctx, const char *folder, const char *address,
                              struct dea_supply *out)
@@ -38,12 +52,16 @@ static dea_status open_files(struct dea_context *ctx, const char *folder, const 
   }
   DEA_TRY(ctx, dea_folder_make(ctx, folder));
   snprintf(ask, sizeof ask, "%s.asked", out->path);
+  bool is_new = !dea_path_exists(out->path);
   out->file = open(out->path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   out->ask = out->file < 0 ? -1 : open(ask, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (out->ask < 0) {
     dea_status status = cannot(ctx, "open", out);
     dea_supply_close(out);
     return status;
+  }
+  if (is_new) {
+    sync_name(out);
   }
   return DEA_OK;
 }

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // pread, pwrite, ftruncate, fsync, F_OFD_SETLK
 #include "lab/recording/disk.h"
 
+#include "base/write_file.h"
 #include "lab/recording/recorder.h"
 
 #include <errno.h>
@@ -29,24 +30,6 @@ static bool lock_file(int file)
 {
   struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
   return fcntl(file, F_OFD_SETLK, &all) == 0;
-}
-
-/* A new file's name is in its folder, which has to reach the disk too. Some file systems cannot. */
-static void sync_folder(const char *name)
-{
-  char folder[4096];
-  const char *slash = strrchr(name, '/');
-  size_t length = slash == NULL ? 0 : slash == name ? 1 : (size_t)(slash - name);
-  if (length >= sizeof folder) {
-    return;
-  }
-  memcpy(folder, name, length);
-  folder[length] = '\0';
-  int file = open(length > 0 ? folder : ".", O_RDONLY | O_CLOEXEC | O_DIRECTORY);
-  if (file >= 0) {
-    (void)fsync(file);
-    close(file);
-  }
 }
 
 static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t most)
@@ -79,7 +62,7 @@ static H5FD_t *disk_open(const char *name, unsigned flags, hid_t access, haddr_t
   opened->inode = info.st_ino;
   opened->disk->file = opened->file;
   if (writes && opened->disk->lasting) {
-    sync_folder(name);
+    dea_folder_sync(name);
   }
   return &opened->common;
 }
