@@ -27,7 +27,7 @@ struct fake_script {
   bool inputs;                         // it reads them
   long leak_from;                      // sample from which the current is 0.2 mA; 0: never
   void (*after_interrupt)(void); // in the next call, when the signal was heeded; NULL: nothing
-  double start_s;                // that its start takes
+  double start_s;                // that its start takes, and its first put
 };
 static const struct fake_script fake_good = {-1, -1, -1, -1, -1,   -1, -1,   -1,
                                              -1, -1, 37, 1,  true, 0,  NULL, 0};
@@ -60,7 +60,6 @@ static inline dea_status fake_start(struct dea_context *context, struct dea_inst
 {
   struct fake_daq *daq = (struct fake_daq *)instrument;
   dea_clock_wait(daq->script.start_s);
-  daq->begun_s = dea_clock_s();
   return (long)daq->starts++ == daq->script.fail_start ? fake_fail(context, "start") : DEA_OK;
 }
 
@@ -79,6 +78,10 @@ static inline dea_status fake_put(struct dea_context *context, struct dea_instru
   }
   if ((long)daq->puts++ == daq->script.fail_put) {
     return fake_fail(context, "put");
+  }
+  if (daq->put == 0) { // a DAQ begins with its first sample
+    dea_clock_wait(daq->script.start_s);
+    daq->begun_s = dea_clock_s();
   }
   for (size_t i = 0; i < count; i++) {
     assert_true(daq->put < FAKE_SAMPLES_MAX);

@@ -492,6 +492,9 @@ static void put_block(struct loop *loop)
     }
   }
   if (filled == 0 || put_all(loop, loop->volts, filled)) {
+    if (loop->put == 0) {
+      loop->started_s = dea_clock_s(); // a DAQ begins with its first sample, which may take a while
+    }
     loop->put += filled;
     if (loop->output.over) {
       put_behind_end(loop);
@@ -601,7 +604,6 @@ static void start_all(struct loop *loop)
       instrument_failed(loop, source);
     }
   }
-  loop->started_s = dea_clock_s(); // of the one that plays: its start may have taken a while
 }
 
 /* What an instrument says after its stop; nothing of one without output. */
