@@ -222,4 +222,21 @@ static inline dea_status emulator_get(struct dea_context *ctx, struct dea_instru
   return DEA_OK;
 }
 
+/* Sets its clock a while after its start, as where a DAQ takes that long to begin: nothing comes
+ * with a later time than has passed since. */
+static inline void emulator_check_clock(struct dea_context *ctx, struct dea_instrument *instrument,
+                                        struct emulator_sink *sink)
+{
+  dea_clock_wait(0.3);
+  double zero_s = dea_clock_s();
+  instrument->type->set_clock(instrument);
+  sink->readings = 0;
+  assert_int_equal(emulator_get(ctx, instrument, sink, 2, 0, 0), DEA_OK);
+  assert_true(sink->readings >= 2);
+  for (size_t i = 0; i < sink->readings && i < 256; i++) {
+    assert_true(sink->reading[i].time_s >= 0);
+    assert_true(sink->reading[i].time_s <= dea_clock_s() - zero_s);
+  }
+}
+
 #endif

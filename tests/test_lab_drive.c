@@ -104,6 +104,20 @@ static void test_slow_start_without_channels(void **state)
   trial_close(&t);
 }
 
+/* The clock of a sensor begins with that of a DAQ, however long that takes to start. */
+static void test_slow_start_and_a_sensor(void **state)
+{
+  (void)state;
+  struct trial t;
+  struct fake_script script = fake_good;
+  script.start_s = 0.2;
+  trial_open(&t, SQUARE CHANNELS, &script);
+  trial_play(&t, true);
+  assert_int_equal(t.status, DEA_OK);
+  assert_true(t.sensor.clocks == 1 && t.sensor.clock_s >= t.daq->begun_s);
+  trial_close(&t);
+}
+
 // What fails -------------------------------------------------------------------------------------
 
 /* Plays with a fault and checks what must hold in all of them but those of the DAQ itself. */
@@ -505,6 +519,7 @@ int main(void)
       cmocka_unit_test(test_instruments_of_any_pace),
       cmocka_unit_test(test_without_channels_the_clock_paces),
       cmocka_unit_test(test_slow_start_without_channels),
+      cmocka_unit_test(test_slow_start_and_a_sensor),
       cmocka_unit_test(test_signals),
       cmocka_unit_test(test_faults_at_the_end),
       cmocka_unit_test(test_current_trips),

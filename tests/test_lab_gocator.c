@@ -390,6 +390,17 @@ static void test_polled(void **state)
   }
 }
 
+static void test_clock(void **state)
+{
+  (void)state;
+  static struct bench b;
+  memset(&b, 0, sizeof b);
+  b.sensor.text[0] = "OK,M00,03,V151290,D0,M01,07,V18520,D0\r\n";
+  assert_int_equal(begin(&b, polled, serve_text), DEA_OK);
+  emulator_check_clock(ctx, b.instrument, &b.sink);
+  end(&b);
+}
+
 static void test_text(void **state)
 {
   (void)state;
@@ -475,6 +486,7 @@ int main(void)
       cmocka_unit_test(test_times_that_cannot_be),
       cmocka_unit_test(test_not_there),
       cmocka_unit_test(test_polled),
+      cmocka_unit_test(test_clock),
       cmocka_unit_test(test_text),
       cmocka_unit_test(test_wrong_keys),
       cmocka_unit_test(test_memory),

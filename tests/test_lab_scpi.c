@@ -217,6 +217,7 @@ static void test_reads(void **state)
     // Three intervals of 5 ms, never less; half an answer's way may be missing.
     assert_true(b.sink.reading[6].time_s - b.sink.reading[0].time_s > 0.01);
     assert_int_equal(b.instrument->lost, 0);
+    emulator_check_clock(ctx, b.instrument, &b.sink);
     end(&b);
     assert_true(strncmp(b.emulator.log, "*IDN?\n*CLS\nFUNC 'CURR'\nZCOR ON\nSYST:ERR?\n", 40) == 0);
     assert_string_equal(strstr(b.emulator.log, "OUTP OFF"), "OUTP OFF\nSYST:LOC\n");

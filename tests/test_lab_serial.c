@@ -191,6 +191,9 @@ static void test_keyence(void **state)
                                 : fabs(b.sink.reading[i].value - wanted) < 1e-12);
       assert_true(i == 0 || b.sink.reading[i].time_s > b.sink.reading[i - 1].time_s);
     }
+    if (fragment == 0) {
+      emulator_check_clock(ctx, b.instrument, &b.sink);
+    }
     end(&b);
   }
 }
@@ -246,6 +249,7 @@ static void test_optoncdt(void **state)
   assert_in_range(nothing, 5, 6);
   double rate_Hz = 255 / (b.sink.reading[255].time_s - b.sink.reading[0].time_s);
   assert_true(fabs(rate_Hz - 750) < 75); // a piece of 16 ms at both ends
+  emulator_check_clock(ctx, b.instrument, &b.sink);
   end(&b);
 }
 

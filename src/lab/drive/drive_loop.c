@@ -479,6 +479,18 @@ static void put_behind_end(struct loop *loop)
   }
 }
 
+/* A DAQ begins with its first sample, and that may take a while. */
+static void begin_clock(struct loop *loop)
+{
+  loop->started_s = dea_clock_s();
+  for (size_t i = 0; i < loop->count; i++) {
+    struct source *source = &loop->sources[i];
+    if (source != loop->player && source->instrument->type->set_clock != NULL) {
+      source->instrument->type->set_clock(source->instrument);
+    }
+  }
+}
+
 static void put_block(struct loop *loop)
 {
   double asked_V[64];
@@ -493,7 +505,7 @@ static void put_block(struct loop *loop)
   }
   if (filled == 0 || put_all(loop, loop->volts, filled)) {
     if (loop->put == 0) {
-      loop->started_s = dea_clock_s(); // a DAQ begins with its first sample, which may take a while
+      begin_clock(loop);
     }
     loop->put += filled;
     if (loop->output.over) {

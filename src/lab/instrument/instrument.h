@@ -79,6 +79,9 @@ struct dea_instrument_type {
                      struct dea_instrument **out);
   /* Starts the clock. */
   dea_status (*start)(struct dea_context *ctx, struct dea_instrument *instrument);
+  /* The recording's clock begins now, once, after the start and before anything is asked for: what
+   * plays has begun, which may have taken a while. NULL where its clock is that of the output. */
+  void (*set_clock)(struct dea_instrument *instrument);
   /* Queues control voltages [V] for the output, in the order played, one a sample of the protocol's
    * rate; waits while the queue is full. Before the start it may fill the queue (a fraction of a
    * second); a DAQ whose queue is empty at the start begins with the first sample put afterwards.

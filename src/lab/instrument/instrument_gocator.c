@@ -461,6 +461,11 @@ static dea_status start_gocator(struct dea_context *ctx, struct dea_instrument *
   return DEA_OK;
 }
 
+static void set_clock(struct dea_instrument *instrument)
+{
+  ((struct gocator *)instrument)->start_s = dea_clock_s();
+}
+
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
                       const struct dea_sink *sink)
 {
@@ -488,6 +493,7 @@ const struct dea_instrument_type dea_instrument_gocator = {
     .check = check,
     .open = open_it,
     .start = start_gocator,
+    .set_clock = set_clock,
     .get = get,
     .stop = stop,
     .close = close_it,

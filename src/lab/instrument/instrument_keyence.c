@@ -222,6 +222,11 @@ static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instr
   return DEA_OK;
 }
 
+static void set_clock(struct dea_instrument *instrument)
+{
+  ((struct keyence *)instrument)->start_s = dea_clock_s();
+}
+
 /* An answer; one that makes no sense is a lost value. */
 static dea_status take(struct dea_context *ctx, struct keyence *k, const char *answer,
                        const struct dea_sink *sink)
@@ -284,6 +289,7 @@ const struct dea_instrument_type dea_instrument_keyence = {
     .check = check,
     .open = open_it,
     .start = start_it,
+    .set_clock = set_clock,
     .get = get,
     .close = close_it,
 };

@@ -203,6 +203,11 @@ static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instr
   return DEA_OK;
 }
 
+static void set_clock(struct dea_instrument *instrument)
+{
+  ((struct optoncdt *)instrument)->start_s = dea_clock_s();
+}
+
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
                       const struct dea_sink *sink)
 {
@@ -218,6 +223,7 @@ const struct dea_instrument_type dea_instrument_optoncdt = {
     .check = check,
     .open = open_it,
     .start = start_it,
+    .set_clock = set_clock,
     .get = get,
     .close = close_it,
 };

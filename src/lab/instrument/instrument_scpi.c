@@ -334,6 +334,11 @@ static dea_status start_scpi(struct dea_context *ctx, struct dea_instrument *ins
   return s->output.queue != NULL ? dea_scpi_output_start(ctx, s) : DEA_OK;
 }
 
+static void set_clock(struct dea_instrument *instrument)
+{
+  ((struct dea_scpi *)instrument)->start_s = dea_clock_s();
+}
+
 static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
                       const double *volts, size_t count)
 {
@@ -447,6 +452,7 @@ const struct dea_instrument_type dea_instrument_scpi = {
     .check = check,
     .open = open_it,
     .start = start_scpi,
+    .set_clock = set_clock,
     .put = put,
     .get = get,
     .hold = dea_scpi_output_hold,
