@@ -341,6 +341,28 @@ static void test_specimen(void **state)
 }
 
 /* What is allowed is where the field reaches it: 80 V/um s^1.5 of this film, over the margin. */
+/* 2.01 kV and 2010 V differ by rounding: a sine between 0 V and the double of it is no negative
+ * voltage, neither when it is checked nor just before the wire. 1 mV is. */
+static void test_rounding_is_no_voltage(void **state)
+{
+  (void)state;
+  static const char text[] =
+      "dea-protocol: 1\n"
+      "amplifier: {gain: 1000, max_voltage: 10 kV, min_voltage: 0 V}\n"
+      "waveform: {kind: sine, mean: 2.01 kV, amplitude: %s, frequency: 1 Hz}\n";
+  static const char *const amplitudes[] = {"2010 V", "2010.001 V"};
+  for (int i = 0; i < 2; i++) {
+    char whole[512];
+    snprintf(whole, sizeof whole, text, amplitudes[i]);
+    assert_int_equal(check(whole), i == 0 ? DEA_OK : DEA_E_INTERLOCK);
+    struct dea_protocol *p = good_protocol(ctx, whole);
+    assert_true(p->steps[0].lowest_V < 0);
+    double volts = p->steps[0].lowest_V / 1000;
+    assert_int_equal(dea_protocol_guard(ctx, p, &volts, 1), i == 0 ? DEA_OK : DEA_E_INTERLOCK);
+    dea_protocol_destroy(ctx, p);
+  }
+}
+
 static void test_allowed_voltage(void **state)
 {
   (void)state;
@@ -540,6 +562,7 @@ int main(void)
       cmocka_unit_test(test_first_example_is_inside_the_margin),
       cmocka_unit_test(test_example_passes),
       cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_rounding_is_no_voltage),
       cmocka_unit_test(test_allowed_voltage),
       cmocka_unit_test(test_pull_in),
       cmocka_unit_test(test_interlocks_cannot_be_switched_off),

@@ -48,12 +48,14 @@ static dea_status check_voltage(struct dea_context *ctx, const struct dea_protoc
   bool low = peak->voltage_V < 0;
   double limit_V = low ? protocol->amplifier.lowest_V.si : protocol->amplifier.highest_V.si;
   double control_V = fabs(peak->voltage_V) / protocol->amplifier.gain.si;
+  // a sine of a mean of 2.01 kV and an amplitude of 2010 V comes to 0 V but for rounding
+  double most_V = fmax(protocol->amplifier.highest_V.si, -protocol->amplifier.lowest_V.si);
   char step[DEA_STEP_NAME_SIZE], amplifier[DEA_STEP_NAME_SIZE];
   struct dea_location location =
       dea_protocol_voltage_location(protocol, peak->step, peak->voltage_V);
   dea_protocol_step_name(protocol, peak->step, step);
   amplifier_name(protocol, amplifier);
-  if (fabs(peak->voltage_V) > fabs(limit_V) * (1 + rounding)) {
+  if (fabs(peak->voltage_V) > fabs(limit_V) + rounding * most_V) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "refused: the sequence asks for %g kV at %s, %s gives "
                                  "%g kV at %s",

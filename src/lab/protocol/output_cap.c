@@ -17,7 +17,8 @@ void dea_protocol_cap(const struct dea_protocol *protocol, double *lowest_V, dou
 /* Not within also holds for what is no number. */
 static bool is_within(double value_V, double lowest_V, double highest_V)
 {
-  return value_V >= lowest_V * (1 + rounding) && value_V <= highest_V * (1 + rounding);
+  double rounded_V = rounding * fmax(highest_V, -lowest_V);
+  return value_V >= lowest_V - rounded_V && value_V <= highest_V + rounded_V;
 }
 
 dea_status dea_protocol_guard(struct dea_context *ctx, const struct dea_protocol *protocol,
