@@ -62,6 +62,26 @@ static void test_what_is_in_it(void **state)
   json_decref(json);
 }
 
+/* What a recording is called cannot look like a line of what is known of it, nor reach the
+ * terminal. */
+static void test_names_are_no_lines(void **state)
+{
+  (void)state;
+  command_write("odd.yaml", "dea-protocol: 1\n"
+                            "title: \"x\\noutput         at 0 V (2 V read back)\\e[31m\"\n"
+                            "design: " DEA_SOURCE_DIR "/examples/frdea-4.yaml\n"
+                            "waveform: {kind: square, high: 2 kV, frequency: 10 Hz, cycles: 1}\n"
+                            "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
+                            "sim: {profile_points: 0}\n"
+                            "channels: [{name: \"v\\e[31m\\nw\", quantity: voltage, input: ai0, "
+                            "per_volt: 1 kV}]\n");
+  assert_int_equal(command_run("drive odd.yaml --sim -o odd.h5"), 0);
+  assert_int_equal(command_run("recording odd.h5"), 0);
+  assert_contains(command_out, "title          x output         at 0 V (2 V read back) [31m\n");
+  assert_contains(command_out, "\n  v [31m w ");
+  assert_null(strchr(command_out, '\x1b'));
+}
+
 static void test_killed_one_is_rescued(void **state)
 {
   (void)state;
@@ -126,9 +146,8 @@ static void test_what_is_no_recording(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_in_it),
-      cmocka_unit_test(test_killed_one_is_rescued),
-      cmocka_unit_test(test_tables),
+      cmocka_unit_test(test_what_is_in_it),         cmocka_unit_test(test_names_are_no_lines),
+      cmocka_unit_test(test_killed_one_is_rescued), cmocka_unit_test(test_tables),
       cmocka_unit_test(test_what_is_no_recording),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);

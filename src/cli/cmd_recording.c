@@ -6,6 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { PLAIN_SIZE = 512 };
+
 struct request {
   const char *file, *output, *folder;
   bool json;
@@ -46,18 +48,35 @@ static size_t steps_of(const struct dea_recording *recording)
   return steps;
 }
 
+/* What a file says of itself, without signs that would begin a line of their own, such as one that
+ * says what the output was, or change the terminal. */
+static const char *plain(const char *text, char out[PLAIN_SIZE])
+{
+  snprintf(out, PLAIN_SIZE, "%s", text);
+  for (char *c = out; *c != '\0'; c++) {
+    *c = (unsigned char)*c < ' ' || *c == 0x7f ? ' ' : *c;
+  }
+  return out;
+}
+
+static void print_line(const char *what, const char *text)
+{
+  char shown[PLAIN_SIZE];
+  printf("%-14s %s\n", what, plain(text, shown));
+}
+
 static void print_channel(const struct dea_channel *channel)
 {
-  char pace[48];
+  char pace[48], name[PLAIN_SIZE], shown[PLAIN_SIZE];
   struct range range = range_of(channel->values, channel->count);
   double factor = dea_channel_meanings[channel->kind].factor;
-  const char *unit = dea_channel_display_unit(channel);
+  const char *unit = plain(dea_channel_display_unit(channel), shown);
   if (channel->interval_s > 0) {
     snprintf(pace, sizeof pace, "%.6g Hz", 1 / channel->interval_s);
   } else {
     snprintf(pace, sizeof pace, "readings");
   }
-  printf("  %-22s %-13s %-12s %10.3f s %10zu values", channel->name,
+  printf("  %-22s %-13s %-12s %10.3f s %10zu values", plain(channel->name, name),
          dea_channel_meanings[channel->kind].name, pace, duration_of(channel), channel->count);
   if (!isnan(range.lowest)) {
     printf("  %.5g to %.5g %s", factor * range.lowest, factor * range.highest, unit);
@@ -88,13 +107,14 @@ static void print_provenance(const char *text)
 {
   json_t *json = json_loads(text, 0, NULL), *value;
   const char *key;
+  char shown[PLAIN_SIZE];
   if (json_is_object(json)) {
     json_object_foreach(json, key, value)
     {
       if (json_is_string(value)) {
-        printf("%-14s %s\n", key, json_string_value(value));
+        print_line(plain(key, shown), json_string_value(value));
       } else if (json_is_number(value)) {
-        printf("%-14s %g\n", key, json_number_value(value));
+        printf("%-14s %g\n", plain(key, shown), json_number_value(value));
       }
     }
   }
@@ -103,10 +123,12 @@ static void print_provenance(const char *text)
 
 static void print_text(const struct dea_recording *recording)
 {
-  printf("%-14s %s\n", "title", recording->title[0] != '\0' ? recording->title : "(none)");
-  printf("%-14s %s%s\n", "complete", recording->complete ? "yes" : "no: ", recording->ended);
+  char shown[PLAIN_SIZE];
+  print_line("title", recording->title[0] != '\0' ? recording->title : "(none)");
+  printf("%-14s %s%s\n", "complete",
+         recording->complete ? "yes" : "no: ", plain(recording->ended, shown));
   if (recording->output[0] != '\0') {
-    printf("%-14s %s\n", "output", recording->output);
+    print_line("output", recording->output);
   }
   printf("%-14s %zu\n", "channels", recording->channel_count);
   for (size_t c = 0; c < recording->channel_count; c++) {
@@ -131,13 +153,12 @@ static void print_text(const struct dea_recording *recording)
     const struct dea_recorded_event *event = &recording->events[i];
     char text[DEA_NOTICED_TEXT_SIZE];
     dea_noticed_text(event, recording->channels[event->channel].name, text);
-    printf("%-14s %.6g s: %s\n", i == 0 ? "events" : "", event->time_s, text);
+    printf("%-14s %.6g s: %s\n", i == 0 ? "events" : "", event->time_s, plain(text, shown));
   }
-  printf("%-14s %s\n", "protocol", recording->protocol != NULL ? "inside" : "none");
-  printf("%-14s %s\n", "design",
-         recording->design == NULL        ? "none"
-         : recording->design_name != NULL ? recording->design_name
-                                          : "inside");
+  print_line("protocol", recording->protocol != NULL ? "inside" : "none");
+  print_line("design", recording->design == NULL        ? "none"
+                       : recording->design_name != NULL ? recording->design_name
+                                                        : "inside");
   if (recording->provenance != NULL) {
     print_provenance(recording->provenance);
   }
