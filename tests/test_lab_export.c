@@ -166,6 +166,9 @@ static void check_interlocks(const char *program)
   }
   assert_true(count <= 102);
   make_files();
+  assert_int_equal(run_script("STUB_RATE=1000.5", program), 1); // a board's clock is divided
+  assert_contains(command_err, "no rate of 1000 Hz; write 'rate: 1000.5 Hz'");
+  assert_null(strstr(log_text, "queued"));
 }
 
 static void test_python_ends_at_zero(void **state)

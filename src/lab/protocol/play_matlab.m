@@ -31,6 +31,10 @@ for k = 1:numel(p.channels)
   input_k = addinput(d, module, terminal, 'Voltage');
   input_k.Range = p.channels(k).range * [-1 1];
 end
+if abs(d.Rate - p.rate_Hz) > 1e-7 * p.rate_Hz % that of the device's clock, divided
+  error(['the device has no rate of %.12g Hz; write ''rate: %.12g Hz'' into the protocol and ', ...
+         'export it again'], p.rate_Hz, d.Rate);
+end
 
 % Whatever happens from here on, Ctrl-C too, the output goes to 0 V.
 state = containers.Map({'read', 'why'}, {0, ''}, 'UniformValues', false);

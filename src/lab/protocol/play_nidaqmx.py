@@ -89,6 +89,12 @@ def prepare(device, output, inputs, control):
     inputs.timing.cfg_samp_clk_timing(
         RATE_HZ, sample_mode=AcquisitionType.FINITE, samps_per_chan=len(control)
     )
+    rate = inputs.timing.samp_clk_rate  # that of the device's clock, divided
+    if abs(rate - RATE_HZ) > 1e-7 * RATE_HZ:
+        sys.exit(
+            "the device has no rate of %.12g Hz; write 'rate: %.12g Hz' into the protocol and export it "
+            "again" % (RATE_HZ, rate)
+        )
     first = physical(device, CHANNELS[0]["terminal"]).split("/")[0]
     clock = "/" + first + "/ai/SampleClock"  # one clock for both
     output.timing.cfg_samp_clk_timing(

@@ -1,6 +1,6 @@
 % Stands in for the Data Acquisition Toolbox in tests: what was written goes to the file STUB_LOG,
 % inputs follow the output. STUB_FAIL, STUB_TRIP: number of the sample at which something happens;
-% STUB_STOP: it does not stop.
+% STUB_STOP: it does not stop; STUB_RATE: that it has instead of the one that is asked.
 classdef daq < handle
   properties
     Rate = 0;
@@ -14,6 +14,9 @@ classdef daq < handle
     end
     function c = addoutput(this, device, terminal, type)
       stub_log(['output ', device, '/', terminal, ' ', type]);
+      if ~isempty(getenv('STUB_RATE'))
+        this.Rate = str2double(getenv('STUB_RATE'));
+      end
       c = daqchannel();
     end
     function c = addinput(this, device, terminal, type)

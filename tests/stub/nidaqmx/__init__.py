@@ -1,5 +1,6 @@
 """Stands in for nidaqmx in tests: what was written goes to the file STUB_LOG, inputs follow the
-output. STUB_FAIL, STUB_SIGNAL, STUB_TRIP: number of the sample at which something happens."""
+output. STUB_FAIL, STUB_SIGNAL, STUB_TRIP: number of the sample at which something happens;
+STUB_RATE: that it has instead of the one that is asked."""
 import os
 import signal
 
@@ -18,6 +19,7 @@ def log(text):
 class Timing:
     def cfg_samp_clk_timing(self, rate, source="", sample_mode=None, samps_per_chan=0):
         log("clock %g %s %d" % (rate, source or "own", samps_per_chan))
+        self.samp_clk_rate = float(os.environ.get("STUB_RATE", rate))
 
 
 class Channels:
