@@ -177,6 +177,29 @@ static void test_zero_without_its_design(void **state)
   supply_stop(&s);
 }
 
+/* Nor does 0 V wait for the specimen's file, or that of a waveform. */
+static void test_zero_without_other_files(void **state)
+{
+  (void)state;
+  static const char *const plain[] = {"drive", "p.yaml", "--zero", NULL};
+  static const char *const table[] = {
+      "drive", "p.yaml", "--zero", "--set", "waveform={kind: table, file: gone.csv}", NULL};
+  static struct supply s;
+  char text[4096];
+  s = (struct supply){.on = true, .set_V = 2000};
+  supply_start(&s);
+  supply_protocol(&s, 1, SUPPLY_MEASURES);
+  assert_true(supply_reaches(&s, 1900, 10));
+  assert_int_equal(supply_run_dea(table, 20), 0);
+  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  command_read("p.yaml", command_out);
+  snprintf(text, sizeof text, "%.4000sspecimen: gone.yaml\n", command_out);
+  command_write("p.yaml", text);
+  assert_int_equal(supply_run_dea(plain, 20), 0);
+  assert_true(supply_said_zero());
+  supply_stop(&s);
+}
+
 /* It hangs while another instrument is waited for: nothing is played, and that it is not known to
  * be at 0 V is said all the same. */
 static void test_hangs_before_anything_is_played(void **state)
@@ -253,6 +276,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_much_that_is_called_zero),
       cmocka_unit_test(test_zero_without_its_design),
+      cmocka_unit_test(test_zero_without_other_files),
       cmocka_unit_test(test_zero_without_a_place),
       cmocka_unit_test(test_hangs_before_anything_is_played),
       cmocka_unit_test(test_slow_supply),

@@ -98,8 +98,10 @@ struct dea_protocol {
   struct dea_listing values;
 };
 
-/* Reads a protocol and, with `films` (NULL: without), the design it names. Errors are findings;
- * DEA_E_DESIGN after the whole file was looked at. out: owned by the caller, NULL on failure. */
+/* Reads a protocol and the files that it names. films: NULL where only its output is to be brought
+ * to 0 V, which waits for no other file: then it has neither design, specimen nor steps. Errors are
+ * findings; DEA_E_DESIGN after the whole file was looked at. out: owned by the caller, NULL on
+ * failure. */
 dea_status dea_protocol_read(struct dea_context *ctx, const struct dea_bench_film_type *films,
                              const char *file, const struct dea_override *overrides,
                              size_t override_count, struct dea_protocol **out);

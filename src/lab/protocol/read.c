@@ -208,7 +208,7 @@ static dea_status take_design(struct dea_context *ctx, const struct dea_bench_fi
                               struct dea_protocol *protocol)
 {
   size_t length;
-  if (films == NULL || protocol->design_file.text[0] == '\0') {
+  if (protocol->design_file.text[0] == '\0') {
     return DEA_OK;
   }
   char *path = dea_path_beside(ctx, protocol->file, protocol->design_file.text);
@@ -322,11 +322,18 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_bench_film_
   const struct dea_reader reader = {ctx, protocol->document, &protocol->values};
   DEA_TRY(ctx, dea_file_kind_check(ctx, protocol->document, "dea-protocol"));
   DEA_TRY(ctx, dea_schema_read(&reader, &dea_protocol_record, root, "", raw));
-  if (root->kind == DEA_NODE_SECTION) {
+  if (films == NULL) { // 0 V waits for no other file
+    protocol->step_count = 0;
+    protocol->specimen.highest_V = (struct dea_quantity){.si = NAN, .origin = DEA_ABSENT};
+  } else if (root->kind == DEA_NODE_SECTION) {
     DEA_TRY(ctx, take_sequence(&reader, raw, errors));
+  }
+  if (root->kind == DEA_NODE_SECTION) {
     DEA_TRY(ctx, take_inputs(&reader, raw));
     DEA_TRY(ctx, take_amplifier(ctx, protocol));
     DEA_TRY(ctx, take_instruments(ctx, protocol));
+  }
+  if (root->kind == DEA_NODE_SECTION && films != NULL) {
     DEA_TRY(ctx, take_design(ctx, films, protocol));
     DEA_TRY(ctx,
             dea_specimen_read(ctx, protocol->file, &protocol->specimen_file, &protocol->specimen));
