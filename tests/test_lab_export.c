@@ -271,6 +271,17 @@ static void test_quotes_in_names(void **state)
   command_read("ex/play_matlab.m", command_out);
   assert_contains(command_out, "'a b c d'");
   assert_null(strstr(command_out, "a'b"));
+  // and what was checked is what it says: this protocol names no design
+  static const char *const files[] = {"ex/play_matlab.m", "ex/play_nidaqmx.py", "ex/README.txt"};
+  for (size_t i = 0; i < 3; i++) {
+    command_read(files[i], command_out);
+    assert_contains(command_out, "against the amplifier, and not against a film");
+  }
+  make_files();
+  for (size_t i = 0; i < 3; i++) {
+    command_read(files[i], command_out);
+    assert_contains(command_out, "against the amplifier and the film");
+  }
 }
 
 /* Channels that the files could not tell apart are numbered: by signs that are left out, by letters

@@ -142,6 +142,13 @@ static void find_control(const struct dea_protocol *protocol, double *low_V, dou
   }
 }
 
+/* Against what they were checked. */
+static const char *checked_against(const struct dea_protocol *protocol)
+{
+  return protocol->film != NULL ? "the amplifier and the film"
+                                : "the amplifier, and not against a film (no design is named)";
+}
+
 static void write_python(const struct dea_protocol *protocol, struct dea_text *out)
 {
   struct column columns[DEA_PROTOCOL_INPUTS_MAX];
@@ -158,9 +165,9 @@ static void write_python(const struct dea_protocol *protocol, struct dea_text *o
                protocol->amplifier.gain.si);
   dea_text_add(out,
                "CONTROL_V = %.17g  # largest control voltage of the amplifier\n"
-               "LOWEST_V = %.17g  # control voltages that were checked against the film\n"
+               "LOWEST_V = %.17g  # control voltages that were checked against %s\n"
                "HIGHEST_V = %.17g\nOUTPUT = ",
-               protocol->amplifier.control_V.si, low_V, high_V);
+               protocol->amplifier.control_V.si, low_V, checked_against(protocol), high_V);
   add_quoted(out, protocol->amplifier.terminal.text);
   dea_text_add(out,
                "\nRAMP_V_PER_S = %.17g  # of the amplifier's output, when it ends early\n"
@@ -207,9 +214,9 @@ static void write_matlab(const struct dea_protocol *protocol, struct dea_text *o
   dea_text_add(out, "function p = numbers()\np.rate_Hz = %.17g;\n", protocol->rate_Hz.si);
   dea_text_add(out, "p.gain = %.17g; %% of the amplifier\n", protocol->amplifier.gain.si);
   dea_text_add(out,
-               "p.lowest_V = %.17g; %% control voltages that were checked against the film\n"
+               "p.lowest_V = %.17g; %% control voltages that were checked against %s\n"
                "p.highest_V = %.17g;\np.output = ",
-               low_V, high_V);
+               low_V, checked_against(protocol), high_V);
   add_quoted(out, protocol->amplifier.terminal.text);
   dea_text_add(out,
                ";\np.ramp_V_per_s = %.17g; %% of the amplifier's output, when it ends early\n"
@@ -249,10 +256,10 @@ static void write_readme(const struct dea_protocol *protocol, struct dea_text *o
   find_control(protocol, &low_V, &high_V);
   double gain = protocol->amplifier.gain.si;
   dea_text_add(out,
-               "HIGH VOLTAGE: %g kV to %g kV were checked against the amplifier and the film when "
-               "these files\nwere made; the scripts refuse a waveform.csv that goes beyond. Nobody "
-               "has tried the scripts on your\ninstruments.\n\n",
-               1e-3 * gain * low_V, 1e-3 * gain * high_V);
+               "HIGH VOLTAGE: %g kV to %g kV were checked against %s when\n"
+               "these files were made; the scripts refuse a waveform.csv that goes beyond. Nobody "
+               "has tried the\nscripts on your instruments.\n\n",
+               1e-3 * gain * low_V, 1e-3 * gain * high_V, checked_against(protocol));
   dea_text_add(
       out,
       "waveform.csv      time (s), asked voltage (kV), control voltage of the amplifier (V)\n"
