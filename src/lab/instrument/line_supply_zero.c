@@ -197,7 +197,7 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
                       .raw = &s->raw,
                       .protocol = s->protocol,
                       .until_s = dea_clock_s() + s->protocol->safety.zero_time_s.si,
-                      .past = {s->base.mark, 0, s->protocol->safety.zero_time_s.si}};
+                      .past = {s->base.mark, 0, s->protocol->safety.zero_time_s.si, ""}};
   bool told = false;
   if (s->link.socket.descriptor >= 0) {
     const char *answer;
