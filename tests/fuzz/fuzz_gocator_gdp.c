@@ -22,8 +22,8 @@ static void take_profiles(struct dea_context *ctx, struct stream *s)
     __builtin_trap();
   }
   for (size_t k = 0; k < p->count && k < 4 && begun; k++) {
-    size_t stamp = k < s->reader.stamp_count ? k : 0;
-    dea_gocator_frames_time(&s->frames, &s->reader.stamps[stamp], 0, &time_s, &s->lost);
+    const struct dea_gdp_stamp *stamp = k < s->reader.stamp_count ? &s->reader.stamps[k] : NULL;
+    dea_gocator_frames_time(&s->frames, stamp, 1, 0, &time_s, &s->lost);
     dea_gocator_frames_place(&s->frames, p, k);
     for (size_t i = 0; i < s->frames.points; i++) {
       s->sum += isnan(s->frames.z_m[i]) ? 1 : s->frames.z_m[i];
