@@ -19,7 +19,7 @@ static const double shares[SHARES] = {1e-2, 1e-3, 1e-4, 1e-5}, left_by_solver = 
 static struct dea_load_point go(const struct state *at, const struct dea_model_settings *settings,
                                 double stretch, struct dea_model **keep)
 {
-  struct dea_load_point out;
+  struct dea_load_point out = {0};
   struct dea_model *model;
   if (solid->create(ctx, &at->device, settings, &model) != DEA_OK ||
       dea_model_stretch(ctx, solid, model, &at->device, stretch, &out) != DEA_OK) {
