@@ -47,11 +47,11 @@ struct dea_timed_output {
   double turned_s;  // when it was played last
 };
 
-/* Makes the queue; the times are set before. */
 /* Warns where the time in which 0 V has to be read back is too short for that to last `behind`: one
  * late answer would leave the output not known to be at 0 V. */
 dea_status dea_timed_check(struct dea_context *ctx, const struct dea_quantity *behind,
                            const struct dea_quantity *zero_time);
+/* Makes the queue; the times are set before. */
 dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *output);
 void dea_timed_end(struct dea_context *ctx, struct dea_timed_output *output);
 void dea_timed_start(struct dea_timed_output *output, double now_s);
