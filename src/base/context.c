@@ -251,6 +251,12 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
              : DEA_OK;
 }
 
+dea_status dea_refuse(struct dea_context *ctx, struct dea_location location, const char *text)
+{
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "%s", text));
+  return dea_fail(ctx, DEA_E_DESIGN, "%s", text);
+}
+
 size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least)
 {
   size_t count = ctx->errors;

@@ -99,6 +99,8 @@ void dea_context_clear(struct dea_context *ctx);
  * only for want of memory. */
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
                            struct dea_location location, const char *format, ...) DEA_PRINTF(4, 5);
+/* An error with its place, and DEA_E_DESIGN with the same words. */
+dea_status dea_refuse(struct dea_context *ctx, struct dea_location location, const char *text);
 enum { DEA_ERRORS_KEPT = 100 };
 /* Findings of that severity and above; of errors every one that was added, kept or not, so that a
  * number that has not grown means that there was none. */

@@ -51,12 +51,6 @@ static char *keep_text(struct dea_context *ctx, struct dea_yaml *yaml, const cha
   return copy;
 }
 
-static dea_status found(struct dea_context *ctx, struct dea_location location, const char *text)
-{
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location, "%s", text));
-  return dea_fail(ctx, DEA_E_DESIGN, "%s", text);
-}
-
 static struct dea_location place_of(const struct reading *r, yaml_mark_t mark)
 {
   if (r->fixed != NULL) {
@@ -79,7 +73,7 @@ static dea_status take_value(struct reading *r, const yaml_node_t *source, struc
   const char *text = (const char *)source->data.scalar.value;
   size_t length = source->data.scalar.length;
   if (strlen(text) != length) {
-    return found(r->ctx, node->location, "the value holds a zero byte");
+    return dea_refuse(r->ctx, node->location, "the value holds a zero byte");
   }
   node->empty = is_null(source);
   node->text = keep_text(r->ctx, r->yaml, text, length);
@@ -146,7 +140,7 @@ static dea_status take_section(struct reading *r, const yaml_node_t *source, str
     const yaml_node_t *key = yaml_document_get_node(r->document, pair->key);
     struct dea_location location = place_of(r, key->start_mark);
     if (key->type != YAML_SCALAR_NODE) {
-      return found(r->ctx, location, "a key must be a word");
+      return dea_refuse(r->ctx, location, "a key must be a word");
     }
     struct dea_node *key_node = NULL;
     DEA_TRY(r->ctx, take_node(r, pair->key, &key_node));
@@ -424,7 +418,7 @@ static dea_status merge_below(struct dea_context *ctx, struct dea_yaml *yaml, co
     int length =
         snprintf(whole, sizeof whole, "%s%s%s", prefix, prefix[0] != '\0' ? "." : "", child->key);
     if (length >= PATH_SIZE) {
-      return found(ctx, child->key_place, "the path of this key is too long");
+      return dea_refuse(ctx, child->key_place, "the path of this key is too long");
     }
     if (child->kind == DEA_NODE_SECTION) {
       DEA_TRY(ctx, merge_below(ctx, yaml, whole, child));

@@ -90,42 +90,36 @@ static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
   return DEA_OK;
 }
 
-/* Where a design asks for what the engine has not. */
-static dea_status refuse(struct dea_context *ctx, const struct dea_location *where,
-                         const char *what)
-{
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, *where, "%s", what));
-  return dea_fail(ctx, DEA_E_DESIGN, "%s", what);
-}
-
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
                         const struct dea_device *device)
 {
   const struct dea_material *film = &device->film;
   bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
   if (coupled && film->permittivity.slope != 0) {
-    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.field.location,
-                        "model 3d: a coupled field needs a constant permittivity, and that of the "
-                        "film depends on stretch (film.permittivity)"));
+    DEA_TRY(ctx,
+            dea_refuse(ctx, design->compute.solid.field.location,
+                       "model 3d: a coupled field needs a constant permittivity, and that of the "
+                       "film depends on stretch (film.permittivity)"));
   }
   if (coupled && design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
-    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.field.location,
-                        "model 3d: a coupled field needs a film with a thickness "
-                        "(compute.solid.film: solid)"));
+    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.field.location,
+                            "model 3d: a coupled field needs a film with a thickness "
+                            "(compute.solid.film: solid)"));
   }
   if (design->compute.solid.adapt.asked) {
-    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.adapt.monitor.location,
-                        "model 3d: compute.solid.adapt is of devices made of `plies`; of a disc in "
-                        "a frame take compute.solid.refinement and the study convergence"));
+    DEA_TRY(ctx,
+            dea_refuse(ctx, design->compute.solid.adapt.monitor.location,
+                       "model 3d: compute.solid.adapt is of devices made of `plies`; of a disc in "
+                       "a frame take compute.solid.refinement and the study convergence"));
   }
   if (film->law != NULL && film->law->anisotropic) {
-    DEA_TRY(ctx,
-            refuse(ctx,
-                   design->film.law.origin == DEA_ABSENT || design->film.law.origin == DEA_DEFAULT
-                       ? &design->film.material.location
-                       : &design->film.law.location,
-                   "model 3d: the film's law has a direction of its own, which this model "
-                   "does not know yet"));
+    DEA_TRY(ctx, dea_refuse(ctx,
+                            design->film.law.origin == DEA_ABSENT ||
+                                    design->film.law.origin == DEA_DEFAULT
+                                ? design->film.material.location
+                                : design->film.law.location,
+                            "model 3d: the film's law has a direction of its own, which this model "
+                            "does not know yet"));
   }
   return DEA_OK;
 }
@@ -156,7 +150,7 @@ static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_
     snprintf(message, sizeof message,
              "model 3d: compute.%s is of a disc in a frame, not of devices made of `plies`",
              keys[i].key);
-    dea_status status = keys[i].asked ? refuse(ctx, keys[i].where, message) : DEA_OK;
+    dea_status status = keys[i].asked ? dea_refuse(ctx, *keys[i].where, message) : DEA_OK;
     first = first == DEA_OK ? status : first;
   }
   return first;
@@ -179,7 +173,7 @@ static dea_status check_layout(struct dea_context *ctx, const struct dea_design 
     char message[300];
     snprintf(message, sizeof message,
              "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name)", name);
-    DEA_TRY(ctx, refuse(ctx, &design->compute.solid.adapt.monitor.location, message));
+    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.adapt.monitor.location, message));
   }
   return DEA_OK;
 }

@@ -669,11 +669,7 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_design *desig
   static const char why[] = "the study 'frequency' needs the field V/h: take compute.solid.field: "
                             "thin, or leave compute.frequency away";
   const struct dea_choice *field = &design->compute.solid.field;
-  if (field->value != DEA_FIELD_COUPLED) {
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, field->location, "%s", why));
-  return dea_fail(ctx, DEA_E_DESIGN, "%s", why);
+  return field->value == DEA_FIELD_COUPLED ? dea_refuse(ctx, field->location, why) : DEA_OK;
 }
 
 const struct dea_study dea_study_frequency = {
