@@ -28,9 +28,10 @@ struct fake_script {
   long leak_from;                      // sample from which the current is 0.2 mA; 0: never
   void (*after_interrupt)(void); // in the next call, when the signal was heeded; NULL: nothing
   double start_s;                // that its start takes, and its first put
+  long broken_from; // sample from which the film is a short circuit, beside current_from; 0: never
 };
-static const struct fake_script fake_good = {-1, -1, -1, -1, -1,   -1, -1,   -1,
-                                             -1, -1, 37, 1,  true, 0,  NULL, 0};
+static const struct fake_script fake_good = {-1, -1, -1, -1,   -1, -1,   -1, -1, -1,
+                                             -1, 37, 1,  true, 0,  NULL, 0,  0};
 
 struct fake_daq {
   struct dea_instrument common;
@@ -96,8 +97,12 @@ static inline void fake_read(const struct fake_daq *daq, size_t i, double *volts
 {
   const struct fake_script *s = &daq->script;
   const double before = i > 0 && i <= daq->put ? daq->out[i - 1] : 0;
-  const double all[3] = {s->voltage_from >= 0 && (long)i >= s->voltage_from ? before + 1 : before,
+  bool broken = s->broken_from > 0 && (long)i >= s->broken_from;
+  const double all[3] = {broken                                               ? 0.01 * (before > 0)
+                         : s->voltage_from >= 0 && (long)i >= s->voltage_from ? before + 1
+                                                                              : before,
                          s->current_from >= 0 && (long)i >= s->current_from ? 2.5
+                         : broken && before > 0                             ? 2.5
                          : s->leak_from > 0 && (long)i >= s->leak_from      ? 0.2
                                                                             : 0.02,
                          1e-3 * (double)i};

@@ -101,6 +101,18 @@ static void test_simulated(void **state)
                   "protocol_overrides sequence=[{waveform: {kind: staircase, values: ");
 }
 
+/* It pulls the voltage down while the ramp still asks for more, which the current explains. */
+static void test_breakdown(void **state)
+{
+  (void)state;
+  assert_int_equal(
+      command_run("drive " EXAMPLE " --sim -o b.h5 --set sim.breakdown_voltage=2.5kV "
+                  "--set 'sequence=[{waveform: {kind: ramp, to: 4 kV, duration: 1 s}}]'"),
+      6);
+  assert_contains(command_out, "output            at 0 V");
+  assert_contains(command_out, "ended early       the current is ");
+}
+
 static void test_usage(void **state)
 {
   (void)state;
@@ -146,8 +158,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_dry_run),   cmocka_unit_test(test_who_plays),
       cmocka_unit_test(test_too_much),  cmocka_unit_test(test_json),
-      cmocka_unit_test(test_simulated), cmocka_unit_test(test_usage),
-      cmocka_unit_test(test_schema),
+      cmocka_unit_test(test_simulated), cmocka_unit_test(test_breakdown),
+      cmocka_unit_test(test_usage),     cmocka_unit_test(test_schema),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

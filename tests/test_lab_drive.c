@@ -185,6 +185,28 @@ static void test_current_trips(void **state)
   }
 }
 
+/* What pulls the voltage down ends with it: a current that goes on at 0 V explains nothing. */
+static void test_film_that_breaks_down(void **state)
+{
+  (void)state;
+  for (int goes_on = 0; goes_on < 2; goes_on++) {
+    struct trial t;
+    struct fake_script script = fake_good;
+    script.broken_from = 548; // at 2 kV for 48 ms
+    script.current_from = goes_on ? script.broken_from : -1;
+    trial_open(&t, SQUARE CHANNELS, &script);
+    t.protocol->safety.zero_time_s.si = 0.3;
+    trial_play(&t, false);
+    assert_int_equal(t.status, DEA_E_INTERLOCK);
+    assert_non_null(strstr(t.report.ended, "trip_current"));
+    assert_int_equal(t.report.zero.state, goes_on ? DEA_ZERO_UNKNOWN : DEA_ZERO_READ_BACK);
+    if (goes_on) {
+      assert_string_equal(t.report.zero.why, "more than safety.trip_current still flows");
+    }
+    trial_close(&t);
+  }
+}
+
 static void test_wrong_voltage_trips(void **state)
 {
   (void)state;
@@ -523,6 +545,7 @@ int main(void)
       cmocka_unit_test(test_signals),
       cmocka_unit_test(test_faults_at_the_end),
       cmocka_unit_test(test_current_trips),
+      cmocka_unit_test(test_film_that_breaks_down),
       cmocka_unit_test(test_wrong_voltage_trips),
       cmocka_unit_test(test_lost_samples_do_not_end_it_but_silence_does),
       cmocka_unit_test(test_lost_sensor),

@@ -387,6 +387,47 @@ static void test_no_channel_hides_another(void **state)
   }
 }
 
+/* A film that breaks down pulls the voltage down while the ramp still asks for more: a channel that
+ * followed until then is believed at the end, and the current says why it ended. It is not believed
+ * if it showed 0 V before, or also without that current, or more than was asked; nor if it never
+ * was looked at away from 0 V. */
+static void test_film_that_pulls_down(void **state)
+{
+  (void)state;
+  static const struct {
+    double off_s, until_s, shows_V; // the channel shows that from .. on; the current ends then
+    bool contradicted;
+    const char *why;
+  } cases[] = {{0.1, 9, 10, false, "the current is 5000 uA"},
+               {0.1, 9, -10, false, "the current is 5000 uA"},
+               {0.09, 9, 10, true, "the voltage is 0.01 kV"}, // 10 ms before the current rises
+               {0.1, 0.15, 10, true, "the current is 5000 uA"},
+               {0.1, 9, 2400, true, "the voltage is 2.4 kV"},
+               {0.1, 9, -400, true, "the voltage is -0.4 kV"},
+               {0, 9, 10, true, "the voltage is 0.01 kV"}};
+  struct dea_protocol *p = good_protocol(ctx, WATCHED);
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    static struct dea_drive_watch w;
+    char why[DEA_WHY_ENDED_SIZE] = "", later[DEA_WHY_ENDED_SIZE];
+    long ended = -1;
+    dea_drive_watch_start(&w, p, 0.002, 0);
+    for (long i = 0; i < 600; i++) { // the voltage rises, stays, and from the end on is ramped down
+      double time_s = 1e-3 * (double)i, asked_V = fmin(20. * (double)i, 2000);
+      asked_V = ended < 0 ? asked_V : fmax(0, asked_V - 5 * (double)(i - ended));
+      bool broken = i >= 100 && time_s < cases[k].until_s && asked_V > 50;
+      bool off = time_s >= cases[k].off_s && asked_V > 50;
+      double values[2] = {off ? cases[k].shows_V : asked_V, broken ? 5e-3 : 0};
+      bool good = dea_drive_watch_sample(&w, asked_V, values, ended < 0 ? why : later);
+      ended = !good && ended < 0 ? i : ended;
+    }
+    assert_true(ended >= 0);
+    if (strstr(why, cases[k].why) == NULL || w.contradicted != cases[k].contradicted) {
+      fail_msg("case %zu: %s, %d", k, why, w.contradicted);
+    }
+  }
+  dea_protocol_destroy(ctx, p);
+}
+
 static void test_run_checks_first(void **state)
 {
   (void)state;
@@ -412,7 +453,8 @@ int main(void)
       cmocka_unit_test(test_what_ends_a_measurement),  cmocka_unit_test(test_arcs_that_come_and_go),
       cmocka_unit_test(test_charging_is_no_arc),       cmocka_unit_test(test_examples_do_not_trip),
       cmocka_unit_test(test_voltage_above_the_cap),    cmocka_unit_test(test_read_back_that_is_off),
-      cmocka_unit_test(test_no_channel_hides_another), cmocka_unit_test(test_run_checks_first),
+      cmocka_unit_test(test_no_channel_hides_another), cmocka_unit_test(test_film_that_pulls_down),
+      cmocka_unit_test(test_run_checks_first),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

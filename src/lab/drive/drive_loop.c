@@ -38,13 +38,14 @@ struct source {
   bool failed;
 };
 
-/* The voltage channels once all was played: samples that are not recorded. */
+/* What is measured once all was played: samples that are not recorded. */
 struct drive_monitor {
   size_t settle, window; // samples that are waited for, and of a mean
   size_t seen;           // behind the end
-  double sum_V[DEA_PROTOCOL_INPUTS_MAX];
+  double sum[DEA_PROTOCOL_INPUTS_MAX];
   size_t count[DEA_PROTOCOL_INPUTS_MAX];
   bool zero;
+  bool flows;   // a current that explained what a voltage channel showed flows also at 0 V
   double volts; // mean of the last window, of the channel farthest from 0; NAN: none yet
 };
 
@@ -218,6 +219,28 @@ static void take_sample(struct loop *loop, const double *volts)
   }
 }
 
+/* Of the means of a window, which is forgotten. */
+static void end_window(struct loop *loop)
+{
+  struct drive_monitor *m = &loop->monitor;
+  m->zero = true;
+  m->flows = false;
+  m->volts = 0;
+  for (size_t i = 0; i < loop->protocol->input_count; i++) {
+    double mean = m->count[i] > 0 ? m->sum[i] / (double)m->count[i] : (double)NAN;
+    if (loop->protocol->inputs[i].kind.value == DEA_CHANNEL_VOLTAGE) {
+      bool zero = fabs(mean) <= loop->protocol->safety.at_zero_V.si; // false for NAN
+      m->zero = m->zero && zero;
+      m->volts = fabs(mean) > fabs(m->volts) || isnan(mean) ? mean : m->volts;
+    }
+    m->flows =
+        m->flows || (loop->watch.pulled_down && dea_drive_watch_is_over(loop->protocol, i, mean));
+    m->sum[i] = 0;
+    m->count[i] = 0;
+  }
+  m->zero = m->zero && !m->flows;
+}
+
 /* A sample of 0 V behind the end. */
 static void take_behind_end(struct loop *loop, const double *volts)
 {
@@ -225,29 +248,15 @@ static void take_behind_end(struct loop *loop, const double *volts)
   if (m->window == 0 || m->seen++ < m->settle) {
     return;
   }
-  bool ends = (m->seen - m->settle) % m->window == 0, all = true;
-  double farthest_V = 0;
   for (size_t i = 0; i < loop->protocol->input_count; i++) {
     const struct dea_protocol_input *input = &loop->protocol->inputs[i];
-    double value = volts[i] * input->per_volt + input->at_zero;
-    if (input->kind.value != DEA_CHANNEL_VOLTAGE) {
-      continue;
-    }
-    if (!isnan(value)) {
-      m->sum_V[i] += value;
+    if (!isnan(volts[i])) {
+      m->sum[i] += volts[i] * input->per_volt + input->at_zero;
       m->count[i]++;
     }
-    if (ends) {
-      double mean_V = m->count[i] > 0 ? m->sum_V[i] / (double)m->count[i] : (double)NAN;
-      all = all && fabs(mean_V) <= loop->protocol->safety.at_zero_V.si; // false for NAN
-      farthest_V = fabs(mean_V) > fabs(farthest_V) || isnan(mean_V) ? mean_V : farthest_V;
-      m->sum_V[i] = 0;
-      m->count[i] = 0;
-    }
   }
-  if (ends) {
-    m->zero = all;
-    m->volts = farthest_V;
+  if ((m->seen - m->settle) % m->window == 0) {
+    end_window(loop);
   }
 }
 
@@ -686,7 +695,9 @@ static void stop_all(struct loop *loop)
   if (m->zero && !loop->watch.contradicted) { // else it may be the channel that is wrong
     *zero = (struct dea_zero){DEA_ZERO_READ_BACK, m->volts, NULL};
   } else if (zero->state == DEA_ZERO_COMMANDED || isfinite(m->volts)) { // the channel is to show it
-    const char *why = m->zero ? "it had shown another voltage than was asked" : NULL;
+    const char *why = m->zero    ? "it had shown another voltage than was asked"
+                      : m->flows ? "more than safety.trip_current still flows"
+                                 : NULL;
     *zero = (struct dea_zero){DEA_ZERO_UNKNOWN, m->volts,
                               isnan(m->volts) ? "the voltage channel does not show it" : why};
   }

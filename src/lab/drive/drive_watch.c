@@ -123,19 +123,53 @@ static bool check_current(struct dea_drive_watch *watch, size_t i, double curren
   return false;
 }
 
+/* What may be shown now. */
+static void find_asked(const struct dea_drive_watch *watch, double *lowest_V, double *highest_V)
+{
+  *lowest_V = fmin(watch->lowest_V[0], watch->lowest_V[1]);
+  *highest_V = fmax(watch->highest_V[0], watch->highest_V[1]);
+}
+
+/* By amount; 0: of both signs. */
+static double find_nearest(const struct dea_drive_watch *watch)
+{
+  double lowest_V, highest_V;
+  find_asked(watch, &lowest_V, &highest_V);
+  return lowest_V * highest_V > 0 ? fmin(fabs(lowest_V), fabs(highest_V)) : 0;
+}
+
+/* A channel that followed shows less than is asked while a current flows that ends the measurement:
+ * the film pulls the amplifier down. One that did not follow before may be what is wrong. */
+static bool is_pulled_down(const struct dea_drive_watch *watch, size_t i, double voltage_V)
+{
+  double lowest_V, highest_V;
+  find_asked(watch, &lowest_V, &highest_V);
+  double error_V = watch->protocol->safety.voltage_error_V.si;
+  return watch->over && watch->follows[i] && voltage_V >= (lowest_V < 0 ? lowest_V : -error_V) &&
+         voltage_V <= (highest_V > 0 ? highest_V : error_V);
+}
+
 static bool check_voltage(struct dea_drive_watch *watch, size_t i, double asked_V, double voltage_V,
                           char why[DEA_WHY_ENDED_SIZE])
 {
   double error_V = watch->protocol->safety.voltage_error_V.si;
-  double lowest_V = fmin(watch->lowest_V[0], watch->lowest_V[1]);
-  double highest_V = fmax(watch->highest_V[0], watch->highest_V[1]);
+  double lowest_V, highest_V;
+  find_asked(watch, &lowest_V, &highest_V);
   double margin_V = cap_margin * fmax(watch->cap_V[1], -watch->cap_V[0]);
   bool wrong = voltage_V < fmax(lowest_V - error_V, watch->cap_V[0] - margin_V) ||
                voltage_V > fmin(highest_V + error_V, watch->cap_V[1] + margin_V);
+  if (wrong && is_pulled_down(watch, i, voltage_V)) {
+    watch->pulled_down = true;
+    return true; // the current says it
+  }
   watch->exceeded[i] = wrong ? watch->exceeded[i] + 1 : 0;
+  if (!wrong && fabs(voltage_V) > error_V && find_nearest(watch) > off_from * watch->largest_V) {
+    watch->follows[i] = true;
+  }
   if (watch->exceeded[i] < watch->lasting) {
     return true;
   }
+  watch->follows[i] = false;
   watch->contradicted = true;
   snprintf(why, DEA_WHY_ENDED_SIZE,
            "the voltage is %.4g kV where %.4g kV is asked: more than safety.voltage_error of %.4g "
@@ -158,11 +192,12 @@ static void add_event(struct dea_drive_watch *watch, enum dea_noticed_kind kind,
 static bool check_readback(struct dea_drive_watch *watch, size_t i, double asked_V,
                            double voltage_V, char why[DEA_WHY_ENDED_SIZE])
 {
-  double lowest_V = fmin(watch->lowest_V[0], watch->lowest_V[1]);
-  double highest_V = fmax(watch->highest_V[0], watch->highest_V[1]);
+  double lowest_V, highest_V;
+  find_asked(watch, &lowest_V, &highest_V);
   double share = watch->protocol->safety.readback_error.si;
-  double nearest_V = lowest_V * highest_V > 0 ? fmin(fabs(lowest_V), fabs(highest_V)) : 0;
-  if (nearest_V < off_from * watch->largest_V || nearest_V == 0) {
+  double nearest_V = find_nearest(watch);
+  if (nearest_V < off_from * watch->largest_V || nearest_V == 0 ||
+      is_pulled_down(watch, i, voltage_V)) {
     return true;
   }
   double most_V =
@@ -237,6 +272,12 @@ static bool check_channel(struct dea_drive_watch *watch, size_t i, double asked_
                        check_readback(watch, i, asked_V, value, why);
 }
 
+bool dea_drive_watch_is_over(const struct dea_protocol *protocol, size_t input, double current_A)
+{
+  return protocol->inputs[input].kind.value == DEA_CHANNEL_CURRENT &&
+         fabs(current_A) > protocol->safety.trip_current_A.si;
+}
+
 bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,
                             char why[DEA_WHY_ENDED_SIZE])
 {
@@ -246,6 +287,10 @@ bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const
   watch->asked_V = asked_V;
   watch->event_count = 0;
   follow(watch, asked_V);
+  watch->over = false;
+  for (size_t i = 0; i < watch->protocol->input_count; i++) {
+    watch->over = watch->over || dea_drive_watch_is_over(watch->protocol, i, values[i]);
+  }
   // all of them, also once one has ended it: what the others show counts until the output is at 0 V
   for (size_t i = 0; i < watch->protocol->input_count; i++) {
     int kind = watch->protocol->inputs[i].kind.value;

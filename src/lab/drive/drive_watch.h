@@ -28,13 +28,19 @@ struct dea_drive_watch {
   double largest_V;                      // of the sequence
   struct dea_recorded_event events[DEA_WATCH_EVENTS_MAX]; // of the last sample; channel: of inputs
   size_t event_count;
-  bool contradicted; // a voltage channel did not show what was asked: it may be the channel
+  bool over;                             // a current of this sample is above trip_current
+  bool follows[DEA_PROTOCOL_INPUTS_MAX]; // a voltage that is not near 0 was shown as asked, last
+  bool pulled_down;  // a voltage channel showed less than was asked, which a current explained
+  bool contradicted; // a voltage channel did not show what was asked, and no current explains it:
+                     // it may be the channel
 };
 
 /* settle_s: time that the voltage has to follow what is asked. capacitance_F: of the film; 0 or
  * NAN: not known. */
 void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_protocol *protocol,
                            double settle_s, double capacitance_F);
+/* Whether the channel of a current shows more than trip_current. */
+bool dea_drive_watch_is_over(const struct dea_protocol *protocol, size_t input, double current_A);
 /* Looks at one sample: asked voltage, and the values of all inputs in SI (NAN: lost). False when
  * the measurement must end; `why` then says it. A limit has to be exceeded for the protocol's
  * trip_time, or the current
