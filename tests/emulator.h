@@ -155,13 +155,15 @@ static inline void emulator_close(struct dea_context *ctx, struct dea_instrument
   instrument->type->close(ctx, instrument);
 }
 
+enum { EMULATOR_READINGS_MAX = 2048 };
+
 /* What an instrument hands over, kept. */
 struct emulator_sink {
   size_t readings, profiles, samples, channels; // channels: of the samples
   struct {
     size_t reading;
     double time_s, value;
-  } reading[256];
+  } reading[EMULATOR_READINGS_MAX];
   double profile_time_s[256];
   double z_m[64][64]; // of the first ones
   size_t points;
@@ -171,7 +173,7 @@ struct emulator_sink {
 static inline dea_status emulator_reading(void *user, size_t reading, double time_s, double value)
 {
   struct emulator_sink *sink = user;
-  if (sink->readings < 256) {
+  if (sink->readings < EMULATOR_READINGS_MAX) {
     sink->reading[sink->readings].reading = reading;
     sink->reading[sink->readings].time_s = time_s;
     sink->reading[sink->readings].value = value;

@@ -1,16 +1,19 @@
 /* Instruments on serial lines against imitations on pseudo-terminals: a Keyence LK and an optoNCDT,
  * with fragments, garbage, wrong modes, silence and a pulled cable. */
-#define _GNU_SOURCE // posix_openpt, ptsname_r
+#define _GNU_SOURCE // posix_openpt, ptsname_r, CRTSCTS
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "lab/instrument/asking.h"
+#include "lab/instrument/serial.h"
 
 #include "message_fixture.h"
 
 #include <fcntl.h>
 #include <math.h>
+#include <termios.h>
 
-enum fault { GOOD, SETTINGS, GARBAGE, NO_OUTPUT, SILENT, PULLED };
+enum fault { GOOD, SETTINGS, GARBAGE, NO_OUTPUT, SILENT, PULLED, NOISY, GAP };
+enum { GAP_FROM = 300, GAP_LENGTH = 200 };
 
 /* The other end of a serial line, served by a thread. */
 struct line {
@@ -21,7 +24,7 @@ struct line {
   enum fault fault;
   size_t fragment; // bytes at a time; 0: all
   bool settings;   // it is in its mode for settings
-  int asked;
+  int asked, questions;
   double rate_Hz; // of an optoNCDT
   double sent_s;  // when its first value was sent
 };
@@ -70,6 +73,9 @@ static void keyence_answer(struct line *l, const char *command)
     l->asked++;
   } else if (strcmp(command, "MS,02") == 0 && l->fault != NO_OUTPUT) {
     text = "MS,02,+0012.50\r";
+  }
+  if (l->fault == NOISY && second && l->questions++ % 7 < 2) { // two in a row
+    text = l->questions % 2 == 0 ? "ER,MS,00\r" : "";
   }
   if (l->fault != SILENT || !second) {
     line_write(l, text, strlen(text));
@@ -128,6 +134,7 @@ static void *optoncdt_run(void *user)
     } else if (l->fault != SILENT || i < 300) {
       line_write(l, bytes, 2 * count);
     }
+    i += l->fault == GAP && i >= GAP_FROM && i - count < GAP_FROM ? GAP_LENGTH : 0;
     dea_clock_wait(0.016);
   }
   return NULL;
@@ -137,6 +144,10 @@ static const char keyence[] = "kind: keyence\ndevice: %s\ntimeout: 0.5 s\ninterv
                               "readings:\n"
                               "  - {name: laser, output: 1}\n"
                               "  - {name: other, output: 2, factor: -1e-3, offset: 20 mm}\n";
+static const char quick_keyence[] = "kind: keyence\ndevice: %s\ntimeout: 50 ms\ninterval: 5 ms\n"
+                                    "readings:\n"
+                                    "  - {name: laser, output: 1}\n"
+                                    "  - {name: other, output: 2, factor: -1e-3, offset: 20 mm}\n";
 static const char optoncdt[] = "kind: optoncdt\ndevice: %s\nrange: 10 mm\nrate: 750 Hz\n"
                                "average: 3\nfactor: -1\noffset: 5 mm\ntimeout: 0.5 s\n";
 
@@ -213,7 +224,7 @@ static void test_keyence_faults(void **state)
   static const struct {
     enum fault fault;
     const char *message;
-  } cases[] = {{SILENT, "did not answer within 0.5 s"},
+  } cases[] = {{SILENT, "did not answer 3 questions in a row within 0.5 s each"},
                {PULLED, "the connection to the Keyence LK at /dev/"}};
   for (size_t i = 0; i < 2; i++) {
     struct bench c = {.line.fault = cases[i].fault};
@@ -222,6 +233,17 @@ static void test_keyence_faults(void **state)
                    cases[i].message);
     end(&c);
   }
+  struct bench e = {.line.fault = NOISY};
+  size_t values = 0;
+  assert_int_equal(begin(&e, quick_keyence, keyence_run), DEA_OK);
+  assert_int_equal(emulator_get(ctx, e.instrument, &e.sink, 40, 0, 0), DEA_OK);
+  for (size_t i = 0; i < 40; i++) { // what comes is what was asked for
+    bool other = e.sink.reading[i].reading == 1, none = isnan(e.sink.reading[i].value);
+    assert_true(none || (fabs(e.sink.reading[i].value - 7.5e-3) < 1e-12) == other);
+    values += !none && other ? 1 : 0;
+  }
+  assert_true(values > 5 && e.instrument->lost > 5);
+  end(&e);
   struct bench d = {.line.fault = NO_OUTPUT};
   assert_message(begin(&d, keyence, keyence_run), DEA_E_INSTRUMENT, "to a question for OUT 2");
   end(&d);
@@ -274,6 +296,47 @@ static void test_optoncdt_faults(void **state)
   struct bench d = {0}; // a Keyence where an optoNCDT was expected
   assert_message(begin(&d, optoncdt, keyence_run), DEA_E_INSTRUMENT, "nothing came from");
   end(&d);
+}
+
+/* Those behind a gap have the time at which they came, once a second has shown it. */
+static void test_optoncdt_gap(void **state)
+{
+  (void)state;
+  struct bench b = {.line.rate_Hz = 750, .line.fault = GAP};
+  assert_int_equal(begin(&b, optoncdt, optoncdt_run), DEA_OK);
+  static struct emulator_sink sink;
+  assert_int_equal(emulator_get(ctx, b.instrument, &sink, 1600, 0, 0), DEA_OK);
+  double behind_s =
+      sink.reading[1599].time_s - sink.reading[100].time_s - (1499. + GAP_LENGTH) / 750;
+  assert_true(fabs(behind_s) < 0.04); // a piece of 16 ms at both ends
+  assert_true(b.instrument->lost > GAP_LENGTH - 40 && b.instrument->lost < GAP_LENGTH + 40);
+  end(&b);
+}
+
+/* A line that another program left with another idea of it. */
+static void test_line_as_left(void **state)
+{
+  (void)state;
+  struct line l = {0};
+  struct dea_socket socket;
+  struct termios termios;
+  if (!line_open(&l)) {
+    skip();
+  }
+  assert_int_equal(tcgetattr(l.keep, &termios), 0);
+  termios.c_cflag |= CRTSCTS | CSTOPB;
+  termios.c_iflag |= IXON | IXOFF | IXANY | IGNPAR;
+  assert_int_equal(tcsetattr(l.keep, TCSANOW, &termios), 0);
+  for (int parity = 0; parity < 2; parity++) {
+    assert_int_equal(dea_serial_open(ctx, "a line", l.device, 9600, parity, &socket), DEA_OK);
+    assert_int_equal(tcgetattr(l.keep, &termios), 0);
+    assert_int_equal(termios.c_cflag & (tcflag_t)(CRTSCTS | CSTOPB), 0);
+    assert_int_equal(termios.c_iflag & (tcflag_t)(IXON | IXOFF | IXANY | IGNPAR), 0);
+    assert_int_equal((termios.c_iflag & (tcflag_t)INPCK) != 0, parity);
+    dea_socket_close(&socket);
+  }
+  close(l.keep);
+  close(l.master);
 }
 
 /* A line is one program's, whatever name it has. */
@@ -344,9 +407,10 @@ static void test_asking(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_asking),      cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_keyence),     cmocka_unit_test(test_keyence_faults),
-      cmocka_unit_test(test_optoncdt),    cmocka_unit_test(test_optoncdt_faults),
+      cmocka_unit_test(test_asking),       cmocka_unit_test(test_wrong_keys),
+      cmocka_unit_test(test_keyence),      cmocka_unit_test(test_keyence_faults),
+      cmocka_unit_test(test_optoncdt),     cmocka_unit_test(test_optoncdt_faults),
+      cmocka_unit_test(test_optoncdt_gap), cmocka_unit_test(test_line_as_left),
       cmocka_unit_test(test_line_in_use),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

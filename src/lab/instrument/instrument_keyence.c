@@ -3,9 +3,12 @@
  * "MS,nn,value"; values have eight characters, "+0001.234" of them fewer digits, "+FFFFFFF" beyond
  * the range and "XXXXXXXX" not measurable. Errors are "ER,MS,code". Source: Keyence, LK-G user's
  * manual, chapter 5.
- */
+ *
+ * A discharge on the way garbles a question or its answer: a question that is not answered, or with
+ * an error, is a lost value, and only the third in a row ends the measurement. */
 #include "base/clock.h"
 #include "base/schema_value.h"
+#include "base/text.h"
 #include "lab/instrument/asking.h"
 #include "lab/instrument/instrument_make.h"
 #include "lab/instrument/line_link.h"
@@ -16,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OUTPUTS_MAX = 12, COMMAND_SIZE = 16 };
+enum { OUTPUTS_MAX = 12, COMMAND_SIZE = 16, FAILED_MAX = 3 };
 /* Longest time that the controller takes to leave its mode for settings. */
 static const double mode_change_s = 5;
 
@@ -39,6 +42,7 @@ struct keyence {
   struct dea_line_link link;
   struct dea_asking asking;
   bool waits; // for an answer
+  int failed; // questions in a row without a value or what stands for none
   double start_s;
 };
 
@@ -118,24 +122,34 @@ static dea_status ask(struct dea_context *ctx, struct keyence *k, size_t reading
   return send_command(ctx, k, command);
 }
 
+/* The output that an answer is of, and where its value begins; -1: it is no answer to MS,nn. */
+static long output_of(const char *answer, const char **value)
+{
+  char *comma = NULL;
+  *value = NULL;
+  long output = strncmp(answer, "MS,", 3) == 0 ? strtol(answer + 3, &comma, 10) : -1;
+  if (output < 0 || comma == answer + 3 || *comma != ',') {
+    return -1;
+  }
+  *value = comma + 1;
+  return output;
+}
+
 /* The value of an answer to MS,nn; NAN: it says that there is none. False: it is no such answer. */
 static bool value_of(const char *answer, int output, double *value)
 {
-  char *end;
-  const char *at = answer + 3;
-  if (strncmp(answer, "MS,", 3) != 0 || strtol(at, &end, 10) != output || end == at ||
-      *end != ',') {
+  const char *end, *at;
+  if (output_of(answer, &at) != output) {
     return false;
   }
-  at = end + 1;
   *value = NAN;
   if (strspn(at, "X") == strlen(at) || strspn(at, "+-F") == strlen(at)) {
     return *at != '\0';
   }
-  if (at[strspn(at, "+-0123456789. ")] != '\0') { // strtod knows more numbers than it
+  if (at[strspn(at, "+-0123456789. ")] != '\0') { // it may be more than a number
     return false;
   }
-  *value = strtod(at, &end);
+  *value = dea_text_to_double(at, &end);
   return end != at && *end == '\0' && isfinite(*value);
 }
 
@@ -227,24 +241,34 @@ static void set_clock(struct dea_instrument *instrument)
   ((struct keyence *)instrument)->start_s = dea_clock_s();
 }
 
+/* The question gave no value. */
+static dea_status lose(struct keyence *k, const struct dea_sink *sink)
+{
+  k->waits = false;
+  k->base.lost++;
+  return sink->reading(sink->user, k->asking.reading, dea_clock_s() - k->start_s, NAN);
+}
+
 /* An answer; one that makes no sense is a lost value. */
 static dea_status take(struct dea_context *ctx, struct keyence *k, const char *answer,
                        const struct dea_sink *sink)
 {
   const struct raw_reading *r = &k->raw.readings[k->asking.reading];
+  const char *at;
   double value, now_s = dea_clock_s();
-  if (!k->waits) {
+  long output = output_of(answer, &at);
+  if (!k->waits || (output >= 0 && output != (long)r->output.si)) { // late, of an earlier question
     k->base.lost++;
     return DEA_OK;
   }
   if (strncmp(answer, "ER,", 3) == 0) {
-    return refused(ctx, k, answer);
+    return ++k->failed < FAILED_MAX ? lose(k, sink) : refused(ctx, k, answer);
   }
   if (!value_of(answer, (int)r->output.si, &value)) {
-    value = NAN;
-    k->base.lost++;
+    return lose(k, sink);
   }
   k->waits = false;
+  k->failed = 0;
   return sink->reading(sink->user, k->asking.reading,
                        0.5 * (k->asking.asked_s + now_s) - k->start_s,
                        value * r->factor.si + r->offset.si);
@@ -262,8 +286,12 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
     size_t length, dropped = k->link.lines.dropped;
     double now_s = dea_clock_s(), next_s = k->asking.asked_s + k->asking.timeout_s;
     if (k->waits && now_s > next_s) {
-      return dea_fail(ctx, DEA_E_INSTRUMENT, "%s did not answer within %g s", k->link.socket.name,
-                      k->asking.timeout_s);
+      if (++k->failed >= FAILED_MAX) {
+        return dea_fail(ctx, DEA_E_INSTRUMENT,
+                        "%s did not answer %d questions in a row within %g s each",
+                        k->link.socket.name, FAILED_MAX, k->asking.timeout_s);
+      }
+      DEA_TRY(ctx, lose(k, sink));
     }
     if (!k->waits && dea_asking_next(&k->asking, now_s, &next_s)) {
       DEA_TRY(ctx, ask(ctx, k, k->asking.reading));

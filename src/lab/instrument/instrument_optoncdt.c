@@ -8,8 +8,10 @@
  * Times: values come at the sensor's own rate, in the pieces in which the adapter hands them over.
  * Each is one interval after the one before; where a piece comes earlier than that says, the clock
  * was late and is set, and where later, it follows by 200 ppm at most, which is more than two
- * crystals differ by. An average over N values lags by (N - 1) / 2 of them, which is taken off.
- * Source: Micro-Epsilon, optoNCDT 1402 instruction manual. */
+ * crystals differ by. Where all of a second come later by more than that, values were lost on the
+ * way: they are counted, and those behind them get the time at which they came. An average over N
+ * values lags by (N - 1) / 2 of them, which is taken off. Source: Micro-Epsilon, optoNCDT 1402
+ * instruction manual. */
 #include "base/clock.h"
 #include "base/schema_value.h"
 #include "lab/instrument/instrument_make.h"
@@ -20,6 +22,7 @@
 
 enum { LEAST = 161, MOST = 16207 };
 static const double drift = 2e-4;
+static const double window_s = 1, jump_s = 5e-3;
 
 struct raw {
   struct dea_label kind, device, name;
@@ -33,6 +36,7 @@ struct optoncdt {
   int upper;               // byte that waits for its lower one; -1: none
   double start_s, heard_s; // computer's clock; NAN before the start
   double last_s;           // time of the last value; NAN: none
+  double late_s, until_s;  // least that a value of this window came behind its time; its end
 };
 
 static const struct dea_field fields[] = {
@@ -70,19 +74,35 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   return dea_instrument_check_reading(reader, protocol, &raw->name, &sketch);
 }
 
+/* Of one that came at arrived_s. */
+static double time_of(struct optoncdt *o, double arrived_s)
+{
+  double interval_s = 1 / o->raw.rate_Hz.si, time_s = o->last_s + interval_s;
+  if (isnan(o->last_s) || arrived_s < time_s) {
+    time_s = isnan(o->last_s) ? arrived_s : fmax(arrived_s, o->last_s + 1e-3 * interval_s);
+    o->until_s = isnan(o->last_s) ? arrived_s : o->until_s;
+  } else {
+    time_s += fmin(arrived_s - time_s, drift * interval_s);
+  }
+  o->late_s = fmin(o->late_s, arrived_s - time_s);
+  if (arrived_s < o->until_s) {
+    return time_s;
+  }
+  if (o->late_s > fmax(jump_s, 2 * interval_s) && isfinite(o->late_s)) {
+    o->base.lost += (size_t)(o->late_s / interval_s);
+    time_s += o->late_s;
+  }
+  o->late_s = INFINITY;
+  o->until_s = arrived_s + window_s;
+  return time_s;
+}
+
 /* A value that came at arrived_s; NAN where it says why there is none. */
 static dea_status take(struct optoncdt *o, int number, double arrived_s,
                        const struct dea_sink *sink)
 {
   double interval_s = 1 / o->raw.rate_Hz.si, value = NAN;
-  double time_s = o->last_s + interval_s;
-  if (isnan(o->last_s) || arrived_s < time_s) {
-    time_s = isnan(o->last_s) ? arrived_s : fmax(arrived_s, o->last_s + 1e-3 * interval_s);
-  } else {
-    time_s += fmin(arrived_s - time_s, drift * interval_s);
-  }
-  // A gap (values that were lost on the way) is none of the clock's.
-  time_s = arrived_s - time_s > o->raw.timeout_s.si ? arrived_s : time_s;
+  double time_s = time_of(o, arrived_s);
   o->last_s = time_s;
   if (number >= LEAST && number <= MOST) {
     double distance_m = (1.02 * number / 16368 - 0.01) * o->raw.range_m.si;
@@ -177,6 +197,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   o->base.roles = DEA_GIVES_READINGS;
   o->upper = -1;
   o->last_s = NAN;
+  o->late_s = INFINITY;
   dea_instrument_add_displacement(&o->base, &o->raw.name);
   dea_status status =
       dea_serial_open(ctx, "the optoNCDT", o->raw.device.text, (int)o->raw.baud.si, 0, &o->line);
@@ -200,6 +221,7 @@ static dea_status start_it(struct dea_context *ctx, struct dea_instrument *instr
     DEA_TRY(ctx, listen_for(ctx, o, 0, NULL, &came));
   }
   o->start_s = o->heard_s = dea_clock_s();
+  o->last_s = NAN; // while nobody listened some may have been lost
   return DEA_OK;
 }
 

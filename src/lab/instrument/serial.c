@@ -33,7 +33,11 @@ static int set_up(int descriptor, speed_t speed, int parity)
     return errno;
   }
   cfmakeraw(&line);
-  line.c_cflag &= ~(tcflag_t)(CSTOPB | PARENB | PARODD);
+  // as another program may have left it: a device that gives no CTS would be sent nothing, not even
+  // 0 V; XOFF is a number like any other; a line whose parity is not looked at has none
+  line.c_cflag &= ~(tcflag_t)(CSTOPB | PARENB | PARODD | CRTSCTS);
+  line.c_iflag &= ~(tcflag_t)(IXOFF | IXANY | IGNPAR | INPCK);
+  line.c_iflag |= (tcflag_t)(parity > 0 ? INPCK : 0); // a character that is wrong is read as 0
   line.c_cflag |= (tcflag_t)(CLOCAL | CREAD) | (tcflag_t)(parity > 0 ? PARENB : 0) |
                   (tcflag_t)(parity == 2 ? PARODD : 0);
   line.c_cc[VMIN] = 1; // nothing to read is an error, not an end
