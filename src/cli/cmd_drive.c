@@ -324,7 +324,7 @@ static void print_report(const struct dea_drive_report *report, const char *file
          report->cycles == 1 ? "" : "s");
   printf("  %-16s  %zu sample%s or frames\n", "lost", report->lost, report->lost == 1 ? "" : "s");
   if (!isnan(report->largest_current_A)) {
-    printf("  %-16s  %.4g uA\n", "largest current", 1e6 * report->largest_current_A);
+    printf("  %-16s  %.6g uA\n", "largest current", 1e6 * report->largest_current_A);
   }
   char zero[DEA_ZERO_TEXT_SIZE];
   dea_zero_text(report->zero, zero);

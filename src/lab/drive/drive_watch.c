@@ -92,15 +92,15 @@ static bool check_arcs(struct dea_drive_watch *watch, size_t i, double change_V,
   switch (dea_arc_watch_sample(&watch->arcs[i], change_V, current_A)) {
   case DEA_ARC_TOO_OFTEN:
     snprintf(why, DEA_WHY_ENDED_SIZE,
-             "arcs: the current was above safety.trip_current of %.4g uA for the %zuth time within "
+             "arcs: the current was above safety.trip_current of %.4g mA for the %zuth time within "
              "10 s without a change of the voltage that explains it (safety.trip_count)",
-             1e6 * limits->current_A, limits->count);
+             1e3 * limits->current_A, limits->count);
     return false;
   case DEA_ARC_TOO_MUCH:
     snprintf(why, DEA_WHY_ENDED_SIZE,
-             "arcs: more than %.4g uC have flowed above safety.trip_current of %.4g uA within "
+             "arcs: more than %.4g uC have flowed above safety.trip_current of %.4g mA within "
              "about 1 s, beyond what charging the film explains",
-             1e6 * limits->charge_C, 1e6 * limits->current_A);
+             1e6 * limits->charge_C, 1e3 * limits->current_A);
     return false;
   case DEA_ARC_NONE:
     break;
@@ -118,8 +118,8 @@ static bool check_current(struct dea_drive_watch *watch, size_t i, double curren
     return true;
   }
   snprintf(why, DEA_WHY_ENDED_SIZE,
-           "the current is %.4g uA, above safety.trip_current of %.4g uA for %.3g ms",
-           1e6 * current_A, 1e6 * limit_A, 1e3 * watch->protocol->safety.trip_time_s.si);
+           "the current is %.4g mA, above safety.trip_current of %.4g mA for %.3g ms",
+           1e3 * current_A, 1e3 * limit_A, 1e3 * watch->protocol->safety.trip_time_s.si);
   return false;
 }
 
