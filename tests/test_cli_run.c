@@ -339,15 +339,25 @@ static void test_operating_map(void **state)
   assert_contains(command_out, "\n         2.55 "); // the last of 33
   assert_null(strstr(command_out, "1.0484"));       // the second
   assert_contains(command_out, "  and 24 more (summary.json)\n");
-  assert_contains(command_out, "results: map (summary.json, results.h5, CSV)\n");
+  assert_contains(command_out, "results: map (summary.json, results.h5, CSV, figures/)\n");
   command_read("map/lumped_operating-map_pre_stretch.csv", command_out);
   assert_contains(command_out, "pre-stretch,slack above (kV),breakdown above (kV),pull-in (kV),"
                                "level 1 (kV),level 2 (kV),");
   assert_contains(command_out, "\n1.0484375,");
   command_read("map/lumped_operating-map_film_thickness.csv", command_out);
   assert_contains(command_out, "film thickness (um),slack above (kV),");
+  command_read("map/figures/map_film_thickness.svg", command_out);
+  assert_contains(command_out, "breakdown above");
+}
+
+static void test_no_figures(void **state)
+{
+  (void)state;
   char path[600];
-  snprintf(path, sizeof path, "%s/map/figures", command_folder);
+  assert_int_equal(
+      command_run("run @/examples/plain-disc.yaml -m lumped --study sensitivity -o none"), 0);
+  assert_contains(command_out, "results: none (summary.json, results.h5, CSV)\n");
+  snprintf(path, sizeof path, "%s/none/figures", command_folder);
   assert_int_not_equal(access(path, F_OK), 0);
 }
 
@@ -609,6 +619,7 @@ int main(void)
       cmocka_unit_test(test_figures_at_rest),
       cmocka_unit_test(test_path_alone),
       cmocka_unit_test(test_operating_map),
+      cmocka_unit_test(test_no_figures),
       cmocka_unit_test(test_models_that_cannot),
       cmocka_unit_test(test_nothing_to_draw),
       cmocka_unit_test(test_unknown_model),

@@ -1,6 +1,7 @@
 /* Studies "operating-map" and "load-line": what the report draws of model lumped. */
 // ctest: quick, heavy
 #include "design_text.h"
+#include "study/operating_map_figure.h"
 #include "study/study.h"
 #include "testing.h"
 
@@ -120,6 +121,31 @@ static void test_limits_grow_with_the_thickness(void **state)
   end(&r);
 }
 
+static void test_figures(void **state)
+{
+  (void)state;
+  struct run r = run("lumped", map_only, 1, NULL, 0);
+  for (size_t f = 0; f < DEA_OPERATING_MAP_FIGURES; f++) {
+    const struct dea_figure *figure = &dea_operating_map_figures[f];
+    struct dea_plot *plot;
+    bool level = false;
+    assert_int_equal(dea_plot_create(ctx, figure->name, figure->caption, &plot), DEA_OK);
+    assert_int_equal(figure->build(ctx, r.result, plot), DEA_OK);
+    const struct dea_panel *panel = &plot->panels[0];
+    assert_int_equal(plot->panel_count, 1);
+    assert_close(panel->y_max, 9, 1e-12, 0);
+    for (size_t s = 0; s < panel->series_count; s++) { // of rigid rods: no predictions
+      level = level || strstr(panel->series[s].title, "z} \342\211\244 ") != NULL;
+    }
+    assert_true(level);
+    const struct dea_series *own = &panel->series[panel->series_count - 1];
+    assert_close(own->values[0], f == 0 ? 1.5 : 100, 1e-12, 0);
+    assert_close(own->values[1], 6, 1e-12, 0);
+    dea_plot_destroy(ctx, plot);
+  }
+  end(&r);
+}
+
 /* The load lines hold the tips of the free actuator with no force; their work is the difference of
  * the potential energies of both ends, and none is above the largest force of the sweep. */
 static void test_work_of_the_load_lines(void **state)
@@ -197,6 +223,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_limits_are_those_of_the_paths),
       cmocka_unit_test(test_limits_grow_with_the_thickness),
+      cmocka_unit_test(test_figures),
       cmocka_unit_test(test_work_of_the_load_lines),
       cmocka_unit_test(test_by_name_only),
       cmocka_unit_test(test_varied_designs_leave_no_findings),

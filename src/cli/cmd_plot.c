@@ -90,7 +90,8 @@ const struct dea_command cmd_plot = {
         "Figures: displacement, stretch, field, tension, force, profile; of model 3d map, surface, "
         "section and, if asked for, animation too; of studies tip_force, load_line, loading, "
         "modes, mode_shapes, "
-        "bode, history, history_force, history_current, convergence, designs, design_tips, "
+        "bode, history, history_force, history_current, convergence, map_pre_stretch, "
+        "map_film_thickness, designs, design_tips, "
         "design_profiles.\n\n"
         "Beside each picture lie its gnuplot script and data, for other styles: gnuplot NAME.gp",
     .options = options,

@@ -59,16 +59,14 @@ static dea_status add_directions(struct dea_context *ctx, struct dea_panel *pane
 }
 
 /* The key above: in one row, or in two where voltages are not to be trusted and their titles
- * longer.
- */
-static const char *key_of(const struct dea_panel *panel)
+ * longer. */
+static void place_key(struct dea_panel *panel)
 {
-  for (size_t s = 0; s < panel->series_count; s++) {
-    if (strchr(panel->series[s].title, '?') != NULL) {
-      return "above horizontal maxrows 2 samplen 1 width key_width";
-    }
+  bool doubtful = false;
+  for (size_t i = 0; i < panel->series_count; i++) {
+    doubtful = doubtful || strchr(panel->series[i].title, '?') != NULL;
   }
-  return "above horizontal maxrows 1 samplen 1 width key_width";
+  dea_panel_key_above(panel, doubtful ? 2 : 1);
 }
 
 static void set_labels(struct dea_plot *plot, const struct dea_profile_record *last)
@@ -81,7 +79,7 @@ static void set_labels(struct dea_plot *plot, const struct dea_profile_record *l
     panel->x_min = last->count > 0 ? fmin(0, 1e3 * last->columns[0]) : 0;
     panel->x_max = last->count > 0 ? 1e3 * last->columns[last->count - 1] : panel->x_max;
   }
-  plot->panels[0].key = key_of(&plot->panels[0]);
+  place_key(&plot->panels[0]);
   plot->panels[1].key = "inside vertical top right maxrows auto samplen 2.2 width 0";
   snprintf(plot->panels[0].y_label, DEA_LABEL_SIZE, "Total stretch {/:Italic \316\273}");
   snprintf(plot->panels[1].y_label, DEA_LABEL_SIZE, "Tension {/:Italic T} (N/m)");

@@ -63,17 +63,6 @@ static dea_status add_test(struct dea_context *ctx, struct dea_plot *plot,
   return DEA_OK;
 }
 
-// Keys above the figure, in two columns; by rows.
-static const char *const keys[TESTS_MAX / 2 + 1] = {
-    NULL,
-    NULL,
-    NULL,
-    "above horizontal maxrows 3 samplen 1 width key_width",
-    "above horizontal maxrows 4 samplen 1 width key_width",
-    "above horizontal maxrows 5 samplen 1 width key_width",
-    "above horizontal maxrows 6 samplen 1 width key_width",
-};
-
 /* The x axis from the first to the last point of a panel, a logarithmic one without the time 0. */
 static void limit(const struct dea_panel *from, struct dea_panel *to)
 {
@@ -147,7 +136,10 @@ static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool 
   for (size_t p = 0; p < 2; p++) {
     struct dea_panel *panel = &plot->panels[p];
     panel->logarithmic_x = time;
-    panel->key = number > 4 ? keys[(number + 1) / 2] : time ? "top right" : "top left";
+    panel->key = time ? "top right" : "top left";
+    if (number > 4) {
+      dea_panel_key_above(panel, (number + 1) / 2); // in two columns
+    }
     limit(&plot->panels[0], panel);
     dea_panel_even_tics(panel, p == 0 ? 7 : 4);
     snprintf(panel->x_label, sizeof panel->x_label,

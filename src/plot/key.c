@@ -50,6 +50,15 @@ static bool crosses(const struct dea_series *series, const struct range *x, cons
   return false;
 }
 
+void dea_panel_key_above(struct dea_panel *panel, size_t rows)
+{
+#define KEY(rows) "above horizontal maxrows " rows " samplen 1 width key_width"
+  static const char *const keys[] = {KEY("1"), KEY("2"), KEY("3"), KEY("4"), KEY("5"), KEY("6")};
+#undef KEY
+  size_t most = sizeof keys / sizeof keys[0];
+  panel->key = keys[rows < 1 ? 0 : rows > most ? most - 1 : rows - 1];
+}
+
 void dea_panel_place_key(struct dea_panel *panel)
 {
   static const struct {

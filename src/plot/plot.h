@@ -111,6 +111,8 @@ void dea_panel_even_tics(struct dea_panel *panel, int most);
 /* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
  * called when all series are there. */
 void dea_panel_place_key(struct dea_panel *panel);
+/* Puts the key above the panel, in so many rows (1 to 6). */
+void dea_panel_key_above(struct dea_panel *panel, size_t rows);
 /* True when a series, or some series of a plot, has a point to show. */
 bool dea_series_shows(const struct dea_series *series);
 bool dea_plot_shows(const struct dea_plot *plot);

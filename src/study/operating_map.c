@@ -2,6 +2,7 @@
  * Each row is the equilibrium path of one design, so that its limits are those of the path, to the
  * solver's accuracy. */
 #include "device/geometry.h"
+#include "study/operating_map_figure.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -42,6 +43,17 @@ static const struct dea_result_column scale_columns[] = {
      .factor = 100,
      .title = "step of strain",
      .meaning = "of the electrode's radius, from one level to the next; without fibres"},
+    {.key = "displacements",
+     .kind = DEA_CELL_TEXT,
+     .title = "displacements",
+     .meaning = "\"upper bounds\", or nothing where they are predictions"},
+    {.key = "own_pre_stretch", .title = "pre-stretch", .meaning = "of the design itself"},
+    {.key = "own_film_thickness_m",
+     .si_unit = "m",
+     .display_unit = "um",
+     .factor = 1e6,
+     .title = "film thickness",
+     .meaning = "of the design itself, unstretched"},
 };
 static const struct dea_result_column pre_stretch_columns[] = {
     {.key = "pre_stretch", .title = "pre-stretch", .meaning = "of the film"}, LIMITS};
@@ -109,6 +121,7 @@ struct map {
   const struct dea_model_type *type;
   double highest_V, end_V;
   bool lift;   // levels of the fibre tip's displacement [m]; else of the strain
+  bool bound;  // which is an upper bound
   double step; // between levels; NAN: none
   struct dea_design *varied;
   struct limits now; // being filled
@@ -209,6 +222,7 @@ static dea_status choose_step(struct dea_context *ctx, const struct dea_result *
   for (double share = 1; share > 0.1 && !(reached > 0); share -= 0.1) {
     if (map->type->solve(ctx, model, share * map->highest_V, &point) == DEA_OK) {
       reached = level_value(map, &point);
+      map->bound = map->lift && dea_load_point_bounds(&point);
     }
   }
   dea_finding_trial_end(ctx, errors);
@@ -256,7 +270,10 @@ static dea_status add_map(struct dea_context *ctx, struct map *map, struct dea_r
   const struct dea_result_table_value row[] = {{.number = map->highest_V},
                                                {.number = map->end_V},
                                                {.number = map->lift ? map->step : NAN},
-                                               {.number = map->lift ? NAN : map->step}};
+                                               {.number = map->lift ? NAN : map->step},
+                                               {.text = map->bound ? "upper bounds" : ""},
+                                               {.number = result->design->pre_stretch.si},
+                                               {.number = result->design->film.thickness_m.si}};
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &scale_table, map->type->name, 0, &scale));
   DEA_TRY(ctx, dea_result_table_add_row(ctx, scale, row));
   for (size_t i = 0; i < COUNT(parameters); i++) {
@@ -297,4 +314,6 @@ const struct dea_study dea_study_operating_map = {.name = study_name,
                                                   .own_models = true,
                                                   .ability = "equilibrium path",
                                                   .able = able,
-                                                  .run = run};
+                                                  .run = run,
+                                                  .figures = dea_operating_map_figures,
+                                                  .figure_count = DEA_OPERATING_MAP_FIGURES};

@@ -100,7 +100,7 @@ static dea_status build_profiles(const struct drawing *d, struct dea_plot *plot)
   begin_at_zero(panel);
   panel->x_min = 1e3 * (r->levelling.edges_m[0] - r->levelling.centre_m);
   panel->x_max = 1e3 * (r->levelling.edges_m[1] - r->levelling.centre_m);
-  panel->key = "above horizontal maxrows 2 samplen 1 width key_width";
+  dea_panel_key_above(panel, 2);
   snprintf(panel->x_label, sizeof panel->x_label, "Distance from the centre {/:Italic x} (mm)");
   snprintf(panel->y_label, sizeof panel->y_label, "Displacement {/:Italic z} (\302\265m)");
   return DEA_OK;
@@ -294,7 +294,7 @@ static dea_status build_cycles(const struct drawing *d, struct dea_plot *plot)
   begin_at_zero(panel);
   panel->x_min = 0.5;
   panel->x_max = (double)most + 0.5;
-  panel->key = "above horizontal maxrows 2 samplen 1 width key_width";
+  dea_panel_key_above(panel, 2);
   snprintf(panel->x_label, sizeof panel->x_label, "Cycle");
   snprintf(panel->y_label, sizeof panel->y_label, "%s",
            kind == DEA_REDUCED_FORCE    ? "Force {/:Italic F} (mN)"

@@ -275,6 +275,20 @@ static void add_marks(struct dea_text *out, const struct dea_panel *panel, const
   dea_text_add(out, "</g>");
 }
 
+/* Whether the key has it already, for a panel above. */
+static bool is_known(const struct dea_plot *plot, size_t panel, const struct dea_series *series)
+{
+  bool known = false;
+  for (size_t p = 0; p < panel && !known; p++) {
+    for (size_t s = 0; s < plot->panels[p].series_count && !known; s++) {
+      const struct dea_series *other = &plot->panels[p].series[s];
+      known = shows(other) && other->style == series->style && other->colour == series->colour &&
+              strcmp(other->title, series->title) == 0;
+    }
+  }
+  return known;
+}
+
 static void add_key(struct dea_text *out, const struct dea_plot *plot)
 {
   const char *dashed = NULL;
@@ -283,7 +297,7 @@ static void add_key(struct dea_text *out, const struct dea_plot *plot)
     dashed = plot->panels[p].dashed != NULL ? plot->panels[p].dashed : dashed;
     for (size_t s = 0; s < plot->panels[p].series_count; s++) {
       const struct dea_series *series = &plot->panels[p].series[s];
-      if (series->title[0] == '\0' || !shows(series)) {
+      if (series->title[0] == '\0' || !shows(series) || is_known(plot, p, series)) {
         continue;
       }
       dea_text_add(out, "<li><svg class=\"sample\" viewBox=\"0 0 28 14\" aria-hidden=\"true\">");

@@ -43,12 +43,21 @@ static dea_status add_figure(struct dea_report *report, const struct dea_figure 
   return status;
 }
 
+static bool has_tables(const struct dea_result *result, const char *study)
+{
+  bool found = false;
+  for (size_t i = 0; i < result->table_count && !found; i++) {
+    found = result->tables[i].row_count > 0 && strcmp(result->tables[i].type.study, study) == 0;
+  }
+  return found;
+}
+
 /* Whether it is one of the study; for NULL whether no study has a section that it stands in. */
 static bool belongs(const struct dea_figure *figure, const struct dea_result *result,
                     const char *study)
 {
   if (study == NULL) {
-    return figure->study == NULL || first_table(result, figure->study) == NULL;
+    return figure->study == NULL || !has_tables(result, figure->study);
   }
   return figure->study != NULL && strcmp(figure->study, study) == 0;
 }

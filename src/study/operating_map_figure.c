@@ -1,0 +1,202 @@
+#include "study/operating_map_figure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char study[] = "operating-map";
+
+/* A parameter of the map: its table, the key of its values there, that of the design's own. */
+struct parameter {
+  const char *table, *key, *own, *label;
+  double factor; // display unit
+};
+
+static const struct parameter parameters[] = {
+    {"pre_stretch", "pre_stretch", "own_pre_stretch", "Pre-stretch", 1},
+    {"film_thickness", "film_thickness_m", "own_film_thickness_m",
+     "Thickness of the unstretched film (\302\265m)", 1e6},
+};
+
+struct map {
+  const struct parameter *parameter;
+  const struct dea_result_table *table;
+  double highest_V, end_V;
+  double lift_step_m, strain_step; // between levels; one is NAN, or both: none
+  bool bound;                      // a displacement is an upper bound
+};
+
+static double value(const struct map *map, size_t row)
+{
+  return map->parameter->factor * dea_result_table_number(map->table, row, map->parameter->key, 0);
+}
+
+/* A band from where a limit is up to the top, over the rows that have it. */
+static dea_status add_region(struct dea_context *ctx, struct dea_panel *panel,
+                             const struct map *map, const char *key, const char *title,
+                             enum dea_colour colour)
+{
+  struct dea_series *band, *line;
+  size_t rows = map->table->row_count;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &band));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &line));
+  band->style = DEA_BAND;
+  band->to_top = true;
+  band->colour = line->colour = colour;
+  snprintf(line->title, sizeof line->title, "%s", title);
+  for (size_t i = 0; i < rows; i++) {
+    double at_V = dea_result_table_number(map->table, i, key, 0);
+    band->values[i] = line->values[i] = value(map, i);
+    if (at_V <= map->end_V) {
+      band->values[rows + i] = line->values[rows + i] = 1e-3 * at_V;
+      band->values[2 * rows + i] = 1e-3 * map->end_V;
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status add_levels(struct dea_context *ctx, struct dea_panel *panel,
+                             const struct map *map)
+{
+  bool lift = map->lift_step_m > 0, small = map->lift_step_m < 1e-3;
+  double step = lift ? map->lift_step_m : map->strain_step;
+  size_t rows = map->table->row_count;
+  static const enum dea_colour order[] = {DEA_GREEN, DEA_BLUE, DEA_ORANGE, DEA_BLACK};
+  for (size_t k = 0; k < map->table->width && step > 0; k++) {
+    struct dea_series *series;
+    DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &series));
+    series->style = k < 4 ? DEA_LINE : DEA_DASHED;
+    series->colour = order[k % 4];
+    double level = step * (double)(k + 1);
+    snprintf(series->title, sizeof series->title,
+             !lift        ? "strain %g %s"
+             : map->bound ? "{/:Italic z} \342\211\244 %g %s"
+                          : "{/:Italic z} = %g %s",
+             level * (lift ? (small ? 1e6 : 1e3) : 100), lift ? (small ? "\302\265m" : "mm") : "%");
+    for (size_t i = 0; i < rows; i++) {
+      series->values[i] = value(map, i);
+      series->values[rows + i] = 1e-3 * dea_result_table_number(map->table, i, "level_V", k);
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status draw(struct dea_context *ctx, const struct map *map, double own,
+                       struct dea_panel *panel)
+{
+  struct dea_series *here;
+  DEA_TRY(ctx, add_region(ctx, panel, map, "breakdown_V", "breakdown above", DEA_VERMILLION));
+  DEA_TRY(ctx, add_region(ctx, panel, map, "slack_V", "slack above", DEA_SKY));
+  DEA_TRY(ctx, add_region(ctx, panel, map, "pull_in_V", "pull-in", DEA_PURPLE));
+  DEA_TRY(ctx, add_levels(ctx, panel, map));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &here));
+  here->style = DEA_MARKERS;
+  here->colour = DEA_BLACK;
+  here->marker = 5;
+  snprintf(here->title, sizeof here->title, "this design");
+  here->values[0] = map->parameter->factor * own;
+  here->values[1] = 1e-3 * map->highest_V;
+  snprintf(panel->x_label, sizeof panel->x_label, "%s", map->parameter->label);
+  snprintf(panel->y_label, sizeof panel->y_label, "Voltage {/:Italic V} (kV)");
+  panel->x_min = value(map, 0);
+  panel->x_max = value(map, map->table->row_count - 1);
+  panel->y_min = 0;
+  return DEA_OK;
+}
+
+static bool is_bound(const struct dea_result_table *scale)
+{
+  bool found = false;
+  for (size_t c = 0; scale != NULL && c < scale->type.column_count; c++) {
+    if (strcmp(scale->type.columns[c].key, "displacements") == 0) {
+      found = dea_result_table_cell(scale, 0, c)->text[0] != '\0';
+    }
+  }
+  return found;
+}
+
+/* The map of a model; the panel stays without series where there is none. */
+static dea_status add_map(struct dea_context *ctx, const struct dea_result *result,
+                          const char *model, const struct parameter *parameter,
+                          struct dea_panel *panel)
+{
+  const struct dea_result_table *scale = dea_result_find_table(result, model, study, "");
+  struct map map = {.parameter = parameter,
+                    .table = dea_result_find_table(result, model, study, parameter->table),
+                    .bound = is_bound(scale)};
+  if (scale == NULL || map.table == NULL || map.table->row_count == 0) {
+    return DEA_OK;
+  }
+  map.highest_V = dea_result_table_number(scale, 0, "highest_voltage_V", 0);
+  map.end_V = dea_result_table_number(scale, 0, "end_voltage_V", 0);
+  map.lift_step_m = dea_result_table_number(scale, 0, "displacement_step_m", 0);
+  map.strain_step = dea_result_table_number(scale, 0, "strain_step", 0);
+  return draw(ctx, &map, dea_result_table_number(scale, 0, parameter->own, 0), panel);
+}
+
+/* The key of the first panel says what is in both: what only the second one shows gets a point
+ * there beside the axes. */
+static void fill_key(struct dea_plot *plot)
+{
+  struct dea_panel *first = &plot->panels[0];
+  size_t titles = 0;
+  for (size_t i = 0; i < first->series_count; i++) {
+    struct dea_series *series = &first->series[i];
+    if (plot->panel_count > 1 && i < plot->panels[1].series_count && !dea_series_shows(series) &&
+        dea_series_shows(&plot->panels[1].series[i])) {
+      series->values[0] = 2 * first->x_max;
+      series->values[series->count] = first->y_max;
+    }
+    titles += series->title[0] != '\0' && dea_series_shows(series);
+  }
+  dea_panel_key_above(first, (titles + 1) / 2); // in two columns
+}
+
+/* Of the first models that have it, one above the other. */
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot, const struct parameter *parameter)
+{
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX), shown = 0;
+  for (size_t m = 0; m < count && shown < DEA_PLOT_PANELS_MAX; m++) {
+    struct dea_panel *panel = &plot->panels[shown];
+    DEA_TRY(ctx, add_map(ctx, result, models[m], parameter, panel));
+    if (panel->series_count > 0) {
+      const struct dea_result_table *scale = dea_result_find_table(result, models[m], study, "");
+      panel->y_max = 1e-3 * dea_result_table_number(scale, 0, "end_voltage_V", 0);
+      snprintf(panel->y_label, sizeof panel->y_label, "{/:Italic V} (kV), model %.40s", models[m]);
+      panel->key = "off"; // the first one's says all
+      plot->panel_count = ++shown;
+    }
+  }
+  fill_key(plot);
+  plot->second_height = 1;
+  return DEA_OK;
+}
+
+static dea_status build_pre_stretch(struct dea_context *ctx, const struct dea_result *result,
+                                    struct dea_plot *plot)
+{
+  return build(ctx, result, plot, &parameters[0]);
+}
+
+static dea_status build_film_thickness(struct dea_context *ctx, const struct dea_result *result,
+                                       struct dea_plot *plot)
+{
+  return build(ctx, result, plot, &parameters[1]);
+}
+
+const struct dea_figure dea_operating_map_figures[DEA_OPERATING_MAP_FIGURES] = {
+    {
+        .name = "map_pre_stretch",
+        .study = study,
+        .caption = "where the actuator can be used: voltage and pre-stretch",
+        .build = build_pre_stretch,
+    },
+    {
+        .name = "map_film_thickness",
+        .study = study,
+        .caption = "where the actuator can be used: voltage and film thickness",
+        .build = build_film_thickness,
+    },
+};
