@@ -80,6 +80,33 @@ static void test_missing_values(void **state)
   dea_table_destroy(ctx, table);
 }
 
+/* Rows of missing values above the first number, and below the last one, are rows: without a column
+ * of times all that follows would come too early. */
+static void test_rows_of_missing_values(void **state)
+{
+  (void)state;
+  enum { ROWS = 2500 }; // more than the dialect is found in
+  static char text[ROWS * 16];
+  size_t n = (size_t)sprintf(text, "V (kV),note,I (uA)\nnan,ok,nan\nOL,ok,nan\n");
+  for (int i = 0; i < ROWS; i++) {
+    n += (size_t)sprintf(text + n, "%d,ok,%d\n", i % 7, i % 5);
+  }
+  struct dea_table *table = read_text("head.csv", text);
+  const struct dea_table_column *v = column_of(table, "V");
+  assert_int_equal(v->count, ROWS + 2);
+  assert_true(isnan(v->values[0]) && isnan(v->values[1]) && v->values[3] == 1);
+  assert_string_equal(v->unit, "kV");
+  dea_table_destroy(ctx, table);
+  static const double w[] = {NAN, 1, 2, NAN, NAN}, t[] = {0, 1};
+  table = read_text("both.csv", "V (kV),W (kV)\nNaN,-nan(ind)\n1,1\n2,2\nnan,nan\nnan,nan\n");
+  assert_column(table, "W", "kV", w, 5);
+  dea_table_destroy(ctx, table);
+  table = read_text("dashes.csv", "Time (s),note,V (kV)\n-,-,-\n0,ok,0\n1,ok,1\n"); // no units
+  assert_column(table, "Time", "s", t, 2);
+  assert_column(table, "V", "kV", t, 2);
+  dea_table_destroy(ctx, table);
+}
+
 /* To the last bit: against strtod in the C locale. */
 static void test_numbers_exact(void **state)
 {
@@ -208,10 +235,15 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dialects),       cmocka_unit_test(test_encodings),
-      cmocka_unit_test(test_missing_values), cmocka_unit_test(test_numbers_exact),
-      cmocka_unit_test(test_headers),        cmocka_unit_test(test_text_columns_and_rates),
-      cmocka_unit_test(test_refused),        cmocka_unit_test(test_late_errors),
+      cmocka_unit_test(test_dialects),
+      cmocka_unit_test(test_encodings),
+      cmocka_unit_test(test_missing_values),
+      cmocka_unit_test(test_rows_of_missing_values),
+      cmocka_unit_test(test_numbers_exact),
+      cmocka_unit_test(test_headers),
+      cmocka_unit_test(test_text_columns_and_rates),
+      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_late_errors),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

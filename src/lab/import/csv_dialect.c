@@ -19,7 +19,7 @@ struct sample {
 /* One way to read them, and how well it does. */
 struct candidate {
   char separator, decimal;
-  size_t count, rows, numeric, first;
+  size_t count, rows, numeric, first, last; // rows: of its form; first, last: lines
   bool all_numeric;
 };
 
@@ -82,17 +82,41 @@ static size_t classify_fields(struct dea_slice line, const struct candidate *c, 
   return numeric;
 }
 
+/* Whether a line without a number says so in words (NaN, OL), not by dashes as a line of units. */
+static bool says_missing(struct dea_slice line)
+{
+  for (size_t i = 0; i < line.length; i++) {
+    if (isalnum((unsigned char)line.text[i])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* The line itself, or the last one before it that is not all of missing values. */
+static size_t skip_missing(const struct sample *sample, size_t line, const struct candidate *c,
+                           bool *text)
+{
+  size_t count;
+  while (line > 0 && classify_fields(sample->lines[line], c, text, &count) == 0 &&
+         count <= DEA_TABLE_COLUMNS_MAX && memchr(text, true, count) == NULL) {
+    line--;
+  }
+  return line;
+}
+
 /* How many lines before and with `last` are of its form. */
 static void judge(const struct sample *sample, size_t last, struct candidate *c, bool *text,
                   bool *other)
 {
   c->rows = 0;
+  last = skip_missing(sample, last, c, text);
   c->numeric = classify_fields(sample->lines[last], c, text, &c->count);
   if (c->numeric == 0 || c->count > DEA_TABLE_COLUMNS_MAX) {
     return;
   }
   c->all_numeric = memchr(text, true, c->count) == NULL;
-  c->first = last;
+  c->first = c->last = last;
   c->rows = 1;
   for (size_t i = last; i-- > 0;) {
     size_t count, numeric = classify_fields(sample->lines[i], c, other, &count);
@@ -104,7 +128,7 @@ static void judge(const struct sample *sample, size_t last, struct candidate *c,
       break;
     }
     c->rows++;
-    c->first = numeric > 0 ? i : c->first;
+    c->first = numeric > 0 || says_missing(sample->lines[i]) ? i : c->first;
   }
 }
 
@@ -295,7 +319,7 @@ static dea_status fill(const struct sample *sample, struct dea_slice text,
   }
   const struct candidate chosen = {.separator = out->separator, .decimal = out->decimal};
   size_t count;
-  classify_fields(sample->lines[best->first + best->rows - 1], &chosen, out->text, &count);
+  classify_fields(sample->lines[best->last], &chosen, out->text, &count);
   return DEA_OK;
 }
 

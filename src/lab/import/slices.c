@@ -127,11 +127,14 @@ size_t dea_slice_count(struct dea_slice line, char separator)
 /* What instruments and programs write where they have no number. */
 static bool is_missing(struct dea_slice slice)
 {
-  static const char *const words[] = {
-      "",       "nan",     "-nan",    "+nan",     "na",       "n/a",      "#n/a",
-      "null",   "none",    "-",       "--",       "---",      "inf",      "-inf",
-      "+inf",   "ol",      "-ol",     "+ol",      "1.#qnan",  "1.#ind",   "-1.#ind",
-      "1.#inf", "-1.#inf", "invalid", "overload", "overflow", "infinity", "-infinity"};
+  static const char *const words[] = {"",         "nan",      "-nan",     "+nan",
+                                      "na",       "n/a",      "#n/a",     "null",
+                                      "none",     "-",        "--",       "---",
+                                      "inf",      "-inf",     "+inf",     "ol",
+                                      "-ol",      "+ol",      "1.#qnan",  "1.#ind",
+                                      "-1.#ind",  "1.#inf",   "-1.#inf",  "invalid",
+                                      "overload", "overflow", "infinity", "-infinity",
+                                      "nan(ind)", "-nan(ind)"}; // of Windows' printf
   for (size_t i = 0; slice.length < 10 && i < sizeof words / sizeof words[0]; i++) {
     if (dea_slice_is(slice, words[i])) {
       return true;

@@ -55,16 +55,11 @@ static void name_and_unit(struct dea_context *ctx, struct dea_slice title,
 {
   struct dea_slice name = title, unit = {"", 0};
   if (given != NULL && given->length > 0) {
-    double factor;
-    char text[64];
     unit = *given;
     bool bracket = unit.length > 2 && (unit.text[0] == '(' || unit.text[0] == '[');
     unit = bracket ? dea_slice_trim((struct dea_slice){unit.text + 1, unit.length - 2}) : unit;
-    snprintf(text, sizeof text, "%.*s", shown(unit), unit.text);
-    unit = dea_slice_is(unit, "-") && dea_title_unit(ctx, text, &factor) == NULL
-               ? (struct dea_slice){"", 0}
-               : unit;
-  } else {
+  }
+  if (unit.length == 0 || dea_slice_is(unit, "-")) { // of dashes alone the title has it
     dea_title_split(ctx, title, &name, &unit);
   }
   *name_out = name;
