@@ -199,7 +199,9 @@ static void test_clock_errors(void **state)
       {"t (s),V (kV)\n0,1\n1,2\n1,3\n2,4\n", "repeats 1 in row 3"},
       {"t (s),V (kV)\n0,1\n1,2\n2,3\n0,4\n1,5\n", "starts again in row 4"},
       {"t (s),V (kV)\n0,1\n1,2\n2,3\n1.5,4\n", "falls in row 4"},
-      {"t (s),V (kV)\n0,1\n,2\n2,3\n", "no time in row 2"},
+      {"t (s),V (kV)\n0,1\n,2\n2,3\n", "no time in row 2 of its numbers, where 'V'"},
+      {"t (s),V (kV)\n0,1\n1,2\n2,\n,3\n,\n", "no time in row 4"},
+      {"Time,V (kV)\n,\n46348.4188,1\n46348.4189,2\n46348.4190,3\n", "spreadsheet"},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct dea_recording *recording;
@@ -217,6 +219,28 @@ static void test_clock_errors(void **state)
   assert_int_equal(dea_table_record(ctx, table, NULL, &recording), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "could be taken for anything"));
   dea_table_destroy(ctx, table);
+}
+
+/* Columns on clocks of their own end where their times do: the shorter ones are blank from there
+ * on. Rows without a time and without a value say nothing. */
+static void test_rows_without_a_time(void **state)
+{
+  (void)state;
+  struct dea_recording *recording = record_text(
+      "t1 (s),V (kV),t2 (ms),z (um)\n,,,\n0,1,0,5\n1,2,500,6\n,,1000,\n2,,,\n3,4,,\n", NULL);
+  const struct dea_channel *v = &recording->channels[0], *z = &recording->channels[1];
+  assert_int_equal(v->count, 4);
+  assert_close(v->interval_s, 1, 1e-12, 0);
+  assert_true(v->values[1] == 2000 && isnan(v->values[2]) && v->values[3] == 4000);
+  assert_int_equal(z->count, 3);
+  assert_close(z->interval_s, 0.5, 1e-12, 0);
+  assert_close(z->values[1], 6e-6, 1e-12, 0);
+  assert_true(isnan(z->values[2]));
+  dea_recording_destroy(ctx, recording);
+  recording = record_text("t (s),V (kV)\n0,1\n1,2\n,\n5,3\n", NULL);
+  assert_int_equal(recording->channels[0].count, 3);
+  assert_true(recording->channels[0].time_s[2] == 5 && recording->channels[0].values[2] == 3000);
+  dea_recording_destroy(ctx, recording);
 }
 
 /* Times written with few digits are uniform; a lost sample is not. Since 1970 becomes since 0. */
@@ -335,15 +359,11 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_guesses),
-      cmocka_unit_test(test_mapping),
-      cmocka_unit_test(test_profile),
-      cmocka_unit_test(test_mapping_errors),
-      cmocka_unit_test(test_clock_errors),
-      cmocka_unit_test(test_jitter),
-      cmocka_unit_test(test_join),
-      cmocka_unit_test(test_comsol),
-      cmocka_unit_test(test_comsol_sections),
+      cmocka_unit_test(test_guesses),      cmocka_unit_test(test_mapping),
+      cmocka_unit_test(test_profile),      cmocka_unit_test(test_mapping_errors),
+      cmocka_unit_test(test_clock_errors), cmocka_unit_test(test_rows_without_a_time),
+      cmocka_unit_test(test_jitter),       cmocka_unit_test(test_join),
+      cmocka_unit_test(test_comsol),       cmocka_unit_test(test_comsol_sections),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

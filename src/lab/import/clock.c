@@ -6,21 +6,27 @@
  * of a step they are taken for uniform. */
 static const double jitter_max = 0.01;
 
+/* The first row from `i` on that has a time; the column's count: none. */
+static size_t next_number(const struct dea_table_column *column, size_t i)
+{
+  while (i < column->count && isnan(column->values[i])) {
+    i++;
+  }
+  return i;
+}
+
 static dea_status refuse(struct dea_context *ctx, const struct dea_table *table,
-                         const struct dea_table_column *column, size_t row)
+                         const struct dea_table_column *column, size_t row, size_t row_before)
 {
   const struct dea_location location = {table->file, 0, 0};
-  double before = row > 0 ? column->values[row - 1] : NAN, now = column->values[row];
-  if (isnan(now) || (row > 0 && isnan(before))) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
-                                 "the time column '%.60s' has no time in row %zu of its numbers",
-                                 column->name, row + (isnan(now) ? 1 : 0)));
-  } else if (now == before) {
+  double first = column->values[next_number(column, 0)];
+  double before = column->values[row_before], now = column->values[row];
+  if (now == before) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "the time column '%.60s' repeats %.10g in row %zu of its numbers: "
                                  "it has too few digits; give the rate in a mapping (rate: 10 kHz)",
                                  column->name, now, row + 1));
-  } else if (now <= column->values[0] + fabs(before - column->values[0]) * 1e-3) {
+  } else if (now <= first + fabs(before - first) * 1e-3) {
     DEA_TRY(ctx,
             dea_finding_add(ctx, DEA_ERROR, location,
                             "the time column '%.60s' starts again in row %zu of its numbers "
@@ -35,33 +41,74 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_table *table,
   return dea_fail(ctx, DEA_E_IO, "'%s' has times that do not rise", table->file);
 }
 
+/* Start and interval of `count` times that rise, if they are uniform. */
+static bool is_uniform(const struct dea_table_column *c, size_t count, double *start,
+                       double *interval)
+{
+  size_t last = c->count, i = next_number(c, 0);
+  while (last > 0 && isnan(c->values[last - 1])) {
+    last--;
+  }
+  *start = count > 0 ? c->values[i] : 0;
+  *interval = count > 1 ? (c->values[last - 1] - *start) / (double)(count - 1) : 0;
+  double worst = 0;
+  for (size_t n = 0; n < count; n++, i = next_number(c, i + 1)) {
+    worst = fmax(worst, fabs(c->values[i] - (*start + (double)n * *interval)));
+  }
+  return count > 1 && worst <= jitter_max * *interval;
+}
+
 dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table, size_t column,
                           double factor, struct dea_clock *out)
 {
   const struct dea_table_column *c = &table->columns[column];
-  *out = (struct dea_clock){.count = c->count};
-  for (size_t i = 0; i < c->count; i++) {
-    if (isnan(c->values[i]) || (i > 0 && !(c->values[i] > c->values[i - 1]))) {
-      return refuse(ctx, table, c, i);
+  size_t before = c->count;
+  *out = (struct dea_clock){0};
+  for (size_t i = next_number(c, 0); i < c->count; i = next_number(c, i + 1)) {
+    if (before < c->count && !(c->values[i] > c->values[before])) {
+      return refuse(ctx, table, c, i, before);
     }
+    before = i;
+    out->count++;
   }
-  double step =
-      c->count > 1 ? (c->values[c->count - 1] - c->values[0]) / (double)(c->count - 1) : 0;
-  double worst = 0;
-  for (size_t i = 0; i < c->count; i++) {
-    worst = fmax(worst, fabs(c->values[i] - (c->values[0] + (double)i * step)));
+  if (out->count == 0 && c->count > 0) {
+    return dea_fail(ctx, DEA_E_IO, "in '%s' the time column '%.60s' has no times", table->file,
+                    c->name);
   }
-  out->start_s = c->count > 0 ? c->values[0] * factor : 0;
-  if (c->count > 1 && worst <= jitter_max * step) {
-    out->interval_s = step * factor;
+  double start, interval;
+  bool uniform = is_uniform(c, out->count, &start, &interval);
+  out->start_s = start * factor;
+  if (uniform) {
+    out->interval_s = interval * factor;
     return DEA_OK;
   }
-  out->time_s = dea_alloc(ctx, c->count, sizeof *out->time_s);
+  out->time_s = dea_alloc(ctx, out->count, sizeof *out->time_s);
   if (out->time_s == NULL) {
     return DEA_E_MEMORY;
   }
+  size_t n = 0;
+  for (size_t i = next_number(c, 0); i < c->count; i = next_number(c, i + 1)) {
+    out->time_s[n++] = c->values[i] * factor;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_clock_take(struct dea_context *ctx, const struct dea_table *table, size_t column,
+                          size_t times, double factor, double offset, size_t step, double *out)
+{
+  const struct dea_table_column *c = &table->columns[column], *t = &table->columns[times];
+  size_t n = 0;
   for (size_t i = 0; i < c->count; i++) {
-    out->time_s[i] = c->values[i] * factor;
+    if (!isnan(t->values[i])) {
+      out[step * n++] = c->values[i] * factor + offset;
+    } else if (!isnan(c->values[i])) {
+      const struct dea_location location = {table->file, 0, 0};
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
+                                   "the time column '%.60s' has no time in row %zu of its numbers, "
+                                   "where '%.60s' has a value",
+                                   t->name, i + 1, c->name));
+      return dea_fail(ctx, DEA_E_IO, "'%s' has values without a time", table->file);
+    }
   }
   return DEA_OK;
 }
@@ -73,12 +120,17 @@ dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_tab
   static const double first_day = 36526, last_day = 54788, step_days = 0.01;
   const struct dea_location location = {table->file, 0, 0};
   const struct dea_table_column *c = &table->columns[column];
-  double first = c->count > 0 ? c->values[0] : 0;
-  double span = c->count > 1 ? c->values[c->count - 1] - first : 0;
+  double first, interval;
+  size_t count = 0;
+  for (size_t i = next_number(c, 0); i < c->count; i = next_number(c, i + 1)) {
+    count++;
+  }
+  is_uniform(c, count, &first, &interval);
+  double span = interval * (double)(count - 1);
   // 1e11 s are 3000 years
   const char *unit = first > 1e17 ? "ns" : first > 1e14 ? "us" : first > 1e11 ? "ms" : NULL;
-  if (first >= first_day && first < last_day && span > 0 &&
-      span < step_days * (double)(c->count - 1) && (floor(first) != first || span < 1)) {
+  if (first >= first_day && first < last_day && span > 0 && interval < step_days &&
+      (floor(first) != first || span < 1)) {
     unit = "day";
   }
   if (unit == NULL) {

@@ -140,7 +140,10 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
   if (a->all_numeric != b->all_numeric) {
     return a->all_numeric;
   }
-  return a->rows != b->rows ? a->rows > b->rows : a->numeric > b->numeric;
+  if (a->rows != b->rows || a->numeric != b->numeric) {
+    return a->rows != b->rows ? a->rows > b->rows : a->numeric > b->numeric;
+  }
+  return a->count > b->count; // "2," is a number and a missing one, not 2.0
 }
 
 /* "1,234.5" or "1.234,5". */

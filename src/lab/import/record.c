@@ -121,6 +121,21 @@ static dea_status copy_times(struct work *work, const struct dea_clock *clock, b
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
+/* SI values of a column, of the rows that have a time, `step` apart. */
+static dea_status copy_values(struct work *work, size_t column, size_t step, double *out)
+{
+  const struct dea_table_column *c = &work->table->columns[column];
+  const struct dea_column_role *role = &work->roles[column];
+  if (role->clock > 0) {
+    return dea_clock_take(work->ctx, work->table, column, role->clock - 1, role->factor,
+                          role->offset, step, out);
+  }
+  for (size_t i = 0; i < c->count; i++) {
+    out[step * i] = c->values[i] * role->factor + role->offset;
+  }
+  return DEA_OK;
+}
+
 // Channels ---------------------------------------------------------------------------------------
 
 static const struct dea_mapped *mapped_get(const struct work *work, size_t column)
@@ -172,7 +187,7 @@ static dea_status add_channel(struct work *work, size_t column)
   struct dea_channel channel = {
       .kind = role->kind, .interval_s = clock.interval_s, .filter_Hz = NAN};
   channel.start_s = clock.start_s - work->origin_s;
-  channel.count = c->count;
+  channel.count = clock.count;
   bool named = mapped != NULL && mapped->name.text[0] != '\0';
   name_channel(work, named ? mapped->name.text : c->name, &channel);
   bool other = role->kind == DEA_CHANNEL_OTHER;
@@ -185,14 +200,12 @@ static dea_status add_channel(struct work *work, size_t column)
     channel.filter_Hz = mapped->filter_Hz.si;
   }
   DEA_TRY(work->ctx, copy_times(work, &clock, false, &channel.time_s));
-  channel.values = dea_alloc(work->ctx, c->count, sizeof *channel.values);
+  channel.values = dea_alloc(work->ctx, clock.count, sizeof *channel.values);
   recording->channels[recording->channel_count++] = channel; // owns the times from here on
   if (channel.values == NULL) {
     return DEA_E_MEMORY;
   }
-  for (size_t i = 0; i < c->count; i++) {
-    channel.values[i] = c->values[i] * role->factor + role->offset;
-  }
+  DEA_TRY(work->ctx, copy_values(work, column, 1, channel.values));
   return dea_finding_add(work->ctx, DEA_NOTE, file_place(work),
                          "'%.60s'%s%.40s is taken as %s (%s)", c->name,
                          unit[0] != '\0' ? " in " : "", unit, dea_role_name(role), role->why);
@@ -288,8 +301,8 @@ static dea_status add_profiles(struct work *work)
   if (points == 0) {
     return DEA_OK;
   }
-  size_t frames = table->columns[first].count;
   DEA_TRY(work->ctx, clock_get(work, first, &clock));
+  size_t frames = clock.count;
   profiles->points = points;
   profiles->x_m = dea_alloc(work->ctx, points, sizeof(double));
   profiles->z_m = dea_alloc(work->ctx, points * frames, sizeof(double));
@@ -301,12 +314,9 @@ static dea_status add_profiles(struct work *work)
   DEA_TRY(work->ctx, place_points(work, points, &falling));
   size_t point = 0;
   for (size_t i = 0; i < table->column_count; i++) {
-    const struct dea_column_role *role = &work->roles[i];
-    if (role->use == DEA_USE_PROFILE) {
+    if (work->roles[i].use == DEA_USE_PROFILE) {
       size_t at = falling ? points - 1 - point : point;
-      for (size_t k = 0; k < frames; k++) {
-        profiles->z_m[k * points + at] = table->columns[i].values[k] * role->factor + role->offset;
-      }
+      DEA_TRY(work->ctx, copy_values(work, i, points, profiles->z_m + at));
       point++;
     }
   }
