@@ -7,8 +7,9 @@
   "Decimal_Separator\t.\nMulti_Headings\t" headings "\nX_Columns\t" x                              \
   "\nTime_Pref\tAbsolute\nOperator\tsomeone\nDate\t2023/05/01\nTime\t10:00:00.0\n" rest            \
   "***End_of_Header***\t\n\t\n"
-#define SEGMENT(samples, time, x0, delta)                                                          \
-  "Channels\t2\t\nSamples\t" samples "\nDate\t2023/05/01\t2023/05/01\nTime\t" time "\t" time       \
+#define SEGMENT(samples, time, x0, delta) DATED("2023/05/01", samples, time, x0, delta)
+#define DATED(date, samples, time, x0, delta)                                                      \
+  "Channels\t2\t\nSamples\t" samples "\nDate\t" date "\t" date "\nTime\t" time "\t" time           \
   "\nY_Unit_Label\tkV\tuA\nX_Dimension\tTime\tTime\nX0\t" x0 "\t" x0 "\nDelta_X\t" delta           \
   "\t" delta "\n***End_of_Header***\t\t\n"
 #define TITLES "X_Value\tHV\tMonitor\tComment\n"
@@ -117,6 +118,21 @@ static void test_segments(void **state)
   dea_table_destroy(ctx, table);
 }
 
+/* Segments of several days, by their dates: later in the morning than the first one in the evening,
+ * and at the same time of day. */
+static void test_segments_of_days(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 1, 46800, 46801, 169200, 169201};
+  struct dea_table *table = read_text(
+      "days.lvm", HEADER("One", "Yes", "") DATED("2024/02/28", "2\t2", "20:00:00", "0", "1") TITLES
+      "0\t0\t1\n1\t1\t2\n\n" DATED("2024/02/29", "2\t2", "09:00:00", "0", "1") TITLES
+      "0\t0\t1\n1\t1\t2\n\n" DATED("2024/03/01", "2\t2", "19:00:00", "0", "1") TITLES
+      "0\t0\t1\n1\t1\t2\n");
+  assert_column(table, "X_Value", "s", t, 6);
+  dea_table_destroy(ctx, table);
+}
+
 static void test_special_blocks_and_missing(void **state)
 {
   (void)state;
@@ -164,10 +180,15 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_no_times),       cmocka_unit_test(test_one_column_of_times),
-      cmocka_unit_test(test_times_for_each), cmocka_unit_test(test_commas),
-      cmocka_unit_test(test_segments),       cmocka_unit_test(test_special_blocks_and_missing),
-      cmocka_unit_test(test_refused),        cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_no_times),
+      cmocka_unit_test(test_one_column_of_times),
+      cmocka_unit_test(test_times_for_each),
+      cmocka_unit_test(test_commas),
+      cmocka_unit_test(test_segments),
+      cmocka_unit_test(test_segments_of_days),
+      cmocka_unit_test(test_special_blocks_and_missing),
+      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

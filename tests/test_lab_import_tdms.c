@@ -242,6 +242,28 @@ static void test_times_and_texts(void **state)
   dea_table_destroy(ctx, table);
 }
 
+/* Two devices with times of their own: the second one began a quarter of a second later. */
+static void test_times_of_two_devices(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 0.5}, late[] = {0.25, 0.75};
+  begin_file();
+  begin_segment(METADATA | NEW_LIST | RAW);
+  put(2, 4);
+  put_object("/'g'/'when'", 0x44, 2, 0);
+  put_object("/'h'/'when'", 0x44, 2, 0);
+  begin_raw();
+  for (uint64_t quarter = 0; quarter < 4; quarter++) {
+    put((quarter % 2 == 0 ? 0 : 2) * (1ull << 62) + (quarter / 2) * (1ull << 62), 8);
+    put(3765000000u, 8);
+  }
+  end_segment();
+  struct dea_table *table = read_bytes("two.tdms", bytes, length);
+  assert_column(table, "g/when", "s", t, 2);
+  assert_column(table, "h/when", "s", late, 2);
+  dea_table_destroy(ctx, table);
+}
+
 /* A program that crashed leaves -1 as the length of its last segment. */
 /* Raw values with a linear scale in their properties; one that was applied already; another one. */
 static void test_scales(void **state)
@@ -414,11 +436,17 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_segments), cmocka_unit_test(test_interleaved),
-      cmocka_unit_test(test_types),    cmocka_unit_test(test_times_and_texts),
-      cmocka_unit_test(test_crashed),  cmocka_unit_test(test_scales),
-      cmocka_unit_test(test_refused),  cmocka_unit_test(test_cuts),
-      cmocka_unit_test(test_memory),   cmocka_unit_test(test_long_names),
+      cmocka_unit_test(test_segments),
+      cmocka_unit_test(test_interleaved),
+      cmocka_unit_test(test_types),
+      cmocka_unit_test(test_times_and_texts),
+      cmocka_unit_test(test_times_of_two_devices),
+      cmocka_unit_test(test_crashed),
+      cmocka_unit_test(test_scales),
+      cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_cuts),
+      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_long_names),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -138,6 +138,11 @@ static void take_channels(struct dea_lvm *lvm, struct dea_slice line)
       lvm->channels[i].unit = field;
     }
   }
+  if (take_key(lvm, line, "Date", &values)) {
+    for (size_t i = 0; i < lvm->count && dea_slice_field(&values, lvm->separator, &field); i++) {
+      lvm->channels[i].day = dea_lvm_day(field);
+    }
+  }
   if (take_key(lvm, line, "Time", &values)) {
     for (size_t i = 0; i < lvm->count && dea_slice_field(&values, lvm->separator, &field); i++) {
       lvm->channels[i].clock_s = dea_lvm_time_of_day(field, lvm->decimal);
@@ -163,7 +168,7 @@ static dea_status begin_channels(struct dea_lvm *lvm, struct dea_slice values)
   for (size_t i = 0; i < lvm->count; i++) {
     lvm->channels[i].delta = NAN;
     lvm->channels[i].x0 = 0;
-    lvm->channels[i].clock_s = NAN;
+    lvm->channels[i].clock_s = lvm->channels[i].day = NAN;
     lvm->channels[i].samples = 0;
   }
   return DEA_OK;

@@ -258,21 +258,28 @@ static dea_status add_columns(struct dea_tdms *tdms, struct dea_table *table)
       DEA_TRY(tdms->ctx,
               dea_finding_add(tdms->ctx, DEA_NOTE, location,
                               "'%.60s' holds times of day: they become seconds after the "
-                              "first one",
+                              "first one of the file",
                               name));
     }
   }
   return DEA_OK;
 }
 
-/* Times of day as seconds after the first; as doubles since 1904 they end at half a microsecond. */
+/* Times of day as seconds after the first of the file, so that channels with times of their own
+ * stay where they are; as doubles since 1904 they end at half a microsecond. */
 static void relate_times(struct dea_tdms *tdms, struct dea_table *table)
 {
+  double first = INFINITY;
+  for (size_t i = 0; i < tdms->count; i++) {
+    const struct dea_tdms_object *object = &tdms->objects[i];
+    if (object->type == DEA_TDMS_TIME && object->column != SIZE_MAX) {
+      first = fmin(first, table->columns[object->column].values[0]); // there is one
+    }
+  }
   for (size_t i = 0; i < tdms->count; i++) {
     const struct dea_tdms_object *object = &tdms->objects[i];
     if (object->type == DEA_TDMS_TIME && object->column != SIZE_MAX) {
       struct dea_table_column *column = &table->columns[object->column];
-      double first = column->count > 0 ? column->values[0] : 0;
       for (size_t k = 0; k < column->count; k++) {
         column->values[k] -= first;
       }

@@ -13,6 +13,7 @@ struct dea_lvm_channel {
   struct dea_slice name, unit;
   // of the segment
   double x0, delta, clock_s; // start and step [s], time of day; NAN: not given
+  double day;                // its date, since 1970; NAN: not given
   size_t samples;            // 0: not given
   double shift_s;            // what is added to its times
   // of a row
@@ -21,7 +22,7 @@ struct dea_lvm_channel {
   // of all
   double start_s, interval_s; // of the first segment
   double last_s;              // latest time
-  double first_clock_s;
+  double first_clock_s, first_day;
   size_t total;
   size_t missing;          // rows without it since the last one with it
   bool gap;                // a segment does not go on where the one before ended
@@ -47,6 +48,8 @@ struct dea_lvm {
 
 /* "13:05:07,25" in seconds; NAN for anything else. */
 double dea_lvm_time_of_day(struct dea_slice text, char decimal);
+/* "2026/03/02" in days since 1970; NAN for anything else. */
+double dea_lvm_day(struct dea_slice text);
 /* Before the rows of a segment, whose header was read. */
 void dea_lvm_begin_segment(struct dea_lvm *lvm);
 /* Counts, or keeps, the row whose numbers are in the channels; row: within the segment. */

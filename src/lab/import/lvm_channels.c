@@ -1,5 +1,7 @@
 #include "lab/import/lvm.h"
 
+#include "lab/import/clock_text.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -23,10 +25,23 @@ double dea_lvm_time_of_day(struct dea_slice text, char decimal)
   return sum;
 }
 
-/* Seconds of the segment's clock after that of the first segment; 0 when it is not known. */
+double dea_lvm_day(struct dea_slice text)
+{
+  char moment[40];
+  double days, seconds;
+  bool dated;
+  snprintf(moment, sizeof moment, "%.*s 00:00:00", (int)(text.length < 20 ? text.length : 20),
+           text.text);
+  const struct dea_slice whole = {moment, strlen(moment)};
+  return dea_clock_text(whole, &days, &seconds, &dated) && dated ? days : NAN;
+}
+
+/* Seconds of the segment's clock after that of the first segment; 0 when it is not known. Without
+ * dates it is taken to be less than half a day before that, or after midnight. */
 static double later(const struct dea_lvm_channel *channel)
 {
-  double s = channel->clock_s - channel->first_clock_s;
+  double days = channel->day - channel->first_day;
+  double s = channel->clock_s - channel->first_clock_s + (isnan(days) ? 0 : days * day_s);
   return isnan(s) ? 0 : s < -day_s / 2 ? s + day_s : s;
 }
 
@@ -36,6 +51,7 @@ void dea_lvm_begin_segment(struct dea_lvm *lvm)
     struct dea_lvm_channel *channel = &lvm->channels[i];
     if (lvm->segments == 0) {
       channel->first_clock_s = channel->clock_s;
+      channel->first_day = channel->day;
       channel->start_s = channel->x0;
       channel->interval_s = channel->delta;
       channel->last_s = -INFINITY;
