@@ -70,6 +70,30 @@ static void test_encodings(void **state)
   }
 }
 
+/* Lines of old Macintosh programs end with a carriage return alone. */
+static void test_carriage_returns(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 0.5, 1}, v[] = {1.5, 2.5, 3};
+  struct dea_table *table = read_text("cr.csv", "Time (s),V (kV)\r0,1.5\r0.5,2.5\r1.0,3\r");
+  assert_column(table, "Time", "s", t, 3);
+  assert_column(table, "V", "kV", v, 3);
+  dea_table_destroy(ctx, table);
+}
+
+/* Times with a zone: those of winter and summer differ in name only. */
+static void test_zones(void **state)
+{
+  (void)state;
+  static const double t[] = {0, 1, 2.5, 4};
+  struct dea_table *table =
+      read_text("zone.csv", "Timestamp,V (kV)\n2026-03-29T01:59:59+01:00,1\n"
+                            "2026-03-29T03:00:00+02:00,2\n2026-03-28 20:30:01.5-0430,3\n"
+                            "2026-03-29 01:00:03Z,4\n");
+  assert_column(table, "Timestamp", "s", t, 4);
+  dea_table_destroy(ctx, table);
+}
+
 static void test_missing_values(void **state)
 {
   (void)state;
@@ -170,7 +194,7 @@ static void test_text_columns_and_rates(void **state)
   assert_int_equal(rate->count, 1);
   assert_true(rate->values[0] == 2);
   assert_string_equal(rate->unit, "kHz");
-  assert_true(is_said(DEA_NOTE, "'Date' holds text"));
+  assert_true(is_said(DEA_NOTE, "'Date' holds text ('2023-05-01 10:00')"));
   dea_table_destroy(ctx, table);
 }
 
@@ -237,6 +261,8 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_dialects),
       cmocka_unit_test(test_encodings),
+      cmocka_unit_test(test_carriage_returns),
+      cmocka_unit_test(test_zones),
       cmocka_unit_test(test_missing_values),
       cmocka_unit_test(test_rows_of_missing_values),
       cmocka_unit_test(test_numbers_exact),

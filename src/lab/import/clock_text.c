@@ -74,10 +74,29 @@ static double take_part(struct dea_slice *field)
   return value / unit;
 }
 
+/* "Z", "+01:00", "-0330" or "+01" in seconds; true and nothing taken for anything else. */
+static bool take_zone(struct dea_slice *field, double *zone_s)
+{
+  int hours, minutes = 0;
+  char mark;
+  *zone_s = 0;
+  if (take(field, "Z", &mark) || !take(field, "+-", &mark)) {
+    return true;
+  }
+  double sign = mark == '-' ? -1 : 1;
+  bool good = take_digits(field, 2, 2, &hours);
+  if (good && field->length > 0) {
+    take(field, ":", &mark);
+    good = take_digits(field, 2, 2, &minutes);
+  }
+  *zone_s = good ? sign * (3600.0 * hours + 60.0 * minutes) : 0;
+  return good;
+}
+
 bool dea_clock_text(struct dea_slice field, double *days, double *seconds, bool *dated)
 {
   int hours, minutes, whole;
-  double part = 0;
+  double part = 0, zone_s = 0;
   char mark;
   field = dea_slice_trim(field);
   if (!take_date(&field, days, dated)) {
@@ -92,8 +111,10 @@ bool dea_clock_text(struct dea_slice field, double *days, double *seconds, bool 
   if (take(&field, ".,", &mark)) {
     part = take_part(&field);
   }
-  take(&field, *dated ? "Z" : "", &mark);
-  *seconds = 3600.0 * hours + 60.0 * minutes + whole + part;
+  if (*dated && !take_zone(&field, &zone_s)) {
+    return false;
+  }
+  *seconds = 3600.0 * hours + 60.0 * minutes + whole + part - zone_s;
   return field.length == 0;
 }
 

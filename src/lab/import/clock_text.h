@@ -6,8 +6,8 @@
 
 /* A time of the day in seconds (hours, minutes, seconds, with a decimal point or comma), with a
  * date before it or not: YYYY-MM-DD, YYYY/MM/DD or DD.MM.YYYY, then a blank or T; in days since
- * 1970. A Z at the end of one with a date is fine, another zone is not. Dates that may be read in
- * two ways (03/02/2026) are none. False: it is no such text. */
+ * 1970. Behind one with a date may stand its zone, Z or +01:00, which is taken off the seconds.
+ * Dates that may be read in two ways (03/02/2026) are none. False: it is no such text. */
 bool dea_clock_text(struct dea_slice field, double *days, double *seconds, bool *dated);
 
 /* The same down a column: seconds since its first one, which is 0. Zero-initialise; the first one

@@ -157,6 +157,26 @@ static dea_status open_text(struct dea_context *ctx, const char *file, const uns
                                                           : DEA_OK;
 }
 
+/* Lines that end with a carriage return alone get line feeds. *copy: as of open_text. */
+static dea_status end_lines(struct dea_context *ctx, char **copy, struct dea_slice *text)
+{
+  if (text->length == 0 || memchr(text->text, '\n', text->length) != NULL ||
+      memchr(text->text, '\r', text->length) == NULL) {
+    return DEA_OK;
+  }
+  char *lines = dea_alloc(ctx, text->length, 1);
+  if (lines == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < text->length; i++) {
+    lines[i] = (char)(text->text[i] == '\r' ? '\n' : text->text[i]);
+  }
+  dea_free(ctx, *copy);
+  *copy = lines;
+  text->text = lines;
+  return DEA_OK;
+}
+
 dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,
                               dea_status (*read)(struct dea_context *ctx, struct dea_slice text,
                                                  struct dea_table *out),
@@ -165,6 +185,9 @@ dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *byte
   char *copy;
   struct dea_slice text;
   dea_status status = open_text(ctx, out->file, bytes, length, &copy, &text);
+  if (status == DEA_OK) {
+    status = end_lines(ctx, &copy, &text);
+  }
   if (status == DEA_OK) {
     status = read(ctx, text, out);
   }

@@ -84,17 +84,23 @@ static dea_status add_column(struct rows *rows, size_t index, struct dea_slice t
              : dea_context_status(rows->ctx);
 }
 
-/* Whether a column of text is one of times, by its first row. */
-static bool is_clock(struct rows *rows, struct dea_slice text, size_t index)
+/* A field of the first row. */
+static struct dea_slice first_field(const struct rows *rows, struct dea_slice text, size_t index)
 {
   struct dea_lines lines = {rows->dialect->data, text.text + text.length, 0};
   struct dea_slice line, field = {"", 0};
-  double seconds;
   bool more = dea_lines_next(&lines, &line);
   for (size_t i = 0; i <= index && more; i++) {
     more = dea_slice_field(&line, rows->dialect->separator, &field);
   }
-  return more && dea_text_clock_next(&rows->clocks[index], field, &seconds);
+  return more ? field : (struct dea_slice){"", 0};
+}
+
+/* Whether a column of text is one of times, by its first row. */
+static bool is_clock(struct rows *rows, struct dea_slice text, size_t index)
+{
+  double seconds;
+  return dea_text_clock_next(&rows->clocks[index], first_field(rows, text, index), &seconds);
 }
 
 /* Whether a column of numbers has the times, by its unit or its name. */
@@ -132,11 +138,12 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
     } else {
       const struct dea_location location = {rows->table->file, rows->dialect->line + 1, 1};
-      struct dea_slice name, unit = {"", 0};
+      struct dea_slice name, unit = {"", 0}, field = first_field(rows, text, i);
       dea_title_split(rows->ctx, titles[i], &name, &unit);
-      DEA_TRY(rows->ctx, dea_finding_add(rows->ctx, unit.length > 0 ? DEA_WARNING : DEA_NOTE,
-                                         location, "column %zu '%.*s' holds text and is left out",
-                                         i + 1, shown(titles[i]), titles[i].text));
+      DEA_TRY(rows->ctx,
+              dea_finding_add(rows->ctx, unit.length > 0 ? DEA_WARNING : DEA_NOTE, location,
+                              "column %zu '%.*s' holds text ('%.*s') and is left out", i + 1,
+                              shown(titles[i]), titles[i].text, shown(field), field.text));
     }
   }
   return DEA_OK;
