@@ -363,6 +363,35 @@ static void test_discharge_on_a_ramp(void **state)
   dea_free(ctx, found);
 }
 
+/* Slow ramps: what charges at their foot, within the tolerance of a plateau, is no discharge. */
+static void test_nothing_is_found_on_slow_ramps(void **state)
+{
+  (void)state;
+  static struct currents c;
+  const double sigma = 2e-9, film_F = 300e-12, ramp_s = 0.3;
+  for (uint64_t turn = 1; turn <= 8; turn++) {
+    uint64_t seed = 20 + turn;
+    const double volts = turn % 2 == 0 ? 0.0 : 5.0; // noise of a measured voltage
+    struct dea_discharge *found;
+    struct dea_current_limits limits;
+    fill_currents(&c, sigma, seed);
+    for (size_t k = 0; k < I_COUNT; k++) {
+      double t = fmod((double)k / I_RATE, 2.0);
+      double up = fmin(fmax((t - 0.2) / ramp_s, 0.0), 1.0);
+      double down = fmin(fmax((t - 1.2) / ramp_s, 0.0), 1.0);
+      bool moves = (up > 0.0 && up < 1.0) || (down > 0.0 && down < 1.0);
+      c.u[k] = 6000.0 * (up - down) + volts * signal_normal(&seed);
+      c.v[k] = c.u[k];
+      c.i[k] = (moves ? (down > 0.0 ? -1.0 : 1.0) * film_F * 6000.0 / ramp_s : 0.0) +
+               sigma * signal_normal(&seed);
+    }
+    size_t count = discharges(&c, &found, &limits);
+    assert_true(limits.samples > I_COUNT / 2);
+    assert_int_equal(count, 0);
+    dea_free(ctx, found);
+  }
+}
+
 static void test_breakdown(void **state)
 {
   (void)state;
@@ -437,7 +466,7 @@ static void test_charge_between_equal_ramps(void **state)
   }
   const struct dea_channel u = {.values = volts, .count = COUNT, .interval_s = 1.0 / RATE};
   const struct dea_channel a = {.values = amperes, .count = COUNT, .interval_s = 1.0 / RATE};
-  const struct dea_charge_limits limits = {60, 0.05};
+  const struct dea_charge_limits limits = {60, 0.05, 0};
   struct dea_cycle_parts part = {
       .rest = {0, 1}, .active = {1.2, 2.2}, .after = {2.4, 4}, .held = true};
   struct dea_reduced_cycle cycles[2] = {{.capacitance_F = NAN}, {.capacitance_F = NAN}};
@@ -455,6 +484,105 @@ static void test_charge_between_equal_ramps(void **state)
   cycles[0].capacitance_F = NAN;
   assert_int_equal(dea_charge_find(ctx, &a, &u, &part, 1, 0.2, &limits, cycles), DEA_OK);
   assert_true(isnan(cycles[0].capacitance_F));
+}
+
+/* A cycle whose own charge is not known (a lost sample, an unequal ramp) takes what the capacitance
+ * says of its voltage; without any the charge is not known. */
+static void test_charge_of_cycles_without_one(void **state)
+{
+  (void)state;
+  enum { RATE = 1000, COUNT = 6000 };
+  static const double film_F = 30e-12, high_V = 3000;
+  static double volts[COUNT], amperes[COUNT];
+  double before_V = 0;
+  struct dea_cycle_parts parts[3];
+  struct dea_reduced_cycle cycles[3] = {{.voltage_V = 3000}, {.voltage_V = 3000}, {.voltage_V = 0}};
+  for (size_t k = 0; k < 3; k++) {
+    double at = 2.0 * (double)k;
+    cycles[k].capacitance_F = NAN;
+    parts[k] = (struct dea_cycle_parts){
+        .rest = {at, at + 0.5}, .active = {at + 0.6, at + 1.2}, .after = {at + 1.3, at + 2}};
+    parts[k].held = true;
+  }
+  for (size_t i = 0; i < COUNT; i++) {
+    double t = fmod((double)i / RATE, 2.0);
+    volts[i] =
+        i >= 4000 ? 0.0 : high_V * fmin(fmax(fmin((t - 0.5) / 0.1, (1.3 - t) / 0.1), 0.0), 1.0);
+    amperes[i] = film_F * (volts[i] - before_V) * RATE;
+    before_V = volts[i];
+  }
+  amperes[550] = NAN;
+  const struct dea_channel u = {.values = volts, .count = COUNT, .interval_s = 1.0 / RATE};
+  const struct dea_channel a = {.values = amperes, .count = COUNT, .interval_s = 1.0 / RATE};
+  const struct dea_charge_limits limits = {60, 0.05, 0};
+  assert_int_equal(dea_charge_find(ctx, &a, &u, parts, 3, 0.2, &limits, cycles), DEA_OK);
+  assert_true(isnan(cycles[0].capacitance_F));
+  assert_close(cycles[1].capacitance_F, film_F, 1e-6, 0.0);
+  assert_close(cycles[0].charge_C, film_F * high_V, 1e-6, 0.0);
+  assert_close(cycles[1].charge_C, 2 * film_F * high_V, 1e-6, 0.0);
+  assert_close(cycles[2].charge_C, 2 * film_F * high_V, 1e-6, 0.0);
+  amperes[2550] = cycles[1].capacitance_F = NAN;
+  assert_int_equal(dea_charge_find(ctx, &a, &u, parts, 3, 0.2, &limits, cycles), DEA_OK);
+  assert_true(isnan(cycles[0].charge_C) && isnan(cycles[2].charge_C));
+}
+
+/* The stretch is told against the voltage nearest to 0, whatever its sign. */
+static void test_sensed_stretch_of_either_sign(void **state)
+{
+  (void)state;
+  for (int sign = -1; sign <= 1; sign += 2) {
+    struct dea_reduced_cycle cycles[2] = {{.capacitance_F = 16e-12}, {.capacitance_F = 100e-12}};
+    const size_t high = sign < 0 ? 0 : 1, level_of[2] = {1 - high, high};
+    struct dea_voltage_level levels[2] = {{.voltage_V = sign < 0 ? -5000 : 1000},
+                                          {.voltage_V = sign < 0 ? -1000 : 5000}};
+    struct dea_reduction reduction = {
+        .cycles = cycles, .cycle_count = 2, .levels = levels, .level_count = 2};
+    cycles[1].capacitance_F = 81e-12;
+    dea_charge_levels(level_of, &reduction);
+    assert_close(levels[1 - high].sensed_stretch, 1, 1e-12, 0);
+    assert_close(levels[high].sensed_stretch, 1.5, 1e-12, 0);
+  }
+}
+
+/* Steps of 50 V up to 6 kV, each below 1 % of that: no level spans more than 1 %. */
+static void test_small_steps_are_no_one_level(void **state)
+{
+  (void)state;
+  enum { STEPS = 120 };
+  static struct dea_reduced_cycle cycles[STEPS];
+  static size_t level_of[STEPS];
+  struct dea_voltage_level *levels;
+  size_t count;
+  for (size_t k = 0; k < STEPS; k++) {
+    cycles[k].voltage_V = 50.0 * (double)(k + 1);
+  }
+  assert_int_equal(dea_levels_form(ctx, cycles, STEPS, 60.0, &levels, &count, level_of), DEA_OK);
+  assert_int_equal(count, STEPS / 2);
+  for (size_t k = 0; k < STEPS; k++) {
+    assert_int_equal(level_of[k], k / 2);
+    assert_close(levels[k / 2].voltage_V, cycles[k].voltage_V, 0, 25.1);
+  }
+  dea_free(ctx, levels);
+}
+
+/* Two pulses of 5 ms in two minutes, without noise: fewer samples than the quantiles look at. */
+static void test_rare_pulses(void **state)
+{
+  (void)state;
+  enum { COUNT = 120000 };
+  static double volts[COUNT];
+  for (size_t i = 0; i < 5; i++) {
+    volts[40000 + i] = volts[80000 + i] = 5000;
+  }
+  const struct dea_channel u = {.values = volts, .count = COUNT, .interval_s = 1e-3};
+  const struct dea_recording recording = {.file = ""};
+  struct dea_voltage_scale scale;
+  struct dea_cycle_list list;
+  assert_int_equal(dea_voltage_scale_find(ctx, &u, &scale), DEA_OK);
+  assert_int_equal(dea_cycles_find(ctx, &recording, &u, &scale, &list), DEA_OK);
+  assert_int_equal(list.count, 2);
+  assert_close(list.parts[1].active.begin_s, 80, 1e-9, 0);
+  dea_free(ctx, list.parts);
 }
 
 static void test_rise_of_a_straight_line(void **state)
@@ -496,9 +624,14 @@ int main(void)
       cmocka_unit_test(test_discharges_are_found),
       cmocka_unit_test(test_nothing_is_found_in_quiet),
       cmocka_unit_test(test_discharge_on_a_ramp),
+      cmocka_unit_test(test_nothing_is_found_on_slow_ramps),
       cmocka_unit_test(test_breakdown),
       cmocka_unit_test(test_time_under_voltage),
       cmocka_unit_test(test_charge_between_equal_ramps),
+      cmocka_unit_test(test_charge_of_cycles_without_one),
+      cmocka_unit_test(test_sensed_stretch_of_either_sign),
+      cmocka_unit_test(test_small_steps_are_no_one_level),
+      cmocka_unit_test(test_rare_pulses),
       cmocka_unit_test(test_rise_of_a_straight_line),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

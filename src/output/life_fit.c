@@ -124,6 +124,9 @@ static dea_status check_columns(struct dea_context *ctx, const struct dea_life_f
                             ? "current, which largest_leakage asks for"
                         : file->clock.value == DEA_LIFE_CHARGE && part->values[CHARGE] == NULL
                             ? "current, which the clock 'charge' asks for"
+                        : file->clock.value == DEA_LIFE_CHARGE && part->rows > 0 &&
+                                isnan(part->values[CHARGE][part->rows - 1])
+                            ? "known charge, which the clock 'charge' asks for"
                             : NULL;
     if (lacks != NULL) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, own->reduced[p].location, "'%.80s' has no %s",

@@ -61,9 +61,10 @@ static bool find_edges(const struct dea_channel *current, const struct dea_chann
   out->down.first = dea_channel_index(current, down_s);
   out->up.count = out->down.count = dea_channel_index(current, up_s + length_s) - out->up.first;
   double top_s = part->held ? 0.5 * active_s : 0, foot_s = part->held ? 0.5 * rest_s : 0;
-  double top_V = voltage_from(voltage, down_s - (part->held ? 0.5 * top_s : 0), top_s);
-  double before_V = voltage_from(voltage, up_s, foot_s);
-  double behind_V = voltage_from(voltage, down_s + length_s - foot_s, foot_s);
+  // about the ends of the windows, which may lie in the foot of a ramp
+  double top_V = voltage_from(voltage, down_s - 0.5 * top_s, top_s);
+  double before_V = voltage_from(voltage, up_s - 0.5 * foot_s, foot_s);
+  double behind_V = voltage_from(voltage, down_s + length_s - 0.5 * foot_s, foot_s);
   out->voltage_V = top_V - 0.5 * (before_V + behind_V);
   return out->up.count > 1 && out->down.first + out->down.count <= current->count &&
          fabs(out->voltage_V) > limits->least_V;
@@ -101,26 +102,46 @@ static double leakage_of(const struct dea_channel *current, const struct dea_cyc
   return part->held ? mean_A[0] - rest_A : NAN;
 }
 
+/* Charge of all cycles so far, of whose own charges (in charge_C, NAN: not known) the sum is made.
+ * One that is not known is what the capacitance before it, or the first one, takes at its voltage.
+ */
+static void add_charges(struct dea_reduced_cycle *cycles, size_t count,
+                        const struct dea_charge_limits *limits)
+{
+  double known_F = NAN, sum_C = 0;
+  for (size_t k = count; k-- > 0;) {
+    known_F = isnan(cycles[k].capacitance_F) ? known_F : cycles[k].capacitance_F;
+  }
+  for (size_t k = 0; k < count; k++) {
+    struct dea_reduced_cycle *cycle = &cycles[k];
+    known_F = isnan(cycle->capacitance_F) ? known_F : cycle->capacitance_F;
+    double step_V = fabs(cycle->voltage_V - limits->rest_V);
+    double own_C = isnan(cycle->charge_C) ? known_F * step_V : cycle->charge_C;
+    sum_C += isnan(cycle->charge_C) && step_V <= limits->least_V ? 0 : fabs(own_C);
+    cycle->charge_C = sum_C;
+  }
+}
+
 dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *current,
                            const struct dea_channel *voltage, const struct dea_cycle_parts *parts,
                            size_t count, double settle, const struct dea_charge_limits *limits,
                            struct dea_reduced_cycle *cycles)
 {
-  double *scratch = dea_alloc(ctx, current->count, 2 * sizeof *scratch), sum_C = 0;
+  double *scratch = dea_alloc(ctx, current->count, 2 * sizeof *scratch);
   if (scratch == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t k = 0; k < count; k++) {
     struct edges edges;
     struct dea_reduced_cycle *cycle = &cycles[k];
+    cycle->charge_C = NAN;
     if (find_edges(current, voltage, &parts[k], limits, &edges)) {
-      double moved_C = 0.5 * (charge_of(current, edges.up) - charge_of(current, edges.down));
-      cycle->capacitance_F = moved_C / edges.voltage_V;
-      sum_C += isnan(moved_C) ? 0 : fabs(moved_C);
+      cycle->charge_C = 0.5 * (charge_of(current, edges.up) - charge_of(current, edges.down));
+      cycle->capacitance_F = cycle->charge_C / edges.voltage_V;
     }
-    cycle->charge_C = sum_C;
     cycle->leakage_A = leakage_of(current, &parts[k], settle, scratch);
   }
+  add_charges(cycles, count, limits);
   dea_free(ctx, scratch);
   return DEA_OK;
 }
@@ -128,7 +149,7 @@ dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *cu
 /* C = eps A / h, and A h is constant: C grows with the fourth power of an even stretch. */
 void dea_charge_levels(const size_t *level_of, struct dea_reduction *reduction)
 {
-  double lowest_F = NAN;
+  double lowest_F = NAN, lowest_V = INFINITY;
   for (size_t l = 0; l < reduction->level_count; l++) {
     struct dea_voltage_level *level = &reduction->levels[l];
     double sum = 0, squares = 0, n = 0;
@@ -144,8 +165,13 @@ void dea_charge_levels(const size_t *level_of, struct dea_reduction *reduction)
     }
     level->capacitance_F = sum / n; // NAN without any
     level->capacitance_std_F = n > 1 ? sqrt(squares / (n - 1)) : NAN;
-    lowest_F = isnan(lowest_F) ? level->capacitance_F : lowest_F;
-    double ratio = level->capacitance_F / lowest_F;
-    level->sensed_stretch = ratio > 0 ? pow(ratio, 0.25) : NAN;
+    if (n > 0 && fabs(level->voltage_V) < lowest_V) {
+      lowest_F = level->capacitance_F;
+      lowest_V = fabs(level->voltage_V);
+    }
+  }
+  for (size_t l = 0; l < reduction->level_count; l++) {
+    double ratio = reduction->levels[l].capacitance_F / lowest_F;
+    reduction->levels[l].sensed_stretch = ratio > 0 ? pow(ratio, 0.25) : NAN;
   }
 }

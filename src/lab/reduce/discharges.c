@@ -52,6 +52,46 @@ static double at_sample(const struct search *s, const struct dea_channel *channe
   return k < channel->count ? channel->values[k] : NAN;
 }
 
+/* Mean of `count` samples in a row from `first` on, or back, that are numbers; NAN without. */
+static double mean_of(const double *u, size_t first, bool back, size_t count)
+{
+  double sum = 0.0, n = 0.0;
+  for (size_t k = 0; k < count; k++) {
+    double value = u[back ? first - k : first + k];
+    sum += isnan(value) ? 0.0 : value;
+    n += isnan(value) ? 0.0 : 1.0;
+  }
+  return sum / n;
+}
+
+/* How many samples at an end of a plateau are of a ramp, whose foot lies within the tolerance and
+ * charges already: the mean of the outer ones, ever more of them, tells it from noise, but for the
+ * first 4 sigma, for which as many as between 4 and 12 are given up. */
+static size_t foot_of(const struct dea_channel *voltage, const struct dea_plateau *p,
+                      double noise_V, bool back)
+{
+  const double *u = voltage->values;
+  size_t n = p->end - p->begin, off = 0, margin = 0;
+  size_t outer = back ? p->end - 1 : p->begin, most = back ? voltage->count - p->end : p->begin;
+  double level_V = mean_of(u, p->begin + n / 4, false, n - n / 4 - n / 4);
+  double rounding_V = 1e-9 * fabs(level_V);
+  for (size_t m = 1; m <= n / 8; m *= 4) {
+    double limit_V = 4.0 * noise_V / sqrt((double)m) + rounding_V;
+    while (off + m < n / 2 &&
+           !(fabs(mean_of(u, back ? outer - off : outer + off, back, m) - level_V) <= limit_V)) {
+      off += (m + 1) / 2;
+    }
+  }
+  while (margin < n / 4 && margin < most + off) {
+    double value = u[back ? outer - off + 1 + margin : outer + off - 1 - margin];
+    if (fabs(value - level_V) > 12.0 * noise_V + rounding_V) {
+      break;
+    }
+    margin++;
+  }
+  return off + margin;
+}
+
 /* Plateaus of the asked voltage as samples of the current; none when it mostly moves. */
 static dea_status find_plateaus(struct search *s)
 {
@@ -62,6 +102,9 @@ static dea_status find_plateaus(struct search *s)
   for (size_t p = 0; p < s->plateau_count; p++) {
     struct dea_plateau *plateau = &s->plateaus[p];
     covered += plateau->end - plateau->begin;
+    size_t begin = foot_of(u, plateau, s->scale->noise_V, false);
+    plateau->end -= foot_of(u, plateau, s->scale->noise_V, true);
+    plateau->begin += begin;
     plateau->begin = dea_channel_index(s->current, dea_channel_time(u, plateau->begin));
     plateau->end = dea_channel_index(s->current, dea_channel_time(u, plateau->end - 1)) + 1;
     plateau->end = plateau->end < s->current->count ? plateau->end : s->current->count;

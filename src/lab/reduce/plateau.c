@@ -56,6 +56,11 @@ dea_status dea_voltage_scale_find(struct dea_context *ctx, const struct dea_chan
     out->rest_V = rest_voltage(values, n, low_V, high_V);
   }
   dea_free(ctx, values);
+  if (out->largest_V == 0.0 && out->noise_V == 0.0) { // pulses rarer than the quantiles see
+    for (size_t i = 0; i < voltage->count; i++) {
+      out->largest_V = fmax(out->largest_V, fabs(voltage->values[i])); // not NAN
+    }
+  }
   out->active_V = fmax(6.0 * out->noise_V, 0.02 * out->largest_V);
   out->tolerance_V = fmax(4.0 * out->noise_V, 0.01 * out->largest_V);
   return DEA_OK;

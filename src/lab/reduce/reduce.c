@@ -402,7 +402,8 @@ static dea_status reduce_current(struct job *job)
                               job->asked != NULL ? job->measured : NULL, &job->scale,
                               &r->discharges, &r->discharge_count, &r->current));
   count_discharges(r);
-  const struct dea_charge_limits limits = {job->scale.active_V, 2 * r->current.blind_s};
+  const struct dea_charge_limits limits = {job->scale.active_V, 2 * r->current.blind_s,
+                                           job->scale.rest_V};
   DEA_TRY(job->ctx,
           dea_charge_find(job->ctx, current, job->measured != NULL ? job->measured : job->asked,
                           job->list.parts, r->cycle_count, r->settle, &limits, r->cycles));

@@ -38,7 +38,7 @@ struct dea_reduced_cycle {
   // of the current; NAN where that cannot be told
   double capacitance_F; // by the charge of its two edges
   double leakage_A;     // that flows while the voltage is held, against rest
-  double charge_C;      // brought to the film by its edges, from the recording's begin to its end
+  double charge_C;      // brought to the film by edges, from the recording's begin to its end
   size_t discharges, breakdowns; // that began in it
 };
 
@@ -55,7 +55,7 @@ struct dea_voltage_level {
   double drift_uncertainty[DEA_REDUCED_KINDS];
   double shape, shape_uncertainty;
   double capacitance_F, capacitance_std_F; // mean and scatter from cycle to cycle; NAN
-  double sensed_stretch; // of the electrode by it, against the lowest voltage that has one; NAN
+  double sensed_stretch; // of the electrode by it, against the voltage nearest to 0; NAN
   double *z_m, *z_std_m; // [points] mean profile against rest, and scatter; owned; NULL without
 };
 

@@ -205,9 +205,11 @@ dea_status dea_discharges_find(struct dea_context *ctx, const struct dea_channel
 struct dea_charge_limits {
   double least_V;   // a step of the voltage that is more than its noise
   double settled_s; // behind a step the current that charges has gone
+  double rest_V;
 };
 
-/* What the current says of each cycle: capacitance, leakage, charge; parts, cycles: [count].
+/* What the current says of each cycle: capacitance, leakage, charge (NAN while no capacitance is
+ * known); parts, cycles: [count], with voltages.
  * voltage: measured, or asked where it was not. */
 dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *current,
                            const struct dea_channel *voltage, const struct dea_cycle_parts *parts,

@@ -337,8 +337,9 @@ static size_t fill_levels(const struct dea_reduced_cycle **sorted, size_t count,
 {
   size_t n = 0;
   for (size_t i = 0, j; i < count; i = j) {
+    // from the lowest, not from one to the next: small steps up to a high voltage are no one level
     for (j = i + 1; j < count && sorted[j]->cycle.step == sorted[i]->cycle.step &&
-                    sorted[j]->voltage_V - sorted[j - 1]->voltage_V <= tolerance_V;) {
+                    sorted[j]->voltage_V - sorted[i]->voltage_V <= tolerance_V;) {
       j++;
     }
     qsort(sorted + i, j - i, sizeof(*sorted), by_time);
