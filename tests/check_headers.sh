@@ -9,7 +9,13 @@ for folder in $DEA_INCLUDES; do
   includes="$includes -isystem $folder"
 done
 bad=0
-for header in $(cd "$source/src" && find . -name '*.h' | sed 's|^\./||'); do
+# None has changed since all were good: that takes ten seconds.
+good=$build/check_headers.good headers=.
+[ -e "$good" ] &&
+  [ -z "$(find "$0" "$source/src" "$build/src" -newer "$good" \( -name '*.h' -o -name '*.sh' \))" ] &&
+  headers=
+touch "$good.new"
+for header in $([ -z "$headers" ] || { cd "$source/src" && find . -name '*.h' | sed 's|^\./||'; }); do
   # shellcheck disable=SC2086 # one argument a flag
   printf '#include "%s"\nextern int not_empty;\n' "$header" |
     "$CC" -std=c17 -x c $flags $includes -fsyntax-only - || {
@@ -49,4 +55,5 @@ if printf '%s\n' "$declarations" | grep -n '^ *#'; then
   echo "dea.h has a line of the preprocessor between its marks"
   bad=1
 fi
+[ $bad -ne 0 ] || mv "$good.new" "$good"
 exit $bad

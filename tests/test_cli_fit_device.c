@@ -1,6 +1,6 @@
 #define _GNU_SOURCE
 /* dea fit of a device, as a user runs it: the example, its files, what may be wrong. */
-// ctest: quick, heavy
+// ctest: slow, heavy
 #include "command.h"
 
 static const char curve[] = "V (kV),u electrode edge (um),capacitance (pF)\n"

@@ -1,6 +1,6 @@
 #define _GNU_SOURCE
 /* dea sweep as a user runs it: tables, parts, going on after being killed, what may be wrong. */
-// ctest: quick, heavy
+// ctest: slow, heavy
 #include "command.h"
 
 /* A file with these variables and more keys. */

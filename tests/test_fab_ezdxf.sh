@@ -1,5 +1,5 @@
 #!/bin/sh
-# ctest: quick, heavy
+# ctest: slow, heavy
 # DXF files as another program reads them: python3-ezdxf finds nothing wrong, and its areas and
 # lengths are those of the design.
 set -u

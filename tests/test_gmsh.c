@@ -1,7 +1,7 @@
 /* Free meshes by gmsh: a film with an electrode and stiff strips; what is said when gmsh is
  * missing, fails, crashes, hangs, or writes something else. The first are skipped where gmsh is
  * not installed. */
-// ctest: quick, heavy
+// ctest: slow, heavy
 #define _GNU_SOURCE // mkdtemp
 #include "testing.h"
 

@@ -1,7 +1,7 @@
 /* lab/drive/drive: what is played and recorded is the protocol; whatever fails, the output
  * comes down to 0 V within the ramp, every instrument is stopped once, and the recording is
  * readable. */
-// ctest: quick, heavy
+// ctest: slow, heavy
 #define _GNU_SOURCE
 #include "drive_trial.h"
 

@@ -1,6 +1,6 @@
 /* What a sweep says when it cannot go on: the kind of the stop, the voltage, and the rest of films
  * that have to be eased into (docs/theory/stops.md). */
-// ctest: quick, heavy
+// ctest: slow, heavy
 #include "design_text.h"
 #include "devices.h"
 #include "output/summary.h"

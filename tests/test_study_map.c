@@ -1,5 +1,5 @@
 /* Studies "operating-map" and "load-line": what the report draws of model lumped. */
-// ctest: quick, heavy
+// ctest: slow, heavy
 #include "design_text.h"
 #include "study/operating_map_figure.h"
 #include "study/study.h"

@@ -99,7 +99,7 @@ def main():
                                 formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--build", required=True)
     p.add_argument("--write", action="store_true")
-    p.add_argument("--selection", default="-L quick")
+    p.add_argument("--selection", default="-L 'quick|slow'")
     p.add_argument("--files", type=int, default=10)
     a = p.parse_args()
     found = sources(os.path.abspath(a.build))
