@@ -322,6 +322,11 @@ static void test_optimise(void **state)
   assert_int_equal(command_run("check best/best-3.yaml"), 5); // it is gone
   assert_contains(command_err, "best-3.yaml");
   command_expect("check best/best-4.yaml", 3, "best-4.yaml");
+  command_write("best/front.csv", "design,pre_stretch (1)\n"); // of a search with two objectives
+  command_write("best/front.svg", "<svg/>");
+  assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
+  command_expect("check best/front.csv", 5, "cannot open"); // it is gone
+  command_expect("check best/front.svg", 5, "cannot open");
 }
 
 /* A search that finds nothing leaves no best design of an earlier one in its folder, and no file

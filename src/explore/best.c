@@ -238,6 +238,7 @@ static dea_status write_cases(const struct work *w)
 }
 
 static const char written_by[] = "# Written by dea ";
+static const char front_table[] = "front.csv", front_figure[] = "front";
 enum { BEST_SIZE = 40 };
 
 /* number: in the front, 0 where there is one only. */
@@ -304,7 +305,7 @@ static dea_status write_front(const struct work *w)
     }
     dea_text_add(&out, "\n");
   }
-  dea_status status = dea_text_write(w->ctx, &out, w->options->folder, "front.csv");
+  dea_status status = dea_text_write(w->ctx, &out, w->options->folder, front_table);
   dea_text_free(&out);
   return status;
 }
@@ -400,7 +401,7 @@ static bool has_values(const struct work *w)
 
 static dea_status draw_all(struct work *w)
 {
-  static const char *const names[] = {"progress", "front"};
+  static const char *const names[] = {"progress", front_figure};
   const bool front = w->question->file->objective_count > 1;
   if (!has_values(w)) {
     return DEA_OK;
@@ -474,12 +475,11 @@ static dea_status fail_without(const struct work *w)
 
 // All of it ---------------------------------------------------------------------------------------
 
-/* Takes away a design that an earlier search has written into the folder; most are not there. */
-static void remove_written(const struct work *w, size_t number)
+/* Whether a file of that name in the folder begins so; most are not there. */
+static bool begins_so(const struct work *w, const char *name, const char *wanted)
 {
   struct dea_text path = {.ctx = w->ctx};
-  char name[BEST_SIZE], head[sizeof written_by] = "";
-  name_best(number, name);
+  char head[sizeof written_by] = "";
   dea_text_add(&path, "%s/%s", w->options->folder, name);
   FILE *file = path.failed ? NULL : fopen(dea_text_get(&path), "rb");
   if (file != NULL) {
@@ -487,23 +487,41 @@ static void remove_written(const struct work *w, size_t number)
     head[length] = '\0';
     fclose(file);
   }
-  if (strcmp(head, written_by) == 0) {
-    remove(dea_text_get(&path));
-  }
   dea_text_free(&path);
+  return strncmp(head, wanted, strlen(wanted)) == 0;
+}
+
+/* Takes away a design that an earlier search has written into the folder. */
+static dea_status remove_written(const struct work *w, size_t number)
+{
+  char name[BEST_SIZE];
+  name_best(number, name);
+  return begins_so(w, name, written_by) ? dea_path_make_way(w->ctx, w->options->folder, name, true)
+                                        : DEA_OK;
+}
+
+/* The same of a front's table and figure. */
+static dea_status remove_front(const struct work *w)
+{
+  if (!begins_so(w, front_table, "design,")) {
+    return DEA_OK;
+  }
+  DEA_TRY(w->ctx, dea_path_make_way(w->ctx, w->options->folder, front_table, true));
+  return dea_gnuplot_make_way(w->ctx, w->options->folder, front_figure, true);
 }
 
 /* Takes away designs of an earlier search in the folder that had more of them, or of the other
  * kind. ended: to its end, so that what is not found is none. */
-static void remove_older(const struct work *w, bool ended)
+static dea_status remove_older(const struct work *w, bool ended)
 {
   const bool front = w->question->file->objective_count > 1;
   for (size_t i = front ? w->report->count + 1 : 1; i <= DEA_EXPLORE_FRONT_MAX + 1; i++) {
-    remove_written(w, i);
+    DEA_TRY(w->ctx, remove_written(w, i));
   }
   if (front || (ended && w->report->count == 0)) {
-    remove_written(w, 0);
+    DEA_TRY(w->ctx, remove_written(w, 0));
   }
+  return front ? DEA_OK : remove_front(w);
 }
 
 static dea_status write_all(struct work *w, bool ended)
@@ -513,7 +531,7 @@ static dea_status write_all(struct work *w, bool ended)
     w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
   }
   DEA_TRY(w->ctx, write_cases(w));
-  remove_older(w, ended);
+  DEA_TRY(w->ctx, remove_older(w, ended));
   for (size_t i = 0; i < w->report->count; i++) {
     DEA_TRY(w->ctx, write_design(w, &w->report->optima[i], front ? i + 1 : 0));
   }
