@@ -315,12 +315,79 @@ static void test_bender_against_static_solves(void **state)
   strip_destroy();
 }
 
+enum { MANY = 20 };
+
+static int one_of_many(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)region;
+  return ply == 0 ? 3 : MANY - 1;
+}
+
+/* Response of the far end at a frequency, of the bender with so many constituents, all of one
+ * material; apart: a billionth, by which the branches of each differ. */
+static void respond_with(int constituents, double apart, double out[1][2][3])
+{
+  static const double t = 200e-6, cuts[] = {0, 0.5, 1}, whole[] = {0, 1}, w = 300;
+  struct dea_constituent layers[MANY];
+  struct dea_branches branches[MANY] = {{0}};
+  for (int i = 0; i < MANY; i++) {
+    layers[i] = (struct dea_constituent){.law = dea_law_find("gent"),
+                                         .param = {43e3, 115},
+                                         .pre_stretch = {1, 1, 1},
+                                         .kappa_Pa = 43e5,
+                                         .permittivity_F_per_m = eps,
+                                         .thickness_m = t,
+                                         .density_kg_per_m3 = 1000};
+    assert_int_equal(dea_constituent_relax(&layers[i]), DEA_OK);
+    branches[i] = (struct dea_branches){1, {{(1 + 1e-9 * apart * i) * 30e3, 0.01}}};
+  }
+  const struct dea_block strip = {block_map, &bender, cuts, whole, 2, 1, 0};
+  const struct dea_ply plies[] = {{t, 1, 2}, {t, 1, 2}};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .constituent_count = (size_t)constituents,
+                                            .constituents = layers,
+                                            .constituent_of = constituents > 1 ? one_of_many : NULL,
+                                            .active = upper,
+                                            .held = clamped};
+  const struct dea_damping none = {0};
+  struct dea_solid_report report;
+  assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, plies, 2, NULL, 0, 10e-3, &grid), DEA_OK);
+  assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
+  assert_int_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
+  size_t far = dea_grid_nearest(grid, (const double[3]){bender.size[0], 0, 0});
+  if (dea_solid_respond_viscous(ctx, solid, branches, &none, &w, 1, &far, 1, out) != DEA_OK) {
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  strip_destroy();
+}
+
+/* Constituents whose branches are the same are solved for as one, others each by itself: there may
+ * be as many as there are. */
+static void test_many_constituents(void **state)
+{
+  (void)state;
+  double one[1][2][3], alike[1][2][3], apart[1][2][3];
+  respond_with(1, 0, one);
+  respond_with(MANY, 0, alike);
+  respond_with(MANY, 1, apart);
+  double size = fabs(one[0][0][2]);
+  assert_true(size > 0 && fabs(one[0][1][2]) > 0.01 * size);
+  for (int c = 0; c < 2; c++) {
+    for (int i = 0; i < 3; i++) {
+      assert_close(alike[0][c][i], one[0][c][i], 0, 1e-9 * size);
+      assert_close(apart[0][c][i], one[0][c][i], 0, 1e-6 * size);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_one_degree_of_freedom),
       cmocka_unit_test(test_branches),
       cmocka_unit_test(test_bender_against_static_solves),
+      cmocka_unit_test(test_many_constituents),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -126,15 +126,19 @@ static dea_status fill(struct dea_context *ctx, struct dea_solid *s, double high
   return DEA_OK;
 }
 
+dea_status dea_solid_response_check(struct dea_context *ctx, const struct dea_solid *s)
+{
+  return s->problem.field == NULL ? DEA_OK
+                                  : dea_fail(ctx, DEA_E_UNSUPPORTED,
+                                             "the response to an AC excitation of the voltage "
+                                             "needs the field V/h, not a coupled one");
+}
+
 dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *s,
                                      double highest_rad_per_s, struct dea_solid_response **out)
 {
   *out = NULL;
-  if (s->problem.field != NULL) {
-    return dea_fail(
-        ctx, DEA_E_UNSUPPORTED,
-        "the response to an AC excitation of the voltage needs the field V/h, not a coupled one");
-  }
+  DEA_TRY(ctx, dea_solid_response_check(ctx, s));
   double *force = dea_alloc(ctx, s->problem.dofs, sizeof *force);
   struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);
   dea_status status = dea_solid_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;

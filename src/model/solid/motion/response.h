@@ -16,6 +16,8 @@ struct dea_damping {
 
 struct dea_solid_response;
 
+/* DEA_E_UNSUPPORTED for a coupled field, of which no response is known. */
+dea_status dea_solid_response_check(struct dea_context *ctx, const struct dea_solid *solid);
 /* Prepares answers up to a frequency: all modes up to twice that, and of what the higher ones do a
  * series in omega^2. The solid has to be at a stable equilibrium and stays as it is; lent, outlives
  * the response. DEA_E_NOT_CONVERGED at an unstable one; DEA_E_UNSUPPORTED for a coupled field or

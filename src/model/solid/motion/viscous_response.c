@@ -11,17 +11,17 @@
 #include <string.h>
 
 enum {
-  PARTS = 2,
-  CONSTITUENTS_MAX = 16
-}; // of K: without branches, and M; then one part a constituent with branches
+  PARTS = 2
+}; // K without branches, and M; then one for all constituents with the same branches
 
 struct system {
   struct dea_solid *solid;
   const struct dea_branches *branches;
-  size_t part_count;   // PARTS + constituents with branches
-  Mat *part;           // K, M, then what each constituent's branches add at infinite frequency
-  size_t *constituent; // [part_count] of those
-  Mat A, factor;       // two rows a row of K: real and imaginary part
+  size_t part_count;     // PARTS + different branches
+  Mat *part;             // K, M, then what branches add at infinite frequency
+  size_t *constituent;   // [part_count] one that has those
+  double complex *share; // [part_count] that each counts at the frequency
+  Mat A, factor;         // two rows a row of K: real and imaginary part
   Vec right, answer;
 };
 
@@ -33,7 +33,17 @@ static dea_status copy_tangent(struct dea_context *ctx, struct system *y, Mat *o
   return DEA_OK;
 }
 
-/* What the branches of one constituent add to K when they are rigid dashpots. */
+static bool are_alike(const struct dea_branches *a, const struct dea_branches *b)
+{
+  bool alike = a->count == b->count;
+  for (size_t i = 0; i < a->count && alike; i++) {
+    alike = a->branch[i].modulus_Pa == b->branch[i].modulus_Pa &&
+            a->branch[i].time_s == b->branch[i].time_s;
+  }
+  return alike;
+}
+
+/* What these branches add to K when they are rigid dashpots, in all constituents that have them. */
 static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t which,
                                  struct dea_branches *only, Mat *out)
 {
@@ -41,7 +51,11 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
   struct dea_internal_variables *variables;
   // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): of the caller
   memset(only, 0, s->problem.constituent_count * sizeof *only);
-  only[which] = y->branches[which];
+  for (size_t l = which; l < s->problem.constituent_count; l++) {
+    if (are_alike(&y->branches[l], &y->branches[which])) {
+      only[l] = y->branches[l];
+    }
+  }
   DEA_TRY(ctx, dea_internal_variables_create(ctx, s, only, &variables));
   dea_internal_variables_begin(variables, s, 0);
   s->state.internal_variables = variables;
@@ -71,7 +85,11 @@ static dea_status make_parts(struct dea_context *ctx, struct system *y, struct d
   DEA_TRY(ctx, dea_solid_create_mass(ctx, y->solid, &y->part[1]));
   y->part_count = PARTS;
   for (size_t l = 0; l < y->solid->problem.constituent_count; l++) {
-    if (y->branches[l].count > 0) {
+    bool made = y->branches[l].count == 0;
+    for (size_t p = PARTS; p < y->part_count && !made; p++) {
+      made = are_alike(&y->branches[l], &y->branches[y->constituent[p]]);
+    }
+    if (!made) {
       y->constituent[y->part_count] = l;
       DEA_TRY(ctx, branch_tangent(ctx, y, l, only, &y->part[y->part_count++]));
     }
@@ -226,10 +244,9 @@ static dea_status solve_at(struct dea_context *ctx, struct system *y, double w,
                            double *imaginary)
 {
   struct dea_solid *s = y->solid;
-  double complex factor[PARTS + CONSTITUENTS_MAX];
   double *out[2] = {real, imaginary};
-  set_factors(y, w, damping, factor);
-  dea_status status = dea_solid_petsc(ctx, fill_matrix(y, factor, sum), "MatSetValuesBlocked");
+  set_factors(y, w, damping, y->share);
+  dea_status status = dea_solid_petsc(ctx, fill_matrix(y, y->share, sum), "MatSetValuesBlocked");
   DEA_TRY(ctx, dea_solid_end_matrix(ctx, y->A));
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_solid_factor(ctx, y->A, &y->factor));
@@ -297,20 +314,25 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
                                           void *user)
 {
   const struct taker taker = {take, user};
-  Mat parts[PARTS + CONSTITUENTS_MAX] = {NULL};
-  size_t constituents[PARTS + CONSTITUENTS_MAX] = {0};
-  struct system y = {.solid = s, .branches = branches, .part = parts, .constituent = constituents};
-  if (s->problem.field != NULL || s->problem.constituent_count > CONSTITUENTS_MAX) {
-    return dea_fail(
-        ctx, DEA_E_UNSUPPORTED,
-        "the response to an AC excitation of the voltage needs the field V/h, and at most %d "
-        "constituents",
-        CONSTITUENTS_MAX);
+  const size_t room = PARTS + s->problem.constituent_count;
+  struct system y = {.solid = s, .branches = branches};
+  DEA_TRY(ctx, dea_solid_response_check(ctx, s));
+  y.part = dea_alloc(ctx, room, sizeof(Mat));
+  y.constituent = dea_alloc(ctx, room, sizeof *y.constituent);
+  y.share = dea_alloc(ctx, room, sizeof *y.share);
+  dea_status status =
+      y.part != NULL && y.constituent != NULL && y.share != NULL ? DEA_OK : DEA_E_MEMORY;
+  if (dea_solid_any(status != DEA_OK)) {
+    status = DEA_E_MEMORY;
+  } else {
+    status = respond(ctx, &y, damping, rad_per_s, count, &taker);
   }
-  dea_status status = respond(ctx, &y, damping, rad_per_s, count, &taker);
-  for (size_t p = 0; p < PARTS + CONSTITUENTS_MAX; p++) {
-    MatDestroy(&parts[p]);
+  for (size_t p = 0; p < room && y.part != NULL; p++) {
+    MatDestroy(&y.part[p]);
   }
+  dea_free(ctx, y.part);
+  dea_free(ctx, y.constituent);
+  dea_free(ctx, y.share);
   MatDestroy(&y.A);
   MatDestroy(&y.factor);
   VecDestroy(&y.right);
