@@ -63,6 +63,13 @@ static void test_nearest_name(void **state)
   assert_string_equal(dea_nearest_name("Widht", names, 3), "width");
   assert_string_equal(dea_nearest_name("prestretch", names, 3), "pre_stretch");
   assert_null(dea_nearest_name("colour", names, 3));
+  assert_string_equal(dea_nearest_name("thick", names, 3), "thickness");
+  assert_string_equal(dea_nearest_name("Width-of-it", names, 3), "width");
+  assert_null(dea_nearest_name("th", names, 3));
+  static const char *const films[] = {"vhb-4905", "vhb-4910", "elastosil-2030"};
+  assert_string_equal(dea_nearest_name("vhb-4910-viscous", films, 3), "vhb-4910");
+  assert_string_equal(dea_nearest_name("elastosil", films, 3), "elastosil-2030");
+  assert_null(dea_nearest_name("vhb", films, 3)); // one of two
 }
 
 static void test_text_to_double_ignores_locale(void **state)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static bool text_reserve(struct dea_text *text, size_t more)
 {
@@ -124,6 +125,13 @@ static size_t edit_distance(const char *a, const char *b)
   return row[n % 3][m];
 }
 
+/* Whether one is the beginning of the other, which says something from three characters on. */
+static bool begins_alike(const char *a, const char *b)
+{
+  size_t n = strlen(a) < strlen(b) ? strlen(a) : strlen(b);
+  return n >= 3 && strncasecmp(a, b, n) == 0;
+}
+
 const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count)
 {
   size_t limit = strlen(word) / 3 > 1 ? strlen(word) / 3 : 1, best = limit + 1;
@@ -135,7 +143,13 @@ const char *dea_nearest_name(const char *word, const char *const candidates[], s
       nearest = candidates[i];
     }
   }
-  return nearest;
+  size_t alike = 0;
+  for (size_t i = 0; i < count && best > limit; i++) {
+    bool begins = begins_alike(word, candidates[i]);
+    nearest = begins ? candidates[i] : nearest;
+    alike += begins ? 1 : 0;
+  }
+  return best > limit && alike != 1 ? NULL : nearest;
 }
 
 double dea_text_to_double(const char *text, const char **end)
