@@ -148,9 +148,13 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
   struct signs *signs =
       mmap(NULL, sizeof *signs, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (signs == MAP_FAILED || pipe(ends) != 0) {
+    dea_status status = dea_fail(ctx, DEA_E_INSTRUMENT,
+                                 "the guard of the output cannot be made: %s", strerror(errno));
+    if (signs != MAP_FAILED) {
+      munmap(signs, sizeof *signs);
+    }
     dea_free(ctx, made);
-    return dea_fail(ctx, DEA_E_INSTRUMENT, "the guard of the output cannot be made: %s",
-                    strerror(errno));
+    return status;
   }
   *made = (struct dea_guard){.signs = signs, .pipe = ends[1], .turned_s = dea_clock_s()};
   fcntl(ends[1], F_SETFD, FD_CLOEXEC);
