@@ -26,8 +26,8 @@ size_t dea_letter_read(const char *text, unsigned *code);
 const char *dea_entity_name(unsigned code);
 
 /* Candidate nearest to `word` by edit distance (case folded), or NULL when none is near enough to
- * be what was meant (distance above a third of the word's length, at least 1), nor the only one that
- * begins with the word or that the word begins with (of three characters or more). */
+ * be what was meant (distance above a third of the word's length, at least 1), nor the only one
+ * that begins with the word or that the word begins with (of three characters or more). */
 const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count);
 
 /* Number of a text in the C locale, whatever the program's locale; *end as in strtod. */
