@@ -263,18 +263,29 @@ dea_status dea_cycles_find(struct dea_context *ctx, const struct dea_recording *
   return DEA_OK;
 }
 
+/* Whether the voltage is on behind sample i: of the last one up to it that is a number. */
+static bool is_under(const struct dea_channel *voltage, double least_V, size_t i)
+{
+  while (i > 0 && isnan(voltage->values[i])) {
+    i--;
+  }
+  return fabs(voltage->values[i]) > least_V; // false for NAN
+}
+
 void dea_cycles_dose(const struct dea_channel *voltage, double least_V,
                      struct dea_reduced_cycle *cycles, size_t count)
 {
-  size_t i = 0;
+  size_t i = 0; // samples before it are in the sum
   double sum_s = 0;
   bool under = false;
   for (size_t k = 0; k < count; k++) {
     double end_s = cycles[k].cycle.end_s;
-    if (i > 0 && time_of(voltage, i - 1) >= end_s) { // of plateaus within one another
-      i = 0;
-      sum_s = 0;
-      under = false;
+    while (i > 0 && time_of(voltage, i - 1) >= end_s) { // of plateaus within one another
+      i--;
+      sum_s -= i > 0 && is_under(voltage, least_V, i - 1)
+                   ? time_of(voltage, i) - time_of(voltage, i - 1)
+                   : 0;
+      under = i > 0 && is_under(voltage, least_V, i - 1);
     }
     for (; i < voltage->count && time_of(voltage, i) < end_s; i++) {
       // what the sample before had lasted until this one
