@@ -183,6 +183,19 @@ static void test_headers(void **state)
   dea_table_destroy(ctx, table);
 }
 
+/* Titles with line breaks in quotes (Alt+Enter in Excel) are none, rather than those of other
+ * columns. */
+static void test_titles_of_two_lines(void **state)
+{
+  (void)state;
+  static const double t[] = {0.5, 1.5};
+  struct dea_table *table =
+      read_text("quoted.csv", "\"Time\n(s)\",\"Voltage\n(kV)\"\n0.5,1\n1.5,2\n");
+  assert_column(table, "column 1", "", t, 2);
+  assert_true(is_said(DEA_NOTE, "name no 2 columns"));
+  dea_table_destroy(ctx, table);
+}
+
 static void test_text_columns_and_rates(void **state)
 {
   (void)state;
@@ -267,6 +280,7 @@ int main(void)
       cmocka_unit_test(test_rows_of_missing_values),
       cmocka_unit_test(test_numbers_exact),
       cmocka_unit_test(test_headers),
+      cmocka_unit_test(test_titles_of_two_lines),
       cmocka_unit_test(test_text_columns_and_rates),
       cmocka_unit_test(test_refused),
       cmocka_unit_test(test_late_errors),

@@ -199,6 +199,7 @@ static void test_clock_errors(void **state)
       {"t (s),V (kV)\n0,1\n1,2\n1,3\n2,4\n", "repeats 1 in row 3"},
       {"t (s),V (kV)\n0,1\n1,2\n2,3\n0,4\n1,5\n", "starts again in row 4"},
       {"t (s),V (kV)\n0,1\n1,2\n2,3\n1.5,4\n", "falls in row 4"},
+      {"t (s),V (kV)\n3,1\n2,2\n1,3\n0,4\n", "falls in row 2"},
       {"t (s),V (kV)\n0,1\n,2\n2,3\n", "no time in row 2 of its numbers, where 'V'"},
       {"t (s),V (kV)\n0,1\n1,2\n2,\n,3\n,\n", "no time in row 4"},
       {"Time,V (kV)\n,\n46348.4188,1\n46348.4189,2\n46348.4190,3\n", "spreadsheet"},

@@ -1,6 +1,8 @@
 /* The reduction where there is little, or something is wrong with it. */
+#define _POSIX_C_SOURCE 200809L // mkdtemp
 #include "failing_allocator.h"
 
+#include "lab/reduce/output.h"
 #include "lab_reduced.h"
 
 static void test_clipped_sensor_is_said(void **state)
@@ -90,6 +92,52 @@ static void test_little(void **state)
   }
 }
 
+/* 4 samples a part: of the last fifth there is none, which is said; of the last 60 % two, which
+ * tell no noise, so that the only cycle at 4 kV has no uncertainty of its own. In means.csv it has
+ * that of the others, and they keep theirs. */
+static void test_few_samples_and_a_single_cycle(void **state)
+{
+  (void)state;
+  enum { CYCLES = 7, COUNT = 8 * CYCLES + 4 };
+  static const double expected[][2] = {{2, 200}, {4, 800}};
+  struct dea_recording r = two_channels(4.0, COUNT);
+  uint64_t seed = 1;
+  for (size_t i = 0; i < COUNT; i++) {
+    double level = i % 8 < 4 ? 0.0 : i / 8 + 1 == CYCLES ? 4.0 : 2.0;
+    r.channels[0].values[i] = 1e3 * level;
+    r.channels[1].values[i] = 50e-6 * level * level + 0.3e-6 * signal_normal(&seed);
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  assert_true(noted("'displacement' is formed: the last 20 %"));
+  dea_reduction_destroy(ctx, out);
+  struct dea_reduce_options options = plain;
+  options.settle = 0.6;
+  out = reduced(&r, &options);
+  assert_false(noted("is formed"));
+  char folder[] = "dea-little-XXXXXX", name[64], line[200];
+  assert_non_null(mkdtemp(folder));
+  assert_int_equal(dea_reduction_write_tables(ctx, &r, out, folder), DEA_OK);
+  snprintf(name, sizeof name, "%s/means.csv", folder);
+  FILE *file = fopen(name, "r");
+  assert_non_null(file);
+  size_t rows = 0;
+  while (fgets(line, sizeof line, file) != NULL) {
+    double kV, mean_um, std_um = NAN;
+    if (sscanf(line, "%lf,%lf,%lf", &kV, &mean_um, &std_um) >= 2 && rows < 2) {
+      assert_close(kV, expected[rows][0], 1e-6, 0.0);
+      assert_close(mean_um, expected[rows][1], 0.0, 1.0);
+      assert_true(std_um > 0.05 && std_um < 0.5);
+      rows++;
+    }
+  }
+  fclose(file);
+  assert_int_equal(rows, 2);
+  snprintf(line, sizeof line, "rm -r '%s'", folder);
+  assert_int_equal(system(line), 0);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 static void test_empty_profiles(void **state)
 {
   (void)state;
@@ -149,6 +197,7 @@ int main(void)
       cmocka_unit_test(test_outlier_among_few_frames),
       cmocka_unit_test(test_without_voltage),
       cmocka_unit_test(test_little),
+      cmocka_unit_test(test_few_samples_and_a_single_cycle),
       cmocka_unit_test(test_empty_profiles),
       cmocka_unit_test(test_memory),
   };

@@ -26,7 +26,7 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_table *table,
                                  "the time column '%.60s' repeats %.10g in row %zu of its numbers: "
                                  "it has too few digits; give the rate in a mapping (rate: 10 kHz)",
                                  column->name, now, row + 1));
-  } else if (now <= first + fabs(before - first) * 1e-3) {
+  } else if (before > first && now <= first + (before - first) * 1e-3) {
     DEA_TRY(ctx,
             dea_finding_add(ctx, DEA_ERROR, location,
                             "the time column '%.60s' starts again in row %zu of its numbers "

@@ -22,7 +22,11 @@ static bool recognise(const char *file, const unsigned char *head, size_t length
 static bool part(const struct dea_csv_dialect *dialect, size_t line, struct dea_slice *out)
 {
   static const char separators[] = {'\t', ';', ',', '|', ' '};
-  if (line >= dialect->title_count) {
+  size_t quotes = 0;
+  for (size_t i = 0; line < dialect->title_count && i < dialect->titles[line].length; i++) {
+    quotes += dialect->titles[line].text[i] == '"';
+  }
+  if (line >= dialect->title_count || quotes % 2 == 1) { // a title goes on in another line
     return false;
   }
   if (dea_titles_part(dialect->titles[line], dialect->separator, dialect->count, out)) {

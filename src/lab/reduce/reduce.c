@@ -350,6 +350,23 @@ static dea_status drop_saturated(struct job *job, enum dea_reduced_kind kind)
   return DEA_OK;
 }
 
+/* A sensor of which nothing came of any cycle would be missing in silence. */
+static dea_status note_without_amplitude(const struct job *job, enum dea_reduced_kind kind)
+{
+  const struct dea_reduction *r = job->out;
+  for (size_t i = 0; i < r->cycle_count; i++) {
+    if (!isnan(r->cycles[i].values[kind].amplitude)) {
+      return DEA_OK;
+    }
+  }
+  NOTE(
+      job->ctx,
+      "no amplitude of '%s' is formed: the last %.3g %% of the parts of a cycle hold no sample, or "
+      "too few valid ones (a larger --settle takes more)",
+      r->series[kind].name, 100.0 * r->settle);
+  return DEA_OK;
+}
+
 static dea_status reduce_cycles(struct job *job)
 {
   struct dea_reduction *r = job->out;
@@ -359,6 +376,7 @@ static dea_status reduce_cycles(struct job *job)
       DEA_TRY(job->ctx,
               dea_cycle_values(job->ctx, &r->series[kind], job->list.parts, r->cycle_count,
                                r->settle, r->cycles, (enum dea_reduced_kind)kind, &r->noise[kind]));
+      DEA_TRY(job->ctx, note_without_amplitude(job, (enum dea_reduced_kind)kind));
       unknown = unknown || isnan(r->noise[kind]);
       DEA_TRY(job->ctx, drop_saturated(job, (enum dea_reduced_kind)kind));
     }

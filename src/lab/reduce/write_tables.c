@@ -159,13 +159,13 @@ static size_t measured_kinds(const struct dea_reduction *r, enum dea_reduced_kin
   return count;
 }
 
-/* Mean square of the uncertainties of a kind over all rows; NAN where one is not known. */
+/* Mean square of the uncertainties of a kind over the rows that have one; NAN without any. */
 static double usual_variance(const struct dea_reduction *r, enum dea_reduced_kind kind)
 {
   double sum = 0.0, count = 0.0;
   for (size_t l = 0; l < r->level_count;) {
     const struct dea_reduced_row row = dea_reduced_row_at(r, l);
-    if (!isnan(row.mean[kind])) {
+    if (!isnan(row.uncertainty[kind])) {
       sum += row.uncertainty[kind] * row.uncertainty[kind];
       count += 1.0;
     }
@@ -179,8 +179,9 @@ static double usual_variance(const struct dea_reduction *r, enum dea_reduced_kin
 static double mean_uncertainty(const struct dea_reduced_row *row, enum dea_reduced_kind kind,
                                double usual)
 {
-  const double own = row->cycles > 1 ? (double)row->cycles - 1.0 : 0.0, more = 10.0;
-  const double variance = row->uncertainty[kind] * row->uncertainty[kind];
+  const bool known = row->cycles > 1 && !isnan(row->uncertainty[kind]);
+  const double own = known ? (double)row->cycles - 1.0 : 0.0, more = 10.0;
+  const double variance = known ? row->uncertainty[kind] * row->uncertainty[kind] : 0.0;
   return sqrt((own * variance + more * usual) / (own + more));
 }
 
