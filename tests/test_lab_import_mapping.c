@@ -261,6 +261,35 @@ static void test_jitter(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
+/* Times of day count from their first, which must be the same moment in both files. */
+static void test_join_of_times_of_day(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *other;
+    bool same;
+  } cases[] = {
+      {"Timestamp,z (um)\n2026-03-02 10:00:00,1\n2026-03-02 10:00:01,2\n", true},
+      {"Timestamp,z (um)\n2026-03-02 10:00:30,1\n2026-03-02 10:00:31,2\n", false},
+      {"Timestamp,z (um)\n2026-03-03 10:00:00,1\n2026-03-03 10:00:01,2\n", false},
+      {"Time,z (um)\n10:00:00.0,1\n10:00:01.0,2\n", true},
+      {"Time,z (um)\n10:00:30,1\n10:00:31,2\n", false},
+      {"Time (s),z (um)\n0,1\n1,2\n", true},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_table *a =
+        read_text("a.csv", "Timestamp,V (kV)\n2026-03-02 10:00:00,1\n2026-03-02 10:00:01,2\n");
+    struct dea_table *b = read_text("b.csv", cases[i].other);
+    dea_status status = dea_table_join(ctx, a, b);
+    if (status != (cases[i].same ? DEA_OK : DEA_E_IO)) {
+      fail_msg("case %zu: %s", i, dea_status_name(status));
+    }
+    dea_table_destroy(ctx, a);
+    dea_table_destroy(ctx, b);
+  }
+  dea_context_clear(ctx);
+}
+
 static void test_join(void **state)
 {
   (void)state;
@@ -360,11 +389,17 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_guesses),      cmocka_unit_test(test_mapping),
-      cmocka_unit_test(test_profile),      cmocka_unit_test(test_mapping_errors),
-      cmocka_unit_test(test_clock_errors), cmocka_unit_test(test_rows_without_a_time),
-      cmocka_unit_test(test_jitter),       cmocka_unit_test(test_join),
-      cmocka_unit_test(test_comsol),       cmocka_unit_test(test_comsol_sections),
+      cmocka_unit_test(test_guesses),
+      cmocka_unit_test(test_mapping),
+      cmocka_unit_test(test_profile),
+      cmocka_unit_test(test_mapping_errors),
+      cmocka_unit_test(test_clock_errors),
+      cmocka_unit_test(test_rows_without_a_time),
+      cmocka_unit_test(test_jitter),
+      cmocka_unit_test(test_join),
+      cmocka_unit_test(test_join_of_times_of_day),
+      cmocka_unit_test(test_comsol),
+      cmocka_unit_test(test_comsol_sections),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -17,7 +17,8 @@ struct dea_table_column {
   double start, interval; // of its samples when the file says so [s]; interval NAN: it does not
   double *values;         // [count], owned; NAN: missing
   size_t count;
-  size_t clock; // 1 + the column with its times when the file says so; 0: it does not
+  size_t clock;    // 1 + the column with its times when the file says so; 0: it does not
+  double origin_s; // of times of day, which count from their first: that, since some midnight; NAN
 };
 
 struct dea_table {

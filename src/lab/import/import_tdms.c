@@ -283,6 +283,7 @@ static void relate_times(struct dea_tdms *tdms, struct dea_table *table)
       for (size_t k = 0; k < column->count; k++) {
         column->values[k] -= first;
       }
+      column->origin_s = first;
       dea_free(tdms->ctx, column->unit);
       column->unit = dea_copy_text(tdms->ctx, "s", 1);
     }

@@ -6,20 +6,22 @@
 /* What a table's samples are counted by. */
 struct table_clock {
   struct dea_clock clock;
-  size_t column; // of the times; the table's count: none
+  size_t column;   // of the times; the table's count: none
+  double origin_s; // that they count from; NAN: not known
   bool known;
 };
 
 static dea_status find_clock(struct dea_context *ctx, const struct dea_table *table,
                              struct table_clock *out)
 {
-  *out = (struct table_clock){.column = table->column_count};
+  *out = (struct table_clock){.column = table->column_count, .origin_s = NAN};
   struct dea_column_role *roles = dea_alloc(ctx, table->column_count, sizeof *roles);
   dea_status status = roles != NULL ? dea_table_roles(ctx, table, NULL, roles) : DEA_E_MEMORY;
   for (size_t i = 0; status == DEA_OK && i < table->column_count && !out->known; i++) {
     const struct dea_table_column *column = &table->columns[i];
     if (roles[i].use == DEA_USE_TIME) {
       out->column = i;
+      out->origin_s = column->origin_s;
       out->known = true;
       status = dea_clock_read(ctx, table, i, roles[i].factor, &out->clock);
     } else if (column->interval > 0) {
@@ -68,6 +70,21 @@ static dea_status move(struct dea_context *ctx, struct dea_table *table, struct 
   return DEA_OK;
 }
 
+/* Whether times that count from two moments begin together, as far as that is known: what one file
+ * has without a date is compared with the other's time of day. */
+static bool begin_together(const struct table_clock *a, const struct table_clock *b)
+{
+  static const double day_s = 86400;
+  double off_s = a->origin_s - b->origin_s, step_s = a->clock.interval_s;
+  if (fmin(a->origin_s, b->origin_s) < day_s) {
+    off_s = remainder(off_s, day_s);
+  }
+  if (a->clock.time_s != NULL) {
+    step_s = a->clock.count > 1 ? a->clock.time_s[1] - a->clock.time_s[0] : 0;
+  }
+  return !(fabs(off_s) > 1e-3 * step_s); // true of NAN
+}
+
 dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, struct dea_table *other)
 {
   struct table_clock a = {0}, b = {0};
@@ -76,15 +93,19 @@ dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, stru
     status = find_clock(ctx, other, &b);
   }
   if (status == DEA_OK) {
-    bool same = a.known && b.known   ? dea_clock_same(&a.clock, &b.clock)
+    bool both = !isnan(a.origin_s) && !isnan(b.origin_s) && table->format == other->format;
+    bool same = a.known && b.known
+                    ? dea_clock_same(&a.clock, &b.clock) && (!both || begin_together(&a, &b))
                 : a.known == b.known ? a.clock.count == b.clock.count
                                      : false;
-    status = same ? move(ctx, table, other, b.column)
-                  : dea_fail(ctx, DEA_E_IO,
-                             "'%s' and '%s' have different clocks (%zu samples from %.6g s and %zu "
-                             "from %.6g s): import each into a recording of its own",
-                             table->file, other->file, a.clock.count, a.clock.start_s,
-                             b.clock.count, b.clock.start_s);
+    status = same
+                 ? move(ctx, table, other, b.column)
+                 : dea_fail(ctx, DEA_E_IO,
+                            "'%s' and '%s' have different clocks (%zu samples from %.12g s and %zu "
+                            "from %.12g s): import each into a recording of its own",
+                            table->file, other->file, a.clock.count,
+                            a.clock.start_s + (both ? a.origin_s : 0), b.clock.count,
+                            b.clock.start_s + (both ? b.origin_s : 0));
   }
   dea_free(ctx, a.clock.time_s);
   dea_free(ctx, b.clock.time_s);

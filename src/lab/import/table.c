@@ -53,7 +53,7 @@ struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table
     table->column_room = more;
   }
   struct dea_table_column *column = &table->columns[table->column_count];
-  *column = (struct dea_table_column){.start = 0, .interval = NAN};
+  *column = (struct dea_table_column){.start = 0, .interval = NAN, .origin_s = NAN};
   column->name = copy_text(ctx, name, name_length);
   column->unit = column->name != NULL ? copy_text(ctx, unit, unit_length) : NULL;
   column->values = column->unit != NULL ? dea_alloc(ctx, room, sizeof(double)) : NULL;

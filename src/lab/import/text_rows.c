@@ -134,6 +134,8 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
     if (!numbers && rows->dialect->text[i] && is_clock(rows, text, i)) {
       numbers = true; // one clock is enough
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], &second, room));
+      rows->table->columns[rows->column[i]].origin_s =
+          rows->clocks[i].first_day * 86400 + rows->clocks[i].first_s;
     } else if (!rows->dialect->text[i]) {
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
     } else {
