@@ -138,6 +138,29 @@ static void test_few_samples_and_a_single_cycle(void **state)
   signal_free(&r);
 }
 
+/* A clock that counts from a moment days before: history.csv has every sample. */
+static void test_times_far_from_zero(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.displacement = b.voltage = true;
+  struct dea_recording r = signal_record(&b, 1);
+  for (size_t c = 0; c < r.channel_count; c++) {
+    r.channels[c].start_s = 1e7 - 1e3;
+  }
+  for (size_t k = 0; k < r.cycle_count; k++) {
+    r.cycles[k].start_s += 1e7 - 1e3;
+    r.cycles[k].end_s += 1e7 - 1e3;
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  struct dea_reduced_series series;
+  assert_int_equal(dea_reduced_series_fill(ctx, &r, out, DEA_REDUCED_SERIES_MAX, &series), DEA_OK);
+  assert_int_equal(series.rows, r.channels[0].count);
+  dea_reduced_series_free(ctx, &series);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 static void test_empty_profiles(void **state)
 {
   (void)state;
@@ -198,6 +221,7 @@ int main(void)
       cmocka_unit_test(test_without_voltage),
       cmocka_unit_test(test_little),
       cmocka_unit_test(test_few_samples_and_a_single_cycle),
+      cmocka_unit_test(test_times_far_from_zero),
       cmocka_unit_test(test_empty_profiles),
       cmocka_unit_test(test_memory),
   };

@@ -144,7 +144,9 @@ dea_status dea_reduced_series_fill(struct dea_context *ctx, const struct dea_rec
     n = add_times(&columns, c, stretches, out->time_s, n);
   }
   qsort(out->time_s, n, sizeof *out->time_s, by_size);
-  double same_s = 1e-9 * fmax(fabs(columns.begin_s), fabs(columns.end_s)); // two clocks' rounding
+  // two clocks' rounding, which is less than their steps also far from 0
+  double same_s =
+      fmin(1e-9 * fmax(fabs(columns.begin_s), fabs(columns.end_s)), 0.01 * columns.finest_s);
   for (size_t i = 0; i < n; i++) {
     if (out->rows == 0 || out->time_s[i] > out->time_s[out->rows - 1] + same_s) {
       out->time_s[out->rows++] = out->time_s[i];
