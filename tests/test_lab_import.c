@@ -209,6 +209,9 @@ static void test_text_columns_and_rates(void **state)
   assert_string_equal(rate->unit, "kHz");
   assert_true(is_said(DEA_NOTE, "'Date' holds text ('2023-05-01 10:00')"));
   dea_table_destroy(ctx, table);
+  table = read_text("odd.csv", "t (s),V\n0,1.5\n1,ERR\n2,ERR\n"); // numbers are lost
+  assert_true(is_said(DEA_WARNING, "'V' holds text ('1.5')"));
+  dea_table_destroy(ctx, table);
 }
 
 static void test_refused(void **state)

@@ -99,7 +99,9 @@ static void test_odd_units(void **state)
   (void)state;
   struct dea_recording *recording;
   const char *odd = "its unit is not known";
-  static const char *const left[] = {"Current (ma)", "Voltage (kVpp)", "z (m/s)", "Voltage [mv]"};
+  static const char *const left[] = {"Current (ma)", "Voltage (kVpp)",  "z (m/s)",
+                                     "Voltage [mv]", "Voltage (kV DC)", "Voltage (V_rms)",
+                                     "Force (dyn)",  "Current (mkA)"};
   for (size_t i = 0; i < sizeof left / sizeof left[0]; i++) {
     char text[100];
     snprintf(text, sizeof text, "Time (s),F (N),%s\n0,1,2\n1,2,3\n", left[i]);

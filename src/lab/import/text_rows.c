@@ -142,8 +142,10 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
       const struct dea_location location = {rows->table->file, rows->dialect->line + 1, 1};
       struct dea_slice name, unit = {"", 0}, field = first_field(rows, text, i);
       dea_title_split(rows->ctx, titles[i], &name, &unit);
+      double value; // numbers with something else among them, in the lines that were looked at
+      bool odd = dea_slice_number(field, rows->dialect->decimal, &value);
       DEA_TRY(rows->ctx,
-              dea_finding_add(rows->ctx, unit.length > 0 ? DEA_WARNING : DEA_NOTE, location,
+              dea_finding_add(rows->ctx, unit.length > 0 || odd ? DEA_WARNING : DEA_NOTE, location,
                               "column %zu '%.*s' holds text ('%.*s') and is left out", i + 1,
                               shown(titles[i]), titles[i].text, shown(field), field.text));
     }

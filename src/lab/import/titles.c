@@ -182,6 +182,10 @@ void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea
 static bool is_unit_end(const char *text, size_t length)
 {
   static const char *const ends[] = {"pp", "p-p", "rms", "dc", "ac", "/", "^"};
+  while (length > 0 && (*text == ' ' || *text == '_')) {
+    text++;
+    length--;
+  }
   for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
     size_t n = strlen(ends[i]);
     if (length >= n && dea_slice_is((struct dea_slice){text, n}, ends[i])) {
@@ -193,13 +197,20 @@ static bool is_unit_end(const char *text, size_t length)
 
 bool dea_title_has_odd_unit(const char *name)
 {
+  // other units, and other ways to write these
+  static const char *const others[] = {"dyn", "lb", "lbs", "oz", "kp", "mka", "mkm", "mks", "mkn"};
   size_t length = strlen(name), open = length;
   while (open > 0 && strchr("([{<", name[open - 1]) == NULL) {
     open--;
   }
-  if (open == 0 || length - open < 2 || length - open > 6 ||
+  if (open == 0 || length - open < 2 || length - open > 7 ||
       strchr(")]}>", name[length - 1]) == NULL) {
     return false;
+  }
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+    if (dea_slice_is((struct dea_slice){name + open, length - open - 1}, others[i])) {
+      return true;
+    }
   }
   // a unit, after a prefix or without one
   for (size_t at = open; at < open + 2 && at + 1 < length; at++) {
