@@ -133,6 +133,26 @@ static void test_segments_of_days(void **state)
   dea_table_destroy(ctx, table);
 }
 
+/* Segments whose X0 goes on by itself (absolute times, or seconds since the first): their clock is
+ * not added to that. */
+static void test_segments_that_count_on(void **state)
+{
+  (void)state;
+  static const double both[] = {0, 1.5, 0, 1.5}, t[] = {100, 100.5, 110, 110.5};
+  struct dea_table *table = read_text(
+      "on.lvm", HEADER("No", "Yes", "") SEGMENT("2\t2", "10:00:00", "3765000000", "0.5") TITLES
+      "\t0\t1\n\t1.5\t2\n\n" SEGMENT("2\t2", "10:00:01", "3765000001", "0.5") TITLES
+      "\t0\t1\n\t1.5\t2\n");
+  assert_column(table, "HV", "kV", both, 4);
+  check_clock(table, "HV", 3765000000.0, 0.5);
+  dea_table_destroy(ctx, table);
+  table = read_text(
+      "on.lvm", HEADER("No", "Yes", "") SEGMENT("2\t2", "10:00:00", "100", "0.5") TITLES
+      "\t0\t1\n\t1.5\t2\n\n" SEGMENT("2\t2", "10:00:10", "110", "0.5") TITLES "\t0\t1\n\t1.5\t2\n");
+  assert_column(table, "X_Value", "s", t, 4);
+  dea_table_destroy(ctx, table);
+}
+
 static void test_special_blocks_and_missing(void **state)
 {
   (void)state;
@@ -180,15 +200,11 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_no_times),
-      cmocka_unit_test(test_one_column_of_times),
-      cmocka_unit_test(test_times_for_each),
-      cmocka_unit_test(test_commas),
-      cmocka_unit_test(test_segments),
-      cmocka_unit_test(test_segments_of_days),
-      cmocka_unit_test(test_special_blocks_and_missing),
-      cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_no_times),         cmocka_unit_test(test_one_column_of_times),
+      cmocka_unit_test(test_times_for_each),   cmocka_unit_test(test_commas),
+      cmocka_unit_test(test_segments),         cmocka_unit_test(test_segments_that_count_on),
+      cmocka_unit_test(test_segments_of_days), cmocka_unit_test(test_special_blocks_and_missing),
+      cmocka_unit_test(test_refused),          cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -16,6 +16,7 @@ struct dea_lvm_channel {
   double day;                // its date, since 1970; NAN: not given
   size_t samples;            // 0: not given
   double shift_s;            // what is added to its times
+  double began_s, step_s;    // start with that, and step, of the segment before
   // of a row
   double x_now, y_now;
   bool present;

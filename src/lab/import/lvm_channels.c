@@ -60,11 +60,16 @@ void dea_lvm_begin_segment(struct dea_lvm *lvm)
     }
     channel->shift_s = later(channel);
     if (lvm->x == DEA_LVM_X_NONE && lvm->segments > 0) {
+      // behind the end of the one before: its start goes on by itself
+      double end = channel->began_s + ((double)lvm->row - 0.5) * channel->step_s;
+      channel->shift_s = channel->x0 > end ? 0 : channel->shift_s;
       double due = channel->start_s + (double)channel->total * channel->interval_s;
       double start = channel->x0 + channel->shift_s;
       channel->gap = channel->gap || !(fabs(start - due) <= channel->interval_s / 2) ||
                      fabs(channel->delta - channel->interval_s) > 1e-9 * channel->interval_s;
     }
+    channel->began_s = channel->x0 + channel->shift_s;
+    channel->step_s = channel->delta;
   }
 }
 
