@@ -138,6 +138,37 @@ static void test_few_samples_and_a_single_cycle(void **state)
   signal_free(&r);
 }
 
+/* The amplifier's input in place of what was asked, one of the other sign, and one that was not
+ * used: the measured voltage tells the cycles, and no breakdown. */
+static void test_asked_voltage_of_something_else(void **state)
+{
+  (void)state;
+  static const double factors[] = {1.0, 1e-3, -1.0, 0.0};
+  for (size_t k = 0; k < 4; k++) {
+    struct signal_bench b = signal_bench_plain();
+    b.voltage = true;
+    b.list = false;
+    struct dea_recording r = signal_record(&b, 1);
+    const struct dea_channel *asked = dea_recording_kind(&r, DEA_CHANNEL_COMMAND);
+    struct dea_channel *a =
+        signal_channel(&r, "current", DEA_CHANNEL_CURRENT, b.rate_Hz, asked->count);
+    uint64_t seed = 3;
+    for (size_t i = 0; i < asked->count; i++) {
+      a->values[i] = 1e-12 * asked->values[i] + 1e-10 * signal_normal(&seed);
+      asked->values[i] *= factors[k];
+    }
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_int_equal(noted("the measured one is taken for both"), k > 0);
+    assert_int_equal(out->cycle_count, b.cycles);
+    assert_int_equal(out->level_count, 1);
+    for (size_t d = 0; d < out->discharge_count; d++) {
+      assert_int_equal(out->discharges[d].kind, DEA_DISCHARGE);
+    }
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
 /* A clock that counts from a moment days before: history.csv has every sample. */
 static void test_times_far_from_zero(void **state)
 {
@@ -221,6 +252,7 @@ int main(void)
       cmocka_unit_test(test_without_voltage),
       cmocka_unit_test(test_little),
       cmocka_unit_test(test_few_samples_and_a_single_cycle),
+      cmocka_unit_test(test_asked_voltage_of_something_else),
       cmocka_unit_test(test_times_far_from_zero),
       cmocka_unit_test(test_empty_profiles),
       cmocka_unit_test(test_memory),

@@ -52,6 +52,8 @@ dea_status dea_voltage_scale_find(struct dea_context *ctx, const struct dea_chan
   n = thin_values(voltage, false, values);
   if (n > 0) {
     double low_V = dea_quantile(values, n, 0.001), high_V = dea_quantile(values, n, 0.999);
+    out->low_V = low_V;
+    out->high_V = high_V;
     out->largest_V = fmax(fabs(low_V), fabs(high_V));
     out->rest_V = rest_voltage(values, n, low_V, high_V);
   }

@@ -89,8 +89,36 @@ static void drop_unknown(struct dea_cycle_list *list)
   list->count = n;
 }
 
+/* An asked voltage that is not that of the film (the amplifier's input, or one that was not used)
+ * says nothing: the film had more than twice of it, or the other sign. One that the film does not
+ * reach is a breakdown. */
+static dea_status check_asked(struct job *job)
+{
+  static const double offset_V = 50.0; // that a monitor may have
+  struct dea_voltage_scale asked, measured;
+  if (job->asked == NULL || job->measured == NULL) {
+    return DEA_OK;
+  }
+  DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, job->asked, &asked));
+  DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, job->measured, &measured));
+  const double margin_V = fmax(offset_V, fmax(0.05 * measured.largest_V, 6.0 * measured.noise_V));
+  if (measured.high_V <= 2.0 * fmax(asked.high_V, 0.0) + margin_V &&
+      measured.low_V >= 2.0 * fmin(asked.low_V, 0.0) - margin_V) {
+    return DEA_OK;
+  }
+  NOTE(job->ctx,
+       "the asked voltage '%s' goes from %.4g to %.4g kV, the measured one '%s' from %.4g to %.4g "
+       "kV: the measured one is taken for both (when the asked one is the amplifier's input, its "
+       "per_unit was to be said in a mapping)",
+       job->asked->name, 1e-3 * asked.low_V, 1e-3 * asked.high_V, job->measured->name,
+       1e-3 * measured.low_V, 1e-3 * measured.high_V);
+  job->asked = NULL;
+  return DEA_OK;
+}
+
 static dea_status find_cycles(struct job *job)
 {
+  DEA_TRY(job->ctx, check_asked(job));
   const struct dea_channel *voltage = job->asked != NULL ? job->asked : job->measured;
   DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, voltage, &job->scale));
   DEA_TRY(job->ctx, dea_cycles_find(job->ctx, job->recording, voltage, &job->scale, &job->list));

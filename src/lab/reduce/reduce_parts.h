@@ -36,8 +36,9 @@ double dea_filter_reach(double cutoff_Hz);
 
 struct dea_voltage_scale {
   double largest_V, rest_V, noise_V;
-  double active_V;    // farther than this from rest_V is active
-  double tolerance_V; // of a plateau
+  double low_V, high_V; // of all but the outermost thousandth of the samples
+  double active_V;      // farther than this from rest_V is active
+  double tolerance_V;   // of a plateau
 };
 /* Samples begin <= i < end that stay at one voltage. */
 struct dea_plateau {
