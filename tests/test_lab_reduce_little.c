@@ -169,6 +169,24 @@ static void test_asked_voltage_of_something_else(void **state)
   }
 }
 
+/* Of two lasers the first is reduced, and the other one named. */
+static void test_two_channels_of_one_kind(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.displacement = true;
+  struct dea_recording r = signal_record(&b, 1);
+  struct dea_reduction *out = reduced(&r, &plain);
+  assert_false(noted("is left out"));
+  dea_reduction_destroy(ctx, out);
+  signal_channel(&r, "stage", DEA_CHANNEL_DISPLACEMENT, b.rate_Hz, r.channels[0].count);
+  out = reduced(&r, &plain);
+  assert_true(noted("channel 'stage' is left out"));
+  assert_true(out->levels[0].mean[DEA_REDUCED_DISPLACEMENT] > 200e-6);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 /* A clock that counts from a moment days before: history.csv has every sample. */
 static void test_times_far_from_zero(void **state)
 {
@@ -253,6 +271,7 @@ int main(void)
       cmocka_unit_test(test_little),
       cmocka_unit_test(test_few_samples_and_a_single_cycle),
       cmocka_unit_test(test_asked_voltage_of_something_else),
+      cmocka_unit_test(test_two_channels_of_one_kind),
       cmocka_unit_test(test_times_far_from_zero),
       cmocka_unit_test(test_empty_profiles),
       cmocka_unit_test(test_memory),

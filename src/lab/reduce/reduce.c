@@ -480,8 +480,25 @@ static void take_options(const struct dea_reduce_options *options, struct dea_re
   }
 }
 
+/* Of several channels of one kind the first is taken. */
+static dea_status note_others(const struct job *job)
+{
+  const struct dea_recording *r = job->recording;
+  for (int kind = 0; kind < DEA_CHANNEL_OTHER; kind++) {
+    const struct dea_channel *first = dea_recording_kind(r, (enum dea_channel_kind)kind);
+    for (size_t c = 0; c < r->channel_count; c++) {
+      if ((int)r->channels[c].kind == kind && &r->channels[c] != first) {
+        NOTE(job->ctx, "channel '%s' is left out: '%s' is the %s (the first one of a recording is)",
+             r->channels[c].name, first->name, dea_channel_names[kind]);
+      }
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status reduce(struct job *job, const struct dea_reduce_options *options)
 {
+  DEA_TRY(job->ctx, note_others(job));
   DEA_TRY(job->ctx, find_cycles(job));
   DEA_TRY(job->ctx, note_cycles(job));
   DEA_TRY(job->ctx, reduce_profiles(job));
