@@ -135,7 +135,7 @@ static void test_what_is_no_recording(void **state)
   (void)state;
   command_write("text.h5", "no recording at all");
   assert_int_equal(command_run("recording text.h5"), 5);
-  assert_contains(command_err, "text.h5");
+  assert_contains(command_err, "text.h5 is no recording; dea import makes one");
   assert_int_equal(command_run("recording nowhere.h5"), 5);
   assert_contains(command_err, "does not exist");
   assert_int_equal(command_run("recording /dev/null"), 5);

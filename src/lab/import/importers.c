@@ -84,13 +84,18 @@ static dea_status read_head(struct dea_context *ctx, const char *file,
   return *length > 0 ? DEA_OK : dea_fail(ctx, DEA_E_IO, "'%s' is empty", file);
 }
 
-static dea_status unknown_format(struct dea_context *ctx, const char *file)
+static dea_status unknown_format(struct dea_context *ctx, const char *file,
+                                 const unsigned char *head, size_t length)
 {
   const char *advice = "export it as CSV, .mat, .lvm or .tdms";
   if (dea_name_ends(file, ".xlsx") || dea_name_ends(file, ".xls")) {
     advice = "save the sheet as CSV in Excel";
   } else if (dea_name_ends(file, ".tdms_index")) {
     advice = "give the .tdms file beside it";
+  } else if (length >= 8 && memcmp(head, "\x89HDF\r\n\x1a\n", 8) == 0) {
+    advice =
+        "a recording of dea is read by 'dea reduce' as it is, another HDF5 file is exported as "
+        "CSV or .mat";
   }
   return dea_fail(ctx, DEA_E_IO, "'%s' is of no format that is known; %s", file, advice);
 }
@@ -139,7 +144,7 @@ dea_status dea_table_read(struct dea_context *ctx, const char *file, const char 
     importer = recognise(file, head, length);
   }
   if (importer == NULL) {
-    return unknown_format(ctx, file);
+    return unknown_format(ctx, file, head, length);
   }
   struct dea_table *table = dea_alloc(ctx, 1, sizeof *table);
   if (table == NULL) {

@@ -313,24 +313,38 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
   drop_cycles(recording);
 }
 
-/* True for the superblock of version 3 whose flags say: open for one writer and many readers. */
-static bool is_being_written(const char *path)
+/* The first bytes of a file; how many. */
+static size_t read_head(const char *path, unsigned char head[12])
 {
-  unsigned char head[12] = {0};
   FILE *file = fopen(path, "rb");
-  bool all = file != NULL && fread(head, 1, sizeof head, file) == sizeof head;
+  size_t count = file != NULL ? fread(head, 1, 12, file) : 0;
   if (file != NULL) {
     fclose(file);
   }
-  return all && memcmp(head, "\x89HDF\r\n\x1a\n", 8) == 0 && head[8] == 3 && (head[11] & 4) != 0;
+  return count;
+}
+
+static bool is_hdf5(const unsigned char head[12], size_t count)
+{
+  return count == 12 && memcmp(head, "\x89HDF\r\n\x1a\n", 8) == 0;
 }
 
 /* A file whose program was killed is still marked as being written, which is what SWMR reads. Only
  * such a one is opened in that way: of others HDF5 checks the length. */
 static hid_t open_file(struct h5 *h)
 {
+  unsigned char head[12] = {0};
+  const size_t count = read_head(h->path, head);
+  if (count > 0 && !is_hdf5(head, count)) {
+    h->status =
+        dea_fail(h->ctx, DEA_E_IO,
+                 "%s is no recording; dea import makes one of CSV, .mat, .lvm and .tdms", h->path);
+    return H5I_INVALID_HID;
+  }
+  // a superblock of version 3 whose flags say: open for one writer and many readers
+  const bool written = is_hdf5(head, count) && head[8] == 3 && (head[11] & 4) != 0;
   hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0 && is_being_written(h->path)) {
+  if (file < 0 && written) {
     H5Eclear2(H5E_DEFAULT);
     // what a program is just writing is read again, each time after twice the wait, from 1 ns on:
     // with HDF5's default of 100 times a damaged file would take longer than anybody lives
