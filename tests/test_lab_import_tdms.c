@@ -264,6 +264,48 @@ static void test_times_of_two_devices(void **state)
   dea_table_destroy(ctx, table);
 }
 
+static void put_time_property(const char *name, uint64_t seconds, uint64_t fraction)
+{
+  put_text(name);
+  put(0x44, 4);
+  put(fraction, 8);
+  put(seconds, 8);
+}
+
+/* Waveforms of two devices, the second of which was started 2.5 s later; one does not say when.
+ * What is appended writes the time again. */
+static void test_waveforms_of_two_devices(void **state)
+{
+  (void)state;
+  static const double starts[] = {0.5, 3.0, 0.5};
+  static const char *const names[] = {"/'a'/'V'", "/'b'/'z'", "/'c'/'F'"};
+  begin_file();
+  for (uint64_t turn = 0; turn < 2; turn++) {
+    begin_segment(METADATA | NEW_LIST | RAW);
+    put(3, 4);
+    for (size_t i = 0; i < 3; i++) {
+      put_object(names[i], 10, 2, i < 2 ? 3 : 2);
+      put_real_property("wf_increment", 0.001);
+      put_real_property("wf_start_offset", 0.5);
+      if (i < 2) {
+        put_time_property("wf_start_time", 3765000000u + 2 * i + turn, i << 63);
+      }
+    }
+    begin_raw();
+    for (size_t i = 0; i < 6; i++) {
+      put_double((double)i);
+    }
+    end_segment();
+  }
+  struct dea_table *table = read_bytes("waves.tdms", bytes, length);
+  for (size_t i = 0; i < 3; i++) {
+    assert_close(table->columns[i].start, starts[i], 1e-9, 0);
+    assert_int_equal(table->columns[i].count, 4);
+  }
+  assert_true(is_said(DEA_NOTE, "'b/z' begins 2.5 s after"));
+  dea_table_destroy(ctx, table);
+}
+
 /* A program that crashed leaves -1 as the length of its last segment. */
 /* Raw values with a linear scale in their properties; one that was applied already; another one. */
 static void test_scales(void **state)
@@ -441,6 +483,7 @@ int main(void)
       cmocka_unit_test(test_types),
       cmocka_unit_test(test_times_and_texts),
       cmocka_unit_test(test_times_of_two_devices),
+      cmocka_unit_test(test_waveforms_of_two_devices),
       cmocka_unit_test(test_crashed),
       cmocka_unit_test(test_scales),
       cmocka_unit_test(test_refused),

@@ -218,9 +218,40 @@ static bool many_groups(const struct dea_tdms *tdms)
   return false;
 }
 
+/* When the first waveform of the file begins; INFINITY: none says so. */
+static double first_start(const struct dea_tdms *tdms)
+{
+  double first = INFINITY;
+  for (size_t i = 0; i < tdms->count; i++) {
+    const struct dea_tdms_object *object = &tdms->objects[i];
+    if (object->total > 0 && object->increment > 0) {
+      first = fmin(first, object->start_time); // not NAN
+    }
+  }
+  return first;
+}
+
+/* Waveforms of several devices count from moments of their own. */
+static dea_status set_clock(struct dea_tdms *tdms, const struct dea_tdms_object *object,
+                            double first, struct dea_table_column *column)
+{
+  const struct dea_location location = {.file = tdms->file};
+  const double later_s = isnan(object->start_time) ? 0 : object->start_time - first;
+  column->start = object->start_offset;
+  column->interval = object->increment;
+  if (!(object->increment > 0) || later_s == 0) {
+    return DEA_OK;
+  }
+  column->start += later_s;
+  return dea_finding_add(tdms->ctx, DEA_NOTE, location,
+                         "'%.60s' begins %.9g s after the first channel of the file", column->name,
+                         later_s);
+}
+
 static dea_status add_columns(struct dea_tdms *tdms, struct dea_table *table)
 {
   bool groups = many_groups(tdms);
+  double first = first_start(tdms);
   for (size_t i = 0; i < tdms->count; i++) {
     struct dea_tdms_object *object = &tdms->objects[i];
     char group[NAME_SIZE], channel[NAME_SIZE], name[2 * NAME_SIZE + 2];
@@ -239,8 +270,7 @@ static dea_status add_columns(struct dea_tdms *tdms, struct dea_table *table)
     if (column == NULL) {
       return dea_context_status(tdms->ctx);
     }
-    column->start = object->start_offset;
-    column->interval = object->increment;
+    DEA_TRY(tdms->ctx, set_clock(tdms, object, first, column));
     const struct dea_location location = {.file = tdms->file};
     if (dea_tdms_is_linear(object)) {
       DEA_TRY(tdms->ctx,

@@ -55,6 +55,7 @@ struct dea_tdms_text {
 struct dea_tdms_object {
   struct dea_tdms_text path, unit;
   double increment, start_offset; // of its waveform; NAN, 0
+  double start_time;              // that this counts from, since 1904; NAN
   double scales;                  // that turn raw values into what is meant; 0: none
   bool applied;                   // values are that already
   bool linear;                    // the first one is value * slope + intercept

@@ -148,8 +148,12 @@ static dea_status find_object(struct dea_tdms *tdms, struct dea_tdms_text path, 
     tdms->objects = moved;
     tdms->room = room;
   }
-  tdms->objects[tdms->count++] = (struct dea_tdms_object){
-      .path = path, .unit = {"", 0}, .increment = NAN, .slope = NAN, .intercept = 0};
+  tdms->objects[tdms->count++] = (struct dea_tdms_object){.path = path,
+                                                          .unit = {"", 0},
+                                                          .increment = NAN,
+                                                          .start_time = NAN,
+                                                          .slope = NAN,
+                                                          .intercept = 0};
   return DEA_OK;
 }
 
@@ -272,6 +276,8 @@ static void read_property(struct dea_tdms_bytes *bytes, struct dea_tdms_object *
   }
   if (same(name, "wf_increment") && value > 0) {
     object->increment = value;
+  } else if (same(name, "wf_start_time") && value > 0 && isnan(object->start_time)) {
+    object->start_time = value; // of its first values: what is appended may write it again
   } else if (same(name, "wf_start_offset") && isfinite(value)) {
     object->start_offset = value;
   } else if ((same(name, "unit_string") || same(name, "NI_UnitDescription")) && text.length > 0) {
