@@ -209,6 +209,9 @@ static void test_text_columns_and_rates(void **state)
   assert_string_equal(rate->unit, "kHz");
   assert_true(is_said(DEA_NOTE, "'Date' holds text ('2023-05-01 10:00')"));
   dea_table_destroy(ctx, table);
+  table = read_text("kV.csv", "t (s),V\n0,1.5 kV\n1,2.5 kV\n"); // no thousands
+  assert_true(is_said(DEA_NOTE, "'V' holds text ('1.5 kV')"));
+  dea_table_destroy(ctx, table);
   table = read_text("odd.csv", "t (s),V\n0,1.5\n1,ERR\n2,ERR\n"); // numbers are lost
   assert_true(is_said(DEA_WARNING, "'V' holds text ('1.5')"));
   dea_table_destroy(ctx, table);
@@ -220,6 +223,7 @@ static void test_refused(void **state)
   static const struct refused cases[] = {
       {"t;V\n0;1,234.5\n1;2,345.6\n", 3, "a comma and a point"},
       {"t,V\n0,\"1,234.5\"\n1,\"2,345.6\"\n", 3, "a comma and a point"},
+      {"t;V\n0;1.234.567,5\n1;-2.345.678,5\n", 3, "'-2.345.678,5' has a comma and a point"},
       {"t,V\n0,1\n1,oops\n2,3\n", 3, "'oops' stands in a line of numbers"},
       {"t,V\n0,1\n1,2\nt,V\n0,1\n1,2\n2,3\n", 2, "from line 5 on"},
       {"t,V\n0,1\n1,2\n2,3,4\n3,4,5\n4,5,6\n", 2, "from line 4 on"},

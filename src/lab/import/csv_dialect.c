@@ -146,19 +146,35 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
   return a->count > b->count; // "2," is a number and a missing one, not 2.0
 }
 
-/* "1,234.5" or "1.234,5". */
+/* "1,234.5" or "1.234,5": up to three digits, then a mark and three more as often as there are,
+ * then the other mark. */
 static bool has_thousands(struct dea_slice field)
 {
-  size_t commas = 0, points = 0;
-  for (size_t i = 0; i < field.length; i++) {
+  size_t i = field.length > 0 && strchr("+-", field.text[0]) != NULL, digits = 0, groups = 0;
+  char mark = '\0';
+  for (; i < field.length; i++) {
     char c = field.text[i];
-    commas += c == ',';
-    points += c == '.';
-    if (strchr("+-.,", c) == NULL && !isdigit((unsigned char)c)) {
+    if (isdigit((unsigned char)c)) {
+      digits++;
+      continue;
+    }
+    bool good = groups == 0 ? digits > 0 && digits <= 3 : digits == 3;
+    if (!good || (c != ',' && c != '.')) {
+      return false;
+    }
+    if (groups > 0 && c != mark) {
+      break;
+    }
+    mark = c;
+    digits = 0;
+    groups++;
+  }
+  for (size_t k = i + 1; k < field.length; k++) {
+    if (!isdigit((unsigned char)field.text[k])) {
       return false;
     }
   }
-  return commas > 0 && points > 0;
+  return i < field.length;
 }
 
 static dea_status refuse_thousands(const struct sample *sample, size_t last, bool *found)
