@@ -244,6 +244,17 @@ static void test_rows_without_a_time(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
+/* A column in ms that is always the same is no clock. */
+static void test_constant_times(void **state)
+{
+  (void)state;
+  struct dea_recording *recording =
+      record_text("Time (s),Exposure (ms),V (kV)\n0,3,1\n1,3,2\n2,3,3\n", NULL);
+  assert_int_equal(recording->channel_count, 1);
+  assert_close(recording->channels[0].interval_s, 1, 1e-12, 0);
+  dea_recording_destroy(ctx, recording);
+}
+
 /* Times written with few digits are uniform; a lost sample is not. Since 1970 becomes since 0. */
 static void test_jitter(void **state)
 {
@@ -389,17 +400,12 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_guesses),
-      cmocka_unit_test(test_mapping),
-      cmocka_unit_test(test_profile),
-      cmocka_unit_test(test_mapping_errors),
-      cmocka_unit_test(test_clock_errors),
-      cmocka_unit_test(test_rows_without_a_time),
-      cmocka_unit_test(test_jitter),
-      cmocka_unit_test(test_join),
-      cmocka_unit_test(test_join_of_times_of_day),
-      cmocka_unit_test(test_comsol),
-      cmocka_unit_test(test_comsol_sections),
+      cmocka_unit_test(test_guesses),        cmocka_unit_test(test_mapping),
+      cmocka_unit_test(test_profile),        cmocka_unit_test(test_mapping_errors),
+      cmocka_unit_test(test_clock_errors),   cmocka_unit_test(test_rows_without_a_time),
+      cmocka_unit_test(test_constant_times), cmocka_unit_test(test_jitter),
+      cmocka_unit_test(test_join),           cmocka_unit_test(test_join_of_times_of_day),
+      cmocka_unit_test(test_comsol),         cmocka_unit_test(test_comsol_sections),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -180,6 +180,17 @@ static dea_status take_mapping(struct work *work, size_t *clock)
 
 // Guessing ---------------------------------------------------------------------------------------
 
+/* Whether all numbers of a column are one: an exposure in ms is no clock. */
+static bool is_constant(const struct dea_table_column *column)
+{
+  double low = NAN, high = NAN;
+  for (size_t i = 0; i < column->count; i++) {
+    low = fmin(low, column->values[i]); // not NAN
+    high = fmax(high, column->values[i]);
+  }
+  return low == high;
+}
+
 /* Times and clocks, which are guessed also beside a mapping that names none. */
 static void guess_times(struct work *work)
 {
@@ -209,7 +220,8 @@ static void guess_times(struct work *work)
     int kind = dea_guess_by_name(column->name);
     bool named = kind == DEA_GUESS_TIME;
     bool seconds = kind != DEA_GUESS_UNCERTAINTY && si != NULL && strcmp(si, "s") == 0;
-    if (column->count > 1 && (seconds || (named && column->unit[0] == '\0'))) {
+    if (column->count > 1 && !is_constant(column) &&
+        (seconds || (named && column->unit[0] == '\0'))) {
       role->use = DEA_USE_TIME;
       role->factor = seconds ? factor : 1;
       role->why = seconds ? "by its unit" : "by its name, in s";
