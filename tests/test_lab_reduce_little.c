@@ -187,6 +187,39 @@ static void test_two_channels_of_one_kind(void **state)
   signal_free(&r);
 }
 
+/* Cycles at 0 V behind others, on for 1.5 of 2 s: their parts are those of the first one, whose
+ * rest before it is longer than theirs. */
+static void test_quiet_cycles_behind_others(void **state)
+{
+  (void)state;
+  enum { RATE = 100, CYCLES = 8, COUNT = 28 * RATE };
+  static struct dea_recorded_cycle list[CYCLES];
+  struct dea_recording r = two_channels(RATE, COUNT);
+  uint64_t seed = 2;
+  for (size_t i = 0; i < COUNT; i++) {
+    double t = (double)i / RATE - 8.0, phase = t - 2.0 * floor(t / 2.0);
+    bool on = t >= 0.0 && phase < 1.5 && (t < 6.0 || (t >= 10.0 && t < 16.0));
+    r.channels[0].values[i] = on ? 5000.0 : 0.0;
+    r.channels[1].values[i] = (on ? 1e-3 : 0.0) + 1e-7 * signal_normal(&seed);
+  }
+  for (size_t k = 0; k < CYCLES; k++) {
+    double start_s = 8.0 + 2.0 * (double)k;
+    list[k] = (struct dea_recorded_cycle){k / 3, k % 3, start_s, start_s + 2.0,
+                                          k == 3 || k == 4 ? 0.0 : 5000.0};
+  }
+  r.cycles = list;
+  r.cycle_count = CYCLES;
+  struct dea_reduction *out = reduced(&r, &plain);
+  assert_int_equal(out->cycle_count, CYCLES);
+  for (size_t k = 0; k < CYCLES; k++) {
+    double wanted_m = k == 3 || k == 4 ? 0.0 : 1e-3;
+    assert_close(out->cycles[k].values[DEA_REDUCED_DISPLACEMENT].amplitude, wanted_m, 0, 1e-6);
+  }
+  dea_reduction_destroy(ctx, out);
+  r.cycles = NULL;
+  signal_free(&r);
+}
+
 /* A clock that counts from a moment days before: history.csv has every sample. */
 static void test_times_far_from_zero(void **state)
 {
@@ -271,6 +304,7 @@ int main(void)
       cmocka_unit_test(test_little),
       cmocka_unit_test(test_few_samples_and_a_single_cycle),
       cmocka_unit_test(test_asked_voltage_of_something_else),
+      cmocka_unit_test(test_quiet_cycles_behind_others),
       cmocka_unit_test(test_two_channels_of_one_kind),
       cmocka_unit_test(test_times_far_from_zero),
       cmocka_unit_test(test_empty_profiles),

@@ -184,6 +184,24 @@ static struct dea_span shifted(struct dea_span span, double by_s, double first_s
   return there ? moved : (struct dea_span){NAN, NAN};
 }
 
+/* Ends rests where the voltage of another cycle is on: those of the cycle that they were taken from
+ * may have been longer. */
+static void clip_rests(const struct dea_cycle_parts *parts, size_t count,
+                       struct dea_cycle_parts *part)
+{
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_cycle_parts *other = &parts[i];
+    double on_s = isnan(other->rest.end_s) ? other->active.begin_s : other->rest.end_s;
+    double off_s = isnan(other->after.begin_s) ? other->active.end_s : other->after.begin_s;
+    if (off_s <= part->active.begin_s && off_s > part->rest.begin_s) {
+      part->rest.begin_s = off_s;
+    }
+    if (on_s >= part->active.end_s && on_s < part->after.end_s) {
+      part->after.end_s = on_s;
+    }
+  }
+}
+
 /* A cycle at the voltage of rest has no edges: its parts are where those of another cycle of the
  * same length are. */
 static dea_status add_quiet(const struct finder *f, const struct dea_recorded_cycle *cycle,
@@ -204,6 +222,7 @@ static dea_status add_quiet(const struct finder *f, const struct dea_recorded_cy
     if (isnan(part.active.begin_s)) {
       break;
     }
+    clip_rests(f->out->parts, named, &part);
     return add_part(f->ctx, f->out, &part);
   }
   f->out->without++;
