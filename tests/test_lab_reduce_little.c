@@ -187,6 +187,28 @@ static void test_two_channels_of_one_kind(void **state)
   signal_free(&r);
 }
 
+/* A breakdown whose voltage swings to the other side is one of the asked voltage. */
+static void test_breakdown_that_swings(void **state)
+{
+  (void)state;
+  struct signal_bench b = signal_bench_plain();
+  b.voltage = true;
+  struct dea_recording r = signal_record(&b, 1);
+  const struct dea_channel *u = dea_recording_kind(&r, DEA_CHANNEL_VOLTAGE);
+  struct dea_channel *a = signal_channel(&r, "current", DEA_CHANNEL_CURRENT, b.rate_Hz, u->count);
+  uint64_t seed = 3;
+  for (size_t i = 0; i < u->count; i++) {
+    bool broken = 2 * i > u->count && u->values[i] > 3000.0;
+    u->values[i] = broken ? (i % 2 == 0 ? 900.0 : -900.0) : u->values[i];
+    a->values[i] = (broken ? 1e-3 : 0.0) + 1e-9 * signal_normal(&seed);
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  assert_false(noted("the measured one is taken"));
+  assert_true(out->discharge_count > 0 && out->discharges[0].kind == DEA_BREAKDOWN);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 /* Cycles at 0 V behind others, on for 1.5 of 2 s: their parts are those of the first one, whose
  * rest before it is longer than theirs. */
 static void test_quiet_cycles_behind_others(void **state)
@@ -305,6 +327,7 @@ int main(void)
       cmocka_unit_test(test_few_samples_and_a_single_cycle),
       cmocka_unit_test(test_asked_voltage_of_something_else),
       cmocka_unit_test(test_quiet_cycles_behind_others),
+      cmocka_unit_test(test_breakdown_that_swings),
       cmocka_unit_test(test_two_channels_of_one_kind),
       cmocka_unit_test(test_times_far_from_zero),
       cmocka_unit_test(test_empty_profiles),

@@ -101,7 +101,9 @@ static dea_status check_asked(struct job *job)
   }
   DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, job->asked, &asked));
   DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, job->measured, &measured));
-  const double margin_V = fmax(offset_V, fmax(0.05 * measured.largest_V, 6.0 * measured.noise_V));
+  // what swings beyond 0 in a breakdown is less than that
+  const double swing_V = 0.25 * fmax(asked.largest_V, measured.largest_V);
+  const double margin_V = fmax(offset_V, fmax(swing_V, 6.0 * measured.noise_V));
   if (measured.high_V <= 2.0 * fmax(asked.high_V, 0.0) + margin_V &&
       measured.low_V >= 2.0 * fmin(asked.low_V, 0.0) - margin_V) {
     return DEA_OK;
