@@ -209,6 +209,35 @@ static void test_breakdown_that_swings(void **state)
   signal_free(&r);
 }
 
+/* Ramps of 1 s to 1, 2, ... 5 kV on 500 pF: of low voltages much of the ramp is within what counts
+ * as rest or as held, and the voltage at both ends of a window is that of its charge. */
+static void test_capacitance_by_slow_ramps(void **state)
+{
+  (void)state;
+  enum { RATE = 500, LEVELS = 5, COUNT = RATE * (1 + 6 * LEVELS) };
+  static const double film_F = 500e-12;
+  struct dea_recording r = two_channels(RATE, COUNT);
+  struct dea_channel *a = signal_channel(&r, "current", DEA_CHANNEL_CURRENT, RATE, COUNT);
+  uint64_t seed = 2;
+  double before_V = 0.0;
+  for (size_t i = 0; i < COUNT; i++) {
+    double t = (double)i / RATE - 1.0, level = floor(t / 6.0) + 1.0, own = t - 6.0 * (level - 1.0);
+    double share = t < 0.0 ? 0.0 : fmax(0.0, fmin(fmin(own, 1.0), 4.0 - own));
+    double volts = 1e3 * level * share;
+    r.channels[0].values[i] = volts;
+    a->values[i] = film_F * (volts - before_V) * RATE + 1e-12 * volts + 1e-9 * signal_normal(&seed);
+    before_V = volts;
+  }
+  struct dea_reduction *out = reduced(&r, &plain);
+  assert_int_equal(out->level_count, LEVELS);
+  for (size_t l = 0; l < LEVELS; l++) {
+    assert_close(out->levels[l].capacitance_F, film_F, 3e-3, 0.0);
+  }
+  assert_int_equal(out->discharge_count, 0);
+  dea_reduction_destroy(ctx, out);
+  signal_free(&r);
+}
+
 /* Cycles at 0 V behind others, on for 1.5 of 2 s: their parts are those of the first one, whose
  * rest before it is longer than theirs. */
 static void test_quiet_cycles_behind_others(void **state)
@@ -328,6 +357,7 @@ int main(void)
       cmocka_unit_test(test_asked_voltage_of_something_else),
       cmocka_unit_test(test_quiet_cycles_behind_others),
       cmocka_unit_test(test_breakdown_that_swings),
+      cmocka_unit_test(test_capacitance_by_slow_ramps),
       cmocka_unit_test(test_two_channels_of_one_kind),
       cmocka_unit_test(test_times_far_from_zero),
       cmocka_unit_test(test_empty_profiles),

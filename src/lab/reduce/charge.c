@@ -30,6 +30,20 @@ static bool is_span(struct dea_span span)
   return span.end_s >= span.begin_s; // not of NAN
 }
 
+/* Where a rest ends at the voltage at which the one behind begins: a half of that of its end. */
+static double foot_of_edge(const struct dea_channel *voltage, struct dea_span rest,
+                           const struct dea_charge_limits *limits)
+{
+  size_t i = dea_channel_index(voltage, rest.end_s), found = i;
+  for (; i > 0 && dea_channel_time(voltage, i - 1) > rest.begin_s; i--) {
+    if (fabs(voltage->values[i - 1] - limits->rest_V) < 0.5 * limits->least_V) {
+      break;
+    }
+    found = isnan(voltage->values[i - 1]) ? found : i - 1;
+  }
+  return found < voltage->count ? fmin(dea_channel_time(voltage, found), rest.end_s) : rest.end_s;
+}
+
 /* Windows about the edges that mirror each other in time, so that the voltage is on for as long in
  * one as in the other: behind the first edge as long as before the second. false: there are no two
  * edges, or they are not equally long. */
@@ -42,7 +56,8 @@ static bool find_edges(const struct dea_channel *current, const struct dea_chann
       current->count < 2) {
     return false;
   }
-  double rise_s = part->active.begin_s - part->rest.end_s;
+  double foot_end_s = foot_of_edge(voltage, part->rest, limits);
+  double rise_s = part->active.begin_s - foot_end_s;
   double fall_s = part->after.begin_s - part->active.end_s;
   double sample_s = fmax(dea_channel_time(current, 1) - dea_channel_time(current, 0),
                          dea_channel_time(voltage, 1) - dea_channel_time(voltage, 0));
@@ -52,17 +67,17 @@ static bool find_edges(const struct dea_channel *current, const struct dea_chann
   double settled_s = fmax(limits->settled_s, 4 * sample_s);
   double active_s = 0.5 * (part->active.end_s - part->active.begin_s);
   active_s = part->held ? fmin(active_s, settled_s) : active_s;
-  double rests_s =
-      fmin(part->rest.end_s - part->rest.begin_s, part->after.end_s - part->after.begin_s);
+  double rests_s = fmin(foot_end_s - part->rest.begin_s, part->after.end_s - part->after.begin_s);
   double rest_s = part->held ? fmin(0.5 * rests_s, active_s) : 0;
-  double up_s = part->rest.end_s - rest_s, down_s = part->active.end_s - active_s;
+  double up_s = foot_end_s - rest_s, down_s = part->active.end_s - active_s;
   double length_s = fmax(rise_s, fall_s) + rest_s + active_s;
   out->up.first = dea_channel_index(current, up_s);
   out->down.first = dea_channel_index(current, down_s);
   out->up.count = out->down.count = dea_channel_index(current, up_s + length_s) - out->up.first;
   double top_s = part->held ? 0.5 * active_s : 0, foot_s = part->held ? 0.5 * rest_s : 0;
   // about the ends of the windows, which may lie in the foot of a ramp
-  double top_V = voltage_from(voltage, down_s - 0.5 * top_s, top_s);
+  double top_V = 0.5 * (voltage_from(voltage, up_s + length_s - 0.5 * top_s, top_s) +
+                        voltage_from(voltage, down_s - 0.5 * top_s, top_s));
   double before_V = voltage_from(voltage, up_s - 0.5 * foot_s, foot_s);
   double behind_V = voltage_from(voltage, down_s + length_s - 0.5 * foot_s, foot_s);
   out->voltage_V = top_V - 0.5 * (before_V + behind_V);

@@ -131,6 +131,10 @@ dea_status dea_plateaus_find(struct dea_context *ctx, const struct dea_channel *
   *count = 0;
   for (size_t at = begin; at < end;) {
     size_t stop = run_end(u, at, end, tolerance_V);
+    double mean_V = mean_of(u, at, stop);
+    while (at < stop && fabs(u[at] - mean_V) > tolerance_V) { // of the way to it
+      at++;
+    }
     if (is_flat(u, at, stop, tolerance_V)) {
       struct dea_plateau *moved = dea_list_grow(ctx, found, n, sizeof *found, &room);
       if (moved == NULL) {
