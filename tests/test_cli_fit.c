@@ -3,6 +3,7 @@
 // ctest: quick, heavy
 #include "command.h"
 
+#include <math.h>
 #include <stdbool.h>
 
 static const char fit_file[] = "dea_fit: 1\n"
@@ -109,6 +110,75 @@ static void test_names_and_files(void **state)
                              "  - {name: strip, kind: uniaxial, file: none.csv}\n");
   command_expect("fit mine.yaml --force", 5, "none.csv");
   assert_int_equal(command_run("fit"), 2);
+}
+
+/* What "dea fit" prints of a parameter. */
+static void read_parameter(const char *name, double *value, double *std)
+{
+  const char *at = strstr(command_out, name);
+  assert_non_null(at);
+  assert_int_equal(sscanf(at + strlen(name), "%lf +- %lf", value, std), 2);
+}
+
+/* mu = 100 kPa and noise of 0.02 kPa, little stretched, so that c2 is hardly known: without an
+ * uncertainty the scatter is found to be that noise, and a prior weighs as it does with it. One
+ * that is far narrower than what the rows know keeps its own uncertainty. */
+static void test_prior_without_uncertainty(void **state)
+{
+  (void)state;
+  static const char *const priors[] = {"-8 kPa, prior_std: 5 kPa", "0.03 kPa, prior_std: 0.01 kPa"};
+  command_write("strip.csv",
+                "stretch,stress (kPa)\n1.01,2.972\n1.02,5.898\n1.03,8.745\n1.04,11.566\n"
+                "1.05,14.296\n1.06,17.004\n1.07,19.669\n1.08,22.244\n1.09,24.824\n1.1,27.345\n"
+                "1.11,29.877\n1.12,32.279\n1.13,34.698\n1.14,37.066\n1.15,39.380\n1.16,41.653\n"
+                "1.17,43.968\n1.18,46.173\n1.19,48.398\n");
+  for (int k = 0; k < 2; k++) {
+    double value[2], std[2];
+    for (int known = 0; known < 2; known++) {
+      char text[400];
+      snprintf(text, sizeof text,
+               "dea_fit: 1\nname: mine\nlaws: [yeoh]\nparameters:\n  - {name: c2, prior: %s}\n"
+               "  - {name: c3, start: 0 kPa, fixed: yes}\n"
+               "tests: [{name: strip, kind: uniaxial, file: strip.csv%s}]\n",
+               priors[k], known ? ", uncertainty_absolute: 0.017 kPa" : "");
+      command_write("mine.yaml", text);
+      assert_int_equal(command_run("fit mine.yaml --force"), 0);
+      read_parameter("c2", &value[known], &std[known]);
+    }
+    assert_true(fabs(value[0] - value[1]) < 0.05 * std[1]);
+    assert_true(fabs(std[0] / std[1] - 1) < 0.05);
+    assert_true(k == 0 || fabs(std[1] / 0.01 - 1) < 0.05);
+  }
+}
+
+/* Planar tension holds c10 + c01 alone: what it foretells of planar tension is known, of equal
+ * stretches nothing is (the field is empty; it had a band of the planar test's size). Nor is
+ * anything known where as many rows as parameters leave no scatter. */
+static void test_band_of_what_is_not_known(void **state)
+{
+  (void)state;
+  static char rows[COMMAND_TEXT_MAX];
+  double stress, std;
+  command_write("strip.csv", "stretch,stress (kPa)\n1.1,35.03\n1.3,85.20\n1.5,120.33\n1.7,149.71\n"
+                             "1.9,175.31\n2.1,199.51\n2.3,221.82\n2.5,243.73\n");
+  command_write("two.csv", "stretch,stress (kPa)\n1.5,105.55\n2,175\n");
+  command_write("to.csv", "stretch\n2.5\n");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [mooney-rivlin]\ntests:\n"
+                             "  - {name: strip, kind: planar, file: strip.csv}\n"
+                             "  - {name: same, kind: planar, use: predict, file: to.csv}\n"
+                             "  - {name: other, kind: equibiaxial, use: predict, file: to.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 0);
+  assert_contains(command_out, "the tests determine only c10 + 1 c01");
+  command_read("mine.fit/fit.csv", rows);
+  const char *same = strstr(rows, "same,predict,2,,2.5,,,"), *other = strstr(rows, "other,predict");
+  assert_int_equal(sscanf(same, "same,predict,2,,2.5,,,%lf,%lf", &stress, &std), 2);
+  assert_true(std > 0 && std < 1);
+  assert_int_equal(sscanf(other, "other,predict,2,,2.5,,,%lf,%lf", &stress, &std), 1);
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [mooney-rivlin]\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: two.csv}\n");
+  assert_int_equal(command_run("fit mine.yaml --force"), 0);
+  command_read("mine.fit/fit.csv", rows);
+  assert_contains(rows, "strip,fit,3,,2,175,,175,,");
 }
 
 /* The example of docs/fit.md, and the keys that it lists. */
@@ -227,6 +297,8 @@ int main(void)
       cmocka_unit_test(test_fit),
       cmocka_unit_test(test_bad_data),
       cmocka_unit_test(test_names_and_files),
+      cmocka_unit_test(test_prior_without_uncertainty),
+      cmocka_unit_test(test_band_of_what_is_not_known),
       cmocka_unit_test(test_creep),
       cmocka_unit_test(test_unstable),
       cmocka_unit_test(test_example),

@@ -83,6 +83,39 @@ static void test_closed_form(void **state)
   end(file, found);
 }
 
+/* The same without uncertainties: s of the rows is that of their residuals, sum r^2 = s^2 (m - m
+ * k^2 std^2/s^2), and the prior weighs against it with its own uncertainty. */
+static void test_prior_without_uncertainty(void **state)
+{
+  (void)state;
+  static const double prior = 2.901, prior_std = 7e-4;
+  char text[512] = "V (V),capacitance (pF)\n";
+  double k, C[CAPACITIES], unused[CAPACITIES], squares = 0, mean = 0;
+  struct dea_device_file *file;
+  struct dea_device_fit *found;
+  write_capacitances(&k, C, unused);
+  for (int i = 0; i < CAPACITIES; i++) {
+    C[i] = k * 2.9 + 0.02e-12 * (i % 2 == 0 ? 1 : -1);
+    snprintf(text + strlen(text), sizeof text - strlen(text), "%g,%.15g\n", 1e-3 * i, 1e12 * C[i]);
+    mean += C[i] / k / CAPACITIES;
+  }
+  write_file("capacitance.csv", text);
+  assert_int_equal(fit("lumped",
+                       "  - {name: film.permittivity.at_rest, prior: 2.901, prior_std: 7e-4}\n",
+                       "  - {name: c, file: capacitance.csv}\n", &file, &found),
+                   DEA_OK);
+  const double eps = found->values[0].value, std = found->values[0].std;
+  const double information = 1 / (std * std) - 1 / (prior_std * prior_std); // m k^2/s^2
+  for (int i = 0; i < CAPACITIES; i++) {
+    squares += (C[i] - k * eps) * (C[i] - k * eps);
+  }
+  const double s2 = CAPACITIES * k * k / information;
+  assert_close(squares / s2, CAPACITIES - information * std * std, 1e-2, 0);
+  assert_close(eps, std * std * (prior / (prior_std * prior_std) + information * mean), 1e-6, 0);
+  assert_close(found->scatter, sqrt(squares / CAPACITIES), 1e-4, 0);
+  end(file, found);
+}
+
 /* At rest the capacitance tells eps/h only. */
 static void test_not_told_apart(void **state)
 {
@@ -233,9 +266,8 @@ static void test_design_and_slack(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_closed_form),
-      cmocka_unit_test(test_not_told_apart),
-      cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_closed_form),      cmocka_unit_test(test_prior_without_uncertainty),
+      cmocka_unit_test(test_not_told_apart),   cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_design_and_slack),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

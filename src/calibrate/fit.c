@@ -14,6 +14,7 @@ struct work {
   struct dea_material materials[DEA_FIT_LAWS_MAX]; // of the candidates, as fitted to all rows
   double from_s, to_s;                             // that the tests in time span
   bool timed;
+  size_t rows; // that were fitted
 };
 
 /* ---- the rows ---- */
@@ -323,6 +324,7 @@ static dea_status find_statistics(struct work *w)
   struct dea_fit *fit = w->fit;
   struct dea_lsq_group groups[DEA_FIT_TESTS_MAX];
   size_t count = 0, at = 0;
+  dea_lsq_statistics_free(&fit->statistics);
   for (size_t s = 0; s < fit->series_count; s++) {
     if (dea_fit_series_used(&fit->series[s])) {
       groups[count++] = (struct dea_lsq_group){at, fit->series[s].rows};
@@ -331,13 +333,44 @@ static dea_status find_statistics(struct work *w)
   }
   DEA_TRY(w->ctx, dea_lsq_statistics_find(w->ctx, &fit->least_squares, groups, count,
                                           fit->scale_known, &fit->statistics));
-  double squares = 0;
-  for (size_t i = 0; i < at; i++) {
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a fit that was found has residuals
-    squares += fit->least_squares.r[i] * fit->least_squares.r[i];
-  }
-  fit->scatter_Pa *= fit->scale_known ? 1 : sqrt(squares / (double)at);
+  w->rows = at;
   return DEA_OK;
+}
+
+/* The law that was chosen over all rows. A prior weighs by what the rows scatter: where that is to
+ * be found too, again until it stays. */
+static dea_status solve_chosen(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  bool prior = false;
+  for (size_t j = 0; j < fit->model.count; j++) {
+    prior = prior || !isnan(fit->model.params[j].prior);
+  }
+  const bool sought = prior && !fit->scale_known;
+  fit->scatter_Pa *= sought ? DEA_LSQ_SCATTER_FIRST : 1;
+  for (int round = 0; round < DEA_LSQ_SCATTER_ROUNDS_MAX; round++) {
+    const struct dea_fit_rows rows = all_rows(fit);
+    dea_lsq_free(&fit->least_squares);
+    DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, &fit->model, &rows, &fit->least_squares));
+    DEA_TRY(w->ctx, find_statistics(w));
+    const double variance = fit->statistics.variance;
+    if (!dea_lsq_weighs_anew(sought, variance)) {
+      break;
+    }
+    fit->scatter_Pa *= sqrt(variance);
+  }
+  return DEA_OK;
+}
+
+/* Root mean square misfit of the rows that were fitted, in the unit of the residuals. */
+static double misfit(const struct work *w)
+{
+  double squares = 0;
+  for (size_t i = 0; i < w->rows; i++) {
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a fit that was found has residuals
+    squares += w->fit->least_squares.r[i] * w->fit->least_squares.r[i];
+  }
+  return sqrt(squares / (double)w->rows);
 }
 
 /* Growth of chi2, in units of what one standard uncertainty should give, with p_j moved by it. */
@@ -432,13 +465,11 @@ static dea_status fill_curve(struct work *w, const struct dea_fit_series *series
   DEA_TRY(w->ctx, status);
   double squares = 0;
   for (size_t i = 0; i < m; i++) {
-    double variance = 0;
-    for (size_t a = 0; a < n; a++) {
-      for (size_t b = 0; b < n; b++) {
-        variance += J[a * m + i] * fit->statistics.covariance[a * n + b] * J[b * m + i];
-      }
+    double slope[DEA_LSQ_PARAMS_MAX];
+    for (size_t j = 0; j < n; j++) {
+      slope[j] = J[j * m + i];
     }
-    curve->std_Pa[i] = sqrt(fmax(0, variance));
+    curve->std_Pa[i] = dea_lsq_std_of(&fit->statistics, slope);
     const double off = curve->stress_Pa[i] - series->stress_Pa[i];
     squares += off * off;
     curve->largest = fmax(curve->largest, fabs(off / series->stress_Pa[i]));
@@ -469,19 +500,14 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   struct dea_fit *fit = w->fit;
   DEA_TRY(w->ctx, look_at_uncertainties(w));
   DEA_TRY(w->ctx, choose_law(w));
-  const struct dea_fit_rows rows = all_rows(fit);
-  DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, &fit->model, &rows, &fit->least_squares));
-  const double unit_Pa = fit->scatter_Pa; // that the residuals are in
-  DEA_TRY(w->ctx, find_statistics(w));
-  const double scatter_Pa = fit->scatter_Pa;
-  fit->scatter_Pa = unit_Pa;
+  DEA_TRY(w->ctx, solve_chosen(w));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));
   dea_fit_tell_weak(fit);
   dea_fit_tell_stability(fit);
   find_spreads(w);
   DEA_TRY(w->ctx, dea_fit_tell_next(w->ctx, fit));
-  fit->scatter_Pa = scatter_Pa;
+  fit->scatter_Pa *= fit->scale_known ? 1 : misfit(w); // so far the unit of the residuals
   return DEA_OK;
 }
 

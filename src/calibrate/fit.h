@@ -43,7 +43,8 @@ struct dea_fit_candidate {
 struct dea_fit_curve {
   const struct dea_fit_series *series;
   double *stress_Pa,
-      *std_Pa;            // of the law, and the standard uncertainty that the parameters give it
+      *std_Pa; // of the law, and the standard uncertainty that the parameters give it; INFINITY:
+               // not determined
   double lag, effective;  // of a test that was fitted: correlation of neighbours, rows that count
   double rms_Pa, largest; // misfit [Pa], NAN of a prediction; largest share of the own stress
 };

@@ -79,7 +79,8 @@ struct dea_lsq_statistics {
   double *lag;           // [group_count] correlation of neighbours, 0 where none is seen
   double *effective;     // [group_count] rows that independent ones would be
   double effective_rows; // of all groups
-  double reduced_chi2;   // chi2 over what is expected of it with these correlations
+  double reduced_chi2;   // chi2 over what is expected of it with these correlations; of the groups
+                         // alone where the scale is to be found
   double variance;       // factor on the covariance: 1, or reduced_chi2 where `widened`
   bool widened;          // the residuals are larger than their uncertainties explain
   struct dea_arena memory;
@@ -91,7 +92,18 @@ struct dea_lsq_statistics {
 dea_status dea_lsq_statistics_find(struct dea_context *ctx, const struct dea_lsq_fit *fit,
                                    const struct dea_lsq_group *groups, size_t group_count,
                                    bool scale_known, struct dea_lsq_statistics *out);
+/* Standard uncertainty of a number with these slopes [params] by the parameters. INFINITY where it
+ * moves along a direction that the rows do not determine, or where nothing is known of any. */
+double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double *slope);
 void dea_lsq_statistics_free(struct dea_lsq_statistics *statistics);
+
+/* Whether a fit is to be made again with other weights: one with priors whose scatter is to be
+ * found
+ * (`sought`) and was `variance` times what it was taken for. It begins at DEA_LSQ_SCATTER_FIRST of
+ * the guess, so that at first the rows speak and not a prior that they contradict. */
+enum { DEA_LSQ_SCATTER_ROUNDS_MAX = 20 };
+#define DEA_LSQ_SCATTER_FIRST 0.01
+bool dea_lsq_weighs_anew(bool sought, double variance);
 
 /* Profile likelihood: the values of parameter j at which chi2, with all others fitted anew, has
  * grown by `rise` times `variance` (1: 68.3 %, 3.841: 95 %). step: a first guess of the half width.

@@ -73,14 +73,9 @@ static double residual_correlation(const struct work *w, size_t i, size_t j, dou
   return sum;
 }
 
-/* Expected sum of C_i,i+1 over that of C_ii in a group, when all groups have this correlation. */
-static double expected_lag(struct work *w, const struct dea_lsq_group *group, double rho,
-                           double *lags, double *S)
+/* T = U S. */
+static void fill_T(struct work *w, const double *S)
 {
-  for (size_t g = 0; g < w->group_count; g++) {
-    lags[g] = rho;
-  }
-  correlate_all(w, lags, S);
   memset(w->T, 0, w->rows * w->k * sizeof *w->T);
   for (size_t a = 0; a < w->k; a++) {
     for (size_t b = 0; b < w->k; b++) {
@@ -89,6 +84,17 @@ static double expected_lag(struct work *w, const struct dea_lsq_group *group, do
       }
     }
   }
+}
+
+/* Expected sum of C_i,i+1 over that of C_ii in a group, when all groups have this correlation. */
+static double expected_lag(struct work *w, const struct dea_lsq_group *group, double rho,
+                           double *lags, double *S)
+{
+  for (size_t g = 0; g < w->group_count; g++) {
+    lags[g] = rho;
+  }
+  correlate_all(w, lags, S);
+  fill_T(w, S);
   double near = 0, own = 0;
   for (size_t n = 0; n < group->count; n++) {
     const size_t i = group->first + n;
@@ -166,7 +172,7 @@ static dea_status decompose(struct dea_context *ctx, struct work *w, double *sin
 /* Change of p_a along singular vector b. */
 static double change(const struct work *w, size_t a, size_t b)
 {
-  return w->length[a] > 0 ? w->V[a * w->k + b] / w->length[a] : a == b ? 1 : 0;
+  return w->V[a * w->k + b] / (w->length[a] > 0 ? w->length[a] : 1);
 }
 
 /* Covariances from S = U' R U; what is not determined has std INFINITY. */
@@ -224,15 +230,34 @@ static void count_effective(const struct work *w, struct dea_lsq_statistics *out
   }
 }
 
-/* Scale of the covariance by chi2 against its expectation m - tr(U' R U). */
-static void scale(const struct work *w, const double *S, bool known, struct dea_lsq_statistics *out)
+/* chi2 over its expectation m - tr(U' R U). Where the scatter is to be found, of the rows that were
+ * measured: what a prior misses says nothing of it. */
+static double reduce(struct work *w, const double *S, bool known)
 {
-  double expected = (double)w->rows;
-  const double freedom = out->effective_rows - (double)w->k;
+  double expected = (double)w->rows, measured = 0, squares = 0;
+  size_t rows = 0;
   for (size_t a = 0; a < w->k; a++) {
     expected -= S[a * w->k + a];
   }
-  out->reduced_chi2 = w->rows > w->k && expected > 0 ? w->fit->chi2 / expected : NAN;
+  fill_T(w, S);
+  for (size_t g = 0; g < w->group_count; g++) {
+    rows += w->groups[g].count;
+    for (size_t n = 0; n < w->groups[g].count; n++) {
+      const size_t i = w->groups[g].first + n;
+      measured += residual_correlation(w, i, i, 1);
+      squares += w->fit->r[i] * w->fit->r[i];
+    }
+  }
+  const bool all = known || rows == w->rows;
+  expected = all ? expected : measured;
+  return w->rows > w->k && expected > 0 ? (all ? w->fit->chi2 : squares) / expected : NAN;
+}
+
+/* Scale of the covariance by chi2 against its expectation. */
+static void scale(struct work *w, const double *S, bool known, struct dea_lsq_statistics *out)
+{
+  const double freedom = out->effective_rows - (double)w->k;
+  out->reduced_chi2 = reduce(w, S, known);
   const double excess = out->reduced_chi2 - 1;
   out->widened = known ? excess > 2 * sqrt(2 / fmax(freedom, 1)) : false;
   out->variance = known && !out->widened ? 1 : out->reduced_chi2;
@@ -309,6 +334,34 @@ dea_status dea_lsq_statistics_find(struct dea_context *ctx, const struct dea_lsq
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   return DEA_OK;
+}
+
+bool dea_lsq_weighs_anew(bool sought, double variance)
+{
+  return sought && variance > 0 && isfinite(variance) && fabs(sqrt(variance) - 1) > 1e-3;
+}
+
+double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double *slope)
+{
+  const size_t n = statistics->params;
+  double variance = 0;
+  for (size_t k = 0; k < statistics->active; k++) {
+    double along = 0, all = 0;
+    for (size_t j = 0; j < n; j++) {
+      along += slope[j] * statistics->direction[k * n + j];
+      all += fabs(slope[j] * statistics->direction[k * n + j]);
+    }
+    if (statistics->singular[k] <= undetermined * statistics->singular[0] &&
+        fabs(along) > 1e-6 * all) { // beyond rounding
+      return INFINITY;
+    }
+  }
+  for (size_t a = 0; a < n; a++) {
+    for (size_t b = 0; b < n; b++) {
+      variance += slope[a] * statistics->covariance[a * n + b] * slope[b];
+    }
+  }
+  return isfinite(variance) ? sqrt(fmax(0, variance)) : INFINITY;
 }
 
 void dea_lsq_statistics_free(struct dea_lsq_statistics *statistics)

@@ -506,6 +506,32 @@ static dea_status fill_values(struct work *w)
   return DEA_OK;
 }
 
+/* Fits; a prior weighs by what the rows scatter: where that is to be found too, again until it
+ * stays. */
+static dea_status solve_all(struct work *w)
+{
+  struct dea_device_fit *fit = w->fit;
+  bool prior = false;
+  for (size_t j = 0; j < fit->param_count; j++) {
+    prior = prior || !isnan(fit->params[j].param.prior);
+  }
+  const bool sought = prior && !fit->scale_known;
+  fit->scatter *= sought ? DEA_LSQ_SCATTER_FIRST : 1;
+  for (int round = 0; round < DEA_LSQ_SCATTER_ROUNDS_MAX; round++) {
+    DEA_TRY(w->ctx, solve(w));
+    DEA_TRY(w->ctx, find_statistics(w));
+    const double variance = fit->statistics.variance;
+    if (!dea_lsq_weighs_anew(sought, variance)) {
+      break;
+    }
+    fit->scatter *= sqrt(variance);
+    memcpy(w->start, fit->least_squares.p, w->problem.params * sizeof *w->start);
+    dea_lsq_free(&fit->least_squares);
+    dea_lsq_statistics_free(&fit->statistics);
+  }
+  return DEA_OK;
+}
+
 /* Points at the parameters found, and at each moved by one step of the derivatives up and down;
  * [stops] in the arena, NULL where there are none. */
 struct slopes {
@@ -558,15 +584,11 @@ static double slope(const struct slopes *s, size_t j, size_t stop, int column)
 
 static double std_of(const struct work *w, const struct slopes *s, size_t stop, int column)
 {
-  const size_t n = w->fit->param_count;
-  double variance = 0;
-  for (size_t a = 0; a < n; a++) {
-    for (size_t b = 0; b < n; b++) {
-      variance += slope(s, a, stop, column) * w->fit->statistics.covariance[a * n + b] *
-                  slope(s, b, stop, column);
-    }
+  double slopes[DEA_DEVICE_PARAMS_MAX];
+  for (size_t j = 0; j < w->fit->param_count; j++) {
+    slopes[j] = slope(s, j, stop, column);
   }
-  return sqrt(fmax(0, variance));
+  return dea_lsq_std_of(&w->fit->statistics, slopes);
 }
 
 static void fill_curve(struct work *w, const struct slopes *s, struct dea_device_curve *curve)
@@ -719,7 +741,6 @@ static dea_status finish(struct work *w)
   struct dea_device_fit *fit = w->fit;
   struct slopes slopes;
   DEA_TRY(w->ctx, find_slopes(w, &slopes)); // those of the last derivatives
-  DEA_TRY(w->ctx, find_statistics(w));
   DEA_TRY(w->ctx, fill_values(w));
   double squares = 0;
   size_t rows = 0;
@@ -745,7 +766,7 @@ static dea_status run(struct work *w)
   DEA_TRY(w->ctx, read_design(w));
   DEA_TRY(w->ctx, make_params(w));
   DEA_TRY(w->ctx, prepare(w));
-  DEA_TRY(w->ctx, solve(w));
+  DEA_TRY(w->ctx, solve_all(w));
   return finish(w);
 }
 
