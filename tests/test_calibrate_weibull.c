@@ -120,6 +120,31 @@ static void test_profile(void **state)
   assert_true(fit.high_95 > fit.high[DEA_WEIBULL_FIELD]);
 }
 
+/* Films that held at fields far below say nothing: every interval stays where it is without them.
+ */
+static void test_early_survivors(void **state)
+{
+  (void)state;
+  struct dea_weibull_data data = plain(2);
+  struct dea_weibull_fit without, with;
+  memset(survived, 0, sizeof survived);
+  field[0] = 80e6;
+  field[1] = 82e6;
+  assert_int_equal(dea_weibull_solve(ctx, &data, &without), DEA_OK);
+  data = plain(8);
+  for (size_t i = 2; i < 8; i++) {
+    field[i] = 5e6 + 1e6 * (double)i;
+    survived[i] = true;
+  }
+  assert_int_equal(dea_weibull_solve(ctx, &data, &with), DEA_OK);
+  for (int k = DEA_WEIBULL_FIELD; k <= DEA_WEIBULL_SHAPE; k++) {
+    assert_close(with.low[k], without.low[k], 1e-6, 0);
+    assert_close(with.high[k], without.high[k], 1e-6, 0);
+  }
+  assert_close(with.low_95, without.low_95, 1e-6, 0);
+  assert_close(with.high_95, without.high_95, 1e-6, 0);
+}
+
 /* Other units of area, and another reference, change E_0 by the law and nothing else. */
 static void test_area_scales(void **state)
 {
@@ -207,8 +232,11 @@ static void test_what_cannot_be_told(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_against_its_equations), cmocka_unit_test(test_profile),
-      cmocka_unit_test(test_area_scales),           cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_against_its_equations),
+      cmocka_unit_test(test_profile),
+      cmocka_unit_test(test_early_survivors),
+      cmocka_unit_test(test_area_scales),
+      cmocka_unit_test(test_coverage),
       cmocka_unit_test(test_what_cannot_be_told),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -213,6 +213,9 @@ static double fall_at(const struct work *w, const struct kept *kept, const struc
   struct point p = *best;
   with.held[k] = true;
   with.value[k] = v;
+  for (size_t j = 0; j < N && k == DEA_WEIBULL_SHAPE; j++) { // E_0, n and p begin as they were
+    p.c[j] *= j == k ? 1 : v / best->c[k];
+  }
   return maximise(w, &with, &p) ? 2 * (best->log_likelihood - p.log_likelihood) : NAN;
 }
 
