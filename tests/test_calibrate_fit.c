@@ -321,6 +321,27 @@ static void test_laws_are_compared(void **state)
   dea_fit_destroy(ctx, fit);
 }
 
+/* Equal stretches of 2 reach as far (I1 = 8.0625) as a strip that is stretched to 2.7063: so far it
+ * is looked whether the law is stable, and such a test is proposed. */
+static void test_how_far_tests_reach(void **state)
+{
+  (void)state;
+  const struct dea_material material = material_of("gent", 4e4, 20);
+  add_law("gent");
+  fill(add_series(DEA_FIT_EQUIBIAXIAL, 20, 100), &material, 2);
+  struct dea_fit *fit = run_trial();
+  assert_close(fit->I1_max, 8.0625, 1e-12, 0);
+  assert_close(fit->stretch_max, 2, 1e-12, 0);
+  const double l = fit->stability[DEA_UNIAXIAL].to;
+  assert_close(l * l + 2 / l, 8.0625, 1e-12, 0);
+  bool proposed = false;
+  for (size_t k = 0; k < fit->next_count; k++) {
+    proposed = proposed || strstr(fit->next[k].what, "uniaxial to 2.71") != NULL;
+  }
+  assert_true(proposed);
+  dea_fit_destroy(ctx, fit);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -334,6 +355,7 @@ int main(void)
       cmocka_unit_test_setup_teardown(test_what_cannot_be_told_apart, trial_set_up,
                                       trial_tear_down),
       cmocka_unit_test_setup_teardown(test_laws_are_compared, trial_set_up, trial_tear_down),
+      cmocka_unit_test_setup_teardown(test_how_far_tests_reach, trial_set_up, trial_tear_down),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -100,6 +100,11 @@ static void test_names_and_files(void **state)
                              "parameters: [{name: c4, start: 3 mm}]\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
   command_expect("fit mine.yaml --force", 3, "the law yeoh has no parameter 'c4'; did you mean");
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [yeoh]\nparameters:\n"
+                             "  - {name: c2, low: 1 kPa}\n  - {name: c2, high: 3 kPa}\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
+  command_expect("fit mine.yaml --force", 3,
+                 "mine.yaml:6:12: error: the name 'c2' is taken by the parameter in line 5");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\nbranches: 2\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: strip.csv}\n");
   command_expect("fit mine.yaml --force", 3, "branches need a test in time");

@@ -13,6 +13,12 @@ double dea_coupon_across(enum dea_coupon_mode mode, double stretch)
   return mode == DEA_UNIAXIAL ? 1 / sqrt(stretch) : mode == DEA_PLANAR ? 1 : stretch;
 }
 
+double dea_coupon_I1(enum dea_coupon_mode mode, double stretch)
+{
+  const double l = stretch, l2 = dea_coupon_across(mode, l);
+  return l * l + l2 * l2 + 1 / (l * l * l2 * l2);
+}
+
 static dea_status find_elastic(const struct dea_material *material, const struct dea_coupon *coupon,
                                double *stress_Pa)
 {

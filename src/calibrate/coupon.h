@@ -26,6 +26,8 @@ struct dea_coupon {
 
 /* Second stretch in the plane. */
 double dea_coupon_across(enum dea_coupon_mode mode, double stretch);
+/* l1^2 + l2^2 + l3^2 there. */
+double dea_coupon_I1(enum dea_coupon_mode mode, double stretch);
 /* What branches add to the stress, over their moduli: kept as long as their times stay, since a
  * search asks for the same ones again and again. */
 struct dea_coupon_shares {

@@ -42,6 +42,7 @@ static dea_status look_at_uncertainties(struct work *w)
       most = fmax(most, fabs(series->stress_Pa[i]));
       fit->stretch_min = fmin(fit->stretch_min, fmin(1, series->stretch[i]));
       fit->stretch_max = fmax(fit->stretch_max, series->stretch[i]);
+      fit->I1_max = fmax(fit->I1_max, dea_coupon_I1(series->coupon.mode, series->stretch[i]));
     }
     if (series->time_s != NULL && series->rows > 0 && dea_fit_series_used(series)) {
       const double last = series->time_s[series->rows - 1];
@@ -211,7 +212,7 @@ static void find_stability(const struct dea_fit *fit, const struct dea_material 
   for (int k = 0; k < DEA_COUPON_MODES; k++) {
     const enum dea_coupon_mode mode = (enum dea_coupon_mode)k;
     const double from =
-        dea_fit_unstable_from(material, mode, dea_fit_stretch_as_far(mode, fit->stretch_max));
+        dea_fit_unstable_from(material, mode, dea_fit_stretch_as_far(mode, fit->I1_max));
     if (!isnan(from) && !(candidate->unstable_from <= from)) {
       candidate->unstable_mode = mode;
       candidate->unstable_from = from;
@@ -295,7 +296,7 @@ static void find_spreads(struct work *w)
   const double limit = DEA_FIT_STABLE_FACTOR * fit->candidates[fit->chosen].held_out;
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     struct dea_fit_spread spread = {.mode = (enum dea_coupon_mode)mode};
-    double l = dea_fit_stretch_as_far(spread.mode, fit->stretch_max);
+    double l = dea_fit_stretch_as_far(spread.mode, fit->I1_max);
     const struct dea_coupon coupon = {.mode = spread.mode, .rows = 1, .stretch = &l};
     for (size_t i = 0; i < fit->candidate_count && !fit->stability[mode].measured; i++) {
       double own, other;

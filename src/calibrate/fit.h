@@ -91,7 +91,7 @@ struct dea_fit {
   size_t spread_count;
   struct dea_fit_next next[DEA_FIT_NEXT_MAX]; // the best first
   size_t next_count;
-  double stretch_min, stretch_max; // of the rows that were fitted
+  double stretch_min, stretch_max, I1_max; // of the rows that were fitted
   struct dea_arena memory;
 };
 
@@ -124,8 +124,8 @@ void dea_fit_tell_stability(struct dea_fit *fit);
 /* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */
 double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
                              double to);
-/* Stretch of a mode with the I1 of a uniaxial stretch. */
-double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double uniaxial);
+/* Stretch of a mode, at least 1, with that I1. */
+double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1);
 dea_status dea_fit_tell_next(struct dea_context *ctx, struct dea_fit *fit);
 
 #endif

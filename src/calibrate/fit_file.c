@@ -257,6 +257,8 @@ static dea_status check(struct dea_context *ctx, const void *file)
             dea_finding_add(ctx, DEA_ERROR, fit->parameters[0].name.location,
                             "parameters are those of one law; %zu laws are given", fit->law_count));
   }
+  DEA_TRY(ctx, dea_fit_names_check(ctx, fit->parameters, fit->parameter_count,
+                                   sizeof fit->parameters[0], "parameter"));
   return dea_fit_names_check(ctx, fit->tests, fit->test_count, sizeof fit->tests[0], "test");
 }
 

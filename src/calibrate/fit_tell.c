@@ -86,7 +86,10 @@ void dea_fit_tell_stability(struct dea_fit *fit)
         }
       }
     }
-    stability->to = stability->measured ? stability->to : fit->stretch_max;
+    if (!stability->measured) {
+      stability->to =
+          fmax(fit->stretch_max, dea_fit_stretch_as_far((enum dea_coupon_mode)mode, fit->I1_max));
+    }
     stability->unstable_from =
         dea_fit_unstable_from(&material, (enum dea_coupon_mode)mode, stability->to);
   }
@@ -96,14 +99,12 @@ void dea_fit_tell_stability(struct dea_fit *fit)
 
 enum { NEXT_ROWS = 10 };
 
-double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double uniaxial)
+double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1)
 {
-  const double wanted = uniaxial * uniaxial + 2 / uniaxial;
-  double low = 1, high = fmax(uniaxial, 1.0001) * 2;
+  double low = 1, high = fmax(sqrt(I1), 2);
   for (int k = 0; k < 60; k++) {
-    const double l = 0.5 * (low + high), l2 = dea_coupon_across(mode, l);
-    const double I1 = l * l + l2 * l2 + 1 / (l * l * l2 * l2);
-    if (I1 < wanted) {
+    const double l = 0.5 * (low + high);
+    if (dea_coupon_I1(mode, l) < I1) {
       low = l;
     } else {
       high = l;
@@ -121,7 +122,7 @@ static dea_status propose(struct dea_arena *arena, const struct dea_fit *fit, in
   DEA_TRY(arena->ctx, dea_arena_status(arena));
   const bool relaxation = which == DEA_COUPON_MODES;
   const enum dea_coupon_mode mode = relaxation ? DEA_UNIAXIAL : (enum dea_coupon_mode)which;
-  const double to = dea_fit_stretch_as_far(mode, fit->stretch_max);
+  const double to = dea_fit_stretch_as_far(mode, fit->I1_max);
   for (size_t i = 0; i < NEXT_ROWS; i++) {
     const double x = (double)(i + 1) / NEXT_ROWS;
     stretch[i] = relaxation ? to : 1 + (to - 1) * x;
