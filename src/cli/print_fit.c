@@ -284,19 +284,25 @@ void cli_print_breakdown_fit(const struct dea_breakdown_fit *fit)
                                 {"exponent", {"", 1}},
                                 {"thickness_exponent", {"", 1}}};
   printf("Weibull's law of breakdown: %zu films, of which %zu broke\n"
-         "at_rest: the field at which 63.2 %% break of films of %.4g um and %.4g mm^2%s\n\n",
-         fit->rows, fit->fit.broken, 1e6 * fit->data.thickness0_m, 1e6 * fit->data.area0_m2,
-         fit->data.held[DEA_WEIBULL_STRETCH] && fit->data.given[DEA_WEIBULL_STRETCH] == 0
-             ? ""
-             : ", unstretched");
+         "at_rest: the field at which 63.2 %% break of films of %.4g um and %.4g mm^2, ",
+         fit->rows, fit->fit.broken, 1e6 * fit->data.thickness0_m, 1e6 * fit->data.area0_m2);
+  const double alike = dea_breakdown_fit_stretch(fit);
+  if (fabs(alike - 1) < 1e-9) {
+    printf("unstretched\n\n");
+  } else {
+    printf("at the stretch %.4g\n\n", alike);
+  }
   for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
     const struct dea_fit_value value = {.value = fit->fit.value[k],
                                         .std = fit->fit.std[k],
                                         .low = fit->fit.low[k],
                                         .high = fit->fit.high[k],
                                         .fixed = fit->data.held[k]};
-    if (value.fixed && value.value == 0) {
-      printf("  %-20s    unknown: all films were alike in it, or it was not given\n", rows[k].name);
+    const struct dea_quantity *given =
+        k == DEA_WEIBULL_STRETCH ? &fit->file->exponent : &fit->file->thickness_exponent;
+    if (value.fixed && given->origin == DEA_ABSENT) {
+      printf("  %-20s    unknown: all films were alike in it, and it was not given\n",
+             rows[k].name);
     } else {
       printf("  %-20s %10.6g", rows[k].name, rows[k].shown.factor * value.value);
       print_known(&value, &rows[k].shown, 3, "", false);

@@ -176,6 +176,29 @@ static dea_status make_data(struct dea_breakdown_fit *fit)
   return DEA_OK;
 }
 
+/* Films that are meant to be alike differ by a few percent, which tells no power. */
+static dea_status check_powers(const struct dea_breakdown_fit *fit)
+{
+  static const struct {
+    enum dea_weibull_param param;
+    const char *key, *what;
+  } powers[] = {{DEA_WEIBULL_STRETCH, "exponent", "stretches"},
+                {DEA_WEIBULL_THICKNESS, "thickness_exponent", "thicknesses"}};
+  static const double large = 0.5; // of powers that are below 1 in all that is published
+  for (size_t k = 0; k < 2; k++) {
+    const double std = fit->fit.std[powers[k].param];
+    if (std > large) {
+      DEA_TRY(fit->memory.ctx,
+              dea_finding_add(fit->memory.ctx, DEA_WARNING, fit->file->tests.location,
+                              "the films' %s tell little of their power (%.2g +- %.2g), and other "
+                              "films get a field by it: give %s in the fit file, 0 where it is not "
+                              "known",
+                              powers[k].what, fit->fit.value[powers[k].param], std, powers[k].key));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status run(void *made, const void *file)
 {
   struct dea_breakdown_fit *fit = made;
@@ -186,7 +209,8 @@ static dea_status run(void *made, const void *file)
   dea_free(ctx, path);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, make_data(fit));
-  return dea_weibull_solve(ctx, &fit->data, &fit->fit);
+  DEA_TRY(ctx, dea_weibull_solve(ctx, &fit->data, &fit->fit));
+  return check_powers(fit);
 }
 
 dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_breakdown_file *file,
@@ -206,6 +230,14 @@ double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double sh
                                   double *log_std)
 {
   return dea_weibull_quantile(&fit->fit, share, log_std);
+}
+
+double dea_breakdown_fit_stretch(const struct dea_breakdown_fit *fit)
+{
+  double unused;
+  const bool known =
+      !fit->data.held[DEA_WEIBULL_STRETCH] || fit->file->exponent.origin != DEA_ABSENT;
+  return known ? 1 : mean_of(fit->stretch, fit->rows, &unused);
 }
 
 double dea_breakdown_fit_reference_field(const struct dea_breakdown_fit *fit, size_t i)
@@ -266,8 +298,14 @@ static void add_law(struct dea_text *out, const struct dea_breakdown_fit *fit)
   dea_text_add(out, "dea %s fit of %s (SHA-256 %s) to %s (%s)\"", DEA_VERSION,
                dea_path_name(file->head.file), file->head.sha256, dea_path_name(fit->tests_file),
                fit->sha256);
-  dea_text_add(out, ", note: \"%zu films, of which %zu broke; the others count as survivors\"}]",
+  const double stretch = dea_breakdown_fit_stretch(fit);
+  dea_text_add(out, ", note: \"%zu films, of which %zu broke; the others count as survivors",
                fit->rows, w->broken);
+  if (fabs(stretch - 1) > 1e-9) {
+    dea_text_add(out, "; at_rest is that of films at the stretch %.4g, all that were tested",
+                 stretch);
+  }
+  dea_text_add(out, "\"}]");
 }
 
 /* The catalogue's material with another name and this law. */

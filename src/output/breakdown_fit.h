@@ -31,6 +31,9 @@ void dea_breakdown_fit_destroy(struct dea_context *ctx, struct dea_breakdown_fit
  * uncertainty, which counts on its logarithm. */
 double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double share,
                                   double *log_std);
+/* Stretch to which the field found belongs: 1, or that of all films where no power of it is known.
+ */
+double dea_breakdown_fit_stretch(const struct dea_breakdown_fit *fit);
 /* Field of a film over what the law gives it in place of the reference: on the reference. */
 double dea_breakdown_fit_reference_field(const struct dea_breakdown_fit *fit, size_t i);
 

@@ -1,5 +1,6 @@
 #include "output/life_fit.h"
 
+#include "base/csv_line.h"
 #include "base/file.h"
 #include "base/write_file.h"
 #include "output/csv_columns.h"
@@ -151,6 +152,12 @@ static dea_status judge(struct dea_context *ctx, const struct dea_life_file *fil
   };
   const struct dea_csv_columns *last = &s->parts[s->count - 1];
   dea_life_judge(&s->rows, &criterion, out);
+  if (file->stroke_loss.origin != DEA_ABSENT && isnan(out->first_stroke)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, own->name.location,
+                                 "'%.60s' has fewer than %zu cycles with a stroke at its largest "
+                                 "voltage (reference_cycles): its stroke is not judged",
+                                 own->name.text, criterion.reference_cycles));
+  }
   if (out->end == DEA_LIFE_SURVIVED && own->failed.value == 1) {
     out->end = DEA_LIFE_TOLD;
   } else if (out->end == DEA_LIFE_SURVIVED && last->rows > 0 &&
@@ -301,8 +308,8 @@ static void add_rows(struct dea_text *csv, const struct dea_life_fit *fit)
                     "last over first stroke,chance of a shorter life by the law\n");
   for (size_t i = 0; i < fit->rows; i++) {
     const struct dea_life *life = &fit->lives[i];
-    dea_text_add(csv, "%s,%d,%s", fit->file->specimens[i].name.text, !fit->survived[i],
-                 dea_life_end_names[life->end]);
+    dea_csv_add_name(csv, fit->file->specimens[i].name.text);
+    dea_text_add(csv, ",%d,%s", !fit->survived[i], dea_life_end_names[life->end]);
     for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
       dea_fit_add_field(csv, dea_life_clock_factors[k] * life->clock[k]);
     }
