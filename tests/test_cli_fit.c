@@ -117,6 +117,45 @@ static void test_names_and_files(void **state)
   assert_int_equal(command_run("fit"), 2);
 }
 
+/* Keys that hang together, and what is said of a test twice. */
+static void test_keys_that_differ(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *keys, *test, *csv, *message;
+    int code;
+  } cases[] = {
+      // the clock of a relaxation begins with its ramp, not at the peak
+      {"laws: [neo-hookean]\nbranches: 1", "kind: relaxation, stretch: 2, ramp: 1 s",
+       "time (s),stress (kPa)\n0,240\n1,228\n5,205\n20,180\n60,175\n",
+       "strip.csv:2:1: error: a stress of 240 kPa at the time 0 s, when the ramp begins", 5},
+      {"laws: [neo-hookean]\nbranches: 2\nbranch_times: [1 s, 10 s, 100 s]",
+       "kind: relaxation, stretch: 2, ramp: 1 s",
+       "time (s),stress (kPa)\n1,228\n5,205\n20,180\n60,175\n",
+       "mine.yaml:4:11: error: branches: '2', but branch_times holds the times of 3", 3},
+      {"laws: [ogden-9]", "kind: uniaxial", good,
+       "mine.yaml:3:8: error: 'ogden-9': the law ogden has 1 to 3 terms", 3},
+      {"laws: [ogden-0]", "kind: uniaxial", good, "'ogden-0': the law ogden has 1 to 3 terms", 3},
+      {"laws: [neo-hookean]", "kind: uniaxial, uncertainty: 50 %",
+       "stretch,stress (kPa),stress std (kPa)\n1.1,27.355,1\n1.2,50.556,1\n1.4,88.980,1\n",
+       "mine.yaml:5:65: warning: 'strip.csv' has a column of uncertainties: those count", 0},
+      {"laws: [neo-hookean]", "kind: uniaxial",
+       "stretch,stress (kPa),stress std (kPa)\n1.1,27.355,1\n1.2,50.556,-1\n1.4,88.980,1\n",
+       "strip.csv:3:1: error: the uncertainty of this stress is -1 kPa: it has to be more than 0",
+       5},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+    char text[400];
+    snprintf(text, sizeof text,
+             "dea_fit: 1\nname: mine\n%s\ntests:\n  - {name: strip, file: "
+             "strip.csv, %s}\n",
+             cases[k].keys, cases[k].test);
+    command_write("mine.yaml", text);
+    command_write("strip.csv", cases[k].csv);
+    command_expect("fit mine.yaml --force", cases[k].code, cases[k].message);
+  }
+}
+
 /* What "dea fit" prints of a parameter. */
 static void read_parameter(const char *name, double *value, double *std)
 {
@@ -302,6 +341,7 @@ int main(void)
       cmocka_unit_test(test_fit),
       cmocka_unit_test(test_bad_data),
       cmocka_unit_test(test_names_and_files),
+      cmocka_unit_test(test_keys_that_differ),
       cmocka_unit_test(test_prior_without_uncertainty),
       cmocka_unit_test(test_band_of_what_is_not_known),
       cmocka_unit_test(test_creep),

@@ -139,6 +139,13 @@ static dea_status choose_branches(struct work *w, struct dea_fit_model *model)
                             "branches need a test in time: a relaxation, cycles, or a rate"));
     return dea_fail(w->ctx, DEA_E_DESIGN, "no test tells of viscosity");
   }
+  if (file->branch_time_count > 0 &&
+      (is_auto || (is_number && count != (double)file->branch_time_count))) {
+    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, file->branches.location,
+                                    "branches: '%.40s', but branch_times holds the times of %zu",
+                                    text, file->branch_time_count));
+    return dea_fail(w->ctx, DEA_E_DESIGN, "the number of branches is given twice");
+  }
   if (file->branch_time_count > 0) {
     dea_fit_model_branches(model, file->branch_time_count, w->from_s, w->to_s, file->branch_s);
     return DEA_OK;

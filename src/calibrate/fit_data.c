@@ -55,6 +55,12 @@ static dea_status take_stretch(struct work *w)
   return DEA_OK;
 }
 
+static bool has_std_column(const struct work *w)
+{
+  return w->raw->values[DEA_FIT_STRESS_STD] != NULL ||
+         (w->raw->values[DEA_FIT_FORCE_STD] != NULL && !isnan(w->test->section_m2.si));
+}
+
 static dea_status take_stress(struct work *w)
 {
   const struct dea_fit_test *test = w->test;
@@ -70,6 +76,15 @@ static dea_status take_stress(struct work *w)
           dea_fit_columns[DEA_FIT_STRESS].example, dea_fit_columns[DEA_FIT_FORCE].example);
   }
   const bool known = test->relative.origin != DEA_ABSENT || test->absolute_Pa.origin != DEA_ABSENT;
+  if (known && has_std_column(w)) {
+    DEA_TRY(w->ctx,
+            dea_finding_add(w->ctx, DEA_WARNING,
+                            test->relative.origin != DEA_ABSENT ? test->relative.location
+                                                                : test->absolute_Pa.location,
+                            "'%.80s' has a column of uncertainties: those count, and "
+                            "uncertainty and uncertainty_absolute do not",
+                            w->raw->file));
+  }
   const double share = isnan(test->relative.si) ? 0 : test->relative.si;
   const double absolute = isnan(test->absolute_Pa.si) ? 0 : test->absolute_Pa.si;
   for (size_t i = 0; i < w->raw->rows && w->errors == 0; i++) {
@@ -146,9 +161,24 @@ static double largest_stretch(const struct work *w)
   return most;
 }
 
+/* Whether the stretches of a relaxation follow from its ramp. */
+static bool is_ramped(const struct work *w)
+{
+  return w->test->kind.value == DEA_FIT_RELAXATION && w->raw->values[DEA_FIT_STRETCH] == NULL &&
+         w->raw->values[DEA_FIT_DISPLACEMENT] == NULL;
+}
+
 static dea_status check_zero(struct work *w)
 {
   const double most = largest_stress(w);
+  if (w->errors == 0 && is_ramped(w) && w->out->stretch[0] <= 1 &&
+      w->out->stress_Pa[0] > fmax(early_share * most, 3 * w->out->std_Pa[0])) {
+    FOUND(
+        w, line_of(w, 0),
+        "a stress of %.3g kPa at the time %g s, when the ramp begins: times count from there, add "
+        "the ramp's to those from its end",
+        1e-3 * w->out->stress_Pa[0], w->out->time_s[0]);
+  }
   for (size_t i = 0; i < w->raw->rows && w->errors == 0; i++) {
     if (w->out->stretch[i] <= 1 && w->out->stress_Pa[i] > early_share * most &&
         !(w->out->stress_Pa[i] <= 3 * w->out->std_Pa[i]) &&
@@ -252,8 +282,10 @@ static dea_status cut(struct work *w)
       out->repeated++;
     } else if (!(at_rest && w->measured)) {
       if (w->measured && out->std_Pa[i] <= 0) {
-        FOUND(w, line_of(w, i),
-              "the uncertainty of this stress is 0: add uncertainty_absolute to the test");
+        FOUND(w, line_of(w, i), "the uncertainty of this stress is %.3g kPa: %s",
+              1e-3 * out->std_Pa[i],
+              has_std_column(w) ? "it has to be more than 0"
+                                : "add uncertainty_absolute to the test");
         return DEA_OK;
       }
       keep_row(out, kept++, i);
@@ -310,9 +342,7 @@ static dea_status make(struct dea_arena *arena, struct work *w)
   if (test->kind.value == DEA_FIT_RELAXATION && w->errors == 0) {
     ramp = !isnan(test->ramp_s.si) ? test->ramp_s.si
                                    : fabs(test->stretch.si - 1) / test->rate_per_s.si;
-    for (size_t i = 0; i < w->raw->rows && w->raw->values[DEA_FIT_STRETCH] == NULL &&
-                       w->raw->values[DEA_FIT_DISPLACEMENT] == NULL;
-         i++) { // on its way
+    for (size_t i = 0; i < w->raw->rows && is_ramped(w); i++) { // on its way
       out->stretch[i] = 1 + (test->stretch.si - 1) * fmin(1, out->time_s[i] / ramp);
     }
   }

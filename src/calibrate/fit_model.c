@@ -137,6 +137,17 @@ static const struct dea_law *find_law(const char *name, int *terms)
   return law;
 }
 
+/* Terms of a law that has numbered ones. */
+static int count_terms(const struct dea_law *law)
+{
+  int most = 0;
+  for (size_t j = 0; j < law->param_count; j++) {
+    const int term = term_of(law->params[j].key);
+    most = term > most ? term : most;
+  }
+  return most;
+}
+
 static dea_status unknown_law(struct dea_context *ctx, const struct dea_label *name,
                               const struct dea_law *law)
 {
@@ -170,6 +181,13 @@ dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file
   snprintf(out->name, sizeof out->name, "%.63s", name->text);
   if (out->law == NULL || out->law->anisotropic || out->law->compressible != NULL) {
     DEA_TRY(ctx, unknown_law(ctx, name, out->law));
+    return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' cannot be fitted", name->text);
+  }
+  const bool is_own = dea_law_find(name->text) != NULL; // a name that ends in a number itself
+  if (!is_own && (terms < 1 || terms > count_terms(out->law))) {
+    DEA_TRY(ctx,
+            dea_finding_add(ctx, DEA_ERROR, name->location, "'%.60s': the law %s has 1 to %d terms",
+                            name->text, out->law->name, count_terms(out->law)));
     return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' cannot be fitted", name->text);
   }
   const double mu = guess_modulus(series, series_count);
