@@ -179,6 +179,21 @@ static void test_material(void **state)
   command_expect("sweep mine.yaml -j 1 --force", 0, "");
   command_read("mine.sweep/cases.csv", text);
   assert_contains(text, "case,id,film.law.c1 (Pa),");
+  // branches, of which the first is none that the written material has (its modulus is 0)
+  write_fit("film.fit", "yeoh",
+            "{\"name\": \"c1\", \"unit\": \"Pa\", \"value\": 178e3, "
+            "\"standard_uncertainty\": 500}, "
+            "{\"name\": \"modulus 1\", \"unit\": \"Pa\", \"value\": 0, \"at_bound\": true}, "
+            "{\"name\": \"time 1\", \"unit\": \"s\", \"value\": 1}, "
+            "{\"name\": \"modulus 2\", \"unit\": \"Pa\", \"value\": 5e3, "
+            "\"standard_uncertainty\": 50}, "
+            "{\"name\": \"time 2\", \"unit\": \"s\", \"value\": 3, \"standard_uncertainty\": 0.1}",
+            "[1, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0], [0.1, 0, 0, 1, 0.5], "
+            "[0.2, 0, 0, 0.5, 1]");
+  write_file("from_fit: film.fit\nplan: sobol\nsamples: 4");
+  command_expect("sweep mine.yaml -j 1 --force", 0, "");
+  command_read("mine.sweep/cases.csv", text);
+  assert_contains(text, "id,film.law.c1 (Pa),film.branch.1.modulus (Pa),film.branch.1.time (s),");
   write_fit("film.fit", "gent", c1, "[1]");
   expect("from_fit: film.fit", "mine.yaml:7:11: error: 'film.fit' is a fit of the law gent; the "
                                "film has yeoh");

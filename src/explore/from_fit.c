@@ -18,6 +18,8 @@ struct work {
   const json_t *root;
   size_t row[DEA_DEVICE_PARAMS_MAX]; // of the fit, of each variable
   bool known[DEA_DEVICE_PARAMS_MAX]; // whether it scatters as the fit says
+  size_t branches;                   // of the fit so far that the material written has
+  bool wanted;                       // whether the last of them is one: its modulus is above 0
 };
 
 // One parameter -----------------------------------------------------------------------------------
@@ -111,11 +113,35 @@ static dea_status check_row(const struct work *w, const json_t *row, const char 
                                  name, w->at->text);
 }
 
+/* Name of a parameter in the design; prefix: of those of a law, "" of a device's. Empty: of a
+ * branch that the data did not want, or of any where the film has none. */
+static void find_name(struct work *w, const json_t *row, const char *prefix, char name[128])
+{
+  const char *own = text_of(row, "name");
+  const bool modulus = strncmp(own, "modulus ", 8) == 0, time = strncmp(own, "time ", 5) == 0;
+  snprintf(name, 128, "%s%.80s", prefix, own);
+  if (prefix[0] == '\0' || !(modulus || time)) {
+    return;
+  }
+  if (modulus) {
+    w->wanted = json_number_value(json_object_get(row, "value")) > 0;
+    w->branches += w->wanted ? 1U : 0U;
+  }
+  if (w->wanted && w->source.device->film.branch_count > 0) {
+    snprintf(name, 128, "film.branch.%zu.%s", w->branches, modulus ? "modulus" : "time");
+  } else {
+    name[0] = '\0';
+  }
+}
+
 static dea_status take_row(struct work *w, size_t i, const json_t *row, const char *prefix)
 {
   char name[128], state[24];
   bool good;
-  snprintf(name, sizeof name, "%s%.80s", prefix, text_of(row, "name"));
+  find_name(w, row, prefix, name);
+  if (name[0] == '\0' && prefix[0] != '\0') {
+    return DEA_OK;
+  }
   DEA_TRY(w->ctx, check_row(w, row, name, &good));
   if (!good) {
     return DEA_OK;
