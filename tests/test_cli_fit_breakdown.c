@@ -159,6 +159,15 @@ static void test_lives_of_recordings(void **state)
   command_read("lives.fit/fit.csv", csv);
   assert_contains(csv, "\n\"A, left\",0,survived,1000,");
   assert_contains(command_err, "lives.yaml:6:12: warning: 'A, left' has fewer than 2000 cycles");
+  // a recording counts once, and a stroke is that of the first recording
+  fit_lives("life:\n  - {name: A, reduced: [a1, b1]}\n  - {name: B, reduced: b1}\n", 3);
+  assert_contains(command_err,
+                  "lives.yaml:5:24: error: 'b1' is a recording of 'A' already, in line 4");
+  command_folder_make("f1");
+  command_write("f1/life.csv", "end (s),under voltage (s),asked V (kV),force (mN)\n1,1,3,5\n");
+  fit_lives("stroke_loss: 20 %\nlife:\n  - {name: A, reduced: [a1, f1]}\n", 5);
+  assert_contains(command_err,
+                  "lives.yaml:5:29: error: 'f1' has no displacement, which is the stroke");
   fit_lives("life: [{name: A}]\n", 3);
   assert_contains(command_err, "'A' needs something: its recordings, or its life");
   fit_lives("life: [{name: A, reduced: none}]\n", 5);

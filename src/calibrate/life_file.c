@@ -1,5 +1,7 @@
 #include "calibrate/life_file.h"
 
+#include <string.h>
+
 #define AT(member) offsetof(struct dea_life_file, member)
 #define OF(member) offsetof(struct dea_life_specimen, member)
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -118,11 +120,32 @@ static const struct dea_field fields[] = {
 const struct dea_record dea_life_file_record = {"fit file", "life tests, for Weibull's law of them",
                                                 fields, COUNT(fields)};
 
+/* A finding where a recording stands before this one already: its cycles would count twice. */
+static dea_status check_once(struct dea_context *ctx, const struct dea_life_file *fit, size_t i,
+                             size_t part)
+{
+  const struct dea_label *own = &fit->specimens[i].reduced[part];
+  for (size_t k = 0; k <= i; k++) {
+    const struct dea_life_specimen *other = &fit->specimens[k];
+    for (size_t p = 0; p < (k < i ? other->reduced_count : part); p++) {
+      if (strcmp(other->reduced[p].text, own->text) == 0) {
+        return dea_finding_add(ctx, DEA_ERROR, own->location,
+                               "'%.80s' is a recording of '%.60s' already, in line %zu", own->text,
+                               other->name.text, other->reduced[p].location.line);
+      }
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status check(struct dea_context *ctx, const void *file)
 {
   const struct dea_life_file *fit = file;
   for (size_t i = 0; i < fit->specimen_count; i++) {
     const struct dea_life_specimen *own = &fit->specimens[i];
+    for (size_t p = 0; p < own->reduced_count; p++) {
+      DEA_TRY(ctx, check_once(ctx, fit, i, p));
+    }
     if ((own->reduced_count > 0) == (own->life.origin != DEA_ABSENT)) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, own->name.location,
                                    "'%.60s' needs %s: its recordings, or its life", own->name.text,

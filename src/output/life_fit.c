@@ -65,22 +65,30 @@ static double at(const struct dea_csv_columns *part, enum column column, size_t 
   return part->values[column] != NULL ? part->values[column][i] : (double)NAN;
 }
 
+/* What the stroke of all recordings is: that of the first. */
+static enum column stroke_of(const struct specimen *s)
+{
+  return s->parts[0].values[DISPLACEMENT] != NULL || s->parts[0].values[FORCE] == NULL
+             ? DISPLACEMENT
+             : FORCE;
+}
+
 /* The cycles of all recordings one behind the other: clocks go on where the one before ended. */
 static void join_parts(struct specimen *s)
 {
   static const enum column clocks[DEA_LIFE_CLOCKS] = {COLUMNS, END, UNDER_VOLTAGE, CHARGE};
+  const enum column stroke = stroke_of(s);
   double so_far[DEA_LIFE_CLOCKS] = {0};
   size_t n = 0;
   for (size_t p = 0; p < s->count; p++) {
     const struct dea_csv_columns *part = &s->parts[p];
-    const bool force = part->values[DISPLACEMENT] == NULL;
     for (size_t i = 0; i < part->rows; i++, n++) {
       s->rows.clock[DEA_LIFE_CYCLES][n] = (double)(n + 1);
       for (int k = DEA_LIFE_TIME; k < DEA_LIFE_CLOCKS; k++) {
         s->rows.clock[k][n] = so_far[k] + at(part, clocks[k], i);
       }
       s->rows.asked_V[n] = at(part, ASKED, i);
-      s->rows.stroke[n] = at(part, force ? FORCE : DISPLACEMENT, i);
+      s->rows.stroke[n] = at(part, stroke, i);
       s->rows.leakage_A[n] = at(part, LEAKAGE, i);
       s->rows.breakdown[n] = at(part, BREAKDOWNS, i);
     }
@@ -118,9 +126,13 @@ static dea_status check_columns(struct dea_context *ctx, const struct dea_life_f
 {
   for (size_t p = 0; p < s->count; p++) {
     const struct dea_csv_columns *part = &s->parts[p];
-    const char *lacks = file->stroke_loss.origin != DEA_ABSENT &&
-                                part->values[DISPLACEMENT] == NULL && part->values[FORCE] == NULL
+    const bool strokes = file->stroke_loss.origin != DEA_ABSENT;
+    const char *lacks = strokes && part->values[DISPLACEMENT] == NULL && part->values[FORCE] == NULL
                             ? "stroke, which stroke_loss asks for"
+                        : strokes && part->values[stroke_of(s)] == NULL
+                            ? stroke_of(s) == FORCE
+                                  ? "force, which is the stroke of the first"
+                                  : "displacement, which is the stroke of the first"
                         : file->leakage_A.origin != DEA_ABSENT && part->values[LEAKAGE] == NULL
                             ? "current, which largest_leakage asks for"
                         : file->clock.value == DEA_LIFE_CHARGE && part->values[CHARGE] == NULL
