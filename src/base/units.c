@@ -190,14 +190,15 @@ static bool read_number(const char *text, const struct dea_measure *due, double 
 static void explain_unit(const ut_system *system, const char *text, const char *unit,
                          const ut_unit *from, const struct dea_measure *due, char why[DEA_WHY_SIZE])
 {
-  const char *name = from != NULL ? dimension_of(system, from) : NULL;
+  const char *name = unit != NULL && unit[0] == '%' ? "a percentage" // not the angle that it is too
+                     : from != NULL                 ? dimension_of(system, from)
+                                                    : NULL;
   if (from == NULL) {
     snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
              unit, text, due->example);
   } else if (strcmp(due->unit, "1") == 0) {
     snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but a number without a unit is due, such as '%s'",
-             text, unit[0] == '%' ? "a percentage" : (name != NULL ? name : "a value with a unit"),
-             due->example);
+             text, name != NULL ? name : "a value with a unit", due->example);
   } else {
     snprintf(why, DEA_WHY_SIZE, "'%.60s' is %s, but %s is due, such as '%s'", text,
              name != NULL ? name : "of another dimension", dimension_name(due->unit), due->example);

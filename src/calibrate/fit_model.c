@@ -90,6 +90,11 @@ dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_para
     return dea_finding_add(ctx, DEA_ERROR, text->name.location, "%s: what is fixed needs a start",
                            param->name);
   }
+  if (param->fixed && !(param->start >= param->low && param->start <= param->high)) {
+    return dea_finding_add(ctx, DEA_ERROR, text->start.location,
+                           "%s: what it is fixed at, %g, lies beyond its bounds %g and %g",
+                           param->name, param->start, param->low, param->high);
+  }
   return DEA_OK;
 }
 

@@ -217,9 +217,11 @@ static void print_curves(const struct dea_device_fit *fit)
     printf("%-20s %-20s %-7s %3zu rows", curve->text->name.text, column->key,
            curve->text->use.value == DEA_FIT_USED ? "fitted" : "checked", curve->rows);
     if (!isnan(curve->rms)) {
-      printf(", off by %.3g%s%s (root mean square), %.1f %% of the range at most",
-             column->factor * curve->rms, bare ? "" : " ", bare ? "" : column->display_unit,
-             100 * curve->largest);
+      printf(", off by %.3g%s%s (root mean square)", column->factor * curve->rms, bare ? "" : " ",
+             bare ? "" : column->display_unit);
+    }
+    if (!isnan(curve->largest)) { // not where all values are one
+      printf(", %.1f %% of the range at most", 100 * curve->largest);
     }
     print_neighbours(curve->lag, curve->effective);
     if (curve->slack > 0) {
