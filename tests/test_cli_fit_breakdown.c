@@ -54,6 +54,16 @@ static void test_power_of_scatter(void **state)
   expect(
       "stretch: 1\narea: 20 mm^2\n", films, 0,
       "mine.yaml:4:12: warning: the films' thicknesses tell little of their power (-1.8 +- 2.4)");
+  expect(
+      "thickness: 50 um\narea: 20 mm^2\n", // all that were stretched held: any larger power will do
+      "field (V/um),stretch,survived\n80,1,0\n83,1,0\n90,1.5,1\n92,1.5,1\n70,1,1\n78,1,0\n", 2,
+      "the films do not limit the power of their stretches: give exponent in the fit file");
+  // four films on nearly one line: intervals end where another start finds the maximum
+  expect("area: 20 mm^2\n",
+         "field (V/um),stretch,thickness (um),survived\n80,1,50,0\n83,1.2,60,0\n90,1.5,50,0\n"
+         "92,1.7,60,0\n",
+         0, "");
+  assert_null(strstr(command_out, "nan"));
   expect("stretch: 1\narea: 20 mm^2\nthickness_exponent: 0\n", films, 0, "");
   assert_null(strstr(command_err, "warning"));
 }

@@ -216,7 +216,15 @@ static double fall_at(const struct work *w, const struct kept *kept, const struc
   for (size_t j = 0; j < N && k == DEA_WEIBULL_SHAPE; j++) { // E_0, n and p begin as they were
     p.c[j] *= j == k ? 1 : v / best->c[k];
   }
-  return maximise(w, &with, &p) ? 2 * (best->log_likelihood - p.log_likelihood) : NAN;
+  if (!maximise(w, &with, &p)) { // too far from the best: from where that began
+    p = *best;
+    memset(p.c, 0, sizeof p.c);
+    p.c[DEA_WEIBULL_SHAPE] = 1;
+    if (!maximise(w, &with, &p)) {
+      return NAN;
+    }
+  }
+  return 2 * (best->log_likelihood - p.log_likelihood);
 }
 
 /* Where the likelihood has fallen by rise/2 on one side: steps that grow, then bisection. */

@@ -185,8 +185,15 @@ static dea_status check_powers(const struct dea_breakdown_fit *fit)
   } powers[] = {{DEA_WEIBULL_STRETCH, "exponent", "stretches"},
                 {DEA_WEIBULL_THICKNESS, "thickness_exponent", "thicknesses"}};
   static const double large = 0.5; // of powers that are below 1 in all that is published
+  static const double open = 10;   // the likelihood rises without end: all that differ survived
   for (size_t k = 0; k < 2; k++) {
     const double std = fit->fit.std[powers[k].param];
+    if (std > open) {
+      return dea_fail(fit->memory.ctx, DEA_E_ARGUMENT,
+                      "the films do not limit the power of their %s: give %s in the fit file, 0 "
+                      "where it is not known",
+                      powers[k].what, powers[k].key);
+    }
     if (std > large) {
       DEA_TRY(fit->memory.ctx,
               dea_finding_add(fit->memory.ctx, DEA_WARNING, fit->file->tests.location,
