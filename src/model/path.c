@@ -477,6 +477,7 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
   struct watch watch = {.stretch_end = max_stretch, .voltage_end_V = voltage_V};
   struct dea_path_state from = path->state, to;
   struct dea_load_point point, next;
+  const double lowest_V = fmin(fmin(from.voltage_V, voltage_V), 0) - 1; // it came back to rest
   DEA_TRY(ctx, state_point(path, &from, &point));
   if ((voltage_V - from.voltage_V) * from.tangent_V < 0) { // turn round
     for (size_t i = 0; i < path->system.unknowns; i++) {
@@ -505,7 +506,7 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
         path->crossed || (at_0 * at_1 <= 0 && to.negative > 0 && next.min_tension_N_per_m < 0);
     note_events(path, &from, &point, taken, &to, &next, &watch);
     point = next;
-    if (point.electrode_stretch > max_stretch || to.voltage_V < -1) {
+    if (point.electrode_stretch > max_stretch || to.voltage_V < lowest_V) {
       break;
     }
     from = to;
