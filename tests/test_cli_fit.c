@@ -217,6 +217,9 @@ static void test_band_of_what_is_not_known(void **state)
                              "  - {name: other, kind: equibiaxial, use: predict, file: to.csv}\n");
   assert_int_equal(command_run("fit mine.yaml --force"), 0);
   assert_contains(command_out, "the tests determine only c10 + 1 c01");
+  assert_contains(command_out, "c10               25.0"); // no other share of 50 kPa is nearer
+  assert_contains(command_out, "c01               25.0");
+  assert_null(strstr(command_out, "not stable"));
   command_read("mine.fit/fit.csv", rows);
   const char *same = strstr(rows, "same,predict,2,,2.5,,,"), *other = strstr(rows, "other,predict");
   assert_int_equal(sscanf(same, "same,predict,2,,2.5,,,%lf,%lf", &stress, &std), 2);

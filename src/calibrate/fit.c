@@ -370,6 +370,71 @@ static dea_status solve_chosen(struct work *w)
   return DEA_OK;
 }
 
+/* p moved along the directions that are not determined to where it is nearest to the start, in
+ * scales; false where no direction is open or a bound is in the way. */
+static bool draw_near(const struct dea_fit *fit, double *p)
+{
+  enum { SWEEPS = 20 }; // directions may share parameters
+  const struct dea_lsq_statistics *s = &fit->statistics;
+  const struct dea_fit_param *params = fit->model.params;
+  const double least = DEA_LSQ_UNDETERMINED * (s->active > 0 ? s->singular[0] : 0);
+  bool open = false, within = true;
+  for (size_t k = 0; k < SWEEPS * s->active; k++) {
+    const double *d = s->direction + k % s->active * s->params;
+    double along = 0, length = 0;
+    if (s->singular[k % s->active] > least) {
+      continue;
+    }
+    open = true;
+    for (size_t j = 0; j < s->params; j++) {
+      const double share = d[j] / (params[j].scale * params[j].scale);
+      along += share * (p[j] - params[j].start);
+      length += share * d[j];
+    }
+    for (size_t j = 0; j < s->params && length > 0; j++) {
+      p[j] -= along / length * d[j];
+    }
+  }
+  for (size_t j = 0; j < s->params; j++) {
+    within = within && (params[j].fixed || (p[j] >= params[j].low && p[j] <= params[j].high));
+  }
+  return open && within;
+}
+
+/* Of what is not determined the search ends anywhere (c10 + c01 may be 2900 kPa - 2850 kPa): takes
+ * the values nearest to the start, where the rows do not notice. */
+static dea_status settle_open(struct work *w)
+{
+  struct dea_fit *fit = w->fit;
+  struct dea_lsq_fit *found = &fit->least_squares;
+  const struct dea_fit_rows rows = all_rows(fit);
+  struct dea_arena memory = {.ctx = w->ctx};
+  struct dea_lsq_problem problem;
+  double p[DEA_LSQ_PARAMS_MAX], chi2 = 0;
+  memcpy(p, found->p, found->params * sizeof *p);
+  if (!draw_near(fit, p)) {
+    return DEA_OK;
+  }
+  double *r = dea_arena_alloc(&memory, found->rows, sizeof *r);
+  dea_status status = dea_arena_status(&memory);
+  status = status == DEA_OK ? dea_fit_model_problem(&memory, &fit->model, &rows, &problem) : status;
+  if (status == DEA_OK && problem.residual(problem.user, p, r) == DEA_OK) {
+    for (size_t i = 0; i < found->rows; i++) {
+      chi2 += r[i] * r[i];
+    }
+    if (chi2 <= found->chi2 + 1e-6 * (1 + found->chi2)) {
+      memcpy(found->p, p, found->params * sizeof *p);
+      memcpy(found->r, r, found->rows * sizeof *r);
+      found->chi2 = chi2;
+      dea_fit_model_material(&fit->model, p, &w->materials[fit->chosen]);
+      status = dea_lsq_jacobian(w->ctx, &problem, p, found->J);
+      status = status == DEA_OK ? find_statistics(w) : status;
+    }
+  }
+  dea_arena_free(&memory);
+  return status;
+}
+
 /* Root mean square misfit of the rows that were fitted, in the unit of the residuals. */
 static double misfit(const struct work *w)
 {
@@ -509,6 +574,7 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, look_at_uncertainties(w));
   DEA_TRY(w->ctx, choose_law(w));
   DEA_TRY(w->ctx, solve_chosen(w));
+  DEA_TRY(w->ctx, settle_open(w));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));
   dea_fit_tell_weak(fit);

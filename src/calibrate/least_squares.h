@@ -55,6 +55,10 @@ dea_status dea_lsq_solve(struct dea_context *ctx, const struct dea_lsq_problem *
                          const double *start, const bool *held, struct dea_lsq_fit *out);
 void dea_lsq_free(struct dea_lsq_fit *fit);
 
+/* Singular values below that share of the largest have directions that the rows do not determine.
+ */
+#define DEA_LSQ_UNDETERMINED 1e-9
+
 // Statistics --------------------------------------------------------------------------------------
 
 /* Rows in the order in which they were measured: those of one test. What is in no group (priors) is

@@ -13,8 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double undetermined = 1e-9; // share of the largest singular value
-
 struct work {
   const struct dea_lsq_fit *fit;
   const struct dea_lsq_group *groups;
@@ -179,7 +177,7 @@ static double change(const struct work *w, size_t a, size_t b)
 static void fill_covariance(const struct work *w, const double *S, struct dea_lsq_statistics *out)
 {
   const size_t n = out->params, k = w->k;
-  const double least = undetermined * (k > 0 ? out->singular[0] : 0);
+  const double least = DEA_LSQ_UNDETERMINED * (k > 0 ? out->singular[0] : 0);
   for (size_t a = 0; a < k; a++) {
     for (size_t b = 0; b < k; b++) {
       double sum = 0, plain = 0;
@@ -351,7 +349,7 @@ double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double 
       along += slope[j] * statistics->direction[k * n + j];
       all += fabs(slope[j] * statistics->direction[k * n + j]);
     }
-    if (statistics->singular[k] <= undetermined * statistics->singular[0] &&
+    if (statistics->singular[k] <= DEA_LSQ_UNDETERMINED * statistics->singular[0] &&
         fabs(along) > 1e-6 * all) { // beyond rounding
       return INFINITY;
     }
