@@ -137,6 +137,8 @@ static void test_keys_that_differ(void **state)
        "mine.yaml:4:32: error: jm: what it is fixed at, -5, lies beyond its bounds", 3},
       {"laws: [gent]\nparameters: [{name: mu, prior: 1 kPa, prior_std: 10 %}]", "kind: uniaxial",
        good, "'10 %' is a percentage, but a pressure is due, such as '100 kPa'", 3},
+      {"laws: [gent]", "kind: uniaxial, mode: planar", good,
+       "mine.yaml:5:58: error: 'strip' is uniaxial by its kind; mode is of relaxations", 3},
       {"laws: [ogden-9]", "kind: uniaxial", good,
        "mine.yaml:3:8: error: 'ogden-9': the law ogden has 1 to 3 terms", 3},
       {"laws: [ogden-0]", "kind: uniaxial", good, "'ogden-0': the law ogden has 1 to 3 terms", 3},

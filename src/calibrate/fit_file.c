@@ -239,6 +239,12 @@ static dea_status check_test(struct dea_context *ctx, const struct dea_fit_test 
     return dea_finding_add(ctx, DEA_ERROR, test->kind.location,
                            "'%.60s': a relaxation needs the stretch that is held", test->name.text);
   }
+  const bool is_mode = test->kind.value <= DEA_FIT_EQUIBIAXIAL; // says how it is held itself
+  if (is_mode && test->mode.origin == DEA_GIVEN && test->mode.value != test->kind.value) {
+    return dea_finding_add(ctx, DEA_ERROR, test->mode.location,
+                           "'%.60s' is %s by its kind; mode is of relaxations, cycles and creep",
+                           test->name.text, dea_fit_kind_names[test->kind.value]);
+  }
   if (!relaxation && ramp) {
     return dea_finding_add(ctx, DEA_ERROR, test->ramp_s.location,
                            "ramp is of relaxations; '%.60s' may have a rate", test->name.text);
