@@ -75,6 +75,10 @@ static void test_bad_data(void **state)
   expect("stretch;stress (kPa)\n1,1;27,355\n1,2;50,556\n", 0, "");
   expect("stretch,load (N)\n1.1,27\n1.4,89\n", 5, "has no column 'stress (kPa)' or 'force (N)'");
   expect("displacement (mm),stress (kPa)\n1,27\n4,89\n", 5, "give the length of the strip");
+  expect("strain,stress (kPa)\n0.1,27\n0.4,89\n", 5,
+         "has no column 'stretch' or 'displacement (mm)'; a strain needs 1 added");
+  expect("stretch,true stress (kPa)\n1.1,27\n1.4,89\n", 5,
+         "a true stress is to be divided by the stretch, to force over the unstretched section");
   expect("stretch,force (N)\n1.1,27\n1.4,89\n", 5, "give the section of the strip");
   expect("stretch,stress (kPa)\n1.05,0\n1.1,0.01\n1.2,50\n1.4,89\n1.6,121\n", 0,
          "2 of 5 rows, at stretches 1.05 to 1.1, carry no force: the strip is slack there");

@@ -41,8 +41,10 @@ static dea_status take_stretch(struct work *w)
     FOUND(w, w->test->file.location, "'%.60s' has displacements: give the length of the strip",
           w->test->name.text);
   } else if (stretch == NULL && displacement == NULL && !held) {
-    FOUND(w, w->test->file.location, "'%.80s' has no column '%s' or '%s'", w->raw->file,
-          dea_fit_columns[DEA_FIT_STRETCH].example, dea_fit_columns[DEA_FIT_DISPLACEMENT].example);
+    FOUND(w, w->test->file.location,
+          "'%.80s' has no column '%s' or '%s'; a strain needs 1 added: the stretch is 1 at rest",
+          w->raw->file, dea_fit_columns[DEA_FIT_STRETCH].example,
+          dea_fit_columns[DEA_FIT_DISPLACEMENT].example);
   }
   for (size_t i = 0; i < w->raw->rows && w->errors == 0; i++) {
     w->out->stretch[i] = stretch != NULL        ? stretch[i]
@@ -72,8 +74,12 @@ static dea_status take_stress(struct work *w)
     FOUND(w, test->file.location, "'%.60s' has forces: give the section of the strip",
           test->name.text);
   } else if (stress == NULL && force == NULL && w->measured) {
-    FOUND(w, test->file.location, "'%.80s' has no column '%s' or '%s'", w->raw->file,
-          dea_fit_columns[DEA_FIT_STRESS].example, dea_fit_columns[DEA_FIT_FORCE].example);
+    FOUND(w, test->file.location,
+          "'%.80s' has no column '%s' or '%s'; a true stress is to be divided by the stretch, to "
+          "force "
+          "over the unstretched section",
+          w->raw->file, dea_fit_columns[DEA_FIT_STRESS].example,
+          dea_fit_columns[DEA_FIT_FORCE].example);
   }
   const bool known = test->relative.origin != DEA_ABSENT || test->absolute_Pa.origin != DEA_ABSENT;
   if (known && has_std_column(w)) {
