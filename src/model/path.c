@@ -407,7 +407,8 @@ static void note_events(struct dea_path *path, const struct dea_path_state *from
   if (!path->limited && from->tangent_V * to->tangent_V < 0 &&
       locate(path, from, ds, WATCH_LIMIT, watch, from->tangent_V, to->tangent_V, &arc, &at,
              &path->limit.point) == DEA_OK) {
-    path->limit.kind = from->tangent_V > 0 ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
+    const bool away = from->tangent_V * path->limit.point.voltage_V > 0; // from 0 V
+    path->limit.kind = away ? DEA_EVENT_PULL_IN : DEA_EVENT_SNAP_BACK;
     path->limited = true;
   }
   if (!path->limited &&
@@ -477,7 +478,9 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
   struct watch watch = {.stretch_end = max_stretch, .voltage_end_V = voltage_V};
   struct dea_path_state from = path->state, to;
   struct dea_load_point point, next;
-  const double lowest_V = fmin(fmin(from.voltage_V, voltage_V), 0) - 1; // it came back to rest
+  // beyond these it came back to rest
+  const double lowest_V = fmin(from.voltage_V, voltage_V) >= 0 ? -1 : -(double)INFINITY;
+  const double highest_V = fmax(from.voltage_V, voltage_V) <= 0 ? 1 : (double)INFINITY;
   DEA_TRY(ctx, state_point(path, &from, &point));
   if ((voltage_V - from.voltage_V) * from.tangent_V < 0) { // turn round
     for (size_t i = 0; i < path->system.unknowns; i++) {
@@ -506,7 +509,8 @@ dea_status dea_path_seek(struct dea_context *ctx, struct dea_path *path, double 
         path->crossed || (at_0 * at_1 <= 0 && to.negative > 0 && next.min_tension_N_per_m < 0);
     note_events(path, &from, &point, taken, &to, &next, &watch);
     point = next;
-    if (point.electrode_stretch > max_stretch || to.voltage_V < lowest_V) {
+    if (point.electrode_stretch > max_stretch || to.voltage_V < lowest_V ||
+        to.voltage_V > highest_V) {
       break;
     }
     from = to;
