@@ -139,7 +139,7 @@ static long output_of(const char *answer, const char **value)
 static bool value_of(const char *answer, int output, double *value)
 {
   const char *end, *at;
-  if (output_of(answer, &at) != output) {
+  if (output_of(answer, &at) != output || at == NULL) {
     return false;
   }
   *value = NAN;

@@ -320,13 +320,10 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
   y.part = dea_alloc(ctx, room, sizeof(Mat));
   y.constituent = dea_alloc(ctx, room, sizeof *y.constituent);
   y.share = dea_alloc(ctx, room, sizeof *y.share);
+  const bool lacks = y.part == NULL || y.constituent == NULL || y.share == NULL;
+  const bool any_lacks = dea_solid_any(lacks);
   dea_status status =
-      y.part != NULL && y.constituent != NULL && y.share != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (dea_solid_any(status != DEA_OK)) {
-    status = DEA_E_MEMORY;
-  } else {
-    status = respond(ctx, &y, damping, rad_per_s, count, &taker);
-  }
+      lacks || any_lacks ? DEA_E_MEMORY : respond(ctx, &y, damping, rad_per_s, count, &taker);
   for (size_t p = 0; p < room && y.part != NULL; p++) {
     MatDestroy(&y.part[p]);
   }
