@@ -274,21 +274,29 @@ static void check_direct(const struct dea_solid_response *response, double w,
   }
 }
 
-static void test_bender_against_static_solves(void **state)
+static const double bender_ply_m = 200e-6;
+
+static struct dea_constituent bender_layer(void)
 {
-  (void)state;
-  static const double t = 200e-6;
   struct dea_constituent layer = {.law = dea_law_find("gent"),
                                   .param = {43e3, 115},
                                   .pre_stretch = {1, 1, 1},
                                   .kappa_Pa = 43e5,
                                   .permittivity_F_per_m = eps,
-                                  .thickness_m = t,
+                                  .thickness_m = bender_ply_m,
                                   .density_kg_per_m3 = 1000};
+  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  return layer;
+}
+
+static void test_bender_against_static_solves(void **state)
+{
+  (void)state;
+  struct dea_constituent layer = bender_layer();
   static const double cuts[] = {0, 0.3, 0.6, 1};
   static const double whole[] = {0, 1};
   const struct dea_block strip = {block_map, &bender, cuts, whole, 3, 1, 0};
-  const struct dea_ply plies[] = {{t, 1, 2}, {t, 1, 2}};
+  const struct dea_ply plies[] = {{bender_ply_m, 1, 2}, {bender_ply_m, 1, 2}};
   const struct dea_solid_options options = {.order_z = 2,
                                             .constituent_count = 1,
                                             .constituents = &layer,
@@ -297,7 +305,6 @@ static void test_bender_against_static_solves(void **state)
   struct dea_solid_report report;
   struct dea_solid_response *response;
   double square[3];
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
   assert_int_equal(dea_grid_create(ctx, 2, &strip, 1, plies, 2, NULL, 0, 10e-3, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_load_steps_solve(ctx, solid, V, &report), DEA_OK);
@@ -328,22 +335,15 @@ static int one_of_many(const void *self, int region, int ply)
  * material; apart: a billionth, by which the branches of each differ. */
 static void respond_with(int constituents, double apart, double out[1][2][3])
 {
-  static const double t = 200e-6, cuts[] = {0, 0.5, 1}, whole[] = {0, 1}, w = 300;
+  static const double cuts[] = {0, 0.5, 1}, whole[] = {0, 1}, w = 300;
   struct dea_constituent layers[MANY];
   struct dea_branches branches[MANY] = {{0}};
   for (int i = 0; i < MANY; i++) {
-    layers[i] = (struct dea_constituent){.law = dea_law_find("gent"),
-                                         .param = {43e3, 115},
-                                         .pre_stretch = {1, 1, 1},
-                                         .kappa_Pa = 43e5,
-                                         .permittivity_F_per_m = eps,
-                                         .thickness_m = t,
-                                         .density_kg_per_m3 = 1000};
-    assert_int_equal(dea_constituent_relax(&layers[i]), DEA_OK);
+    layers[i] = bender_layer();
     branches[i] = (struct dea_branches){1, {{(1 + 1e-9 * apart * i) * 30e3, 0.01}}};
   }
   const struct dea_block strip = {block_map, &bender, cuts, whole, 2, 1, 0};
-  const struct dea_ply plies[] = {{t, 1, 2}, {t, 1, 2}};
+  const struct dea_ply plies[] = {{bender_ply_m, 1, 2}, {bender_ply_m, 1, 2}};
   const struct dea_solid_options options = {.order_z = 2,
                                             .constituent_count = (size_t)constituents,
                                             .constituents = layers,

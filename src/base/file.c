@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -95,6 +96,22 @@ dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, 
     *bytes = NULL;
   }
   return status;
+}
+
+bool dea_file_head(const char *path, void *head, size_t size, size_t *length)
+{
+  FILE *file = fopen(path, "rb");
+  *length = file != NULL ? fread(head, 1, size, file) : 0;
+  if (file != NULL) {
+    fclose(file);
+  }
+  return file != NULL;
+}
+
+bool dea_head_is_h5(const void *head, size_t length)
+{
+  static const char signature[] = "\x89HDF\r\n\x1a\n";
+  return length >= sizeof signature - 1 && memcmp(head, signature, sizeof signature - 1) == 0;
 }
 
 const char *dea_path_name(const char *path)

@@ -10,6 +10,12 @@
 dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
                          size_t *length);
 
+/* The first bytes of a file; *length: how many there are, at most size. false: it cannot be opened.
+ */
+bool dea_file_head(const char *path, void *head, size_t size, size_t *length);
+/* Whether a file's first bytes are those of HDF5. */
+bool dea_head_is_h5(const void *head, size_t length);
+
 /* Name of a file without its folder; lent. */
 const char *dea_path_name(const char *path);
 /* That name without its ending, which is `length` bytes of it. */

@@ -345,8 +345,17 @@ static dea_status find_statistics(struct work *w)
   return DEA_OK;
 }
 
-/* The law that was chosen over all rows. A prior weighs by what the rows scatter: where that is to
- * be found too, again until it stays. */
+static dea_status solve_round(void *user, const struct dea_lsq_statistics **found)
+{
+  struct work *w = user;
+  const struct dea_fit_rows rows = all_rows(w->fit);
+  dea_lsq_free(&w->fit->least_squares);
+  DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, &w->fit->model, &rows, &w->fit->least_squares));
+  *found = &w->fit->statistics;
+  return find_statistics(w);
+}
+
+/* The law that was chosen over all rows. */
 static dea_status solve_chosen(struct work *w)
 {
   struct dea_fit *fit = w->fit;
@@ -354,20 +363,7 @@ static dea_status solve_chosen(struct work *w)
   for (size_t j = 0; j < fit->model.count; j++) {
     prior = prior || !isnan(fit->model.params[j].prior);
   }
-  const bool sought = prior && !fit->scale_known;
-  fit->scatter_Pa *= sought ? DEA_LSQ_SCATTER_FIRST : 1;
-  for (int round = 0; round < DEA_LSQ_SCATTER_ROUNDS_MAX; round++) {
-    const struct dea_fit_rows rows = all_rows(fit);
-    dea_lsq_free(&fit->least_squares);
-    DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, &fit->model, &rows, &fit->least_squares));
-    DEA_TRY(w->ctx, find_statistics(w));
-    const double variance = fit->statistics.variance;
-    if (!dea_lsq_weighs_anew(sought, variance)) {
-      break;
-    }
-    fit->scatter_Pa *= sqrt(variance);
-  }
-  return DEA_OK;
+  return dea_lsq_weigh(prior && !fit->scale_known, &fit->scatter_Pa, solve_round, w);
 }
 
 /* p moved along the directions that are not determined to where it is nearest to the start, in
@@ -377,12 +373,11 @@ static bool draw_near(const struct dea_fit *fit, double *p)
   enum { SWEEPS = 20 }; // directions may share parameters
   const struct dea_lsq_statistics *s = &fit->statistics;
   const struct dea_fit_param *params = fit->model.params;
-  const double least = DEA_LSQ_UNDETERMINED * (s->active > 0 ? s->singular[0] : 0);
   bool open = false, within = true;
   for (size_t k = 0; k < SWEEPS * s->active; k++) {
     const double *d = s->direction + k % s->active * s->params;
     double along = 0, length = 0;
-    if (s->singular[k % s->active] > least) {
+    if (!dea_lsq_is_open(s, k % s->active)) {
       continue;
     }
     open = true;

@@ -76,8 +76,7 @@ static dea_status take_stress(struct work *w)
   } else if (stress == NULL && force == NULL && w->measured) {
     FOUND(w, test->file.location,
           "'%.80s' has no column '%s' or '%s'; a true stress is to be divided by the stretch, to "
-          "force "
-          "over the unstretched section",
+          "force over the unstretched section",
           w->raw->file, dea_fit_columns[DEA_FIT_STRESS].example,
           dea_fit_columns[DEA_FIT_FORCE].example);
   }

@@ -55,10 +55,6 @@ dea_status dea_lsq_solve(struct dea_context *ctx, const struct dea_lsq_problem *
                          const double *start, const bool *held, struct dea_lsq_fit *out);
 void dea_lsq_free(struct dea_lsq_fit *fit);
 
-/* Singular values below that share of the largest have directions that the rows do not determine.
- */
-#define DEA_LSQ_UNDETERMINED 1e-9
-
 // Statistics --------------------------------------------------------------------------------------
 
 /* Rows in the order in which they were measured: those of one test. What is in no group (priors) is
@@ -96,18 +92,20 @@ struct dea_lsq_statistics {
 dea_status dea_lsq_statistics_find(struct dea_context *ctx, const struct dea_lsq_fit *fit,
                                    const struct dea_lsq_group *groups, size_t group_count,
                                    bool scale_known, struct dea_lsq_statistics *out);
+/* Whether the rows do not determine the direction of that number. */
+bool dea_lsq_is_open(const struct dea_lsq_statistics *statistics, size_t k);
 /* Standard uncertainty of a number with these slopes [params] by the parameters. INFINITY where it
  * moves along a direction that the rows do not determine, or where nothing is known of any. */
 double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double *slope);
 void dea_lsq_statistics_free(struct dea_lsq_statistics *statistics);
 
-/* Whether a fit is to be made again with other weights: one with priors whose scatter is to be
- * found
- * (`sought`) and was `variance` times what it was taken for. It begins at DEA_LSQ_SCATTER_FIRST of
- * the guess, so that at first the rows speak and not a prior that they contradict. */
-enum { DEA_LSQ_SCATTER_ROUNDS_MAX = 20 };
-#define DEA_LSQ_SCATTER_FIRST 0.01
-bool dea_lsq_weighs_anew(bool sought, double variance);
+/* A fit whose priors weigh by the scatter of the rows, where that is to be found too (`sought`):
+ * solve is called again, each time with the scatter that was found last, until it stays; it begins
+ * at a hundredth of the guess in *scatter, so that at first the rows speak and not a prior that
+ * they contradict. Otherwise it is called once. */
+dea_status dea_lsq_weigh(bool sought, double *scatter,
+                         dea_status (*solve)(void *user, const struct dea_lsq_statistics **found),
+                         void *user);
 
 /* Profile likelihood: the values of parameter j at which chi2, with all others fitted anew, has
  * grown by `rise` times `variance` (1: 68.3 %, 3.841: 95 %). step: a first guess of the half width.

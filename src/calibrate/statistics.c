@@ -173,22 +173,27 @@ static double change(const struct work *w, size_t a, size_t b)
   return w->V[a * w->k + b] / (w->length[a] > 0 ? w->length[a] : 1);
 }
 
+bool dea_lsq_is_open(const struct dea_lsq_statistics *statistics, size_t k)
+{
+  static const double undetermined = 1e-9;
+  return statistics->singular[k] <= undetermined * statistics->singular[0];
+}
+
 /* Covariances from S = U' R U; what is not determined has std INFINITY. */
 static void fill_covariance(const struct work *w, const double *S, struct dea_lsq_statistics *out)
 {
   const size_t n = out->params, k = w->k;
-  const double least = DEA_LSQ_UNDETERMINED * (k > 0 ? out->singular[0] : 0);
   for (size_t a = 0; a < k; a++) {
     for (size_t b = 0; b < k; b++) {
       double sum = 0, plain = 0;
       for (size_t c = 0; c < k; c++) {
         for (size_t d = 0; d < k; d++) {
-          if (out->singular[c] > least && out->singular[d] > least) {
+          if (!dea_lsq_is_open(out, c) && !dea_lsq_is_open(out, d)) {
             sum += change(w, a, c) / out->singular[c] * S[c * k + d] * change(w, b, d) /
                    out->singular[d];
           }
         }
-        plain += out->singular[c] > least
+        plain += !dea_lsq_is_open(out, c)
                      ? change(w, a, c) * change(w, b, c) / (out->singular[c] * out->singular[c])
                      : 0;
       }
@@ -199,7 +204,7 @@ static void fill_covariance(const struct work *w, const double *S, struct dea_ls
   for (size_t a = 0; a < k; a++) {
     bool open = !(w->length[a] > 0);
     for (size_t c = 0; c < k; c++) {
-      open = open || (out->singular[c] <= least && fabs(w->V[a * k + c]) > 1e-3);
+      open = open || (dea_lsq_is_open(out, c) && fabs(w->V[a * k + c]) > 1e-3);
     }
     const size_t j = w->index[a];
     out->std[j] = open ? INFINITY : sqrt(out->covariance[j * n + j]);
@@ -232,23 +237,26 @@ static void count_effective(const struct work *w, struct dea_lsq_statistics *out
  * measured: what a prior misses says nothing of it. */
 static double reduce(struct work *w, const double *S, bool known)
 {
-  double expected = (double)w->rows, measured = 0, squares = 0;
+  double expected = (double)w->rows, chi2 = w->fit->chi2;
   size_t rows = 0;
   for (size_t a = 0; a < w->k; a++) {
     expected -= S[a * w->k + a];
   }
-  fill_T(w, S);
   for (size_t g = 0; g < w->group_count; g++) {
     rows += w->groups[g].count;
-    for (size_t n = 0; n < w->groups[g].count; n++) {
-      const size_t i = w->groups[g].first + n;
-      measured += residual_correlation(w, i, i, 1);
-      squares += w->fit->r[i] * w->fit->r[i];
+  }
+  if (!known && rows < w->rows) {
+    expected = chi2 = 0;
+    fill_T(w, S);
+    for (size_t g = 0; g < w->group_count; g++) {
+      for (size_t n = 0; n < w->groups[g].count; n++) {
+        const size_t i = w->groups[g].first + n;
+        expected += residual_correlation(w, i, i, 1);
+        chi2 += w->fit->r[i] * w->fit->r[i];
+      }
     }
   }
-  const bool all = known || rows == w->rows;
-  expected = all ? expected : measured;
-  return w->rows > w->k && expected > 0 ? (all ? w->fit->chi2 : squares) / expected : NAN;
+  return w->rows > w->k && expected > 0 ? chi2 / expected : NAN;
 }
 
 /* Scale of the covariance by chi2 against its expectation. */
@@ -334,9 +342,25 @@ dea_status dea_lsq_statistics_find(struct dea_context *ctx, const struct dea_lsq
   return DEA_OK;
 }
 
-bool dea_lsq_weighs_anew(bool sought, double variance)
+dea_status dea_lsq_weigh(bool sought, double *scatter,
+                         dea_status (*solve)(void *user, const struct dea_lsq_statistics **found),
+                         void *user)
 {
-  return sought && variance > 0 && isfinite(variance) && fabs(sqrt(variance) - 1) > 1e-3;
+  enum { ROUNDS_MAX = 20 };
+  static const double first = 0.01, same = 1e-3;
+  *scatter *= sought ? first : 1;
+  for (int round = 1;; round++) {
+    const struct dea_lsq_statistics *found = NULL;
+    dea_status status = solve(user, &found);
+    if (status != DEA_OK || !sought || round == ROUNDS_MAX) {
+      return status;
+    }
+    double factor = sqrt(found->variance);
+    if (!(factor > 0) || !isfinite(factor) || fabs(factor - 1) <= same) {
+      return DEA_OK;
+    }
+    *scatter *= factor;
+  }
 }
 
 double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double *slope)
@@ -349,8 +373,7 @@ double dea_lsq_std_of(const struct dea_lsq_statistics *statistics, const double 
       along += slope[j] * statistics->direction[k * n + j];
       all += fabs(slope[j] * statistics->direction[k * n + j]);
     }
-    if (statistics->singular[k] <= DEA_LSQ_UNDETERMINED * statistics->singular[0] &&
-        fabs(along) > 1e-6 * all) { // beyond rounding
+    if (dea_lsq_is_open(statistics, k) && fabs(along) > 1e-6 * all) { // beyond rounding
       return INFINITY;
     }
   }

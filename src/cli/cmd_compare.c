@@ -113,18 +113,12 @@ static int take_models(struct dea_cli *cli, const struct dea_command *command,
 /* True for a run: a folder, a store by its name or its first bytes. */
 static bool is_run(const char *path)
 {
-  size_t n = strlen(path);
-  char head[8] = {0};
+  size_t n = strlen(path), length;
+  char head[8];
   if ((n > 3 && strcmp(path + n - 3, ".h5") == 0) || dea_path_is_folder(path)) {
     return true;
   }
-  FILE *file = fopen(path, "rb");
-  bool good = file != NULL && fread(head, 1, sizeof head, file) == sizeof head &&
-              memcmp(head, "\x89HDF\r\n\x1a\n", sizeof head) == 0;
-  if (file != NULL) {
-    fclose(file);
-  }
-  return good;
+  return dea_file_head(path, head, sizeof head, &length) && dea_head_is_h5(head, length);
 }
 
 /* Two of which none is a reduced measurement, and at most one --model. */

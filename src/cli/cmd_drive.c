@@ -172,15 +172,10 @@ static json_t *plan_json(const struct dea_protocol *protocol, const struct dea_p
 /* A recording, or what is left of one that was just begun; not the protocol or somebody's text. */
 static bool may_be_replaced(const char *file)
 {
-  static const char signature[] = "\x89HDF\r\n\x1a\n";
-  char head[sizeof signature - 1];
-  FILE *stream = dea_path_is_folder(file) ? NULL : fopen(file, "rb");
-  if (stream == NULL) {
-    return false;
-  }
-  size_t length = fread(head, 1, sizeof head, stream);
-  fclose(stream);
-  return length == 0 || (length == sizeof head && memcmp(head, signature, length) == 0);
+  char head[8];
+  size_t length;
+  return !dea_path_is_folder(file) && dea_file_head(file, head, sizeof head, &length) &&
+         (length == 0 || dea_head_is_h5(head, length));
 }
 
 /* Makes room for the recording. */

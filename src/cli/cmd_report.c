@@ -2,6 +2,7 @@
 #define _POSIX_C_SOURCE 200809L // stat
 #include "cli/cli.h"
 
+#include "base/file.h"
 #include "base/write_file.h"
 #include "job/report.h"
 
@@ -23,12 +24,10 @@ static dea_status check_place(struct dea_context *ctx, const char *path)
   char start[sizeof wanted] = {0};
   struct stat status;
   bool is_file = stat(path, &status) == 0 && S_ISREG(status.st_mode);
-  FILE *file = is_file ? fopen(path, "rb") : NULL;
-  if (file == NULL) {
+  size_t length;
+  if (!is_file || !dea_file_head(path, start, sizeof start - 1, &length)) {
     return DEA_OK; // nothing there, or writing will say what is wrong
   }
-  size_t length = fread(start, 1, sizeof start - 1, file);
-  fclose(file);
   return length == 0 || strcmp(start, wanted) == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_IO,

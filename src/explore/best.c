@@ -481,11 +481,9 @@ static bool begins_so(const struct work *w, const char *name, const char *wanted
   struct dea_text path = {.ctx = w->ctx};
   char head[sizeof written_by] = "";
   dea_text_add(&path, "%s/%s", w->options->folder, name);
-  FILE *file = path.failed ? NULL : fopen(dea_text_get(&path), "rb");
-  if (file != NULL) {
-    size_t length = fread(head, 1, sizeof head - 1, file);
-    head[length] = '\0';
-    fclose(file);
+  size_t length;
+  if (!path.failed) {
+    dea_file_head(dea_text_get(&path), head, sizeof head - 1, &length);
   }
   dea_text_free(&path);
   return strncmp(head, wanted, strlen(wanted)) == 0;

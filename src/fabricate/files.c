@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L // unlink
 #include "fabricate/files.h"
 
+#include "base/file.h"
 #include "base/write_file.h"
 #include "fabricate/canvas.h"
 #include "fabricate/dxf.h"
@@ -123,12 +124,8 @@ static dea_status forget_sheet(struct dea_context *ctx, const char *directory, c
   if (path == NULL) {
     return DEA_E_MEMORY;
   }
-  FILE *file = fopen(path, "rb");
-  if (file != NULL) {
-    size_t got = fread(start, 1, sizeof ours - 1, file);
-    start[got] = '\0';
-    fclose(file);
-  }
+  size_t length;
+  dea_file_head(path, start, sizeof ours - 1, &length);
   if (strcmp(start, ours) == 0) {
     unlink(path);
     // NOLINTNEXTLINE(bugprone-not-null-terminated-result): its end stays

@@ -506,8 +506,21 @@ static dea_status fill_values(struct work *w)
   return DEA_OK;
 }
 
-/* Fits; a prior weighs by what the rows scatter: where that is to be found too, again until it
- * stays. */
+/* From the values of the round before, if there was one. */
+static dea_status solve_round(void *user, const struct dea_lsq_statistics **found)
+{
+  struct work *w = user;
+  struct dea_device_fit *fit = w->fit;
+  if (fit->least_squares.p != NULL) {
+    memcpy(w->start, fit->least_squares.p, w->problem.params * sizeof *w->start);
+  }
+  dea_lsq_free(&fit->least_squares);
+  dea_lsq_statistics_free(&fit->statistics);
+  DEA_TRY(w->ctx, solve(w));
+  *found = &fit->statistics;
+  return find_statistics(w);
+}
+
 static dea_status solve_all(struct work *w)
 {
   struct dea_device_fit *fit = w->fit;
@@ -515,21 +528,7 @@ static dea_status solve_all(struct work *w)
   for (size_t j = 0; j < fit->param_count; j++) {
     prior = prior || !isnan(fit->params[j].param.prior);
   }
-  const bool sought = prior && !fit->scale_known;
-  fit->scatter *= sought ? DEA_LSQ_SCATTER_FIRST : 1;
-  for (int round = 0; round < DEA_LSQ_SCATTER_ROUNDS_MAX; round++) {
-    DEA_TRY(w->ctx, solve(w));
-    DEA_TRY(w->ctx, find_statistics(w));
-    const double variance = fit->statistics.variance;
-    if (!dea_lsq_weighs_anew(sought, variance)) {
-      break;
-    }
-    fit->scatter *= sqrt(variance);
-    memcpy(w->start, fit->least_squares.p, w->problem.params * sizeof *w->start);
-    dea_lsq_free(&fit->least_squares);
-    dea_lsq_statistics_free(&fit->statistics);
-  }
-  return DEA_OK;
+  return dea_lsq_weigh(prior && !fit->scale_known, &fit->scatter, solve_round, w);
 }
 
 /* Points at the parameters found, and at each moved by one step of the derivatives up and down;

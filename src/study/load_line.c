@@ -7,24 +7,10 @@
 enum { LINES = 4, LINE_POINTS = 201 };
 
 static const struct dea_result_column columns[] = {
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage of the line"},
-    {.key = "height_m",
-     .si_unit = "m",
-     .display_unit = "um",
-     .factor = 1e6,
-     .title = "height",
-     .meaning = "of the fibre tips"},
-    {.key = "force_N",
-     .si_unit = "N",
-     .display_unit = "mN",
-     .factor = 1e3,
-     .title = "force",
-     .meaning = "that holds them there: an upper bound, of rigid rods"},
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the line"),
+    DEA_NUMBER_COLUMN("height_m", "m", "um", 1e6, "height", "of the fibre tips"),
+    DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force",
+                      "that holds them there: an upper bound, of rigid rods"),
 };
 static const char study_name[] = "load-line";
 static const struct dea_result_table_type force_table = {.study = study_name,

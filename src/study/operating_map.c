@@ -15,10 +15,7 @@ enum { ROWS = 33, LEVELS = DEA_RESULT_TABLE_WIDTH_MAX, PATH_POINTS = 3000 };
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define VOLTAGE(its_key, its_title, its_meaning)                                                   \
-  {                                                                                                \
-    .key = its_key, .si_unit = "V", .display_unit = "kV", .factor = 1e-3, .title = its_title,      \
-    .meaning = its_meaning                                                                         \
-  }
+  DEA_NUMBER_COLUMN(its_key, "V", "kV", 1e-3, its_title, its_meaning)
 #define LIMITS                                                                                     \
   VOLTAGE("slack_V", "slack above", "voltage at which the film loses its tension"),                \
       VOLTAGE("breakdown_V", "breakdown above", "voltage of breakdown"),                           \
@@ -32,38 +29,20 @@ enum { ROWS = 33, LEVELS = DEA_RESULT_TABLE_WIDTH_MAX, PATH_POINTS = 3000 };
 static const struct dea_result_column scale_columns[] = {
     VOLTAGE("highest_voltage_V", "highest voltage", "of the design or the run's curves"),
     VOLTAGE("end_voltage_V", "end", "voltage at which the paths of the map end"),
-    {.key = "displacement_step_m",
-     .si_unit = "m",
-     .display_unit = "um",
-     .factor = 1e6,
-     .title = "step of displacement",
-     .meaning = "of the fibre tips, from one level to the next"},
-    {.key = "strain_step",
-     .display_unit = "%",
-     .factor = 100,
-     .title = "step of strain",
-     .meaning = "of the electrode's radius, from one level to the next; without fibres"},
-    {.key = "displacements",
-     .kind = DEA_CELL_TEXT,
-     .title = "displacements",
-     .meaning = "\"upper bounds\", or nothing where they are predictions"},
+    DEA_NUMBER_COLUMN("displacement_step_m", "m", "um", 1e6, "step of displacement",
+                      "of the fibre tips, from one level to the next"),
+    DEA_NUMBER_COLUMN("strain_step", NULL, "%", 100, "step of strain",
+                      "of the electrode's radius, from one level to the next; without fibres"),
+    DEA_TEXT_COLUMN("displacements", "displacements",
+                    "\"upper bounds\", or nothing where they are predictions"),
     {.key = "own_pre_stretch", .title = "pre-stretch", .meaning = "of the design itself"},
-    {.key = "own_film_thickness_m",
-     .si_unit = "m",
-     .display_unit = "um",
-     .factor = 1e6,
-     .title = "film thickness",
-     .meaning = "of the design itself, unstretched"},
+    DEA_NUMBER_COLUMN("own_film_thickness_m", "m", "um", 1e6, "film thickness",
+                      "of the design itself, unstretched"),
 };
 static const struct dea_result_column pre_stretch_columns[] = {
     {.key = "pre_stretch", .title = "pre-stretch", .meaning = "of the film"}, LIMITS};
-static const struct dea_result_column thickness_columns[] = {{.key = "film_thickness_m",
-                                                              .si_unit = "m",
-                                                              .display_unit = "um",
-                                                              .factor = 1e6,
-                                                              .title = "film thickness",
-                                                              .meaning = "unstretched"},
-                                                             LIMITS};
+static const struct dea_result_column thickness_columns[] = {
+    DEA_NUMBER_COLUMN("film_thickness_m", "m", "um", 1e6, "film thickness", "unstretched"), LIMITS};
 
 static const char study_name[] = "operating-map";
 static const struct dea_result_table_type scale_table = {.study = study_name,

@@ -108,12 +108,19 @@ static bool check_arcs(struct dea_drive_watch *watch, size_t i, double change_V,
   return true;
 }
 
+bool dea_drive_watch_is_over(const struct dea_protocol *protocol, size_t input, double current_A)
+{
+  return protocol->inputs[input].kind.value == DEA_CHANNEL_CURRENT &&
+         fabs(current_A) > protocol->safety.trip_current_A.si;
+}
+
 static bool check_current(struct dea_drive_watch *watch, size_t i, double current_A,
                           char why[DEA_WHY_ENDED_SIZE])
 {
   double limit_A = watch->protocol->safety.trip_current_A.si;
   watch->largest_current_A = fmax(watch->largest_current_A, fabs(current_A));
-  watch->exceeded[i] = fabs(current_A) > limit_A ? watch->exceeded[i] + 1 : 0;
+  bool over = dea_drive_watch_is_over(watch->protocol, i, current_A);
+  watch->exceeded[i] = over ? watch->exceeded[i] + 1 : 0;
   if (watch->exceeded[i] < watch->lasting) {
     return true;
   }
@@ -270,12 +277,6 @@ static bool check_channel(struct dea_drive_watch *watch, size_t i, double asked_
   return current ? check_currents(watch, i, asked_V, change_V, value, why)
                  : check_voltage(watch, i, asked_V, value, why) &&
                        check_readback(watch, i, asked_V, value, why);
-}
-
-bool dea_drive_watch_is_over(const struct dea_protocol *protocol, size_t input, double current_A)
-{
-  return protocol->inputs[input].kind.value == DEA_CHANNEL_CURRENT &&
-         fabs(current_A) > protocol->safety.trip_current_A.si;
 }
 
 bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,

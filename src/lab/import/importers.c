@@ -75,12 +75,9 @@ static dea_status read_head(struct dea_context *ctx, const char *file,
     return dea_fail(ctx, DEA_E_IO, "'%s' is %s, not a file", file,
                     S_ISDIR(info.st_mode) ? "a folder" : "a pipe or a device");
   }
-  FILE *stream = fopen(file, "rb");
-  if (stream == NULL) {
+  if (!dea_file_head(file, head, HEAD_SIZE, length)) {
     return dea_fail(ctx, DEA_E_IO, "cannot open '%s': %s", file, strerror(errno));
   }
-  *length = fread(head, 1, HEAD_SIZE, stream);
-  fclose(stream);
   return *length > 0 ? DEA_OK : dea_fail(ctx, DEA_E_IO, "'%s' is empty", file);
 }
 
@@ -92,7 +89,7 @@ static dea_status unknown_format(struct dea_context *ctx, const char *file,
     advice = "save the sheet as CSV in Excel";
   } else if (dea_name_ends(file, ".tdms_index")) {
     advice = "give the .tdms file beside it";
-  } else if (length >= 8 && memcmp(head, "\x89HDF\r\n\x1a\n", 8) == 0) {
+  } else if (dea_head_is_h5(head, length)) {
     advice =
         "a recording of dea is read by 'dea reduce' as it is, another HDF5 file is exported as "
         "CSV or .mat";

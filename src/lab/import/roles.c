@@ -220,8 +220,8 @@ static void guess_times(struct work *work)
     int kind = dea_guess_by_name(column->name);
     bool named = kind == DEA_GUESS_TIME;
     bool seconds = kind != DEA_GUESS_UNCERTAINTY && si != NULL && strcmp(si, "s") == 0;
-    if (column->count > 1 && !is_constant(column) &&
-        (seconds || (named && column->unit[0] == '\0'))) {
+    if (column->count > 1 && (seconds || (named && column->unit[0] == '\0')) &&
+        !is_constant(column)) {
       role->use = DEA_USE_TIME;
       role->factor = seconds ? factor : 1;
       role->why = seconds ? "by its unit" : "by its name, in s";

@@ -1,5 +1,6 @@
 #define _POSIX_C_SOURCE 200809L // stat
 /* Reads recordings, also those of programs that were killed, and believes nothing in them. */
+#include "base/file.h"
 #include "lab/recording/layout.h"
 #include "lab/recording/recording.h"
 #include "lab/recording/series.h"
@@ -313,36 +314,22 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
   drop_cycles(recording);
 }
 
-/* The first bytes of a file; how many. */
-static size_t read_head(const char *path, unsigned char head[12])
-{
-  FILE *file = fopen(path, "rb");
-  size_t count = file != NULL ? fread(head, 1, 12, file) : 0;
-  if (file != NULL) {
-    fclose(file);
-  }
-  return count;
-}
-
-static bool is_hdf5(const unsigned char head[12], size_t count)
-{
-  return count == 12 && memcmp(head, "\x89HDF\r\n\x1a\n", 8) == 0;
-}
-
 /* A file whose program was killed is still marked as being written, which is what SWMR reads. Only
  * such a one is opened in that way: of others HDF5 checks the length. */
 static hid_t open_file(struct h5 *h)
 {
   unsigned char head[12] = {0};
-  const size_t count = read_head(h->path, head);
-  if (count > 0 && !is_hdf5(head, count)) {
+  size_t count;
+  dea_file_head(h->path, head, sizeof head, &count); // what cannot be opened HDF5 says
+  const bool is_h5 = dea_head_is_h5(head, count) && count == sizeof head;
+  if (count > 0 && !is_h5) {
     h->status =
         dea_fail(h->ctx, DEA_E_IO,
                  "%s is no recording; dea import makes one of CSV, .mat, .lvm and .tdms", h->path);
     return H5I_INVALID_HID;
   }
   // a superblock of version 3 whose flags say: open for one writer and many readers
-  const bool written = is_hdf5(head, count) && head[8] == 3 && (head[11] & 4) != 0;
+  const bool written = is_h5 && head[8] == 3 && (head[11] & 4) != 0;
   hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0 && written) {
     H5Eclear2(H5E_DEFAULT);

@@ -89,18 +89,20 @@ static void drop_unknown(struct dea_cycle_list *list)
   list->count = n;
 }
 
-/* An asked voltage that is not that of the film (the amplifier's input, or one that was not used)
- * says nothing: the film had more than twice of it, or the other sign. One that the film does not
- * reach is a breakdown. */
-static dea_status check_asked(struct job *job)
+/* The scale of the asked voltage, or of the measured one. An asked one that is not that of the film
+ * (the amplifier's input, or one that was not used) says nothing, and is forgotten: the film had
+ * more than twice of it, or the other sign. One that the film does not reach is a breakdown. */
+static dea_status find_scale(struct job *job)
 {
   static const double offset_V = 50.0; // that a monitor may have
   struct dea_voltage_scale asked, measured;
   if (job->asked == NULL || job->measured == NULL) {
-    return DEA_OK;
+    return dea_voltage_scale_find(job->ctx, job->asked != NULL ? job->asked : job->measured,
+                                  &job->scale);
   }
   DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, job->asked, &asked));
   DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, job->measured, &measured));
+  job->scale = asked;
   // what swings beyond 0 in a breakdown is less than that
   const double swing_V = 0.25 * fmax(asked.largest_V, measured.largest_V);
   const double margin_V = fmax(offset_V, fmax(swing_V, 6.0 * measured.noise_V));
@@ -115,14 +117,14 @@ static dea_status check_asked(struct job *job)
        job->asked->name, 1e-3 * asked.low_V, 1e-3 * asked.high_V, job->measured->name,
        1e-3 * measured.low_V, 1e-3 * measured.high_V);
   job->asked = NULL;
+  job->scale = measured;
   return DEA_OK;
 }
 
 static dea_status find_cycles(struct job *job)
 {
-  DEA_TRY(job->ctx, check_asked(job));
+  DEA_TRY(job->ctx, find_scale(job));
   const struct dea_channel *voltage = job->asked != NULL ? job->asked : job->measured;
-  DEA_TRY(job->ctx, dea_voltage_scale_find(job->ctx, voltage, &job->scale));
   DEA_TRY(job->ctx, dea_cycles_find(job->ctx, job->recording, voltage, &job->scale, &job->list));
   drop_unknown(&job->list);
   struct dea_reduction *r = job->out;
