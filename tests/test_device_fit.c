@@ -263,12 +263,59 @@ static void test_design_and_slack(void **state)
   end(file, found);
 }
 
+/* From a start where the film goes slack on the way: the rows cut there come back. */
+static void test_rows_come_back(void **state)
+{
+  (void)state;
+  static const char *const models[] = {"lumped", "axisymmetric"};
+  struct dea_load_point points[STOPS];
+  struct dea_device_file *file;
+  struct dea_device_fit *found;
+  for (int m = 0; m < 2; m++) {
+    uint64_t seed = 3;
+    truth(models[m], points);
+    write_sweep(points, &seed);
+    assert_int_equal(fit(models[m],
+                         "  - {name: pre_stretch, start: 1.1, low: 1.05, high: 1.9}\n"
+                         "  - {name: film.thickness, start: 62 um, low: 50 um, high: 140 um}\n",
+                         "  - {name: s, file: sweep.csv}\n", &file, &found),
+                     DEA_OK);
+    assert_int_equal(found->curves[0].slack, 0);
+    assert_true(found->curves[0].used[0]);
+    assert_close(found->values[0].value, 1.42, 0, 5 * found->values[0].std);
+    end(file, found);
+  }
+}
+
+/* A highest row that a slack film alone would give: cut, the others want a film that is not slack
+ * there, and so round after round. */
+static void test_rows_do_not_settle(void **state)
+{
+  (void)state;
+  struct dea_load_point points[STOPS];
+  struct dea_device_file *file;
+  struct dea_device_fit *found;
+  uint64_t seed = 3;
+  truth("lumped", points);
+  points[STOPS - 1].electrode_edge_u_m *= 4;
+  write_sweep(points, &seed);
+  assert_int_equal(fit("lumped",
+                       "  - {name: film.thickness, low: 40 um, high: 140 um}\n"
+                       "  - {name: pre_stretch, start: 1.15, fixed: yes}\n",
+                       "  - {name: s, file: sweep.csv, quantities: [electrode_edge_u_m]}\n", &file,
+                       &found),
+                   DEA_OK);
+  assert_false(found->settled);
+  end(file, found);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_closed_form),      cmocka_unit_test(test_prior_without_uncertainty),
-      cmocka_unit_test(test_not_told_apart),   cmocka_unit_test(test_coverage),
-      cmocka_unit_test(test_design_and_slack),
+      cmocka_unit_test(test_closed_form),        cmocka_unit_test(test_prior_without_uncertainty),
+      cmocka_unit_test(test_not_told_apart),     cmocka_unit_test(test_coverage),
+      cmocka_unit_test(test_design_and_slack),   cmocka_unit_test(test_rows_come_back),
+      cmocka_unit_test(test_rows_do_not_settle),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -73,6 +73,7 @@ struct dea_device_fit {
   struct dea_lsq_statistics statistics;
   bool scale_known; // uncertainties were given
   double scatter;   // root mean square misfit where they were not, in the quantity's SI unit
+  bool settled;     // the values leave out as slack the rows that were left out for them
   char weak[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE];
   size_t weak_count;
   struct dea_device_pair pairs[DEA_DEVICE_PAIRS_MAX];

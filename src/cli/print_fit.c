@@ -229,6 +229,10 @@ static void print_curves(const struct dea_device_fit *fit)
              "", curve->slack, 1e-3 * curve->slack_from_V);
     }
   }
+  if (!fit->settled) {
+    puts("Which rows are slack did not settle: the values found would have others left out than "
+         "were. Leave\nrows near the loss of tension out, or begin elsewhere (start).");
+  }
 }
 
 static void print_derived(const struct dea_device_fit *fit)

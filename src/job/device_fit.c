@@ -30,6 +30,7 @@ struct work {
       scale[DEA_DEVICE_PARAMS_MAX];
   bool held[DEA_DEVICE_PARAMS_MAX];
   bool *slack;                     // [stops]
+  bool *wanted_before;             // [stops], while it is seen whether they change
   struct dea_load_point *designed; // [stops] of the design itself; NULL: it has none
   bool starts_designed;
   struct dea_lsq_problem problem;
@@ -286,6 +287,7 @@ static void cut_slack(struct work *w, const struct dea_load_point *points, bool 
 {
   find_slack(w, points, at_start, w->slack);
   *changed = false;
+  memcpy(w->wanted_before, w->model.wanted, w->model.stop_count * sizeof(bool));
   memset(w->model.wanted, 0, w->model.stop_count * sizeof *w->model.wanted);
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     struct dea_device_curve *curve = &w->fit->curves[c];
@@ -298,11 +300,31 @@ static void cut_slack(struct work *w, const struct dea_load_point *points, bool 
       *changed = *changed || used != curve->used[i];
       curve->used[i] = used;
       curve->slack += slack ? 1U : 0U;
-      curve->slack_from_V =
-          slack ? fmin(curve->slack_from_V, curve->voltage_V[i]) : curve->slack_from_V;
+      if (slack && fabs(curve->voltage_V[i]) < fabs(curve->slack_from_V)) {
+        curve->slack_from_V = curve->voltage_V[i];
+      }
       w->model.wanted[curve->stop[i]] = w->model.wanted[curve->stop[i]] || !slack;
     }
   }
+  if (memcmp(w->wanted_before, w->model.wanted, w->model.stop_count * sizeof(bool)) != 0) {
+    dea_device_model_forget(&w->model);
+  }
+}
+
+/* Whether the film at `points` would have other rows count than those that do. */
+static bool cuts_others(const struct work *w, const struct dea_load_point *points)
+{
+  find_slack(w, points, false, w->slack);
+  for (size_t c = 0; c < w->fit->curve_count; c++) {
+    const struct dea_device_curve *curve = &w->fit->curves[c];
+    const bool cut = curve->text->slack.value == DEA_DEVICE_SLACK_CUT;
+    for (size_t i = 0; i < curve->rows && is_fitted(curve); i++) {
+      if (curve->used[i] == (cut && w->slack[curve->stop[i]])) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 // The start ---------------------------------------------------------------------------------------
@@ -413,6 +435,7 @@ static dea_status prepare(struct work *w)
   DEA_TRY(w->ctx, look_at_uncertainties(w));
   DEA_TRY(w->ctx, dea_device_stops_make(w->ctx, w->fit, &w->model));
   w->slack = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->slack);
+  w->wanted_before = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof(bool));
   own = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *own);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
   for (size_t c = 0; c < w->fit->curve_count; c++) {
@@ -449,8 +472,9 @@ static dea_status solve(struct work *w)
       DEA_TRY(w->ctx, check_count(w));
     }
     DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, w->held, &w->fit->least_squares));
+    DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, w->fit->least_squares.p, points));
+    w->fit->settled = !cuts_others(w, points);
     if (round + 1 < ROUNDS_MAX) {
-      DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, w->fit->least_squares.p, points));
       cut_slack(w, points, false, &changed);
     }
   }
@@ -651,13 +675,13 @@ static double usual_share(const struct dea_device_fit *fit)
       most = fmax(most, fabs(curve->value[i]));
     }
     for (size_t i = 0; i < curve->rows; i++) {
-      if (curve->used[i]) {
+      if (curve->used[i] && most > 0) {
         sum += log((isnan(curve->std[i]) ? fit->scatter : curve->std[i]) / most);
         count++;
       }
     }
   }
-  return exp(sum / (double)count) * sqrt(fit->statistics.variance);
+  return count > 0 ? exp(sum / (double)count) * sqrt(fit->statistics.variance) : scatter_guess;
 }
 
 static bool is_measured(const struct dea_device_fit *fit, int column)

@@ -236,12 +236,17 @@ dea_status dea_device_model_begin(struct dea_device_model *model)
   return DEA_OK;
 }
 
-void dea_device_model_end(struct dea_device_model *model)
+void dea_device_model_forget(struct dea_device_model *model)
 {
   for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
     dea_free(model->ctx, model->memo[k].points);
     model->memo[k].points = NULL;
   }
+}
+
+void dea_device_model_end(struct dea_device_model *model)
+{
+  dea_device_model_forget(model);
   drop_states(model, model->states);
   dea_free(model->ctx, model->states);
   model->states = NULL;

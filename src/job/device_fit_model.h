@@ -62,6 +62,8 @@ struct dea_device_model {
 /* Starts that need the above to be set from name to stop_count. */
 dea_status dea_device_model_begin(struct dea_device_model *model);
 void dea_device_model_end(struct dea_device_model *model);
+/* Drops points that were kept, once `wanted` has changed; none may be lent. */
+void dea_device_model_forget(struct dea_device_model *model);
 /* Points [stop_count] at p, NAN where there is no equilibrium (model->why says of the last one);
  * lent until DEA_DEVICE_MEMO others were asked for. DEA_E_DOMAIN where the design cannot be built
  * with p. */

@@ -115,6 +115,7 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
                           &fit->statistics);
   dea_json_put_count(root, "evaluations", fit->evaluations);
   json_object_set_new(root, "curves", curves_json(fit));
+  json_object_set_new(root, "slack_settled", json_boolean(fit->settled));
   json_object_set_new(root, "follows", derived_json(fit));
   json_object_set_new(root, "advice", advice_json(fit));
   return root;

@@ -117,13 +117,18 @@ static void add_correlations(struct dea_report *report, const json_t *root)
 }
 
 /* What the measurements cannot tell, and what would. */
-static void add_advice(struct dea_text *out, const json_t *advice)
+static void add_advice(struct dea_text *out, const json_t *root)
 {
   static const char *const next[][2] = {{"next_tests", "test"},
                                         {"next_measurements", "measurement"}};
+  const json_t *advice = json_object_get(root, "advice");
   const json_t *weak = json_object_get(advice, "weak");
   const json_t *pairs = json_object_get(advice, "not_told_apart");
   dea_text_add(out, "<ul>");
+  if (json_is_false(json_object_get(root, "slack_settled"))) {
+    dea_text_add(out, "<li>Which rows are slack did not settle: the values found would have others "
+                      "left out than were</li>");
+  }
   for (size_t i = 0; i < json_array_size(weak); i++) {
     dea_html_element(out, "li", json_string_value(json_array_get(weak, i)));
   }
@@ -222,7 +227,7 @@ dea_status dea_section_fit(struct dea_report *report)
   }
   dea_section_begin(report, "fit", 0, "Fit to measurements");
   add_parameters(report, json_object_get(root, "parameters"));
-  add_advice(&report->text, json_object_get(root, "advice"));
+  add_advice(&report->text, root);
   status = add_figures(report, folder);
   add_correlations(report, root);
   add_facts(&report->text, root);
