@@ -61,7 +61,7 @@ static inline void signal_check_pulls(const char *what, const struct signal_pull
 
 // The bench --------------------------------------------------------------------------------------
 
-enum { SIGNAL_LEVELS_MAX = 8 };
+enum { SIGNAL_LEVELS_MAX = 10 };
 
 struct signal_bench {
   double rate_Hz, frame_Hz; // of the channels, of the profiles

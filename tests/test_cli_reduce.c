@@ -235,6 +235,44 @@ static void test_history_from_its_begin(void **state)
   signal_free(&r);
 }
 
+/* Of ten voltages below 0, with rest, eight are shown, the largest among them and without rest. */
+static void test_figures_of_negative_voltages(void **state)
+{
+  (void)state;
+  char path[600];
+  const struct dea_plot_format none = {.width_m = 85e-3};
+  struct signal_bench b = signal_bench_plain();
+  b.points = 60;
+  b.rate_Hz = 1000.0;
+  b.frame_Hz = 50.0;
+  b.cycles = 2;
+  b.level_count = 10;
+  b.voltage = true;
+  for (size_t k = 0; k < b.level_count; k++) {
+    b.levels_V[k] = -600.0 * (double)k;
+  }
+  struct dea_recording r = signal_record(&b, 5);
+  struct dea_reduction *reduction;
+  snprintf(path, sizeof path, "%s/negative", command_folder);
+  assert_int_equal(dea_reduce(own, &r, NULL, &reduction), DEA_OK);
+  assert_int_equal(dea_reduction_folder(own, path, true), DEA_OK);
+  assert_int_equal(dea_reduction_write(own, &r, reduction, "test", &none, path), DEA_OK);
+  command_read("negative/cycles.dat", command_out);
+  assert_contains(command_out, "index 0: -5.4 kV");
+  assert_contains(command_out, "index 7: ");
+  assert_null(strstr(command_out, "index 8: "));
+  assert_null(strstr(command_out, ": 0 kV"));
+  const char *values = strchr(strchr(command_out, '\n') + 1, '\n') + 1;
+  char *end;
+  for (int k = 1; k <= 2; k++) { // each cycle has its amplitude
+    assert_close(strtod(values, &end), k, 0, 0);
+    assert_true(strtod(end, &end) > 10);
+    values = end;
+  }
+  dea_reduction_destroy(own, reduction);
+  signal_free(&r);
+}
+
 static struct dea_recording kept;
 static char kept_folder[600];
 
@@ -275,6 +313,7 @@ int main(void)
       cmocka_unit_test(test_errors),
       cmocka_unit_test(test_history_keeps_edges),
       cmocka_unit_test(test_history_from_its_begin),
+      cmocka_unit_test(test_figures_of_negative_voltages),
       cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, write_bench, remove_bench);

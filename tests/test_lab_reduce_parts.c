@@ -532,13 +532,15 @@ static void test_sensed_stretch_of_either_sign(void **state)
   (void)state;
   for (int sign = -1; sign <= 1; sign += 2) {
     struct dea_reduced_cycle cycles[2] = {{.capacitance_F = 16e-12}, {.capacitance_F = 100e-12}};
-    const size_t high = sign < 0 ? 0 : 1, level_of[2] = {1 - high, high};
+    const size_t high = sign < 0 ? 0 : 1;
     struct dea_voltage_level levels[2] = {{.voltage_V = sign < 0 ? -5000 : 1000},
                                           {.voltage_V = sign < 0 ? -1000 : 5000}};
     struct dea_reduction reduction = {
         .cycles = cycles, .cycle_count = 2, .levels = levels, .level_count = 2};
     cycles[1].capacitance_F = 81e-12;
-    dea_charge_levels(level_of, &reduction);
+    cycles[0].level = 1 - high;
+    cycles[1].level = high;
+    dea_charge_levels(&reduction);
     assert_close(levels[1 - high].sensed_stretch, 1, 1e-12, 0);
     assert_close(levels[high].sensed_stretch, 1.5, 1e-12, 0);
   }
@@ -550,16 +552,15 @@ static void test_small_steps_are_no_one_level(void **state)
   (void)state;
   enum { STEPS = 120 };
   static struct dea_reduced_cycle cycles[STEPS];
-  static size_t level_of[STEPS];
   struct dea_voltage_level *levels;
   size_t count;
   for (size_t k = 0; k < STEPS; k++) {
     cycles[k].voltage_V = 50.0 * (double)(k + 1);
   }
-  assert_int_equal(dea_levels_form(ctx, cycles, STEPS, 60.0, &levels, &count, level_of), DEA_OK);
+  assert_int_equal(dea_levels_form(ctx, cycles, STEPS, 60.0, &levels, &count), DEA_OK);
   assert_int_equal(count, STEPS / 2);
   for (size_t k = 0; k < STEPS; k++) {
-    assert_int_equal(level_of[k], k / 2);
+    assert_int_equal(cycles[k].level, k / 2);
     assert_close(levels[k / 2].voltage_V, cycles[k].voltage_V, 0, 25.1);
   }
   dea_free(ctx, levels);

@@ -162,7 +162,7 @@ dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *cu
 }
 
 /* C = eps A / h, and A h is constant: C grows with the fourth power of an even stretch. */
-void dea_charge_levels(const size_t *level_of, struct dea_reduction *reduction)
+void dea_charge_levels(struct dea_reduction *reduction)
 {
   double lowest_F = NAN, lowest_V = INFINITY;
   for (size_t l = 0; l < reduction->level_count; l++) {
@@ -171,7 +171,7 @@ void dea_charge_levels(const size_t *level_of, struct dea_reduction *reduction)
     for (int turn = 0; turn < 2; turn++) {
       for (size_t k = 0; k < reduction->cycle_count; k++) {
         double own = reduction->cycles[k].capacitance_F;
-        if (level_of[k] == l && !isnan(own)) {
+        if (reduction->cycles[k].level == l && !isnan(own)) {
           sum += turn == 0 ? own : 0;
           n += turn == 0 ? 1 : 0;
           squares += turn == 1 ? (own - sum / n) * (own - sum / n) : 0;

@@ -20,24 +20,30 @@ struct drawing {
   size_t count;
 };
 
-/* Rows (one a voltage) that are shown: the highest, and evenly of the others; where there are too
- * many, that of no voltage is the first to go. Their first levels into levels; how many. */
+/* Rows (one a voltage) that are shown: the highest, of either sign, and evenly of the others; where
+ * there are too many, that of no voltage is the first to go. Their first levels into levels; how
+ * many. */
 static size_t shown_levels(const struct dea_reduction *r, size_t levels[SHOWN_MAX])
 {
-  size_t rows = 0, n = 0, row = 0, first = 0;
+  size_t rows = 0, active = 0, n = 0, row = 0;
+  const double rest_V = 0.01 * dea_reduced_highest_V(r);
+  for (size_t l = 0; l < r->level_count; l += dea_reduced_row_at(r, l).levels, rows++) {
+    active += fabs(r->levels[l].voltage_V) < rest_V ? 0U : 1U;
+  }
+  const bool too_many = rows > SHOWN_MAX;
+  rows = too_many ? active : rows;
+  const size_t most = rows < SHOWN_MAX ? rows : SHOWN_MAX;
+  const bool down = r->level_count > 0 &&
+                    fabs(r->levels[0].voltage_V) > fabs(r->levels[r->level_count - 1].voltage_V);
   for (size_t l = 0; l < r->level_count; l += dea_reduced_row_at(r, l).levels) {
-    rows++;
-  }
-  double highest_V = r->level_count > 0 ? fabs(r->levels[r->level_count - 1].voltage_V) : 0.0;
-  if (rows > SHOWN_MAX && fabs(r->levels[0].voltage_V) < 0.01 * highest_V) {
-    first = dea_reduced_row_at(r, 0).levels;
-    rows--;
-  }
-  size_t most = rows < SHOWN_MAX ? rows : SHOWN_MAX;
-  for (size_t l = first; l < r->level_count; l += dea_reduced_row_at(r, l).levels, row++) {
-    if (n < most && row == (n + 1) * rows / most - 1) {
+    if (too_many && fabs(r->levels[l].voltage_V) < rest_V) {
+      continue;
+    }
+    // the last of each share, or the first where the highest stands first
+    if (n < most && row == (down ? n * rows / most : (n + 1) * rows / most - 1)) {
       levels[n++] = l;
     }
+    row++;
   }
   return n;
 }
@@ -254,18 +260,13 @@ static dea_status add_cycles(const struct drawing *d, struct dea_panel *panel, s
 {
   const struct dea_reduction *r = d->reduction;
   struct dea_reduced_row row = dea_reduced_row_at(r, first);
-  const struct dea_voltage_level *low = &r->levels[first];
-  const struct dea_voltage_level *high = &r->levels[first + row.levels - 1];
-  double slack_V = 0.005 * fabs(r->levels[r->level_count - 1].voltage_V), low_V, high_V;
   struct dea_series *series;
   char title[32];
   size_t n = 0;
   title_of(row.voltage_V, title);
   DEA_TRY(d->ctx, add_series(d, panel, row.cycles, title, DEA_LINE_MARKED, colour, &series));
-  low_V = low->voltage_V - slack_V;
-  high_V = high->voltage_V + slack_V;
   for (size_t k = 0; k < r->cycle_count && n < row.cycles; k++) {
-    if (r->cycles[k].voltage_V >= low_V && r->cycles[k].voltage_V <= high_V) {
+    if (r->cycles[k].level >= first && r->cycles[k].level < first + row.levels) {
       series->values[n] = (double)(n + 1);
       series->values[row.cycles + n++] =
           dea_reduced_meanings[kind].factor * r->cycles[k].values[kind].amplitude;

@@ -86,9 +86,8 @@ static void cycle_change(struct worker *w, const struct dea_cycle_parts *parts)
 }
 
 /* One level: mean and scatter of its cycles' profiles, shape. n: [points]. */
-static void level_profile(struct worker *w, const struct dea_cycle_parts *parts,
-                          const size_t *level_of, size_t index, struct dea_reduction *reduction,
-                          double *n)
+static void level_profile(struct worker *w, const struct dea_cycle_parts *parts, size_t index,
+                          struct dea_reduction *reduction, double *n)
 {
   struct dea_voltage_level *level = &reduction->levels[index];
   const struct dea_levelling *l = &w->levelling;
@@ -98,7 +97,7 @@ static void level_profile(struct worker *w, const struct dea_cycle_parts *parts,
       isnan(l->film_radius_m) ? 0.5 * (l->edges_m[1] - l->edges_m[0]) : l->film_radius_m;
   memset(n, 0, points * sizeof *n);
   for (size_t k = 0; k < reduction->cycle_count; k++) {
-    if (level_of[k] != index) {
+    if (reduction->cycles[k].level != index) {
       continue;
     }
     cycle_change(w, &parts[k]);
@@ -133,8 +132,8 @@ static void level_profile(struct worker *w, const struct dea_cycle_parts *parts,
 }
 
 dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profiles *profiles,
-                               const struct dea_cycle_parts *parts, const size_t *level_of,
-                               const double *offsets, struct dea_reduction *reduction)
+                               const struct dea_cycle_parts *parts, const double *offsets,
+                               struct dea_reduction *reduction)
 {
   enum { ARRAYS = 3 * STACKS + 6 };
   size_t points = profiles->points;
@@ -167,7 +166,7 @@ dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profile
     reduction->radius_m[i] = profiles->x_m[i] - reduction->levelling.centre_m;
   }
   for (size_t l = 0; l < reduction->level_count; l++) {
-    level_profile(&w, parts, level_of, l, reduction, next + 5 * points);
+    level_profile(&w, parts, l, reduction, next + 5 * points);
   }
   dea_free(ctx, room);
   return DEA_OK;

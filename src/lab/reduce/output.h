@@ -35,6 +35,8 @@ struct dea_reduced_row {
   double mean[DEA_REDUCED_KINDS], std[DEA_REDUCED_KINDS]; // std: of one cycle
   double uncertainty[DEA_REDUCED_KINDS];                  // of the mean, NAN: not known
 };
+/* Largest size of a level's voltage; 0 without levels. */
+double dea_reduced_highest_V(const struct dea_reduction *reduction);
 /* The row that begins with a level. */
 struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level);
 

@@ -10,8 +10,7 @@ struct job {
   const struct dea_channel *asked, *measured; // NULL: not there
   struct dea_voltage_scale scale;
   struct dea_cycle_list list;
-  size_t *level_of; // [list.count], owned
-  double *offsets;  // of the frames, owned
+  double *offsets; // of the frames, owned
   struct dea_reduction *out;
 };
 
@@ -129,8 +128,7 @@ static dea_status find_cycles(struct job *job)
   drop_unknown(&job->list);
   struct dea_reduction *r = job->out;
   r->cycles = dea_alloc(job->ctx, job->list.count, sizeof *r->cycles);
-  job->level_of = dea_alloc(job->ctx, job->list.count, sizeof *job->level_of);
-  if (r->cycles == NULL || job->level_of == NULL) {
+  if (r->cycles == NULL) {
     return DEA_E_MEMORY;
   }
   r->cycle_count = job->list.count;
@@ -418,11 +416,11 @@ static dea_status reduce_cycles(struct job *job)
                    "of single cycles are not known");
   }
   DEA_TRY(job->ctx, dea_levels_form(job->ctx, r->cycles, r->cycle_count, 0.5 * job->scale.active_V,
-                                    &r->levels, &r->level_count, job->level_of));
+                                    &r->levels, &r->level_count));
   return job->offsets == NULL || r->level_count == 0
              ? DEA_OK
              : dea_profiles_levels(job->ctx, &job->recording->profiles, job->list.parts,
-                                   job->level_of, job->offsets, r);
+                                   job->offsets, r);
 }
 
 /* Into the cycles that they began in; both are in time. */
@@ -457,7 +455,7 @@ static dea_status reduce_current(struct job *job)
   DEA_TRY(job->ctx,
           dea_charge_find(job->ctx, current, job->measured != NULL ? job->measured : job->asked,
                           job->list.parts, r->cycle_count, r->settle, &limits, r->cycles));
-  dea_charge_levels(job->level_of, r);
+  dea_charge_levels(r);
   return DEA_OK;
 }
 
@@ -542,7 +540,6 @@ dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recor
   take_options(options, job.out);
   dea_status status = reduce(&job, options);
   dea_free(ctx, job.list.parts);
-  dea_free(ctx, job.level_of);
   dea_free(ctx, job.offsets);
   if (status != DEA_OK) {
     dea_reduction_destroy(ctx, job.out);

@@ -40,6 +40,7 @@ struct dea_reduced_cycle {
   double leakage_A;     // that flows while the voltage is held, against rest
   double charge_C;      // brought to the film by edges, from the recording's begin to its end
   size_t discharges, breakdowns; // that began in it
+  size_t level;                  // of the reduction's, that it belongs to
 };
 
 /* All cycles of one voltage and step, and their statistics: mean, standard deviation from cycle to

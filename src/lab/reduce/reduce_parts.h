@@ -136,10 +136,9 @@ dea_status dea_cycle_values(struct dea_context *ctx, const struct dea_channel *s
 void dea_line_fit(const double *x, const double *y, size_t count, double *slope,
                   double *uncertainty);
 /* Groups cycles of one step whose voltages differ by less than tolerance_V, and fills what can be
- * told of each level. level_of: [count], of each cycle. out: owned by the caller. */
-dea_status dea_levels_form(struct dea_context *ctx, const struct dea_reduced_cycle *cycles,
-                           size_t count, double tolerance_V, struct dea_voltage_level **out,
-                           size_t *level_count, size_t *level_of);
+ * told of each level; tells the cycles theirs. out: owned by the caller. */
+dea_status dea_levels_form(struct dea_context *ctx, struct dea_reduced_cycle *cycles, size_t count,
+                           double tolerance_V, struct dea_voltage_level **out, size_t *level_count);
 
 // saturation.c -----------------------------------------------------------------------------------
 
@@ -216,8 +215,8 @@ dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *cu
                            const struct dea_channel *voltage, const struct dea_cycle_parts *parts,
                            size_t count, double settle, const struct dea_charge_limits *limits,
                            struct dea_reduced_cycle *cycles);
-/* Mean capacitances of the levels, and the stretch that they tell of. level_of: [cycle_count]. */
-void dea_charge_levels(const size_t *level_of, struct dea_reduction *reduction);
+/* Mean capacitances of the levels, and the stretch that they tell of. */
+void dea_charge_levels(struct dea_reduction *reduction);
 
 // profiles.c -------------------------------------------------------------------------------------
 
@@ -228,7 +227,7 @@ dea_status dea_profiles_reduce(struct dea_context *ctx, const struct dea_profile
                                struct dea_reduction *reduction, double **offsets);
 /* Mean profiles of the levels against rest, and the shape of cycles and levels. */
 dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profiles *profiles,
-                               const struct dea_cycle_parts *parts, const size_t *level_of,
-                               const double *offsets, struct dea_reduction *reduction);
+                               const struct dea_cycle_parts *parts, const double *offsets,
+                               struct dea_reduction *reduction);
 
 #endif

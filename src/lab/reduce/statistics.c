@@ -364,9 +364,8 @@ static size_t nearest_level(const struct dea_reduced_cycle *cycle,
   return best;
 }
 
-dea_status dea_levels_form(struct dea_context *ctx, const struct dea_reduced_cycle *cycles,
-                           size_t count, double tolerance_V, struct dea_voltage_level **out,
-                           size_t *level_count, size_t *level_of)
+dea_status dea_levels_form(struct dea_context *ctx, struct dea_reduced_cycle *cycles, size_t count,
+                           double tolerance_V, struct dea_voltage_level **out, size_t *level_count)
 {
   const struct dea_reduced_cycle **sorted = dea_alloc(ctx, count, sizeof *sorted);
   double *xy = dea_alloc(ctx, count, 2 * sizeof *xy);
@@ -386,7 +385,7 @@ dea_status dea_levels_form(struct dea_context *ctx, const struct dea_reduced_cyc
       qsort(levels, *level_count, sizeof *levels, by_level_voltage);
     }
     for (size_t i = 0; i < count; i++) {
-      level_of[i] = nearest_level(&cycles[i], levels, *level_count);
+      cycles[i].level = nearest_level(&cycles[i], levels, *level_count);
     }
     *out = levels;
     levels = NULL;

@@ -65,11 +65,19 @@ static double row_uncertainty(const struct dea_voltage_level *first, size_t leve
   return sqrt(isnan(own) ? NAN : fmax(own / (n * n), between));
 }
 
+double dea_reduced_highest_V(const struct dea_reduction *reduction)
+{
+  const size_t n = reduction->level_count;
+  return n > 0
+             ? fmax(fabs(reduction->levels[0].voltage_V), fabs(reduction->levels[n - 1].voltage_V))
+             : 0.0;
+}
+
 struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction, size_t level)
 {
   const struct dea_voltage_level *first = &reduction->levels[level];
   const struct dea_voltage_level *last = &reduction->levels[reduction->level_count - 1];
-  double within_V = 0.01 * fmax(fabs(reduction->levels[0].voltage_V), fabs(last->voltage_V));
+  double within_V = 0.01 * dea_reduced_highest_V(reduction);
   struct dea_reduced_row row = {0};
   while (first + row.levels <= last && first[row.levels].voltage_V - first->voltage_V <= within_V) {
     double n = (double)first[row.levels].cycles;
