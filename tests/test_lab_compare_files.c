@@ -190,6 +190,29 @@ static void test_with_failing_allocations(void **state)
   assert_true(failing_each(compare_monitors_once) > 20);
 }
 
+/* A film driven below 0 is compared as one driven above it; noise about 0 is left as it is. */
+static void test_negative_voltages(void **state)
+{
+  (void)state;
+  static char above[COMMAND_TEXT_MAX];
+  command_folder_make("above");
+  command_folder_make("below");
+  command_write("above/measurement.csv", "V (kV),z centre (um)\n2,190\n4,420\n");
+  command_write("above/profiles.csv", "V (kV),x (mm),z (um)\n2,0,20\n2,1,19\n4,0,40\n4,1,39\n");
+  command_write("below/measurement.csv", "V (kV),z centre (um)\n-2,190\n-4,420\n");
+  command_write("below/profiles.csv", "V (kV),x (mm),z (um)\n-2,0,20\n-2,1,19\n-4,0,40\n-4,1,39\n");
+  assert_int_equal(command_run("compare run above --model 3d"), 0);
+  snprintf(above, sizeof above, "%s", strstr(command_out, "\n\n"));
+  assert_contains(above, "RMS");
+  assert_null(strstr(command_err, "below 0"));
+  assert_int_equal(command_run("compare run below --model 3d"), 0);
+  assert_string_equal(strstr(command_out, "\n\n"), above);
+  assert_contains(command_err, "voltages below 0 of below stand at their size");
+  command_write("noise.csv", "V (kV),z centre (um)\n-0.001,1\n2,190\n4,420\n");
+  assert_int_equal(command_run("compare run noise.csv --model 3d"), 0);
+  assert_null(strstr(command_err, "below 0"));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -197,6 +220,7 @@ int main(void)
       cmocka_unit_test(test_pair_shows_the_whole_model),
       cmocka_unit_test(test_bad_files_with_their_places),
       cmocka_unit_test(test_many_errors_are_cut),
+      cmocka_unit_test(test_negative_voltages),
       cmocka_unit_test(test_with_failing_allocations),
   };
   return cmocka_run_group_tests(tests, compare_set_up, command_tear_down);

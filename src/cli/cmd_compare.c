@@ -143,6 +143,13 @@ static dea_status read_sides(struct dea_context *ctx, const struct request *requ
                      ? dea_run_read(ctx, name, &sides[i].run)
                      : dea_measured_read(ctx, name, &sides[i].measured));
   }
+  bool run = false; // whose voltages are not below 0
+  for (size_t i = 0; i < request->names.count; i++) {
+    run = run || sides[i].run != NULL;
+  }
+  for (size_t i = 0; i < request->names.count && run; i++) {
+    DEA_TRY(ctx, sides[i].measured == NULL ? DEA_OK : dea_measured_fold(ctx, sides[i].measured));
+  }
   return DEA_OK;
 }
 

@@ -309,20 +309,28 @@ static dea_status compute_profiles(struct dea_context *ctx, struct dea_compare_s
   if (set->profiles == NULL) {
     return DEA_E_MEMORY;
   }
-  for (size_t m = 0; m < count; m++) {
+  struct dea_text alone = {.ctx = ctx}; // voltages without a computed profile
+  dea_status status = DEA_OK;
+  for (size_t m = 0; m < count && status == DEA_OK; m++) {
     size_t before = set->profile_count;
-    for (size_t i = 0; i < set->curve_count; i++) {
-      DEA_TRY(ctx, add_profile(ctx, set, i, m, DEA_HALF_FIBRE));
-      DEA_TRY(ctx, add_profile(ctx, set, i, m, DEA_HALF_BETWEEN));
+    for (size_t i = 0; i < DEA_HALVES * set->curve_count && status == DEA_OK; i++) {
+      status = add_profile(ctx, set, i / DEA_HALVES, m, (enum dea_half)(i % DEA_HALVES));
     }
     if (set->profile_count == before && set->measured->profiles[m].voltage_V != 0.0) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
-                                   "no run has a profile out of the plane at %.4g kV: the measured "
-                                   "one is left out",
-                                   1e-3 * set->measured->profiles[m].voltage_V));
+      dea_text_add(&alone, "%s%.4g", alone.length > 0 ? ", " : "",
+                   1e-3 * set->measured->profiles[m].voltage_V);
     }
   }
-  return DEA_OK;
+  if (status == DEA_OK && alone.failed) {
+    status = DEA_E_MEMORY;
+  } else if (status == DEA_OK && alone.length > 0) {
+    status = dea_finding_add(ctx, DEA_NOTE, nowhere,
+                             "no run has a profile out of the plane at %s kV: what was measured "
+                             "there is left out",
+                             dea_text_get(&alone));
+  }
+  dea_text_free(&alone);
+  return status;
 }
 
 // Histories ---------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 #include "base/write_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -163,6 +164,40 @@ dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct d
   }
   *out = m;
   return DEA_OK;
+}
+
+static void turn_point(struct dea_load_point *p)
+{
+  if (p->voltage_V < 0) {
+    p->voltage_V = -p->voltage_V;
+    p->source_voltage_V = -p->source_voltage_V;
+    p->charge_C = -p->charge_C;
+    p->current_A = -p->current_A;
+  }
+}
+
+dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured)
+{
+  static const double noise = 0.01; // of the largest size
+  const struct dea_curve *points = &measured->points->curve;
+  double lowest_V = 0, largest_V = 0;
+  for (size_t i = 0; i < points->count; i++) {
+    lowest_V = fmin(lowest_V, points->points[i].voltage_V);
+    largest_V = fmax(largest_V, fabs(points->points[i].voltage_V));
+  }
+  if (lowest_V >= -noise * largest_V) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < points->count; i++) {
+    turn_point(&points->points[i]);
+  }
+  for (size_t i = 0; i < measured->profile_count; i++) {
+    measured->profiles[i].voltage_V = fabs(measured->profiles[i].voltage_V);
+  }
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
+                         "voltages below 0 of %s stand at their size: the response of a film does "
+                         "not know the sign",
+                         measured->path);
 }
 
 void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured)

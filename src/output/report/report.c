@@ -133,6 +133,7 @@ dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run
   dea_status status = DEA_OK;
   if (options->measurement != NULL) {
     status = dea_measured_read(ctx, options->measurement, &measured);
+    status = status == DEA_OK ? dea_measured_fold(ctx, measured) : status;
     report.measurement = measured != NULL ? measured->points : NULL;
   }
   if (status == DEA_OK) {
