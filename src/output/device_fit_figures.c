@@ -160,9 +160,13 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
         snprintf(plot->panels[p].x_label, sizeof plot->panels[p].x_label, "Time {/:Italic t} (s)");
       } else {
         dea_panel_voltage_axis(&plot->panels[p]);
+        plot->panels[p].x_max *= 1.03; // room for the last sign
+        plot->panels[p].x_min *= 1.03;
       }
       dea_panel_even_tics(&plot->panels[p], p == 0 ? 7 : 4);
     }
+    dea_panel_begin_at_zero(&plot->panels[0]);
+    dea_panel_mark(&plot->panels[1], false, 0, "");
     dea_panel_place_key(&plot->panels[0]);
     status = dea_plot_write(ctx, plot, format, directory);
   }

@@ -71,18 +71,40 @@ void dea_panel_limit(struct dea_panel *panel)
 
 void dea_panel_voltage_axis(struct dea_panel *panel)
 {
-  double largest = 0.0;
+  static const double noise = 0.01; // of a monitor about 0, of the span
+  double lowest = 0.0, largest = 0.0;
   for (size_t s = 0; s < panel->series_count; s++) {
     const struct dea_series *series = &panel->series[s];
     for (size_t i = 0; i < series->count; i++) {
-      bool counts = isfinite(series->values[series->count + i]);
-      largest = counts ? fmax(largest, series->values[i]) : largest;
+      if (isfinite(series->values[series->count + i])) {
+        lowest = fmin(lowest, series->values[i]);
+        largest = fmax(largest, series->values[i]);
+      }
     }
   }
-  panel->x_min = 0.0;
-  panel->x_max = largest > 0.0 ? largest : 1.0; // gnuplot has no axis from 0 to 0
+  const double least = noise * (largest - lowest);
+  panel->x_min = lowest < -least ? lowest : 0.0;
+  panel->x_max = largest > least ? largest : 0.0;
+  if (!(panel->x_max > panel->x_min)) { // gnuplot has no axis from 0 to 0
+    panel->x_max = 1.0;
+  }
   snprintf(panel->x_label, sizeof panel->x_label, "Voltage {/:Italic V} (kV)");
   dea_panel_limit(panel);
+}
+
+void dea_panel_begin_at_zero(struct dea_panel *panel)
+{
+  double low = 0.0, high = 0.0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    for (size_t i = 0; i < series->count; i++) {
+      low = fmin(low, series->values[series->count + i]); // not NAN
+      high = fmax(high, series->values[series->count + i]);
+    }
+  }
+  if (low > -0.08 * high) {
+    panel->y_min = fmin(1.2 * low, -0.02 * high);
+  }
 }
 
 void dea_panel_even_tics(struct dea_panel *panel, int most)

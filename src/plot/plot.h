@@ -103,9 +103,11 @@ void dea_panel_mark(struct dea_panel *panel, bool vertical, double at, const cha
 bool dea_panel_range(const struct dea_panel *panel, bool right, double *low, double *high);
 /* Limits of the left axis, where it has none, that leave out what dea_panel_range leaves out. */
 void dea_panel_limit(struct dea_panel *panel);
-/* Voltage axis from 0 to the largest voltage of the panel's series, and its label; the left axis as
- * by dea_panel_limit. */
+/* Voltage axis over the voltages of the panel's series and 0, and its label; the left axis as by
+ * dea_panel_limit. */
 void dea_panel_voltage_axis(struct dea_panel *panel);
+/* Has the left axis begin just below 0 where only noise is below it. */
+void dea_panel_begin_at_zero(struct dea_panel *panel);
 /* At most about `most` tics on the left axis, all with the same number of decimals. */
 void dea_panel_even_tics(struct dea_panel *panel, int most);
 /* Puts the key into a corner that the panel's series leave free, or makes room above them; to be

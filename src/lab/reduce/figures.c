@@ -65,22 +65,6 @@ static dea_status add_series(const struct drawing *d, struct dea_panel *panel, s
   return DEA_OK;
 }
 
-/* Lets the left axis begin just below 0 when only noise is below it. */
-static void begin_at_zero(struct dea_panel *panel)
-{
-  double low = 0.0, high = 0.0;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    for (size_t i = 0; i < series->count; i++) {
-      low = fmin(low, series->values[series->count + i]); // not NAN
-      high = fmax(high, series->values[series->count + i]);
-    }
-  }
-  if (low > -0.08 * high) {
-    panel->y_min = fmin(1.2 * low, -0.02 * high);
-  }
-}
-
 /* A few volts are the noise and offset of a monitor of kilovolts: that level is 0. */
 static void title_of(double voltage_V, char out[32])
 {
@@ -103,7 +87,7 @@ static dea_status build_profiles(const struct drawing *d, struct dea_plot *plot)
       series->values[r->points + i] = 1e6 * level->z_m[i];
     }
   }
-  begin_at_zero(panel);
+  dea_panel_begin_at_zero(panel);
   panel->x_min = 1e3 * (r->levelling.edges_m[0] - r->levelling.centre_m);
   panel->x_max = 1e3 * (r->levelling.edges_m[1] - r->levelling.centre_m);
   dea_panel_key_above(panel, 2);
@@ -138,7 +122,7 @@ static void time_axis(const struct dea_reduced_series *table, struct dea_panel *
   panel->x_min = table->rows > 0 ? table->time_s[0] : 0.0;
   panel->x_max = table->rows > 1 ? table->time_s[table->rows - 1] : 1.0;
   snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
-  begin_at_zero(panel);
+  dea_panel_begin_at_zero(panel);
   dea_panel_even_tics(panel, 6);
   dea_panel_place_key(panel);
 }
@@ -241,13 +225,9 @@ static dea_status build_amplitude(const struct drawing *d, struct dea_plot *plot
   }
   for (size_t p = 0; p < plot->panel_count; p++) {
     dea_panel_voltage_axis(&plot->panels[p]);
-    if (d->reduction->level_count > 0 && d->reduction->levels[0].voltage_V < -50.0) {
-      plot->panels[p].x_min = NAN;
-    } else {
-      plot->panels[p].x_min = 0.0;
-    }
-    begin_at_zero(&plot->panels[p]);
+    dea_panel_begin_at_zero(&plot->panels[p]);
     plot->panels[p].x_max *= 1.03; // room for the last sign
+    plot->panels[p].x_min *= 1.03;
     dea_panel_even_tics(&plot->panels[p], 7);
     dea_panel_place_key(&plot->panels[p]);
   }
@@ -292,7 +272,7 @@ static dea_status build_cycles(const struct drawing *d, struct dea_plot *plot)
   for (size_t k = 0; k < count && most > 1; k++) { // one cycle shows nothing
     DEA_TRY(d->ctx, add_cycles(d, panel, levels[k], kind, colour_of(k, count)));
   }
-  begin_at_zero(panel);
+  dea_panel_begin_at_zero(panel);
   panel->x_min = 0.5;
   panel->x_max = (double)most + 0.5;
   dea_panel_key_above(panel, 2);
