@@ -95,6 +95,22 @@ static void test_curves(void **state)
   expect("lumped", free_one, "name: s, file: z.csv", 3, "has no quantity beside the voltage");
 }
 
+/* A film driven below 0 is fitted as one driven above it. */
+static void test_negative_voltages(void **state)
+{
+  (void)state;
+  static char above[COMMAND_TEXT_MAX];
+  static const char free_one[] = "{name: film.thickness}";
+  command_write("v.csv", "V (kV),capacitance (pF)\n1,24.1\n2,24.2\n3,24.8\n");
+  expect("lumped", free_one, "name: s, file: v.csv, uncertainty: 1 %", 0, "");
+  snprintf(above, sizeof above, "%s", command_out);
+  assert_contains(above, "At 3 kV, the highest");
+  command_write("v.csv", "V (kV),capacitance (pF)\n-1,24.1\n-2,24.2\n-3,24.8\n");
+  expect("lumped", free_one, "name: s, file: v.csv, uncertainty: 1 %", 0,
+         "v.csv: note: voltages below 0 stand at their size");
+  assert_string_equal(command_out, above);
+}
+
 /* The example of docs/fit.md, its files, a folder of dea reduce, and the keys of that page. */
 /* Number in that column of a CSV line, from 0. */
 static double field_of(const char *line, int column)
@@ -257,9 +273,13 @@ static void test_transient(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_parameters), cmocka_unit_test(test_curves),
-      cmocka_unit_test(test_example),    cmocka_unit_test(test_folder),
-      cmocka_unit_test(test_round_trip), cmocka_unit_test(test_transient),
+      cmocka_unit_test(test_parameters),
+      cmocka_unit_test(test_curves),
+      cmocka_unit_test(test_negative_voltages),
+      cmocka_unit_test(test_example),
+      cmocka_unit_test(test_folder),
+      cmocka_unit_test(test_round_trip),
+      cmocka_unit_test(test_transient),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -161,7 +161,8 @@ static dea_status read_table(struct reading *r, const char *path)
   dea_free(r->ctx, bytes);
   DEA_TRY(r->ctx, dea_measurement_read(r->ctx, path, &table));
   r->table = table;
-  dea_status status = check_quantities(r);
+  dea_status status = dea_measurement_fold(r->ctx, table);
+  status = status == DEA_OK ? check_quantities(r) : status;
   size_t taken = 0;
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && status == DEA_OK; c++) {
     const bool axis = c == dea_point_column_find("voltage_V") ||

@@ -176,28 +176,38 @@ static void turn_point(struct dea_load_point *p)
   }
 }
 
-dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured)
+/* Whether voltages are below 0 by more than the noise of a monitor. */
+static bool is_negative(const struct dea_curve *points)
 {
   static const double noise = 0.01; // of the largest size
-  const struct dea_curve *points = &measured->points->curve;
   double lowest_V = 0, largest_V = 0;
   for (size_t i = 0; i < points->count; i++) {
     lowest_V = fmin(lowest_V, points->points[i].voltage_V);
     largest_V = fmax(largest_V, fabs(points->points[i].voltage_V));
   }
-  if (lowest_V >= -noise * largest_V) {
+  return lowest_V < -noise * largest_V;
+}
+
+dea_status dea_measurement_fold(struct dea_context *ctx, struct dea_measurement *points)
+{
+  if (!is_negative(&points->curve)) {
     return DEA_OK;
   }
-  for (size_t i = 0; i < points->count; i++) {
-    turn_point(&points->points[i]);
+  for (size_t i = 0; i < points->curve.count; i++) {
+    turn_point(&points->curve.points[i]);
   }
-  for (size_t i = 0; i < measured->profile_count; i++) {
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){points->file, 0, 0},
+                         "voltages below 0 stand at their size: the response of a film does not "
+                         "know the sign");
+}
+
+dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured)
+{
+  const bool negative = is_negative(&measured->points->curve);
+  for (size_t i = 0; i < measured->profile_count && negative; i++) {
     measured->profiles[i].voltage_V = fabs(measured->profiles[i].voltage_V);
   }
-  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
-                         "voltages below 0 of %s stand at their size: the response of a film does "
-                         "not know the sign",
-                         measured->path);
+  return dea_measurement_fold(ctx, measured->points);
 }
 
 void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured)

@@ -43,7 +43,9 @@ bool dea_measured_is_folder(const char *path);
 dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct dea_measured **out);
 /* Voltages below 0 become their size, and charges and currents there turn round, for curves of a
  * model: the response of a film does not know the sign. With a note; not where they are but noise
- * about 0. The history stays. */
+ * about 0. */
+dea_status dea_measurement_fold(struct dea_context *ctx, struct dea_measurement *points);
+/* The same with the profiles; the history stays. */
 dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured);
 void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured);
 /* Column of dea_point_columns that a column of the history is; -1: none (the time). */
