@@ -84,9 +84,30 @@ static void test_bad_data(void **state)
          "2 of 5 rows, at stretches 1.05 to 1.1, carry no force: the strip is slack there");
 }
 
+/* A frame's file with a stress and a force. */
+static void test_stress_and_force(void **state)
+{
+  (void)state;
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
+                             "  - {name: s, kind: uniaxial, file: strip.csv, section: 10 mm^2}\n");
+  command_write("strip.csv", "stretch,stress (kPa),force (N)\n1.1,27,0.27\n1.4,89,0.893\n");
+  command_expect("fit mine.yaml --force", 0, "");
+  assert_null(strstr(command_err, "off the stress"));
+  command_write("strip.csv", "stretch,stress (kPa),force (N)\n1.1,27,0.25\n1.4,89,0.84\n");
+  command_expect("fit mine.yaml --force", 0,
+                 "mine.yaml:5:57: warning: the force over the section is off the stress by up to 5 "
+                 "kPa (5.62 % of the largest): the stress counts");
+}
+
 static void test_names_and_files(void **state)
 {
   (void)state;
+  command_write("strip.csv", good);
+  command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [ogden-3]\ntests:\n"
+                             "  - {name: strip, kind: uniaxial, file: three.csv}\n");
+  command_write("three.csv", "stretch,stress (kPa)\n1.1,27\n1.2,50\n1.4,89\n");
+  command_expect("fit mine.yaml --force", 3,
+                 "mine.yaml:5:41: error: 3 measurements do not determine 6 parameters");
   command_write("strip.csv", good);
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: stretch 2.5, kind: uniaxial, file: strip.csv}\n");
@@ -353,6 +374,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_fit),
       cmocka_unit_test(test_bad_data),
+      cmocka_unit_test(test_stress_and_force),
       cmocka_unit_test(test_names_and_files),
       cmocka_unit_test(test_keys_that_differ),
       cmocka_unit_test(test_prior_without_uncertainty),

@@ -20,8 +20,9 @@ static const char alike[] = "thickness: 100 um\nstretch: 1.5\narea: 20 mm^2\n";
 static void test_errors(void **state)
 {
   (void)state;
-  expect(alike, "voltage (kV),survived\n4,1\n5,1\n", 2, "nothing broke down");
-  expect(alike, "voltage (kV),survived\n4,0\n5,1\n", 2, "1 film broke down: too few");
+  expect(alike, "voltage (kV),survived\n4,1\n5,1\n", 3,
+         "mine.yaml:4:12: error: nothing broke down");
+  expect(alike, "voltage (kV),survived\n4,0\n5,1\n", 3, "1 film broke down: too few");
   expect(alike, "voltage (kV),survived\n4,0\n5,2\n", 5,
          "films.csv:3:1: error: survived: 2, but it has to be 1, or 0 of a film that broke");
   expect(alike, "voltage (kV),survived\n-4,0\n5,1\n", 5, "voltage: -4000, but it has to be more");
@@ -56,7 +57,7 @@ static void test_power_of_scatter(void **state)
       "mine.yaml:4:12: warning: the films' thicknesses tell little of their power (-1.8 +- 2.4)");
   expect(
       "thickness: 50 um\narea: 20 mm^2\n", // all that were stretched held: any larger power will do
-      "field (V/um),stretch,survived\n80,1,0\n83,1,0\n90,1.5,1\n92,1.5,1\n70,1,1\n78,1,0\n", 2,
+      "field (V/um),stretch,survived\n80,1,0\n83,1,0\n90,1.5,1\n92,1.5,1\n70,1,1\n78,1,0\n", 3,
       "the films do not limit the power of their stretches: give exponent in the fit file");
   // four films on nearly one line: intervals end where another start finds the maximum
   expect("area: 20 mm^2\n",

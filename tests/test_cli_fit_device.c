@@ -87,6 +87,10 @@ static void test_curves(void **state)
          "1 measured value, priors included, where 2 parameters are sought");
   command_write("z.csv", "V (kV),capacitance (pF),capacitance std (pF)\n1,25,0\n2,26,1\n");
   expect("lumped", free_one, "name: s, file: z.csv", 3, "z.csv:2:1: error: the uncertainty of");
+  command_write("z.csv", "V (kV),capacitance (pF),capacitance std (pF)\n1,24.2,1\n2,24.3,1\n");
+  expect("lumped", free_one, "name: s, file: z.csv, uncertainty: 1 %", 0,
+         "mine.yaml:7:41: warning: capacitance_F of");
+  assert_contains(command_err, "has a column of uncertainties: where it says one, that counts");
   // of both polarities: from -3 to 3 kV in one step
   command_write("z.csv", "V (kV),capacitance (pF)\n3,24.8\n-3,24.8\n");
   expect("lumped", free_one, "name: s, file: z.csv, uncertainty: 1 %", 0, "");

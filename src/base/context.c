@@ -257,6 +257,18 @@ dea_status dea_refuse(struct dea_context *ctx, struct dea_location location, con
   return dea_fail(ctx, DEA_E_DESIGN, "%s", text);
 }
 
+dea_status dea_refuse_argument(struct dea_context *ctx, struct dea_location location,
+                               dea_status status)
+{
+  char text[MESSAGE_MAX];
+  if (status != DEA_E_ARGUMENT) {
+    return status;
+  }
+  snprintf(text, sizeof text, "%s", dea_context_message(ctx));
+  dea_context_clear(ctx);
+  return dea_refuse(ctx, location, text);
+}
+
 size_t dea_finding_count(const struct dea_context *ctx, enum dea_severity at_least)
 {
   size_t count = ctx->errors;

@@ -101,6 +101,10 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
                            struct dea_location location, const char *format, ...) DEA_PRINTF(4, 5);
 /* An error with its place, and DEA_E_DESIGN with the same words. */
 dea_status dea_refuse(struct dea_context *ctx, struct dea_location location, const char *text);
+/* A failure with DEA_E_ARGUMENT, whose arguments come from a file, becomes that; other statuses
+ * stay. */
+dea_status dea_refuse_argument(struct dea_context *ctx, struct dea_location location,
+                               dea_status status);
 enum { DEA_ERRORS_KEPT = 100 };
 /* Findings of that severity and above; of errors every one that was added, kept or not, so that a
  * number that has not grown means that there was none. */

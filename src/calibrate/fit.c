@@ -592,7 +592,7 @@ dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
   *fit = (struct dea_fit){
       .file = file, .series = series, .series_count = series_count, .memory = {.ctx = ctx}};
   struct work w = {.ctx = ctx, .fit = fit};
-  dea_status status = run(&w, options);
+  dea_status status = dea_refuse_argument(ctx, file->tests[0].file.location, run(&w, options));
   if (status != DEA_OK) {
     dea_fit_destroy(ctx, fit);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -103,6 +103,28 @@ static dea_status take_stress(struct work *w)
   return DEA_OK;
 }
 
+/* A stress and a force over the section that are not alike: the stress counts, which is said. */
+static dea_status compare_forces(struct work *w)
+{
+  static const double alike = 0.01; // of the largest stress
+  const double *stress = w->raw->values[DEA_FIT_STRESS], *force = w->raw->values[DEA_FIT_FORCE];
+  const double section = w->test->section_m2.si;
+  double largest = 0, off = 0;
+  if (stress == NULL || force == NULL || isnan(section)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < w->raw->rows; i++) {
+    largest = fmax(largest, fabs(stress[i]));
+    off = fmax(off, fabs(force[i] / section - stress[i])); // not NAN
+  }
+  return off <= alike * largest
+             ? DEA_OK
+             : dea_finding_add(w->ctx, DEA_WARNING, w->test->section_m2.location,
+                               "the force over the section is off the stress by up to %.3g kPa "
+                               "(%.3g %% of the largest): the stress counts",
+                               1e-3 * off, 100 * off / largest);
+}
+
 /* Times from their column, or by the rate along the stretches. A slow test has none. */
 static dea_status take_time(struct work *w)
 {
@@ -342,6 +364,7 @@ static dea_status make(struct dea_arena *arena, struct work *w)
   const struct dea_fit_test *test = w->test;
   DEA_TRY(w->ctx, take_stretch(w));
   DEA_TRY(w->ctx, take_stress(w));
+  DEA_TRY(w->ctx, compare_forces(w));
   DEA_TRY(w->ctx, take_time(w));
   double ramp = 0;
   if (test->kind.value == DEA_FIT_RELAXATION && w->errors == 0) {

@@ -108,6 +108,7 @@ static dea_status add_curve(struct reading *r, int column)
   struct dea_device_fit *fit = r->fit;
   const struct dea_curve *from = &r->table->curve;
   double absolute;
+  bool std_given = false;
   if (fit->curve_count == DEA_DEVICE_CURVES_MAX) {
     return dea_fail(r->ctx, DEA_E_UNSUPPORTED, "more than %d measured curves",
                     DEA_DEVICE_CURVES_MAX);
@@ -146,9 +147,18 @@ static dea_status add_curve(struct reading *r, int column)
     curve->value[n] = value;
     DEA_TRY(r->ctx, take_std(r, curve, absolute, dea_point_get(&r->table->std[i], column),
                              curve->line[n], value, &curve->std[n]));
+    std_given = std_given || !isnan(dea_point_get(&r->table->std[i], column));
     curve->rows++;
   }
-  return DEA_OK;
+  const struct dea_device_curve_text *text = r->text;
+  const bool share = text->relative.origin != DEA_ABSENT;
+  return !std_given || (!share && text->absolute.text[0] == '\0')
+             ? DEA_OK
+             : dea_finding_add(r->ctx, DEA_WARNING,
+                               share ? text->relative.location : text->absolute.location,
+                               "%s of '%.80s' has a column of uncertainties: where it says one, "
+                               "that counts",
+                               dea_point_columns[column].key, curve->file);
 }
 
 static dea_status read_table(struct reading *r, const char *path)

@@ -216,8 +216,9 @@ static dea_status run(void *made, const void *file)
   dea_free(ctx, path);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, make_data(fit));
-  DEA_TRY(ctx, dea_weibull_solve(ctx, &fit->data, &fit->fit));
-  return check_powers(fit);
+  status = dea_weibull_solve(ctx, &fit->data, &fit->fit);
+  status = status == DEA_OK ? check_powers(fit) : status;
+  return dea_refuse_argument(ctx, fit->file->tests.location, status);
 }
 
 dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_breakdown_file *file,
