@@ -101,7 +101,14 @@ static void test_tables(void **state)
   double time_s, voltage_kV;
   int used;
   record("table.h5", false);
-  assert_int_equal(command_run("recording table.h5 --csv csv"), 0);
+  command_folder_make("csv"); // what others wrote there is not lost unasked
+  command_write("csv/cycles.csv", "those of dea reduce\n");
+  command_write("csv/readings_2.csv", "of an earlier recording\n");
+  command_expect("recording table.h5 --csv csv", 5, "--force");
+  assert_int_equal(command_run("recording table.h5 --csv csv --force"), 0);
+  char stale[600];
+  snprintf(stale, sizeof stale, "%s/csv/readings_2.csv", command_folder);
+  assert_int_not_equal(access(stale, F_OK), 0);
   command_read("csv/channels.csv", command_out);
   const char *at = command_out;
   const char *header = "time (s),voltage (kV),centre/laser (um)\n";

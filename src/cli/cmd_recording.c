@@ -10,7 +10,7 @@ enum { PLAIN_SIZE = 512 };
 
 struct request {
   const char *file, *output, *folder;
-  bool json;
+  bool json, force;
 };
 
 // What is in it ----------------------------------------------------------------------------------
@@ -245,7 +245,7 @@ static int run(struct dea_cli *cli, void *user)
     status = dea_recording_write(cli->ctx, recording, request->output);
   }
   if (status == DEA_OK && request->folder != NULL) {
-    status = dea_recording_write_tables(cli->ctx, recording, request->folder);
+    status = dea_recording_write_tables(cli->ctx, recording, request->folder, request->force);
   }
   if (status == DEA_OK && request->json) {
     print_json(recording);
@@ -266,6 +266,7 @@ static const struct cli_option options[] = {
         "killed, and in a form that programs with older versions of HDF5 read"),
     {"csv", 0, CLI_FOLDER, "DIR", "write the channels, profiles and cycles as CSV files into DIR",
      CLI_AT(folder)},
+    CLI_FORCE_ROW('f', "replace an earlier recording's CSV files in DIR"),
     CLI_JSON_ROW("what is in it as JSON"),
     {0}};
 
