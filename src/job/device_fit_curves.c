@@ -171,7 +171,8 @@ static dea_status read_table(struct reading *r, const char *path)
   dea_free(r->ctx, bytes);
   DEA_TRY(r->ctx, dea_measurement_read(r->ctx, path, &table));
   r->table = table;
-  dea_status status = dea_measurement_fold(r->ctx, table);
+  const bool in_time = r->text->kind.value == DEA_DEVICE_TRANSIENT; // has the waveform's voltage
+  dea_status status = in_time ? DEA_OK : dea_measurement_fold(r->ctx, table);
   status = status == DEA_OK ? check_quantities(r) : status;
   size_t taken = 0;
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && status == DEA_OK; c++) {
