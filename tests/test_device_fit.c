@@ -116,6 +116,33 @@ static void test_prior_without_uncertainty(void **state)
   end(file, found);
 }
 
+/* A pre-stretch so close to 1, below which there is none, that the step down leads out: at rest C
+ * is as its square. */
+static void test_slope_to_one_side(void **state)
+{
+  (void)state;
+  static const double stretch = 1.0004;
+  double k, C[CAPACITIES], std[CAPACITIES], information = 0;
+  char text[1024] = "V (V),capacitance (pF),capacitance std (pF)\n";
+  struct dea_device_file *file;
+  struct dea_device_fit *found;
+  write_capacitances(&k, C, std);
+  const double at_1_F = k * 2.8 / (2.25 * 2.25), at_F = at_1_F * pow(stretch, 4),
+               slope_F = 4 * at_F / stretch;
+  for (int i = 0; i < CAPACITIES; i++) {
+    snprintf(text + strlen(text), sizeof text - strlen(text), "%g,%.15g,%.15g\n", 1e-3 * i,
+             1e12 * at_F, 1e10 * std[i]);
+    information += slope_F * slope_F / (1e-4 * std[i] * std[i]);
+  }
+  write_file("capacitance.csv", text);
+  assert_int_equal(fit("lumped", "  - {name: pre_stretch, start: 1.1}\n",
+                       "  - {name: c, file: capacitance.csv}\n", &file, &found),
+                   DEA_OK);
+  assert_close(found->values[0].value, stretch, 1e-5, 0);
+  assert_close(found->curves[0].model_std[0], slope_F / sqrt(information), 2e-3, 0);
+  end(file, found);
+}
+
 /* At rest the capacitance tells eps/h only. */
 static void test_not_told_apart(void **state)
 {
@@ -312,10 +339,10 @@ static void test_rows_do_not_settle(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_closed_form),        cmocka_unit_test(test_prior_without_uncertainty),
-      cmocka_unit_test(test_not_told_apart),     cmocka_unit_test(test_coverage),
-      cmocka_unit_test(test_design_and_slack),   cmocka_unit_test(test_rows_come_back),
-      cmocka_unit_test(test_rows_do_not_settle),
+      cmocka_unit_test(test_closed_form),    cmocka_unit_test(test_prior_without_uncertainty),
+      cmocka_unit_test(test_not_told_apart), cmocka_unit_test(test_slope_to_one_side),
+      cmocka_unit_test(test_coverage),       cmocka_unit_test(test_design_and_slack),
+      cmocka_unit_test(test_rows_come_back), cmocka_unit_test(test_rows_do_not_settle),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -244,7 +244,7 @@ static void print_derived(const struct dea_device_fit *fit)
       printf("\nAt %.4g kV, the highest that was fitted:\n", 1e-3 * d->voltage_V);
     }
     printf("  %-20s %10.4g", column->header, column->factor * d->value);
-    printf(isinf(d->std) ? "    not determined" : " +- %-8.2g", column->factor * d->std);
+    printf(!isfinite(d->std) ? "    not determined" : " +- %-8.2g", column->factor * d->std);
     printf(" %s", column->display_unit);
     if (!isnan(d->designed)) {
       printf("   (as designed %.4g)", column->factor * d->designed);

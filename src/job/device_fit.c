@@ -587,7 +587,7 @@ static dea_status find_slopes(struct work *w, struct slopes *out)
   *out = (struct slopes){.at = NULL};
   DEA_TRY(w->ctx, copy_points(w, 0, 0, &out->at));
   for (size_t j = 0; j < w->fit->param_count; j++) {
-    out->step[j] = w->problem.step * w->scale[j];
+    out->step[j] = w->held[j] ? 0 : w->problem.step * w->scale[j];
     if (!w->held[j]) {
       DEA_TRY(w->ctx, copy_points(w, j, out->step[j], &out->plus[j]));
       DEA_TRY(w->ctx, copy_points(w, j, -out->step[j], &out->minus[j]));
@@ -597,12 +597,20 @@ static dea_status find_slopes(struct work *w, struct slopes *out)
                          : dea_fail(w->ctx, DEA_E_DOMAIN, "the model has no answer at the end");
 }
 
+static double value_at(const struct dea_load_point *points, size_t stop, int column)
+{
+  return points != NULL ? dea_point_get(&points[stop], column) : (double)NAN;
+}
+
+/* 0 of a parameter that is held; to one side where the model has no answer on the other; NAN. */
 static double slope(const struct slopes *s, size_t j, size_t stop, int column)
 {
-  return s->plus[j] == NULL || s->minus[j] == NULL ? 0
-                                                   : (dea_point_get(&s->plus[j][stop], column) -
-                                                      dea_point_get(&s->minus[j][stop], column)) /
-                                                         (2 * s->step[j]);
+  const double at = value_at(s->at, stop, column), up = value_at(s->plus[j], stop, column),
+               down = value_at(s->minus[j], stop, column);
+  return s->step[j] == 0 ? 0
+         : isnan(up)     ? (at - down) / s->step[j]
+         : isnan(down)   ? (up - at) / s->step[j]
+                         : (up - down) / (2 * s->step[j]);
 }
 
 static double std_of(const struct work *w, const struct slopes *s, size_t stop, int column)
