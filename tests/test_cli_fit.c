@@ -102,7 +102,6 @@ static void test_stress_and_force(void **state)
 static void test_names_and_files(void **state)
 {
   (void)state;
-  command_write("strip.csv", good);
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [ogden-3]\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: three.csv}\n");
   command_write("three.csv", "stretch,stress (kPa)\n1.1,27\n1.2,50\n1.4,89\n");

@@ -117,7 +117,7 @@ static void test_prior_without_uncertainty(void **state)
 }
 
 /* A pre-stretch so close to 1, below which there is none, that the step down leads out: at rest C
- * is as its square. */
+ * is as its fourth power. */
 static void test_slope_to_one_side(void **state)
 {
   (void)state;

@@ -280,13 +280,9 @@ static void find_slack(const struct work *w, const struct dea_load_point *points
   }
 }
 
-/* Which rows count, and which stops are computed for them. *changed: they are others than before.
- */
-static void cut_slack(struct work *w, const struct dea_load_point *points, bool at_start,
-                      bool *changed)
+/* Has the rows count at whose stops the film is not slack, and these stops be computed. */
+static void cut_slack(struct work *w)
 {
-  find_slack(w, points, at_start, w->slack);
-  *changed = false;
   memcpy(w->wanted_before, w->model.wanted, w->model.stop_count * sizeof(bool));
   memset(w->model.wanted, 0, w->model.stop_count * sizeof *w->model.wanted);
   for (size_t c = 0; c < w->fit->curve_count; c++) {
@@ -296,9 +292,7 @@ static void cut_slack(struct work *w, const struct dea_load_point *points, bool 
     curve->slack_from_V = INFINITY;
     for (size_t i = 0; i < curve->rows; i++) {
       const bool slack = cut && w->slack[curve->stop[i]];
-      const bool used = is_fitted(curve) && !slack;
-      *changed = *changed || used != curve->used[i];
-      curve->used[i] = used;
+      curve->used[i] = is_fitted(curve) && !slack;
       curve->slack += slack ? 1U : 0U;
       if (slack && fabs(curve->voltage_V[i]) < fabs(curve->slack_from_V)) {
         curve->slack_from_V = curve->voltage_V[i];
@@ -311,10 +305,9 @@ static void cut_slack(struct work *w, const struct dea_load_point *points, bool 
   }
 }
 
-/* Whether the film at `points` would have other rows count than those that do. */
-static bool cuts_others(const struct work *w, const struct dea_load_point *points)
+/* Whether cut_slack would have other rows count than those that do. */
+static bool cuts_others(const struct work *w)
 {
-  find_slack(w, points, false, w->slack);
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     const struct dea_device_curve *curve = &w->fit->curves[c];
     const bool cut = curve->text->slack.value == DEA_DEVICE_SLACK_CUT;
@@ -428,7 +421,6 @@ static dea_status tell_start(struct work *w)
 static dea_status prepare(struct work *w)
 {
   struct dea_load_point *own;
-  bool changed;
   DEA_TRY(w->ctx, dea_device_curves_read(w->ctx, w->fit));
   DEA_TRY(w->ctx, check_tips(w));
   DEA_TRY(w->ctx, check_times(w));
@@ -449,7 +441,8 @@ static dea_status prepare(struct work *w)
     DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? tell_start(w) : status);
   }
   const struct dea_load_point *points = w->starts_designed ? w->designed : own;
-  cut_slack(w, points, true, &changed);
+  find_slack(w, points, true, w->slack);
+  cut_slack(w);
   make_problem(w);
   DEA_TRY(w->ctx, check_start(w, points));
   return check_count(w);
@@ -463,8 +456,8 @@ static dea_status solve(struct work *w)
   struct dea_load_point *points =
       dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *points);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  bool changed = true;
-  for (int round = 0; round < ROUNDS_MAX && changed; round++) {
+  w->fit->settled = false;
+  for (int round = 0; round < ROUNDS_MAX && !w->fit->settled; round++) {
     if (round > 0) {
       memcpy(w->start, w->fit->least_squares.p, w->problem.params * sizeof *w->start);
       dea_lsq_free(&w->fit->least_squares);
@@ -473,9 +466,10 @@ static dea_status solve(struct work *w)
     }
     DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, w->held, &w->fit->least_squares));
     DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, w->fit->least_squares.p, points));
-    w->fit->settled = !cuts_others(w, points);
-    if (round + 1 < ROUNDS_MAX) {
-      cut_slack(w, points, false, &changed);
+    find_slack(w, points, false, w->slack);
+    w->fit->settled = !cuts_others(w);
+    if (w->fit->settled || round + 1 < ROUNDS_MAX) {
+      cut_slack(w);
     }
   }
   return DEA_OK;

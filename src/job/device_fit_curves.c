@@ -67,14 +67,18 @@ static dea_status check_quantities(struct reading *r)
   return DEA_OK;
 }
 
+static bool says_std(const struct dea_device_curve_text *text)
+{
+  return text->relative.origin != DEA_ABSENT || text->absolute.text[0] != '\0';
+}
+
 /* Standard uncertainty of a value: its column's, or what the fit file says. */
 static dea_status take_std(struct reading *r, const struct dea_device_curve *curve, double absolute,
                            double given, size_t line, double value, double *out)
 {
   const struct dea_device_curve_text *text = r->text;
-  const bool said = text->relative.origin != DEA_ABSENT || text->absolute.text[0] != '\0';
   const double share = isnan(text->relative.si) ? 0 : text->relative.si;
-  *out = !isnan(given) ? given : said ? hypot(share * value, absolute) : NAN;
+  *out = !isnan(given) ? given : says_std(text) ? hypot(share * value, absolute) : NAN;
   if (*out <= 0) {
     const struct dea_location location = {curve->file, line, 1};
     return dea_finding_add(r->ctx, DEA_ERROR, location,
@@ -145,14 +149,14 @@ static dea_status add_curve(struct reading *r, int column)
           "waveform");
     }
     curve->value[n] = value;
-    DEA_TRY(r->ctx, take_std(r, curve, absolute, dea_point_get(&r->table->std[i], column),
-                             curve->line[n], value, &curve->std[n]));
-    std_given = std_given || !isnan(dea_point_get(&r->table->std[i], column));
+    const double given = dea_point_get(&r->table->std[i], column);
+    DEA_TRY(r->ctx, take_std(r, curve, absolute, given, curve->line[n], value, &curve->std[n]));
+    std_given = std_given || !isnan(given);
     curve->rows++;
   }
   const struct dea_device_curve_text *text = r->text;
   const bool share = text->relative.origin != DEA_ABSENT;
-  return !std_given || (!share && text->absolute.text[0] == '\0')
+  return !std_given || !says_std(text)
              ? DEA_OK
              : dea_finding_add(r->ctx, DEA_WARNING,
                                share ? text->relative.location : text->absolute.location,
