@@ -302,9 +302,9 @@ const struct dea_command cmd_import = {
     .summary = "Make a recording of other programs' files",
     .about =
         "Reads columns of numbers from CSV and other text (any separator, decimal comma, units in "
-        "titles), MATLAB's .mat (version 5 and 7.3), LabVIEW's .lvm and .tdms, TRIOS' .json, and "
-        "COMSOL's text "
-        "export. What a column is follows from its name and unit, or from a mapping; 'dea schema "
+        "titles; those of oscilloscopes too), MATLAB's .mat (version 5 and 7.3), LabVIEW's .lvm "
+        "and .tdms, TRIOS' .json, and COMSOL's text export. What a column is follows from its name "
+        "and unit, or from a mapping; 'dea schema "
         "--mapping' shows its keys. What was taken for what is said. Several files become one "
         "recording when they have one clock.",
     .options = options,

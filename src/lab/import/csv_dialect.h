@@ -13,6 +13,7 @@ struct dea_csv_dialect {
   const char *data; // its first line
   size_t line;      // number of the line before that
   bool *text;       // [count] columns of text; owned
+  size_t skipped;   // columns at the start that hold something else, which nothing is said of
   /* Lines before the numbers that may hold titles, the nearest first, comment marks off. */
   struct dea_slice titles[DEA_CSV_TITLES_MAX];
   size_t title_lines[DEA_CSV_TITLES_MAX];

@@ -56,11 +56,28 @@ static bool is_row_of_units(struct dea_context *ctx, const struct dea_slice *fie
   return units > 0;
 }
 
+/* "Vertical Units,V,V" of an oscilloscope, further up: units of all columns but that of the times.
+ */
+static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
+                                const struct dea_csv_dialect *dialect, struct dea_slice *out)
+{
+  struct dea_lines lines = {text.text, dialect->data, 0};
+  struct dea_slice line;
+  while (lines.line < PREAMBLE_LINES && dea_lines_next(&lines, &line)) {
+    if (dea_slice_starts(line, "Vertical Units") &&
+        dea_titles_part(line, dialect->separator, dialect->count, out)) {
+      out[0].length = 0;
+      return is_row_of_units(ctx, out, dialect->count);
+    }
+  }
+  return false;
+}
+
 /* Names and units from the lines above the numbers: names alone, names and units, or names, units
  * and comments, in this order. *units says whether there are any. */
-static dea_status find_titles(struct dea_context *ctx, const struct dea_table *table,
-                              const struct dea_csv_dialect *dialect, struct dea_slice *titles,
-                              struct dea_slice *unit_fields, bool *units)
+static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
+                              const struct dea_table *table, const struct dea_csv_dialect *dialect,
+                              struct dea_slice *titles, struct dea_slice *unit_fields, bool *units)
 {
   const struct dea_location location = {table->file, dialect->line + 1, 1};
   *units = false;
@@ -72,6 +89,7 @@ static dea_status find_titles(struct dea_context *ctx, const struct dea_table *t
     }
   }
   if (part(dialect, 0, titles)) {
+    *units = find_vertical_units(ctx, text, dialect, unit_fields);
     return DEA_OK;
   }
   for (size_t i = 0; i < dialect->count; i++) {
@@ -174,7 +192,7 @@ static dea_status read_with(struct dea_context *ctx, struct dea_slice text,
 {
   bool units;
   struct dea_slice *unit_fields = slices + dialect->count;
-  DEA_TRY(ctx, find_titles(ctx, out, dialect, slices, unit_fields, &units));
+  DEA_TRY(ctx, find_titles(ctx, text, out, dialect, slices, unit_fields, &units));
   DEA_TRY(ctx, dea_text_rows_read(ctx, text, dialect, slices, units ? unit_fields : NULL, out));
   drop_empty(ctx, out, 1);
   return read_preamble(ctx, text, dialect, out);

@@ -9,6 +9,8 @@
   X(dea_import_mat)                                                                                \
   X(dea_import_trios)                                                                              \
   X(dea_import_comsol)                                                                             \
+  X(dea_import_tektronix)                                                                          \
+  X(dea_import_rigol)                                                                              \
   X(dea_import_csv)
 
 #endif

@@ -115,7 +115,7 @@ static bool has_times(const struct rows *rows, const struct dea_slice *titles,
     snprintf(text, sizeof text, "%.*s", shown(unit), unit.text);
     const char *si = unit.length > 0 ? dea_title_unit(rows->ctx, text, &factor) : NULL;
     snprintf(text, sizeof text, "%.*s", shown(name), name.text);
-    if (!rows->dialect->text[i] &&
+    if (i >= rows->dialect->skipped && !rows->dialect->text[i] &&
         ((si != NULL && strcmp(si, "s") == 0) || dea_guess_by_name(text) == DEA_GUESS_TIME)) {
       return true;
     }
@@ -131,6 +131,9 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
   bool numbers = has_times(rows, titles, units);
   for (size_t i = 0; i < rows->dialect->count; i++) {
     rows->column[i] = NONE;
+    if (i < rows->dialect->skipped) {
+      continue;
+    }
     if (!numbers && rows->dialect->text[i] && is_clock(rows, text, i)) {
       numbers = true; // one clock is enough
       DEA_TRY(rows->ctx, add_column(rows, i, titles[i], &second, room));

@@ -173,7 +173,12 @@ void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea
       return;
     }
   }
-  if (!split_bare(title, false, name, unit)) {
+  const size_t in = dea_slice_starts(title, "in ") ? 3 : title.length;
+  const struct dea_slice after = {title.text + in, title.length - in};
+  if (is_bare_unit((struct dea_slice){"", 0}, after)) { // of a column without a name
+    *unit = after;
+    name->length = 0;
+  } else if (!split_bare(title, false, name, unit)) {
     split_bare(title, true, name, unit);
   }
 }

@@ -12,7 +12,7 @@ const char *dea_title_unit(struct dea_context *ctx, const char *unit, double *fa
 bool dea_title_is_unit(struct dea_context *ctx, struct dea_slice unit);
 
 /* Parts "Voltage (kV)", "Voltage [kV]", "Voltage / kV", "Voltage in kV", "voltage_kV" into name and
- * unit; the unit is empty when there is none that is known. */
+ * unit; the unit is empty when there is none that is known, the name in "in s". */
 void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea_slice *name,
                      struct dea_slice *unit);
 /* Whether a name ends with brackets around what seems to be a unit, though none that is known:
