@@ -1,9 +1,9 @@
 /* Rigol oscilloscopes: the first line has names, and where the samples begin and how far apart they
- * are, at its end (DS1000Z) or in the line below it.
+ * are, at its end (MSO5000) or in the line below it (DS1000Z).
  *
- *   X,CH1,CH2,Start,Increment,                  Time(s),CH1V,CH2V,t0 =-0.2, tInc = 0.001,
- *   Sequence,VOLT,VOLT,-2.0e-01,1.0e-03         -2.000000e-01,2.0000,0.0100,
- *   0,2.00e+00,1.00e-02,                         */
+ *   Time(s),CH1V,CH2V,t0 =-0.2, tInc = 0.001,      X,CH1,CH2,Start,Increment,
+ *   -2.000000e-01,2.0000,0.0100,                   Sequence,VOLT,VOLT,-2.0e-01,1.0e-03
+ *                                                  0,2.00e+00,1.00e-02, */
 #include "lab/import/import.h"
 
 #include "lab/import/text_file.h"
