@@ -30,7 +30,7 @@ struct work {
       scale[DEA_DEVICE_PARAMS_MAX];
   bool held[DEA_DEVICE_PARAMS_MAX];
   bool *slack;                     // [stops]
-  bool *wanted_before;             // [stops], while it is seen whether they change
+  bool *wanted;                    // [stops], for dea_device_model_want
   struct dea_load_point *designed; // [stops] of the design itself; NULL: it has none
   bool starts_designed;
   struct dea_lsq_problem problem;
@@ -283,8 +283,7 @@ static void find_slack(const struct work *w, const struct dea_load_point *points
 /* Has the rows count at whose stops the film is not slack, and these stops be computed. */
 static void cut_slack(struct work *w)
 {
-  memcpy(w->wanted_before, w->model.wanted, w->model.stop_count * sizeof(bool));
-  memset(w->model.wanted, 0, w->model.stop_count * sizeof *w->model.wanted);
+  memset(w->wanted, 0, w->model.stop_count * sizeof *w->wanted);
   for (size_t c = 0; c < w->fit->curve_count; c++) {
     struct dea_device_curve *curve = &w->fit->curves[c];
     const bool cut = curve->text->slack.value == DEA_DEVICE_SLACK_CUT;
@@ -297,12 +296,10 @@ static void cut_slack(struct work *w)
       if (slack && fabs(curve->voltage_V[i]) < fabs(curve->slack_from_V)) {
         curve->slack_from_V = curve->voltage_V[i];
       }
-      w->model.wanted[curve->stop[i]] = w->model.wanted[curve->stop[i]] || !slack;
+      w->wanted[curve->stop[i]] = w->wanted[curve->stop[i]] || !slack;
     }
   }
-  if (memcmp(w->wanted_before, w->model.wanted, w->model.stop_count * sizeof(bool)) != 0) {
-    dea_device_model_forget(&w->model);
-  }
+  dea_device_model_want(&w->model, w->wanted);
 }
 
 /* Whether cut_slack would have other rows count than those that do. */
@@ -427,7 +424,7 @@ static dea_status prepare(struct work *w)
   DEA_TRY(w->ctx, look_at_uncertainties(w));
   DEA_TRY(w->ctx, dea_device_stops_make(w->ctx, w->fit, &w->model));
   w->slack = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->slack);
-  w->wanted_before = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof(bool));
+  w->wanted = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *w->wanted);
   own = dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *own);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
   for (size_t c = 0; c < w->fit->curve_count; c++) {

@@ -236,7 +236,7 @@ dea_status dea_device_model_begin(struct dea_device_model *model)
   return DEA_OK;
 }
 
-void dea_device_model_forget(struct dea_device_model *model)
+static void forget(struct dea_device_model *model)
 {
   for (size_t k = 0; k < DEA_DEVICE_MEMO; k++) {
     dea_free(model->ctx, model->memo[k].points);
@@ -244,9 +244,18 @@ void dea_device_model_forget(struct dea_device_model *model)
   }
 }
 
+void dea_device_model_want(struct dea_device_model *model, const bool *wanted)
+{
+  const size_t size = model->stop_count * sizeof *model->wanted;
+  if (memcmp(model->wanted, wanted, size) != 0) {
+    memcpy(model->wanted, wanted, size);
+    forget(model);
+  }
+}
+
 void dea_device_model_end(struct dea_device_model *model)
 {
-  dea_device_model_forget(model);
+  forget(model);
   drop_states(model, model->states);
   dea_free(model->ctx, model->states);
   model->states = NULL;

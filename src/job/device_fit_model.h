@@ -41,7 +41,8 @@ struct dea_device_model {
   size_t group_count;
   size_t stop_count;
   double *voltage_V; // [stop_count] of a group in time its times [s]; in the arena of who fills it
-  bool *wanted;      // [stop_count]: the others are not computed where they come last in a group
+  bool *wanted;      // [stop_count]: the others are not computed where they come last in a group;
+                     // dea_device_model_want changes them
   bool slack_too;    // rows count where the film is slack: no warm starts
   struct dea_device_memo memo[DEA_DEVICE_MEMO];
   size_t memo_next;
@@ -62,8 +63,9 @@ struct dea_device_model {
 /* Starts that need the above to be set from name to stop_count. */
 dea_status dea_device_model_begin(struct dea_device_model *model);
 void dea_device_model_end(struct dea_device_model *model);
-/* Drops points that were kept, once `wanted` has changed; none may be lent. */
-void dea_device_model_forget(struct dea_device_model *model);
+/* Which stops are wanted from now on [stop_count]. Where that changes, points that were kept are
+ * dropped: none may be lent. */
+void dea_device_model_want(struct dea_device_model *model, const bool *wanted);
 /* Points [stop_count] at p, NAN where there is no equilibrium (model->why says of the last one);
  * lent until DEA_DEVICE_MEMO others were asked for. DEA_E_DOMAIN where the design cannot be built
  * with p. */
