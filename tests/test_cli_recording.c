@@ -137,6 +137,32 @@ static void test_tables(void **state)
   assert_contains(command_out, "\n0,1,0.32,0.39,0\n");
 }
 
+/* Another program's displacements beside the voltage, on the voltage's clock. */
+static void test_two_become_one(void **state)
+{
+  (void)state;
+  command_write("v.csv", "time (s),V (kV)\n0,0\n0.1,1\n0.2,2\n");
+  command_write("z.csv", "time (s),z (mm)\n5,0\n5.25,0.1\n");
+  assert_int_equal(command_run("import v.csv"), 0);
+  assert_int_equal(command_run("import z.csv"), 0);
+  command_expect("import v.csv z.csv -f", 5, "dea recording A.h5 --with B.h5 --after 0s");
+  command_expect("recording v.h5 --with z.h5", 2, "--with needs --after");
+  command_expect("recording v.h5 --after 1s", 2, "--after is said of another recording");
+  command_expect("recording v.h5 --with z.h5 --after 1V", 2, "--after: '1V'");
+  command_expect("recording v.h5 --with nowhere.h5 --after 1s", 5, "nowhere.h5");
+  command_expect("recording v.h5 --with z.h5 --after 0s", 0, "they have no moment together");
+  assert_int_equal(command_run("recording v.h5 --with z.h5 --after -5s -o both.h5"), 0);
+  assert_int_equal(command_run("recording both.h5"), 0);
+  assert_contains(command_out, "channels       2");
+  assert_contains(command_out, "joined         z.h5, whose 0 is at -5 s");
+  assert_contains(command_out, "0 to 100 um");
+  assert_int_equal(command_run("recording both.h5 --json"), 0);
+  json_t *json = json_loads(command_out, 0, NULL);
+  json_t *z = json_array_get(json_object_get(json, "channels"), 1);
+  assert_close(json_number_value(json_object_get(z, "start_s")), 0, 0, 1e-12);
+  json_decref(json);
+}
+
 static void test_what_is_no_recording(void **state)
 {
   (void)state;
@@ -155,7 +181,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_what_is_in_it),         cmocka_unit_test(test_names_are_no_lines),
       cmocka_unit_test(test_killed_one_is_rescued), cmocka_unit_test(test_tables),
-      cmocka_unit_test(test_what_is_no_recording),
+      cmocka_unit_test(test_two_become_one),        cmocka_unit_test(test_what_is_no_recording),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

@@ -9,9 +9,11 @@
 enum { PLAIN_SIZE = 512 };
 
 struct request {
-  const char *file, *output, *folder;
+  const char *file, *output, *folder, *with;
+  double after_s; // NAN: not said
   bool json, force;
 };
+static const struct request defaults = {.after_s = NAN};
 
 // What is in it ----------------------------------------------------------------------------------
 
@@ -103,6 +105,20 @@ static void print_profiles(const struct dea_profiles *profiles)
   printf(", %.3g %% of the points invalid\n", 100.0 * (double)range.missing / (double)total);
 }
 
+/* The recordings that were joined, and when they begin. */
+static void print_joined(const json_t *joined)
+{
+  const json_t *part;
+  size_t i;
+  char shown[PLAIN_SIZE];
+  json_array_foreach(joined, i, part)
+  {
+    const char *file = json_string_value(json_object_get(part, "file"));
+    printf("%-14s %s, whose 0 is at %g s\n", "joined", plain(file != NULL ? file : "", shown),
+           json_number_value(json_object_get(part, "after_s")));
+  }
+}
+
 static void print_provenance(const char *text)
 {
   json_t *json = json_loads(text, 0, NULL), *value;
@@ -115,6 +131,8 @@ static void print_provenance(const char *text)
         print_line(plain(key, shown), json_string_value(value));
       } else if (json_is_number(value)) {
         printf("%-14s %g\n", plain(key, shown), json_number_value(value));
+      } else if (strcmp(key, "joined") == 0) {
+        print_joined(value);
       }
     }
   }
@@ -236,11 +254,31 @@ static void print_json(const struct dea_recording *recording)
   cli_print_json(json);
 }
 
+static dea_status join(struct dea_context *ctx, const struct request *request,
+                       struct dea_recording *recording)
+{
+  struct dea_recording *other;
+  DEA_TRY(ctx, dea_recording_read(ctx, request->with, &other));
+  dea_status status = dea_recording_join(ctx, recording, other, request->after_s);
+  dea_recording_destroy(ctx, other);
+  return status;
+}
+
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_recording *recording = NULL;
+  if ((request->with != NULL) != !isnan(request->after_s)) {
+    return cli_usage_error(cli, &cmd_recording,
+                           request->with != NULL
+                               ? "--with needs --after: when the other's time 0 is, such as 0s "
+                                 "where both count from one trigger"
+                               : "--after is said of another recording: --with FILE");
+  }
   dea_status status = dea_recording_read(cli->ctx, request->file, &recording);
+  if (status == DEA_OK && request->with != NULL) {
+    status = join(cli->ctx, request, recording);
+  }
   if (status == DEA_OK && request->output != NULL) {
     status = dea_recording_write(cli->ctx, recording, request->output);
   }
@@ -264,6 +302,12 @@ static const struct cli_option options[] = {
         CLI_FILE, "FILE",
         "write a clean copy as FILE, which must not exist: also of a recording whose program was "
         "killed, and in a form that programs with older versions of HDF5 read"),
+    {"with", 0, CLI_FILE, "OTHER",
+     "join the channels and profiles of another recording of the same measurement", CLI_AT(with)},
+    {"after", 0, CLI_TEXT, "TIME",
+     "what FILE's clock shows where OTHER's shows 0, '0.25 s': 0 s where both count from one "
+     "trigger",
+     CLI_AT(after_s), cli_take_quantity, .measure = {"s", "0.25 s"}},
     {"csv", 0, CLI_FOLDER, "DIR", "write the channels, profiles and cycles as CSV files into DIR",
      CLI_AT(folder)},
     CLI_FORCE_ROW('f', "replace an earlier recording's CSV files in DIR"),
@@ -272,8 +316,9 @@ static const struct cli_option options[] = {
 
 const struct dea_command cmd_recording = {
     .name = "recording",
-    .summary = "Say what is in a recording; copy or rescue it; write it as CSV",
+    .summary = "Say what is in a recording; copy, rescue or join it; write it as CSV",
     .options = options,
     .request_size = sizeof(struct request),
+    .defaults = &defaults,
     .run = run,
 };

@@ -102,7 +102,8 @@ dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, stru
                  ? move(ctx, table, other, b.column)
                  : dea_fail(ctx, DEA_E_IO,
                             "'%s' and '%s' have different clocks (%zu samples from %.12g s and %zu "
-                            "from %.12g s): import each into a recording of its own",
+                            "from %.12g s): import each into a recording of its own, and join "
+                            "them (dea recording A.h5 --with B.h5 --after 0s -o C.h5)",
                             table->file, other->file, a.clock.count,
                             a.clock.start_s + (both ? a.origin_s : 0), b.clock.count,
                             b.clock.start_s + (both ? b.origin_s : 0));

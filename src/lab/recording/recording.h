@@ -116,6 +116,14 @@ dea_status dea_recording_read(struct dea_context *ctx, const char *file,
 dea_status dea_recording_write(struct dea_context *ctx, const struct dea_recording *recording,
                                const char *file);
 
+/* Moves the channels, profiles, cycles and events of another recording of the same measurement into
+ * this one, whose clock shows after_s where the other's shows 0; texts where this one has none.
+ * Channels of the same name get a number. Cycles that some channel does not cover are left out with
+ * a warning, which there is too where the two have no moment together. DEA_E_IO, with both as they
+ * were, where both have profiles or cycles, or too many channels. */
+dea_status dea_recording_join(struct dea_context *ctx, struct dea_recording *recording,
+                              struct dea_recording *other, double after_s);
+
 /* A value closer to the end of its channel's range than this share of half of it is taken to be
  * beyond. */
 #define DEA_CHANNEL_END 1e-4

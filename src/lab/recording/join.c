@@ -1,0 +1,251 @@
+/* Two recordings of one measurement as one. */
+#include "lab/recording/recording.h"
+
+#include "base/json.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* From the first sample or frame to the last; lowest above highest without any. */
+struct span {
+  double first_s, last_s;
+};
+
+static struct span span_of(const struct dea_recording *recording)
+{
+  struct span span = {INFINITY, -INFINITY};
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    const struct dea_channel *channel = &recording->channels[c];
+    if (channel->count > 0) {
+      span.first_s = fmin(span.first_s, dea_channel_time(channel, 0));
+      span.last_s = fmax(span.last_s, dea_channel_time(channel, channel->count - 1));
+    }
+  }
+  if (recording->profiles.count > 0) {
+    span.first_s = fmin(span.first_s, recording->profiles.time_s[0]);
+    span.last_s = fmax(span.last_s, recording->profiles.time_s[recording->profiles.count - 1]);
+  }
+  return span;
+}
+
+static dea_status check(struct dea_context *ctx, const struct dea_recording *recording,
+                        const struct dea_recording *other, double after_s)
+{
+  const struct span a = span_of(recording), b = span_of(other);
+  const struct dea_location location = {.file = other->file};
+  if (recording->channel_count + other->channel_count > DEA_CHANNELS_MAX) {
+    return dea_fail(ctx, DEA_E_IO, "'%s' and '%s' have more than %d channels together",
+                    recording->file, other->file, (int)DEA_CHANNELS_MAX);
+  }
+  if (recording->profiles.count > 0 && other->profiles.count > 0) {
+    return dea_fail(ctx, DEA_E_IO,
+                    "'%s' and '%s' both have profiles, and a recording has those of "
+                    "one sensor",
+                    recording->file, other->file);
+  }
+  if (recording->cycle_count > 0 && other->cycle_count > 0) {
+    return dea_fail(ctx, DEA_E_IO,
+                    "'%s' and '%s' both have cycles of a drive, and a recording has "
+                    "those of one",
+                    recording->file, other->file);
+  }
+  if (a.first_s <= a.last_s && b.first_s <= b.last_s &&
+      (b.first_s + after_s > a.last_s || b.last_s + after_s < a.first_s)) {
+    return dea_finding_add(ctx, DEA_WARNING, location,
+                           "it lasts from %.6g to %.6g s on the clock of '%s', which lasts from "
+                           "%.6g to %.6g s: they have no moment together",
+                           b.first_s + after_s, b.last_s + after_s, recording->file, a.first_s,
+                           a.last_s);
+  }
+  return DEA_OK;
+}
+
+static void shift(double *time_s, size_t count, double by_s)
+{
+  for (size_t i = 0; time_s != NULL && i < count; i++) {
+    time_s[i] += by_s;
+  }
+}
+
+/* A name that no channel of the recording has. */
+static void rename_channel(const struct dea_recording *recording, struct dea_channel *channel)
+{
+  char name[DEA_CHANNEL_NAME_SIZE];
+  snprintf(name, sizeof name, "%s", channel->name);
+  for (int k = 2; dea_recording_channel(recording, channel->name) != NULL; k++) {
+    size_t n = strlen(name), most = sizeof channel->name - 8;
+    n = n < most ? n : most;
+    while (n > 0 && ((unsigned char)name[n] & 0xc0) == 0x80) { // between letters
+      n--;
+    }
+    snprintf(channel->name, sizeof channel->name, "%.*s %d", (int)n, name, k);
+  }
+}
+
+/* Takes what the first one lacks. */
+static void take_text(char **own, char **other)
+{
+  if (*own == NULL || (*own)[0] == '\0') {
+    char *kept = *own;
+    *own = *other;
+    *other = kept;
+  }
+}
+
+/* What the first says of where it comes from, with the other and its own. */
+static dea_status join_provenance(struct dea_context *ctx, struct dea_recording *recording,
+                                  const struct dea_recording *other, double after_s)
+{
+  json_t *json = recording->provenance != NULL ? json_loads(recording->provenance, 0, NULL) : NULL;
+  json_t *own = other->provenance != NULL ? json_loads(other->provenance, 0, NULL) : NULL;
+  json_t *part = json_object();
+  dea_json_put_text(part, "file", other->file);
+  dea_json_put(part, "after_s", after_s);
+  json_object_set_new(part, "provenance", own != NULL ? own : json_null());
+  if (!json_is_object(json)) {
+    json_decref(json);
+    json = json_object();
+  }
+  json_t *joined = json_object_get(json, "joined");
+  if (!json_is_array(joined)) {
+    json_object_set_new(json, "joined", json_array());
+    joined = json_object_get(json, "joined");
+  }
+  json_array_append_new(joined, part);
+  char *text = json_dumps(json, JSON_INDENT(2) | JSON_SORT_KEYS);
+  json_decref(json);
+  char *copy = text != NULL ? dea_copy_text(ctx, text, SIZE_MAX) : NULL;
+  free(text);
+  if (copy == NULL) {
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory");
+  }
+  dea_free(ctx, recording->provenance);
+  recording->provenance = copy;
+  return DEA_OK;
+}
+
+static dea_status join_events(struct dea_context *ctx, struct dea_recording *recording,
+                              const struct dea_recording *other, double after_s)
+{
+  const size_t count = recording->event_count + other->event_count;
+  if (other->event_count == 0) {
+    return DEA_OK;
+  }
+  void *moved = dea_resize(ctx, recording->events, count, sizeof *recording->events);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  recording->events = moved;
+  for (size_t i = 0; i < other->event_count; i++) {
+    struct dea_recorded_event *event = &recording->events[recording->event_count++];
+    *event = other->events[i];
+    event->time_s += after_s;
+    event->channel += recording->channel_count; // before the other's are there
+  }
+  return DEA_OK;
+}
+
+static void move_channels(struct dea_recording *recording, struct dea_recording *other,
+                          double after_s)
+{
+  for (size_t c = 0; c < other->channel_count; c++) {
+    struct dea_channel *channel = &other->channels[c];
+    rename_channel(recording, channel);
+    channel->start_s += after_s;
+    shift(channel->time_s, channel->count, after_s);
+    recording->channels[recording->channel_count++] = *channel;
+  }
+  other->channel_count = 0;
+}
+
+/* Exchanges what both have room for, so that each is freed with one of them. */
+static void take_profiles(struct dea_recording *recording, struct dea_recording *other,
+                          double after_s)
+{
+  if (other->profiles.count > 0) {
+    const struct dea_profiles kept = recording->profiles;
+    shift(other->profiles.time_s, other->profiles.count, after_s);
+    recording->profiles = other->profiles;
+    other->profiles = kept;
+  }
+}
+
+static void take_cycles(struct dea_recording *recording, struct dea_recording *other,
+                        double after_s)
+{
+  if (other->cycle_count > 0) {
+    struct dea_recorded_cycle *kept = recording->cycles;
+    for (size_t i = 0; i < other->cycle_count; i++) {
+      other->cycles[i].start_s += after_s;
+      other->cycles[i].end_s += after_s;
+    }
+    recording->cycles = other->cycles;
+    recording->cycle_count = other->cycle_count;
+    other->cycles = kept;
+    other->cycle_count = 0;
+  }
+}
+
+/* Whether all channels of a clock were measured throughout a cycle, to half a sample. */
+static bool is_measured(const struct dea_recording *recording,
+                        const struct dea_recorded_cycle *cycle)
+{
+  bool whole = true;
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    const struct dea_channel *channel = &recording->channels[c];
+    const double half_s = 0.5 * channel->interval_s;
+    const double last_s = channel->start_s + (double)channel->count * channel->interval_s;
+    if (channel->interval_s > 0 && channel->count > 0) {
+      whole =
+          whole && cycle->start_s >= channel->start_s - half_s && cycle->end_s <= last_s + half_s;
+    }
+  }
+  return whole;
+}
+
+/* The two may have begun and ended at different moments. */
+static dea_status drop_cycles(struct dea_context *ctx, struct dea_recording *recording,
+                              const char *with)
+{
+  const struct dea_location location = {.file = with};
+  const size_t before = recording->cycle_count;
+  recording->cycle_count = 0;
+  for (size_t i = 0; i < before; i++) {
+    if (is_measured(recording, &recording->cycles[i])) {
+      recording->cycles[recording->cycle_count++] = recording->cycles[i];
+    }
+  }
+  const size_t lost = before - recording->cycle_count;
+  return lost == 0 ? DEA_OK
+                   : dea_finding_add(ctx, DEA_WARNING, location,
+                                     "%zu of %zu cycles were not measured from begin to end by all "
+                                     "channels of both, and are left out",
+                                     lost, before);
+}
+
+dea_status dea_recording_join(struct dea_context *ctx, struct dea_recording *recording,
+                              struct dea_recording *other, double after_s)
+{
+  DEA_TRY(ctx, check(ctx, recording, other, after_s));
+  DEA_TRY(ctx, join_provenance(ctx, recording, other, after_s));
+  DEA_TRY(ctx, join_events(ctx, recording, other, after_s));
+  move_channels(recording, other, after_s);
+  take_profiles(recording, other, after_s);
+  take_cycles(recording, other, after_s);
+  take_text(&recording->title, &other->title);
+  take_text(&recording->protocol, &other->protocol);
+  if (recording->design == NULL) {
+    take_text(&recording->design, &other->design);
+    take_text(&recording->design_name, &other->design_name);
+  }
+  if (recording->complete && !other->complete) {
+    recording->complete = false;
+    snprintf(recording->ended, sizeof recording->ended, "%s", other->ended);
+  }
+  if (recording->output[0] == '\0') {
+    snprintf(recording->output, sizeof recording->output, "%s", other->output);
+  }
+  return drop_cycles(ctx, recording, other->file);
+}
