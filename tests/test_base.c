@@ -80,6 +80,14 @@ static void test_text_to_double_ignores_locale(void **state)
   assert_string_equal(end, " mm");
 }
 
+static void test_flat_text(void **state)
+{
+  (void)state;
+  char text[] = "a\nb\x1b[1m\x7f \xc2\x9b\xc2\xb5 \xff\x9b.";
+  dea_text_flatten(text);
+  assert_string_equal(text, "a b [1m    \xc2\xb5 \xff\x9b."); // bytes that are no letters stay
+}
+
 static void test_text_grows(void **state)
 {
   (void)state;
@@ -215,6 +223,7 @@ int main(void)
       cmocka_unit_test(test_alloc_refuses_overflow),
       cmocka_unit_test(test_nearest_name),
       cmocka_unit_test(test_text_to_double_ignores_locale),
+      cmocka_unit_test(test_flat_text),
       cmocka_unit_test(test_text_grows),
       cmocka_unit_test(test_arena_gives_and_frees_all),
       cmocka_unit_test(test_arena_refuses_overflow),

@@ -393,9 +393,20 @@ static void test_materials(void **state)
   json_decref(json);
 }
 
+/* A file's name that changes the colours of a terminal is shown without what it obeys. */
+static void test_names_do_not_reach_the_terminal(void **state)
+{
+  (void)state;
+  command_write("odd\x1b[31m.yaml", "hello\n");
+  assert_int_equal(command_run("check 'odd\x1b[31m.yaml'"), 3);
+  assert_contains(command_err, "odd [31m.yaml:1:1: error: ");
+  assert_null(strchr(command_err, '\x1b'));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_names_do_not_reach_the_terminal),
       cmocka_unit_test(test_every_bad_file_has_its_exit_code),
       cmocka_unit_test(test_what_cannot_be_uncertain),
       cmocka_unit_test(test_studies_of_no_model),

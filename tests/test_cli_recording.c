@@ -63,23 +63,47 @@ static void test_what_is_in_it(void **state)
 }
 
 /* What a recording is called cannot look like a line of what is known of it, nor reach the
- * terminal. */
+ * terminal, whoever wrote it. */
 static void test_names_are_no_lines(void **state)
 {
   (void)state;
-  command_write("odd.yaml", "dea-protocol: 1\n"
-                            "title: \"x\\noutput         at 0 V (2 V read back)\\e[31m\"\n"
-                            "design: " DEA_SOURCE_DIR "/examples/frdea-4.yaml\n"
-                            "waveform: {kind: square, high: 2 kV, frequency: 10 Hz, cycles: 1}\n"
-                            "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
-                            "sim: {profile_points: 0}\n"
-                            "channels: [{name: \"v\\e[31m\\nw\", quantity: voltage, input: ai0, "
-                            "per_volt: 1 kV}]\n");
-  assert_int_equal(command_run("drive odd.yaml --sim -o odd.h5"), 0);
+  static const struct dea_recorder_channel channel = {
+      .name = "v\x1b[31m\nw", .kind = DEA_CHANNEL_VOLTAGE, .interval_s = 1e-3, .filter_Hz = NAN};
+  const struct dea_recorder_options options = {
+      .title = "x\noutput         at 0 V (2 V read back)\x1b[31m \xc2\x9b\xc2\xb5m",
+      .channels = &channel,
+      .channel_count = 1};
+  char file[600];
+  struct dea_context *own;
+  struct dea_recorder *recorder;
+  snprintf(file, sizeof file, "%s/odd.h5", command_folder);
+  assert_int_equal(dea_context_create(NULL, &own), DEA_OK);
+  assert_int_equal(dea_recorder_create(own, file, &options, &recorder), DEA_OK);
+  assert_int_equal(dea_recorder_finish(recorder, NULL), DEA_OK);
+  dea_context_destroy(own);
   assert_int_equal(command_run("recording odd.h5"), 0);
-  assert_contains(command_out, "title          x output         at 0 V (2 V read back) [31m\n");
+  assert_contains(command_out,
+                  "title          x output         at 0 V (2 V read back) [31m   \xc2\xb5m\n");
   assert_contains(command_out, "\n  v [31m w ");
   assert_null(strchr(command_out, '\x1b'));
+}
+
+/* A protocol's title may have several lines, and becomes one. */
+static void test_title_of_lines(void **state)
+{
+  (void)state;
+  command_write("lines.yaml", "dea-protocol: 1\n"
+                              "title: \"x\\noutput         at 0 V (2 V read back)\"\n"
+                              "design: " DEA_SOURCE_DIR "/examples/frdea-4.yaml\n"
+                              "waveform: {kind: square, high: 2 kV, frequency: 10 Hz, cycles: 1}\n"
+                              "amplifier: {gain: 1000, max_voltage: 10 kV}\n"
+                              "sim: {profile_points: 0}\n"
+                              "channels: [{name: v, quantity: voltage, input: ai0, "
+                              "per_volt: 1 kV}]\n");
+  assert_int_equal(command_run("drive lines.yaml --sim -o lines.h5"), 0);
+  assert_null(strstr(command_out, "\noutput         at 0 V (2 V read back)\n"));
+  assert_int_equal(command_run("recording lines.h5"), 0);
+  assert_contains(command_out, "title          x output         at 0 V (2 V read back)\n");
 }
 
 static void test_killed_one_is_rescued(void **state)
@@ -179,9 +203,13 @@ static void test_what_is_no_recording(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_in_it),         cmocka_unit_test(test_names_are_no_lines),
-      cmocka_unit_test(test_killed_one_is_rescued), cmocka_unit_test(test_tables),
-      cmocka_unit_test(test_two_become_one),        cmocka_unit_test(test_what_is_no_recording),
+      cmocka_unit_test(test_what_is_in_it),
+      cmocka_unit_test(test_names_are_no_lines),
+      cmocka_unit_test(test_title_of_lines),
+      cmocka_unit_test(test_killed_one_is_rescued),
+      cmocka_unit_test(test_tables),
+      cmocka_unit_test(test_two_become_one),
+      cmocka_unit_test(test_what_is_no_recording),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

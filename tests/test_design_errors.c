@@ -183,6 +183,8 @@ static void test_not_yaml(void **state)
       {"dea: 1\n  film: 2\n", {2, 7, "is the line indented like its neighbours?"}},
       {"dea: 1\nx: \xff\n", {2, 4, "not a text file in UTF-8"}},
       {"dea: \"\\0\"\n", {1, 6, "zero byte"}},
+      {"dea: 1\ntitle: \"x\\e[31m\"\n", {2, 8, "a control character"}}, // colours of a terminal
+      {"dea: 1\n\"ti\\x9btle\": x\n", {2, 1, "a control character"}},
       {"dea: 1\n---\ndea: 1\n", {2, 1, "a second document"}},
       {"a: &x [1]\nb: *x\n", {1, 4, "aliases"}},
       {"a: &x [*x]\n", {1, 4, "aliases"}},

@@ -275,6 +275,7 @@ static dea_status read_label(const struct dea_reader *reader, const struct dea_s
                             value->field->key, sizeof out->text - 1);
   }
   snprintf(out->text, sizeof out->text, "%s", value->text);
+  dea_text_flatten(out->text); // of several lines
   return DEA_OK;
 }
 

@@ -75,6 +75,23 @@ size_t dea_letter_read(const char *text, unsigned *code)
   return good ? more + 1 : 0;
 }
 
+bool dea_letter_is_control(unsigned code)
+{
+  return code < 0x20 || (code >= 0x7f && code < 0xa0);
+}
+
+void dea_text_flatten(char *text)
+{
+  unsigned code;
+  while (*text != '\0') {
+    const size_t length = dea_letter_read(text, &code), bytes = length > 0 ? length : 1;
+    if (dea_letter_is_control(code)) {
+      memset(text, ' ', bytes);
+    }
+    text += bytes;
+  }
+}
+
 const char *dea_entity_name(unsigned code)
 {
   switch (code) {

@@ -22,6 +22,11 @@ void dea_text_free(struct dea_text *text);
  * letter is: a stray or missing byte, one written longer than need be, a surrogate, beyond
  * 0x10ffff. Control characters are letters like others; the text's end is code 0 of one byte. */
 size_t dea_letter_read(const char *text, unsigned *code);
+/* Whether a letter is a control character (C0, DEL, C1): a terminal obeys it, a line end among
+ * them. */
+bool dea_letter_is_control(unsigned code);
+/* Control characters of UTF-8 text become blanks, in place. */
+void dea_text_flatten(char *text);
 /* How XML and HTML write a letter that means something to them ("&lt;"); NULL for others. */
 const char *dea_entity_name(unsigned code);
 

@@ -71,12 +71,19 @@ static dea_status take_node(struct reading *r, int index, struct dea_node **out)
 static dea_status take_value(struct reading *r, const yaml_node_t *source, struct dea_node *node)
 {
   const char *text = (const char *)source->data.scalar.value;
-  size_t length = source->data.scalar.length;
-  if (strlen(text) != length) {
+  if (strlen(text) != source->data.scalar.length) {
     return dea_refuse(r->ctx, node->location, "the value holds a zero byte");
   }
+  unsigned code;
+  size_t length;
+  for (const char *c = text; *c != '\0'; c += length > 0 ? length : 1) {
+    length = dea_letter_read(c, &code);
+    if (dea_letter_is_control(code) && code != '\n' && code != '\t') {
+      return dea_refuse(r->ctx, node->location, "the value holds a control character");
+    }
+  }
   node->empty = is_null(source);
-  node->text = keep_text(r->ctx, r->yaml, text, length);
+  node->text = keep_text(r->ctx, r->yaml, text, source->data.scalar.length);
   return node->text != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 

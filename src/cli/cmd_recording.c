@@ -55,9 +55,7 @@ static size_t steps_of(const struct dea_recording *recording)
 static const char *plain(const char *text, char out[PLAIN_SIZE])
 {
   snprintf(out, PLAIN_SIZE, "%s", text);
-  for (char *c = out; *c != '\0'; c++) {
-    *c = (unsigned char)*c < ' ' || *c == 0x7f ? ' ' : *c;
-  }
+  dea_text_flatten(out);
   return out;
 }
 

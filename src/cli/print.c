@@ -13,15 +13,33 @@ static const char *severity_text(enum dea_severity severity, bool colour)
   return colour ? coloured[severity] : severity_names[severity];
 }
 
-static void print_place(const struct dea_location *location)
+/* Adds what may come from a file, without what a terminal would obey. */
+static void add_plain(struct dea_text *line, const char *text)
 {
-  if (location->file == NULL || location->file[0] == '\0') {
-    fputs("dea: ", stderr);
-  } else if (location->line == 0) {
-    fprintf(stderr, "%s: ", location->file);
-  } else {
-    fprintf(stderr, "%s:%zu:%zu: ", location->file, location->line, location->column);
+  const size_t before = line->length;
+  dea_text_add(line, "%s", text);
+  if (!line->failed) {
+    dea_text_flatten(line->data + before);
   }
+}
+
+static void say(struct dea_cli *cli, const struct dea_location *location,
+                enum dea_severity severity, const char *text)
+{
+  struct dea_text line = {.ctx = cli->ctx};
+  if (location == NULL || location->file == NULL || location->file[0] == '\0') {
+    dea_text_add(&line, "dea: ");
+  } else {
+    add_plain(&line, location->file);
+    if (location->line > 0) {
+      dea_text_add(&line, ":%zu:%zu", location->line, location->column);
+    }
+    dea_text_add(&line, ": ");
+  }
+  dea_text_add(&line, "%s: ", severity_text(severity, cli->colour));
+  add_plain(&line, text);
+  fprintf(stderr, "%s\n", line.failed ? text : dea_text_get(&line));
+  dea_text_free(&line);
 }
 
 /* Whether b stands before a in the same file. */
@@ -69,8 +87,7 @@ static void print_findings(struct dea_cli *cli)
     const struct dea_finding *finding = sorted != NULL ? sorted[i] : &findings[i];
     bool repeated = sorted != NULL && !cli->verbose && is_repeated(sorted, i);
     if (!repeated && !(finding->severity == DEA_NOTE && cli->quiet)) {
-      print_place(&finding->location);
-      fprintf(stderr, "%s: %s\n", severity_text(finding->severity, cli->colour), finding->text);
+      say(cli, &finding->location, finding->severity, finding->text);
     }
   }
   dea_free(cli->ctx, sorted);
@@ -82,8 +99,7 @@ int cli_report(struct dea_cli *cli, dea_status status)
   bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;
   if (status != DEA_OK && !said) {
     const char *message = dea_context_message(cli->ctx);
-    fprintf(stderr, "dea: %s: %s\n", severity_text(DEA_ERROR, cli->colour),
-            message[0] != '\0' ? message : dea_status_message(status));
+    say(cli, NULL, DEA_ERROR, message[0] != '\0' ? message : dea_status_message(status));
   }
   if (status != DEA_OK && cli->verbose) {
     fprintf(stderr, "dea: in %s\n", dea_context_chain(cli->ctx));

@@ -39,7 +39,7 @@ unsigned dea_letter_next(const char **text)
   if (!good) {
     return 0xfffd;
   }
-  return code < 0x20 || (code >= 0x7f && code < 0xa0) ? ' ' : code;
+  return dea_letter_is_control(code) ? ' ' : code;
 }
 
 void dea_xml_add(struct dea_text *out, const char *text)

@@ -28,7 +28,10 @@ static char *copy_text(struct dea_context *ctx, const char *text, size_t length)
       out[n++] = (char)(0xc0 | c >> 6);
       c = 0x80 | (c & 0x3f);
     }
-    out[n++] = (char)(c < ' ' || c == 0x7f ? ' ' : c);
+    out[n++] = (char)c;
+  }
+  if (out != NULL) {
+    dea_text_flatten(out);
   }
   dea_free(ctx, whole);
   return out;
