@@ -169,12 +169,16 @@ static void test_two_become_one(void **state)
   command_write("z.csv", "time (s),z (mm)\n5,0\n5.25,0.1\n");
   assert_int_equal(command_run("import v.csv"), 0);
   assert_int_equal(command_run("import z.csv"), 0);
-  command_expect("import v.csv z.csv -f", 5, "dea recording A.h5 --with B.h5 --after 0s");
+  command_expect("import v.csv z.csv -f", 5, "dea recording A.h5 --with B.h5 --after TIME");
   command_expect("recording v.h5 --with z.h5", 2, "--with needs --after");
   command_expect("recording v.h5 --after 1s", 2, "--after is said of another recording");
   command_expect("recording v.h5 --with z.h5 --after 1V", 2, "--after: '1V'");
   command_expect("recording v.h5 --with nowhere.h5 --after 1s", 5, "nowhere.h5");
-  command_expect("recording v.h5 --with z.h5 --after 0s", 0, "they have no moment together");
+  command_expect("recording v.h5 --with z.h5 --after 0s", 5, "they have no moment together");
+  command_expect("recording v.h5 --with z.h5 --with z.h5 --after 0s", 2, "--with once");
+  command_expect("recording v.h5 --with v.h5 --after 0s", 5,
+                 "what 'v.h5' has is in 'v.h5' already");
+  command_expect("recording v.h5 --with z.h5 --after -5s", 0, "-o FILE writes it");
   assert_int_equal(command_run("recording v.h5 --with z.h5 --after -5s -o both.h5"), 0);
   assert_int_equal(command_run("recording both.h5"), 0);
   assert_contains(command_out, "channels       2");

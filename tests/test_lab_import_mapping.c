@@ -90,6 +90,18 @@ static void test_mapping(void **state)
   assert_close(recording->channels[1].filter_Hz, 50, 1e-12, 0);
   assert_false(is_said(DEA_NOTE, "left out"));
   dea_recording_destroy(ctx, recording);
+  // the unit of times that are found by themselves; times that a rate replaces are told
+  recording = record_text("Time,HV\n5,0\n6,1\n7,2\n", "dea-import: 1\ntime_unit: ms\ncolumns:\n"
+                                                      "  - {column: HV, as: voltage, unit: kV}\n");
+  assert_close(recording->channels[0].start_s, 5e-3, 1e-12, 0);
+  assert_close(recording->channels[0].interval_s, 1e-3, 1e-12, 0);
+  dea_recording_destroy(ctx, recording);
+  recording =
+      record_text("Time (s),HV\n5,0\n6,1\n7,2\n", "dea-import: 1\nrate: 10 kHz\ncolumns:\n"
+                                                  "  - {column: HV, as: voltage, unit: kV}\n");
+  assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
+  assert_true(is_said(DEA_WARNING, "in place of the times 'Time'"));
+  dea_recording_destroy(ctx, recording);
   // a clock of its own, and one that is not uniform
   recording = record_text("t1 (ms),V (kV),t2 (s),F (mN)\n0,1,5,1\n1,2,5.1,2\n2,3,7,3\n",
                           "dea-import: 1\ntime: t1\ncolumns:\n  - {column: V, as: voltage}\n"

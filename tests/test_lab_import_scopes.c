@@ -51,6 +51,10 @@ static void test_beside(void **state)
   struct dea_mapping *mapping = map_text(MONITORS("CH1", "CH2"));
   struct dea_recording *recording;
   assert_int_equal(dea_table_join(ctx, table, other), DEA_OK);
+  struct dea_table *copy = read_text("copy.CSV", TDS("CH1", "0.00", "1.50", "3.00", "1.50"));
+  assert_int_equal(dea_table_join(ctx, table, copy), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "already, value by value"));
+  dea_table_destroy(ctx, copy);
   assert_int_equal(dea_table_record(ctx, table, mapping, &recording), DEA_OK);
   assert_both(recording, "CH1", "CH2");
   dea_mapping_destroy(ctx, mapping);
@@ -85,10 +89,23 @@ static void test_start_and_increment(void **state)
                           MONITORS("CH1", "CH2")),
               "CH1", "CH2");
   assert_both(record_file("memory.csv",
-                          "CH1V,CH2V,t0 =-1.000000e-03, tInc = 1.000000e-03\n"
+                          "CH1V,CH2V,t0 =-1.000000e-03s, tInc = 1.000000e-03s\n"
                           "0.00,0.01,\n1.50,0.02,\n3.00,0.03,\n1.50,0.02,\n",
                           MONITORS("CH1", "CH2")),
               "CH1", "CH2");
+  // every other sample, and one that is missing: the number of each counts
+  struct dea_recording *sparse = record_file("sparse.csv",
+                                             "X,CH1,Start,Increment,\nSequence,Volt,-1e-3,5e-4\n"
+                                             "0,0,\n2,1.5,\n4,3,\n6,1.5,\n",
+                                             NULL);
+  assert_shot(sparse, "CH1", DEA_CHANNEL_VOLTAGE, first_V, 1);
+  dea_recording_destroy(ctx, sparse);
+  sparse = record_file("gap.csv",
+                       "X,CH1,Start,Increment,\nSequence,Volt,-1e-3,1e-3\n"
+                       "0,0,\n1,1.5,\n3,1.5,\n",
+                       NULL);
+  assert_close(dea_channel_time(&sparse->channels[0], 2), 2e-3, 1e-12, 0);
+  dea_recording_destroy(ctx, sparse);
   // words that are no such thing
   struct dea_table *table = read_text("list.csv", "Sample,Start,Increment\n1,2,3\n2,4,6\n");
   assert_string_equal(table->format, "csv");
@@ -114,6 +131,11 @@ static void test_lines_above(void **state)
   assert_column(table, "TIME", "", times_s, 4);
   assert_column(table, "CH1", "V", first_V, 4);
   assert_column(table, "CH2", "A", second_V, 4);
+  dea_table_destroy(ctx, table);
+  table = read_text("words.csv", "Second,Volt,Ampere\n-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n"
+                                 "2e-3,1.5,0.02\n");
+  assert_column(table, "column 1", "Second", times_s, 4);
+  assert_column(table, "column 3", "Ampere", second_V, 4);
   dea_table_destroy(ctx, table);
   static const struct {
     const char *name, *text, *columns[2];

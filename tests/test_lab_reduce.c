@@ -350,6 +350,43 @@ static void test_creep_and_fast_rise(void **state)
   signal_free(&r);
 }
 
+/* A displacement whose clock was put wrongly beside the voltage's is told, with how far it is off;
+ * one that lags as films do is not. */
+static void test_clocks_that_do_not_agree(void **state)
+{
+  (void)state;
+  static const struct {
+    double off_s;
+    const char *said; // NULL: nothing
+  } all[] = {{0.0, NULL}, {0.02, NULL}, {0.3, "later"}, {-0.3, "earlier"}, {0.4, "later"}};
+  for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
+    struct signal_bench b = signal_bench_plain();
+    b.displacement = true;
+    b.sigma = 1e-6;
+    struct dea_recording r = signal_record(&b, 3);
+    struct dea_channel *z = &r.channels[1];
+    z->start_s += all[k].off_s;
+    struct dea_reduction *out = reduced(&r, &plain);
+    assert_true(noted("is most like the square of the voltage") == (all[k].said != NULL));
+    if (all[k].said != NULL) {
+      size_t count;
+      const struct dea_finding *findings = dea_finding_get(ctx, &count);
+      bool found = false;
+      for (size_t i = 0; i < count && !found; i++) {
+        const char *at = strstr(findings[i].text, "the voltage ");
+        found = at != NULL && findings[i].severity == DEA_WARNING;
+        if (found) {
+          assert_close(strtod(at + strlen("the voltage "), NULL), fabs(all[k].off_s), 0, 0.06);
+          assert_non_null(strstr(at, all[k].said));
+        }
+      }
+      assert_true(found);
+    }
+    dea_reduction_destroy(ctx, out);
+    signal_free(&r);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -365,6 +402,7 @@ int main(void)
       cmocka_unit_test(test_cycles_at_rest),
       cmocka_unit_test(test_other_waveforms),
       cmocka_unit_test(test_creep_and_fast_rise),
+      cmocka_unit_test(test_clocks_that_do_not_agree),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -275,7 +275,9 @@ static dea_status read_label(const struct dea_reader *reader, const struct dea_s
                             value->field->key, sizeof out->text - 1);
   }
   snprintf(out->text, sizeof out->text, "%s", value->text);
-  dea_text_flatten(out->text); // of several lines
+  if (value->field->one_line) {
+    dea_text_flatten(out->text);
+  }
   return DEA_OK;
 }
 

@@ -193,6 +193,9 @@ static void explain_unit(const ut_system *system, const char *text, const char *
   const char *name = unit != NULL && unit[0] == '%' ? "a percentage" // not the angle that it is too
                      : from != NULL                 ? dimension_of(system, from)
                                                     : NULL;
+  if (name != NULL && strcmp(name, "an angle") == 0 && strchr(unit, '/') != NULL) {
+    name = "a ratio"; // kV/V
+  }
   if (from == NULL) {
     snprintf(why, DEA_WHY_SIZE, "'%.40s' in '%.60s' is not a known unit; write for example '%s'",
              unit, text, due->example);

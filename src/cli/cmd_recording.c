@@ -103,8 +103,8 @@ static void print_profiles(const struct dea_profiles *profiles)
   printf(", %.3g %% of the points invalid\n", 100.0 * (double)range.missing / (double)total);
 }
 
-/* The recordings that were joined, and when they begin. */
-static void print_joined(const json_t *joined)
+/* The recordings that were joined, and when they begin, with what was joined to them before. */
+static void print_joined(const json_t *joined, double at_s)
 {
   const json_t *part;
   size_t i;
@@ -112,8 +112,10 @@ static void print_joined(const json_t *joined)
   json_array_foreach(joined, i, part)
   {
     const char *file = json_string_value(json_object_get(part, "file"));
+    double after_s = at_s + json_number_value(json_object_get(part, "after_s"));
     printf("%-14s %s, whose 0 is at %g s\n", "joined", plain(file != NULL ? file : "", shown),
-           json_number_value(json_object_get(part, "after_s")));
+           after_s);
+    print_joined(json_object_get(json_object_get(part, "provenance"), "joined"), after_s);
   }
 }
 
@@ -130,7 +132,7 @@ static void print_provenance(const char *text)
       } else if (json_is_number(value)) {
         printf("%-14s %g\n", plain(key, shown), json_number_value(value));
       } else if (strcmp(key, "joined") == 0) {
-        print_joined(value);
+        print_joined(value, 0);
       }
     }
   }
@@ -252,12 +254,32 @@ static void print_json(const struct dea_recording *recording)
   cli_print_json(json);
 }
 
+/* One at a time: each has its own --after. */
+static int take_with(struct dea_cli *cli, const struct dea_command *command,
+                     const struct cli_option *option, const char *text, void *target)
+{
+  const char **with = target;
+  (void)option;
+  if (*with != NULL) {
+    return cli_usage_error(cli, command,
+                           "--with once: write the two with -o, and join the third "
+                           "to that");
+  }
+  *with = text;
+  return 0;
+}
+
 static dea_status join(struct dea_context *ctx, const struct request *request,
                        struct dea_recording *recording)
 {
   struct dea_recording *other;
   DEA_TRY(ctx, dea_recording_read(ctx, request->with, &other));
   dea_status status = dea_recording_join(ctx, recording, other, request->after_s);
+  if (status == DEA_OK && request->output == NULL && request->folder == NULL) {
+    const struct dea_location location = {.file = request->file};
+    status =
+        dea_finding_add(ctx, DEA_NOTE, location, "what is joined is shown only: -o FILE writes it");
+  }
   dea_recording_destroy(ctx, other);
   return status;
 }
@@ -301,7 +323,8 @@ static const struct cli_option options[] = {
         "write a clean copy as FILE, which must not exist: also of a recording whose program was "
         "killed, and in a form that programs with older versions of HDF5 read"),
     {"with", 0, CLI_FILE, "OTHER",
-     "join the channels and profiles of another recording of the same measurement", CLI_AT(with)},
+     "join the channels and profiles of another recording of the same measurement", CLI_AT(with),
+     take_with},
     {"after", 0, CLI_TEXT, "TIME",
      "what FILE's clock shows where OTHER's shows 0, '0.25 s': 0 s where both count from one "
      "trigger",

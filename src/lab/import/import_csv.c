@@ -56,6 +56,16 @@ static bool is_row_of_units(struct dea_context *ctx, const struct dea_slice *fie
   return units > 0;
 }
 
+/* Whether all fields are words: "Second,Volt" names units where "t,V" names quantities. */
+static bool are_words(const struct dea_slice *fields, size_t count)
+{
+  bool words = true;
+  for (size_t i = 0; i < count; i++) {
+    words = words && (fields[i].length == 0 || fields[i].length > 3);
+  }
+  return words;
+}
+
 /* "Vertical Units,V,V" of an oscilloscope, further up: units of all columns but that of the times.
  */
 static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
@@ -88,14 +98,17 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
       return DEA_OK;
     }
   }
-  if (part(dialect, 0, titles)) {
+  *units = dialect->count > 1 && part(dialect, 0, unit_fields) &&
+           is_row_of_units(ctx, unit_fields, dialect->count) &&
+           are_words(unit_fields, dialect->count);
+  if (!*units && part(dialect, 0, titles)) {
     *units = find_vertical_units(ctx, text, dialect, unit_fields);
     return DEA_OK;
   }
   for (size_t i = 0; i < dialect->count; i++) {
     titles[i] = (struct dea_slice){"", 0};
   }
-  if (dialect->title_count > 0) {
+  if (!*units && dialect->title_count > 0) {
     return dea_finding_add(ctx, DEA_NOTE, location,
                            "the lines above the numbers name no %zu columns: they are called "
                            "'column 1' and so on",

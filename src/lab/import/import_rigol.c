@@ -28,8 +28,12 @@ static bool value_of(struct dea_slice field, const char *key, double *value)
       !dea_slice_is(dea_slice_trim((struct dea_slice){field.text, equals}), key)) {
     return false;
   }
-  const struct dea_slice number = {field.text + equals + 1, field.length - equals - 1};
-  return dea_slice_number(dea_slice_trim(number), '.', value);
+  struct dea_slice number =
+      dea_slice_trim((struct dea_slice){field.text + equals + 1, field.length - equals - 1});
+  if (number.length > 0 && number.text[number.length - 1] == 's') {
+    number = dea_slice_trim((struct dea_slice){number.text, number.length - 1});
+  }
+  return dea_slice_number(number, '.', value);
 }
 
 /* The field at an index of a line. */
@@ -123,17 +127,23 @@ static dea_status read_text(struct dea_context *ctx, struct dea_slice text, stru
   while (lines.line < head.lines && dea_lines_next(&lines, &line)) {
   }
   DEA_TRY(ctx, dea_table_note(ctx, out, text.text, (size_t)(lines.next - text.text)));
-  const bool counts = dea_slice_is(head.titles[0], "X"); // samples from 0 on
-  const bool times = dea_slice_starts(head.titles[0], "Time");
+  const bool counted = dea_slice_is(head.titles[0], "X"), // by samples from `start` on
+      timed = dea_slice_starts(head.titles[0], "Time");
+  if (counted) {
+    head.titles[0] = (struct dea_slice){"Time", 4};
+    head.units[0] = (struct dea_slice){"s", 1};
+  }
   const struct dea_csv_dialect dialect = {.separator = ',',
                                           .decimal = '.',
                                           .count = head.count,
-                                          .skipped = counts,
                                           .data = lines.next,
                                           .line = lines.line,
                                           .text = texts};
   DEA_TRY(ctx, dea_text_rows_read(ctx, text, &dialect, head.titles, head.units, out));
-  for (size_t i = 0; i < out->column_count && !times; i++) {
+  for (size_t i = 0; counted && i < out->columns[0].count; i++) {
+    out->columns[0].values[i] = head.start_s + out->columns[0].values[i] * head.interval_s;
+  }
+  for (size_t i = 0; i < out->column_count && !counted && !timed; i++) {
     out->columns[i].start = head.start_s;
     out->columns[i].interval = head.interval_s;
   }

@@ -2,6 +2,7 @@
 #include "lab/import/clock.h"
 
 #include <math.h>
+#include <string.h>
 
 /* What a table's samples are counted by. */
 struct table_clock {
@@ -85,6 +86,44 @@ static bool begin_together(const struct table_clock *a, const struct table_clock
   return !(fabs(off_s) > 1e-3 * step_s); // true of NAN
 }
 
+static bool is_same(const struct dea_table_column *a, const struct dea_table_column *b)
+{
+  bool same = a->count == b->count && a->count > 1 && strcmp(a->name, b->name) == 0;
+  for (size_t i = 0; same && i < a->count; i++) {
+    same = a->values[i] == b->values[i] || (isnan(a->values[i]) && isnan(b->values[i]));
+  }
+  return same;
+}
+
+/* Whether all columns of the other but its times are there already: a file that is named twice, or
+ * its copy. Some may be: two tables count their rows. */
+static bool has_all(const struct dea_table *table, const struct dea_table *other, size_t times)
+{
+  bool all = true;
+  for (size_t k = 0; k < other->column_count && all; k++) {
+    bool found = k == times;
+    for (size_t i = 0; i < table->column_count && !found; i++) {
+      found = is_same(&table->columns[i], &other->columns[k]);
+    }
+    all = found;
+  }
+  return all;
+}
+
+static dea_status join_same(struct dea_context *ctx, struct dea_table *table,
+                            struct dea_table *other, size_t times)
+{
+  const struct dea_location location = {.file = other->file};
+  if (has_all(table, other, times)) {
+    return dea_fail(ctx, DEA_E_IO, "what '%s' has is in '%s' already, value by value", other->file,
+                    table->file);
+  }
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, location,
+                               "its samples are taken at the times of '%s', which has as many",
+                               table->file));
+  return move(ctx, table, other, times);
+}
+
 dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, struct dea_table *other)
 {
   struct table_clock a = {0}, b = {0};
@@ -99,11 +138,12 @@ dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, stru
                 : a.known == b.known ? a.clock.count == b.clock.count
                                      : false;
     status = same
-                 ? move(ctx, table, other, b.column)
+                 ? join_same(ctx, table, other, b.column)
                  : dea_fail(ctx, DEA_E_IO,
                             "'%s' and '%s' have different clocks (%zu samples from %.12g s and %zu "
                             "from %.12g s): import each into a recording of its own, and join "
-                            "them (dea recording A.h5 --with B.h5 --after 0s -o C.h5)",
+                            "them (dea recording A.h5 --with B.h5 --after TIME -o C.h5, where "
+                            "TIME is what A's clock shows at the 0 of B's)",
                             table->file, other->file, a.clock.count,
                             a.clock.start_s + (both ? a.origin_s : 0), b.clock.count,
                             b.clock.start_s + (both ? b.origin_s : 0));

@@ -15,7 +15,7 @@ static const struct dea_field column_fields[] = {
                   "name of the column, as `dea import --list` shows it", .required = true),
     DEA_CHOICE_ROW("as", OF(as), dea_channel_names, "voltage", "what it is", .required = true),
     DEA_LABEL_ROW("name", OF(name), "high voltage", "name of the channel",
-                  .absent_text = "the column's name"),
+                  .absent_text = "the column's name", .one_line = true),
     DEA_LABEL_ROW("unit", OF(unit), "kV", "unit of the column's numbers",
                   .absent_text = "the file's"),
     DEA_LABEL_ROW(
@@ -69,7 +69,8 @@ static const struct dea_record profile_record = {"profile",
 static const struct dea_field mapping_fields[] = {
     DEA_INTEGER_ROW("dea-import", AT(version), "1", "version of the format of mappings",
                     .min = DEA_MAPPING_VERSION, .max = DEA_MAPPING_VERSION, .required = true),
-    DEA_LABEL_ROW("title", AT(title), "FRDEA-4, 1 Hz", "what was measured", .absent_text = "none"),
+    DEA_LABEL_ROW("title", AT(title), "FRDEA-4, 1 Hz", "what was measured", .absent_text = "none",
+                  .one_line = true),
     DEA_NUMBER_ROW("rate", AT(rate_Hz), "Hz", "10 kHz", "samples a second, of a file without times",
                    .max = 1e12, .above_min = true, .group = 1, .option = 1,
                    .absent_text = "from the file"),

@@ -191,8 +191,27 @@ static bool is_constant(const struct dea_table_column *column)
   return low == high;
 }
 
+/* A guessed column of times, in the mapping's unit of times where it has one; with a rate it is
+ * said that these times are not used. */
+static dea_status take_guessed_time(struct work *work, size_t i)
+{
+  const struct dea_mapping *mapping = work->mapping;
+  if (mapping != NULL && !isnan(mapping->rate_Hz.si)) {
+    work->roles[i].use = DEA_USE_LEFT;
+    return dea_finding_add(work->ctx, DEA_WARNING, mapping->rate_Hz.location,
+                           "the rate is taken in place of the times '%.60s' of '%s': samples "
+                           "begin at 0",
+                           work->table->columns[i].name, work->table->file);
+  }
+  if (mapping != NULL && mapping->time_unit.text[0] != '\0') {
+    const struct dea_scale_text text = {.unit = &mapping->time_unit};
+    return scale(work, i, "s", &text, mapping->time_unit.location);
+  }
+  return DEA_OK;
+}
+
 /* Times and clocks, which are guessed also beside a mapping that names none. */
-static void guess_times(struct work *work)
+static dea_status guess_times(struct work *work)
 {
   for (size_t i = 0; i < work->table->column_count; i++) {
     const struct dea_table_column *column = &work->table->columns[i];
@@ -225,8 +244,10 @@ static void guess_times(struct work *work)
       role->use = DEA_USE_TIME;
       role->factor = seconds ? factor : 1;
       role->why = seconds ? "by its unit" : "by its name, in s";
+      DEA_TRY(work->ctx, take_guessed_time(work, i));
     }
   }
+  return DEA_OK;
 }
 
 /* Whether a column is one of many of a matrix, "z(17)". */
@@ -370,8 +391,8 @@ dea_status dea_table_roles(struct dea_context *ctx, const struct dea_table *tabl
   if (mapping != NULL) {
     DEA_TRY(ctx, take_mapping(&work, &clock));
   }
-  if (mapping == NULL || (mapping->time.text[0] == '\0' && isnan(mapping->rate_Hz.si))) {
-    guess_times(&work);
+  if (mapping == NULL || mapping->time.text[0] == '\0') {
+    DEA_TRY(ctx, guess_times(&work));
   }
   for (size_t i = 0; mapping == NULL && i < table->column_count; i++) {
     guess_channel(&work, i);

@@ -31,7 +31,7 @@ static const struct dea_field step_fields[] = {
 
 static const struct dea_field amplifier_fields[] = {
     DEA_LABEL_ROW("name", AT(amplifier.name), "Trek 10/10B-HS", "make and type, for messages",
-                  .absent_text = "none"),
+                  .absent_text = "none", .one_line = true),
     DEA_LABEL_ROW("output", AT(amplifier.terminal), "ao0", "output of the DAQ that controls it",
                   .default_text = "ao0"),
     DEA_NUMBER_ROW("gain", AT(amplifier.gain), "1", "1000 V/V",
@@ -56,7 +56,7 @@ static const struct dea_field amplifier_fields[] = {
 
 static const struct dea_field input_fields[] = {
     DEA_LABEL_ROW("name", INPUT(name), "centre laser", "name of the channel in the recording",
-                  .required = true),
+                  .required = true, .one_line = true),
     DEA_CHOICE_ROW("quantity", INPUT(kind), &dea_channel_names[DEA_CHANNEL_COMMAND + 1],
                    "displacement", "what it measures", .required = true),
     DEA_LABEL_ROW("input", INPUT(terminal), "ai0", "input of the DAQ that it is connected to",
@@ -151,7 +151,8 @@ static const struct dea_field protocol_fields[] = {
     DEA_INTEGER_ROW("dea-protocol", RAW(version), "1", "version of the format of protocols",
                     .min = DEA_PROTOCOL_VERSION, .max = DEA_PROTOCOL_VERSION, .required = true),
     DEA_LABEL_ROW("title", AT(title), "Cyclic measurement, four fibres",
-                  "what is measured, for recordings and figures", .absent_text = "none"),
+                  "what is measured, for recordings and figures", .absent_text = "none",
+                  .one_line = true),
     DEA_LABEL_ROW("design", AT(design_file), "frdea-4.yaml",
                   "design file of the film on the bench; its path counts from this file's folder",
                   .absent_text = "none: field and pull-in are not checked"),

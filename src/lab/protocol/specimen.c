@@ -14,7 +14,7 @@ static const struct dea_field fields[] = {
     DEA_INTEGER_ROW("dea-specimen", offsetof(struct raw, version), "1",
                     "version of the format of specimens", .min = 1, .max = 1, .required = true),
     DEA_LABEL_ROW("name", offsetof(struct raw, name), "F12", "what is written on it",
-                  .required = true),
+                  .required = true, .one_line = true),
     DEA_NUMBER_ROW("max_voltage", offsetof(struct raw, highest_V), "V", "6 kV",
                    "largest voltage that it may see, of either sign", .above_min = true, .max = 1e6,
                    .required = true),

@@ -30,11 +30,37 @@ static struct span span_of(const struct dea_recording *recording)
   return span;
 }
 
+static bool is_same(const struct dea_channel *a, const struct dea_channel *b)
+{
+  bool same = a->count == b->count && a->count > 1 && a->kind == b->kind;
+  for (size_t i = 0; same && i < a->count; i++) {
+    same = a->values[i] == b->values[i] || (isnan(a->values[i]) && isnan(b->values[i]));
+  }
+  return same;
+}
+
+/* Whether all channels of the other are there already, under whatever name. */
+static bool has_all(const struct dea_recording *recording, const struct dea_recording *other)
+{
+  bool all = other->channel_count > 0;
+  for (size_t k = 0; k < other->channel_count && all; k++) {
+    bool found = false;
+    for (size_t i = 0; i < recording->channel_count && !found; i++) {
+      found = is_same(&recording->channels[i], &other->channels[k]);
+    }
+    all = found;
+  }
+  return all;
+}
+
 static dea_status check(struct dea_context *ctx, const struct dea_recording *recording,
                         const struct dea_recording *other, double after_s)
 {
   const struct span a = span_of(recording), b = span_of(other);
-  const struct dea_location location = {.file = other->file};
+  if (has_all(recording, other)) {
+    return dea_fail(ctx, DEA_E_IO, "what '%s' has is in '%s' already, value by value", other->file,
+                    recording->file);
+  }
   if (recording->channel_count + other->channel_count > DEA_CHANNELS_MAX) {
     return dea_fail(ctx, DEA_E_IO, "'%s' and '%s' have more than %d channels together",
                     recording->file, other->file, (int)DEA_CHANNELS_MAX);
@@ -52,12 +78,12 @@ static dea_status check(struct dea_context *ctx, const struct dea_recording *rec
                     recording->file, other->file);
   }
   if (a.first_s <= a.last_s && b.first_s <= b.last_s &&
-      (b.first_s + after_s > a.last_s || b.last_s + after_s < a.first_s)) {
-    return dea_finding_add(ctx, DEA_WARNING, location,
-                           "it lasts from %.6g to %.6g s on the clock of '%s', which lasts from "
-                           "%.6g to %.6g s: they have no moment together",
-                           b.first_s + after_s, b.last_s + after_s, recording->file, a.first_s,
-                           a.last_s);
+      !(b.first_s + after_s <= a.last_s && b.last_s + after_s >= a.first_s)) {
+    return dea_fail(ctx, DEA_E_IO,
+                    "'%s' lasts from %.6g to %.6g s on the clock of '%s', which lasts from %.6g "
+                    "to %.6g s: they have no moment together",
+                    other->file, b.first_s + after_s, b.last_s + after_s, recording->file,
+                    a.first_s, a.last_s);
   }
   return DEA_OK;
 }

@@ -397,6 +397,44 @@ static dea_status note_without_amplitude(const struct job *job, enum dea_reduced
   return DEA_OK;
 }
 
+enum { LAG_CYCLES = 40 };
+
+/* From the begin of so many cycles about the one of the largest voltage to their end. */
+static struct dea_span cycles_of_lag(const struct job *job)
+{
+  const struct dea_reduction *r = job->out;
+  size_t largest = 0;
+  for (size_t i = 1; i < r->cycle_count; i++) {
+    largest = fabs(r->cycles[i].voltage_V) > fabs(r->cycles[largest].voltage_V) ? i : largest;
+  }
+  size_t begin = largest > LAG_CYCLES / 2 ? largest - LAG_CYCLES / 2 : 0;
+  size_t end = begin + LAG_CYCLES < r->cycle_count ? begin + LAG_CYCLES : r->cycle_count;
+  const struct dea_cycle_parts *first = &job->list.parts[begin], *last = &job->list.parts[end - 1];
+  return (struct dea_span){isnan(first->rest.begin_s) ? first->active.begin_s : first->rest.begin_s,
+                           isnan(last->after.end_s) ? last->active.end_s : last->after.end_s};
+}
+
+/* Two programs' clocks may have been put together wrongly, which amplitudes do not tell. */
+static dea_status check_clock(const struct job *job, enum dea_reduced_kind kind)
+{
+  const struct dea_channel *voltage = job->measured != NULL ? job->measured : job->asked;
+  const struct dea_channel *series = &job->out->series[kind];
+  const struct dea_location nowhere = {.file = ""};
+  struct dea_lag lag;
+  DEA_TRY(job->ctx, dea_lag_find(job->ctx, voltage, series, cycles_of_lag(job), &lag));
+  const bool before = lag.lag_s < 0;
+  if (kind == DEA_REDUCED_FIBRE_TIP || !(lag.best > 0.8) || !(lag.best - lag.now > 0.1)) {
+    return DEA_OK;
+  }
+  return dea_finding_add(job->ctx, DEA_WARNING, nowhere,
+                         "'%s' is most like the square of the voltage %.3g s %s (correlation %.2f; "
+                         "%.2f as it is): %s",
+                         series->name, fabs(lag.lag_s), before ? "earlier" : "later", lag.best,
+                         lag.now,
+                         before ? "no film moves before its voltage, so their clocks do not agree"
+                                : "the film lags so far, or their clocks do not agree");
+}
+
 static dea_status reduce_cycles(struct job *job)
 {
   struct dea_reduction *r = job->out;
@@ -407,6 +445,7 @@ static dea_status reduce_cycles(struct job *job)
               dea_cycle_values(job->ctx, &r->series[kind], job->list.parts, r->cycle_count,
                                r->settle, r->cycles, (enum dea_reduced_kind)kind, &r->noise[kind]));
       DEA_TRY(job->ctx, note_without_amplitude(job, (enum dea_reduced_kind)kind));
+      DEA_TRY(job->ctx, check_clock(job, (enum dea_reduced_kind)kind));
       unknown = unknown || isnan(r->noise[kind]);
       DEA_TRY(job->ctx, drop_saturated(job, (enum dea_reduced_kind)kind));
     }

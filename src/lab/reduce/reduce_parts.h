@@ -124,6 +124,18 @@ double dea_noise_of_mean(const struct dea_noise *noise, size_t count);
 double dea_rise_time(const struct dea_channel *series, struct dea_span span, double from, double to,
                      double noise, double *end_s);
 
+// lag.c ------------------------------------------------------------------------------------------
+
+/* How much later than the square of the voltage a series is most like it, and the size of the
+ * correlation there and as the two are; NAN where there are too few samples. */
+struct dea_lag {
+  double lag_s, best, now;
+};
+/* To a 2048th of the span, or to two samples. */
+dea_status dea_lag_find(struct dea_context *ctx, const struct dea_channel *voltage,
+                        const struct dea_channel *series, struct dea_span span,
+                        struct dea_lag *out);
+
 // statistics.c -----------------------------------------------------------------------------------
 
 /* Values of all cycles for one series; noise: of rest and of active parts. values: [count] with a
