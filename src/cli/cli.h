@@ -233,6 +233,10 @@ const char *cli_output_name(const char *given, const char *file, const char *end
                             struct dea_text *made);
 /* All findings so far as an array; owned by the caller. */
 json_t *cli_findings_json(const struct dea_context *ctx);
+/* What a file says of itself, cut where it is long, without signs that would begin a line of their
+ * own, such as one that says what the output was, or change the terminal. */
+enum { CLI_PLAIN_SIZE = 512 };
+const char *cli_plain(const char *text, char out[CLI_PLAIN_SIZE]);
 /* Prints JSON to stdout; takes it. */
 void cli_print_json(json_t *json);
 /* Prints a text to stdout if `status` is good and it is whole, and frees it. */

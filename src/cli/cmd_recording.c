@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { PLAIN_SIZE = 512 };
-
 struct request {
   const char *file, *output, *folder, *with;
   double after_s; // NAN: not said
@@ -50,33 +48,24 @@ static size_t steps_of(const struct dea_recording *recording)
   return steps;
 }
 
-/* What a file says of itself, without signs that would begin a line of their own, such as one that
- * says what the output was, or change the terminal. */
-static const char *plain(const char *text, char out[PLAIN_SIZE])
-{
-  snprintf(out, PLAIN_SIZE, "%s", text);
-  dea_text_flatten(out);
-  return out;
-}
-
 static void print_line(const char *what, const char *text)
 {
-  char shown[PLAIN_SIZE];
-  printf("%-14s %s\n", what, plain(text, shown));
+  char shown[CLI_PLAIN_SIZE];
+  printf("%-14s %s\n", what, cli_plain(text, shown));
 }
 
 static void print_channel(const struct dea_channel *channel)
 {
-  char pace[48], name[PLAIN_SIZE], shown[PLAIN_SIZE];
+  char pace[48], name[CLI_PLAIN_SIZE], shown[CLI_PLAIN_SIZE];
   struct range range = range_of(channel->values, channel->count);
   double factor = dea_channel_meanings[channel->kind].factor;
-  const char *unit = plain(dea_channel_display_unit(channel), shown);
+  const char *unit = cli_plain(dea_channel_display_unit(channel), shown);
   if (channel->interval_s > 0) {
     snprintf(pace, sizeof pace, "%.6g Hz", 1 / channel->interval_s);
   } else {
     snprintf(pace, sizeof pace, "readings");
   }
-  printf("  %-22s %-13s %-12s %10.3f s %10zu values", plain(channel->name, name),
+  printf("  %-22s %-13s %-12s %10.3f s %10zu values", cli_plain(channel->name, name),
          dea_channel_meanings[channel->kind].name, pace, duration_of(channel), channel->count);
   if (!isnan(range.lowest)) {
     printf("  %.5g to %.5g %s", factor * range.lowest, factor * range.highest, unit);
@@ -108,12 +97,12 @@ static void print_joined(const json_t *joined, double at_s)
 {
   const json_t *part;
   size_t i;
-  char shown[PLAIN_SIZE];
+  char shown[CLI_PLAIN_SIZE];
   json_array_foreach(joined, i, part)
   {
     const char *file = json_string_value(json_object_get(part, "file"));
     double after_s = at_s + json_number_value(json_object_get(part, "after_s"));
-    printf("%-14s %s, whose 0 is at %g s\n", "joined", plain(file != NULL ? file : "", shown),
+    printf("%-14s %s, whose 0 is at %g s\n", "joined", cli_plain(file != NULL ? file : "", shown),
            after_s);
     print_joined(json_object_get(json_object_get(part, "provenance"), "joined"), after_s);
   }
@@ -123,14 +112,14 @@ static void print_provenance(const char *text)
 {
   json_t *json = json_loads(text, 0, NULL), *value;
   const char *key;
-  char shown[PLAIN_SIZE];
+  char shown[CLI_PLAIN_SIZE];
   if (json_is_object(json)) {
     json_object_foreach(json, key, value)
     {
       if (json_is_string(value)) {
-        print_line(plain(key, shown), json_string_value(value));
+        print_line(cli_plain(key, shown), json_string_value(value));
       } else if (json_is_number(value)) {
-        printf("%-14s %g\n", plain(key, shown), json_number_value(value));
+        printf("%-14s %g\n", cli_plain(key, shown), json_number_value(value));
       } else if (strcmp(key, "joined") == 0) {
         print_joined(value, 0);
       }
@@ -141,10 +130,10 @@ static void print_provenance(const char *text)
 
 static void print_text(const struct dea_recording *recording)
 {
-  char shown[PLAIN_SIZE];
+  char shown[CLI_PLAIN_SIZE];
   print_line("title", recording->title[0] != '\0' ? recording->title : "(none)");
   printf("%-14s %s%s\n", "complete",
-         recording->complete ? "yes" : "no: ", plain(recording->ended, shown));
+         recording->complete ? "yes" : "no: ", cli_plain(recording->ended, shown));
   if (recording->output[0] != '\0') {
     print_line("output", recording->output);
   }
@@ -171,7 +160,7 @@ static void print_text(const struct dea_recording *recording)
     const struct dea_recorded_event *event = &recording->events[i];
     char text[DEA_NOTICED_TEXT_SIZE];
     dea_noticed_text(event, recording->channels[event->channel].name, text);
-    printf("%-14s %.6g s: %s\n", i == 0 ? "events" : "", event->time_s, plain(text, shown));
+    printf("%-14s %.6g s: %s\n", i == 0 ? "events" : "", event->time_s, cli_plain(text, shown));
   }
   print_line("protocol", recording->protocol != NULL ? "inside" : "none");
   print_line("design", recording->design == NULL        ? "none"

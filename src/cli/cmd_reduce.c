@@ -175,11 +175,36 @@ static void print_discharges(const struct dea_reduction *r)
   putchar('\n');
 }
 
+/* What the charge of a voltage's edges tells of. */
+static void print_capacitance(const struct dea_reduction *r)
+{
+  bool known = false;
+  for (size_t l = 0; l < r->level_count; l++) {
+    const struct dea_voltage_level *level = &r->levels[l];
+    if (isnan(level->capacitance_F)) {
+      continue;
+    }
+    if (!known) {
+      printf("\n%8s  %20s %15s\n", "V (kV)", "capacitance (pF)", "sensed stretch");
+      known = true;
+    }
+    printf("%8.3f", 1e-3 * level->voltage_V);
+    print_value(1e12 * level->capacitance_F, 1e12 * level->capacitance_std_F);
+    print_number("%.4f", 15, level->sensed_stretch);
+    putchar('\n');
+  }
+  if (known) {
+    printf("+-: standard deviation from cycle to cycle; stretch of the electrode that the "
+           "capacitance tells of\n");
+  }
+}
+
 static void print_text(const struct dea_recording *recording, const struct dea_reduction *r,
                        const char *folder)
 {
+  char title[CLI_PLAIN_SIZE];
   printf("%-12s %s%s%s\n", "recording", recording->file, recording->title[0] != '\0' ? ": " : "",
-         recording->title);
+         cli_plain(recording->title, title));
   print_levelling(&r->levelling);
   if (!isnan(r->force_offset_N)) {
     printf("%-12s offset %.3f mN", "force", 1e3 * r->force_offset_N);
@@ -190,6 +215,7 @@ static void print_text(const struct dea_recording *recording, const struct dea_r
   }
   print_table(r);
   print_discharges(r);
+  print_capacitance(r);
   printf("\nwritten to %s\n", folder);
 }
 

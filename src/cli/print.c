@@ -23,6 +23,13 @@ static void add_plain(struct dea_text *line, const char *text)
   }
 }
 
+const char *cli_plain(const char *text, char out[CLI_PLAIN_SIZE])
+{
+  snprintf(out, CLI_PLAIN_SIZE, "%s", text);
+  dea_text_flatten(out);
+  return out;
+}
+
 static void say(struct dea_cli *cli, const struct dea_location *location,
                 enum dea_severity severity, const char *text)
 {

@@ -323,7 +323,7 @@ static dea_status write_rings(struct work *w, const struct dea_region *region, s
                               size_t contour, struct dea_rings *out)
 {
   struct ring_writer writer = {.work = w, .rings = out};
-  size_t polygon = 0;
+  size_t polygon = 0, before = 0;
   out->end = dea_alloc(w->ctx, region->contour_count, sizeof *out->end);
   out->polygon = dea_alloc(w->ctx, region->contour_count, sizeof *out->polygon);
   if (out->end == NULL || out->polygon == NULL) {
@@ -340,6 +340,12 @@ static dea_status write_rings(struct work *w, const struct dea_region *region, s
     for (; *edge < w->edge_count && w->all.contour[w->edge[*edge].piece] == contour + c; ++*edge) {
       DEA_TRY(w->ctx, add_edge(&writer, *edge));
     }
+    if (writer.point_count - before < 3) { // its points are one
+      return dea_region_fault(w->ctx, own.vertex[0].location, own.vertex[0].x_m, own.vertex[0].y_m,
+                              "the contour is smaller than a billionth of the distance to what it "
+                              "is combined with, and nothing is left of it");
+    }
+    before = writer.point_count;
     out->polygon[c] = polygon;
     out->end[c] = writer.point_count;
     out->count++;

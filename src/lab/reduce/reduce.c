@@ -537,6 +537,19 @@ static dea_status note_others(const struct job *job)
   return DEA_OK;
 }
 
+static dea_status note_no_sensor(const struct job *job)
+{
+  bool any = job->recording->profiles.count > 0;
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    any = any || job->out->series[kind].count > 0;
+  }
+  if (!any) {
+    NOTE(job->ctx, "the recording has neither displacements nor forces: of its cycles only what "
+                   "voltage and current tell is formed");
+  }
+  return DEA_OK;
+}
+
 static dea_status reduce(struct job *job, const struct dea_reduce_options *options)
 {
   DEA_TRY(job->ctx, note_others(job));
@@ -544,6 +557,7 @@ static dea_status reduce(struct job *job, const struct dea_reduce_options *optio
   DEA_TRY(job->ctx, note_cycles(job));
   DEA_TRY(job->ctx, reduce_profiles(job));
   DEA_TRY(job->ctx, reduce_channels(job, options));
+  DEA_TRY(job->ctx, note_no_sensor(job));
   DEA_TRY(job->ctx, reduce_cycles(job));
   return reduce_current(job);
 }
