@@ -102,6 +102,12 @@ static void test_mapping(void **state)
   assert_close(recording->channels[0].interval_s, 1e-4, 1e-12, 0);
   assert_true(is_said(DEA_WARNING, "in place of the times 'Time'"));
   dea_recording_destroy(ctx, recording);
+  // the file's own unit of its times counts
+  recording =
+      record_text("Time (s),HV\n5,0\n6,1\n7,2\n", "dea-import: 1\ntime_unit: ms\ncolumns:\n"
+                                                  "  - {column: HV, as: voltage, unit: kV}\n");
+  assert_close(recording->channels[0].interval_s, 1, 1e-12, 0);
+  dea_recording_destroy(ctx, recording);
   // a clock of its own, and one that is not uniform
   recording = record_text("t1 (ms),V (kV),t2 (s),F (mN)\n0,1,5,1\n1,2,5.1,2\n2,3,7,3\n",
                           "dea-import: 1\ntime: t1\ncolumns:\n  - {column: V, as: voltage}\n"

@@ -106,6 +106,14 @@ static void test_start_and_increment(void **state)
                        NULL);
   assert_close(dea_channel_time(&sparse->channels[0], 2), 2e-3, 1e-12, 0);
   dea_recording_destroy(ctx, sparse);
+  // times of seven digits, which repeat: the header knows them better
+  sparse = record_file("fine.csv",
+                       "\xef\xbb\xbfTime(s),CH1V,t0 =-0.2, tInc = 2e-08,\n"
+                       "-2.000000e-01,0,\n-2.000000e-01,1.5,\n-2.000000e-01,3,\n",
+                       NULL);
+  assert_close(sparse->channels[0].start_s, -0.2, 1e-12, 0);
+  assert_close(sparse->channels[0].interval_s, 2e-8, 1e-6, 0);
+  dea_recording_destroy(ctx, sparse);
   // words that are no such thing
   struct dea_table *table = read_text("list.csv", "Sample,Start,Increment\n1,2,3\n2,4,6\n");
   assert_string_equal(table->format, "csv");
@@ -134,8 +142,15 @@ static void test_lines_above(void **state)
   dea_table_destroy(ctx, table);
   table = read_text("words.csv", "Second,Volt,Ampere\n-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n"
                                  "2e-3,1.5,0.02\n");
-  assert_column(table, "column 1", "Second", times_s, 4);
-  assert_column(table, "column 3", "Ampere", second_V, 4);
+  assert_column(table, "Second", "Second", times_s, 4);
+  assert_column(table, "Ampere", "Ampere", second_V, 4);
+  dea_table_destroy(ctx, table);
+  // a title's own unit counts, and "In" is a name
+  table =
+      read_text("own.csv", "Vertical Units,V,A\nt (s),CH1 (mV),In mV\n-1e-3,0,0.01\n0,1.5,0.02\n"
+                           "1e-3,3,0.03\n2e-3,1.5,0.02\n");
+  assert_column(table, "CH1", "mV", first_V, 4);
+  assert_column(table, "In", "mV", second_V, 4);
   dea_table_destroy(ctx, table);
   static const struct {
     const char *name, *text, *columns[2];

@@ -112,6 +112,35 @@ static void test_what_the_first_lacks(void **state)
   dea_recording_destroy(ctx, laser);
 }
 
+/* Channels that happen to have the same clock keep their lengths, also of a drive that ended early.
+ */
+static void test_other_lengths(void **state)
+{
+  (void)state;
+  enum { MANY = 5000 };
+  make("early.h5", false, CYCLES, "the current was above 200 uA");
+  struct dea_recording *drive = must_read("early.h5"), *laser = laser_new();
+  struct dea_channel *z = &laser->channels[0];
+  const size_t count = drive->channels[0].count;
+  assert_true(count < MANY);
+  dea_free(ctx, z->values);
+  z->values = dea_alloc(ctx, MANY, sizeof(double));
+  assert_non_null(z->values);
+  z->count = MANY;
+  z->start_s = drive->channels[0].start_s;
+  z->interval_s = drive->channels[0].interval_s;
+  assert_int_equal(dea_recording_join(ctx, drive, laser, 0), DEA_OK);
+  unlink(in_folder("both.h5"));
+  assert_int_equal(dea_recording_write(ctx, drive, in_folder("both.h5")), DEA_OK);
+  dea_recording_destroy(ctx, laser);
+  dea_recording_destroy(ctx, drive);
+  drive = must_read("both.h5");
+  assert_int_equal(drive->channels[0].count, count);
+  assert_int_equal(drive->channels[3].count, MANY);
+  assert_false(drive->complete);
+  dea_recording_destroy(ctx, drive);
+}
+
 static void assert_refused(struct dea_recording *recording, struct dea_recording *other,
                            const char *said)
 {
@@ -127,17 +156,20 @@ static void test_what_cannot_be_joined(void **state)
   (void)state;
   make("a.h5", false, CYCLES, NULL);
   struct dea_recording *a = must_read("a.h5"), *b = must_read("a.h5"), *laser = laser_new();
+  assert_refused(a, b, "both have profiles");
+  b->profiles.count = 0;
   assert_refused(a, b, "already, value by value");
   for (size_t c = 0; c < b->channel_count; c++) {
     b->channels[c].values[0] += 1;
   }
-  assert_refused(a, b, "both have profiles");
-  b->profiles.count = 0;
   assert_refused(a, b, "both have cycles");
   const size_t own = a->channel_count;
   a->channel_count = DEA_CHANNELS_MAX - 1;
   assert_refused(a, laser, "more than 32 channels");
   a->channel_count = own;
+  laser->channels[1].time_s[1] = 0.1; // readings that end before the first cycle does
+  assert_refused(a, laser, "covers none of the 3 cycles");
+  laser->channels[1].time_s[1] = 2;
   // an hour later it was another measurement
   assert_int_equal(dea_recording_join(ctx, a, laser, 3600), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "they have no moment together"));
@@ -171,6 +203,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_teardown(test_on_one_clock, nothing_open),
       cmocka_unit_test_teardown(test_what_the_first_lacks, nothing_open),
+      cmocka_unit_test_teardown(test_other_lengths, nothing_open),
       cmocka_unit_test_teardown(test_what_cannot_be_joined, nothing_open),
       cmocka_unit_test_teardown(test_without_memory, nothing_open),
   };

@@ -328,6 +328,7 @@ static const struct dea_field design_fields[] = {
      .kind = DEA_FIELD_LABEL,
      .offset = AT(title),
      .absent_text = "none",
+     .one_line = true,
      .doc = "what the design is, for figures and reports",
      .example = "Actuator with four fibres"},
     {.key = "film",

@@ -56,7 +56,7 @@ static bool is_row_of_units(struct dea_context *ctx, const struct dea_slice *fie
   return units > 0;
 }
 
-/* Whether all fields are words: "Second,Volt" names units where "t,V" names quantities. */
+/* Whether all fields are words: "Second,Volt" tells units where "t,V" names quantities. */
 static bool are_words(const struct dea_slice *fields, size_t count)
 {
   bool words = true;
@@ -66,10 +66,11 @@ static bool are_words(const struct dea_slice *fields, size_t count)
   return words;
 }
 
-/* "Vertical Units,V,V" of an oscilloscope, further up: units of all columns but that of the times.
- */
+/* "Vertical Units,V,V" of an oscilloscope, further up: units of all columns but that of the times,
+ * and those whose title has one. */
 static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
-                                const struct dea_csv_dialect *dialect, struct dea_slice *out)
+                                const struct dea_csv_dialect *dialect,
+                                const struct dea_slice *titles, struct dea_slice *out)
 {
   struct dea_lines lines = {text.text, dialect->data, 0};
   struct dea_slice line;
@@ -77,6 +78,11 @@ static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
     if (dea_slice_starts(line, "Vertical Units") &&
         dea_titles_part(line, dialect->separator, dialect->count, out)) {
       out[0].length = 0;
+      for (size_t i = 0; i < dialect->count; i++) {
+        struct dea_slice name, unit;
+        dea_title_split(ctx, titles[i], &name, &unit);
+        out[i].length = unit.length > 0 ? 0 : out[i].length;
+      }
       return is_row_of_units(ctx, out, dialect->count);
     }
   }
@@ -98,17 +104,17 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
       return DEA_OK;
     }
   }
-  *units = dialect->count > 1 && part(dialect, 0, unit_fields) &&
-           is_row_of_units(ctx, unit_fields, dialect->count) &&
-           are_words(unit_fields, dialect->count);
-  if (!*units && part(dialect, 0, titles)) {
-    *units = find_vertical_units(ctx, text, dialect, unit_fields);
+  if (part(dialect, 0, titles)) {
+    *units = dialect->count > 1 && part(dialect, 0, unit_fields) &&
+             is_row_of_units(ctx, unit_fields, dialect->count) &&
+             are_words(unit_fields, dialect->count); // names and units in one
+    *units = *units || find_vertical_units(ctx, text, dialect, titles, unit_fields);
     return DEA_OK;
   }
   for (size_t i = 0; i < dialect->count; i++) {
     titles[i] = (struct dea_slice){"", 0};
   }
-  if (!*units && dialect->title_count > 0) {
+  if (dialect->title_count > 0) {
     return dea_finding_add(ctx, DEA_NOTE, location,
                            "the lines above the numbers name no %zu columns: they are called "
                            "'column 1' and so on",

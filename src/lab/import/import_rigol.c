@@ -10,6 +10,7 @@
 #include "lab/import/text_rows.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { NAMES_MAX = 16 };
 
@@ -107,9 +108,26 @@ static bool read_head(struct dea_slice text, struct head *out)
 static bool recognise(const char *file, const unsigned char *head, size_t length)
 {
   struct head read;
+  const bool marked = length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0;
   (void)file;
+  head += marked ? 3 : 0;
+  length -= marked ? 3 : 0;
   return dea_text_file_is(head, length) &&
          read_head((struct dea_slice){(const char *)head, length}, &read);
+}
+
+/* Times are written with seven digits, which are fewer than samples have: those that the header
+ * tells take their place, where all are the same to these digits. */
+static void sharpen(struct dea_table_column *times, const struct head *head)
+{
+  bool same = true;
+  for (size_t i = 0; i < times->count && same; i++) {
+    const double exact = head->start_s + (double)i * head->interval_s;
+    same = fabs(times->values[i] - exact) <= 1e-6 * fabs(exact) + 0.01 * head->interval_s;
+  }
+  for (size_t i = 0; i < times->count && same; i++) {
+    times->values[i] = head->start_s + (double)i * head->interval_s;
+  }
 }
 
 static dea_status read_text(struct dea_context *ctx, struct dea_slice text, struct dea_table *out)
@@ -142,6 +160,9 @@ static dea_status read_text(struct dea_context *ctx, struct dea_slice text, stru
   DEA_TRY(ctx, dea_text_rows_read(ctx, text, &dialect, head.titles, head.units, out));
   for (size_t i = 0; counted && i < out->columns[0].count; i++) {
     out->columns[0].values[i] = head.start_s + out->columns[0].values[i] * head.interval_s;
+  }
+  if (timed) {
+    sharpen(&out->columns[0], &head);
   }
   for (size_t i = 0; i < out->column_count && !counted && !timed; i++) {
     out->columns[i].start = head.start_s;

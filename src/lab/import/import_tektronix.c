@@ -11,6 +11,8 @@
 #include "lab/import/text_file.h"
 #include "lab/import/text_rows.h"
 
+#include <string.h>
+
 enum { KEY, VALUE, BESIDE, TIME, SAMPLE, FIELDS, HEADER_LINES = 40 };
 
 /* The fields of a line that has all of them. */
@@ -29,6 +31,7 @@ static bool recognise(const char *file, const unsigned char *head, size_t length
   struct dea_slice line, fields[FIELDS];
   double time, sample;
   (void)file;
+  lines.next += length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   return dea_text_file_is(head, length) && dea_lines_next(&lines, &line) && part(line, fields) &&
          dea_slice_is(fields[KEY], "Record Length") && dea_slice_number(fields[TIME], '.', &time) &&
          time == time && dea_slice_number(fields[SAMPLE], '.', &sample);
@@ -42,8 +45,8 @@ static dea_status read_header(struct dea_context *ctx, struct dea_slice text,
   struct dea_lines lines = {text.text, text.text + text.length, 0};
   struct dea_slice line, fields[FIELDS];
   struct dea_text note = {.ctx = ctx};
-  while (lines.line < HEADER_LINES && dea_lines_next(&lines, &line) && part(line, fields)) {
-    if (fields[KEY].length == 0) {
+  while (lines.line < HEADER_LINES && dea_lines_next(&lines, &line)) {
+    if (!part(line, fields) || fields[KEY].length == 0) {
       continue;
     }
     dea_text_add(&note, "%s%.*s: %.*s", note.length > 0 ? "; " : "", (int)fields[KEY].length,

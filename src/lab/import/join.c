@@ -101,7 +101,7 @@ static bool has_all(const struct dea_table *table, const struct dea_table *other
 {
   bool all = true;
   for (size_t k = 0; k < other->column_count && all; k++) {
-    bool found = k == times;
+    bool found = k == times || other->columns[k].count < 2; // a rate tells nothing
     for (size_t i = 0; i < table->column_count && !found; i++) {
       found = is_same(&table->columns[i], &other->columns[k]);
     }

@@ -203,7 +203,8 @@ static dea_status take_guessed_time(struct work *work, size_t i)
                            "begin at 0",
                            work->table->columns[i].name, work->table->file);
   }
-  if (mapping != NULL && mapping->time_unit.text[0] != '\0') {
+  if (mapping != NULL && mapping->time_unit.text[0] != '\0' &&
+      work->table->columns[i].unit[0] == '\0') {
     const struct dea_scale_text text = {.unit = &mapping->time_unit};
     return scale(work, i, "s", &text, mapping->time_unit.location);
   }

@@ -173,7 +173,8 @@ void dea_title_split(struct dea_context *ctx, struct dea_slice title, struct dea
       return;
     }
   }
-  const size_t in = dea_slice_starts(title, "in ") ? 3 : title.length;
+  // "In mV" is an input's title
+  const size_t in = title.length > 3 && memcmp(title.text, "in ", 3) == 0 ? 3 : title.length;
   const struct dea_slice after = {title.text + in, title.length - in};
   if (is_bare_unit((struct dea_slice){"", 0}, after)) { // of a column without a name
     *unit = after;

@@ -15,7 +15,7 @@ enum { SEQUENCE_GROUP = 1, FIELD_GROUP };
 
 static const struct dea_field step_fields[] = {
     DEA_LABEL_ROW("label", STEP(label), "cyclic", "name of the step, for messages and figures",
-                  .absent_text = "none"),
+                  .absent_text = "none", .one_line = true),
     {.key = "waveform",
      .kind = DEA_FIELD_SECTION,
      .offset = STEP(section),

@@ -39,10 +39,10 @@ static bool is_same(const struct dea_channel *a, const struct dea_channel *b)
   return same;
 }
 
-/* Whether all channels of the other are there already, under whatever name. */
+/* Whether all that the other has is there already, under whatever name. */
 static bool has_all(const struct dea_recording *recording, const struct dea_recording *other)
 {
-  bool all = other->channel_count > 0;
+  bool all = other->channel_count > 0 && other->profiles.count == 0;
   for (size_t k = 0; k < other->channel_count && all; k++) {
     bool found = false;
     for (size_t i = 0; i < recording->channel_count && !found; i++) {
@@ -214,47 +214,68 @@ static void take_cycles(struct dea_recording *recording, struct dea_recording *o
   }
 }
 
-/* Whether all channels of a clock were measured throughout a cycle, to half a sample. */
-static bool is_measured(const struct dea_recording *recording,
-                        const struct dea_recorded_cycle *cycle)
+/* Of times first_s ... last_s, a step apart on average, what they cover. */
+static void narrow(struct span *span, double first_s, double last_s, size_t count)
 {
-  bool whole = true;
-  for (size_t c = 0; c < recording->channel_count; c++) {
-    const struct dea_channel *channel = &recording->channels[c];
-    const double half_s = 0.5 * channel->interval_s;
-    const double last_s = channel->start_s + (double)channel->count * channel->interval_s;
-    if (channel->interval_s > 0 && channel->count > 0) {
-      whole =
-          whole && cycle->start_s >= channel->start_s - half_s && cycle->end_s <= last_s + half_s;
-    }
-  }
-  return whole;
+  const double step_s = count > 1 ? (last_s - first_s) / (double)(count - 1) : INFINITY;
+  span->first_s = fmax(span->first_s, first_s - 0.5 * step_s);
+  span->last_s = fmin(span->last_s, last_s + 1.5 * step_s);
 }
 
-/* The two may have begun and ended at different moments. */
-static dea_status drop_cycles(struct dea_context *ctx, struct dea_recording *recording,
-                              const char *with)
+/* What all channels and the profiles of a recording cover, to half a sample. */
+static struct span common_of(const struct dea_recording *recording)
 {
-  const struct dea_location location = {.file = with};
-  const size_t before = recording->cycle_count;
-  recording->cycle_count = 0;
-  for (size_t i = 0; i < before; i++) {
-    if (is_measured(recording, &recording->cycles[i])) {
-      recording->cycles[recording->cycle_count++] = recording->cycles[i];
+  struct span span = {-INFINITY, INFINITY};
+  for (size_t c = 0; c < recording->channel_count; c++) {
+    const struct dea_channel *channel = &recording->channels[c];
+    if (channel->count > 0) {
+      narrow(&span, dea_channel_time(channel, 0), dea_channel_time(channel, channel->count - 1),
+             channel->count);
     }
   }
-  const size_t lost = before - recording->cycle_count;
-  return lost == 0 ? DEA_OK
-                   : dea_finding_add(ctx, DEA_WARNING, location,
-                                     "%zu of %zu cycles were not measured from begin to end by all "
-                                     "channels of both, and are left out",
-                                     lost, before);
+  const struct dea_profiles *profiles = &recording->profiles;
+  if (profiles->count > 0) {
+    narrow(&span, profiles->time_s[0], profiles->time_s[profiles->count - 1], profiles->count);
+  }
+  return span;
+}
+
+/* Leaves out the cycles of one that the other did not measure; shift_s: what the one's clock shows
+ * where the other's shows 0. Where none is left it fails, with all as they were. */
+static dea_status drop_cycles(struct dea_context *ctx, struct dea_recording *of,
+                              const struct dea_recording *other, double shift_s)
+{
+  const struct dea_location location = {.file = other->file};
+  const struct span covered = common_of(other);
+  const double first_s = covered.first_s + shift_s, last_s = covered.last_s + shift_s;
+  const size_t before = of->cycle_count;
+  size_t kept = 0;
+  for (size_t i = 0; i < before; i++) {
+    kept += of->cycles[i].start_s >= first_s && of->cycles[i].end_s <= last_s;
+  }
+  if (kept == 0 && before > 0) {
+    return dea_fail(ctx, DEA_E_IO, "'%s' covers none of the %zu cycles of '%s' from begin to end",
+                    other->file, before, of->file);
+  }
+  of->cycle_count = 0;
+  for (size_t i = 0; i < before; i++) {
+    if (of->cycles[i].start_s >= first_s && of->cycles[i].end_s <= last_s) {
+      of->cycles[of->cycle_count++] = of->cycles[i];
+    }
+  }
+  return kept == before ? DEA_OK
+                        : dea_finding_add(
+                              ctx, DEA_WARNING, location,
+                              "it does not cover %zu of the %zu cycles of '%s', which are left out",
+                              before - kept, before, of->file);
 }
 
 dea_status dea_recording_join(struct dea_context *ctx, struct dea_recording *recording,
                               struct dea_recording *other, double after_s)
 {
   DEA_TRY(ctx, check(ctx, recording, other, after_s));
+  DEA_TRY(ctx, drop_cycles(ctx, recording, other, after_s));
+  DEA_TRY(ctx, drop_cycles(ctx, other, recording, -after_s));
   DEA_TRY(ctx, join_provenance(ctx, recording, other, after_s));
   DEA_TRY(ctx, join_events(ctx, recording, other, after_s));
   move_channels(recording, other, after_s);
@@ -270,8 +291,10 @@ dea_status dea_recording_join(struct dea_context *ctx, struct dea_recording *rec
     recording->complete = false;
     snprintf(recording->ended, sizeof recording->ended, "%s", other->ended);
   }
-  if (recording->output[0] == '\0') {
+  static const char zero[] = "at 0 V"; // what is known of the other may be worse
+  if (other->output[0] != '\0' &&
+      (recording->output[0] == '\0' || strncmp(other->output, zero, sizeof zero - 1) != 0)) {
     snprintf(recording->output, sizeof recording->output, "%s", other->output);
   }
-  return drop_cycles(ctx, recording, other->file);
+  return DEA_OK;
 }

@@ -27,20 +27,25 @@ static void say_ended(struct dea_recording *recording, const char *why)
 
 // Parts ------------------------------------------------------------------------------------------
 
-static void get_state(struct h5 *h, hid_t file, struct dea_recording *recording)
+/* Whether it was ended by its program, complete or not. */
+static bool get_state(struct h5 *h, hid_t file, struct dea_recording *recording)
 {
+  bool ended = false;
   char *state = dea_h5_get_long_text(h, file, "state");
   size_t prefix = strlen(DEA_STATE_ENDED);
   if (state == NULL) {
     wrong(h, "it does not say whether it is complete");
   } else if (strcmp(state, DEA_STATE_COMPLETE) == 0) {
     recording->complete = true;
+    ended = true;
   } else if (strncmp(state, DEA_STATE_ENDED, prefix) == 0) {
     say_ended(recording, state + prefix);
+    ended = true;
   } else {
     say_ended(recording, "its program was killed, or is still recording");
   }
   dea_free(h->ctx, state);
+  return ended;
 }
 
 static void get_output(struct h5 *h, hid_t file, struct dea_recording *recording)
@@ -287,7 +292,7 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
                          "%s is a recording of version %lld; this program reads version %d",
                          h->path, version, DEA_RECORDING_VERSION);
   }
-  get_state(h, file, recording);
+  const bool ended = get_state(h, file, recording);
   get_output(h, file, recording);
   get_cycles(h, file, recording, &cut); // before the samples: a program may be adding to both
   get_channels(h, file, recording, &cut);
@@ -308,7 +313,7 @@ static void get_all(struct h5 *h, hid_t file, struct dea_recording *recording)
   if (cut) {
     say_ended(recording, "the file is damaged: samples are missing at the end");
   }
-  if (!recording->complete) {
+  if (!ended || cut) {
     level_channels(recording);
   }
   drop_cycles(recording);

@@ -118,9 +118,10 @@ dea_status dea_recording_write(struct dea_context *ctx, const struct dea_recordi
 
 /* Moves the channels, profiles, cycles and events of another recording of the same measurement into
  * this one, whose clock shows after_s where the other's shows 0; texts where this one has none.
- * Channels of the same name get a number; cycles that some channel does not cover are left out with
- * a warning. DEA_E_IO, with both as they were, where they have no moment together, a channel twice,
- * both profiles or both cycles, or too many channels. */
+ * Channels of the same name get a number. Cycles of one that the other does not cover are left out
+ * with a warning. DEA_E_IO, with both as they were, where that are all, where the two have no
+ * moment together, the other has nothing new, both have profiles or cycles, or there are too many
+ * channels. */
 dea_status dea_recording_join(struct dea_context *ctx, struct dea_recording *recording,
                               struct dea_recording *other, double after_s);
 
