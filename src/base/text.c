@@ -80,6 +80,16 @@ bool dea_letter_is_control(unsigned code)
   return code < 0x20 || (code >= 0x7f && code < 0xa0);
 }
 
+size_t dea_text_cut(const char *text, size_t most)
+{
+  size_t n = strlen(text);
+  n = n < most ? n : most;
+  while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80) {
+    n--;
+  }
+  return n;
+}
+
 void dea_text_flatten(char *text)
 {
   unsigned code;

@@ -25,6 +25,8 @@ size_t dea_letter_read(const char *text, unsigned *code);
 /* Whether a letter is a control character (C0, DEL, C1): a terminal obeys it, a line end among
  * them. */
 bool dea_letter_is_control(unsigned code);
+/* Bytes of a text, at most so many, cut between letters. */
+size_t dea_text_cut(const char *text, size_t most);
 /* Control characters of UTF-8 text become blanks, in place. */
 void dea_text_flatten(char *text);
 /* How XML and HTML write a letter that means something to them ("&lt;"); NULL for others. */

@@ -32,7 +32,7 @@ struct dea_table {
 struct dea_importer {
   const char *name;    // "csv"
   const char *formats; // "CSV with any separator", for help
-  /* Whether a file looks like this format: its name, and its first bytes. */
+  /* Whether a file looks like this format: its name, and its first bytes, without UTF-8's mark. */
   bool (*recognise)(const char *file, const unsigned char *head, size_t length);
   /* One of these reads: the file's text (text_file.h), its bytes, or the file itself. Errors are
    * findings with line and column, or byte offset; DEA_E_IO then. */

@@ -19,9 +19,6 @@ static bool recognise(const char *file, const unsigned char *head, size_t length
   struct dea_lines lines = {text.text, text.text + length, 0};
   struct dea_slice line;
   (void)file;
-  if (length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0) {
-    lines.next += 3;
-  }
   while (dea_text_file_is(head, length) && lines.line < 12 && dea_lines_next(&lines, &line) &&
          dea_slice_starts(line, "%")) {
     if (dea_slice_find(line, "COMSOL") < line.length || dea_slice_starts(line, "% Model:")) {

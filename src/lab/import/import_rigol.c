@@ -10,7 +10,6 @@
 #include "lab/import/text_rows.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { NAMES_MAX = 16 };
 
@@ -108,10 +107,7 @@ static bool read_head(struct dea_slice text, struct head *out)
 static bool recognise(const char *file, const unsigned char *head, size_t length)
 {
   struct head read;
-  const bool marked = length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0;
   (void)file;
-  head += marked ? 3 : 0;
-  length -= marked ? 3 : 0;
   return dea_text_file_is(head, length) &&
          read_head((struct dea_slice){(const char *)head, length}, &read);
 }

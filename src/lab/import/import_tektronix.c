@@ -11,8 +11,6 @@
 #include "lab/import/text_file.h"
 #include "lab/import/text_rows.h"
 
-#include <string.h>
-
 enum { KEY, VALUE, BESIDE, TIME, SAMPLE, FIELDS, HEADER_LINES = 40 };
 
 /* The fields of a line that has all of them. */
@@ -31,7 +29,6 @@ static bool recognise(const char *file, const unsigned char *head, size_t length
   struct dea_slice line, fields[FIELDS];
   double time, sample;
   (void)file;
-  lines.next += length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
   return dea_text_file_is(head, length) && dea_lines_next(&lines, &line) && part(line, fields) &&
          dea_slice_is(fields[KEY], "Record Length") && dea_slice_number(fields[TIME], '.', &time) &&
          time == time && dea_slice_number(fields[SAMPLE], '.', &sample);

@@ -58,6 +58,9 @@ static const struct dea_importer *recognise(const char *file, const unsigned cha
 {
   size_t count;
   const struct dea_importer *const *all = dea_importer_all(&count);
+  const size_t mark = length >= 3 && memcmp(head, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+  head += mark;
+  length -= mark;
   for (size_t i = 0; i < count; i++) {
     if (all[i]->recognise(file, head, length)) {
       return all[i];

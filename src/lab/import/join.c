@@ -88,11 +88,8 @@ static bool begin_together(const struct table_clock *a, const struct table_clock
 
 static bool is_same(const struct dea_table_column *a, const struct dea_table_column *b)
 {
-  bool same = a->count == b->count && a->count > 1 && strcmp(a->name, b->name) == 0;
-  for (size_t i = 0; same && i < a->count; i++) {
-    same = a->values[i] == b->values[i] || (isnan(a->values[i]) && isnan(b->values[i]));
-  }
-  return same;
+  return a->count == b->count && a->count > 1 && strcmp(a->name, b->name) == 0 &&
+         dea_samples_same(a->values, b->values, a->count);
 }
 
 /* Whether all columns of the other but its times are there already: a file that is named twice, or

@@ -149,26 +149,13 @@ static const struct dea_mapped *mapped_get(const struct work *work, size_t colum
   return NULL;
 }
 
-/* Bytes of a text that fit into `most`, cut between letters. */
-static int cut(const char *text, size_t most)
-{
-  size_t n = strlen(text);
-  n = n < most ? n : most;
-  while (n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80) {
-    n--;
-  }
-  return (int)n;
-}
-
 /* A name that no other channel has. */
 static void name_channel(const struct work *work, const char *wanted, struct dea_channel *channel)
 {
   wanted = wanted[0] != '\0' ? wanted : "channel";
-  int n = cut(wanted, DEA_CHANNEL_NAME_SIZE - 8);
-  snprintf(channel->name, sizeof channel->name, "%.*s", n, wanted);
-  for (int k = 2; dea_recording_channel(work->recording, channel->name) != NULL; k++) {
-    snprintf(channel->name, sizeof channel->name, "%.*s %d", n, wanted, k);
-  }
+  snprintf(channel->name, sizeof channel->name, "%.*s",
+           (int)dea_text_cut(wanted, DEA_CHANNEL_NAME_SIZE - 8), wanted);
+  dea_recording_name_apart(work->recording, channel);
 }
 
 static dea_status add_channel(struct work *work, size_t column)
@@ -195,7 +182,7 @@ static dea_status add_channel(struct work *work, size_t column)
   const char *unit = united ? mapped->unit.text : c->unit;
   const char *si = dea_channel_meanings[role->kind].si_unit;
   snprintf(channel.unit, sizeof channel.unit, "%.*s",
-           cut(other ? unit : si, sizeof channel.unit - 1), other ? unit : si);
+           (int)dea_text_cut(other ? unit : si, sizeof channel.unit - 1), other ? unit : si);
   if (mapped != NULL && !isnan(mapped->filter_Hz.si)) {
     channel.filter_Hz = mapped->filter_Hz.si;
   }

@@ -32,11 +32,8 @@ static struct span span_of(const struct dea_recording *recording)
 
 static bool is_same(const struct dea_channel *a, const struct dea_channel *b)
 {
-  bool same = a->count == b->count && a->count > 1 && a->kind == b->kind;
-  for (size_t i = 0; same && i < a->count; i++) {
-    same = a->values[i] == b->values[i] || (isnan(a->values[i]) && isnan(b->values[i]));
-  }
-  return same;
+  return a->count == b->count && a->count > 1 && a->kind == b->kind &&
+         dea_samples_same(a->values, b->values, a->count);
 }
 
 /* Whether all that the other has is there already, under whatever name. */
@@ -92,21 +89,6 @@ static void shift(double *time_s, size_t count, double by_s)
 {
   for (size_t i = 0; time_s != NULL && i < count; i++) {
     time_s[i] += by_s;
-  }
-}
-
-/* A name that no channel of the recording has. */
-static void rename_channel(const struct dea_recording *recording, struct dea_channel *channel)
-{
-  char name[DEA_CHANNEL_NAME_SIZE];
-  snprintf(name, sizeof name, "%s", channel->name);
-  for (int k = 2; dea_recording_channel(recording, channel->name) != NULL; k++) {
-    size_t n = strlen(name), most = sizeof channel->name - 8;
-    n = n < most ? n : most;
-    while (n > 0 && ((unsigned char)name[n] & 0xc0) == 0x80) { // between letters
-      n--;
-    }
-    snprintf(channel->name, sizeof channel->name, "%.*s %d", (int)n, name, k);
   }
 }
 
@@ -178,7 +160,7 @@ static void move_channels(struct dea_recording *recording, struct dea_recording 
 {
   for (size_t c = 0; c < other->channel_count; c++) {
     struct dea_channel *channel = &other->channels[c];
-    rename_channel(recording, channel);
+    dea_recording_name_apart(recording, channel);
     channel->start_s += after_s;
     shift(channel->time_s, channel->count, after_s);
     recording->channels[recording->channel_count++] = *channel;

@@ -1,6 +1,8 @@
 /* A recording in memory. */
 #include "lab/recording/recording.h"
 
+#include "base/text.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -62,6 +64,25 @@ const struct dea_channel *dea_recording_channel(const struct dea_recording *reco
     }
   }
   return NULL;
+}
+
+void dea_recording_name_apart(const struct dea_recording *recording, struct dea_channel *channel)
+{
+  char name[DEA_CHANNEL_NAME_SIZE];
+  snprintf(name, sizeof name, "%s", channel->name);
+  for (int k = 2; dea_recording_channel(recording, channel->name) != NULL; k++) {
+    snprintf(channel->name, sizeof channel->name, "%.*s %d",
+             (int)dea_text_cut(name, sizeof name - 8), name, k);
+  }
+}
+
+bool dea_samples_same(const double *a, const double *b, size_t count)
+{
+  bool same = true;
+  for (size_t i = 0; same && i < count; i++) {
+    same = a[i] == b[i] || (isnan(a[i]) && isnan(b[i]));
+  }
+  return same;
 }
 
 size_t dea_channel_index(const struct dea_channel *channel, double time_s)

@@ -134,6 +134,10 @@ const struct dea_channel *dea_recording_kind(const struct dea_recording *recordi
                                              enum dea_channel_kind kind);
 const struct dea_channel *dea_recording_channel(const struct dea_recording *recording,
                                                 const char *name);
+/* Gives a channel that is to be added a number where its name is one of the recording's. */
+void dea_recording_name_apart(const struct dea_recording *recording, struct dea_channel *channel);
+/* Whether two lists of samples are the same, missing ones too. */
+bool dea_samples_same(const double *a, const double *b, size_t count);
 /* Time of a sample [s], i < count. */
 static inline double dea_channel_time(const struct dea_channel *channel, size_t i)
 {
