@@ -19,8 +19,12 @@ static void test_list(void **state)
   assert_string_equal(json_string_value(json_object_get(column, "name")), "HV");
   assert_string_equal(json_string_value(json_object_get(column, "as")), "voltage");
   assert_true(json_real_value(json_object_get(column, "largest")) == 2);
+  assert_int_equal(json_integer_value(json_object_get(column, "missing")), 0);
   json_decref(json);
   assert_int_equal(command_run("recording a.h5"), 5); // nothing was written
+  command_write("holes.csv", "Time (s),HV (kV)\n0,0\n0.5,\n1,nan\n1.5,2\n");
+  assert_int_equal(command_run("import --list holes.csv"), 0);
+  assert_contains(command_out, "voltage (by its name and unit); 2 missing");
 }
 
 static void test_recording(void **state)
@@ -71,6 +75,7 @@ static void test_errors(void **state)
       {"import", 2, "a file is missing"},
       {"import none.csv", 5, "none.csv"},
       {"import a.csv --format xls", 2, "not a format"},
+      {"import a.csv --format comsol", 5, "looks like format 'csv'"},
       {"import a.csv --list -o x.h5", 2, "--list writes nothing"},
       {"import a.csv --map bad.yaml", 3, "bad.yaml:2"},
       {"import a.csv c.csv -o c.h5", 5, "different clocks"},

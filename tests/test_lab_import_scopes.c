@@ -145,6 +145,12 @@ static void test_lines_above(void **state)
   assert_column(table, "Second", "Second", times_s, 4);
   assert_column(table, "Ampere", "Ampere", second_V, 4);
   dea_table_destroy(ctx, table);
+  // the unit of a product is none that is known; the others stay
+  table = read_text("product.csv", "Vertical Units,V,VV\nLabel,,\nTIME,CH1,MATH\n"
+                                   "-1e-3,0,0.01\n0,1.5,0.02\n1e-3,3,0.03\n2e-3,1.5,0.02\n");
+  assert_column(table, "CH1", "V", first_V, 4);
+  assert_column(table, "MATH", "", second_V, 4);
+  dea_table_destroy(ctx, table);
   // a title's own unit counts, and "In" is a name
   table =
       read_text("own.csv", "Vertical Units,V,A\nt (s),CH1 (mV),In mV\n-1e-3,0,0.01\n0,1.5,0.02\n"

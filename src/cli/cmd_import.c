@@ -21,15 +21,18 @@ struct request {
 
 // Listing ----------------------------------------------------------------------------------------
 
-/* Smallest and largest value; NAN without any. */
-static void range_get(const struct dea_table_column *column, double *low, double *high)
+/* Smallest and largest value, NAN without any; returns how many are missing. */
+static size_t range_get(const struct dea_table_column *column, double *low, double *high)
 {
+  size_t missing = 0;
   *low = NAN;
   *high = NAN;
   for (size_t i = 0; i < column->count; i++) {
     *low = fmin(*low, column->values[i]);
     *high = fmax(*high, column->values[i]);
+    missing += isnan(column->values[i]) != 0;
   }
+  return missing;
 }
 
 static json_t *json_number(double value)
@@ -44,13 +47,13 @@ static dea_status list_json(struct dea_cli *cli, const struct dea_table *table,
   for (size_t i = 0; i < table->column_count; i++) {
     const struct dea_table_column *column = &table->columns[i];
     double low, high;
-    range_get(column, &low, &high);
-    json_array_append_new(columns, json_pack("{s:s, s:s, s:I, s:o, s:o, s:o, s:s, s:s}", "name",
-                                             column->name, "unit", column->unit, "count",
-                                             (json_int_t)column->count, "smallest",
-                                             json_number(low), "largest", json_number(high),
-                                             "interval_s", json_number(column->interval), "as",
-                                             dea_role_name(&roles[i]), "why", roles[i].why));
+    size_t missing = range_get(column, &low, &high);
+    json_array_append_new(
+        columns, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:s, s:s}", "name", column->name,
+                           "unit", column->unit, "count", (json_int_t)column->count, "missing",
+                           (json_int_t)missing, "smallest", json_number(low), "largest",
+                           json_number(high), "interval_s", json_number(column->interval), "as",
+                           dea_role_name(&roles[i]), "why", roles[i].why));
   }
   json_t *json = json_pack("{s:s, s:s, s:s, s:o}", "file", table->file, "format", table->format,
                            "note", table->note != NULL ? table->note : "", "columns", columns);
@@ -91,16 +94,20 @@ static void list_text(const struct dea_table *table, const struct dea_column_rol
   for (size_t i = 0; i < table->column_count; i++) {
     const struct dea_table_column *column = &table->columns[i];
     double low, high;
-    range_get(column, &low, &high);
+    size_t missing = range_get(column, &low, &high);
     print_padded(column->name, name_width + 2);
     print_padded(column->unit, unit_width + 2);
-    printf("%9zu  %12.6g  %12.6g  ", column->count, low, high);
+    printf("%9zu  %12.6g  %12.6g  ", column->count - missing, low, high);
     if (column->interval > 0) {
       printf("%-8.3g s", column->interval);
     } else {
       printf("%-10s", "");
     }
-    printf("  %s (%s)\n", dea_role_name(&roles[i]), roles[i].why);
+    printf("  %s (%s)", dea_role_name(&roles[i]), roles[i].why);
+    if (missing > 0) {
+      printf("; %zu missing", missing);
+    }
+    putchar('\n');
   }
 }
 

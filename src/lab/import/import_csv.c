@@ -67,7 +67,7 @@ static bool are_words(const struct dea_slice *fields, size_t count)
 }
 
 /* "Vertical Units,V,V" of an oscilloscope, further up: units of all columns but that of the times,
- * and those whose title has one. */
+ * those whose title has one, and those whose unit is none that is known ("VV" of a product). */
 static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
                                 const struct dea_csv_dialect *dialect,
                                 const struct dea_slice *titles, struct dea_slice *out)
@@ -77,13 +77,15 @@ static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
   while (lines.line < PREAMBLE_LINES && dea_lines_next(&lines, &line)) {
     if (dea_slice_starts(line, "Vertical Units") &&
         dea_titles_part(line, dialect->separator, dialect->count, out)) {
-      out[0].length = 0;
+      bool any = false;
       for (size_t i = 0; i < dialect->count; i++) {
         struct dea_slice name, unit;
         dea_title_split(ctx, titles[i], &name, &unit);
-        out[i].length = unit.length > 0 ? 0 : out[i].length;
+        bool taken = i > 0 && unit.length == 0 && is_row_of_units(ctx, &out[i], 1);
+        out[i].length = taken ? out[i].length : 0;
+        any = any || taken;
       }
-      return is_row_of_units(ctx, out, dialect->count);
+      return any;
     }
   }
   return false;
