@@ -61,6 +61,13 @@ static void test_errors(void **state)
     assert_contains(command_err, "is no part of parts such as 2/8");
   }
   assert_int_equal(command_run("sweep mine.yaml -j 0"), 2);
+  // would throw away what the others compute, or what is to be merged
+  static const char *const parts[] = {"--merge", "--shard 1/2", "--slurm 2"};
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+    char line[64];
+    snprintf(line, sizeof line, "sweep mine.yaml --force %s", parts[i]);
+    command_expect(line, 2, "--force throws away the cases of all parts");
+  }
 }
 
 /* Of a device made of plies: numbers of its parts and shapes. */

@@ -344,6 +344,8 @@ static void test_store(void **state)
   dea_pool_destroy(pool);
   assert_int_equal(dea_store_open(ctx, name, "q1", &evaluator, &whole, &other), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "another process writes"));
+  assert_int_equal(dea_store_remove(ctx, name), DEA_E_IO); // what is computed would be lost
+  assert_non_null(strstr(dea_context_message(ctx), "another process writes"));
   dea_store_close(store);
   assert_int_equal(dea_store_open(ctx, name, "q2", &evaluator, NULL, &other), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "another question"));
@@ -381,6 +383,11 @@ static void test_store(void **state)
     assert_int_equal(dea_store_torn(store), 0);
     dea_store_close(store);
   }
+  snprintf(name, sizeof name, "%s/store", folder);
+  assert_int_equal(dea_store_remove(ctx, name), DEA_OK);
+  assert_int_equal(dea_store_open(ctx, name, "q1", &evaluator, NULL, &store), DEA_OK);
+  assert_int_equal(dea_store_count(store), 0);
+  dea_store_close(store);
 }
 
 int main(void)

@@ -108,6 +108,15 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
+  if (request->options.force &&
+      (request->options.merge || request->slurm > 0 || request->options.shard.parts > 1)) {
+    return cli_usage_error(cli, &cmd_sweep,
+                           "--force throws away the cases of all parts: it does not go with %s; "
+                           "remove part-*.csv of the folder before the first part begins",
+                           request->options.merge ? "--merge"
+                           : request->slurm > 0   ? "--slurm"
+                                                  : "--shard");
+  }
   request->options.format = request->format;
   request->options.processes = cli_ranks_processes(&request->ranks, request->processes);
   request->options.folder =

@@ -265,6 +265,22 @@ static dea_status sync_now(struct dea_store *store)
                          strerror(errno));
 }
 
+/* Whether a part is this process' alone. */
+static bool lock_part(int file)
+{
+  bool locked = false; // the processes of a program that was killed hold it for a moment
+  for (int tries = 0; tries < 20 && !locked; tries++) {
+    locked = flock(file, LOCK_EX | LOCK_NB) == 0;
+    dea_clock_wait(locked ? 0 : 0.1);
+  }
+  return locked;
+}
+
+static dea_status in_use(struct dea_context *ctx, const char *path)
+{
+  return dea_fail(ctx, DEA_E_IO, "another process writes to '%s'", path);
+}
+
 /* Opens the own part for this process alone. */
 static dea_status open_part(struct dea_store *store, const char *folder,
                             const struct dea_shard *shard)
@@ -279,15 +295,7 @@ static dea_status open_part(struct dea_store *store, const char *folder,
   if (store->file < 0) {
     return dea_fail(store->ctx, DEA_E_IO, "cannot open '%s': %s", store->path, strerror(errno));
   }
-  bool locked = false; // the processes of a program that was killed hold it for a moment
-  for (int tries = 0; tries < 20 && !locked; tries++) {
-    locked = flock(store->file, LOCK_EX | LOCK_NB) == 0;
-    dea_clock_wait(locked ? 0 : 0.1);
-  }
-  if (!locked) {
-    return dea_fail(store->ctx, DEA_E_IO, "another process writes to '%s'", store->path);
-  }
-  return DEA_OK;
+  return lock_part(store->file) ? DEA_OK : in_use(store->ctx, store->path);
 }
 
 /* Has the own part begin with its head and end with a whole line: without what a program that was
@@ -365,12 +373,20 @@ void dea_store_close(struct dea_store *store)
   dea_free(store->ctx, store);
 }
 
+/* Removes a part that nobody writes to: what they compute would be lost. */
 static dea_status remove_part(struct dea_context *ctx, void *user, const char *path)
 {
   (void)user;
-  return unlink(path) == 0
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_IO, "cannot remove '%s': %s", path, strerror(errno));
+  const int file = open(path, O_RDWR | O_CLOEXEC);
+  const bool used = file >= 0 && !lock_part(file);
+  const bool removed = !used && unlink(path) == 0;
+  const int error = errno;
+  if (file >= 0) {
+    close(file);
+  }
+  return removed ? DEA_OK
+         : used  ? in_use(ctx, path)
+                 : dea_fail(ctx, DEA_E_IO, "cannot remove '%s': %s", path, strerror(error));
 }
 
 dea_status dea_store_remove(struct dea_context *ctx, const char *folder)

@@ -144,11 +144,12 @@ static dea_status evaluate(struct work *w)
   return status;
 }
 
-/* How much of the plan is there, and what of it failed most often. */
+/* How much of the plan is there, and why some of it failed. */
 static void count(struct work *w)
 {
   struct dea_sweep_report *report = w->report;
-  const struct dea_case *last = NULL;
+  const struct dea_case *reason = NULL;
+  size_t votes = 0; // Boyer and Moore's: a reason of more than half is left
   for (size_t i = 0; i < w->plan->count; i++) {
     const struct dea_case *done = dea_store_find(w->store, numbers(w, i));
     report->there += done != NULL ? 1U : 0U;
@@ -156,13 +157,10 @@ static void count(struct work *w)
       continue;
     }
     report->failed++;
-    if (report->why_count == 0) { // a majority vote: exact where one reason has more than half
-      last = done;
-    }
-    // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): the first that failed sets it
-    report->why_count += strncmp(done->why, last->why, 40) == 0 ? 1U : 0U;
+    reason = votes == 0 ? done : reason;
+    votes = strncmp(done->why, reason->why, 40) == 0 ? votes + 1 : votes - 1;
   }
-  snprintf(report->why, sizeof report->why, "%s", last != NULL ? last->why : "");
+  snprintf(report->why, sizeof report->why, "%s", reason != NULL ? reason->why : "");
   report->planned = w->plan->count;
   report->torn = dea_store_torn(w->store);
 }

@@ -21,8 +21,7 @@ struct dea_sweep_report {
   size_t there, failed;                  // of the plan: done, and of these with a reason
   size_t torn;                           // lines that were not whole
   bool written;                          // the tables
-  char why[DEA_CASE_WHY_SIZE];           // the most frequent reason, "" without any
-  size_t why_count;
+  char why[DEA_CASE_WHY_SIZE];           // a reason, that of more than half if there is one; or ""
 };
 
 /* Evaluates what of the plan is not in the folder yet and writes the tables of all that is there:
