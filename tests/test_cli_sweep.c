@@ -124,6 +124,38 @@ static void test_monitors(void **state)
   }
 }
 
+/* What a material of the design says, its range and its scatter too, is part of the question. */
+static void test_another_material(void **state)
+{
+  (void)state;
+  static const char *const ranges[] = {"[1, 3]", "[1, 4]", "[1, 4]"}, *const shapes[] = {"8", "8",
+                                                                                         "9"};
+  for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             "dea: 1\nfilm: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"
+             "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm stretched}\n"
+             "compute: {voltage: {values: [3 kV]}}\nmaterials:\n  - name: mine\n"
+             "    title: mine\n    kind: elastomer\n    laws:\n"
+             "      - {id: a, law: neo-hookean, parameters: {mu: 200 kPa}, source: me,\n"
+             "         stretch_range: %s}\n"
+             "    permittivity:\n      - {id: a, at_rest: 2.8, source: me}\n"
+             "    breakdown:\n      - {id: a, at_rest: 80 V/um, weibull_shape: %s,\n"
+             "         reference_area: 0.545415391 cm^2, source: me}\n",
+             ranges[i], shapes[i]); // the film's own area, so that the field stays
+    command_write("own.yaml", text);
+    command_write("own-sweep.yaml", "dea_explore: 1\nname: own\ndesign: own.yaml\nmodel: lumped\n"
+                                    "quantities: [range_share, breakdown_probability]\n"
+                                    "variables: [{name: pre_stretch, values: [1.2]}]\n");
+    if (i == 0) {
+      assert_int_equal(command_run("sweep own-sweep.yaml"), 0);
+    } else {
+      command_expect("sweep own-sweep.yaml", 5, "another question");
+      assert_int_equal(command_run("sweep own-sweep.yaml --force"), 0);
+    }
+  }
+}
+
 /* Number of lines of a file that hold a text. */
 static int lines_with(const char *name, const char *text)
 {
@@ -437,6 +469,7 @@ static void test_page(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors),
+                                     cmocka_unit_test(test_another_material),
                                      cmocka_unit_test(test_grid),
                                      cmocka_unit_test(test_killed),
                                      cmocka_unit_test(test_interrupted),

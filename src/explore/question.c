@@ -37,7 +37,9 @@ static void add_material(struct dea_text *out, const struct dea_material *film)
       out, "permittivity=%.12g,%.12g\nbreakdown=%.12g,%.12g\n", film->permittivity.at_rest,
       film->permittivity.slope, film->breakdown.known ? film->breakdown.at_rest_V_per_m : 0,
       film->breakdown.known && film->breakdown.exponent_known ? film->breakdown.exponent : 0);
-  dea_text_add(out, "density=%.12g\n", film->density_kg_per_m3);
+  dea_text_add(out, "shape=%.12g\ndensity=%.12g\nrange=%.12g\n",
+               film->breakdown.known ? film->breakdown.law.shape : 0, film->density_kg_per_m3,
+               film->stretch_max);
   if (film->law == NULL && film->young_modulus_Pa > 0) {
     dea_text_add(out, "elastic=%.12g,%.12g\n", film->young_modulus_Pa, film->poisson_ratio);
   }

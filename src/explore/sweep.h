@@ -29,10 +29,10 @@ struct dea_sweep_report {
 dea_status dea_sweep_run(const struct dea_question *question,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
-/* Figures band_KEY of spreads [voltages][quantities] of samples, into a folder. */
+/* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. */
 struct dea_spread;
 dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
-                          const struct dea_plot_format *format, const char *folder);
+                          size_t samples, const struct dea_plot_format *format, const char *folder);
 /* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
  */
 dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,

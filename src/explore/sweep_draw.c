@@ -29,21 +29,29 @@ static dea_status add_series(struct dea_context *ctx, struct dea_panel *panel, s
   return DEA_OK;
 }
 
-/* Spreads of quantity i at every voltage, [voltages]. */
+/* Spreads of quantity i at every voltage, [voltages]. Samples without a value are in no band: where
+ * there are any the key says so. */
 static dea_status fill_panel(const struct dea_question *question, const struct dea_spread *spreads,
-                             size_t i, struct dea_panel *panel)
+                             size_t samples, size_t i, struct dea_panel *panel)
 {
   const size_t n = question->voltage_count;
+  size_t least = samples;
   const struct dea_column *column = &question->quantities[i].shown;
   struct dea_series *series[KINDS];
   DEA_TRY(question->ctx, add_series(question->ctx, panel, n, series));
   for (size_t v = 0; v < n; v++) {
-    const double *quantile = spreads[v * question->quantity_count + i].quantile;
+    const struct dea_spread *spread = &spreads[v * question->quantity_count + i];
+    const double *quantile = spread->quantile;
+    least = spread->count < least ? spread->count : least;
     for (size_t k = 0; k < KINDS; k++) { // from the outer pair inwards
       series[k]->values[v] = 1e-3 * question->voltages_V[v];
       series[k]->values[n + v] = column->factor * quantile[k];
       series[k]->values[2 * n + v] = column->factor * quantile[DEA_SHARES - 1 - k];
     }
+  }
+  if (least < samples) {
+    snprintf(series[MEDIAN]->title, sizeof series[MEDIAN]->title, "median (%zu or more of %zu)",
+             least, samples);
   }
   dea_figure_label(column, panel->y_label, sizeof panel->y_label);
   dea_panel_voltage_axis(panel);
@@ -52,7 +60,7 @@ static dea_status fill_panel(const struct dea_question *question, const struct d
 }
 
 dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
-                          const struct dea_plot_format *format, const char *folder)
+                          size_t samples, const struct dea_plot_format *format, const char *folder)
 {
   char names[DEA_EXPLORE_QUANTITIES_MAX][64];
   const char *list[DEA_EXPLORE_QUANTITIES_MAX];
@@ -64,7 +72,7 @@ dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_
                                            "median of the samples, and where 68 and 95 % of them "
                                            "lie",
                                            &plot));
-    dea_status status = fill_panel(question, spreads, i, &plot->panels[0]);
+    dea_status status = fill_panel(question, spreads, samples, i, &plot->panels[0]);
     if (status == DEA_OK) {
       status = dea_plot_write(question->ctx, plot, format, folder);
     }

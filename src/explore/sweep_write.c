@@ -269,7 +269,7 @@ static dea_status write_all(const struct work *w)
     status = write_indices(w, values);
   }
   if (status == DEA_OK && w->question->voltage_count > 1) {
-    status = dea_sweep_draw(w->question, spreads, w->format, w->folder);
+    status = dea_sweep_draw(w->question, spreads, independent(w), w->format, w->folder);
   }
   dea_free(w->ctx, spreads);
   dea_free(w->ctx, values);
