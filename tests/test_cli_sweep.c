@@ -124,34 +124,47 @@ static void test_monitors(void **state)
   }
 }
 
+/* A design of a material of its own; the film's own area is that of its breakdown field. */
+static void write_own(const char *range, const char *shape)
+{
+  char text[1024];
+  snprintf(text, sizeof text,
+           "dea: 1\nfilm: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"
+           "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm stretched}\n"
+           "compute: {voltage: {values: [3 kV]}}\nmaterials:\n  - name: mine\n"
+           "    title: mine\n    kind: elastomer\n    laws:\n"
+           "      - {id: a, law: neo-hookean, parameters: {mu: 200 kPa}, source: me,\n"
+           "         stretch_range: %s}\n"
+           "    permittivity:\n      - {id: a, at_rest: 2.8, source: me}\n"
+           "    breakdown:\n      - {id: a, at_rest: 80 V/um, weibull_shape: %s,\n"
+           "         reference_area: 0.545415391 cm^2, source: me}\n",
+           range, shape);
+  command_write("own.yaml", text);
+}
+
+static void write_question(const char *name, const char *more)
+{
+  char text[600];
+  snprintf(text, sizeof text, "dea_explore: 1\nname: own\ndesign: own.yaml\nmodel: lumped\n%s",
+           more);
+  command_write(name, text);
+}
+
 /* What a material of the design says, its range and its scatter too, is part of the question. */
 static void test_another_material(void **state)
 {
   (void)state;
   static const char *const ranges[] = {"[1, 3]", "[1, 4]", "[1, 4]"}, *const shapes[] = {"8", "8",
                                                                                          "9"};
+  write_question("other.yaml", "quantities: [range_share, breakdown_probability]\n"
+                               "variables: [{name: pre_stretch, values: [1.2]}]\n");
   for (size_t i = 0; i < sizeof ranges / sizeof ranges[0]; i++) {
-    char text[1024];
-    snprintf(text, sizeof text,
-             "dea: 1\nfilm: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"
-             "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm stretched}\n"
-             "compute: {voltage: {values: [3 kV]}}\nmaterials:\n  - name: mine\n"
-             "    title: mine\n    kind: elastomer\n    laws:\n"
-             "      - {id: a, law: neo-hookean, parameters: {mu: 200 kPa}, source: me,\n"
-             "         stretch_range: %s}\n"
-             "    permittivity:\n      - {id: a, at_rest: 2.8, source: me}\n"
-             "    breakdown:\n      - {id: a, at_rest: 80 V/um, weibull_shape: %s,\n"
-             "         reference_area: 0.545415391 cm^2, source: me}\n",
-             ranges[i], shapes[i]); // the film's own area, so that the field stays
-    command_write("own.yaml", text);
-    command_write("own-sweep.yaml", "dea_explore: 1\nname: own\ndesign: own.yaml\nmodel: lumped\n"
-                                    "quantities: [range_share, breakdown_probability]\n"
-                                    "variables: [{name: pre_stretch, values: [1.2]}]\n");
+    write_own(ranges[i], shapes[i]);
     if (i == 0) {
-      assert_int_equal(command_run("sweep own-sweep.yaml"), 0);
+      assert_int_equal(command_run("sweep other.yaml"), 0);
     } else {
-      command_expect("sweep own-sweep.yaml", 5, "another question");
-      assert_int_equal(command_run("sweep own-sweep.yaml --force"), 0);
+      command_expect("sweep other.yaml", 5, "another question");
+      assert_int_equal(command_run("sweep other.yaml --force"), 0);
     }
   }
 }
@@ -166,6 +179,57 @@ static int lines_with(const char *name, const char *text)
     count++;
   }
   return count;
+}
+
+/* Numbers that are not to be trusted, of a film that went slack on the way, are said to be that: of
+ * a sweep, in tables, bands and what is printed, kept or computed, and of the best of a search. */
+static void test_flags(void **state)
+{
+  (void)state;
+  static char text[COMMAND_TEXT_MAX];
+  static const char slack[] = "not trusted, slack: so much of the film";
+  write_own("[1, 6]", "8");
+  write_question("two.yaml", "voltages: [1 kV, 2.2 kV]\nquantities: [electrode_edge_u_m]\n"
+                             "variables: [{name: pre_stretch, values: [1.8]},\n"
+                             "            {name: film.thickness, values: [60 um, 120 um]}]\n");
+  for (int again = 0; again < 2; again++) { // then from what is kept
+    assert_int_equal(command_run("sweep two.yaml -o two"), 0);
+    assert_contains(command_out, again == 0 ? "2 of them computed now" : "0 of them computed now");
+    assert_contains(command_out, "\n1 of them from 2.2 kV on: not trusted, slack: so much of");
+    assert_contains(command_out, "\n1 of them from 2.2 kV on: breakdown: the true field");
+    command_read("two/cases.csv", text);
+    assert_contains(text, ",time (s),flags@1000,flags@2200,reason\n");
+    assert_contains(text, ",,slack states breakdown,\n");
+    assert_int_equal(lines_with("two/cases.csv", ",,,\n"), 1); // the thick one
+  }
+  write_question("many.yaml", "voltages: [1 kV, 2.2 kV]\nquantities: [electrode_edge_u_m]\n"
+                              "plan: sobol\nsamples: 8\n"
+                              "variables: [{name: pre_stretch, low: 1.7, high: 1.8},\n"
+                              "            {name: film.thickness, low: 60 um, high: 120 um}]\n");
+  assert_int_equal(command_run("sweep many.yaml -o many"), 0);
+  assert_contains(command_out, slack);
+  command_read("many/statistics.csv", text);
+  assert_contains(text, ",97.5 %,doubted\n");
+  const char *row = strstr(text, "electrode_edge_u_m,m,2.2,8,");
+  assert_non_null(row);
+  *strchr(strchr(text, '\n') + 1, '\n') = '\0';
+  assert_string_equal(strrchr(text, ','), ",0");
+  int doubted = -1;
+  assert_int_equal(sscanf(row, "%*[^,],%*[^,],%*[^,],8,%*f,%*f,%*f,%*f,%*f,%*f,%*f,%d", &doubted),
+                   1);
+  assert_in_range(doubted, 1, 7);
+  char title[80];
+  snprintf(title, sizeof title, "title \"up to %d of 8 not to be trusted\"", doubted);
+  assert_int_equal(lines_with("many/band_electrode_edge_u_m.gp", title), 1);
+  write_question("most.yaml", "voltages: [2.2 kV]\nquantities: [electrode_edge_u_m]\n"
+                              "objectives: [{quantity: electrode_edge_u_m, goal: most}]\n"
+                              "starts: 1\n"
+                              "variables: [{name: pre_stretch, values: [1.8]},\n"
+                              "            {name: film.thickness, low: 60 um, high: 120 um}]\n");
+  assert_int_equal(command_run("optimise most.yaml -o most"), 0);
+  assert_contains(command_out, slack);
+  command_read("most/best.yaml", text);
+  assert_contains(text, slack);
 }
 
 static void test_grid(void **state)
@@ -470,6 +534,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors),
                                      cmocka_unit_test(test_another_material),
+                                     cmocka_unit_test(test_flags),
                                      cmocka_unit_test(test_grid),
                                      cmocka_unit_test(test_killed),
                                      cmocka_unit_test(test_interrupted),

@@ -27,6 +27,25 @@ static void print_optimum(const struct dea_question *question, const struct dea_
     printf("  %-28s %.6g %s\n", column->key, column->factor * (most ? -1 : 1) * best->f[k],
            column->display_unit);
   }
+  if (best->marks != 0) {
+    char words[DEA_FLAGS_SIZE];
+    printf("  %-28s %s\n", "flags", dea_flags_text(best->marks, words));
+  }
+}
+
+/* What the flags of all optima mean. */
+static void print_flags(const struct dea_optimise_report *report)
+{
+  unsigned marks = 0;
+  for (size_t i = 0; i < report->count; i++) {
+    marks |= report->optima[i].marks;
+  }
+  for (unsigned f = 0; f < DEA_FLAG_COUNT; f++) {
+    char line[DEA_FLAG_LINE_SIZE];
+    if ((marks >> f & 1U) != 0) {
+      printf("%s\n", dea_flag_line((enum dea_flag)f, line));
+    }
+  }
 }
 
 /* Where gradients came from, of a search that goes by them. */
@@ -56,6 +75,7 @@ static void print_report(const struct dea_question *question,
     }
     print_optimum(question, &report->optima[i]);
   }
+  print_flags(report);
   if (report->scattered > 1) {
     printf("each stands for %zu that scatter\n", report->scattered);
   }

@@ -56,6 +56,13 @@ static void print_report(const struct dea_sweep_report *report, const struct req
   if (report->failed > 0) {
     printf("without all values: %zu (for example: %s)\n", report->failed, report->why);
   }
+  for (unsigned f = 0; f < DEA_FLAG_COUNT; f++) {
+    char line[DEA_FLAG_LINE_SIZE];
+    if (report->flagged[f] > 0) {
+      printf("%zu of them from %.6g kV on: %s\n", report->flagged[f],
+             1e-3 * report->flagged_from_V[f], dea_flag_line((enum dea_flag)f, line));
+    }
+  }
   const bool part = request->options.shard.parts > 1 && !request->options.merge;
   if (part || report->written) {
     printf("written to %s%s\n", request->options.folder,

@@ -275,6 +275,12 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
                  sign_of(question, k) * best->f[k], column->si_unit,
                  question->voltages_V[question->voltage_count - 1], question->model.type->name);
   }
+  for (unsigned f = 0; f < DEA_FLAG_COUNT; f++) {
+    char line[DEA_FLAG_LINE_SIZE];
+    if ((best->marks >> f & 1U) != 0) {
+      dea_text_add(&text, "#   %s\n", dea_flag_line((enum dea_flag)f, line));
+    }
+  }
   dea_status status = dea_device_design_text(w->ctx, &file, question->device, &with, &text);
   status = status == DEA_OK ? dea_text_write(w->ctx, &text, w->options->folder, name) : status;
   dea_text_free(&text);
@@ -293,7 +299,7 @@ static dea_status write_front(const struct work *w)
     const struct dea_column *column = &question->quantities[question->objectives[k]].shown;
     dea_text_add(&out, ",%s (%s)", column->key, column->si_unit);
   }
-  dea_text_add(&out, "\n");
+  dea_text_add(&out, ",flags\n");
   for (size_t i = 0; i < w->report->count; i++) {
     const struct dea_optimum *best = &w->report->optima[i];
     dea_text_add(&out, "best-%zu.yaml", i + 1);
@@ -303,7 +309,8 @@ static dea_status write_front(const struct work *w)
     for (size_t k = 0; k < 2; k++) {
       dea_text_add(&out, ",%.12g", sign_of(question, k) * best->f[k]);
     }
-    dea_text_add(&out, "\n");
+    char words[DEA_FLAGS_SIZE];
+    dea_text_add(&out, ",%s\n", dea_flags_text(best->marks, words));
   }
   dea_status status = dea_text_write(w->ctx, &out, w->options->folder, front_table);
   dea_text_free(&out);
@@ -522,9 +529,19 @@ static dea_status remove_older(const struct work *w, bool ended)
   return front ? DEA_OK : remove_front(w);
 }
 
+/* What a reader has to know of the numbers of the best at the last voltage. */
+static void take_flags(struct work *w)
+{
+  for (size_t i = 0; i < w->report->count; i++) {
+    struct dea_optimum *best = &w->report->optima[i];
+    best->marks = dea_search_marks(&w->search, best->p, w->question->voltage_count - 1);
+  }
+}
+
 static dea_status write_all(struct work *w, bool ended)
 {
   const bool front = w->question->file->objective_count > 1;
+  take_flags(w);
   for (size_t i = 0; i < dea_store_count(w->store); i++) {
     w->report->failed += dea_store_get(w->store, i)->why[0] != '\0' ? 1U : 0U;
   }

@@ -115,6 +115,18 @@ bool dea_search_look(const struct dea_search *search, const double *p, double *o
   return true;
 }
 
+unsigned dea_search_marks(const struct dea_search *search, const double *p, size_t k)
+{
+  unsigned marks = 0;
+  for (size_t s = 0; s < scattered(search); s++) {
+    double at[DEA_CASE_PARAMS_MAX];
+    scatter(search, p, s, at);
+    const struct dea_case *done = dea_store_find(search->store, at);
+    marks |= done != NULL ? done->marks[k] : 0;
+  }
+  return marks;
+}
+
 #ifdef DEA_HAVE_NLOPT
 #include <nlopt.h>
 

@@ -38,6 +38,7 @@ struct dea_search {
 /* A point that a search came to. f: objectives, of scattered designs their statistics. */
 struct dea_optimum {
   double p[DEA_CASE_PARAMS_MAX], f[DEA_EXPLORE_OBJECTIVES_MAX];
+  unsigned marks;     // last mark of it, or of all that it stands for together
   bool found;         // a design within all limits
   size_t evaluations; // after which it was found, those of before among them
 };
@@ -54,6 +55,8 @@ dea_status dea_search_run(const struct dea_search *search, struct dea_optimum *o
  */
 enum { DEA_SEARCH_VALUES_MAX = DEA_EXPLORE_OBJECTIVES_MAX + 2 * DEA_EXPLORE_LIMITS_MAX };
 bool dea_search_look(const struct dea_search *search, const double *p, double *out);
+/* Mark k of the design p by what the store has, or of all that it stands for together. */
+unsigned dea_search_marks(const struct dea_search *search, const double *p, size_t k);
 /* Whether it was built with NLopt. */
 bool dea_search_is_built(void);
 

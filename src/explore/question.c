@@ -176,6 +176,9 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
   }
   DEA_TRY(ctx, status);
   for (size_t k = 0; k < question->voltage_count; k++) {
+    for (size_t g = 0; g < question->model.group_count; g++) {
+      io->marks[k] |= dea_load_point_flags(&question->points[question->model.groups[g].first + k]);
+    }
     for (size_t i = 0; i < count; i++) {
       const struct dea_load_point *point =
           &question
@@ -304,6 +307,7 @@ static dea_status prepare_model(struct dea_question *question)
   question->evaluator = (struct dea_evaluator){.user = question,
                                                .param_count = question->variable_count,
                                                .value_count = n * question->quantity_count,
+                                               .mark_count = n,
                                                .evaluate = evaluate};
   return DEA_OK;
 }
@@ -636,15 +640,26 @@ bool dea_question_is_held(const struct dea_question *question, size_t quantity)
          strcmp(question->quantities[quantity].key, "force_N") == 0;
 }
 
+/* A word at voltage k, which several have to say. */
+static void name_at(const struct dea_question *question, const char *word, size_t k, char *out,
+                    size_t size)
+{
+  if (question->voltage_count == 1) {
+    snprintf(out, size, "%s", word);
+  } else {
+    snprintf(out, size, "%s@%.6g", word, question->voltages_V[k]);
+  }
+}
+
 void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size)
 {
   const size_t count = question->quantity_count;
-  const char *key = question->quantities[i % count].key;
-  if (question->voltage_count == 1) {
-    snprintf(out, size, "%s", key);
-  } else {
-    snprintf(out, size, "%s@%.6g", key, question->voltages_V[i / count]);
-  }
+  name_at(question, question->quantities[i % count].key, i / count, out, size);
+}
+
+void dea_question_flags_name(const struct dea_question *question, size_t k, char *out, size_t size)
+{
+  name_at(question, "flags", k, out, size);
 }
 
 double dea_limit_margin(const struct dea_question *question, const struct dea_limit *limit,

@@ -41,9 +41,11 @@ struct dea_question {
   struct dea_limit limits[DEA_EXPLORE_LIMITS_MAX];
   size_t limit_count;
   int objectives[DEA_EXPLORE_OBJECTIVES_MAX]; // columns, as of a limit
-  struct dea_evaluator evaluator; // value of quantity i at voltage k: k * quantity_count + i
-  char hash[65];                  // of all that a case's numbers mean
-  char hash_slopes[65];           // the same with gradients
+  /* Value of quantity i at voltage k: k * quantity_count + i; mark k: flags of that voltage, of the
+   * free film and where one is held down of that too. */
+  struct dea_evaluator evaluator;
+  char hash[65];        // of all that a case's numbers mean
+  char hash_slopes[65]; // the same with gradients
   /* of the evaluator */
   struct dea_device_param params[DEA_CASE_PARAMS_MAX];
   struct dea_device_model model;
@@ -74,6 +76,8 @@ int dea_question_quantity(const struct dea_question *question, const char *key);
 bool dea_question_is_held(const struct dea_question *question, size_t quantity);
 /* Name of value i of a case: "centre_z_m", with several voltages "centre_z_m@6000". */
 void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size);
+/* The same of the flags at voltage k: "flags", "flags@6000". */
+void dea_question_flags_name(const struct dea_question *question, size_t k, char *out, size_t size);
 /* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.
  */
 double dea_limit_margin(const struct dea_question *question, const struct dea_limit *limit,

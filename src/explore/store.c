@@ -120,6 +120,9 @@ static void add_line(struct dea_text *out, const struct dea_evaluator *evaluator
   for (size_t i = 0; i < dea_evaluator_values(evaluator); i++) {
     add_number(out, done->q[i]);
   }
+  for (size_t k = 0; k < evaluator->mark_count; k++) {
+    dea_text_add(out, ",%u", done->marks[k]);
+  }
   dea_text_add(out, ",%08" PRIx32 "\n", (uint32_t)hash_of(out->data, out->length));
 }
 
@@ -171,6 +174,11 @@ static bool read_line(const struct dea_evaluator *evaluator, char *line, struct 
   for (size_t i = 0; i < dea_evaluator_values(evaluator) && good; i++) {
     good = read_number(&cursor, &out->q[i]);
   }
+  for (size_t k = 0; k < evaluator->mark_count && good; k++) {
+    const char *mark = next_field(&cursor);
+    good = mark != NULL;
+    out->marks[k] = good ? (unsigned)strtoul(mark, NULL, 10) : 0;
+  }
   return good && cursor == NULL;
 }
 
@@ -179,7 +187,7 @@ static bool read_line(const struct dea_evaluator *evaluator, char *line, struct 
 static void add_head(struct dea_text *out, const struct dea_store *store)
 {
   dea_text_add(out, "%s %s %zu %zu\n", first_word, store->question, store->evaluator->param_count,
-               dea_evaluator_values(store->evaluator));
+               dea_evaluator_values(store->evaluator) + store->evaluator->mark_count);
 }
 
 static dea_status read_lines(struct dea_store *store, const char *path, char *bytes)

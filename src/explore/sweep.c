@@ -3,6 +3,7 @@
 #include "explore/order.h"
 #include "explore/pool.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -144,6 +145,24 @@ static dea_status evaluate(struct work *w)
   return status;
 }
 
+/* Adds what a case's numbers are flagged with. */
+static void count_flags(const struct dea_question *question, const struct dea_case *done,
+                        struct dea_sweep_report *report)
+{
+  for (size_t f = 0; f < DEA_FLAG_COUNT; f++) {
+    size_t k = 0;
+    while (k < question->voltage_count && (done->marks[k] >> f & 1U) == 0) {
+      k++;
+    }
+    if (k < question->voltage_count) {
+      const double from_V = question->voltages_V[k];
+      report->flagged_from_V[f] =
+          report->flagged[f] == 0 ? from_V : fmin(report->flagged_from_V[f], from_V);
+      report->flagged[f]++;
+    }
+  }
+}
+
 /* How much of the plan is there, and why some of it failed. */
 static void count(struct work *w)
 {
@@ -153,6 +172,9 @@ static void count(struct work *w)
   for (size_t i = 0; i < w->plan->count; i++) {
     const struct dea_case *done = dea_store_find(w->store, numbers(w, i));
     report->there += done != NULL ? 1U : 0U;
+    if (done != NULL) {
+      count_flags(w->question, done, report);
+    }
     if (done == NULL || done->why[0] == '\0') {
       continue;
     }

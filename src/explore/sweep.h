@@ -5,6 +5,7 @@
 #include "explore/plan.h"
 #include "explore/store.h"
 #include "plot/plot.h"
+#include "result/load_point.h"
 
 struct dea_sweep_options {
   const char *folder;
@@ -22,6 +23,9 @@ struct dea_sweep_report {
   size_t torn;                           // lines that were not whole
   bool written;                          // the tables
   char why[DEA_CASE_WHY_SIZE];           // a reason, that of more than half if there is one; or ""
+  /* Cases with each flag at some voltage, and the lowest such voltage. */
+  size_t flagged[DEA_FLAG_COUNT];
+  double flagged_from_V[DEA_FLAG_COUNT];
 };
 
 /* Evaluates what of the plan is not in the folder yet and writes the tables of all that is there:
@@ -29,10 +33,12 @@ struct dea_sweep_report {
 dea_status dea_sweep_run(const struct dea_question *question,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
-/* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. */
+/* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. doubted:
+ * most samples at one voltage whose numbers are not to be trusted. */
 struct dea_spread;
 dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
-                          size_t samples, const struct dea_plot_format *format, const char *folder);
+                          size_t samples, const size_t *doubted,
+                          const struct dea_plot_format *format, const char *folder);
 /* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
  */
 dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,

@@ -50,7 +50,12 @@ static dea_status write_cases(const struct work *w)
     dea_question_value_name(w->question, i, name, sizeof name);
     dea_text_add(&out, ",%s (%s)", name, unit_of(w, i));
   }
-  dea_text_add(&out, ",time (s),reason\n");
+  dea_text_add(&out, ",time (s)");
+  for (size_t k = 0; k < w->question->voltage_count; k++) {
+    dea_question_flags_name(w->question, k, name, sizeof name);
+    dea_text_add(&out, ",%s", name);
+  }
+  dea_text_add(&out, ",reason\n");
   for (size_t c = 0; c < w->plan->count; c++) {
     const struct dea_case *done = case_of(w, c);
     if (done == NULL) {
@@ -63,7 +68,12 @@ static dea_status write_cases(const struct work *w)
     for (size_t i = 0; i < w->values; i++) {
       add_field(&out, done->q[i]);
     }
-    dea_text_add(&out, ",%.4g,%s\n", done->wall_s, done->why);
+    dea_text_add(&out, ",%.4g", done->wall_s);
+    for (size_t k = 0; k < w->question->voltage_count; k++) {
+      char words[DEA_FLAGS_SIZE];
+      dea_text_add(&out, ",%s", dea_flags_text(done->marks[k], words));
+    }
+    dea_text_add(&out, ",%s\n", done->why);
   }
   dea_status status = dea_text_write(w->ctx, &out, w->folder, "cases.csv");
   dea_text_free(&out);
@@ -95,9 +105,20 @@ static void put_column(struct h5 *h, const struct work *w, hid_t group, size_t r
   }
 }
 
-static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, bool id)
+enum { ID, REASON, FLAGS }; // FLAGS + k: at voltage k
+
+/* A column of words. */
+static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t rows, size_t what)
 {
-  const size_t size = id ? DEA_CASE_ID_SIZE : DEA_CASE_WHY_SIZE;
+  static const size_t sizes[] = {DEA_CASE_ID_SIZE, DEA_CASE_WHY_SIZE, DEA_FLAGS_SIZE};
+  static const char *const meanings[] = {"hash of the resolved design", "why a value is missing",
+                                         "what a reader has to know of the numbers"};
+  const size_t kind = what < FLAGS ? what : FLAGS, size = sizes[kind];
+  char name[64];
+  snprintf(name, sizeof name, "%s", what == ID ? "id" : "reason");
+  if (kind == FLAGS) {
+    dea_question_flags_name(w->question, what - FLAGS, name, sizeof name);
+  }
   char *texts = dea_alloc(w->ctx, rows, size);
   size_t row = 0;
   if (texts == NULL) {
@@ -107,13 +128,16 @@ static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t ro
   for (size_t c = 0; c < w->plan->count; c++) {
     const struct dea_case *done = case_of(w, c);
     if (done != NULL) {
-      snprintf(texts + size * row++, size, "%s", id ? done->id : done->why);
+      char *to = texts + size * row++, words[DEA_FLAGS_SIZE];
+      snprintf(to, size, "%s",
+               kind == FLAGS ? dea_flags_text(done->marks[what - FLAGS], words)
+               : what == ID  ? done->id
+                             : done->why);
     }
   }
   hid_t type = H5Tcopy(H5T_C_S1);
   H5Tset_size(type, size);
-  dea_h5_put_array(h, group, id ? "id" : "reason", type, type, rows, texts, "1",
-                   id ? "hash of the resolved design" : "why a value is missing");
+  dea_h5_put_array(h, group, name, type, type, rows, texts, "1", meanings[kind]);
   dea_h5_close(type);
   dea_free(w->ctx, texts);
 }
@@ -138,14 +162,17 @@ static dea_status write_h5(const struct work *w)
   dea_h5_put_text(&h, file, "model", w->question->model.type->name);
   hid_t group = dea_h5_group_make(&h, file, "cases");
   if (rows > 0) {
-    put_texts(&h, w, group, rows, true);
+    put_texts(&h, w, group, rows, ID);
     for (size_t j = 0; j < w->params; j++) {
       put_column(&h, w, group, rows, column, j, -1);
     }
     for (size_t i = 0; i < w->values; i++) {
       put_column(&h, w, group, rows, column, 0, (int)i);
     }
-    put_texts(&h, w, group, rows, false);
+    for (size_t k = 0; k < w->question->voltage_count; k++) {
+      put_texts(&h, w, group, rows, FLAGS + k);
+    }
+    put_texts(&h, w, group, rows, REASON);
   }
   dea_h5_close(group);
   dea_h5_file_write(&h, file);
@@ -172,6 +199,17 @@ static size_t independent(const struct work *w)
   return w->question->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
 }
 
+/* Independent samples whose numbers at voltage k are not to be trusted. */
+static size_t doubted_at(const struct work *w, size_t k)
+{
+  size_t count = 0;
+  for (size_t c = 0; c < independent(w); c++) {
+    const struct dea_case *done = case_of(w, c);
+    count += done != NULL && dea_flags_have(done->marks[k], DEA_FLAG_DOUBT) ? 1U : 0U;
+  }
+  return count;
+}
+
 static dea_status write_statistics(const struct work *w, double *values, struct dea_spread *spreads)
 {
   struct dea_text out = {.ctx = w->ctx};
@@ -181,7 +219,7 @@ static dea_status write_statistics(const struct work *w, double *values, struct 
   for (size_t k = 0; k < DEA_SHARES; k++) {
     dea_text_add(&out, ",%g %%", 100 * dea_shares[k]);
   }
-  dea_text_add(&out, "\n");
+  dea_text_add(&out, ",doubted\n");
   for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
     take_values(w, i, 0, independent(w), values);
     status = dea_spread_find(w->ctx, values, independent(w), &spreads[i]);
@@ -194,7 +232,7 @@ static dea_status write_statistics(const struct work *w, double *values, struct 
     for (size_t k = 0; k < DEA_SHARES; k++) {
       add_field(&out, spreads[i].quantile[k]);
     }
-    dea_text_add(&out, "\n");
+    dea_text_add(&out, ",%zu\n", doubted_at(w, i / w->question->quantity_count));
   }
   status = status == DEA_OK ? dea_text_write(w->ctx, &out, w->folder, "statistics.csv") : status;
   dea_text_free(&out);
@@ -269,7 +307,11 @@ static dea_status write_all(const struct work *w)
     status = write_indices(w, values);
   }
   if (status == DEA_OK && w->question->voltage_count > 1) {
-    status = dea_sweep_draw(w->question, spreads, independent(w), w->format, w->folder);
+    size_t doubted[DEA_EXPLORE_VOLTAGES_MAX];
+    for (size_t k = 0; k < w->question->voltage_count; k++) {
+      doubted[k] = doubted_at(w, k);
+    }
+    status = dea_sweep_draw(w->question, spreads, independent(w), doubted, w->format, w->folder);
   }
   dea_free(w->ctx, spreads);
   dea_free(w->ctx, values);

@@ -1,6 +1,7 @@
 #include "result/load_point.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double tension_none = -1e-6; // [N/m] below: none; a film free of stress has rounding
@@ -40,9 +41,8 @@ unsigned dea_load_point_flags(const struct dea_load_point *p)
   return flags;
 }
 
-static bool has_kind(const struct dea_load_point *point, enum dea_flag_kind kind)
+bool dea_flags_have(unsigned flags, enum dea_flag_kind kind)
 {
-  unsigned flags = dea_load_point_flags(point);
   for (int k = 0; k < DEA_FLAG_COUNT; k++) {
     if ((flags >> k & 1u) != 0 && dea_flag_words[k].kind == kind) {
       return true;
@@ -53,12 +53,12 @@ static bool has_kind(const struct dea_load_point *point, enum dea_flag_kind kind
 
 bool dea_load_point_trusted(const struct dea_load_point *point)
 {
-  return !has_kind(point, DEA_FLAG_DOUBT);
+  return !dea_flags_have(dea_load_point_flags(point), DEA_FLAG_DOUBT);
 }
 
 bool dea_load_point_safe(const struct dea_load_point *point)
 {
-  return !has_kind(point, DEA_FLAG_DANGER);
+  return !dea_flags_have(dea_load_point_flags(point), DEA_FLAG_DANGER);
 }
 
 bool dea_load_point_bounds(const struct dea_load_point *point)
@@ -84,6 +84,14 @@ const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE])
     }
   }
   out[n] = '\0';
+  return out;
+}
+
+const char *dea_flag_line(enum dea_flag flag, char out[DEA_FLAG_LINE_SIZE])
+{
+  const struct dea_flag_words *words = &dea_flag_words[flag];
+  snprintf(out, DEA_FLAG_LINE_SIZE, "%s%s: %s",
+           words->kind == DEA_FLAG_DOUBT ? "not trusted, " : "", words->word, words->sentence);
   return out;
 }
 

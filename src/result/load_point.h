@@ -127,6 +127,8 @@ struct dea_load_point dea_load_point_empty(void);
 /* All flags of a point, 1u << enum dea_flag: those told and those that its numbers say. This is the
  * one place that decides. */
 unsigned dea_load_point_flags(const struct dea_load_point *point);
+/* Whether one of some flags is of that kind. */
+bool dea_flags_have(unsigned flags, enum dea_flag_kind kind);
 /* Without a flag of that kind. */
 bool dea_load_point_trusted(const struct dea_load_point *point);
 bool dea_load_point_safe(const struct dea_load_point *point);
@@ -146,6 +148,9 @@ extern const struct dea_flag_words dea_flag_words[DEA_FLAG_COUNT];
 /* Words of flags with blanks between them, "" for none; out: DEA_FLAGS_SIZE. Returns out. */
 enum { DEA_FLAGS_SIZE = 96 };
 const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE]);
+/* "not trusted, slack: so much of the film ...". Returns out. */
+enum { DEA_FLAG_LINE_SIZE = 200 };
+const char *dea_flag_line(enum dea_flag flag, char out[DEA_FLAG_LINE_SIZE]);
 /* Flags of such words; what is no word is passed over. */
 unsigned dea_flags_of_text(const char *text);
 
