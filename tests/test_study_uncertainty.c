@@ -136,6 +136,49 @@ static void test_correlations_count(void **state)
   tear_down_result();
 }
 
+/* Where a film that is a standard uncertainty thinner has gone slack the band is that of the
+ * thicker one alone, and that is said. */
+static void test_other_side_alone(void **state)
+{
+  (void)state;
+  static const char steps[] = "compute:\n  voltage: {from: 0 kV, to: 16 kV, step: 0.1 kV}\n";
+  static const char given[] = "  uncertainty: {parameters: [{name: film.thickness, std: 3 um}]}\n";
+  char text[4000], thick[4000];
+  const struct dea_model_type *type = dea_model_find("axisymmetric");
+  snprintf(text, sizeof text, "%s%s%s", GOOD_DESIGN, steps, given);
+  snprintf(thick, sizeof thick, "%s%s", GOOD_DESIGN, steps);
+  memcpy(strstr(thick, "thickness: 100 um"), "thickness: 103 um", 17);
+  set_up_result(thick);
+  assert_int_equal(dea_study_run(ctx, type, both, 1, result), DEA_OK);
+  struct dea_result *other = result;
+  struct dea_design *its = design;
+  struct dea_device *their = device;
+  set_up_result(text);
+  const struct dea_curve *sweep = run_sweep("axisymmetric");
+  const struct dea_curve *thicker = dea_result_find(other, "axisymmetric", "sweep");
+  const unsigned slack = 1u << DEA_FLAG_SLACK;
+  size_t last = 0;
+  while ((dea_load_point_flags(&sweep->points[last + 1]) & slack) == 0) {
+    last++;
+  }
+  assert_in_range(last, 20, 150);
+  const double to_thick =
+      thicker->points[last].electrode_stretch - sweep->points[last].electrode_stretch;
+  assert_close(sweep->std[last].electrode_stretch, fabs(to_thick), 1e-9, 0);
+  assert_true(isnan(sweep->std[last + 1].electrode_stretch));
+  const struct dea_finding *told = find_finding(ctx, DEA_WARNING, "film.thickness 97 um has no");
+  assert_non_null(told);
+  double from_kV = 0;
+  assert_int_equal(sscanf(told->text, "model axisymmetric: from %lf", &from_kV), 1);
+  assert_in_range((size_t)(from_kV / 0.1 + 0.5), last - 6, last); // 3 % of the voltage
+  assert_null(find_finding(ctx, DEA_WARNING, "film.thickness 103 um has no"));
+  dea_finding_clear(ctx);
+  tear_down_result();
+  dea_result_destroy(ctx, other);
+  dea_device_destroy(ctx, their);
+  dea_design_destroy(ctx, its);
+}
+
 /* Nothing uncertain, no band; and none from what the section does not know. */
 static void test_nothing_and_errors(void **state)
 {
@@ -251,11 +294,9 @@ static void test_failing_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_capacitance_at_rest),
-      cmocka_unit_test(test_law_goes_as_voltage),
-      cmocka_unit_test(test_correlations_count),
-      cmocka_unit_test(test_nothing_and_errors),
-      cmocka_unit_test(test_is_kept),
+      cmocka_unit_test(test_capacitance_at_rest), cmocka_unit_test(test_law_goes_as_voltage),
+      cmocka_unit_test(test_correlations_count),  cmocka_unit_test(test_other_side_alone),
+      cmocka_unit_test(test_nothing_and_errors),  cmocka_unit_test(test_is_kept),
       cmocka_unit_test(test_failing_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -294,16 +294,30 @@ static bool is_answer(int column)
   return true;
 }
 
-/* Value of a column of the varied device at that point of a curve; NAN: it has no such point. */
-static double varied(const struct work *w, const struct dea_result *result,
-                     const struct dea_curve *curve, size_t i, int column)
+/* Whether a point is one of several states, of which another device may have found another. */
+static bool is_one_of_several(const struct dea_load_point *point)
+{
+  const unsigned several = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;
+  return (dea_load_point_flags(point) & several) != 0;
+}
+
+/* The varied device at that point of a curve; NULL: it has no such point. */
+static const struct dea_load_point *varied_point(const struct work *w,
+                                                 const struct dea_result *result,
+                                                 const struct dea_curve *curve, size_t i)
 {
   const struct dea_curve *other =
       result != NULL ? dea_result_find(result, w->type->name, curve->kind) : NULL;
-  if (other == NULL || i >= other->count) {
-    return NAN;
-  }
-  return dea_point_get(&other->points[i], column);
+  return other == NULL || i >= other->count || is_one_of_several(&other->points[i])
+             ? NULL
+             : &other->points[i];
+}
+
+static double varied(const struct work *w, const struct dea_result *result,
+                     const struct dea_curve *curve, size_t i, int column)
+{
+  const struct dea_load_point *point = varied_point(w, result, curve, i);
+  return point != NULL ? dea_point_get(point, column) : NAN;
 }
 
 /* dq/dp_j, NAN where there is none. */
@@ -331,13 +345,6 @@ static double std_of(const struct work *w, const struct dea_curve *curve, size_t
     }
   }
   return isnan(variance) ? NAN : sqrt(fmax(0, variance));
-}
-
-/* Whether a point is one of several states, of which another device may have found another. */
-static bool is_one_of_several(const struct dea_load_point *point)
-{
-  const unsigned several = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;
-  return (dea_load_point_flags(point) & several) != 0;
 }
 
 static dea_status fill_curve(struct work *w, struct dea_curve *curve)
@@ -368,6 +375,39 @@ static dea_status fill_bands(struct work *w)
           curve->count > 0) {
         DEA_TRY(w->ctx, fill_curve(w, curve));
       }
+    }
+  }
+  return DEA_OK;
+}
+
+/* Voltage of the first point of the sweep that has a band and where a varied device has no such
+ * state; NAN: there is none. */
+static double ends_at(const struct work *w, const struct dea_result *varied)
+{
+  const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
+  for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
+    if (!is_one_of_several(&sweep->points[i]) && varied_point(w, varied, sweep, i) == NULL) {
+      return sweep->points[i].voltage_V;
+    }
+  }
+  return NAN;
+}
+
+/* Says where bands are of one side only, as the device on the other side has come to its end. */
+static dea_status tell_sides(struct work *w)
+{
+  for (size_t j = 0; j < w->count; j++) {
+    for (int side = -1; side <= 1; side += 2) {
+      const double at_V = ends_at(w, side < 0 ? w->minus[j] : w->plus[j]);
+      char text[80];
+      if (isnan(at_V)) {
+        continue;
+      }
+      dea_device_param_show(&w->params[j], w->value[j] + side * w->step[j], text);
+      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_WARNING, (struct dea_location){0},
+                                      "model %s: from %.6g kV on a film with %s %s has no such "
+                                      "state; bands there are those of the other side",
+                                      w->type->name, 1e-3 * at_V, w->params[j].param.name, text));
     }
   }
   return DEA_OK;
@@ -476,6 +516,7 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
       (struct dea_design_bytes){w->result->design->file, dea_text_get(&w->text), w->text.length};
   DEA_TRY(ctx, vary(w));
   DEA_TRY(ctx, fill_bands(w));
+  DEA_TRY(ctx, tell_sides(w));
   return add_table(w);
 }
 
