@@ -364,6 +364,8 @@ static void test_sections_of_studies(void **state)
   assert_contains(designs, "<caption>lumped: designs at their last voltage</caption>");
   assert_contains(designs, "<tr><td>frdea-4</td><td class=\"n\">8</td>");
   assert_contains(designs, "<tr><td>plain-disc</td>");
+  const char *flags = strstr(designs, "what a reader has to know of these numbers\">flags</th>");
+  assert_true(flags != NULL && strstr(flags, "<td>breakdown bound plain</td>") != NULL);
 }
 
 /* Copies what the page has of its section map up to its section explorer. */

@@ -148,6 +148,11 @@ static const struct dea_result_column design_columns[] = {
      .factor = 1e-6,
      .title = "field",
      .meaning = "at the last voltage"},
+    {.key = "last_flags",
+     .kind = DEA_CELL_TEXT,
+     .hidden = DEA_IN_JSON,
+     .title = "flags",
+     .meaning = "what a reader has to know of these numbers"},
     {.key = "stopped", .kind = DEA_CELL_TEXT, .title = "stopped", .meaning = "why it stopped"},
 };
 static const struct dea_result_table_type design_table = {.study = study_name,
@@ -171,6 +176,7 @@ static dea_status put_design(struct dea_context *ctx, const struct dea_variant *
   const struct dea_load_point *p =
       v->curve.count > 0 ? &v->curve.points[v->curve.count - 1] : &none;
   bool sized = v->size.nodes > 0;
+  char flags[DEA_FLAGS_SIZE];
   const struct dea_result_table_value row[] = {
       {.text = v->name},
       {.number = v->refinement},
@@ -185,6 +191,7 @@ static dea_status put_design(struct dea_context *ctx, const struct dea_variant *
       {.number = shown_z(p->centre_z_m)},
       {.number = shown_z(p->fibre_tip_z_m)},
       {.number = p->true_field_V_per_m},
+      {.text = dea_flags_text(dea_load_point_flags(p), flags)},
       {.text = v->curve.stopped},
   };
   return dea_result_table_add_row(ctx, table, row);
