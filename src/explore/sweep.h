@@ -34,7 +34,7 @@ dea_status dea_sweep_run(const struct dea_question *question,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
 /* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. doubted:
- * most samples at one voltage whose numbers are not to be trusted. */
+ * [voltages], samples whose numbers are not to be trusted there. */
 struct dea_spread;
 dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
                           size_t samples, const size_t *doubted,
