@@ -60,7 +60,7 @@ static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
 {
   const size_t n = shown->question->voltage_count;
   size_t most = 0, least = shown->samples, good = 0;
-  char of[64] = "", doubts[64] = "";
+  char of[64] = "", doubts[80] = "";
   for (size_t v = 0; v < n; v++) {
     const size_t count = shown->spreads[v * shown->question->quantity_count].count;
     most = shown->doubted[v] > most ? shown->doubted[v] : most;
@@ -76,7 +76,7 @@ static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
     DEA_TRY(shown->question->ctx,
             add_series(shown->question->ctx, panel, n, dashed == 1 ? DEA_DASHED : DEA_LINE_MARKED,
                        DEA_BLUE, &series));
-    snprintf(series->title, sizeof series->title, "%s%s%s%s",
+    snprintf(series->title, sizeof series->title, "%s%.50s%s%.60s",
              dashed == 0 || good == 0 ? "median" : "", dashed == 0 || good == 0 ? of : "",
              dashed == 1 && good == 0 ? ", " : "", dashed == 1 ? doubts : "");
     for (size_t v = 0; v < n; v++) {
