@@ -35,5 +35,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   return status;
 }
 
-const struct dea_rerun dea_rerun_designs = {
-    .find = dea_device_param_find, .read_std = dea_device_param_std, .run = run};
+const struct dea_rerun dea_rerun_designs = {.find = dea_device_param_find,
+                                            .read_std = dea_device_param_std,
+                                            .show = dea_device_param_show,
+                                            .run = run};

@@ -14,6 +14,8 @@ struct dea_rerun {
   dea_status (*read_std)(struct dea_context *ctx, const struct dea_device_param *param,
                          const struct dea_label *text, double *std,
                          bool *good); // dea_device_param_std
+  void (*show)(const struct dea_device_param *param, double value,
+               char out[80]); // dea_device_param_show
   /* Studies names [name_count] of the design with p [count] in place of its values. *out: their
    * curves, as far as they came; without design and device; owned by the caller, NULL where the
    * device cannot be built or memory is short. DEA_OK also where a study failed for a reason of

@@ -403,7 +403,7 @@ static dea_status tell_sides(struct work *w)
       if (isnan(at_V)) {
         continue;
       }
-      dea_device_param_show(&w->params[j], w->value[j] + side * w->step[j], text);
+      w->result->rerun->show(&w->params[j], w->value[j] + side * w->step[j], text);
       DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_WARNING, (struct dea_location){0},
                                       "model %s: from %.6g kV on a film with %s %s has no such "
                                       "state; bands there are those of the other side",
