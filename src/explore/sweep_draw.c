@@ -54,41 +54,53 @@ static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
   return DEA_OK;
 }
 
-/* The median, dashed where samples are not to be trusted. Samples without a value are in neither
- * median nor bands: the key says so. */
-static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
+/* Whether a voltage has samples that are not to be trusted; none lies beyond the last one. */
+static bool is_doubted(const struct shown *shown, size_t v)
+{
+  return v < shown->question->voltage_count && shown->doubted[v] > 0;
+}
+
+/* The median where all samples are to be trusted, or dashed where some are not, up to the points
+ * beside these. */
+static dea_status add_line(const struct shown *shown, struct dea_panel *panel, bool dashed,
+                           const char *title)
 {
   const size_t n = shown->question->voltage_count;
-  size_t most = 0, least = shown->samples, good = 0;
-  char of[64] = "", doubts[80] = "";
+  struct dea_series *line;
+  DEA_TRY(shown->question->ctx, add_series(shown->question->ctx, panel, n,
+                                           dashed ? DEA_DASHED : DEA_LINE_MARKED, DEA_BLUE, &line));
+  snprintf(line->title, sizeof line->title, "%s", title);
   for (size_t v = 0; v < n; v++) {
-    const size_t count = shown->spreads[v * shown->question->quantity_count].count;
-    most = shown->doubted[v] > most ? shown->doubted[v] : most;
-    least = count < least ? count : least;
-    good += shown->doubted[v] == 0 ? 1U : 0U;
-  }
-  if (least < shown->samples) {
-    snprintf(of, sizeof of, " of %zu or more of %zu", least, shown->samples);
-  }
-  snprintf(doubts, sizeof doubts, "up to %zu of %zu not to be trusted", most, shown->samples);
-  for (size_t dashed = good > 0 ? 0 : 1; dashed < (most > 0 ? 2 : 1); dashed++) {
-    struct dea_series *series;
-    DEA_TRY(shown->question->ctx,
-            add_series(shown->question->ctx, panel, n, dashed == 1 ? DEA_DASHED : DEA_LINE_MARKED,
-                       DEA_BLUE, &series));
-    snprintf(series->title, sizeof series->title, "%s%.50s%s%.60s",
-             dashed == 0 || good == 0 ? "median" : "", dashed == 0 || good == 0 ? of : "",
-             dashed == 1 && good == 0 ? ", " : "", dashed == 1 ? doubts : "");
-    for (size_t v = 0; v < n; v++) {
-      const bool here = shown->doubted[v] > 0;
-      const bool beside =
-          (v > 0 && shown->doubted[v - 1] > 0) || (v + 1 < n && shown->doubted[v + 1] > 0);
-      if (dashed == 1 ? here || beside : !here) {
-        put(shown, v, DEA_SHARES / 2, series);
-      }
+    const bool beside = (v > 0 && is_doubted(shown, v - 1)) || is_doubted(shown, v + 1);
+    if (dashed ? is_doubted(shown, v) || beside : !is_doubted(shown, v)) {
+      put(shown, v, DEA_SHARES / 2, line);
     }
   }
   return DEA_OK;
+}
+
+/* Samples without a value are in neither median nor bands, and those that are not to be trusted
+ * are: the key says both. */
+static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
+{
+  size_t most = 0, least = shown->samples, good = 0;
+  char median[64] = "median", doubts[62], both[DEA_LABEL_SIZE];
+  for (size_t v = 0; v < shown->question->voltage_count; v++) {
+    const size_t count = shown->spreads[v * shown->question->quantity_count].count;
+    most = shown->doubted[v] > most ? shown->doubted[v] : most;
+    least = count < least ? count : least;
+    good += is_doubted(shown, v) ? 0U : 1U;
+  }
+  if (least < shown->samples) {
+    snprintf(median, sizeof median, "median of %zu or more of %zu", least, shown->samples);
+  }
+  snprintf(doubts, sizeof doubts, "up to %zu of %zu not to be trusted", most, shown->samples);
+  if (good == 0) {
+    snprintf(both, sizeof both, "%s, %s", median, doubts);
+    return add_line(shown, panel, true, both);
+  }
+  DEA_TRY(shown->question->ctx, add_line(shown, panel, false, median));
+  return most > 0 ? add_line(shown, panel, true, doubts) : DEA_OK;
 }
 
 static dea_status fill_panel(const struct shown *shown, struct dea_panel *panel)

@@ -210,7 +210,8 @@ static size_t doubted_at(const struct work *w, size_t k)
   return count;
 }
 
-static dea_status write_statistics(const struct work *w, double *values, struct dea_spread *spreads)
+static dea_status write_statistics(const struct work *w, const size_t *doubted, double *values,
+                                   struct dea_spread *spreads)
 {
   struct dea_text out = {.ctx = w->ctx};
   dea_status status = DEA_OK;
@@ -232,7 +233,7 @@ static dea_status write_statistics(const struct work *w, double *values, struct 
     for (size_t k = 0; k < DEA_SHARES; k++) {
       add_field(&out, spreads[i].quantile[k]);
     }
-    dea_text_add(&out, ",%zu\n", doubted_at(w, i / w->question->quantity_count));
+    dea_text_add(&out, ",%zu\n", doubted[i / w->question->quantity_count]);
   }
   status = status == DEA_OK ? dea_text_write(w->ctx, &out, w->folder, "statistics.csv") : status;
   dea_text_free(&out);
@@ -298,19 +299,20 @@ static dea_status write_all(const struct work *w)
   if (w->question->file->plan.value == DEA_PLAN_GRID || w->question->file->objective_count > 0) {
     return DEA_OK;
   }
+  size_t doubted[DEA_EXPLORE_VOLTAGES_MAX] = {0};
+  for (size_t k = 0; k < w->question->voltage_count; k++) {
+    doubted[k] = doubted_at(w, k);
+  }
   double *values = dea_alloc(w->ctx, w->plan->count, sizeof *values);
   struct dea_spread *spreads = dea_alloc(w->ctx, w->values, sizeof *spreads);
-  dea_status status =
-      values != NULL && spreads != NULL ? write_statistics(w, values, spreads) : DEA_E_MEMORY;
+  dea_status status = values != NULL && spreads != NULL
+                          ? write_statistics(w, doubted, values, spreads)
+                          : DEA_E_MEMORY;
   status = status == DEA_OK ? write_limits(w) : status;
   if (status == DEA_OK && w->question->file->plan.value == DEA_PLAN_INDICES) {
     status = write_indices(w, values);
   }
   if (status == DEA_OK && w->question->voltage_count > 1) {
-    size_t doubted[DEA_EXPLORE_VOLTAGES_MAX];
-    for (size_t k = 0; k < w->question->voltage_count; k++) {
-      doubted[k] = doubted_at(w, k);
-    }
     status = dea_sweep_draw(w->question, spreads, independent(w), doubted, w->format, w->folder);
   }
   dea_free(w->ctx, spreads);

@@ -140,8 +140,9 @@ dea_status dea_table_read(struct dea_context *ctx, const char *file, const char 
     DEA_TRY(ctx, find_format(ctx, format, &importer));
   }
   DEA_TRY(ctx, read_head(ctx, file, head, &length));
-  const struct dea_importer *own = recognise(file, head, length);
-  importer = importer != NULL ? importer : own;
+  if (importer == NULL) {
+    importer = recognise(file, head, length);
+  }
   if (importer == NULL) {
     return unknown_format(ctx, file, head, length);
   }
@@ -157,6 +158,7 @@ dea_status dea_table_read(struct dea_context *ctx, const char *file, const char 
   }
   if (status != DEA_OK) {
     dea_table_destroy(ctx, table);
+    const struct dea_importer *own = recognise(file, head, length);
     if (own != NULL && own != importer) {
       (void)dea_finding_add(
           ctx, DEA_NOTE, (struct dea_location){.file = dea_intern(ctx, file)},
