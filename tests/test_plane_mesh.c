@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#define CASES DEA_SOURCE_DIR "/tests/cases/drawings/msh/"
 #define SEEDS DEA_SOURCE_DIR "/tests/fuzz/seeds/msh/"
 
 /* Two squares of 1 mm side by side, the second one written clockwise. */
@@ -82,6 +83,83 @@ static void test_both_formats(void **state)
     check_squares(mesh);
     names_of(mesh);
     dea_plane_mesh_destroy(ctx, mesh);
+  }
+}
+
+/* Nodes on a curve. */
+static size_t nodes_on(const struct dea_plane_mesh *mesh, const char *name)
+{
+  size_t curve = dea_plane_mesh_curve(mesh, name), per = (size_t)mesh->order + 1, count = 0;
+  bool *on = calloc(mesh->node_count, sizeof *on);
+  assert_non_null(on);
+  for (size_t i = 0; i < mesh->edge_count * per; i++) {
+    bool *node = &on[mesh->edges[i]];
+    bool here = (size_t)mesh->edge_curve[i / per] == curve;
+    count += here && !*node;
+    *node |= here;
+  }
+  free(on);
+  return count;
+}
+
+/* A name that three numbers have is one curve: three sides of 4 x 4 nodes, which are 10. */
+static void test_one_name_of_several_curves(void **state)
+{
+  (void)state;
+  struct dea_plane_mesh *mesh = two_squares(CASES "dupnames.msh");
+  assert_int_equal(mesh->curve_count, 2);
+  assert_int_equal(nodes_on(mesh, "frame"), 10);
+  assert_int_equal(nodes_on(mesh, "right"), 4);
+  dea_plane_mesh_destroy(ctx, mesh);
+  // an entity that is in two curves and two surfaces of one name is in each once
+  static const char text[] =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n1 1 \"rim\"\n1 2 \"rim\"\n"
+      "2 3 \"film\"\n2 4 \"film\"\n$EndPhysicalNames\n$Entities\n0 1 1 0\n"
+      "1 0 0 0 1 0 0 2 1 2 0\n1 0 0 0 1 1 0 2 3 4 0\n$EndEntities\n$Nodes\n1 4 1 4\n"
+      "2 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n$EndNodes\n"
+      "$Elements\n2 2 1 2\n1 1 1 1\n1 1 2\n2 1 3 1\n2 1 2 3 4\n$EndElements\n";
+  assert_int_equal(dea_msh_parse(ctx, text, "a.msh", 1e-3, &mesh), DEA_OK);
+  assert_int_equal(mesh->group_count, 1);
+  assert_int_equal(mesh->edge_count, 1);
+  dea_plane_mesh_destroy(ctx, mesh);
+}
+
+/* Files as others write them: read, or refused with what is wrong. */
+static void test_files_of_others(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *file, *fault; // NULL: it is read
+    size_t quads;
+  } cases[] = {
+      {"ok22.msh", NULL, 9},
+      {"clockwise.msh", NULL, 9},
+      {"comments.msh", NULL, 9},
+      {"mixedturn.msh", NULL, 9},
+      {"nocurve.msh", NULL, 9},
+      {"nonames.msh", NULL, 9},
+      {"z5.msh", NULL, 9},
+      {"g.msh", "229 triangles, the first at", 0},
+      {"onetri.msh", "2 triangles, the first at (8, 7) mm", 0},
+      {"triangles.msh", "triangles, the first at", 0},
+      {"lfs.msh", "this is no .msh file", 0},
+      {"v20.msh", "format 2 is not known: 4.1 and 2.2 are", 0},
+      {"noentities41.msh", "quadrilaterals are in no physical surface", 0},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char file[400];
+    struct dea_plane_mesh *mesh;
+    snprintf(file, sizeof file, "%s%s", CASES, cases[i].file);
+    dea_status status = dea_msh_read(ctx, file, 1e-3, &mesh);
+    if (cases[i].fault != NULL) {
+      assert_message(status, DEA_E_DESIGN, cases[i].fault);
+    } else {
+      assert_int_equal(status, DEA_OK);
+      assert_int_equal(mesh->quad_count, cases[i].quads);
+      assert_close(dea_plane_mesh_smallest_jacobian(mesh, NULL), 1, 1e-12, 0);
+    }
+    dea_plane_mesh_destroy(ctx, mesh);
+    dea_finding_clear(ctx);
   }
 }
 
@@ -185,7 +263,8 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_both_formats), cmocka_unit_test(test_extruded_by_groups),
+      cmocka_unit_test(test_both_formats),        cmocka_unit_test(test_one_name_of_several_curves),
+      cmocka_unit_test(test_files_of_others),     cmocka_unit_test(test_extruded_by_groups),
       cmocka_unit_test(test_faults_have_a_place), cmocka_unit_test(test_memory)};
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

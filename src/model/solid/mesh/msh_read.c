@@ -684,7 +684,13 @@ static dea_status add_names(struct reader *r, struct dea_plane_mesh *mesh)
   }
   struct physical *all = r->physicals.data;
   for (size_t i = 0; i < r->physicals.count; i++) {
-    if (all[i].dimension == 2) {
+    size_t first = 0; // of that name, which several numbers may have
+    while (all[first].dimension != all[i].dimension || strcmp(all[first].name, all[i].name) != 0) {
+      first++;
+    }
+    if (first < i) {
+      all[i].index = all[first].index;
+    } else if (all[i].dimension == 2) {
       all[i].index = mesh->group_count;
       DEA_TRY(r->ctx, dea_plane_mesh_add_group(r->ctx, mesh, all[i].name));
     } else if (all[i].dimension == 1) {
@@ -762,7 +768,7 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
                            struct list *curves)
 {
   int nodes[3], per = mesh->order + 1;
-  size_t cursor = 0, known = places->count;
+  size_t cursor = 0, known = places->count, first = curves->count;
   for (long long tag; (tag = next_group(r, e, &cursor)) != 0;) {
     if (e->kind->order != mesh->order) {
       return fault(r, e->line, "a line of another order than the quadrilaterals");
@@ -773,11 +779,20 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
         return fault(r, e->line, "a line of a physical curve is not on the side of an element");
       }
     }
+    int index = (int)find_physical(r, 1, tag)->index;
+    size_t known_edge = first;
+    while (known_edge < curves->count &&
+           ((int *)curves->data)[known_edge * (size_t)(per + 1)] != index) {
+      known_edge++;
+    }
+    if (known_edge < curves->count) {
+      continue; // two numbers of one name
+    }
     int *edge = list_add(r->ctx, curves, (size_t)(per + 1) * sizeof *edge);
     if (edge == NULL) {
       return DEA_E_MEMORY;
     }
-    edge[0] = (int)find_physical(r, 1, tag)->index;
+    edge[0] = index;
     // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): per is 2 or 3
     edge[1] = nodes[0];
     // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): the same

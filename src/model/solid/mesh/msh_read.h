@@ -6,9 +6,10 @@
 
 /* Reads the quadrilaterals of a file, of 4, 8 or 9 nodes (8 are completed by a middle one), all of
  * one order; triangles and volumes are refused. Physical surfaces become groups, physical curves
- * named curves; one without a name is called by its number. Every quadrilateral has to be in a
- * group. Nodes of one place are joined, elements turned counter-clockwise and put in an order in
- * which neighbours are near each other. unit_m: length of a unit of the file (1e-3: it is in mm).
+ * named curves; several of one name are one, and one without a name is called by its number. Every
+ * quadrilateral has to be in a group. Nodes of one place are joined, elements turned
+ * counter-clockwise and put in an order in which neighbours are near each other. unit_m: length of
+ * a unit of the file (1e-3: it is in mm).
  *
  * DEA_E_DESIGN after a finding with file and line: no such file's form, elements that cannot be
  * used (which ones, how many, where), a mesh that is not plane. DEA_E_IO: it cannot be read. out:
