@@ -135,8 +135,8 @@ static void expect_fault(const char *entities, const char *layer, size_t line, c
 static void test_dxf_faults(void **state)
 {
   (void)state;
-  expect_fault(LINE(a, 0, 0, 2, 0) LINE(a, 2, 0, 2, 2) LINE(a, 2, 2.001, 0, 0), "a", 18,
-               "the contour is open (the nearest other end is 0.001 mm away, ends within 0.001 mm "
+  expect_fault(LINE(a, 0, 0, 2, 0) LINE(a, 2, 0, 2, 2) LINE(a, 2, 2.002, 0, 0), "a", 18,
+               "the contour is open (the nearest other end is 0.002 mm away, ends within 0.001 mm "
                "are joined) at (2, 2) mm");
   expect_fault(LINE(a, 0, 0, 2, 0) LINE(a, 2, 0, 2, 2) LINE(a, 2, 2, 0, 0) LINE(a, 0, 0, 2, 0), "a",
                42, "more than two lines meet (one that is drawn twice?) at (0, 0) mm");

@@ -28,17 +28,14 @@ size_t dea_point_map_find(const struct dea_point_map *map, const double x_m[2])
   if (map->count == 0) {
     return found;
   }
-  double column[2], row[2]; // of the cells that the tolerance reaches: one or two each way
-  for (int k = 0; k < 2; k++) {
-    double reach = k == 0 ? -tolerance : tolerance;
-    column[k] = floor((x_m[0] + reach) / size);
-    row[k] = floor((x_m[1] + reach) / size);
-  }
-  for (int k = 0; k < 4; k++) {
-    if ((k % 2 == 1 && column[1] == column[0]) || (k / 2 == 1 && row[1] == row[0])) {
+  // cells that the tolerance reaches: one or two each way, and by rounding even three
+  double column = floor((x_m[0] - tolerance) / size), row = floor((x_m[1] - tolerance) / size);
+  for (int k = 0; k < 9; k++) {
+    double across = column + k % 3, up = row + k / 3;
+    if (across > floor((x_m[0] + tolerance) / size) || up > floor((x_m[1] + tolerance) / size)) {
       continue;
     }
-    size_t i = map->head[hash(map, column[k % 2], row[k / 2])];
+    size_t i = map->head[hash(map, across, up)];
     for (; i != SIZE_MAX; i = map->next[i]) {
       double dx = map->point[i][0] - x_m[0], dy = map->point[i][1] - x_m[1];
       if (hypot(dx, dy) <= tolerance && i < found) {
