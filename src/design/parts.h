@@ -52,7 +52,12 @@ struct dea_parts_shape {
   struct dea_quantity about_m[2]; // copy: what it is turned about
   size_t about_count;
   struct dea_label file, layer; // drawing
+  struct dea_choice unit;       // of the drawing's lengths, in dea_parts_units; absent: the file's
 };
+
+/* Units of drawings and their lengths [m]. */
+extern const char *const dea_parts_units[];
+extern const double dea_parts_unit_m[];
 
 struct dea_parts_ply {
   struct dea_label name, shape, material;

@@ -72,6 +72,9 @@ static const struct dea_field copy_fields[] = {
     NUMBER(x, "x", "m", "then moved along x", "5 mm", .default_text = "0 mm"),
     NUMBER(y, "y", "m", "then moved along y", "5 mm", .default_text = "0 mm"),
 };
+const char *const dea_parts_units[] = {"um", "mm", "cm", "m", "mil", "in", "ft", NULL};
+const double dea_parts_unit_m[] = {1e-6, 1e-3, 1e-2, 1, 25.4e-6, 25.4e-3, 0.3048};
+
 static const struct dea_field drawing_fields[] = {
     {.key = "file",
      .kind = DEA_FIELD_LABEL,
@@ -85,6 +88,8 @@ static const struct dea_field drawing_fields[] = {
      .required = true,
      .doc = "layer whose closed contours it is",
      .example = "CUT"},
+    DEA_CHOICE_ROW("unit", AT(unit), dea_parts_units, "mm", "unit of a file that does not say it",
+                   .absent_text = "as the file says"),
 };
 
 static const struct {

@@ -10,14 +10,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Of a drawing: more than any mesh could follow. */
-enum { VERTICES_MAX = 100000 };
-
 enum state { NEW, BEING_MADE, MADE, WRONG };
 
 /* A file that was read; several shapes are of its layers. */
 struct read_drawing {
   const char *file; // path, interned
+  double unit_m;    // that the shape gives, 0: none
   struct dea_drawing *drawing;
 };
 
@@ -177,6 +175,7 @@ static dea_status read_drawing(struct maker *m, const struct dea_parts_shape *sh
                                const struct dea_drawing **out)
 {
   struct dea_context *ctx = m->ctx;
+  double unit_m = shape->unit.origin == DEA_ABSENT ? 0 : dea_parts_unit_m[shape->unit.value];
   char *path = dea_path_beside(ctx, m->design->file, shape->file.text);
   const char *file = path != NULL ? dea_intern(ctx, path) : NULL;
   dea_free(ctx, path);
@@ -185,14 +184,15 @@ static dea_status read_drawing(struct maker *m, const struct dea_parts_shape *sh
     return DEA_E_MEMORY;
   }
   for (size_t i = 0; i < m->drawing_count; i++) {
-    if (m->drawings[i].file == file) {
+    if (m->drawings[i].file == file && m->drawings[i].unit_m == unit_m) {
       *out = m->drawings[i].drawing;
       return DEA_OK;
     }
   }
   struct read_drawing *next = &m->drawings[m->drawing_count++];
   next->file = file;
-  const struct dea_drawing_settings settings = {.vertices_max = VERTICES_MAX};
+  next->unit_m = unit_m;
+  const struct dea_drawing_settings settings = {.unit_m = unit_m};
   dea_status status = dea_drawing_read(ctx, file, &settings, &next->drawing);
   if (status == DEA_E_IO) {
     return dea_finding_add(ctx, DEA_ERROR, shape->file.location, "file: %s",
@@ -207,6 +207,14 @@ static dea_status draw(struct maker *m, const struct dea_parts_shape *shape, str
   const struct dea_drawing *drawing;
   DEA_TRY(m->ctx, read_drawing(m, shape, &drawing));
   if (drawing == NULL) {
+    return DEA_E_DESIGN;
+  }
+  if (drawing->settings.unit_m > 0 && drawing->unit_is_known &&
+      fabs(drawing->unit_m / drawing->settings.unit_m - 1) > 1e-6) {
+    DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_ERROR, shape->unit.location,
+                                    "the unit of %s is %.6g mm, as the file itself says: leave "
+                                    "'unit' out, or change the file",
+                                    shape->file.text, 1e3 * drawing->unit_m));
     return DEA_E_DESIGN;
   }
   return dea_drawing_region(drawing, shape->layer.text, shape->layer.location, out);

@@ -1,9 +1,11 @@
+#define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "geometry/drawing.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
                               const struct dea_drawing_settings *settings, struct dea_drawing **out)
@@ -16,7 +18,7 @@ dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
   d->ctx = ctx;
   d->settings = settings != NULL ? *settings : (struct dea_drawing_settings){0};
   d->settings.join_m = d->settings.join_m > 0 ? d->settings.join_m : 1e-6;
-  d->settings.flatten_m = d->settings.flatten_m > 0 ? d->settings.flatten_m : 1e-7;
+  d->settings.fit_m = d->settings.fit_m > 0 ? d->settings.fit_m : 1e-7;
   if (d->settings.vertices_max == 0) {
     d->settings.vertices_max = DEA_DRAWING_VERTICES_MAX;
   }
@@ -53,9 +55,8 @@ dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, con
   return dea_fail(drawing->ctx, DEA_E_DESIGN, "%s:%zu: %s", drawing->file, line, text);
 }
 
-/* Room for one more in an owned array. */
-static dea_status make_room(struct dea_context *ctx, void **array, size_t count, size_t *room,
-                            size_t size)
+dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t count, size_t *room,
+                                 size_t size)
 {
   if (count < *room) {
     return DEA_OK;
@@ -74,7 +75,7 @@ dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size
 {
   struct dea_drawing *d = drawing;
   for (size_t i = d->layer_count; i-- > 0;) {
-    if (strcmp(d->layer[i], name) == 0) {
+    if ((d->any_case ? strcasecmp : strcmp)(d->layer[i], name) == 0) {
       *layer = i;
       return DEA_OK;
     }
@@ -83,7 +84,8 @@ dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size
     return dea_drawing_fault(d, 0, "the drawing has more than %d layers", DEA_DRAWING_LAYERS_MAX);
   }
   void *names = d->layer;
-  DEA_TRY(d->ctx, make_room(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
+  DEA_TRY(d->ctx,
+          dea_drawing_make_room(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
   d->layer = names;
   const char *kept = dea_intern(d->ctx, name);
   if (kept == NULL) {
@@ -91,25 +93,6 @@ dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size
   }
   d->layer[d->layer_count] = kept;
   *layer = d->layer_count++;
-  return DEA_OK;
-}
-
-dea_status dea_drawing_add_vertex(struct dea_drawing *drawing, double x_m, double y_m, double bulge,
-                                  size_t line)
-{
-  struct dea_drawing *d = drawing;
-  if (!isfinite(x_m) || !isfinite(y_m) || !isfinite(bulge)) {
-    return dea_drawing_fault(d, line, "a coordinate is no number");
-  }
-  if (d->vertex_count == d->settings.vertices_max) {
-    return dea_drawing_fault(d, line, "the drawing has more than %zu vertices, which is too many",
-                             d->settings.vertices_max);
-  }
-  void *vertices = d->vertex;
-  DEA_TRY(d->ctx,
-          make_room(d->ctx, &vertices, d->vertex_count, &d->vertex_room, sizeof *d->vertex));
-  d->vertex = vertices;
-  d->vertex[d->vertex_count++] = (struct dea_vertex){x_m, y_m, bulge, {d->file, line, line > 0}};
   return DEA_OK;
 }
 
@@ -123,12 +106,17 @@ dea_status dea_drawing_end_path(struct dea_drawing *drawing, size_t layer, bool 
 {
   struct dea_drawing *d = drawing;
   size_t count = dea_drawing_open_vertices(d);
+  const struct dea_vertex *first = d->vertex + d->vertex_count - count, *last = first + count - 1;
+  if (closed && count > 2 && first->x_m == last->x_m && first->y_m == last->y_m) {
+    d->vertex_count--;
+  }
   if (count < 2) {
     d->vertex_count -= count;
     return DEA_OK;
   }
   void *paths = d->path;
-  DEA_TRY(d->ctx, make_room(d->ctx, &paths, d->path_count, &d->path_room, sizeof *d->path));
+  DEA_TRY(d->ctx,
+          dea_drawing_make_room(d->ctx, &paths, d->path_count, &d->path_room, sizeof *d->path));
   d->path = paths;
   d->path[d->path_count++] = (struct dea_drawing_path){layer, d->vertex_count, closed};
   return DEA_OK;
@@ -148,9 +136,23 @@ dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const cha
     }
   }
   void *skipped = d->skipped;
-  DEA_TRY(d->ctx,
-          make_room(d->ctx, &skipped, d->skipped_count, &d->skipped_room, sizeof *d->skipped));
+  DEA_TRY(d->ctx, dea_drawing_make_room(d->ctx, &skipped, d->skipped_count, &d->skipped_room,
+                                        sizeof *d->skipped));
   d->skipped = skipped;
   d->skipped[d->skipped_count++] = entry;
   return DEA_OK;
+}
+
+dea_status dea_drawing_add_notes(const struct dea_drawing *drawing, const char *assumed)
+{
+  const struct dea_drawing *d = drawing;
+  const struct dea_location location = {d->file, 0, 0};
+  if (!d->unit_is_known && !(d->settings.unit_m > 0)) {
+    DEA_TRY(d->ctx, dea_finding_add(d->ctx, DEA_NOTE, location, "%s", assumed));
+  }
+  return d->curves == 0
+             ? DEA_OK
+             : dea_finding_add(d->ctx, DEA_NOTE, location,
+                               "%zu curve%s became circular arcs, to within %.2g mm", d->curves,
+                               d->curves > 1 ? "s" : "", 1e3 * d->deviation_m);
 }

@@ -7,7 +7,8 @@
 /* 0 in a member: its default. */
 struct dea_drawing_settings {
   double join_m;       // ends of lines nearer than this are joined; default 1 um
-  double flatten_m;    // largest distance of curves from the lines that they become; default 0.1 um
+  double fit_m;        // largest distance of curves from the arcs that they become; default 0.1 um
+  double unit_m;       // of a file that does not say it
   size_t vertices_max; // of a drawing; default DEA_DRAWING_VERTICES_MAX
 };
 
@@ -15,6 +16,11 @@ enum {
   DEA_DRAWING_VERTICES_MAX = 4000000,
   DEA_DRAWING_BYTES_MAX = 500000000,
   DEA_DRAWING_LAYERS_MAX = 1000,
+};
+
+/* x -> a x + c y + e, y -> b x + d y + f. */
+struct dea_affine {
+  double a, b, c, d, e, f;
 };
 
 /* Lines and arcs that follow each other; its vertices start where the path before it ends. */
@@ -41,12 +47,20 @@ struct dea_drawing {
   size_t layer_count, layer_room, path_count, path_room, skipped_count, skipped_room;
   size_t vertex_count, vertex_room;
   double unit_m;      // of the file's lengths
-  bool unit_is_known; // false: the file does not say it, and unit_m was assumed
+  bool unit_is_known; // false: the file does not say it, and unit_m was given or assumed
+  bool any_case;      // names of layers do not differ by the case of their letters alone
+
+  // for readers
+  struct dea_affine matrix; // of what is drawn, to metres
+  size_t line;              // of the file, where what is drawn stands
+  size_t curves;            // that became arcs
+  double deviation_m;       // largest distance of curves from these arcs
 };
 
 /* Reads a file by its ending, .dxf or .svg; settings: NULL for the defaults. What is wrong with it
  * is a finding at its line and DEA_E_DESIGN; DEA_E_IO when it cannot be read. Lengths in a file
- * without a unit are mm (DXF) or 1/96 inch (SVG), which is a note. out: owned by the caller. */
+ * without a unit are in that of the settings, or else mm (DXF) or 1/96 inch (SVG), which is a note.
+ * Curves become arcs, which is a note, too. out: owned by the caller. */
 dea_status dea_drawing_read(struct dea_context *ctx, const char *file,
                             const struct dea_drawing_settings *settings, struct dea_drawing **out);
 /* The same of bytes[length] and a NUL after them; file: its name for messages. */
@@ -73,15 +87,41 @@ dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
                               struct dea_drawing **out);
 /* Number of a layer, which is added when it is new. */
 dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size_t *layer);
-/* A vertex [m] of the path that is to be ended next. */
-dea_status dea_drawing_add_vertex(struct dea_drawing *drawing, double x_m, double y_m, double bulge,
-                                  size_t line);
-/* The vertices since the last path are one on that layer; fewer than two are forgotten. */
+/* m after n. */
+struct dea_affine dea_affine_times(const struct dea_affine *m, const struct dea_affine *n);
+/* What follows draws the path that is to be ended next, in the coordinates of the file: it adds the
+ * first point where nothing is drawn yet, and goes on to the last one. */
+dea_status dea_drawing_line_to(struct dea_drawing *drawing, const double to[2]);
+/* By an arc of a bulge as that of struct dea_vertex. */
+dea_status dea_drawing_bulge_to(struct dea_drawing *drawing, const double from[2], double bulge,
+                                const double to[2]);
+/* Along the points centre + first cos + second sin of an ellipse, from an angle over `sweep`. to:
+ * the last one; NULL: as computed. */
+struct dea_ellipse {
+  double centre[2], first[2], second[2], from, sweep;
+};
+dea_status dea_drawing_ellipse_to(struct dea_drawing *drawing, const struct dea_ellipse *ellipse,
+                                  const double to[2]);
+/* Along a rational B-spline, from its knot of number `degree` to that of number `count`. */
+enum { DEA_SPLINE_DEGREE_MAX = 25 };
+struct dea_spline {
+  size_t degree, count;
+  const double (*point)[3]; // [count] weight times x and y, and the weight, > 0
+  const double *knot;       // [count + degree + 1], ascending
+};
+dea_status dea_drawing_spline_to(struct dea_drawing *drawing, const struct dea_spline *spline);
+/* The vertices since the last path are one on that layer; fewer than two are forgotten, as is a
+ * last one of a closed path that is the first again. */
 dea_status dea_drawing_end_path(struct dea_drawing *drawing, size_t layer, bool closed);
 /* Vertices since the last path. */
 size_t dea_drawing_open_vertices(const struct dea_drawing *drawing);
 dea_status dea_drawing_skip(struct dea_drawing *drawing, size_t layer, const char *kind,
                             size_t line);
+/* Notes on what the reader assumed: `assumed` of a unit that the file does not say, and curves. */
+dea_status dea_drawing_add_notes(const struct dea_drawing *drawing, const char *assumed);
+/* Room for one more of `size` in an owned array of *room. */
+dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t count, size_t *room,
+                                 size_t size);
 /* A finding at a line and DEA_E_DESIGN. */
 dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, const char *format,
                              ...) DEA_PRINTF(3, 4);

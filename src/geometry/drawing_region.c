@@ -1,4 +1,5 @@
 /* A layer of a drawing as a region: ends of lines are joined, contours arranged. */
+#define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "base/text.h"
 #include "geometry/drawing.h"
 #include "geometry/pieces.h"
@@ -8,6 +9,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 /* An end of an open path: 2 path + 1 for its last vertex. */
 struct joiner {
@@ -32,16 +34,22 @@ static const struct dea_vertex *end_vertex(const struct dea_drawing *d, size_t e
   return &d->vertex[end % 2 == 1 ? d->path[path].end - 1 : first_vertex(d, path)];
 }
 
-/* Adds a path to the contour from one of its ends on, without its last vertex. */
+/* Adds a path to the contour from one of its ends on, which is where the first of all ends at its
+ * node is, without its last vertex. */
 static void follow(struct joiner *j, size_t end)
 {
   const struct dea_drawing *d = j->drawing;
+  size_t start = j->count, node = j->node_of[end];
   size_t first = first_vertex(d, end / 2), last = d->path[end / 2].end - 1;
   for (size_t k = first; k < last; k++) {
     const struct dea_vertex *v = &d->vertex[end % 2 == 0 ? k : first + last - k];
     const struct dea_vertex *piece = &d->vertex[end % 2 == 0 ? k : first + last - k - 1];
     double bulge = end % 2 == 0 ? piece->bulge : -piece->bulge;
     j->contour[j->count++] = (struct dea_vertex){v->x_m, v->y_m, bulge, piece->location};
+  }
+  if (node != SIZE_MAX) {
+    j->contour[start].x_m = j->node.point[node][0];
+    j->contour[start].y_m = j->node.point[node][1];
   }
 }
 
@@ -82,7 +90,18 @@ static dea_status open_fault(const struct joiner *j, size_t end)
   return dea_region_fault(d->ctx, v->location, v->x_m, v->y_m, what);
 }
 
-/* Ends of all open paths of a layer at their nodes, two at each. */
+/* Whether a path comes no further from its ends, which are one, than they may from each other. */
+static bool is_tiny(const struct dea_drawing *d, size_t path)
+{
+  size_t first = first_vertex(d, path);
+  const struct dea_contour contour = {d->vertex + first, d->path[path].end - first, false};
+  double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+  dea_contour_grow_box(&contour, box);
+  return hypot(box[2] - box[0], box[3] - box[1]) <= 2 * d->settings.join_m;
+}
+
+/* Ends of all open paths of a layer at their nodes, two at each. A path between one and the same
+ * node is closed by itself, or too small to be a part of any contour. */
 static dea_status find_ends(struct joiner *j, size_t layer)
 {
   const struct dea_drawing *d = j->drawing;
@@ -96,6 +115,10 @@ static dea_status find_ends(struct joiner *j, size_t layer)
     size_t node;
     DEA_TRY(d->ctx, dea_point_map_add(&j->node, (double[2]){v->x_m, v->y_m}, &node));
     j->node_of[end] = node;
+    if (end % 2 == 1 && j->node_of[end - 1] == node) {
+      j->node_of[end - 1] = j->node_of[end] = SIZE_MAX;
+      j->used[end / 2] = is_tiny(d, end / 2);
+    }
   }
   for (size_t end = 0; end < 2 * d->path_count; end++) {
     size_t node = j->node_of[end];
@@ -134,7 +157,9 @@ static dea_status join(struct joiner *j, size_t layer, double snap, struct dea_r
       j->used[end / 2] = true;
       follow(j, end);
       size_t far_end = end ^ 1, node = j->node_of[far_end];
-      end = j->ends[0][node] == far_end ? j->ends[1][node] : j->ends[0][node];
+      if (node != SIZE_MAX) {
+        end = j->ends[0][node] == far_end ? j->ends[1][node] : j->ends[0][node];
+      }
     }
     add_contour(j, snap, out);
   }
@@ -166,7 +191,8 @@ dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *lay
 {
   const struct dea_drawing *d = drawing;
   size_t number = 0, ends = 2 * d->path_count;
-  while (number < d->layer_count && strcmp(d->layer[number], layer) != 0) {
+  int (*compare)(const char *, const char *) = d->any_case ? strcasecmp : strcmp;
+  while (number < d->layer_count && compare(d->layer[number], layer) != 0) {
     number++;
   }
   if (number == d->layer_count) {

@@ -11,15 +11,12 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { DEPTH_MAX = 200, CHUNK = 1 << 20, SEGMENTS_MAX = 20000 };
+static const double px_m = 25.4e-3 / 96; // of CSS
 
-/* x -> a x + c y + e, y -> b x + d y + f. */
-struct matrix {
-  double a, b, c, d, e, f;
-};
+enum { DEPTH_MAX = 200, CHUNK = 1 << 20 };
 
 struct frame {
-  struct matrix matrix; // to metres
+  struct dea_affine matrix; // to metres
   size_t layer;
 };
 
@@ -30,8 +27,9 @@ struct reader {
   dea_status status;
   struct frame frame[DEPTH_MAX];
   size_t depth;
-  size_t hidden; // depth of elements within one that is not drawn, 0: none
-  size_t curves; // that became lines
+  size_t hidden;  // depth of elements within one that is not drawn, 0: none
+  double px;      // of CSS, in user units
+  double view[2]; // width and height that % count from; NAN: not known
 };
 
 static struct frame *top(struct reader *r)
@@ -94,25 +92,31 @@ static bool read_number(const char **text, double *out)
   return true;
 }
 
-/* A length with its unit in metres; NAN when it has none of its own (%, em, nothing, px). *value:
- * the number. */
-static double read_length(const char *text, double *value)
+/* A length in user units; px: one of CSS, whole: of "100 %", NAN: not known. NAN when it is none.
+ */
+static double length_of(const char *text, double px, double whole)
 {
-  static const struct {
+  const struct {
     const char *name;
-    double metres;
-  } units[] = {
-      {"mm", 1e-3}, {"cm", 1e-2}, {"in", 25.4e-3}, {"pt", 25.4e-3 / 72}, {"pc", 25.4e-3 / 6}};
-  *value = NAN;
-  if (text == NULL || !read_number(&text, value)) {
+    double length;
+  } units[] = {{"", 1},
+               {"px", 1},
+               {"mm", 1e-3 / px_m * px},
+               {"cm", 1e-2 / px_m * px},
+               {"in", 96 * px},
+               {"pt", 96.0 / 72 * px},
+               {"pc", 16 * px},
+               {"%", whole / 100}};
+  double value;
+  if (text == NULL || !read_number(&text, &value)) {
     return NAN;
   }
+  size_t n = strcspn(text, " \t\r\n");
   for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
-    if (strncmp(text, units[i].name, 2) == 0) {
-      return *value * units[i].metres;
+    if (strlen(units[i].name) == n && strncmp(text, units[i].name, n) == 0) {
+      return value * units[i].length;
     }
   }
-  *value = *text == '\0' || strncmp(text, "px", 2) == 0 ? *value : NAN;
   return NAN;
 }
 
@@ -126,57 +130,49 @@ static const char *attribute(const char **attributes, const char *name)
   return NULL;
 }
 
-/* A number of an element, 0 when it is not there. */
-static double value_of(const char **attributes, const char *name)
+/* Lengths of an element in its units, 0 for those that are not there; % are of the width for names
+ * with an x or of a width, of the height for those with a y, and else of the mean of squares. */
+static dea_status read_lengths(struct reader *r, const char **attributes, const char *const *names,
+                               size_t count, double *out)
 {
-  const char *text = attribute(attributes, name);
-  double value = 0;
-  return text != NULL && read_number(&text, &value) ? value : 0;
+  double mean = hypot(r->view[0], r->view[1]) / sqrt(2);
+  for (size_t i = 0; i < count; i++) {
+    const char *name = names[i], *text = attribute(attributes, name);
+    bool across = strchr(name, 'x') != NULL || name[0] == 'w';
+    bool down = strchr(name, 'y') != NULL || name[0] == 'h';
+    out[i] = text == NULL || strcmp(text, "auto") == 0 ? 0
+                                                       : length_of(text, r->px,
+                                                                   across ? r->view[0]
+                                                                   : down ? r->view[1]
+                                                                          : mean);
+    if (!isfinite(out[i])) {
+      return dea_drawing_fault(r->drawing, line_of(r),
+                               "%s '%.20s' is no length that is understood; write it in mm or "
+                               "without a unit",
+                               name, text);
+    }
+  }
+  return DEA_OK;
 }
 
 /* ---- transforms ---- */
 
-static struct matrix times(const struct matrix *m, const struct matrix *n)
-{
-  return (struct matrix){m->a * n->a + m->c * n->b,        m->b * n->a + m->d * n->b,
-                         m->a * n->c + m->c * n->d,        m->b * n->c + m->d * n->d,
-                         m->a * n->e + m->c * n->f + m->e, m->b * n->e + m->d * n->f + m->f};
-}
-
-static double determinant(const struct matrix *m)
-{
-  return m->a * m->d - m->b * m->c;
-}
-
-/* Whether circles stay circles. */
-static bool is_similar(const struct matrix *m)
-{
-  double one = m->a * m->a + m->b * m->b, two = m->c * m->c + m->d * m->d;
-  return fabs(one - two) <= 1e-9 * one && fabs(m->a * m->c + m->b * m->d) <= 1e-9 * one;
-}
-
-/* At most so much longer do lengths become. */
-static double stretch(const struct matrix *m)
-{
-  return sqrt(m->a * m->a + m->b * m->b + m->c * m->c + m->d * m->d);
-}
-
-static bool transform_of(const char *name, const double *v, int count, struct matrix *out)
+static bool transform_of(const char *name, const double *v, int count, struct dea_affine *out)
 {
   double angle = count > 0 ? v[0] * pi / 180 : 0, c = cos(angle), s = sin(angle);
   if (strcmp(name, "matrix") == 0 && count == 6) {
-    *out = (struct matrix){v[0], v[1], v[2], v[3], v[4], v[5]};
+    *out = (struct dea_affine){v[0], v[1], v[2], v[3], v[4], v[5]};
   } else if (strcmp(name, "translate") == 0 && (count == 1 || count == 2)) {
-    *out = (struct matrix){1, 0, 0, 1, v[0], count == 2 ? v[1] : 0};
+    *out = (struct dea_affine){1, 0, 0, 1, v[0], count == 2 ? v[1] : 0};
   } else if (strcmp(name, "scale") == 0 && (count == 1 || count == 2)) {
-    *out = (struct matrix){v[0], 0, 0, count == 2 ? v[1] : v[0], 0, 0};
+    *out = (struct dea_affine){v[0], 0, 0, count == 2 ? v[1] : v[0], 0, 0};
   } else if (strcmp(name, "rotate") == 0 && (count == 1 || count == 3)) {
     double x = count == 3 ? v[1] : 0, y = count == 3 ? v[2] : 0;
-    *out = (struct matrix){c, s, -s, c, x - c * x + s * y, y - s * x - c * y};
+    *out = (struct dea_affine){c, s, -s, c, x - c * x + s * y, y - s * x - c * y};
   } else if (strcmp(name, "skewX") == 0 && count == 1) {
-    *out = (struct matrix){1, 0, tan(angle), 1, 0, 0};
+    *out = (struct dea_affine){1, 0, tan(angle), 1, 0, 0};
   } else if (strcmp(name, "skewY") == 0 && count == 1) {
-    *out = (struct matrix){1, tan(angle), 0, 1, 0, 0};
+    *out = (struct dea_affine){1, tan(angle), 0, 1, 0, 0};
   } else {
     return false;
   }
@@ -204,24 +200,22 @@ static dea_status apply_transforms(struct reader *r, const char *text)
       count++;
     }
     skip_space(&text);
-    struct matrix next;
+    struct dea_affine next;
     if (!good || *text != ')' || !transform_of(name, v, count, &next)) {
       return dea_drawing_fault(r->drawing, line_of(r), "the transform '%s' is not understood",
                                name);
     }
     text++;
-    top(r)->matrix = times(&top(r)->matrix, &next);
+    top(r)->matrix = dea_affine_times(&top(r)->matrix, &next);
   }
   return DEA_OK;
 }
 
 /* ---- lines, arcs and curves ---- */
 
-static dea_status add_vertex(struct reader *r, double x, double y, double bulge)
+static dea_status add_vertex(struct reader *r, double x, double y)
 {
-  const struct matrix *m = &top(r)->matrix;
-  return dea_drawing_add_vertex(r->drawing, m->a * x + m->c * y + m->e, m->b * x + m->d * y + m->f,
-                                determinant(m) < 0 ? -bulge : bulge, line_of(r));
+  return dea_drawing_line_to(r->drawing, (double[2]){x, y});
 }
 
 static dea_status end_path(struct reader *r, bool closed)
@@ -229,34 +223,18 @@ static dea_status end_path(struct reader *r, bool closed)
   return dea_drawing_end_path(r->drawing, top(r)->layer, closed);
 }
 
-/* Bulge of the vertex that was added last. */
-static void set_bulge(struct reader *r, double bulge)
-{
-  struct dea_vertex *last = &r->drawing->vertex[r->drawing->vertex_count - 1];
-  last->bulge = determinant(&top(r)->matrix) < 0 ? -bulge : bulge;
-}
-
-/* From the last vertex along an ellipse of axes `radius`, turned by an angle, from one parameter
- * over `sweep`; exact where it becomes a circle. end: its last point. */
+/* Along an ellipse of axes `radius`, turned by an angle, from one parameter over `sweep`. end: its
+ * last point. */
 static dea_status add_arc(struct reader *r, const double centre[2], const double radius[2],
                           double turn, double from, double sweep, const double end[2])
 {
-  const struct matrix *m = &top(r)->matrix;
-  bool exact = radius[0] == radius[1] && is_similar(m);
-  double reach = fmax(radius[0], radius[1]) * stretch(m);
-  double step = 2 * acos(fmax(0.5, 1 - r->drawing->settings.flatten_m / reach));
-  int parts =
-      exact ? (fabs(sweep) > pi ? 2 : 1) : (int)fmin(SEGMENTS_MAX, 1 + ceil(fabs(sweep) / step));
-  r->curves += !exact;
-  for (int k = 1; k <= parts; k++) {
-    double angle = from + k * sweep / parts;
-    double x = radius[0] * cos(angle), y = radius[1] * sin(angle);
-    set_bulge(r, exact ? tan(0.25 * sweep / parts) : 0);
-    bool last = k == parts;
-    DEA_TRY(r->ctx, add_vertex(r, last ? end[0] : centre[0] + cos(turn) * x - sin(turn) * y,
-                               last ? end[1] : centre[1] + sin(turn) * x + cos(turn) * y, 0));
-  }
-  return DEA_OK;
+  double c = cos(turn), s = sin(turn);
+  const struct dea_ellipse ellipse = {{centre[0], centre[1]},
+                                      {radius[0] * c, radius[0] * s},
+                                      {-radius[1] * s, radius[1] * c},
+                                      from,
+                                      sweep};
+  return dea_drawing_ellipse_to(r->drawing, &ellipse, end);
 }
 
 /* The arc of a path from p to q, by the formulas of SVG 1.1, appendix F.6. */
@@ -265,7 +243,7 @@ static dea_status add_path_arc(struct reader *r, const double p[2], const double
 {
   double radius[2] = {fabs(v[0]), fabs(v[1])}, turn = v[2] * pi / 180;
   if (radius[0] == 0 || radius[1] == 0 || (p[0] == q[0] && p[1] == q[1])) {
-    return add_vertex(r, q[0], q[1], 0);
+    return add_vertex(r, q[0], q[1]);
   }
   double c = cos(turn), s = sin(turn);
   double dx = 0.5 * (p[0] - q[0]), dy = 0.5 * (p[1] - q[1]);
@@ -287,29 +265,6 @@ static dea_status add_path_arc(struct reader *r, const double p[2], const double
     sweep -= 2 * pi;
   }
   return add_arc(r, centre, radius, turn, from, sweep, q);
-}
-
-/* A cubic Bezier curve: chords of equal steps; their distance is a 1/8 of the second derivative. */
-static dea_status add_cubic(struct reader *r, double p[4][2])
-{
-  double bend = 0;
-  for (int k = 0; k < 2; k++) {
-    bend = fmax(bend, hypot(p[k][0] - 2 * p[k + 1][0] + p[k + 2][0],
-                            p[k][1] - 2 * p[k + 1][1] + p[k + 2][1]));
-  }
-  double n = ceil(sqrt(6 * bend * stretch(&top(r)->matrix) / (8 * r->drawing->settings.flatten_m)));
-  n = fmax(1, fmin(n, SEGMENTS_MAX));
-  r->curves++;
-  for (double k = 1; k <= n; k++) {
-    double t = k / n, s = 1 - t;
-    double w[4] = {s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t}, x[2] = {0, 0};
-    for (int i = 0; i < 4; i++) {
-      x[0] += w[i] * p[i][0];
-      x[1] += w[i] * p[i][1];
-    }
-    DEA_TRY(r->ctx, add_vertex(r, x[0], x[1], 0));
-  }
-  return DEA_OK;
 }
 
 /* ---- paths ---- */
@@ -350,29 +305,29 @@ static dea_status start_if_needed(struct pen *pen)
     return DEA_OK;
   }
   pen->open = true;
-  return add_vertex(pen->r, pen->at[0], pen->at[1], 0);
+  return add_vertex(pen->r, pen->at[0], pen->at[1]);
 }
 
-/* C, S, Q and T as a cubic curve; v: its points in the order of the command, absolute. */
+/* C, S, Q and T as a spline of one span; v: its points in the order of the command, absolute. */
 static dea_status draw_curve(struct pen *pen, char kind, const double *v)
 {
+  static const double knots[8] = {0, 0, 0, 0, 1, 1, 1, 1};
   bool cubic = kind == 'C' || kind == 'S', smooth = kind == 'S' || kind == 'T';
   bool follows =
       cubic ? pen->last == 'C' || pen->last == 'S' : pen->last == 'Q' || pen->last == 'T';
-  double p[4][2], first[2];
-  const double *end = v + (kind == 'C' ? 4 : kind == 'T' ? 0 : 2);
+  size_t degree = cubic ? 3 : 2, given = degree - (smooth ? 1 : 0);
+  double p[4][3] = {{pen->at[0], pen->at[1], 1}};
   for (int k = 0; k < 2; k++) {
-    first[k] = !smooth ? v[k] : follows ? 2 * pen->at[k] - pen->control[k] : pen->at[k];
-    p[0][k] = pen->at[k];
-    p[3][k] = end[k];
-    p[1][k] = cubic ? first[k] : p[0][k] + 2 * (first[k] - p[0][k]) / 3;
-    p[2][k] = cubic ? (kind == 'C' ? v[2 + k] : v[k]) : p[3][k] + 2 * (first[k] - p[3][k]) / 3;
-    pen->control[k] = cubic ? p[2][k] : first[k];
+    p[1][k] = follows ? 2 * pen->at[k] - pen->control[k] : pen->at[k];
+    for (size_t i = 0; i < given; i++) {
+      p[degree - given + 1 + i][k] = v[2 * i + (size_t)k];
+    }
+    pen->control[k] = p[degree - 1][k];
+    pen->at[k] = p[degree][k];
   }
-  DEA_TRY(pen->r->ctx, add_cubic(pen->r, p));
-  pen->at[0] = end[0];
-  pen->at[1] = end[1];
-  return DEA_OK;
+  p[1][2] = p[2][2] = p[3][2] = 1;
+  const struct dea_spline spline = {degree, degree + 1, (const double(*)[3])p, knots + 3 - degree};
+  return dea_drawing_spline_to(pen->r->drawing, &spline);
 }
 
 static dea_status draw(struct pen *pen, char kind, bool relative, double *v, int count)
@@ -400,8 +355,8 @@ static dea_status draw(struct pen *pen, char kind, bool relative, double *v, int
     return draw_curve(pen, kind, v);
   }
   const double *end = kind == 'A' ? v + 5 : v;
-  DEA_TRY(pen->r->ctx, kind == 'A' ? add_path_arc(pen->r, pen->at, v, end)
-                                   : add_vertex(pen->r, end[0], end[1], 0));
+  DEA_TRY(pen->r->ctx,
+          kind == 'A' ? add_path_arc(pen->r, pen->at, v, end) : add_vertex(pen->r, end[0], end[1]));
   memcpy(pen->at, end, sizeof pen->at);
   return DEA_OK;
 }
@@ -446,28 +401,24 @@ static dea_status read_path(struct reader *r, const char *text)
 
 static dea_status read_ellipse(struct reader *r, const char **attributes, bool circle)
 {
-  const double centre[2] = {value_of(attributes, "cx"), value_of(attributes, "cy")};
-  double rx = value_of(attributes, circle ? "r" : "rx");
-  const double radius[2] = {rx, circle ? rx : value_of(attributes, "ry")};
-  if (radius[0] <= 0 || radius[1] <= 0) {
+  static const char *const names[2][4] = {{"cx", "cy", "rx", "ry"}, {"cx", "cy", "r", "r"}};
+  double v[4];
+  DEA_TRY(r->ctx, read_lengths(r, attributes, names[circle], 4, v));
+  if (v[2] <= 0 || v[3] <= 0) {
     return DEA_OK; // not drawn, says SVG
   }
-  const double ends[2][2] = {{centre[0] - radius[0], centre[1]},
-                             {centre[0] + radius[0], centre[1]}};
-  DEA_TRY(r->ctx, add_vertex(r, ends[1][0], ends[1][1], 0));
-  DEA_TRY(r->ctx, add_arc(r, centre, radius, 0, 0, pi, ends[0]));
-  DEA_TRY(r->ctx, add_arc(r, centre, radius, 0, pi, pi, ends[1]));
-  r->drawing->vertex_count--; // the first one again
+  DEA_TRY(r->ctx, add_arc(r, v, v + 2, 0, 0, 2 * pi, (double[2]){v[0] + v[2], v[1]}));
   return end_path(r, true);
 }
 
 static dea_status read_rect(struct reader *r, const char **attributes)
 {
-  double x = value_of(attributes, "x"), y = value_of(attributes, "y");
-  double width = value_of(attributes, "width"), height = value_of(attributes, "height");
+  static const char *const names[6] = {"x", "y", "width", "height", "rx", "ry"};
+  double v[6];
+  DEA_TRY(r->ctx, read_lengths(r, attributes, names, 6, v));
+  double x = v[0], y = v[1], width = v[2], height = v[3];
   bool has_x = attribute(attributes, "rx") != NULL, has_y = attribute(attributes, "ry") != NULL;
-  double rx = value_of(attributes, has_x ? "rx" : "ry"),
-         ry = value_of(attributes, has_y ? "ry" : "rx");
+  double rx = v[has_x ? 4 : 5], ry = v[has_y ? 5 : 4];
   if (width <= 0 || height <= 0) {
     return DEA_OK;
   }
@@ -477,7 +428,7 @@ static dea_status read_rect(struct reader *r, const char **attributes)
   for (int k = 0; k < 4; k++) { // the corner, from the upper right one on; y goes down
     double cx = x + right[k] * width, cy = y + down[k] * height;
     if (!round) {
-      DEA_TRY(r->ctx, add_vertex(r, cx, cy, 0));
+      DEA_TRY(r->ctx, add_vertex(r, cx, cy));
       continue;
     }
     const double centre[2] = {cx + (right[k] ? -1 : 1) * radius[0],
@@ -485,7 +436,7 @@ static dea_status read_rect(struct reader *r, const char **attributes)
     double from = (k - 1) * 0.5 * pi;
     static const int cosine[5] = {0, 1, 0, -1, 0}, sine[5] = {-1, 0, 1, 0, -1};
     DEA_TRY(r->ctx,
-            add_vertex(r, centre[0] + radius[0] * cosine[k], centre[1] + radius[1] * sine[k], 0));
+            add_vertex(r, centre[0] + radius[0] * cosine[k], centre[1] + radius[1] * sine[k]));
     DEA_TRY(r->ctx, add_arc(r, centre, radius, 0, from, 0.5 * pi,
                             (double[2]){centre[0] + radius[0] * cosine[k + 1],
                                         centre[1] + radius[1] * sine[k + 1]}));
@@ -500,45 +451,62 @@ static dea_status read_points(struct reader *r, const char *text, bool closed)
     if (!read_number(&text, &y)) {
       return dea_drawing_fault(r->drawing, line_of(r), "a point has an x and no y");
     }
-    DEA_TRY(r->ctx, add_vertex(r, x, y, 0));
+    DEA_TRY(r->ctx, add_vertex(r, x, y));
   }
   return end_path(r, closed);
 }
 
 static dea_status read_line(struct reader *r, const char **attributes)
 {
-  DEA_TRY(r->ctx, add_vertex(r, value_of(attributes, "x1"), value_of(attributes, "y1"), 0));
-  DEA_TRY(r->ctx, add_vertex(r, value_of(attributes, "x2"), value_of(attributes, "y2"), 0));
+  static const char *const names[4] = {"x1", "y1", "x2", "y2"};
+  double v[4];
+  DEA_TRY(r->ctx, read_lengths(r, attributes, names, 4, v));
+  DEA_TRY(r->ctx, add_vertex(r, v[0], v[1]));
+  DEA_TRY(r->ctx, add_vertex(r, v[2], v[3]));
   return end_path(r, false);
 }
 
-/* The size of a user unit, and y upwards. */
+/* The size of a user unit, and y upwards. The unit is known where a side has a length and the view
+ * box says how many units it is. */
 static void read_root(struct reader *r, const char **attributes)
 {
   const char *box = attribute(attributes, "viewBox");
-  double view[4] = {0, 0, NAN, NAN}, number[2], scale = NAN;
+  const char *aspect = attribute(attributes, "preserveAspectRatio");
+  static const char *const sides[2] = {"width", "height"};
+  double view[4] = {0, 0, NAN, NAN}, one[2];
   for (int k = 0; k < 4 && box != NULL; k++) {
     if (!read_number(&box, &view[k])) {
-      view[2] = NAN;
+      view[2] = view[3] = NAN;
       break;
     }
   }
-  static const double px = 25.4e-3 / 96;
-  static const char *const sides[2] = {"width", "height"};
   for (int k = 0; k < 2; k++) {
-    double metres = read_length(attribute(attributes, sides[k]), &number[k]);
-    bool known = isfinite(metres);
-    double size = known ? metres : number[k] * px;
-    double one = view[2 + k] > 0 ? size / view[2 + k] : known ? px : NAN;
-    if (isfinite(one) && one > 0 && !(scale <= one)) {
-      scale = one; // the smaller one: the whole box is seen
-      r->drawing->unit_is_known |= known && view[2 + k] > 0;
-    }
+    const char *text = attribute(attributes, sides[k]);
+    double size = length_of(text, 1, NAN);
+    bool has_unit = isfinite(size) && text[strspn(text, " \t\r\n+-.0123456789eE")] != '\0' &&
+                    strstr(text, "px") == NULL;
+    bool boxed = view[2 + k] > 0;
+    one[k] = boxed && size > 0 ? size * px_m / view[2 + k] : NAN;
+    r->view[k] = boxed ? view[2 + k] : size;
+    r->drawing->unit_is_known |= boxed && size > 0 && has_unit;
   }
-  r->drawing->unit_m = isfinite(scale) ? scale : px;
-  double unit = r->drawing->unit_m, bottom = isfinite(view[3]) ? view[1] + view[3] : 0;
-  top(r)->matrix =
-      (struct matrix){unit, 0, 0, -unit, isfinite(view[2]) ? -unit * view[0] : 0, unit * bottom};
+  // the smaller one: the whole box is seen
+  bool none = aspect != NULL && strncmp(aspect, "none", 4) == 0;
+  bool slice = aspect != NULL && strstr(aspect, "slice") != NULL;
+  double both = slice ? fmax(one[0], one[1]) : fmin(one[0], one[1]);
+  if (!r->drawing->unit_is_known && r->drawing->settings.unit_m > 0) {
+    both = r->drawing->settings.unit_m;
+    r->px = px_m / both; // what has a unit keeps it
+    none = false;
+  }
+  both = isfinite(both) ? both : px_m;
+  for (int k = 0; k < 2; k++) {
+    one[k] = none && isfinite(one[k]) ? one[k] : both;
+  }
+  r->drawing->unit_m = one[0];
+  double bottom = isfinite(view[3]) ? view[1] + view[3] : 0;
+  top(r)->matrix = (struct dea_affine){
+      one[0], 0, 0, -one[1], isfinite(view[2]) ? -one[0] * view[0] : 0, one[1] * bottom};
 }
 
 static bool is_one_of(const char *name, const char *const *names)
@@ -551,7 +519,7 @@ static bool is_one_of(const char *name, const char *const *names)
 
 static dea_status open_element(struct reader *r, const char *name, const char **attributes)
 {
-  static const char *const holders[] = {"g", "svg", "a", "switch", NULL};
+  static const char *const holders[] = {"g", "a", "switch", NULL};
   static const char *const unseen[] = {
       "defs",   "clipPath", "mask",           "symbol",         "pattern",
       "marker", "metadata", "title",          "desc",           "style",
@@ -573,6 +541,8 @@ static dea_status open_element(struct reader *r, const char *name, const char **
     return dea_drawing_fault(r->drawing, line_of(r), "the file is no SVG but '%.40s'", name);
   }
   DEA_TRY(r->ctx, apply_transforms(r, attribute(attributes, "transform")));
+  r->drawing->matrix = top(r)->matrix;
+  r->drawing->line = line_of(r);
   if (strcmp(name, "g") == 0) {
     const char *label = attribute(attributes, "inkscape:label");
     label = label != NULL ? label : attribute(attributes, "id");
@@ -594,6 +564,7 @@ static dea_status open_element(struct reader *r, const char *name, const char **
   if (strcmp(name, "line") == 0) {
     return read_line(r, attributes);
   }
+  r->hidden = strcmp(name, "svg") == 0; // with what is in it
   return is_one_of(name, holders) ? DEA_OK
                                   : dea_drawing_skip(r->drawing, top(r)->layer, name, line_of(r));
 }
@@ -656,24 +627,6 @@ static dea_status parse(struct reader *r, const char *bytes, size_t length)
   return DEA_OK;
 }
 
-static dea_status add_notes(const struct reader *r)
-{
-  const struct dea_drawing *d = r->drawing;
-  const struct dea_location location = {d->file, 0, 0};
-  if (!d->unit_is_known) {
-    DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_NOTE, location,
-                                    "the file does not say its size in mm; 96 units to the inch "
-                                    "are assumed"));
-  }
-  if (r->curves > 0) {
-    DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_NOTE, location,
-                                    "%zu curves that are no circular arcs became lines, to within "
-                                    "%.3g mm",
-                                    r->curves, 1e3 * d->settings.flatten_m));
-  }
-  return DEA_OK;
-}
-
 dea_status dea_drawing_read_svg(struct dea_context *ctx, const char *file, const char *bytes,
                                 size_t length, const struct dea_drawing_settings *settings,
                                 struct dea_drawing **out)
@@ -685,6 +638,8 @@ dea_status dea_drawing_read_svg(struct dea_context *ctx, const char *file, const
   if (status == DEA_OK) {
     r->ctx = ctx;
     r->drawing = *out;
+    r->px = 1;
+    r->view[0] = r->view[1] = NAN;
     r->parser = XML_ParserCreate(NULL);
     status =
         r->parser != NULL ? DEA_OK : dea_fail(ctx, DEA_E_MEMORY, "out of memory in the XML reader");
@@ -693,7 +648,11 @@ dea_status dea_drawing_read_svg(struct dea_context *ctx, const char *file, const
     XML_SetUserData(r->parser, r);
     XML_SetElementHandler(r->parser, start_element, end_element);
     status = parse(r, bytes, length);
-    status = status == DEA_OK ? add_notes(r) : status;
+    status = status == DEA_OK
+                 ? dea_drawing_add_notes(*out, "the file does not say its size in mm; 96 units to "
+                                               "the inch are assumed (the key unit of a shape says "
+                                               "it)")
+                 : status;
     XML_ParserFree(r->parser);
   }
   dea_free(ctx, r);
