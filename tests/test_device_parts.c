@@ -29,6 +29,8 @@ static const char *const usual[LINES] = {
     [MORE] = "title: two films",
 };
 
+#define DRAWINGS DEA_SOURCE_DIR "/tests/cases/drawings/"
+
 static const char *write_design(enum line which, const char *text)
 {
   static char all[8192];
@@ -212,6 +214,14 @@ static const struct {
      "nothing is left of the shape 'c'", "c, kind"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: drawing, file: no.dxf, layer: CUT}]", "no.dxf",
      "no.dxf"},
+    {SHAPES,
+     THREE_SHAPES ", {name: a, kind: drawing, file: " DRAWINGS "dxf/inch.dxf, layer: 0, unit: mm}]",
+     "dxf/inch.dxf is 25.4 mm, as the file itself says: leave 'unit' out, or change the file",
+     "mm}]"},
+    {SHAPES,
+     THREE_SHAPES ", {name: a, kind: drawing, file: " DRAWINGS
+                  "dxf/inch.dxf, layer: 0, unit: ell}]",
+     "unit: 'ell' is none of: um, mm, cm, m, mil, in, ft", "ell}]"},
     // where things lie
     {ELECTRODES,
      "electrodes: [{ply: lower, side: top, shape: active, channel: one}, "
@@ -452,10 +462,36 @@ static void test_failing_memory(void **state)
   assert_true(failing_ends(build_shapes, DEA_OK) > 100);
 }
 
+/* The unit of drawings: that of the file, or of the key where the file says none; the same file in
+ * two units is two drawings. */
+static void test_units_of_drawings(void **state)
+{
+  (void)state;
+  const struct dea_layout *layout =
+      build(SHAPES, THREE_SHAPES
+            ", {name: a, kind: drawing, file: " DRAWINGS
+            "dxf/nounits0.dxf, layer: 0, unit: cm}, {name: b, kind: drawing, file: " DRAWINGS
+            "dxf/nounits0.dxf, layer: 0, unit: in}, {name: c, kind: drawing, file: " DRAWINGS
+            "dxf/inch.dxf, layer: 0, unit: in}, {name: d, kind: drawing, file: " DRAWINGS
+            "svg/px.svg, layer: Cut, unit: mm}, {name: e, kind: drawing, file: " DRAWINGS
+            "svg/attr-mm.svg, layer: Cut, unit: cm}]");
+  static const double area_mm2[] = {200, 2 * 25.4 * 25.4, 2 * 25.4 * 25.4, 800, 800};
+  for (size_t i = 0; i < 5; i++) {
+    assert_close(1e6 * dea_region_area_m2(&layout->regions[3 + i].region), area_mm2[i], 1e-12, 0);
+  }
+  assert_null(find_finding(ctx, DEA_NOTE, "does not say its"));
+  drop();
+  build(SHAPES,
+        THREE_SHAPES ", {name: a, kind: drawing, file: " DRAWINGS "dxf/nounits0.dxf, layer: 0}]");
+  assert_non_null(find_finding(ctx, DEA_NOTE, "mm is assumed (the key unit of a shape says it)"));
+  drop();
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test(name)
   const struct CMUnitTest tests[] = {
+      TEST(test_units_of_drawings),
       TEST(test_plies_and_electrodes),
       TEST(test_bodies_springs_monitors),
       TEST(test_shapes_of_shapes),

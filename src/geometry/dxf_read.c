@@ -302,7 +302,7 @@ static dea_status add_spline(struct reader *r)
   DEA_TRY(r->ctx, gather(r, 20, &rows));
   DEA_TRY(r->ctx, gather(r, 41, &weights));
   if (count == 0) {
-    return skip(r, ""); // of points that it passes only: not known how
+    return skip(r, isnan(value_or(r, 11, NAN)) ? "" : " of fit points only"); // not known how
   }
   const struct value *all = r->values.data;
   for (size_t i = 0; i < r->values.count; i++) {
