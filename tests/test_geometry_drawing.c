@@ -455,6 +455,30 @@ static void test_random_polygons(void **state)
   }
 }
 
+/* Pieces below the tolerance between longer ones are none, also in polylines and where a path
+ * closes; what is as small as that all along stays. */
+static void test_tiny_pieces(void **state)
+{
+  (void)state;
+  static const char *const paths[] = {"M0 0H40V1e-4V20H0z", "M0 0H40V20H0V3e-4z",
+                                      "m0 0h40v20h-40v-19.9999999z"};
+  struct dea_region region = {.ctx = ctx};
+  for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+    char text[300];
+    snprintf(text, sizeof text, "<svg width='100mm' viewBox='0 0 100 100'><path d='%s'/></svg>",
+             paths[i]);
+    struct dea_drawing *drawing = read_svg(text);
+    assert_int_equal(dea_drawing_region(drawing, "0", here, &region), DEA_OK);
+    assert_int_equal(region.vertex_count, 4);
+    assert_close(1e6 * dea_region_area_m2(&region), 800, 0, 40 * 3e-4);
+    dea_region_free(&region);
+    dea_drawing_destroy(drawing);
+  }
+  struct dea_drawing *drawing = read_dxf("0\nLWPOLYLINE\n8\na\n70\n1\n" AT(0, 0) AT(4e-4, 0)
+                                             AT(4e-4, 4e-4) AT(0, 4e-4) CIRCLE(a, 1, 1, 3e-4));
+  expect(drawing, "a", 16e-8 + 9e-8 * pi, 2);
+}
+
 static void test_units(void **state)
 {
   (void)state;
@@ -804,21 +828,14 @@ static void test_memory(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dxf_entities),
-      cmocka_unit_test(test_dxf_curves),
-      cmocka_unit_test(test_dxf_blocks),
-      cmocka_unit_test(test_dxf_names),
-      cmocka_unit_test(test_files_of_others),
-      cmocka_unit_test(test_random_polygons),
-      cmocka_unit_test(test_svg_bezier_circles),
-      cmocka_unit_test(test_units),
-      cmocka_unit_test(test_dxf_faults),
-      cmocka_unit_test(test_svg_elements),
-      cmocka_unit_test(test_svg_curves),
-      cmocka_unit_test(test_svg_faults),
-      cmocka_unit_test(test_svg_units),
-      cmocka_unit_test(test_round_trip),
-      cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_dxf_entities),    cmocka_unit_test(test_dxf_curves),
+      cmocka_unit_test(test_dxf_blocks),      cmocka_unit_test(test_dxf_names),
+      cmocka_unit_test(test_files_of_others), cmocka_unit_test(test_random_polygons),
+      cmocka_unit_test(test_tiny_pieces),     cmocka_unit_test(test_svg_bezier_circles),
+      cmocka_unit_test(test_units),           cmocka_unit_test(test_dxf_faults),
+      cmocka_unit_test(test_svg_elements),    cmocka_unit_test(test_svg_curves),
+      cmocka_unit_test(test_svg_faults),      cmocka_unit_test(test_svg_units),
+      cmocka_unit_test(test_round_trip),      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
 }

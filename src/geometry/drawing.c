@@ -106,13 +106,13 @@ dea_status dea_drawing_end_path(struct dea_drawing *drawing, size_t layer, bool 
 {
   struct dea_drawing *d = drawing;
   size_t count = dea_drawing_open_vertices(d);
-  const struct dea_vertex *first = d->vertex + d->vertex_count - count, *last = first + count - 1;
-  if (closed && count > 2 && first->x_m == last->x_m && first->y_m == last->y_m) {
-    d->vertex_count--;
-  }
   if (count < 2) {
     d->vertex_count -= count;
     return DEA_OK;
+  }
+  const struct dea_vertex *first = d->vertex + d->vertex_count - count, *last = first + count - 1;
+  if (closed && count > 2 && first->x_m == last->x_m && first->y_m == last->y_m) {
+    d->vertex_count--;
   }
   void *paths = d->path;
   DEA_TRY(d->ctx,

@@ -20,6 +20,7 @@ struct joiner {
   size_t *ends[2];            // [2 paths] the ends at a node; SIZE_MAX: none
   bool *used;                 // [paths]
   struct dea_vertex *contour; // [vertices] being made
+  struct dea_vertex *keep;    // [vertices] of it
   size_t count;
 };
 
@@ -53,18 +54,30 @@ static void follow(struct joiner *j, size_t end)
   }
 }
 
-/* Adds the contour without vertices that lie on the next one. */
+/* Length of the chord from a vertex of the contour to the next one. */
+static double chord(const struct joiner *j, size_t vertex)
+{
+  const struct dea_vertex *v = &j->contour[vertex % j->count];
+  const struct dea_vertex *next = &j->contour[(vertex + 1) % j->count];
+  return hypot(v->x_m - next->x_m, v->y_m - next->y_m);
+}
+
+/* Adds the contour without vertices that lie on the next one: to within `snap`, or, where the
+ * pieces on both sides are much longer, to within what ends may be apart. */
 static void add_contour(struct joiner *j, double snap, struct dea_region *out)
 {
   size_t kept = 0;
+  double before = j->count > 0 ? chord(j, j->count - 1) : 0;
   for (size_t i = 0; i < j->count; i++) {
-    const struct dea_vertex *v = &j->contour[i], *next = &j->contour[i + 1 < j->count ? i + 1 : 0];
-    if (hypot(v->x_m - next->x_m, v->y_m - next->y_m) > snap) {
-      j->contour[kept++] = *v;
+    double length = chord(j, i), beside = fmin(before, chord(j, i + 1));
+    bool tiny = length <= j->drawing->settings.join_m && length < 0.01 * beside;
+    if (length > snap && !(tiny && fabs(j->contour[i].bulge) <= 1)) {
+      j->keep[kept++] = j->contour[i];
     }
+    before = length;
   }
   if (kept > 1) {
-    dea_region_add(out, j->contour, kept);
+    dea_region_add(out, j->keep, kept);
   }
   j->count = 0;
 }
@@ -213,6 +226,7 @@ dea_status dea_drawing_region(const struct dea_drawing *drawing, const char *lay
   j.ends[1] = dea_arena_alloc(&j.arena, ends, sizeof *j.ends[1]);
   j.used = dea_arena_alloc(&j.arena, d->path_count, sizeof *j.used);
   j.contour = dea_arena_alloc(&j.arena, d->vertex_count, sizeof *j.contour);
+  j.keep = dea_arena_alloc(&j.arena, d->vertex_count, sizeof *j.keep);
   double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < d->vertex_count; i++) {
     const struct dea_piece point = {.from = {d->vertex[i].x_m, d->vertex[i].y_m},
