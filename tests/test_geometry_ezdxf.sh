@@ -153,11 +153,11 @@ supports: [{{edge: film}}]
 """
 
 
-def check(name, layer, wanted, near):
+def check(name, layer, wanted, near, ending="dxf"):
     global bad
     design = f"{folder}/{name}.yaml"
     with open(design, "w", encoding="utf-8") as out:
-        out.write(DESIGN.format(file=f"{name}.dxf", layer=layer))
+        out.write(DESIGN.format(file=f"{name}.{ending}", layer=layer))
     made = subprocess.run([command, "check", design, "--json"], capture_output=True, text=True)
     try:
         found = 1e6 * json.loads(made.stdout)["derived"]["area_m2"]["film"]
@@ -184,5 +184,19 @@ for page, layer in (("cp1252", "électrode"), ("cp1251", "рамка"), ("gbk", 
     document.modelspace().add_circle((0, 0), 3, dxfattribs={"layer": layer})
     document.saveas(f"{folder}/page.dxf", encoding=page)
     check("page", layer, 9 * pi, 1e-9)
+
+def circle(x, y, r, h=0.5522847498):
+    c = [(r, 0), (r, h * r), (h * r, r), (0, r), (-h * r, r), (-r, h * r), (-r, 0), (-r, -h * r), (-h * r, -r), (0, -r),
+         (h * r, -r), (r, -h * r), (r, 0)]
+    p = [f"{x + u:.8g},{y + v:.8g}" for u, v in c]
+    return f"M {p[0]} C {' '.join(p[1:])} Z"
+
+
+# 900 holes of four Bezier curves each
+holes = " ".join(circle(15 + 2.4 * (i % 30), 15 + 2.4 * (i // 30), 0.4) for i in range(900))
+with open(f"{folder}/perforated.svg", "w", encoding="utf-8") as out:
+    out.write('<svg width="100mm" height="100mm" viewBox="0 0 100 100"><g id="film">'
+              f'<path d="M 0,0 H 100 V 100 H 0 Z {holes}"/></g></svg>')
+check("perforated", "film", 1e4 - 900 * pi * 0.16, 0.01, "svg")
 sys.exit(bad > 0)
 PYTHON

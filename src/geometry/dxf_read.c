@@ -686,9 +686,11 @@ static dea_status read_all(struct reader *r)
 static dea_status add_notes(const struct reader *r)
 {
   if (r->letters.page_guessed) {
-    DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_NOTE, (struct dea_location){r->drawing->file, 0, 0},
-                                    "names of layers are no UTF-8, and the file does not say their "
-                                    "codepage ($DWGCODEPAGE): they are read as ANSI_1252"));
+    DEA_TRY(r->ctx,
+            dea_finding_add(r->ctx, DEA_NOTE, (struct dea_location){r->drawing->file, 0, 0},
+                            "names of layers are no UTF-8, and the file does not say their "
+                            "codepage ($DWGCODEPAGE): they are read as ANSI_1252 (DXF of 2007 and "
+                            "later is UTF-8)"));
   }
   return dea_drawing_add_notes(r->drawing, "the file does not say its unit ($INSUNITS); mm is "
                                            "assumed (the key unit of a shape says it)");
