@@ -20,7 +20,7 @@ void dea_dxf_text_set_page(struct dea_dxf_text *as, const char *name)
 
 void dea_dxf_text_free(struct dea_dxf_text *as)
 {
-  if (as->converter != NULL) {
+  if (as->converter != NULL && as->converter != (iconv_t)-1) {
     iconv_close(as->converter);
   }
   as->converter = NULL;
@@ -43,7 +43,7 @@ static void convert(iconv_t converter, char *from, size_t count, char to[DEA_DXF
 {
   size_t room = DEA_DXF_TEXT_SIZE - 1;
   while (count > 0 && room > 2) {
-    if (converter != NULL && iconv(converter, &from, &count, &to, &room) != (size_t)-1) {
+    if (converter != (iconv_t)-1 && iconv(converter, &from, &count, &to, &room) != (size_t)-1) {
       break;
     }
     if (count > 0 && room > 2) {
@@ -55,12 +55,6 @@ static void convert(iconv_t converter, char *from, size_t count, char to[DEA_DXF
     }
   }
   *to = '\0';
-}
-
-static iconv_t open_page(const char *page)
-{
-  iconv_t converter = iconv_open("UTF-8", page);
-  return converter == (iconv_t)-1 ? NULL : converter;
 }
 
 /* Letter of an escape: the bytes that it takes, 0: none is there. */
@@ -85,9 +79,9 @@ static size_t read_escape(const char *from, char letter[DEA_DXF_TEXT_SIZE])
     letter[add_letter(letter, good ? (unsigned)value : 0xfffd)] = '\0';
   } else {
     char bytes[2] = {(char)(value >> 8), (char)(value & 0xff)};
-    iconv_t converter = open_page(pages[from[3] - '1']);
+    iconv_t converter = iconv_open("UTF-8", pages[from[3] - '1']);
     convert(converter, bytes, 2, letter);
-    if (converter != NULL) {
+    if (converter != (iconv_t)-1) {
       iconv_close(converter);
     }
   }
@@ -118,7 +112,7 @@ void dea_dxf_text_decode(struct dea_dxf_text *as, char text[DEA_DXF_TEXT_SIZE])
   if (!is_ascii(text) && !((as->utf8 || as->page[0] == '\0') && is_utf8(text))) {
     as->page_guessed |= as->page[0] == '\0';
     if (as->converter == NULL) {
-      as->converter = open_page(as->page[0] != '\0' ? as->page : "CP1252");
+      as->converter = iconv_open("UTF-8", as->page[0] != '\0' ? as->page : "CP1252");
     }
     convert(as->converter, text, strlen(text), letters);
     strcpy(text, letters); // NOLINT(clang-analyzer-security.insecureAPI.strcpy): of one size
@@ -138,6 +132,6 @@ void dea_dxf_text_decode(struct dea_dxf_text *as, char text[DEA_DXF_TEXT_SIZE])
     count += n;
     from += taken > 0 ? taken : 1;
   }
-  memcpy(text, letters, count);
-  text[count] = '\0';
+  letters[count] = '\0';
+  memcpy(text, letters, count + 1);
 }

@@ -12,7 +12,7 @@ struct dea_dxf_text {
   char page[24];     // codepage as iconv calls it; "": not known
   bool utf8;         // bytes are UTF-8, as of version AC1021 (2007) on
   bool page_guessed; // some text was no UTF-8, and no codepage is known: CP1252 was taken
-  void *converter;   // of the page; owned
+  void *converter;   // of the page, NULL: not yet opened; owned
 };
 
 /* The codepage by the file's header, $DWGCODEPAGE: "ANSI_1252". */

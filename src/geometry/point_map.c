@@ -31,15 +31,15 @@ size_t dea_point_map_find(const struct dea_point_map *map, const double x_m[2])
   // cells that the tolerance reaches: one or two each way, and by rounding even three
   double column = floor((x_m[0] - tolerance) / size), row = floor((x_m[1] - tolerance) / size);
   for (int k = 0; k < 9; k++) {
-    double across = column + k % 3, up = row + k / 3;
+    int i = k % 3, j = k / 3;
+    double across = column + i, up = row + j;
     if (across > floor((x_m[0] + tolerance) / size) || up > floor((x_m[1] + tolerance) / size)) {
       continue;
     }
-    size_t i = map->head[hash(map, across, up)];
-    for (; i != SIZE_MAX; i = map->next[i]) {
-      double dx = map->point[i][0] - x_m[0], dy = map->point[i][1] - x_m[1];
-      if (hypot(dx, dy) <= tolerance && i < found) {
-        found = i;
+    for (size_t p = map->head[hash(map, across, up)]; p != SIZE_MAX; p = map->next[p]) {
+      double dx = map->point[p][0] - x_m[0], dy = map->point[p][1] - x_m[1];
+      if (hypot(dx, dy) <= tolerance && p < found) {
+        found = p;
       }
     }
   }

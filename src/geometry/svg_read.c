@@ -402,7 +402,7 @@ static dea_status read_path(struct reader *r, const char *text)
 static dea_status read_ellipse(struct reader *r, const char **attributes, bool circle)
 {
   static const char *const names[2][4] = {{"cx", "cy", "rx", "ry"}, {"cx", "cy", "r", "r"}};
-  double v[4];
+  double v[4] = {0};
   DEA_TRY(r->ctx, read_lengths(r, attributes, names[circle], 4, v));
   if (v[2] <= 0 || v[3] <= 0) {
     return DEA_OK; // not drawn, says SVG
@@ -414,7 +414,7 @@ static dea_status read_ellipse(struct reader *r, const char **attributes, bool c
 static dea_status read_rect(struct reader *r, const char **attributes)
 {
   static const char *const names[6] = {"x", "y", "width", "height", "rx", "ry"};
-  double v[6];
+  double v[6] = {0};
   DEA_TRY(r->ctx, read_lengths(r, attributes, names, 6, v));
   double x = v[0], y = v[1], width = v[2], height = v[3];
   bool has_x = attribute(attributes, "rx") != NULL, has_y = attribute(attributes, "ry") != NULL;
@@ -459,7 +459,7 @@ static dea_status read_points(struct reader *r, const char *text, bool closed)
 static dea_status read_line(struct reader *r, const char **attributes)
 {
   static const char *const names[4] = {"x1", "y1", "x2", "y2"};
-  double v[4];
+  double v[4] = {0};
   DEA_TRY(r->ctx, read_lengths(r, attributes, names, 4, v));
   DEA_TRY(r->ctx, add_vertex(r, v[0], v[1]));
   DEA_TRY(r->ctx, add_vertex(r, v[2], v[3]));
