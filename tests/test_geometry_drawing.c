@@ -704,16 +704,20 @@ static void test_svg_units(void **state)
     const char *root;
     double unit_mm;
     bool known;
-  } cases[] = {{"width='50mm' height='50mm' viewBox='0 0 100 100'", 0.5, true},
-               {"width='50mm' viewBox='0 0 100 100'", 0.5, true},
-               {"height='50mm' viewBox='0 0 100 100'", 0.5, true},
-               {"height='50mm' viewBox='0 -5 100 100'", 0.5, true},
-               {"width='50mm' height='20mm' viewBox='0 0 100 100'", 0.2, true},
-               {"width='5mm' height='5mm' viewBox='0 0 0.5 0.5'", 10, true},
-               {"width='50mm' height='50mm'", 25.4 / 96, false},
-               {"width='50mm' height='50mm' viewBox='0 0 0 0'", 25.4 / 96, false},
-               {"width='50' height='50' viewBox='0 0 100 100'", 0.5 * 25.4 / 96, false},
-               {"viewBox='0 0 100 100'", 25.4 / 96, false}};
+  } cases[] = {
+      {"width='50mm' height='50mm' viewBox='0 0 100 100'", 0.5, true},
+      {"width='50mm' viewBox='0 0 100 100'", 0.5, true},
+      {"height='50mm' viewBox='0 0 100 100'", 0.5, true},
+      {"height='50mm' viewBox='0 -5 100 100'", 0.5, true},
+      {"width='50mm' height='20mm' viewBox='0 0 100 100'", 0.2, true},
+      {"width='50mm' height='20mm' viewBox='0 0 100 100' preserveAspectRatio='none'", 0.5, true},
+      {"width='50mm' height='20mm' viewBox='0 0 100 100' preserveAspectRatio='xMidYMid slice'", 0.5,
+       true},
+      {"width='5mm' height='5mm' viewBox='0 0 0.5 0.5'", 10, true},
+      {"width='50mm' height='50mm'", 25.4 / 96, false},
+      {"width='50mm' height='50mm' viewBox='0 0 0 0'", 25.4 / 96, false},
+      {"width='50' height='50' viewBox='0 0 100 100'", 0.5 * 25.4 / 96, false},
+      {"viewBox='0 0 100 100'", 25.4 / 96, false}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     char text[512];
     snprintf(text, sizeof text,
