@@ -25,7 +25,7 @@ static double sweep(struct dea_context *ctx, struct dea_device *device, int kind
     bench_need(type->begin(ctx, model, &options, &point), ctx);
   }
   for (int i = 1; i <= STEPS; i++) {
-    const struct dea_time_step step = {0.01, 6e3 * i / STEPS, NULL};
+    const struct dea_time_step step = {.length_s = 0.01, .source_voltage_V = 6e3 * i / STEPS};
     if (kind == EQUILIBRIUM) {
       bench_need(type->solve(ctx, model, step.source_voltage_V, &point), ctx);
     } else {

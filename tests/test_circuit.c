@@ -14,7 +14,8 @@ static struct dea_circuit_state charge(const struct dea_circuit *circuit, double
 {
   const struct dea_circuit_film film = {.capacitance_F = C, .conductance_S = conductance_S};
   struct dea_circuit_state state = {.capacitance_F = C, .conductance_S = conductance_S};
-  const struct dea_time_step jump = {0, V_s, NULL}, step = {time_s / n, V_s, NULL};
+  const struct dea_time_step jump = {.length_s = 0, .source_voltage_V = V_s},
+                             step = {.length_s = time_s / n, .source_voltage_V = V_s};
   dea_circuit_advance(circuit, &state, &jump, &film, &state);
   for (int i = 0; i < n; i++) {
     dea_circuit_advance(circuit, &state, &step, &film, &state);
@@ -51,7 +52,7 @@ static void test_leakage(void **state)
                                   .conductance_S = G,
                                   .current_A = -4e-15};
   for (int i = 0; i < 40; i++) {
-    const struct dea_time_step step = {0.5, 0, NULL};
+    const struct dea_time_step step = {.length_s = 0.5, .source_voltage_V = 0};
     dea_circuit_advance(&open, &now, &step, &film, &now);
   }
   assert_close(now.voltage_V, 4000 * exp(-1), 0, 0.01);
@@ -82,7 +83,8 @@ static void test_ramp(void **state)
   for (int n = 1; n <= 64; n *= 8) {
     struct dea_circuit_state now = {.capacitance_F = C};
     for (int i = 1; i <= n; i++) {
-      const struct dea_time_step step = {0.8 / n, 1000 * 0.8 * i / n, NULL};
+      const struct dea_time_step step = {.length_s = 0.8 / n,
+                                         .source_voltage_V = 1000 * 0.8 * i / n};
       dea_circuit_advance(&circuit, &now, &step, &film, &now);
     }
     assert_close(now.voltage_V, 1000 * (0.8 - 0.2 * (1 - exp(-4))), 0, 1e-9);
@@ -95,7 +97,7 @@ static void test_slope(void **state)
   (void)state;
   const struct dea_circuit circuits[] = {{1e9, INFINITY}, {1e9, 1e-6}, {0, 1e-6}, {0, INFINITY}};
   const struct dea_circuit_state last = {1000, 400, 400 * C, 6e-7, C, 1e-11, 0, 0, 0};
-  const struct dea_time_step step = {0.05, 3000, NULL};
+  const struct dea_time_step step = {.length_s = 0.05, .source_voltage_V = 3000};
   for (size_t i = 0; i < 4; i++) {
     double V[2], slope, unused, d = 1e-6;
     for (int k = 0; k < 2; k++) {

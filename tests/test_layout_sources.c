@@ -43,7 +43,7 @@ static void go(struct history *h, double length_s, double t)
   for (size_t k = 1; k < h->count; k++) {
     own_V[k] = voltage_of(&h->plays[k - 1], t);
   }
-  const struct dea_time_step step = {length_s, 0, own_V};
+  const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = 0, .own_V = own_V};
   assert_int_equal(h->type->advance(ctx, h->model, &step, &h->point, &error), DEA_OK);
   h->type->accept(h->model);
 }
@@ -242,7 +242,7 @@ static void test_as_one_supply(void **state)
   struct history h = begin(models[0], true, plays, 2);
   const struct dea_time_options options = {
       .circuit = {.current_limit_A = INFINITY}, .inertia = true, .rho_inf = 1};
-  struct dea_time_step step = {0, 600, NULL};
+  struct dea_time_step step = {.length_s = 0, .source_voltage_V = 600};
   struct dea_load_point point;
   double error;
   assert_int_equal(type->begin(ctx, models[1], &options, &point), DEA_OK);
@@ -374,7 +374,7 @@ static void test_back_and_refused(void **state)
   struct dea_time_options options = {
       .circuit = {.current_limit_A = INFINITY}, .own_sources = own, .rho_inf = 1};
   const double to_V[3] = {0, 0, 300};
-  struct dea_time_step step = {0.1, 0, NULL};
+  struct dea_time_step step = {.length_s = 0.1, .source_voltage_V = 0};
   struct dea_load_point point;
   double error;
   assert_int_equal(type->solve(ctx, model, 0, &point), DEA_OK);

@@ -22,7 +22,7 @@ static void begin(struct dea_model *model, double resistance_ohm, bool inertia, 
       .circuit = {.series_resistance_ohm = resistance_ohm, .current_limit_A = INFINITY},
       .inertia = inertia,
       .rho_inf = 1};
-  const struct dea_time_step jump = {0, voltage_V, NULL};
+  const struct dea_time_step jump = {.length_s = 0, .source_voltage_V = voltage_V};
   double error;
   assert_int_equal(type->begin(ctx, model, &options, point), DEA_OK);
   assert_int_equal(type->advance(ctx, model, &jump, point, &error), DEA_OK);
@@ -33,7 +33,7 @@ static void step(struct dea_model *model, double step_s, double voltage_V,
                  struct dea_load_point *point)
 {
   const struct dea_model_type *type = dea_model_find("3d");
-  const struct dea_time_step forward = {step_s, voltage_V, NULL};
+  const struct dea_time_step forward = {.length_s = step_s, .source_voltage_V = voltage_V};
   double error;
   assert_int_equal(type->advance(ctx, model, &forward, point, &error), DEA_OK);
   type->accept(model);

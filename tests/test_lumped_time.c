@@ -35,7 +35,7 @@ static const struct dea_time_options quiet = {{0, INFINITY}, NULL, false, 0.8};
 static dea_status go(struct dea_model *model, double length_s, double V, struct dea_load_point *out)
 {
   const struct dea_model_type *type = dea_model_find("lumped");
-  const struct dea_time_step step = {length_s, V, NULL};
+  const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = V};
   double error;
   dea_status status = type->advance(ctx, model, &step, out, &error);
   if (status == DEA_OK) {
@@ -348,7 +348,8 @@ static void test_rejected_steps(void **state)
   for (int k = 0; k < 2; k++) {
     struct dea_model *model = begin(&device, &quiet);
     for (int i = 0; i < 5; i++) {
-      const struct dea_time_step other = {3, 7000, NULL}, jump = {0, 1e9, NULL};
+      const struct dea_time_step other = {.length_s = 3, .source_voltage_V = 7000},
+                                 jump = {.length_s = 0, .source_voltage_V = 1e9};
       double error;
       if (k == 1) {
         assert_int_equal(type->advance(ctx, model, &other, &p[k], &error), DEA_OK);

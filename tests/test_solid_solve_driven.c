@@ -38,7 +38,7 @@ static struct dea_load_point begin(struct dea_model *model, double resistance_oh
 /* A trial, which is taken if so wanted. */
 static struct dea_load_point go(struct dea_model *model, double step_s, double voltage_V, bool take)
 {
-  const struct dea_time_step step = {step_s, voltage_V, NULL};
+  const struct dea_time_step step = {.length_s = step_s, .source_voltage_V = voltage_V};
   struct dea_load_point point;
   double error;
   assert_int_equal(type->advance(ctx, model, &step, &point, &error), DEA_OK);

@@ -134,7 +134,7 @@ static dea_status lumped_step(struct lumped *l, double voltage_V, double step_s)
 {
   struct dea_load_point point;
   double error;
-  const struct dea_time_step step = {step_s, voltage_V, NULL};
+  const struct dea_time_step step = {.length_s = step_s, .source_voltage_V = voltage_V};
   dea_status status = l->type->advance(ctx, l->model, &step, &point, &error);
   if (status == DEA_OK) {
     l->type->accept(l->model);

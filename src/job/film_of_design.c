@@ -198,7 +198,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
                           double source_V, struct dea_bench_point *out, double *error)
 {
   struct film_model *m = (struct film_model *)model;
-  const struct dea_time_step step = {length_s, source_V, NULL};
+  const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
   struct dea_load_point point;
   dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
   if (status == DEA_OK) {

@@ -27,10 +27,14 @@ struct dea_circuit {
   double current_limit_A;       // > 0; INFINITY: none
 };
 
+struct dea_control;
+
 struct dea_time_step {
   double length_s;         // >= 0; 0: the supply's voltage jumps
   double source_voltage_V; // of the supply at the end of the step
   const double *own_V;     // of sources beside it, see dea_time_options; NULL: there are none
+  const struct dea_control *control; // of a model that has them (model/model.h); NULL: none moves
+  double value;                      // of that at the end of the step
 };
 
 /* The film as a circuit element, and the derivatives by whatever the caller varies (0 if unused).

@@ -25,6 +25,7 @@ struct settings {
   struct dea_label body;
   struct dea_choice direction; // component of the body
   struct dea_quantity from[RANGES], to[RANGES], steps;
+  struct dea_quantity duration_s; // NaN: slowly
   struct dea_choice back;
   struct dea_quantity voltages_V[DEA_DESIGN_STOPS_MAX]; // none: 0 and quarters of the highest
   size_t voltage_count;
@@ -76,6 +77,17 @@ static const struct dea_field fields[] = {
      .default_text = "10",
      .doc = "equal steps from the first value to the last",
      .example = "20"},
+    {.key = "duration",
+     .kind = DEA_FIELD_NUMBER,
+     .offset = AT(duration_s),
+     .unit = "s",
+     .min = 0,
+     .above_min = true,
+     .max = 1e9,
+     .absent_text = "slowly",
+     .doc = "time from the first value to the last, of a shift or a turn at a constant rate: "
+            "viscous branches take part",
+     .example = "10 s"},
     {.key = "back",
      .kind = DEA_FIELD_CHOICE,
      .offset = AT(back),
@@ -131,6 +143,10 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
   }
   if (s->from[range].si == s->to[range].si) {
     DEA_TRY(ctx, wrong(ctx, s, "the line ends where it begins"));
+  }
+  if (!isnan(s->duration_s.si) && range > TURN) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, s->duration_s.location,
+                                 "loading: a duration goes with a shift or a turn"));
   }
   if (range != PRESSURE && s->body.text[0] == '\0') {
     DEA_TRY(ctx, wrong(ctx, s, "which body? (body: NAME)"));
@@ -324,6 +340,9 @@ struct loading {
   size_t count;
   double peak_at, peak;   // NAN: none so far
   double least_at, least; // the same of the minimum beyond it
+  /* Of the line with a duration, once its history has begun */
+  bool is_timed;
+  double value, step_s; // of the control now; of the next step in time
 };
 
 static double value_at(const struct loading *l, size_t i)
@@ -400,6 +419,62 @@ static dea_status add_monitors(struct dea_context *ctx, struct loading *l,
   return DEA_OK;
 }
 
+/* Moves in the history that has begun, from a value to the next at the rate of the study, by steps
+ * in time that are as long as their estimated error allows. */
+static dea_status move_in_time(struct dea_context *ctx, struct loading *l, double from, double to,
+                               struct dea_load_point *at)
+{
+  static const double tolerance = 1e-3, shortest = 1e-7; // of what has moved; of the time
+  const double time_s = l->settings->duration_s.si / l->settings->steps.si;
+  double done = 0, next = fmin(1, l->step_s / time_s);
+  while (done < 1) {
+    const bool last = next >= (1 - done) * (1 - 1e-9);
+    const double share = last ? 1 - done : fmin(next, 0.5 * (1 - done));
+    const struct dea_time_step step = {.length_s = share * time_s,
+                                       .source_voltage_V = l->voltage_V,
+                                       .control = &l->control,
+                                       .value = from + (done + share) * (to - from)};
+    double error = INFINITY;
+    dea_status status = dea_model_advance(ctx, l->type, l->model, &step, at, &error);
+    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
+      return status;
+    }
+    if (status == DEA_OK && error <= tolerance) {
+      l->type->accept(l->model);
+      done = last ? 1 : done + share;
+      l->step_s = fmax(next, share) * time_s * fmin(0.9 * cbrt(tolerance / fmax(error, 1e-12)), 3);
+      next = l->step_s / time_s;
+    } else if (share < shortest) {
+      return status != DEA_OK ? status
+                              : dea_fail(ctx, DEA_E_NOT_CONVERGED,
+                                         "the error of a step stays above the tolerance");
+    } else {
+      next = share * (status == DEA_OK ? fmax(0.9 * cbrt(tolerance / error), 0.1) : 0.25);
+    }
+  }
+  return DEA_OK;
+}
+
+/* The control goes to a value, at a rate from the one before or slowly. */
+static dea_status move_to(struct dea_context *ctx, struct loading *l, double value,
+                          struct dea_load_point *at)
+{
+  static const struct dea_time_options options = {.circuit = {.current_limit_A = INFINITY}};
+  const double to = l->scale * value, from = l->value;
+  l->value = to;
+  if (l->is_timed) {
+    return move_in_time(ctx, l, from, to, at);
+  }
+  DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, to, at));
+  if (!isnan(l->settings->duration_s.si)) {
+    struct dea_load_point start;
+    l->is_timed = true;
+    l->step_s = 1e-3 * l->settings->duration_s.si;
+    DEA_TRY(ctx, dea_model_begin(ctx, l->type, l->model, &options, &start));
+  }
+  return DEA_OK;
+}
+
 /* The control goes to a value; a row of it. */
 static dea_status take(struct dea_context *ctx, struct loading *l, double value, bool back)
 {
@@ -410,7 +485,7 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
   if (dea_interrupted_anywhere(ctx)) {
     return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu points are kept", l->point);
   }
-  DEA_TRY(ctx, dea_model_move(ctx, l->type, l->model, &l->control, l->scale * value, &at));
+  DEA_TRY(ctx, move_to(ctx, l, value, &at));
   DEA_TRY(ctx, dea_model_observe(ctx, l->type, l->model, &seen));
   look_at_body(l, &seen, value, v);
   const struct dea_event *passed = l->type->passed != NULL ? l->type->passed(l->model) : NULL;
@@ -502,6 +577,7 @@ static dea_status follow(struct dea_context *ctx, struct loading *l, double volt
   l->blocked[0] = l->blocked[1] = NAN;
   l->peak = l->peak_at = l->least = l->least_at = NAN;
   l->count = 0;
+  l->is_timed = false;
   dea_status stopped = go(ctx, l);
   if (l->model != NULL) {
     l->type->destroy(ctx, l->model);
@@ -574,7 +650,7 @@ dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type 
   choose_control(&l);
   dea_status status = begin(ctx, &l);
   for (size_t i = 0; i <= steps && status == DEA_OK; i++) {
-    status = dea_model_move(ctx, type, l.model, &l.control, l.scale * value_at(&l, i), at);
+    status = move_to(ctx, &l, value_at(&l, i), at);
   }
   if (status != DEA_OK && l.model != NULL) {
     type->destroy(ctx, l.model);

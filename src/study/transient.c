@@ -385,7 +385,9 @@ static double find_corner(struct player *p)
 
 static struct dea_time_step step_of(const struct player *p, double length_s)
 {
-  return (struct dea_time_step){length_s, p->next_V[0], p->any_own ? p->next_V : NULL};
+  return (struct dea_time_step){.length_s = length_s,
+                                .source_voltage_V = p->next_V[0],
+                                .own_V = p->any_own ? p->next_V : NULL};
 }
 
 // Steps ------------------------------------------------------------------------------------------

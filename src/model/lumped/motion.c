@@ -232,7 +232,7 @@ static double loss(const struct dea_lumped_moment *moment)
 dea_status dea_lumped_begin(struct dea_lumped_motion *motion, double electrode_stretch,
                             double voltage_V)
 {
-  const struct dea_time_step none = {0, voltage_V, NULL};
+  const struct dea_time_step none = {.length_s = 0, .source_voltage_V = voltage_V};
   const struct dea_circuit ideal = {0, INFINITY}, given = motion->options.circuit;
   struct dea_lumped_moment rest = {.electrode_stretch = electrode_stretch};
   struct dea_lumped lumped = motion->lumped;
@@ -281,8 +281,10 @@ dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea
     return step_once(motion, now, step, end);
   }
   double V_s = now->circuit.source_voltage_V;
-  const struct dea_time_step first = {0.5 * h, V_s + 0.5 * (step->source_voltage_V - V_s), NULL};
-  const struct dea_time_step second = {0.5 * h, step->source_voltage_V, NULL};
+  const struct dea_time_step first = {
+      .length_s = 0.5 * h, .source_voltage_V = V_s + 0.5 * (step->source_voltage_V - V_s)};
+  const struct dea_time_step second = {.length_s = 0.5 * h,
+                                       .source_voltage_V = step->source_voltage_V};
   dea_status status = step_once(motion, now, step, &whole);
   status = status == DEA_OK ? step_once(motion, now, &first, &half) : status;
   status = status == DEA_OK ? step_once(motion, &half, &second, end) : status;

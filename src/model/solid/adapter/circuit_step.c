@@ -364,14 +364,15 @@ static void refine_work(struct dea_circuit_step *d)
                        0.5 * (voltage_V[0] + voltage_V[1]) * (to->charge_C - from->charge_C);
 }
 
-/* Work of the supply in the step that became nothing of what is counted. */
+/* Work of the supply and of what moves in the step that became nothing of what is counted. */
 static double unaccounted(const struct dea_circuit_step *d, const struct dea_solid_energies *from,
                           const struct dea_solid_energies *to)
 {
   const struct dea_circuit_state *a = &d->circuit, *b = &d->circuit_next;
   double film = to->stored + to->branches + to->kinetic + to->dissipated + to->damped -
                 (from->stored + from->branches + from->kinetic + from->dissipated + from->damped);
-  return b->supply_work_J - a->supply_work_J - d->driven.copies * film -
+  return b->supply_work_J - a->supply_work_J -
+         d->driven.copies * (film - to->motion + from->motion) -
          (b->resistance_loss_J - a->resistance_loss_J) - (b->leakage_loss_J - a->leakage_loss_J);
 }
 
@@ -385,13 +386,20 @@ static bool has_leapt(const struct dea_circuit_step *d, double lost_J,
                               lost_J > 0.5 * d->leap.lost_J && d->leap.lost_J > 0));
 }
 
+/* Largest work of the supply or of what moves supports and bodies so far. */
+static double largest_work(const struct dea_circuit_step *d)
+{
+  double motion_J = d->driven.copies * dea_solid_time_energies(d->time, true).motion;
+  return fmax(d->largest_J, fmax(fabs(d->circuit_next.supply_work_J), fabs(motion_J)));
+}
+
 /* The largest of the errors of displacement, voltage and account of energy, each over what was
  * largest so far. */
 static double find_error(struct dea_circuit_step *d, double error_m, double lost_J,
                          const struct dea_solid_report *report)
 {
   double voltage_V = fmax(d->largest_V, fabs(d->circuit_next.voltage_V));
-  double energy_J = fmax(d->largest_J, fabs(d->circuit_next.supply_work_J));
+  double energy_J = largest_work(d);
   double error = error_m / largest_motion(d);
   if (voltage_V > 0) {
     error = fmax(error, voltage_error(d, d->step_s) / voltage_V);
@@ -469,6 +477,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
 void dea_circuit_step_accept(struct dea_circuit_step *d)
 {
   d->largest_m = largest_motion(d);
+  d->largest_J = largest_work(d);
   dea_solid_time_accept(d->time);
   d->step_before_s = d->step_s;
   d->voltage_before_V = d->circuit.voltage_V;
@@ -477,7 +486,6 @@ void dea_circuit_step_accept(struct dea_circuit_step *d)
   d->network = d->network_next;
   d->network_next = network;
   d->largest_V = fmax(d->largest_V, fabs(d->circuit.voltage_V));
-  d->largest_J = fmax(d->largest_J, fabs(d->circuit.supply_work_J));
   d->time_s = d->time_next_s;
   d->lost_J = d->lost_next_J;
   d->leap.tried = false;

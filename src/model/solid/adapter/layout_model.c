@@ -937,6 +937,19 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+/* A step in time, in which a control may move. */
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  if (step->control != NULL) {
+    DEA_TRY(ctx, check_control(ctx, model, step->control, step->value));
+    DEA_TRY(ctx, set_control(ctx, model, step->control, step->value));
+  }
+  DEA_TRY(ctx, dea_standing_advance(ctx, model, step, out, error));
+  return DEA_OK;
+}
+
 // Slopes (docs/theory/gradients.md) ---------------------------------------------------------------
 
 static bool same_hold(const struct dea_layout_support *a, const struct dea_layout_support *b)
@@ -1757,7 +1770,7 @@ const struct dea_model_type dea_solid_layout_module = {
     .save = save,
     .load = dea_standing_load,
     .begin = begin,
-    .advance = dea_standing_advance,
+    .advance = advance,
     .accept = dea_standing_accept,
     .size = size,
 };

@@ -458,7 +458,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   struct dea_solid *s = t->solid;
   struct dea_solid_branch_energies branches = {0};
   struct dea_solid_energies *sums = &t->sums_next;
-  double stored = 0, work = 0;
+  double stored = 0, work = 0, motion = 0;
   *sums = t->sums;
   if (t->variables != NULL) {
     DEA_TRY(ctx, dea_internal_variables_close(ctx, t->variables, s, &branches));
@@ -471,10 +471,14 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   sums->stored = stored - t->first_J;
   sums->branches = branches.stored;
   sums->dissipated += branches.dissipated;
+  for (size_t i = 0; i < t->count; i++) { // of the forces, by the trapezoidal rule
+    double part = 0.5 * (t->F[i] + t->F_next[i]) * (s->state.u[i] - t->keep[i]);
+    work -= part;
+    motion += s->problem.held[i] == DEA_PRESCRIBED ? part : 0;
+  }
+  sums->motion += motion;
   if (t->inertial) {
-    for (size_t i = 0; i < t->count; i++) { // of the forces, by the trapezoidal rule
-      work -= 0.5 * (t->F[i] + t->F_next[i]) * (s->state.u[i] - t->keep[i]);
-    }
+    work += motion;
     DEA_TRY(ctx, dea_solid_mass_apply(ctx, s, t->v_next, t->work));
     sums->kinetic = half_square(t->v_next, t->work, t->count);
     sums->damped += t->step_s > 0 ? work - (sums->kinetic - t->sums.kinetic) : 0;

@@ -34,6 +34,7 @@ struct dea_solid_charged {
 /* Of the grid, not of its copies [J]; sums are from the creation on. */
 struct dea_solid_energies {
   double supply;     // work of the source, the integral of V dQ
+  double motion;     // work of what moves supports and bodies
   double stored;     // elastic, electric and that of loads, less what it was at first
   double branches;   // stored in them
   double kinetic;    // with the velocity
