@@ -11,6 +11,10 @@ list=$(
   done | sort -u
 )
 [ -n "$list" ] || { echo "no path found: the check is broken"; exit 1; }
+# One version: CMake's, the Python package's, and the newest of the changelog.
+version=$(sed -n 's/^project(libdea VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
+grep -qx "version = \"$version\"" python/pyproject.toml || { echo "python/pyproject.toml: not version $version"; exit 1; }
+grep -m 1 '^## ' CHANGELOG.md | grep -q "^## $version " || { echo "CHANGELOG.md does not begin with $version"; exit 1; }
 # The program of the README is the example that is compiled and run.
 # shellcheck disable=SC2016 # the fences of Markdown
 sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | diff - examples/c/sweep.c ||

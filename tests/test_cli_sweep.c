@@ -412,7 +412,7 @@ static void test_optimise(void **state)
   assert_contains(command_out, best);
   assert_int_equal(command_run("check best/best.yaml"), 0);
   assert_contains(command_out, "pre_stretch");
-  command_write("best/best-3.yaml", "# Written by dea 0.1.0 optimise, a front that was longer\n");
+  command_write("best/best-3.yaml", "# Written by dea 0.5.0 optimise, a front that was longer\n");
   command_write("best/best-4.yaml", "# written by hand\n");
   assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
   assert_contains(command_out, best);

@@ -96,7 +96,7 @@ typedef struct dea_result_handle dea_result;
 
 // Version and status --------------------------------------------------------------------------
 
-/* "0.1.0" of the library that is loaded. */
+/* "0.5.0" of the library that is loaded. */
 const char *dea_version(void);
 /* "DEA_E_IO"; and one sentence about it. Never NULL. */
 const char *dea_error_name(dea_status status);

@@ -55,7 +55,7 @@ struct dea_variant {
 
 /* Where a result comes from. */
 struct dea_provenance {
-  char program[DEA_NAME_SIZE];   // "dea 0.1.0"
+  char program[DEA_NAME_SIZE];   // "dea 0.5.0"
   char compiler[128], build[64]; // "GCC 12.2.0", "Release"
   char libraries[256];           // "libyaml 0.2.5, HDF5 1.10.8, ..."
   char started[32];              // ISO 8601, UTC
