@@ -15,15 +15,10 @@ list=$(
 version=$(sed -n 's/^project(libdea VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 grep -qx "version = \"$version\"" python/pyproject.toml || { echo "python/pyproject.toml: not version $version"; exit 1; }
 grep -m 1 '^## ' CHANGELOG.md | grep -q "^## $version " || { echo "CHANGELOG.md does not begin with $version"; exit 1; }
-# The program of the README is the example that is compiled and run.
+# The program of docs/api.md is the example that is compiled and run.
 # shellcheck disable=SC2016 # the fences of Markdown
-sed -n '/^```c$/,/^```$/p' README.md | grep -v '^```' | diff - examples/c/sweep.c ||
-  { echo "the C program of README.md is not examples/c/sweep.c"; exit 1; }
-for page in README.md docs/python.md; do # and so is its script, by the test of the tutorial
-  awk '/^```python$/ { on = 1; next } /^```$/ { if (on) { exit } } on' $page
-  echo ---
-done | awk '/^---$/ { n++; next } { text[n + 0] = text[n + 0] $0 "\n" } END { exit text[0] == "" || text[0] != text[1] }' ||
-  { echo "the script of README.md is not the first one of docs/python.md"; exit 1; }
+sed -n '/^```c$/,/^```$/p' docs/api.md | grep -v '^```' | diff - examples/c/sweep.c ||
+  { echo "the C program of docs/api.md is not examples/c/sweep.c"; exit 1; }
 # Each test that the safety case names is a test of that file.
 awk '/^\|.*`test_/ {
   file = ""

@@ -1,6 +1,6 @@
 #!/bin/sh
 # The MEX file compiled as a user would, against the library of the build; the assertions of
-# octave_package.m; the code of README.md and docs/octave.md as it stands; and Ctrl-C.
+# octave_package.m; the code of docs/octave.md as it stands; and Ctrl-C.
 # ctest: octave
 set -u
 source=$1
@@ -55,11 +55,8 @@ octave_run build.m
 octave_run package.m
 
 "$DEA_COMMAND" examples frdea-4 >frdea-4.yaml 2>examples.err || exit 1
-for page in README docs/octave; do
-  awk '/^```octave$/ { take = 1; next } /^```$/ { take = 0 } take' "$source/$page.md" >page.m
-  [ -s page.m ] || { echo "no code found in $page.md"; exit 1; }
-  cat page.m
-done >tutorial.m
+awk '/^```octave$/ { take = 1; next } /^```$/ { take = 0 } take' "$source/docs/octave.md" >tutorial.m
+[ -s tutorial.m ] || { echo "no code found in docs/octave.md"; exit 1; }
 octave_run tutorial.m
 grep -q '<svg' sweep.svg || { echo "the tutorial left no picture"; exit 1; }
 
