@@ -285,6 +285,14 @@ here. Its form does not depend on them: the field's stress goes with V^2, and as
 does, to first order, all that follows; a force that is linear in the voltage from 1 to 6 kV is in none of them.
 How the cell was zeroed, where the tip stood and from which side the paper does not say.
 
+**A hypothesis that fits the three numbers.** The force is linear in the voltage, the same for four and eight fibres to
+0.13 %, and 0.18 N is 73 % of the range of the cell (25 g, 0.245 N). What the film does has none of these: it goes with
+V^2, falls where the tip is pressed in, and differs by a fifth between four and eight fibres (72 and 88 mN at 2 mm,
+[paper.md](paper.md)); an electrostatic attraction of the tip goes with V^2 too. A signal that is proportional to the
+supply's command, coupled into the cell or its amplifier, is linear and knows nothing of the fibres. The test: the same
+commands with the film cut, or with the leads off the film and the tip in place. If the signal stays, it is not the film's.
+No such test is reported, so this remains a hypothesis.
+
 ## What to measure next
 
 In the order of what it decides for what it costs:
