@@ -137,51 +137,112 @@ static void test_numbers(void **state)
     const char *text;
     double value; // NAN: no number
     bool good;
-  } cases[] = {{"+1.04E-11", 1.04e-11, true},
-               {" -5", -5, true},
-               {".5", 0.5, true},
-               {"1.2E-9A,+3.1E+2secs,+0RDNG#", 1.2e-9, true},
-               {"3;4", 3, true},
-               {"9.9E37", NAN, true},
-               {"-9.9E+37", NAN, true},
-               {"+9.91E37", NAN, true},
-               {"1e999", NAN, true},
-               {"", NAN, false},
-               {"nan", NAN, false},
-               {"INF", NAN, false},
-               {"ON", NAN, false},
-               {"-", NAN, false},
-               {"12:30:01", NAN, false},
-               {"1.2.3", NAN, false},
-               {"0,123", NAN, false}, // one number or two?
-               {"-2,5E+03", NAN, false},
-               {"1, 2", 1, true},
-               {"1.5,2", 1.5, true},
-               {"#15hello", NAN, false}};
+    size_t field;
+  } cases[] = {{"+1.04E-11", 1.04e-11, true, 0},
+               {" -5", -5, true, 0},
+               {".5", 0.5, true, 0},
+               {"1.2E-9A,+3.1E+2secs,+0RDNG#", 1.2e-9, true, 1},
+               {"1.2E-9A,+3.1E+2secs,+0RDNG#", 310, true, 2},
+               {"1.2E-9A,+3.1E+2secs,+0RDNG#", 0, true, 3},
+               {"1.2E-9A,+3.1E+2secs,+0RDNG#", NAN, false, 4},
+               {"1.2E-9A,+3.1E+2secs,+0RDNG#", NAN, false, 0}, // which of them?
+               {"+6.0E+02,+6.1E-07,+9.91E+37", 6.1e-7, true, 2},
+               {"+6.0E+02,+6.1E-07,+9.91E+37", NAN, true, 3},
+               {"+6.0E+02,+6.1E-07,+9.91E+37", NAN, false, 0},
+               {"1,OFF", NAN, false, 2},
+               {"3;4", 3, true, 1},
+               {"3;4", 4, true, 2},
+               {"0;2000", NAN, false, 0},
+               {"5,", NAN, false, 0},
+               {"9.9E37", NAN, true, 0},
+               {"-9.9E+37", NAN, true, 0},
+               {"+9.91E37", NAN, true, 0},
+               {"1e999", NAN, true, 0},
+               {"", NAN, false, 0},
+               {"nan", NAN, false, 0},
+               {"INF", NAN, false, 0},
+               {"ON", NAN, false, 0},
+               {"-", NAN, false, 0},
+               {"12:30:01", NAN, false, 0},
+               {"1.2.3", NAN, false, 0},
+               {"0,123", NAN, false, 0}, // one number or two?
+               {"-2,5E+03", NAN, false, 0},
+               {"0,123", NAN, false, 1},
+               {"0,123", NAN, false, 2},
+               {"7.5,0,123", NAN, false, 2},
+               {"7.5,0,123", NAN, false, 3},
+               {"7.5,0,123", 7.5, true, 1},
+               {"1, 2", 1, true, 1},
+               {"1, 2", 2, true, 2},
+               {"1.5,2", 1.5, true, 1},
+               {"1.5,2", 2, true, 2},
+               {"#15hello", NAN, false, 0}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     double value = 0;
-    bool good = dea_scpi_number(cases[i].text, &value);
+    bool good = dea_scpi_number(cases[i].text, cases[i].field, &value);
     if (good != cases[i].good ||
         (good && !(value == cases[i].value) && !(isnan(value) && isnan(cases[i].value)))) {
       fail_msg("'%s' gave %d, %g", cases[i].text, good, value);
     }
   }
+}
+
+static void test_units_behind_numbers(void **state)
+{
+  (void)state;
+  static const char *const units[][2] = {{" +10.000 nA", "+10.000 nA"},
+                                         {"1E-9NADC,+3secs", "1E-9 A"},
+                                         {"-2.5E+3VDC", "-2.5E+3 V"},
+                                         {"1E-9nADC", "1E-9 nA"},
+                                         {"1E-9OADC", "1E-9 OA"},
+                                         {"5 m N", "5 mN"},
+                                         {"5 MV", NULL},
+                                         {"5 MPa", "5 MPa"},
+                                         {"OFF", NULL}};
+  for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
+    char text[DEA_SCPI_VALUE_SIZE];
+    bool good = dea_scpi_with_unit(units[i][0], i == 1, text);
+    if (good != (units[i][1] != NULL) || (good && strcmp(text, units[i][1]) != 0)) {
+      fail_msg("'%s' gave %d, '%s'", units[i][0], good, good ? text : "");
+    }
+  }
+}
+
+static void test_voltages_and_errors(void **state)
+{
+  (void)state;
   static const struct {
     const char *text;
     double in_V, in_kV; // NAN: no voltage
-  } voltages[] = {{"2.000", 2, 2},       {" -0 ", 0, 0},          {"1.5E+03V", 1500, NAN},
-                  {"+2 VDC,3", 2, NAN},  {"2.00 kV", NAN, 2},     {"2KVDC", NAN, 2},
-                  {"2.000,0.001", 2, 2}, {"2,000E+03", NAN, NAN}, {"2.0 E+03", NAN, NAN},
-                  {"2.0D+03", NAN, NAN}, {"2 mV", NAN, NAN},      {"2 MV", NAN, NAN},
-                  {"2 ?", NAN, NAN},     {"2 V?", NAN, NAN},      {"9.91E37", NAN, NAN},
-                  {"1e308", NAN, NAN},   {"", NAN, NAN}};
+  } voltages[] = {{"2.000", 2, 2},
+                  {" -0 ", 0, 0},
+                  {"1.5E+03V", 1500, NAN},
+                  {"+2 VDC", 2, NAN},
+                  {"2.00 kV", NAN, 2},
+                  {"2KVDC", NAN, 2},
+                  {"2.000,0.001", NAN, NAN},
+                  {"+2 VDC,3", NAN, NAN},
+                  {"0;2000", NAN, NAN},
+                  {"2,000E+03", NAN, NAN},
+                  {"2.0 E+03", NAN, NAN},
+                  {"2.0D+03", NAN, NAN},
+                  {"2 mV", NAN, NAN},
+                  {"2 MV", NAN, NAN},
+                  {"2 ?", NAN, NAN},
+                  {"2 V?", NAN, NAN},
+                  {"9.91E37", NAN, NAN},
+                  {"1e308", NAN, NAN},
+                  {"", NAN, NAN}};
   for (size_t i = 0; i < 2 * sizeof voltages / sizeof voltages[0]; i++) {
     double value = NAN, wanted = i % 2 == 0 ? voltages[i / 2].in_V : voltages[i / 2].in_kV;
-    bool good = dea_scpi_voltage(voltages[i / 2].text, i % 2 == 0, i % 2 == 1, &value);
+    bool good = dea_scpi_voltage(voltages[i / 2].text, 0, i % 2 == 0, i % 2 == 1, &value);
     if (good != !isnan(wanted) || (good && value != wanted)) {
       fail_msg("'%s' gave %d, %g", voltages[i / 2].text, good, value);
     }
   }
+  double value;
+  assert_true(dea_scpi_voltage("1E-3 A,2.5V;7", 2, true, false, &value) && value == 2.5);
+  assert_false(dea_scpi_voltage("1E-3 A,2.5V;7", 1, true, false, &value));
   const char *text;
   int code;
   assert_true(dea_scpi_error("-113,\"Undefined header\"", &code, &text));
@@ -284,46 +345,111 @@ static void test_makes_no_sense(void **state)
   }
 }
 
-/* The range of a display changes, or it says that it is at its end. */
-static void test_changes_its_unit(void **state)
+#define READS_CURRENT(keys)                                                                        \
+  "kind: scpi\naddress: 127.0.0.1\nport: %d\ninterval: 5 ms\nreadings:\n"                          \
+  "  - {name: leak, query: \"MEAS:CURR?\"" keys "}\n"
+
+/* An answer is one number with a unit that fits, converted to SI. At first anything else ends the
+ * measurement with what to write; later, when a range changes or a display says that it is at its
+ * end, the value is left out. */
+static void test_units_and_fields(void **state)
 {
   (void)state;
   static struct bench b;
-  static const char *const answers[][2] = {{"950 mN", "1.05 N"},
-                                           {"1E-9NADC,+3secs", "2E-3OADC,+4secs"}};
-  for (size_t i = 0; i < 2; i++) {
+  static const char amps[] = READS_CURRENT(", quantity: current"),
+                    second[] = READS_CURRENT(", quantity: current, field: 2"),
+                    volts[] = READS_CURRENT(", quantity: voltage, field: 1"),
+                    force[] = READS_CURRENT(", quantity: force"),
+                    in_mN[] = READS_CURRENT(", quantity: force, factor: -1e-3, offset: 0.5"),
+                    shunt[] = READS_CURRENT(", quantity: current, factor: 1e-3"),
+                    kelvin[] = READS_CURRENT(", unit: K"), plain[] = READS_CURRENT("");
+  static const char keithley[] = "+6.000000E+02,+6.100000E-07,+9.910000E+37,+1.2E+00,+2.150000E+04";
+  static const struct {
+    const char *section, *first, *then;
+    double value, next;  // NAN: left out
+    const char *refused; // at first; NULL: nothing is
+  } cases[] = {
+      {amps, "2.5E-9", "3E-9", 2.5e-9, 3e-9, NULL},
+      {amps, "10.000 nA", "1.5 uA", 1e-8, 1.5e-6, NULL},
+      {amps, "10.000 nA", "1.5", 1e-8, NAN, NULL},
+      {amps, "2.5E-9", "3 nA", 2.5e-9, 3e-9, NULL},
+      {amps, "1E-9NADC", "2E-3OADC", 1e-9, NAN, NULL},
+      {amps, "9.91E37", "3 nA", NAN, 3e-9, NULL},
+      {amps, "2E-9", "2E-9,600", 2e-9, NAN, NULL},
+      {amps, "0;2000", NULL, 0, 0, "which has 2 field(s): say which of them is 'leak' (field: 1 "},
+      {amps, keithley, NULL, 0, 0, "which has 5 field(s)"},
+      {second, keithley, keithley, 6.1e-7, 6.1e-7, NULL},
+      {volts, keithley, keithley, 600, 600, NULL},
+      {second, "1E-9NADC,+3secs", NULL, 0, 0, "whose unit does not fit 'leak'"},
+      {second, "1E-9", NULL, 0, 0, "which has 1 field(s)"},
+      {amps, "600 V", NULL, 0, 0, "whose unit does not fit 'leak'"},
+      {amps, "10 NA", NULL, 0, 0, "whose unit does not fit 'leak'"},
+      {force, "950 mN", "1.05 N", 0.95, 1.05, NULL},
+      {in_mN, "950", "951", -0.45, -0.451, NULL},
+      {in_mN, "950 mN", "1.05 N", -0.45, NAN, NULL},
+      {in_mN, "0.95 N", NULL, 0, 0, "whose unit does not fit 'leak'"},
+      {shunt, "2.5 V", "2500 mV", 2.5e-3, NAN, NULL},
+      {shunt, "2.5 A", NULL, 0, 0, "whose unit does not fit 'leak'"},
+      {kelvin, "20 degC", "300 K", 293.15, 300, NULL},
+      {plain, "20", "21", 20, 21, NULL},
+      {plain, "20 degC", NULL, 0, 0, "whose unit does not fit 'leak'"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
     struct behaviour behaviour = usual;
     memset(&b, 0, sizeof b);
-    behaviour.current = answers[i][0];
-    behaviour.then = answers[i][1];
-    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
-    assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 3, 0, 0), DEA_OK);
-    assert_close(b.sink.reading[0].value, i == 0 ? 950 : 1e-9, 1e-12, 0);
-    assert_true(isnan(b.sink.reading[2].value));
-    assert_true(b.instrument->lost > 0);
+    behaviour.current = cases[i].first;
+    behaviour.then = cases[i].then;
+    assert_int_equal(begin(&b, &behaviour, cases[i].section), DEA_OK);
+    dea_status status = emulator_get(ctx, b.instrument, &b.sink, 2, 0, 0);
+    if (cases[i].refused != NULL) {
+      assert_message(status, DEA_E_INSTRUMENT, cases[i].refused);
+      assert_int_equal(b.sink.readings, 0);
+    } else {
+      const double values[] = {cases[i].value, cases[i].next};
+      assert_int_equal(status, DEA_OK);
+      for (size_t k = 0; k < 2; k++) {
+        double value = b.sink.reading[k].value;
+        if (!(fabs(value - values[k]) <= 1e-12 * fabs(values[k])) &&
+            !(isnan(value) && isnan(values[k]))) {
+          fail_msg("'%s', '%s': value %zu is %g", cases[i].first, cases[i].then, k, value);
+        }
+      }
+      bool left = isnan(cases[i].next);
+      assert_int_equal(dea_finding_count(ctx, DEA_WARNING), left);
+      assert_int_equal(b.instrument->lost > 0, left);
+    }
     end(&b);
   }
   char suffix[DEA_SCPI_SUFFIX_SIZE];
-  dea_scpi_suffix(" +1.5E-3 m N ,7 V", suffix);
+  dea_scpi_suffix(" +1.5E-3 m N ,7 V", 1, suffix);
   assert_string_equal(suffix, "mN");
-  dea_scpi_suffix("OFF", suffix);
+  dea_scpi_suffix("OFF", 0, suffix);
   assert_string_equal(suffix, "");
-  dea_scpi_suffix("1 a unit that is longer than any unit that there is", suffix);
+  dea_scpi_suffix("1 a unit that is longer than any unit that there is", 0, suffix);
   assert_int_equal(strlen(suffix), DEA_SCPI_SUFFIX_SIZE - 1);
 }
 
+/* More lines than one were asked for: none of them is taken, in whatever pieces they come. */
 static void test_speaks_unasked(void **state)
 {
   (void)state;
   static struct bench b;
+  static const char *const answers[] = {"1\r\n2\r\n\r\n3", "0\r2000"};
   struct behaviour behaviour = usual;
-  behaviour.current = "1\r\n2\r\n\r\n3"; // the first is the answer
-  memset(&b, 0, sizeof b);
-  assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
-  assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 1, 0, 0), DEA_OK);
-  assert_close(b.sink.reading[0].value, 1, 1e-12, 0);
-  assert_true(b.instrument->lost == 0 || b.instrument->lost == 2);
-  end(&b);
+  for (size_t i = 0; i < 8; i++) {
+    memset(&b, 0, sizeof b);
+    behaviour.current = answers[i % 2];
+    b.emulator.fragment = i / 2;
+    assert_int_equal(begin(&b, &behaviour, reads), DEA_OK);
+    dea_status status = emulator_get(ctx, b.instrument, &b.sink, 30, 0, 0);
+    assert_int_equal(status, DEA_E_INSTRUMENT);
+    if (b.emulator.fragment == 0) { // both at once
+      assert_message(status, DEA_E_INSTRUMENT, "answered with more than one line");
+      assert_int_equal(b.sink.readings, 0);
+    }
+    assert_true(b.sink.readings < 5);
+    end(&b);
+  }
 }
 
 static void test_goes_silent(void **state)
@@ -462,13 +588,17 @@ static void test_wrong_keys(void **state)
 static void test_harmless_commands(void **state)
 {
   (void)state;
-  static const char *const harmless[] = {"VOLT 0",         "VOLT? MAX", "MEAS:VOLT?",
-                                         "VOLT:RANG 1000", "OUTP ON",   "*RST",
-                                         "VOLT:PROT 5000", "VOLT",      "APPL?"};
+  static const char *const harmless[] = {
+      "VOLT 0",         "VOLT? MAX", "MEAS:VOLT?", "VOLT:RANG 1000", "OUTP ON", "*RST",
+      "VOLT:PROT 5000", "VOLT",      "APPL?",      "VOLT ON,(@0)",   "VOLT OFF"};
   for (size_t i = 0; i < sizeof harmless / sizeof harmless[0]; i++) {
     assert_false(dea_scpi_sets_output(harmless[i], "SOUR:VOLT %g"));
   }
   assert_true(dea_scpi_sets_output("VOLT 5", ":SOUR:VOLT %g"));
+  assert_false(dea_scpi_sets_output(":VOLT ON,(@0)", ":VOLT %g,(@0)"));
+  assert_false(dea_scpi_sets_output(":VOLT OFF,(@0)", ":VOLT %g,(@0)"));
+  assert_true(dea_scpi_sets_output(":VOLT ON,(@0);:VOLT 5,(@0)", ":VOLT %g,(@0)"));
+  assert_true(dea_scpi_sets_output(":VOLT ONE", ":VOLT %g,(@0)"));
   assert_false(dea_scpi_sets_output("C1:BSWV WVTP,DC,OFST,0", "C1:BSWV OFST,%g"));
   assert_true(dea_scpi_configures("CONF:VOLT:DC 10") && dea_scpi_configures(":sens:volt 10"));
   assert_false(dea_scpi_configures("CONF:VOLT;VOLT 5") || dea_scpi_configures("SOUR:VOLT 5"));
@@ -725,6 +855,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_numbers),
+      cmocka_unit_test(test_units_behind_numbers),
+      cmocka_unit_test(test_voltages_and_errors),
       cmocka_unit_test(test_reads),
       cmocka_unit_test(test_read_back_that_is_off),
       cmocka_unit_test(test_stays_where_it_was),
@@ -741,7 +873,7 @@ int main(void)
       cmocka_unit_test(test_wrong_keys),
       cmocka_unit_test(test_name_that_nobody_knows),
       cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_changes_its_unit),
+      cmocka_unit_test(test_units_and_fields),
       cmocka_unit_test(test_generator),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

@@ -119,7 +119,8 @@ static void test_other_words_for_volts(void **state)
   static const struct {
     const char *behind;
     bool comma;
-  } words[] = {{" kV", false}, {"E+03", true}, {" E+03", false}, {" V", true}};
+  } words[] = {{" kV", false}, {"E+03", true},   {" E+03", false},
+               {" V", true},   {";2000", false}, {"\r2000", false}};
   static struct supply s;
   for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
     s = (struct supply){.deaf = true,

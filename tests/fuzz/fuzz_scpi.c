@@ -15,10 +15,14 @@ static void take(void *user, const char *line)
 {
   struct seen *s = user;
   const char *text;
+  char with_unit[DEA_SCPI_VALUE_SIZE];
   double value = 0;
   int code = 0;
   s->lines++;
-  s->numbers += dea_scpi_number(line, &value);
+  for (size_t field = dea_scpi_fields(line); field < (size_t)-1; field--) {
+    s->numbers +=
+        dea_scpi_number(line, field, &value) && dea_scpi_with_unit(line, field, with_unit);
+  }
   s->errors += dea_scpi_error(line, &code, &text);
   s->sum += (isnan(value) ? 1 : value) + code;
   if (fabs(value) > 9.9e37) {

@@ -4,6 +4,7 @@
  * output is a command with a number in it, sent by the computer's clock. */
 #include "base/clock.h"
 #include "base/schema_value.h"
+#include "base/units.h"
 #include "lab/instrument/scpi.h"
 
 #include <stdio.h>
@@ -16,9 +17,13 @@ static const struct dea_field reading_fields[] = {
     DEA_INSTRUMENT_LABEL(struct dea_scpi_raw_reading, query, "query",
                          "question that it answers with a number", "MEAS:CURR?", .required = true),
     DEA_INSTRUMENT_QUANTITY(struct dea_scpi_raw_reading, quantity),
+    DEA_INSTRUMENT_NUMBER(struct dea_scpi_raw_reading, field, "field",
+                          "which number of an answer that has several, from 1 on", 1, 99, "2",
+                          .absent_text = "it answers with one"),
     DEA_NUMBER_ROW("factor", offsetof(struct dea_scpi_raw_reading, factor), "1", "1e-3",
-                   "SI value of 1 of what it answers; 1e-3 where it answers in mN",
-                   .default_text = "1"),
+                   "SI value of 1 of what it answers; 1e-3 where it answers in mN without saying "
+                   "so. A unit that it does say is converted without this key",
+                   .absent_text = "1, or the unit of the answer"),
     DEA_NUMBER_ROW("offset", offsetof(struct dea_scpi_raw_reading, offset), "1", "0",
                    "added to it afterwards, in SI", .default_text = "0"),
     DEA_INSTRUMENT_LABEL(struct dea_scpi_raw_reading, unit, "unit",
@@ -107,6 +112,9 @@ static const struct dea_field fields[] = {
         "question that it answers with the voltage measured at its output, in what "
         "it is set in",
         "MEAS:VOLT?", .absent_text = "its output is not read back"),
+    DEA_INSTRUMENT_NUMBER(struct dea_scpi_raw, measure_field, "measure_field",
+                          "which number of that answer is the voltage, from 1 on", 1, 99, "1",
+                          .absent_text = "it answers with one"),
     DEA_INSTRUMENT_TIME(struct dea_scpi_raw, behind_s, "behind",
                         "longest time that a voltage may take to be confirmed; longer ends the "
                         "measurement",
@@ -345,27 +353,70 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   return dea_scpi_output_put(ctx, (struct dea_scpi *)instrument, volts, count);
 }
 
-/* Whether a response's unit, or state, is that of the first one. One that changes its range from
- * mN to N would be wrong by a thousand, one that says overflow by anything. */
-static dea_status check_suffix(struct dea_context *ctx, struct dea_scpi *s, size_t reading,
-                               const char *response, bool *same)
+/* The SI value of a response with a unit; *fits: that is one of the reading's quantity. */
+static dea_status convert(struct dea_context *ctx, const struct dea_scpi *s, size_t reading,
+                          const char *response, size_t field, double *si, bool *fits)
 {
+  char text[DEA_SCPI_VALUE_SIZE], example[DEA_CHANNEL_NAME_SIZE + 2], why[DEA_WHY_SIZE] = "?";
+  const struct dea_instrument_reading *r = &s->base.readings[reading];
+  const char *unit = r->kind == DEA_CHANNEL_OTHER ? r->unit : dea_channel_meanings[r->kind].si_unit;
+  snprintf(example, sizeof example, "1 %s", unit);
+  *fits = unit[0] != '\0' && dea_scpi_with_unit(response, field, text) &&
+          dea_units_read(ctx, text, (struct dea_measure){unit, example}, si, why);
+  return *fits || why[0] != '\0' ? DEA_OK : dea_context_status(ctx);
+}
+
+/* The value of a response in SI, before `offset`. *fits: its unit is one of the quantity, what
+ * `factor` says, and the one of the first answer where that alone is known of it. */
+static dea_status scale(struct dea_context *ctx, struct dea_scpi *s, size_t reading,
+                        const char *response, size_t field, double *value, bool *fits)
+{
+  const struct dea_quantity *factor = &s->raw.readings[reading].factor;
   char suffix[DEA_SCPI_SUFFIX_SIZE];
-  dea_scpi_suffix(response, suffix);
-  if (!s->known[reading]) {
+  double si = NAN;
+  bool given = factor->origin != DEA_ABSENT, known;
+  dea_scpi_suffix(response, field, suffix);
+  bool same = !s->known[reading] || strcmp(suffix, s->suffix[reading]) == 0;
+  *value *= given ? factor->si : 1;
+  *fits = same && (given || suffix[0] == '\0');
+  if (suffix[0] != '\0') {
+    DEA_TRY(ctx, convert(ctx, s, reading, response, field, &si, &known));
+    if (known) {
+      *fits = !given || fabs(fabs(*value) - fabs(si)) <= 1e-9 * fabs(si);
+      *value = given ? *value : si;
+    }
+  }
+  if (*fits && !s->known[reading]) {
     memcpy(s->suffix[reading], suffix, sizeof suffix);
     s->known[reading] = true;
   }
-  *same = strcmp(suffix, s->suffix[reading]) == 0;
-  if (*same || s->noted_suffix) {
+  return DEA_OK;
+}
+
+/* Says why a number is not taken: at first that is an error of the protocol. alone: it is one
+ * number, whose unit does not fit. */
+static dea_status refuse(struct dea_context *ctx, struct dea_scpi *s, size_t reading,
+                         const char *response, bool alone)
+{
+  const char *query = s->raw.readings[reading].query.text, *name = s->base.readings[reading].name;
+  if (!s->known[reading]) {
+    return alone ? dea_fail(ctx, DEA_E_INSTRUMENT,
+                            "%s answered '%.80s' to '%.60s', whose unit does not fit '%s': look at "
+                            "its quantity, its 'unit' and its 'factor' (what 1 of the answer is)",
+                            s->name, response, query, name)
+                 : dea_fail(ctx, DEA_E_INSTRUMENT,
+                            "%s answered '%.80s' to '%.60s', which has %zu field(s): say which "
+                            "of them is '%s' (field: 1 for the first)",
+                            s->name, response, query, dea_scpi_fields(response), name);
+  }
+  if (s->noted_suffix) {
     return DEA_OK;
   }
   s->noted_suffix = true;
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "%s answered '%.60s' to '%.60s', where '%s' stood behind the number "
                          "before: such answers are left out; fix its range",
-                         s->name, response, s->raw.readings[reading].query.text,
-                         s->suffix[reading]);
+                         s->name, response, query, s->suffix[reading]);
 }
 
 /* A response to what was asked: to the output, or the value of a reading. */
@@ -375,26 +426,30 @@ static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, con
   size_t reading = s->asking.reading;
   double value, now_s = dea_clock_s();
   if (s->asked == DEA_SCPI_NOTHING) {
-    s->base.lost++;
-    return DEA_OK;
+    return dea_line_alone(ctx, &s->link, NULL, response, strlen(response));
   }
   if (s->asked != DEA_SCPI_READING) {
     return dea_scpi_output_response(ctx, s, response);
   }
-  bool good = dea_scpi_number(response, &value);
+  const struct dea_scpi_raw_reading *r = &s->raw.readings[reading];
+  size_t field = r->field.origin != DEA_ABSENT ? (size_t)r->field.si : 0;
+  bool good = dea_scpi_number(response, field, &value);
+  bool alone = good, number = good || dea_scpi_number(response, 1, &value);
   if (good && !isnan(value)) {
-    DEA_TRY(ctx, check_suffix(ctx, s, reading, response, &good));
+    DEA_TRY(ctx, scale(ctx, s, reading, response, field, &value, &good));
+  }
+  if (number && !good) {
+    DEA_TRY(ctx, refuse(ctx, s, reading, response, alone));
   }
   if (!good) {
     value = NAN;
     s->base.lost++;
     s->broken = true;
   }
-  const struct dea_scpi_raw_reading *r = &s->raw.readings[reading];
   s->asked = DEA_SCPI_NOTHING;
   // It was measured between question and response.
   return sink->reading(sink->user, reading, 0.5 * (s->asked_s + now_s) - s->start_s,
-                       value * r->factor.si + r->offset.si);
+                       value + r->offset.si);
 }
 
 /* Asks for the reading that is due, if any and nothing is waited for; *next_s: when one will be. */
@@ -412,8 +467,8 @@ static dea_status ask_next(struct dea_context *ctx, struct dea_scpi *s, double *
   }
   s->asked = DEA_SCPI_READING;
   s->asked_s = now_s;
-  return dea_scpi_send(ctx, &s->link, s->raw.timeout_s.si,
-                       s->raw.readings[s->asking.reading].query.text);
+  return dea_scpi_question(ctx, &s->link, s->raw.timeout_s.si,
+                           s->raw.readings[s->asking.reading].query.text);
 }
 
 static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
@@ -434,6 +489,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
                                  &length));
     while ((response = dea_line_next(&s->link.lines, &at, &length)) != NULL) {
       came = true;
+      DEA_TRY(ctx, dea_line_alone(ctx, &s->link, response, at, length));
       DEA_TRY(ctx, take_response(ctx, s, response, sink));
     }
     if (s->link.lines.dropped > dropped) {

@@ -16,7 +16,7 @@ enum { DEA_SCPI_COMMANDS_MAX = 16, DEA_SCPI_COMMAND_SIZE = DEA_TITLE_SIZE + 40 }
 struct dea_scpi_raw_reading {
   struct dea_label name, query, unit;
   struct dea_choice quantity;
-  struct dea_quantity factor, offset;
+  struct dea_quantity factor, offset, field;
 };
 
 struct dea_scpi_raw {
@@ -28,7 +28,7 @@ struct dea_scpi_raw {
   size_t reading_count;
   // of the output
   struct dea_label output, output_off, is_off, confirm, measure;
-  struct dea_quantity output_factor, output_interval_s, queue_s, behind_s;
+  struct dea_quantity output_factor, output_interval_s, queue_s, behind_s, measure_field;
   struct {
     struct dea_label arm, feed, disarm;
     struct dea_quantity period_s;
@@ -45,7 +45,7 @@ struct dea_scpi {
   char name[DEA_SOCKET_NAME_SIZE + 8];
   double start_s;           // computer's clock at start; NAN before
   struct dea_asking asking; // of the readings
-  /* What stood behind the first number of each: its unit, which must stay; valid when `known`. */
+  /* What stood behind the first number of each; valid when `known`. */
   char suffix[DEA_INSTRUMENT_READINGS_MAX][DEA_SCPI_SUFFIX_SIZE];
   bool known[DEA_INSTRUMENT_READINGS_MAX], noted_suffix;
   enum dea_scpi_question asked; // what is waited for
@@ -66,6 +66,10 @@ void dea_scpi_send_if_possible(const struct dea_line_link *link, const char *com
 /* Whether a response to *IDN? is of the instrument that is meant: has `identity` in it, and is
  * mark, where that is not "". */
 bool dea_scpi_is_same(const struct dea_scpi_raw *raw, const char *mark, const char *response);
+/* Sends a question. DEA_E_INSTRUMENT where something came that nobody had asked for: which question
+ * the next response belongs to would not be known. */
+dea_status dea_scpi_question(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
+                             const char *question);
 /* Sends a question and waits for its response. */
 dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
                         const char *question, const char **out);

@@ -27,11 +27,18 @@ void dea_scpi_send_if_possible(const struct dea_line_link *link, const char *com
   dea_socket_write_if_possible(&link->socket, line, (size_t)length);
 }
 
+dea_status dea_scpi_question(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
+                             const char *question)
+{
+  DEA_TRY(ctx, dea_line_unasked(ctx, link));
+  return dea_scpi_send(ctx, link, timeout_s, question);
+}
+
 dea_status dea_scpi_ask(struct dea_context *ctx, struct dea_line_link *link, double timeout_s,
                         const char *question, const char **out)
 {
   *out = NULL;
-  DEA_TRY(ctx, dea_scpi_send(ctx, link, timeout_s, question));
+  DEA_TRY(ctx, dea_scpi_question(ctx, link, timeout_s, question));
   return dea_line_wait(ctx, link, timeout_s, out);
 }
 

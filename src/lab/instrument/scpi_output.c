@@ -24,7 +24,7 @@ void dea_scpi_output_command(const struct dea_scpi_raw *raw, double volts,
 bool dea_scpi_confirms(const struct dea_scpi_raw *raw, const char *response)
 {
   double value;
-  bool number = dea_scpi_number(response, &value);
+  bool number = dea_scpi_number(response, 0, &value);
   return strcmp(raw->confirm.text, "*OPC?") == 0 ? number && value == 1 : response[0] != '\0';
 }
 
@@ -33,7 +33,8 @@ bool dea_scpi_measured(const struct dea_scpi_raw *raw, const struct dea_protocol
 {
   double V_of_one = protocol->amplifier.gain.si / raw->output_factor.si, value;
   bool in_V = raw->output_factor.si == 1 || fabs(V_of_one - 1) < 1e-6;
-  if (!dea_scpi_voltage(response, in_V, fabs(V_of_one - 1000) < 1e-3, &value)) {
+  size_t field = raw->measure_field.origin != DEA_ABSENT ? (size_t)raw->measure_field.si : 0;
+  if (!dea_scpi_voltage(response, field, in_V, fabs(V_of_one - 1000) < 1e-3, &value)) {
     return false;
   }
   *volts = value / raw->output_factor.si;
@@ -47,7 +48,7 @@ static dea_status ask(struct dea_context *ctx, struct dea_scpi *s, enum dea_scpi
 {
   s->asked = what;
   s->asked_s = dea_clock_s();
-  dea_status status = dea_scpi_send(ctx, &s->link, s->raw.behind_s.si, question);
+  dea_status status = dea_scpi_question(ctx, &s->link, s->raw.behind_s.si, question);
   s->output.turned_s = dea_clock_s(); // a supply that takes nothing is no stall of the computer
   return status;
 }
@@ -65,8 +66,12 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_scpi *s, doub
 static dea_status no_sense(struct dea_context *ctx, const struct dea_scpi *s, const char *question,
                            const char *response)
 {
-  return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.60s' to '%.60s', which makes no sense",
-                  s->name, response, question);
+  double value;
+  bool several = dea_scpi_number(response, 1, &value) && dea_scpi_fields(response) > 1;
+  return dea_fail(ctx, DEA_E_INSTRUMENT, "%s answered '%.60s' to '%.60s', which %s", s->name,
+                  response, question,
+                  several ? "are several numbers: say which of them by measure_field"
+                          : "makes no sense");
 }
 
 dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s)

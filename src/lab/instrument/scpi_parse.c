@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double not_a_value = 9.8e37; // what SCPI keeps for that begins at 9.9e37
@@ -35,50 +36,117 @@ static bool same_letters(const char *a, const char *b, size_t length)
   return true;
 }
 
-/* Whether a comma behind a number may be its decimal one: digits alone before and behind it. */
-static bool may_be_decimal(const char *response, const char *behind)
+/* Where a field begins, from 1 on; 0: the only one. NULL: there is none. */
+static const char *find_field(const char *response, size_t field)
 {
-  response += strspn(response, " \t+-");
-  return *behind == ',' && isdigit((unsigned char)behind[1]) &&
-         response + strspn(response, "0123456789") == behind;
+  if (field == 0 && dea_scpi_fields(response) > 1) {
+    return NULL;
+  }
+  for (size_t i = 1; i < field; i++) {
+    response += strcspn(response, ",;");
+    if (*response == '\0') {
+      return NULL;
+    }
+    response++;
+  }
+  return response;
 }
 
-bool dea_scpi_number(const char *response, double *value)
+static bool is_digit(char c)
+{
+  return isdigit((unsigned char)c) != 0;
+}
+
+/* Whether the comma at `comma` may be a decimal one: digits alone before it, one behind it. */
+static bool may_be_decimal(const char *response, const char *comma)
+{
+  const char *at = comma;
+  while (at > response && is_digit(at[-1])) {
+    at--;
+  }
+  bool digits = at < comma;
+  while (at > response && strchr(" \t+-", at[-1]) != NULL) {
+    at--;
+  }
+  return *comma == ',' && is_digit(comma[1]) && digits &&
+         (at == response || strchr(",;", at[-1]) != NULL);
+}
+
+/* The number of a field, and where it ends. */
+static const char *field_number(const char *response, size_t field, double *value,
+                                const char **behind)
+{
+  const char *number = find_field(response, field);
+  return number != NULL && read_number(number, value, behind) &&
+                 !may_be_decimal(response, *behind) &&
+                 !(number > response && may_be_decimal(response, number - 1))
+             ? number
+             : NULL;
+}
+
+bool dea_scpi_number(const char *response, size_t field, double *value)
 {
   const char *behind;
-  return read_number(response, value, &behind) && !may_be_decimal(response, behind);
+  return field_number(response, field, value, &behind) != NULL;
 }
 
-bool dea_scpi_voltage(const char *response, bool in_V, bool in_kV, double *value)
+size_t dea_scpi_fields(const char *response)
 {
-  const char *at;
-  if (!read_number(response, value, &at) || isnan(*value) || may_be_decimal(response, at)) {
-    return false;
+  size_t count = 1;
+  for (; *response != '\0'; response++) {
+    count += *response == ',' || *response == ';';
   }
-  at += strspn(at, " \t");
-  bool kilo = (at[0] == 'k' || at[0] == 'K') && (at[1] == 'V' || at[1] == 'v');
-  bool unit = kilo || at[0] == 'V' || at[0] == 'v';
-  if (unit) {
-    at += kilo ? 2 : 1;
-    at += same_letters(at, "DC", 2) ? 2 : 0;
-  }
-  at += strspn(at, " \t");
-  return (*at == '\0' || *at == ',' || *at == ';') && (!unit || (kilo ? in_kV : in_V));
+  return count;
 }
 
-void dea_scpi_suffix(const char *response, char out[DEA_SCPI_SUFFIX_SIZE])
+bool dea_scpi_voltage(const char *response, size_t field, bool in_V, bool in_kV, double *value)
+{
+  char suffix[DEA_SCPI_SUFFIX_SIZE];
+  dea_scpi_suffix(response, field, suffix);
+  bool kilo = suffix[0] == 'k' || suffix[0] == 'K', none = suffix[0] == '\0';
+  const char *unit = suffix + kilo;
+  size_t length = strlen(unit);
+  bool volts = (length == 1 || length == 3) && same_letters("VDC", unit, length);
+  return dea_scpi_number(response, field, value) && !isnan(*value) &&
+         (none || (volts && (kilo ? in_kV : in_V)));
+}
+
+void dea_scpi_suffix(const char *response, size_t field, char out[DEA_SCPI_SUFFIX_SIZE])
 {
   double value;
-  const char *end = response + strspn(response, " \t");
+  const char *end = "";
   size_t n = 0;
-  if (dea_scpi_number(response, &value)) {
-    dea_text_to_double(end, &end);
-    for (; *end != '\0' && *end != ',' && *end != ';' && n + 1 < DEA_SCPI_SUFFIX_SIZE; end++) {
-      out[n] = *end;
-      n += *end != ' ' && *end != '\t';
-    }
+  if (field_number(response, field, &value, &end) == NULL) {
+    end = "";
+  }
+  for (; *end != '\0' && *end != ',' && *end != ';' && n + 1 < DEA_SCPI_SUFFIX_SIZE; end++) {
+    out[n] = *end;
+    n += *end != ' ' && *end != '\t';
   }
   out[n] = '\0';
+}
+
+bool dea_scpi_with_unit(const char *response, size_t field, char out[DEA_SCPI_VALUE_SIZE])
+{
+  double value;
+  char suffix[DEA_SCPI_SUFFIX_SIZE], *unit = suffix;
+  const char *end, *number = field_number(response, field, &value, &end);
+  if (number == NULL) {
+    return false;
+  }
+  dea_scpi_suffix(response, field, suffix);
+  size_t length = strlen(unit);
+  if (length > 2 && strcmp(unit + length - 2, "DC") == 0) {
+    unit[length -= 2] = '\0';
+    unit += length == 2 && unit[0] == 'N'; // NADC, NVDC: normal
+  }
+  if (unit[0] == 'M' && isupper((unsigned char)unit[1]) && unit[2] == '\0') {
+    return false;
+  }
+  number += strspn(number, " \t");
+  snprintf(out, DEA_SCPI_VALUE_SIZE, "%.*s %s", (int)(end - number < 60 ? end - number : 60),
+           number, unit);
+  return true;
 }
 
 bool dea_scpi_error(const char *response, int *code, const char **text)
@@ -102,13 +170,17 @@ bool dea_scpi_output_is_plain(const char *output)
          strchr(",", hole[2]) != NULL && strchr(output, ';') == NULL;
 }
 
-/* Whether a value is something other than 0: a number, or a word such as MAX, UP, DEF. */
+/* Whether a value is something other than 0: a number, or a word such as MAX, UP, DEF. ON and OFF
+ * switch what was set, and set no number. */
 static bool is_not_zero(const char *value)
 {
   double number;
   const char *behind;
   value += strspn(value, " \t");
-  return *value != '\0' && strchr(",;", *value) == NULL &&
+  size_t word = strcspn(value, " \t,;");
+  bool switches =
+      (word == 2 && same_letters(value, "ON", 2)) || (word == 3 && same_letters(value, "OFF", 3));
+  return word > 0 && !switches &&
          !(read_number(value, &number, &behind) && number == 0); // NAN is no 0
 }
 

@@ -64,7 +64,7 @@ static bool ask_off(struct dea_context *ctx, struct dea_line_link *link,
   if (dea_scpi_ask(ctx, link, timeout_s, raw->is_off.text, &answer) != DEA_OK || answer == NULL) {
     return false;
   }
-  *off = strncmp(answer, "OFF", 3) == 0 || (dea_scpi_number(answer, &value) && value == 0);
+  *off = strcmp(answer, "OFF") == 0 || (dea_scpi_number(answer, 0, &value) && value == 0);
   return true;
 }
 
