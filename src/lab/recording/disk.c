@@ -21,6 +21,9 @@ struct disk_file {
   struct dea_disk *disk;
   int file;
   haddr_t allocated, size;
+  /* The file's first bytes, as HDF5 wrote them: with them it closes a file that it can no longer
+   * read. */
+  unsigned char head[4096];
   dev_t device;
   ino_t inode;
 };
@@ -118,13 +121,33 @@ static haddr_t disk_get_size(const H5FD_t *file, H5FD_mem_t type)
   return ((const struct disk_file *)file)->size;
 }
 
+/* Whether all that was written is still there: another program may have cut the file off. HDF5
+ * would take zeros for its own tables then, and wait for what never comes. */
+static bool is_whole(struct disk_file *file)
+{
+  struct stat info;
+  if (file->disk->error == 0 && fstat(file->file, &info) != 0) {
+    file->disk->error = errno;
+  } else if (file->disk->error == 0 && (haddr_t)info.st_size < file->size) {
+    file->disk->error = DEA_DISK_CUT;
+  }
+  return file->disk->error == 0;
+}
+
 static herr_t disk_read(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t address, size_t size,
                         void *buffer)
 {
   (void)type;
   (void)transfer;
-  const struct disk_file *own = (const struct disk_file *)file;
+  struct disk_file *own = (struct disk_file *)file;
   char *to = buffer;
+  if (!is_whole(own)) {
+    bool kept = address < sizeof own->head && size <= sizeof own->head - address;
+    if (kept) {
+      memcpy(to, own->head + address, size);
+    }
+    return kept ? 0 : -1;
+  }
   while (size > 0) {
     ssize_t n = pread(own->file, to, size, (off_t)address);
     if (n < 0 && errno != EINTR) {
@@ -151,7 +174,11 @@ static herr_t disk_write(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t 
   struct disk_file *own = (struct disk_file *)file;
   const char *from = buffer;
   haddr_t end = address + size;
-  while (own->disk->error == 0 && size > 0) {
+  if (address < sizeof own->head) {
+    memcpy(own->head + address, from,
+           size < sizeof own->head - address ? size : sizeof own->head - address);
+  }
+  while (is_whole(own) && size > 0) {
     ssize_t n = pwrite(own->file, from, size, (off_t)address);
     if (n < 0 && errno != EINTR) {
       own->disk->error = errno;

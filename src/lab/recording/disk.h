@@ -3,14 +3,17 @@
  * When a write fails (a full disk), HDF5 must not go on and change other places of the file, and
  * must still be able to close it. So the first write that fails is remembered and is the last that
  * reaches the file, which then is as if the program had been killed at that moment; HDF5 itself is
- * told that all is well. */
+ * told that all is well. A file that another program has cut off is no longer written either, and
+ * no longer read: HDF5 would take what is missing for its own tables. */
 #ifndef DEA_LAB_RECORDING_DISK_H
 #define DEA_LAB_RECORDING_DISK_H
 
 #include "base/h5.h"
 
+enum { DEA_DISK_CUT = -1 };
+
 struct dea_disk {
-  int error;    // errno of the write that failed; 0: none has
+  int error;    // errno of the write that failed, or DEA_DISK_CUT; 0: none has
   int file;     // descriptor, locked against other writers; -1: closed
   bool lasting; // waits for the disk when the file is made and when it is closed
 };

@@ -192,8 +192,9 @@ static void set_text(struct h5 *h, const struct dea_recorder *recorder, const ch
 static void check_disk(struct h5 *h, const struct dea_recorder *recorder)
 {
   if (h->status == DEA_OK && recorder->disk.error != 0) {
-    h->status =
-        dea_fail(h->ctx, DEA_E_IO, "cannot write %s: %s", h->path, strerror(recorder->disk.error));
+    h->status = dea_fail(h->ctx, DEA_E_IO, "cannot write %s: %s", h->path,
+                         recorder->disk.error == DEA_DISK_CUT ? "another program has cut it off"
+                                                              : strerror(recorder->disk.error));
   }
 }
 
