@@ -4,11 +4,13 @@
 #define _GNU_SOURCE
 #include "failing_allocator.h"
 
+#include "message_fixture.h"
 #include "recording_files.h"
 
 #include <signal.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 static unsigned char *load(const char *name, size_t *length)
 {
@@ -145,10 +147,6 @@ static void no_state(hid_t file)
 {
   remove_link(file, "state");
 }
-static void no_cycles(hid_t file)
-{
-  remove_link(file, "cycles");
-}
 static void no_time(hid_t file)
 {
   remove_link(file, "channels/temperature/time");
@@ -208,7 +206,6 @@ static void test_hostile_contents_are_refused(void **state)
 {
   (void)state;
   static const change_fn changes[] = {no_state,
-                                      no_cycles,
                                       no_time,
                                       state_of_numbers,
                                       values_of_text,
@@ -323,6 +320,87 @@ static void test_full_disk(void **state)
   signal(SIGXFSZ, handler);
 }
 
+/* Another program cuts off the file that is being written: that is an error, not a wait, and HDF5
+ * is left as it should be. */
+static void test_cut_while_it_is_written(void **state)
+{
+  (void)state;
+  static const long sizes[] = {0, 3000, 5000, 20000, 60000};
+  for (size_t k = 0; k < 2 * sizeof sizes / sizeof sizes[0]; k++) {
+    struct dea_recorder *recorder;
+    dea_status status = DEA_OK;
+    unlink(in_folder("cut.h5"));
+    assert_int_equal(sample_create(ctx, in_folder("cut.h5"), false, 0, &recorder), DEA_OK);
+    record(recorder, k % 2 == 0 ? 40 : 0);
+    assert_int_equal(dea_recorder_sync(recorder), DEA_OK);
+    assert_int_equal(truncate(in_folder("cut.h5"), k % 2 == 0 ? sizes[k / 2] : 100), 0);
+    for (size_t i = 0; i < 100 && status == DEA_OK; i++) {
+      struct dea_recorded_cycle cycle = sample_cycle(100 + i);
+      status = dea_recorder_add_cycle(recorder, &cycle);
+    }
+    assert_message(status, DEA_E_IO, "cut.h5: another program has cut it off");
+    assert_int_equal(dea_recorder_sync(recorder), DEA_E_IO);
+    assert_int_equal(dea_recorder_finish(recorder, NULL), DEA_E_IO);
+  }
+}
+
+static void link_outside(hid_t file)
+{
+  remove_link(file, "cycles");
+  assert_true(H5Lcreate_external(in_folder("pipe"), "/cycles", file, "cycles", H5P_DEFAULT,
+                                 H5P_DEFAULT) >= 0);
+}
+
+static void link_outside_of_any_name(hid_t file)
+{
+  hid_t group = H5Gopen2(file, "channels/voltage", H5P_DEFAULT);
+  assert_true(H5Lcreate_external(in_folder("pipe"), "/", group, "x", H5P_DEFAULT, H5P_DEFAULT) >=
+              0);
+  H5Gclose(group);
+}
+
+static void data_outside(hid_t file)
+{
+  hsize_t size = 10;
+  hid_t space = H5Screate_simple(1, &size, NULL), properties = H5Pcreate(H5P_DATASET_CREATE);
+  assert_true(H5Pset_external(properties, in_folder("pipe"), 0, 80) >= 0);
+  hid_t set = H5Dcreate2(file, "x", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  assert_true(set >= 0);
+  H5Dclose(set);
+  H5Pclose(properties);
+  H5Sclose(space);
+}
+
+static void virtual_data(hid_t file)
+{
+  hsize_t size = 10;
+  hid_t space = H5Screate_simple(1, &size, NULL), properties = H5Pcreate(H5P_DATASET_CREATE);
+  assert_true(H5Pset_virtual(properties, space, in_folder("pipe"), "/x", space) >= 0);
+  hid_t set = H5Dcreate2(file, "x", H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+  assert_true(set >= 0);
+  H5Dclose(set);
+  H5Pclose(properties);
+  H5Sclose(space);
+}
+
+/* What lies in another file, here a pipe that nobody writes to, is not followed. */
+static void test_other_files_are_not_followed(void **state)
+{
+  (void)state;
+  static const change_fn changes[] = {link_outside, link_outside_of_any_name, data_outside,
+                                      virtual_data};
+  assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
+  for (size_t k = 0; k < sizeof changes / sizeof changes[0]; k++) {
+    struct dea_recording *recording;
+    make("outer.h5", true, 2, NULL);
+    hid_t file = H5Fopen(in_folder("outer.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
+    changes[k](file);
+    H5Fclose(file);
+    assert_message(dea_recording_read(ctx, in_folder("outer.h5"), &recording), DEA_E_IO,
+                   "refers to another file in '");
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -334,6 +412,8 @@ int main(void)
       cmocka_unit_test_teardown(test_missing_chunks_end_a_channel, nothing_open),
       cmocka_unit_test_teardown(test_out_of_memory, nothing_open),
       cmocka_unit_test_teardown(test_full_disk, nothing_open),
+      cmocka_unit_test_teardown(test_cut_while_it_is_written, nothing_open),
+      cmocka_unit_test_teardown(test_other_files_are_not_followed, nothing_open),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

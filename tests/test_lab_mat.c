@@ -4,7 +4,9 @@
 #include "octave.h"
 #include "testing.h"
 
+#include <hdf5.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { COUNT = 1000 };
@@ -198,6 +200,25 @@ static void test_claims(void **state)
   }
 }
 
+/* What a file of version 7.3 names in another one, here a pipe that nobody writes to, is not
+ * followed: libmatio would wait for it. */
+static void test_other_files(void **state)
+{
+  (void)state;
+  size_t columns;
+  const struct dea_mat_variable variable = {.name = "v", .values = values, .count = 20};
+  fill();
+  assert_int_equal(dea_mat_write(ctx, in_folder("l.mat"), &variable, 1, DEA_MAT_73), DEA_OK);
+  assert_int_equal(read_back("l.mat", &columns), DEA_OK);
+  assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
+  hid_t file = H5Fopen(in_folder("l.mat"), H5F_ACC_RDWR, H5P_DEFAULT);
+  assert_true(file >= 0 &&
+              H5Lcreate_external("pipe", "/w", file, "w", H5P_DEFAULT, H5P_DEFAULT) >= 0);
+  H5Fclose(file);
+  assert_int_equal(read_back("l.mat", &columns), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "refers to another file in 'w'"));
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -209,6 +230,7 @@ int main(void)
       cmocka_unit_test(test_cut_off),
       cmocka_unit_test(test_claims),
       cmocka_unit_test(test_no_place),
+      cmocka_unit_test(test_other_files),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -160,6 +160,132 @@ static void test_names_and_options(void **state)
   assert_false(there("no.h5"));
 }
 
+// Of other programs -------------------------------------------------------------------------------
+
+/* A text as h5py writes it: of any length, UTF-8; or of a fixed one in ASCII. */
+static void put_text(hid_t object, const char *name, const char *text, bool any, bool attribute)
+{
+  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, any ? H5T_VARIABLE : strlen(text));
+  H5Tset_strpad(type, any ? H5T_STR_NULLTERM : H5T_STR_NULLPAD);
+  H5Tset_cset(type, any ? H5T_CSET_UTF8 : H5T_CSET_ASCII);
+  hid_t id = attribute
+                 ? H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT)
+                 : H5Dcreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const void *from = any ? (const void *)&text : text;
+  assert_true((attribute ? H5Awrite(id, type, from)
+                         : H5Dwrite(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, from)) >= 0);
+  H5Idec_ref(id);
+  H5Sclose(space);
+  H5Tclose(type);
+}
+
+static void put_number(hid_t object, const char *name, hid_t type, const void *value)
+{
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t id = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  assert_true(H5Awrite(id, type, value) >= 0);
+  H5Aclose(id);
+  H5Sclose(space);
+}
+
+enum { FOREIGN = 8000 };
+struct foreign {
+  bool any, attributes, deflated; // texts of any length; title and state as attributes
+  hid_t number;                   // of the values in the file
+  const char *unit, *left_out;    // attribute of the channels
+};
+
+/* The recording of the table in docs/bench.md, without what it may lack. */
+static void make_foreign(const char *name, const struct foreign *f)
+{
+  static double values[FOREIGN];
+  static const char *const names[][2] = {{"HV", "voltage"}, {"laser", "displacement"}};
+  hid_t file = H5Fcreate(in_folder(name), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hsize_t size = FOREIGN, chunk = 1000;
+  hid_t space = H5Screate_simple(1, &size, NULL), properties = H5Pcreate(H5P_DATASET_CREATE);
+  if (f->deflated) {
+    H5Pset_chunk(properties, 1, &chunk);
+    H5Pset_deflate(properties, 4);
+  }
+  const long long one = 1;
+  put_text(file, "format", "dea recording", f->any, true);
+  put_number(file, "version", H5T_NATIVE_LLONG, &one);
+  put_text(file, "title", "by h5py", f->any, f->attributes);
+  put_text(file, "state", "complete", f->any, f->attributes);
+  hid_t channels = H5Gcreate2(file, "channels", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  for (long long c = 0; c < 2; c++) {
+    hid_t group = H5Gcreate2(channels, names[c][0], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const double start_s = 0.5, interval_s = 1e-3, filter_Hz = NAN;
+    put_text(group, "name", names[c][0], f->any, true);
+    put_text(group, "quantity", names[c][1], f->any, true);
+    put_text(group, "unit", c == 0 ? f->unit : "m", f->any, true);
+    put_number(group, "index", H5T_NATIVE_LLONG, &c);
+    put_number(group, "start_s", H5T_NATIVE_DOUBLE, &start_s);
+    put_number(group, "interval_s", H5T_NATIVE_DOUBLE, &interval_s);
+    put_number(group, "filter_Hz", H5T_NATIVE_DOUBLE, &filter_Hz);
+    H5Adelete(group, f->left_out);
+    for (size_t i = 0; i < FOREIGN; i++) {
+      values[i] = (double)i * (c == 0 ? 0.25 : 0.125);
+    }
+    hid_t set = H5Dcreate2(group, "values", f->number, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    assert_true(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    H5Dclose(set);
+    H5Gclose(group);
+  }
+  H5Gclose(channels);
+  H5Pclose(properties);
+  H5Sclose(space);
+  H5Fclose(file);
+}
+
+static void test_of_other_programs(void **state)
+{
+  (void)state;
+  const struct foreign read[] = {{true, true, false, H5T_IEEE_F64LE, "V", ""},
+                                 {true, false, true, H5T_IEEE_F64LE, "V", ""},
+                                 {false, false, false, H5T_IEEE_F32BE, "V", ""},
+                                 {false, true, true, H5T_IEEE_F32LE, "V", ""}};
+  dea_context_clear(ctx);
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); // of what is left out, nothing
+  for (size_t k = 0; k < sizeof read / sizeof read[0]; k++) {
+    make_foreign("mine.h5", &read[k]);
+    struct dea_recording *recording = must_read("mine.h5");
+    assert_true(recording->complete);
+    assert_string_equal(recording->title, "by h5py");
+    assert_int_equal(recording->channel_count, 2);
+    assert_int_equal(recording->cycle_count, 0);
+    for (size_t c = 0; c < 2; c++) {
+      const struct dea_channel *channel = &recording->channels[c];
+      assert_string_equal(channel->name, c == 0 ? "HV" : "laser");
+      assert_int_equal(channel->kind, c == 0 ? DEA_CHANNEL_VOLTAGE : DEA_CHANNEL_DISPLACEMENT);
+      assert_true(channel->count == FOREIGN && channel->start_s == 0.5 &&
+                  channel->interval_s == 1e-3 && isnan(channel->filter_Hz));
+      for (size_t i = 0; i < FOREIGN; i++) {
+        assert_true(channel->values[i] == (double)i * (c == 0 ? 0.25 : 0.125));
+      }
+    }
+    dea_recording_destroy(ctx, recording);
+  }
+  const struct {
+    struct foreign file;
+    const char *message;
+  } refused[] = {
+      {{true, true, false, H5T_IEEE_F64LE, "kV", ""},
+       "'HV' is in 'kV', and a recording has it in V"},
+      {{true, true, false, H5T_IEEE_F64LE, "V", "index"}, "the attribute 'index' is missing"},
+      {{true, true, false, H5T_IEEE_F64LE, "V", "quantity"},
+       "the attribute 'quantity' is missing"}};
+  for (size_t k = 0; k < sizeof refused / sizeof refused[0]; k++) {
+    struct dea_recording *recording;
+    make_foreign("mine.h5", &refused[k].file);
+    assert_int_equal(dea_recording_read(ctx, in_folder("mine.h5"), &recording), DEA_E_IO);
+    if (strstr(dea_context_message(ctx), refused[k].message) == NULL) {
+      fail_msg("'%s' lacks '%s'", dea_context_message(ctx), refused[k].message);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -170,6 +296,7 @@ int main(void)
       cmocka_unit_test_teardown(test_reading_while_recording, nothing_open),
       cmocka_unit_test_teardown(test_wrong_calls_are_refused_and_harm_nothing, nothing_open),
       cmocka_unit_test_teardown(test_names_and_options, nothing_open),
+      cmocka_unit_test_teardown(test_of_other_programs, nothing_open),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -100,12 +100,17 @@ dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, 
 
 bool dea_file_head(const char *path, void *head, size_t size, size_t *length)
 {
-  FILE *file = fopen(path, "rb");
-  *length = file != NULL ? fread(head, 1, size, file) : 0;
-  if (file != NULL) {
-    fclose(file);
+  struct stat info;
+  int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a pipe would be waited for
+  bool regular = fd >= 0 && fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
+  *length = 0;
+  for (ssize_t got = 1; regular && got > 0 && *length<size; *length += got> 0 ? (size_t)got : 0) {
+    got = read(fd, (char *)head + *length, size - *length);
   }
-  return file != NULL;
+  if (fd >= 0) {
+    close(fd);
+  }
+  return regular;
 }
 
 bool dea_head_is_h5(const void *head, size_t length)

@@ -10,7 +10,8 @@
 dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
                          size_t *length);
 
-/* The first bytes of a file; *length: how many there are, at most size. false: it cannot be opened.
+/* The first bytes of a file; *length: how many there are, at most size. false: it is no regular
+ * file, or cannot be opened.
  */
 bool dea_file_head(const char *path, void *head, size_t size, size_t *length);
 /* Whether a file's first bytes are those of HDF5. */

@@ -1,9 +1,13 @@
 #include "base/h5.h"
 
+#include "base/file.h"
 #include "base/write_file.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+enum { OUTER_SIZE = 200 };
 
 void dea_h5_begin(struct h5 *h, struct dea_context *ctx, const char *path)
 {
@@ -93,6 +97,80 @@ void dea_h5_file_write(struct h5 *h, hid_t file)
   dea_free(h->ctx, bytes);
 }
 
+/* What lies in another file. The visit ends at the first with 1. */
+static herr_t find_outer_link(hid_t group, const char *name, const H5L_info_t *info, void *user)
+{
+  (void)group;
+  snprintf(user, OUTER_SIZE, "%s", name);
+  return info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT;
+}
+
+static herr_t find_outer_data(hid_t object, const char *name, const H5O_info_t *info, void *user)
+{
+  if (info->type != H5O_TYPE_DATASET) {
+    return 0;
+  }
+  hid_t set = H5Dopen2(object, name, H5P_DEFAULT);
+  hid_t properties = set >= 0 ? H5Dget_create_plist(set) : H5I_INVALID_HID;
+  int files = properties >= 0 ? H5Pget_external_count(properties) : -1;
+  bool outer = files > 0 || H5Pget_layout(properties) == H5D_VIRTUAL;
+  snprintf(user, OUTER_SIZE, "%s", name);
+  dea_h5_close(properties);
+  dea_h5_close(set);
+  return files < 0 ? -1 : outer;
+}
+
+static void refuse_outer(struct h5 *h, hid_t file)
+{
+  char name[OUTER_SIZE];
+  herr_t found = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, find_outer_link, name);
+  if (found == 0) {
+    found = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, find_outer_data, name, H5O_INFO_BASIC);
+  }
+  if (found > 0) {
+    h->status = dea_fail(h->ctx, DEA_E_IO,
+                         "%s refers to another file in '%s', which is not followed: write one file "
+                         "with all in it (h5repack)",
+                         h->path, name);
+  } else if (found < 0) {
+    dea_h5_fail(h, h->not_it);
+  }
+}
+
+hid_t dea_h5_file_open(struct h5 *h, bool written)
+{
+  char head[1];
+  size_t length;
+  if (h->status != DEA_OK) {
+    return H5I_INVALID_HID;
+  }
+  if (!dea_file_head(h->path, head, sizeof head, &length)) {
+    h->status = dea_fail(h->ctx, DEA_E_IO,
+                         "cannot read %s: it does not exist, or is no file that "
+                         "may be read",
+                         h->path);
+    return H5I_INVALID_HID;
+  }
+  hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0 && written) {
+    H5Eclear2(H5E_DEFAULT);
+    // what a program is just writing is read again, each time after twice the wait, from 1 ns on:
+    // with HDF5's default of 100 times a damaged file would take longer than anybody lives
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_metadata_read_attempts(access, 22);
+    file = H5Fopen(h->path, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
+    dea_h5_close(access);
+  }
+  if (checked(h, file, "cannot read") >= 0) {
+    refuse_outer(h, file);
+  }
+  if (h->status != DEA_OK) {
+    dea_h5_close(file);
+    file = H5I_INVALID_HID;
+  }
+  return file;
+}
+
 hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name)
 {
   return dea_h5_has(h, parent, name) ? dea_h5_group_open(h, parent, name)
@@ -107,12 +185,22 @@ hid_t dea_h5_group_make(struct h5 *h, hid_t parent, const char *name)
   return checked(h, H5Gcreate2(parent, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), cannot_write);
 }
 
+/* Says what is missing. */
+static void require(struct h5 *h, hid_t group, const char *name)
+{
+  if (h->status == DEA_OK && H5Lexists(group, name, H5P_DEFAULT) == 0) {
+    h->status = dea_fail(h->ctx, DEA_E_IO, "%s %s: '%s' is missing", h->not_it, h->path, name);
+  }
+}
+
 hid_t dea_h5_group_open(struct h5 *h, hid_t parent, const char *name)
 {
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
   }
-  return checked(h, H5Gopen2(parent, name, H5P_DEFAULT), h->not_it);
+  require(h, parent, name);
+  return h->status == DEA_OK ? checked(h, H5Gopen2(parent, name, H5P_DEFAULT), h->not_it)
+                             : H5I_INVALID_HID;
 }
 
 void dea_h5_close(hid_t object)
@@ -208,7 +296,9 @@ hid_t dea_h5_array_open(struct h5 *h, hid_t group, const char *name)
   if (h->status != DEA_OK) {
     return H5I_INVALID_HID;
   }
-  return checked(h, H5Dopen2(group, name, H5P_DEFAULT), h->not_it);
+  require(h, group, name);
+  return h->status == DEA_OK ? checked(h, H5Dopen2(group, name, H5P_DEFAULT), h->not_it)
+                             : H5I_INVALID_HID;
 }
 
 void dea_h5_link(struct h5 *h, hid_t from, const char *name, hid_t to)
@@ -238,25 +328,55 @@ static bool is_single(hid_t space)
   return space >= 0 && H5Sget_simple_extent_npoints(space) == 1;
 }
 
+/* Text of an attribute or of a scalar dataset, of a fixed length or not; owned by the caller. NULL:
+ * it is none, or the file is shorter than it. */
+static char *read_text(struct h5 *h, hid_t object, bool attribute)
+{
+  hid_t type = attribute ? H5Aget_type(object) : H5Dget_type(object);
+  hid_t space = attribute ? H5Aget_space(object) : H5Dget_space(object);
+  bool good = type >= 0 && is_single(space) && H5Tget_class(type) == H5T_STRING &&
+              (attribute || H5Dget_storage_size(object) > 0);
+  bool variable = good && H5Tis_variable_str(type) > 0;
+  char *text = NULL, *lent = NULL;
+  if (good && !variable && H5Tget_size(type) <= dea_h5_file_size(h, object)) {
+    text = dea_alloc(h->ctx, H5Tget_size(type) + 1, 1);
+    h->status = text != NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  void *to = variable ? (void *)&lent : text;
+  good = to != NULL && (attribute ? H5Aread(object, type, to)
+                                  : H5Dread(object, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to)) >= 0;
+  if (good && variable) {
+    text = dea_copy_text(h->ctx, lent != NULL ? lent : "", SIZE_MAX);
+    h->status = text != NULL ? DEA_OK : DEA_E_MEMORY;
+    H5free_memory(lent);
+  }
+  if (!good) {
+    dea_h5_fail(h, h->not_it);
+    dea_free(h->ctx, text);
+    text = NULL;
+  }
+  dea_h5_close(space);
+  dea_h5_close(type);
+  return text;
+}
+
+/* An attribute; what is missing is said. */
+static hid_t open_attribute(struct h5 *h, hid_t object, const char *name)
+{
+  if (h->status == DEA_OK && H5Aexists(object, name) == 0) {
+    h->status = dea_fail(h->ctx, DEA_E_IO, "%s %s: the attribute '%s' is missing", h->not_it,
+                         h->path, name);
+  }
+  return h->status == DEA_OK ? checked(h, H5Aopen(object, name, H5P_DEFAULT), h->not_it)
+                             : H5I_INVALID_HID;
+}
+
 void dea_h5_get_text(struct h5 *h, hid_t object, const char *name, char *out, size_t size)
 {
-  out[0] = '\0';
-  if (h->status != DEA_OK) {
-    return;
-  }
-  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-  hid_t stored = attribute >= 0 ? H5Aget_type(attribute) : H5I_INVALID_HID;
-  hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
-  hid_t type = text_type(size, H5T_CSET_UTF8);
-  if (!is_single(space) || stored < 0 || H5Tget_class(stored) != H5T_STRING ||
-      H5Tis_variable_str(stored) > 0 || H5Aread(attribute, type, out) < 0) {
-    dea_h5_fail(h, h->not_it);
-    out[0] = '\0';
-  }
-  out[size - 1] = '\0';
-  dea_h5_close(type);
-  dea_h5_close(space);
-  dea_h5_close(stored);
+  hid_t attribute = open_attribute(h, object, name);
+  char *text = h->status == DEA_OK ? read_text(h, attribute, true) : NULL;
+  snprintf(out, size, "%s", text != NULL ? text : "");
+  dea_free(h->ctx, text);
   dea_h5_close(attribute);
 }
 
@@ -265,7 +385,7 @@ static void get_scalar(struct h5 *h, hid_t object, const char *name, hid_t memor
   if (h->status != DEA_OK) {
     return;
   }
-  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  hid_t attribute = open_attribute(h, object, name);
   hid_t space = attribute >= 0 ? H5Aget_space(attribute) : H5I_INVALID_HID;
   if (!is_single(space) || H5Aread(attribute, memory_type, out) < 0) {
     dea_h5_fail(h, h->not_it);
@@ -318,28 +438,13 @@ void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_
 
 char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name)
 {
-  if (!dea_h5_has(h, group, name)) {
+  bool set = dea_h5_has(h, group, name);
+  if (!set && !dea_h5_has_attribute(h, group, name)) {
     return NULL;
   }
-  hid_t set = H5Dopen2(group, name, H5P_DEFAULT);
-  hid_t type = set >= 0 ? H5Dget_type(set) : H5I_INVALID_HID;
-  hid_t space = set >= 0 ? H5Dget_space(set) : H5I_INVALID_HID;
-  char *text = NULL;
-  if (type >= 0 && is_single(space) && H5Tget_class(type) == H5T_STRING &&
-      H5Tis_variable_str(type) == 0 && H5Dget_storage_size(set) > 0 &&
-      H5Tget_size(type) <= dea_h5_file_size(h, set)) {
-    text = dea_alloc(h->ctx, H5Tget_size(type) + 1, 1);
-    if (text == NULL) {
-      h->status = DEA_E_MEMORY;
-    } else if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) {
-      dea_h5_fail(h, h->not_it);
-    }
-  } else {
-    dea_h5_fail(h, h->not_it);
-  }
-  dea_h5_close(space);
-  dea_h5_close(type);
-  dea_h5_close(set);
+  hid_t object = set ? H5Dopen2(group, name, H5P_DEFAULT) : H5Aopen(group, name, H5P_DEFAULT);
+  char *text = checked(h, object, h->not_it) >= 0 ? read_text(h, object, !set) : NULL;
+  dea_h5_close(object);
   return text;
 }
 

@@ -29,6 +29,11 @@ void dea_h5_fail(struct h5 *h, const char *what);
 hid_t dea_h5_file_make(struct h5 *h);
 void dea_h5_file_write(struct h5 *h, hid_t file);
 
+/* Opens a regular file to read it. written: it may be marked as being written, and is then read as
+ * it is. One with anything that lies in another file (external links, external or virtual data) is
+ * refused: HDF5 would open what is named there, whatever it is. */
+hid_t dea_h5_file_open(struct h5 *h, bool written);
+
 /* Handles are negative after a failure; dea_h5_close takes any. group_get: opened, or made when it
  * is not there. */
 hid_t dea_h5_group_get(struct h5 *h, hid_t parent, const char *name);
@@ -62,8 +67,8 @@ bool dea_h5_has(const struct h5 *h, hid_t group, const char *name);
 /* A one-dimensional dataset of exactly `count` values. */
 void dea_h5_get_array(struct h5 *h, hid_t group, const char *name, hid_t memory_type, size_t count,
                       void *out);
-/* Text of a scalar dataset, NULL when it does not exist; owned by the caller. A failure when the
- * file is shorter than the text. */
+/* Text of a scalar dataset, or else of an attribute of that name; NULL when there is neither. Owned
+ * by the caller. A failure when the file is shorter than the text. */
 char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name);
 /* Number of links of a group, and the name of one of them in alphabetical order. */
 size_t dea_h5_link_count(struct h5 *h, hid_t group);

@@ -348,10 +348,7 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
-  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) {
-    dea_h5_fail(&h, "cannot read");
-  }
+  hid_t file = dea_h5_file_open(&h, false);
   check_schema(&h, file);
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made before
   get_all(&h, file, "curves", true, get_curve, run->result);

@@ -35,15 +35,6 @@ dea_status dea_state_file_write(struct dea_context *ctx, const char *model,
   return h.status;
 }
 
-static hid_t open_file(struct h5 *h)
-{
-  hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) {
-    dea_h5_fail(h, "cannot read");
-  }
-  return file;
-}
-
 /* "the mesh differs": refuses a state that was left by or for something else. */
 static void check_same(struct h5 *h, const char *what, const char *there, const char *here)
 {
@@ -102,7 +93,7 @@ dea_status dea_state_file_read(struct dea_context *ctx, const char *model,
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
-  hid_t file = open_file(&h);
+  hid_t file = dea_h5_file_open(&h, false);
   check_marks(&h, file, model, wanted);
   read_arrays(&h, file, wanted, out);
   dea_h5_close(file);
@@ -114,7 +105,7 @@ dea_status dea_state_file_points(struct dea_context *ctx, const char *path, size
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
-  hid_t file = open_file(&h);
+  hid_t file = dea_h5_file_open(&h, false);
   long long count = dea_h5_get_int(&h, file, "points");
   dea_h5_close(file);
   dea_h5_end(&h);

@@ -1,4 +1,5 @@
 /* MATLAB's .mat files. */
+#include "base/h5.h"
 #include "lab/import/mat.h"
 #include "lab/import/titles.h"
 
@@ -87,6 +88,17 @@ static dea_status check_old(struct dea_context *ctx, const char *file, FILE *str
   return DEA_OK;
 }
 
+/* Version 7.3 is HDF5, of which libmatio follows what it names in other files. */
+static dea_status check_new(struct dea_context *ctx, const char *file)
+{
+  struct h5 h;
+  dea_h5_begin(&h, ctx, file);
+  h.not_it = "cut off or damaged:";
+  dea_h5_close(dea_h5_file_open(&h, false));
+  dea_h5_end(&h);
+  return h.status;
+}
+
 static dea_status check_file(struct dea_context *ctx, const char *file)
 {
   unsigned char head[HEADER_SIZE];
@@ -101,7 +113,9 @@ static dea_status check_file(struct dea_context *ctx, const char *file)
   unsigned version = marked ? head[big ? 124 : 125] * 256U + head[big ? 125 : 124] : 0;
   if (version == VERSION_5) {
     status = check_variables(ctx, file, stream, big);
-  } else if (version != VERSION_73) { // libmatio takes it for version 4, whatever its mark
+  } else if (version == VERSION_73) {
+    status = check_new(ctx, file);
+  } else { // libmatio takes it for version 4, whatever its mark
     status = check_old(ctx, file, stream);
   }
   fclose(stream);

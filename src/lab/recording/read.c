@@ -34,7 +34,7 @@ static bool get_state(struct h5 *h, hid_t file, struct dea_recording *recording)
   char *state = dea_h5_get_long_text(h, file, "state");
   size_t prefix = strlen(DEA_STATE_ENDED);
   if (state == NULL) {
-    wrong(h, "it does not say whether it is complete");
+    wrong(h, "its text 'state' is missing, which says whether it is 'complete'");
   } else if (strcmp(state, DEA_STATE_COMPLETE) == 0) {
     recording->complete = true;
     ended = true;
@@ -105,6 +105,13 @@ static void get_channel(struct h5 *h, hid_t group, struct dea_recording *recordi
       (channel->name[0] == '\0' || !find_kind(quantity, &channel->kind) ||
        !isfinite(channel->start_s) || !isfinite(channel->interval_s) || channel->interval_s < 0)) {
     wrong(h, "a channel's name, quantity or clock makes no sense");
+  }
+  const char *si = dea_channel_meanings[channel->kind].si_unit;
+  if (h->status == DEA_OK && channel->kind != DEA_CHANNEL_OTHER && strcmp(channel->unit, si) != 0) {
+    h->status = dea_fail(h->ctx, DEA_E_IO,
+                         "%s: the channel '%s' is in '%s', and a recording has it "
+                         "in %s",
+                         h->path, channel->name, channel->unit, si);
   }
   dea_series_read(h, group, "values", 1, &channel->values, &channel->count, cut);
   if (h->status == DEA_OK && channel->interval_s == 0) {
@@ -189,10 +196,14 @@ static bool is_empty(const double row[DEA_CYCLE_WIDTH])
   return memcmp(row, none, sizeof none) == 0;
 }
 
+/* Those of other programs may have none. */
 static void get_cycles(struct h5 *h, hid_t file, struct dea_recording *recording, bool *cut)
 {
-  double *rows;
-  size_t count;
+  double *rows = NULL;
+  size_t count = 0;
+  if (!dea_h5_has(h, file, "cycles")) {
+    return;
+  }
   dea_series_read(h, file, "cycles", DEA_CYCLE_WIDTH, &rows, &count, cut);
   if (h->status == DEA_OK && count > 0) {
     recording->cycles = dea_alloc(h->ctx, count, sizeof *recording->cycles);
@@ -335,20 +346,7 @@ static hid_t open_file(struct h5 *h)
   }
   // a superblock of version 3 whose flags say: open for one writer and many readers
   const bool written = is_h5 && head[8] == 3 && (head[11] & 4) != 0;
-  hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0 && written) {
-    H5Eclear2(H5E_DEFAULT);
-    // what a program is just writing is read again, each time after twice the wait, from 1 ns on:
-    // with HDF5's default of 100 times a damaged file would take longer than anybody lives
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_metadata_read_attempts(access, 22);
-    file = H5Fopen(h->path, H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access);
-    dea_h5_close(access);
-  }
-  if (file < 0) {
-    dea_h5_fail(h, "cannot read");
-  }
-  return file;
+  return dea_h5_file_open(h, written);
 }
 
 dea_status dea_recording_read(struct dea_context *ctx, const char *file, struct dea_recording **out)
