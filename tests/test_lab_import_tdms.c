@@ -8,7 +8,7 @@ enum { METADATA = 2, NEW_LIST = 4, RAW = 8, INTERLEAVED = 32, BIG = 64, DAQMX = 
 enum { NONE = -1, AS_BEFORE = 0 };
 
 /* A file in the making. */
-static unsigned char bytes[1 << 16];
+static unsigned char bytes[1 << 20];
 static size_t length, segment, raw_at;
 static bool big;
 
@@ -439,6 +439,221 @@ static void test_cuts(void **state)
   }
 }
 
+// Files of the size of a measurement, of all layouts
+// ------------------------------------------------
+
+enum { CHANNELS = 4, VALUES = 1536 };
+static const struct {
+  const char *path, *name, *unit;
+  unsigned type, size;
+} channels[CHANNELS] = {{"/'run'/'HV'", "HV", "V", 10, 8},
+                        {"/'run'/'ai1'", "ai1", "", 2, 2},
+                        {"/'run'/'Laser'", "Laser", "mm", 9, 4},
+                        {"/'run'/'when'", "when", "s", 0x44, 16}};
+
+/* Value i of a channel; no two are equal, and all can be written exactly. */
+static double value_of(size_t channel, size_t i)
+{
+  const double values[CHANNELS] = {0.37 * (double)i - 100, 7 * (double)i - 5000,
+                                   0.125 * (double)i + 1000, 0.25 * (double)i};
+  return values[channel];
+}
+
+static void put_value(size_t channel, size_t i)
+{
+  double value = value_of(channel, i);
+  float single = (float)value;
+  uint32_t bits;
+  memcpy(&bits, &single, sizeof bits);
+  uint64_t fraction = (uint64_t)(i % 4) << 62, seconds = 3765000000u + i / 4;
+  switch (channel) {
+  case 0:
+    put_double(value);
+    break;
+  case 1:
+    put((uint64_t)(int64_t)value, 2);
+    break;
+  case 2:
+    put(bits, 4);
+    break;
+  default: // of 128 bits
+    put(big ? seconds : fraction, 8);
+    put(big ? fraction : seconds, 8);
+  }
+}
+
+/* A chunk of values, cut off after `cut` bytes. */
+static void put_chunk(size_t from, size_t count, bool interleaved, size_t cut)
+{
+  size_t start = length;
+  for (size_t a = 0; a < (interleaved ? count : CHANNELS); a++) {
+    for (size_t b = 0; b < (interleaved ? CHANNELS : count); b++) {
+      put_value(interleaved ? b : a, from + (interleaved ? a : b));
+    }
+  }
+  length = length - start < cut ? length : start + cut;
+}
+
+struct layout {
+  unsigned contents;    // of the lead-ins, beside what all have
+  size_t chunk, chunks; // values a channel in a chunk; chunks in a segment
+  size_t last;          // values a channel of one more chunk at the end of the last segment
+  bool open;            // which was not closed
+  size_t cut;           // bytes of that chunk that are there
+};
+
+static size_t put_layout(const struct layout *l)
+{
+  size_t done = 0;
+  bool interleaved = (l->contents & INTERLEAVED) != 0;
+  begin_file();
+  while (done + l->chunk * l->chunks + l->last <= VALUES) {
+    bool first = done == 0;
+    done += l->chunk * l->chunks;
+    bool last = done + l->chunk * l->chunks + l->last > VALUES;
+    begin_segment(RAW | l->contents | (first ? METADATA | NEW_LIST : 0));
+    if (first) {
+      put(CHANNELS, 4);
+      for (size_t c = 0; c < CHANNELS; c++) {
+        put_object(channels[c].path, channels[c].type, (int)l->chunk, c < 3 ? 3 : 0);
+        if (c < 3) {
+          put_real_property("wf_increment", 0.002);
+          put_real_property("wf_start_offset", 0.25);
+          put_text_property("unit_string", channels[c].unit);
+        }
+      }
+      begin_raw();
+    }
+    for (size_t k = l->chunks; k > 0; k--) {
+      put_chunk(done - k * l->chunk, l->chunk, interleaved, SIZE_MAX);
+    }
+    if (last && l->last > 0) {
+      put_chunk(done, l->last, interleaved, l->cut);
+      done += l->last;
+    }
+    size_t end = length;
+    end_segment();
+    if (last && l->open) {
+      length = segment + 12;
+      put(UINT64_MAX, 8);
+      length = end;
+    }
+  }
+  return done;
+}
+
+static void check_layout(const struct layout *l, size_t done)
+{
+  bool interleaved = (l->contents & INTERLEAVED) != 0;
+  struct dea_table *table = read_bytes("layout.tdms", bytes, length);
+  assert_int_equal(table->column_count, CHANNELS);
+  size_t left = l->cut < l->last * 30 ? l->cut : l->last * 30;
+  for (size_t c = 0; c < CHANNELS; c++) {
+    const struct dea_table_column *column = column_of(table, channels[c].name);
+    size_t share = channels[c].size * l->last, there = left < share ? left : share;
+    size_t count = done - l->last + (interleaved ? left / 30 : there / channels[c].size);
+    left -= interleaved ? 0 : there;
+    assert_string_equal(column->unit, channels[c].unit);
+    if (column->count != count) {
+      fail_msg("%s has %zu values, not %zu", channels[c].name, column->count, count);
+    }
+    assert_true(c == 3 || (column->interval == 0.002 && column->start == 0.25));
+    for (size_t i = 0; i < count; i++) {
+      if (column->values[i] != value_of(c, i)) {
+        fail_msg("%s[%zu] = %.17g, wanted %.17g", channels[c].name, i, column->values[i],
+                 value_of(c, i));
+      }
+    }
+  }
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), l->open);
+  dea_table_destroy(ctx, table);
+}
+
+/* Both byte orders, interleaved or not, one segment or many, of one chunk or many, with a shorter
+ * chunk at the end that holds the same share of each channel, and of a program that was ended in
+ * the midst of each channel. */
+static void test_layouts(void **state)
+{
+  (void)state;
+  static const unsigned contents[] = {0, BIG, INTERLEAVED, INTERLEAVED | BIG};
+  static const struct layout layouts[] = {
+      {0, 1500, 1, 0, false, SIZE_MAX},  {0, 1, 1500, 0, false, SIZE_MAX},
+      {0, 100, 1, 0, false, SIZE_MAX},   {0, 25, 10, 0, false, SIZE_MAX},
+      {0, 500, 2, 417, false, SIZE_MAX}, {0, 60, 5, 7, false, SIZE_MAX},
+      {0, 100, 3, 1, false, SIZE_MAX},   {0, 100, 3, 99, false, SIZE_MAX},
+      {0, 100, 2, 100, true, SIZE_MAX},  {0, 100, 2, 100, true, 400},
+      {0, 100, 2, 100, true, 803},       {0, 100, 2, 100, true, 905},
+      {0, 100, 2, 100, true, 1234},      {0, 100, 2, 100, true, 2000}};
+  for (size_t i = 0; i < 4 * sizeof layouts / sizeof layouts[0]; i++) {
+    struct layout l = layouts[i / 4];
+    l.contents = contents[i % 4];
+    size_t done = put_layout(&l);
+    assert_true(done >= 1200);
+    check_layout(&l, done);
+  }
+}
+
+static void check_case(const char *name, size_t count, const struct dea_table_column *wanted,
+                       size_t values)
+{
+  char file[512];
+  struct dea_table *table;
+  snprintf(file, sizeof file, DEA_SOURCE_DIR "/tests/cases/lab/tdms/%s", name);
+  dea_finding_clear(ctx);
+  assert_int_equal(dea_table_read(ctx, file, NULL, &table), DEA_OK);
+  assert_int_equal(table->column_count, count);
+  for (size_t c = 0; c < count; c++) {
+    assert_column(table, wanted[c].name, wanted[c].unit, wanted[c].values, values);
+    assert_true(table->columns[c].interval == 0.1);
+  }
+  assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 0);
+  dea_table_destroy(ctx, table);
+}
+
+/* Files whose first segment holds more values than bytes of metadata, and closed ones whose last
+ * chunk is short, as LabVIEW writes and reads them. */
+static void test_cases(void **state)
+{
+  (void)state;
+  static double one[1000], two[1000], small_one[1000], small_two[1000];
+  for (size_t i = 0; i < 1000; i++) {
+    one[i] = (double)i;
+    two[i] = 2 * (double)i;
+    small_one[i] = (double)(i % 10);
+    small_two[i] = 2 * (double)(i % 10);
+  }
+  static char V[] = "V", A[] = "A", mm[] = "mm", HV[] = "HV", I[] = "I", Laser[] = "Laser";
+  struct dea_table_column linear[] = {{.name = HV, .unit = V, .values = one},
+                                      {.name = Laser, .unit = mm, .values = two}};
+  check_case("n40.tdms", 2, linear, 40);
+  check_case("n60.tdms", 2, linear, 60);
+  check_case("n1000.tdms", 2, linear, 1000);
+  check_case("one-channel.tdms", 1, linear, 100);
+  linear[0].values = small_one;
+  linear[1].values = small_two;
+  check_case("small-chunks.tdms", 2, linear, 1000);
+  static double volts[] = {1000, 2000, 3000, 4000, 5000, 6000, 7000};
+  static double mms[] = {.1, .2, .3, .4, .5, .6, .7}, amps[] = {1e-6, 1e-6, 1e-6, 1e-6, 2e-6, 2e-6};
+  const struct dea_table_column shorter[] = {{.name = HV, .unit = V, .values = volts},
+                                             {.name = Laser, .unit = mm, .values = mms},
+                                             {.name = I, .unit = A, .values = amps}};
+  check_case("two-channels.tdms", 2, shorter, 7);
+  check_case("three-channels.tdms", 3, shorter, 6);
+}
+
+/* A closed segment that ends within a value, or with other shares, is read as far as it goes. */
+static void test_uneven_end(void **state)
+{
+  (void)state;
+  struct layout l = {.chunk = 100, .chunks = 2, .last = 100, .cut = 1234};
+  put_layout(&l);
+  struct dea_table *table = read_bytes("uneven.tdms", bytes, length);
+  assert_int_equal(column_of(table, "HV")->count, 1500);
+  assert_int_equal(column_of(table, "when")->count, 1400);
+  assert_true(is_said(DEA_WARNING, "the values end within a row of channels"));
+  dea_table_destroy(ctx, table);
+}
+
 static void read_once(struct dea_context *own)
 {
   read_again(own, "run.tdms");
@@ -490,6 +705,9 @@ int main(void)
       cmocka_unit_test(test_cuts),
       cmocka_unit_test(test_memory),
       cmocka_unit_test(test_long_names),
+      cmocka_unit_test(test_layouts),
+      cmocka_unit_test(test_cases),
+      cmocka_unit_test(test_uneven_end),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

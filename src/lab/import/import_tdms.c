@@ -30,7 +30,7 @@ static dea_status read_lead_in(struct dea_tdms *tdms, const unsigned char *start
                                const unsigned char *at, const unsigned char *end,
                                struct segment *out)
 {
-  struct dea_tdms_bytes bytes = {start, at + 4, end, false, false};
+  struct dea_tdms_bytes bytes = {start, at + 4, end, (uint64_t)(end - start), false, false};
   size_t position = (size_t)(at - start);
   if (memcmp(at, "TDSm", 4) != 0) {
     return refuse(tdms, position,
@@ -89,13 +89,28 @@ static void add_values(struct dea_tdms_object *object, struct dea_table *table,
   }
 }
 
-/* Values one after the other, channel by channel; `left` bytes of the last chunk may be missing. */
-static void read_chunk(struct dea_tdms *tdms, struct dea_table *table, const unsigned char *at,
-                       uint64_t left, bool big)
+/* Whether `left` of the bytes of a chunk are the same share of each channel, in whole values. */
+static bool is_even(const struct dea_tdms *tdms, uint64_t left, uint64_t chunk)
 {
+  bool even = true;
+  for (size_t i = 0; i < tdms->order_count; i++) {
+    const struct dea_tdms_object *object = &tdms->objects[tdms->order[i]];
+    bool numbers = dea_tdms_size(object->type) > 0;
+    even = even && numbers && object->values * left % chunk == 0; // both below 2^32
+  }
+  return even;
+}
+
+/* Values one after the other, channel by channel. Of a chunk that is shorter LabVIEW writes the
+ * same share of each channel (`even`); where a program was ended the last channels are missing. */
+static void read_chunk(struct dea_tdms *tdms, struct dea_table *table, const unsigned char *at,
+                       uint64_t left, uint64_t chunk, bool even, bool big)
+{
+  uint64_t there = left;
   for (size_t i = 0; i < tdms->order_count; i++) {
     struct dea_tdms_object *object = &tdms->objects[tdms->order[i]];
-    uint64_t bytes = object->bytes < left ? object->bytes : left;
+    uint64_t bytes = even ? object->bytes * there / chunk : object->bytes;
+    bytes = bytes < left ? bytes : left;
     size_t size = dea_tdms_size(object->type);
     if (size > 0) {
       add_values(object, table, at, size, (size_t)bytes / size, big);
@@ -103,6 +118,14 @@ static void read_chunk(struct dea_tdms *tdms, struct dea_table *table, const uns
     at += bytes;
     left -= bytes;
   }
+}
+
+/* Says that what was not closed, or does not end with a whole chunk, is read as far as it goes. */
+static dea_status say_cut(struct dea_tdms *tdms, size_t byte, const char *why)
+{
+  const struct dea_location location = {.file = tdms->file};
+  return dea_finding_add(tdms->ctx, DEA_WARNING, location,
+                         "%s segment, from byte %zu on, is read as far as it goes", why, byte);
 }
 
 /* A sample of each channel in turn. */
@@ -127,7 +150,7 @@ static dea_status read_interleaved(struct dea_tdms *tdms, struct dea_table *tabl
   return DEA_OK;
 }
 
-static dea_status read_raw(struct dea_tdms *tdms, struct dea_table *table,
+static dea_status read_raw(struct dea_tdms *tdms, struct dea_table *table, size_t position,
                            const struct segment *segment)
 {
   bool big = (segment->contents & DEA_TDMS_BIG_ENDIAN) != 0;
@@ -140,7 +163,11 @@ static dea_status read_raw(struct dea_tdms *tdms, struct dea_table *table,
   }
   for (const unsigned char *at = segment->raw; left > 0;) {
     uint64_t now = chunk < left ? chunk : left;
-    read_chunk(tdms, table, at, now, big);
+    bool even = now == chunk || (!segment->open && is_even(tdms, now, chunk));
+    if (!even && !segment->open && table == NULL) {
+      DEA_TRY(tdms->ctx, say_cut(tdms, position, "the values end within a row of channels: the"));
+    }
+    read_chunk(tdms, table, at, now, chunk, even, big);
     at += now;
     left -= now;
   }
@@ -160,19 +187,18 @@ static dea_status read_segments(struct dea_tdms *tdms, const unsigned char *star
     struct segment segment = {0};
     DEA_TRY(tdms->ctx, read_lead_in(tdms, start, at, end, &segment));
     if ((segment.contents & DEA_TDMS_METADATA) != 0) {
-      struct dea_tdms_bytes bytes = {start, segment.metadata, segment.raw,
-                                     (segment.contents & DEA_TDMS_BIG_ENDIAN) != 0, false};
+      struct dea_tdms_bytes bytes = {start,
+                                     segment.metadata,
+                                     segment.raw,
+                                     length,
+                                     (segment.contents & DEA_TDMS_BIG_ENDIAN) != 0,
+                                     false};
       bool new_list = (segment.contents & DEA_TDMS_NEW_LIST) != 0 || at == start;
       DEA_TRY(tdms->ctx, dea_tdms_metadata(tdms, &bytes, new_list));
     }
-    DEA_TRY(tdms->ctx, read_raw(tdms, table, &segment));
+    DEA_TRY(tdms->ctx, read_raw(tdms, table, (size_t)(at - start), &segment));
     if (segment.open && table == NULL) {
-      const struct dea_location location = {.file = tdms->file};
-      DEA_TRY(tdms->ctx, dea_finding_add(
-                             tdms->ctx, DEA_WARNING, location,
-                             "the file was not closed: its last segment, from byte %zu on, is read "
-                             "as far as it goes",
-                             (size_t)(at - start)));
+      DEA_TRY(tdms->ctx, say_cut(tdms, (size_t)(at - start), "the file was not closed: its last"));
     }
     at = segment.end;
   }

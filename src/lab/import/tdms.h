@@ -42,8 +42,9 @@ enum {
 /* A piece of the file that is being read: nothing is taken beyond `end`. */
 struct dea_tdms_bytes {
   const unsigned char *start, *next, *end; // start: of the file
-  bool big;                                // endian
-  bool failed;                             // more was asked for than there is
+  uint64_t file_size;
+  bool big;    // endian
+  bool failed; // more was asked for than there is
 };
 
 struct dea_tdms_text {

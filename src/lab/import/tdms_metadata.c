@@ -228,8 +228,7 @@ static dea_status read_index(struct dea_tdms *tdms, struct dea_tdms_bytes *bytes
     return refuse(tdms, bytes, "the type of a channel changes");
   }
   // what is larger than the file cannot be there
-  uint64_t most = (uint64_t)(bytes->end - bytes->start);
-  if ((size > 0 && values > most / size) || total > most) {
+  if ((size > 0 && values > bytes->file_size / size) || total > bytes->file_size) {
     return refuse(tdms, bytes, "a channel has more values than the file has bytes");
   }
   object->type = type;
