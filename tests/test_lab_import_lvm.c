@@ -186,6 +186,108 @@ static void test_refused(void **state)
   assert_all_refused("bad.lvm", cases, sizeof cases / sizeof cases[0]);
 }
 
+// Cases ------------------------------------------------------------------------------------------
+
+/* A channel: its unit, and values and times that begin at `start` and rise by `step`; behind the
+ * first `pause` of them the second segment begins, 10 s and `again` later. */
+struct wanted {
+  const char *name, *unit;
+  double start, step, from, rise;
+  size_t count, pause;
+  double again;
+};
+
+static void check_case(const char *name, size_t count, const struct wanted *wanted)
+{
+  char file[512];
+  struct dea_table *table;
+  snprintf(file, sizeof file, DEA_SOURCE_DIR "/tests/cases/lab/lvm/%s", name);
+  dea_finding_clear(ctx);
+  assert_int_equal(dea_table_read(ctx, file, NULL, &table), DEA_OK);
+  for (size_t c = 0; c < count; c++) {
+    const struct wanted *w = &wanted[c];
+    const struct dea_table_column *column = column_of(table, w->name);
+    const double *times = column->clock > 0 ? table->columns[column->clock - 1].values : NULL;
+    assert_string_equal(column->unit, w->unit);
+    assert_true(column->count == w->count || (times != NULL && column->count > w->count));
+    for (size_t i = 0; i < column->count; i++) {
+      bool later = w->pause > 0 && i >= w->pause;
+      double k = (double)(later ? i - w->pause : i);
+      double time = w->start + k * w->step + (later ? 10 : 0);
+      double value = w->from + k * w->rise + (later ? w->again : 0);
+      double its = times != NULL ? times[i] : column->start + (double)i * column->interval;
+      if (!(fabs(its - time) < 1e-9) ||
+          (i < w->count && !(fabs(column->values[i] - value) < 1e-9))) {
+        fail_msg("%s: %s[%zu] = %g at %g s, wanted %g at %g s", name, w->name, i, column->values[i],
+                 its, value, time);
+      }
+      assert_true(i < w->count || isnan(column->values[i])); // where another channel is longer
+    }
+  }
+  dea_table_destroy(ctx, table);
+}
+
+/* Every channel has its own number of samples, start and step. */
+static void test_own_clocks(void **state)
+{
+  (void)state;
+  static const struct wanted two_rates[] = {{"HV", "kV", 0, 0.1, 0, 0.1, 10, 0, 0},
+                                            {"Laser", "mm", 0.5, 0.2, 0, 0.01, 5, 0, 0}};
+  static const struct wanted shorter[] = {{"HV", "kV", 0, 0.2, 0, 0.1, 3, 0, 0},
+                                          {"Laser", "mm", 0, 0.1, 0, 0.01, 8, 0, 0}};
+  static const struct wanted shorter_one[] = {{"HV", "kV", 0, 0.1, 0, 0.1, 3, 0, 0},
+                                              {"Laser", "mm", 0, 0.1, 0, 0.01, 8, 0, 0}};
+  static const struct wanted start[] = {{"HV", "kV", 0, 0.1, 0, 0.1, 5, 0, 0},
+                                        {"Laser", "mm", 0.05, 0.1, 0, 0.01, 5, 0, 0}};
+  check_case("two-rates.lvm", 2, two_rates);
+  check_case("first-shorter.lvm", 2, shorter);
+  check_case("first-shorter-one.lvm", 2, shorter_one);
+  check_case("different-start.lvm", 2, start);
+}
+
+/* Of X_Columns Multi every column has a field in the header. */
+static void test_multi_headers(void **state)
+{
+  (void)state;
+  static const struct wanted one[] = {{"HV", "kV", 0, 0.1, 0, 0.5, 4, 0, 0},
+                                      {"Displacement", "mm", 0, 0.1, 0, 0.25, 4, 0, 0},
+                                      {"Force", "mN", 0, 0.1, 0, 2, 4, 0, 0}};
+  static const struct wanted two[] = {{"HV", "kV", 0, 0.1, 0, 0.5, 8, 4, 1},
+                                      {"Displacement", "mm", 0, 0.1, 0, 0.25, 8, 4, 1},
+                                      {"Force", "mN", 0, 0.1, 0, 2, 8, 4, 5}};
+  static const struct wanted units[] = {{"HV", "kV", 0, 0.1, 0, 0.5, 6, 0, 0},
+                                        {"laser 1", "mm", 0, 0.1, 0, 0.01, 6, 0, 0},
+                                        {"laser 2", "um", 0, 0.1, 0, 10, 6, 0, 0}};
+  static const struct wanted samples[] = {{"HV", "kV", 0, 0.1, 0, 0.5, 8, 0, 0},
+                                          {"Force slow", "", 0, 0.1, 0, 1, 3, 0, 0},
+                                          {"Displacement", "", 0, 0.1, 0, 0.001, 8, 0, 0}};
+  check_case("one-segment.lvm", 3, one);
+  check_case("two-segments.lvm", 3, two);
+  check_case("units-shift.lvm", 3, units);
+  check_case("samples-shift.lvm", 3, samples);
+}
+
+/* Channels of two rates with a pause: each has times of its own. */
+static void test_two_rates_with_a_gap(void **state)
+{
+  (void)state;
+#define TWO_RATES(time, rows)                                                                      \
+  "Channels\t2\nSamples\t4\t2\nTime\t" time "\t" time "\nX0\t0\t0.5\nDelta_X\t0.5\t1\n"            \
+  "***End_of_Header***\n" TITLES rows "\n"
+  static const double fast[] = {0, 0.5, 1, 1.5, 20, 20.5, 21, 21.5},
+                      slow[] = {0.5, 1.5, 20.5, 21.5};
+  static const double v[] = {1, 2, 3, 4, 5, 6, 7, 8}, m[] = {10, 20, 30, 40};
+  struct dea_table *table = read_text(
+      "rates.lvm", HEADER("No", "Yes", "") TWO_RATES("10:00:00", "\t1\t10\n\t2\t20\n\t3\t\n\t4\t\n")
+                       TWO_RATES("10:00:20", "\t5\t30\n\t6\t40\n\t7\t\n\t8\t\n"));
+  assert_column(table, "HV", "", v, 8);
+  assert_column(table, "Monitor", "", m, 4);
+  assert_column(table, "X_Value", "s", fast, 8);
+  assert_column(table, "X_Value 2", "s", slow, 4);
+  assert_int_equal(column_of(table, "Monitor")->clock, 3);
+  dea_table_destroy(ctx, table);
+}
+
 static void read_once(struct dea_context *own)
 {
   read_again(own, "gap.lvm");
@@ -204,7 +306,9 @@ int main(void)
       cmocka_unit_test(test_times_for_each),   cmocka_unit_test(test_commas),
       cmocka_unit_test(test_segments),         cmocka_unit_test(test_segments_that_count_on),
       cmocka_unit_test(test_segments_of_days), cmocka_unit_test(test_special_blocks_and_missing),
-      cmocka_unit_test(test_refused),          cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_refused),          cmocka_unit_test(test_own_clocks),
+      cmocka_unit_test(test_multi_headers),    cmocka_unit_test(test_two_rates_with_a_gap),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -103,56 +103,58 @@ static bool take_key(const struct dea_lvm *lvm, struct dea_slice line, const cha
   return true;
 }
 
-static double take_number(const struct dea_lvm *lvm, struct dea_slice *values)
+static double number_of(const struct dea_lvm *lvm, struct dea_slice field)
 {
-  struct dea_slice field;
   double value;
-  if (!dea_slice_field(values, lvm->separator, &field) ||
-      !dea_slice_number(field, lvm->decimal, &value)) {
-    return NAN;
-  }
-  return value;
+  return dea_slice_number(field, lvm->decimal, &value) ? value : NAN;
 }
 
-/* Values of one line of a segment's header, for each channel. */
+/* What a line of a segment's header says of one channel. */
+static void take_channel(const struct dea_lvm *lvm, struct dea_slice key, struct dea_slice field,
+                         struct dea_lvm_channel *channel)
+{
+  double number = number_of(lvm, field);
+  if (dea_slice_is(key, "Samples")) {
+    channel->samples = number >= 0 && number < 1e15 ? (size_t)number : 0;
+  } else if (dea_slice_is(key, "Delta_X")) {
+    channel->delta = number;
+  } else if (dea_slice_is(key, "X0")) {
+    channel->x0 = isnan(number) ? 0 : number;
+  } else if (dea_slice_is(key, "Y_Unit_Label")) {
+    channel->unit = field;
+  } else if (dea_slice_is(key, "Date")) {
+    channel->day = dea_lvm_day(field);
+  } else if (dea_slice_is(key, "Time")) {
+    channel->clock_s = dea_lvm_time_of_day(field, lvm->decimal);
+  }
+}
+
+/* Values of one line of a segment's header: a field a channel. With X_Columns Multi each column has
+ * one, those of the times an empty one; where the second one of the samples is not empty, the file
+ * is of a program that writes one a channel there too. */
 static void take_channels(struct dea_lvm *lvm, struct dea_slice line)
 {
-  struct dea_slice values, field;
-  for (size_t i = 0; take_key(lvm, line, "Samples", &values) && i < lvm->count; i++) {
-    double n = take_number(lvm, &values);
-    lvm->channels[i].samples = n >= 0 && n < 1e15 ? (size_t)n : 0;
+  struct dea_slice key, field;
+  if (!dea_slice_field(&line, lvm->separator, &key)) {
+    return;
   }
-  for (size_t i = 0; take_key(lvm, line, "Delta_X", &values) && i < lvm->count; i++) {
-    lvm->channels[i].delta = take_number(lvm, &values);
-  }
-  for (size_t i = 0; take_key(lvm, line, "X0", &values) && i < lvm->count; i++) {
-    double x0 = take_number(lvm, &values);
-    lvm->channels[i].x0 = isnan(x0) ? 0 : x0;
-  }
-  if (take_key(lvm, line, "X_Dimension", &values) &&
-      dea_slice_field(&values, lvm->separator, &field)) {
-    lvm->not_time = field.length > 0 && !dea_slice_is(field, "Time");
-  }
-  if (take_key(lvm, line, "Y_Unit_Label", &values)) {
-    for (size_t i = 0; i < lvm->count && dea_slice_field(&values, lvm->separator, &field); i++) {
-      lvm->channels[i].unit = field;
+  for (size_t n = 0; dea_slice_field(&line, lvm->separator, &field); n++) {
+    if (n == 0 && dea_slice_is(key, "X_Dimension")) {
+      lvm->not_time = field.length > 0 && !dea_slice_is(field, "Time");
     }
-  }
-  if (take_key(lvm, line, "Date", &values)) {
-    for (size_t i = 0; i < lvm->count && dea_slice_field(&values, lvm->separator, &field); i++) {
-      lvm->channels[i].day = dea_lvm_day(field);
+    if (n == 1 && dea_slice_is(key, "Samples") && dea_slice_trim(field).length > 0) {
+      lvm->stride = 1;
     }
-  }
-  if (take_key(lvm, line, "Time", &values)) {
-    for (size_t i = 0; i < lvm->count && dea_slice_field(&values, lvm->separator, &field); i++) {
-      lvm->channels[i].clock_s = dea_lvm_time_of_day(field, lvm->decimal);
+    if (n % lvm->stride == 0 && n / lvm->stride < lvm->count) {
+      take_channel(lvm, key, field, &lvm->channels[n / lvm->stride]);
     }
   }
 }
 
 static dea_status begin_channels(struct dea_lvm *lvm, struct dea_slice values)
 {
-  double count = take_number(lvm, &values);
+  struct dea_slice field;
+  double count = dea_slice_field(&values, lvm->separator, &field) ? number_of(lvm, field) : NAN;
   if (!(count >= 1 && count <= DEA_LVM_CHANNELS_MAX)) {
     return dea_fail(lvm->ctx, DEA_E_IO,
                     "'%s', line %zu: the number of channels is none from 1 to %d", lvm->file,
@@ -165,6 +167,7 @@ static dea_status begin_channels(struct dea_lvm *lvm, struct dea_slice values)
                     lvm->file, lvm->lines.line, count, lvm->count);
   }
   lvm->count = (size_t)count;
+  lvm->stride = lvm->x == DEA_LVM_X_MULTI ? 2 : 1;
   for (size_t i = 0; i < lvm->count; i++) {
     lvm->channels[i].delta = NAN;
     lvm->channels[i].x0 = 0;

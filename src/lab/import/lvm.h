@@ -16,7 +16,7 @@ struct dea_lvm_channel {
   double day;                // its date, since 1970; NAN: not given
   size_t samples;            // 0: not given
   double shift_s;            // what is added to its times
-  double began_s, step_s;    // start with that, and step, of the segment before
+  double end_s;              // half a step behind its last sample
   // of a row
   double x_now, y_now;
   bool present;
@@ -41,7 +41,9 @@ struct dea_lvm {
   bool first_empty;      // rows begin with the field of times, also when it is empty
   bool not_time;         // X is something else
   bool filling;          // second time: values are kept
-  bool shared;           // one column of times for all channels
+  bool shared, own;      // one column of times for all channels, or one for each
+  bool differ;           // the clocks of the channels
+  size_t stride;         // fields a channel in the header of a segment
   size_t rows, x_column; // of that
   size_t segments, row, count;
   struct dea_lvm_channel channels[DEA_LVM_CHANNELS_MAX]; // [count]

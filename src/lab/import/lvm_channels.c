@@ -59,17 +59,18 @@ void dea_lvm_begin_segment(struct dea_lvm *lvm)
       channel->total = lvm->filling ? channel->total : 0;
     }
     channel->shift_s = later(channel);
+    lvm->differ = lvm->differ || channel->x0 != lvm->channels[0].x0 ||
+                  channel->delta != lvm->channels[0].delta ||
+                  channel->shift_s != lvm->channels[0].shift_s;
     if (lvm->x == DEA_LVM_X_NONE && lvm->segments > 0) {
       // behind the end of the one before: its start goes on by itself
-      double end = channel->began_s + ((double)lvm->row - 0.5) * channel->step_s;
-      channel->shift_s = channel->x0 > end ? 0 : channel->shift_s;
+      channel->shift_s = channel->x0 > channel->end_s ? 0 : channel->shift_s;
       double due = channel->start_s + (double)channel->total * channel->interval_s;
       double start = channel->x0 + channel->shift_s;
       channel->gap = channel->gap || !(fabs(start - due) <= channel->interval_s / 2) ||
                      fabs(channel->delta - channel->interval_s) > 1e-9 * channel->interval_s;
     }
-    channel->began_s = channel->x0 + channel->shift_s;
-    channel->step_s = channel->delta;
+    channel->end_s = channel->x0 + channel->shift_s - 0.5 * channel->delta;
   }
 }
 
@@ -107,8 +108,8 @@ static void keep_shared_time(struct dea_lvm *lvm, size_t row)
 
 void dea_lvm_keep_row(struct dea_lvm *lvm, size_t row)
 {
-  bool multi = lvm->x == DEA_LVM_X_MULTI;
-  if (!multi) {
+  bool own = lvm->x == DEA_LVM_X_MULTI || lvm->own;
+  if (!own) {
     keep_shared_time(lvm, row);
   }
   for (size_t i = 0; i < lvm->count; i++) {
@@ -118,13 +119,16 @@ void dea_lvm_keep_row(struct dea_lvm *lvm, size_t row)
     if (beyond && !(lvm->filling && lvm->shared)) {
       continue;
     }
+    if (present) {
+      channel->end_s = channel->x0 + channel->shift_s + ((double)row + 0.5) * channel->delta;
+    }
     if (!lvm->filling) { // what is missing at the end does not count
       channel->total += present ? channel->missing + 1 : 0;
       channel->missing = present ? 0 : channel->missing + 1;
     } else {
       put(lvm, channel->column, present ? channel->y_now : NAN, channel->total);
     }
-    if (multi) {
+    if (own) {
       double time = row_time(lvm, channel, row);
       channel->last_s = fmax(channel->last_s, time);
       put(lvm, lvm->filling ? channel->x_column : SIZE_MAX, time, channel->total);
@@ -148,7 +152,7 @@ static dea_status add_column(struct dea_lvm *lvm, size_t i)
   char number[32], times[32] = "X_Value";
   struct dea_slice name = channel->name;
   channel->total = lvm->shared ? lvm->rows : channel->total;
-  if (lvm->x == DEA_LVM_X_MULTI) {
+  if (lvm->own) {
     if (i > 0) {
       snprintf(times, sizeof times, "X_Value %zu", i + 1);
     }
@@ -184,7 +188,9 @@ dea_status dea_lvm_add_columns(struct dea_lvm *lvm)
     lvm->channels[i].column = SIZE_MAX;
   }
   lvm->filling = true;
-  lvm->shared = lvm->x == DEA_LVM_X_ONE || (lvm->x == DEA_LVM_X_NONE && gap);
+  bool timed = lvm->x == DEA_LVM_X_NONE && gap;
+  lvm->own = lvm->x == DEA_LVM_X_MULTI || (timed && lvm->differ);
+  lvm->shared = lvm->x == DEA_LVM_X_ONE || (timed && !lvm->differ);
   lvm->x_column = SIZE_MAX;
   if (lvm->shared) {
     DEA_TRY(lvm->ctx, add_times(lvm, "X_Value", lvm->rows, &lvm->x_column));
@@ -194,7 +200,7 @@ dea_status dea_lvm_add_columns(struct dea_lvm *lvm)
       DEA_TRY(lvm->ctx, add_column(lvm, i));
     }
   }
-  if (gap && lvm->x == DEA_LVM_X_NONE) {
+  if (timed) {
     const struct dea_location location = {.file = lvm->file};
     return dea_finding_add(lvm->ctx, DEA_NOTE, location,
                            "its %zu segments do not follow one another without a gap: every sample "
