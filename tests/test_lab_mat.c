@@ -219,6 +219,34 @@ static void test_other_files(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "refers to another file in 'w'"));
 }
 
+/* A file of PicoScope: Tstart is the time of its first sample, before the trigger; beside a mapping
+ * that gives the rate too. */
+static void test_start_before_the_trigger(void **state)
+{
+  (void)state;
+  static const char *const maps[] = {
+      "dea-import: 1\ncolumns:\n  - {column: A, as: voltage, per_unit: 1 kV}\n",
+      "dea-import: 1\nrate: 500 Hz\ncolumns:\n  - {column: A, as: voltage, per_unit: 1 kV}\n"};
+  for (size_t k = 0; k < 2; k++) {
+    struct dea_table *table;
+    struct dea_mapping *mapping;
+    struct dea_recording *recording;
+    assert_int_equal(dea_mapping_read_memory(ctx, "map.yaml", maps[k], strlen(maps[k]), &mapping),
+                     DEA_OK);
+    assert_int_equal(
+        dea_table_read(ctx, DEA_SOURCE_DIR "/tests/cases/lab/mat/pretrigger.mat", NULL, &table),
+        DEA_OK);
+    assert_int_equal(dea_table_record(ctx, table, mapping, &recording), DEA_OK);
+    assert_int_equal(recording->channels[0].count, 6);
+    assert_close(recording->channels[0].start_s, -0.003, 1e-12, 0);
+    assert_close(recording->channels[0].interval_s, k == 0 ? 0.001 : 0.002, 1e-12, 0);
+    assert_close(recording->channels[0].values[3], 1000, 1e-12, 0);
+    dea_recording_destroy(ctx, recording);
+    dea_mapping_destroy(ctx, mapping);
+    dea_table_destroy(ctx, table);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -231,6 +259,7 @@ int main(void)
       cmocka_unit_test(test_claims),
       cmocka_unit_test(test_no_place),
       cmocka_unit_test(test_other_files),
+      cmocka_unit_test(test_start_before_the_trigger),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -16,6 +16,7 @@ enum {
   IS_POSITION = DEA_CHANNEL_KINDS,
   IS_RATE,
   IS_INTERVAL,
+  IS_START,
   IS_AMPERE,
   IS_UNCERTAINTY,
 };
@@ -89,11 +90,12 @@ int dea_guess_by_unit(const char *name, const char *si)
   return DEA_GUESS_NOTHING;
 }
 
-int dea_guess_clock(const char *name)
+enum dea_clock_part dea_guess_clock(const char *name)
 {
   const char *dot = strrchr(name, '.'); // of a struct: data.fs
-  const struct word *word = find_word(dot != NULL ? dot + 1 : name, IS_RATE, IS_INTERVAL);
-  return word == NULL ? 0 : word->kind == IS_RATE ? 1 : -1;
+  const struct word *word = find_word(dot != NULL ? dot + 1 : name, IS_RATE, IS_START);
+  return word == NULL ? DEA_CLOCK_NOTHING
+                      : (enum dea_clock_part)(DEA_CLOCK_RATE + word->kind - IS_RATE);
 }
 
 bool dea_guess_takes_ampere(struct dea_slice name)

@@ -79,6 +79,7 @@
   X(GERMAN, "abtastrate", WHOLE, RATE)                                                             \
   X(SYMBOL, "dt", WHOLE, INTERVAL)                                                                 \
   X(SYMBOL, "ts", WHOLE, INTERVAL)                                                                 \
+  X(SYMBOL, "tstart", WHOLE, START)                                                                \
   X(SYMBOL, "tinterval", WHOLE, INTERVAL)                                                          \
   X(ENGLISH, "delta t", WHOLE, INTERVAL)                                                           \
   X(ENGLISH, "interval", WHOLE, INTERVAL)                                                          \

@@ -87,7 +87,7 @@ struct dea_column_role {
   enum dea_channel_kind kind; // of a channel
   double factor, offset;      // SI value = value * factor + offset
   size_t clock;               // 1 + the column with its times; 0: none
-  double interval_s;          // NAN: by its times
+  double start_s, interval_s; // interval NAN: by its times
   const char *why;            // one clause for people, or why it is left; static or lent by mapping
 };
 /* What each column of a table is for; roles: [column_count]. mapping: NULL guesses. Errors are

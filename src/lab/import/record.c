@@ -54,7 +54,7 @@ static dea_status clock_get(struct work *work, size_t column, struct dea_clock *
                       "which column has them (time: NAME)",
                       work->table->file, c->name);
     }
-    *out = (struct dea_clock){.start_s = c->start, .interval_s = role->interval_s};
+    *out = (struct dea_clock){.start_s = role->start_s, .interval_s = role->interval_s};
     out->count = c->count;
     return DEA_OK;
   }

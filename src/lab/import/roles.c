@@ -225,15 +225,17 @@ static dea_status guess_times(struct work *work)
       role->why = odd_unit;
       continue;
     }
-    int clock = dea_guess_clock(column->name);
+    enum dea_clock_part clock = dea_guess_clock(column->name);
     const char *si = dea_title_unit(work->ctx, column->unit, &factor);
-    if (column->count == 1 && clock != 0) {
-      bool good =
-          column->unit[0] == '\0' || (si != NULL && strcmp(si, clock > 0 ? "Hz" : "s") == 0);
+    if (column->count == 1 && clock != DEA_CLOCK_NOTHING) {
+      bool rate = clock == DEA_CLOCK_RATE;
+      bool good = column->unit[0] == '\0' || (si != NULL && strcmp(si, rate ? "Hz" : "s") == 0);
       if (good) {
         role->use = DEA_USE_CLOCK;
         role->factor = column->unit[0] != '\0' ? factor : 1;
-        role->why = clock > 0 ? "samples a second" : "time between samples";
+        role->why = rate                          ? "samples a second"
+                    : clock == DEA_CLOCK_INTERVAL ? "time between samples"
+                                                  : "time of the first sample";
       }
       continue;
     }
@@ -340,16 +342,17 @@ static size_t find_clock(const struct work *work, size_t i)
   return own > 0 ? own : clock;
 }
 
-/* Interval of a rate or interval that stands alone; NAN without one. */
-static double lone_interval(const struct work *work)
+/* Interval of a rate or interval that stands alone, or a start that does; NAN without one. */
+static double lone_clock(const struct work *work, bool start)
 {
   for (size_t k = 0; k < work->table->column_count; k++) {
     const struct dea_table_column *column = &work->table->columns[k];
     if (work->roles[k].use == DEA_USE_CLOCK) {
       double value = column->values[0] * work->roles[k].factor;
-      double interval = dea_guess_clock(column->name) > 0 ? 1 / value : value;
-      if (isfinite(interval) && interval > 0) {
-        return interval;
+      enum dea_clock_part part = dea_guess_clock(column->name);
+      value = part == DEA_CLOCK_RATE ? 1 / value : value;
+      if ((part == DEA_CLOCK_START) == start && isfinite(value) && (start || value > 0)) {
+        return value;
       }
     }
   }
@@ -358,7 +361,7 @@ static double lone_interval(const struct work *work)
 
 static void set_clocks(struct work *work, size_t clock)
 {
-  double lone = lone_interval(work);
+  double lone = lone_clock(work, false), start = lone_clock(work, true);
   for (size_t i = 0; i < work->table->column_count; i++) {
     const struct dea_table_column *column = &work->table->columns[i];
     struct dea_column_role *role = &work->roles[i];
@@ -366,6 +369,7 @@ static void set_clocks(struct work *work, size_t clock)
     if (!needs || role->clock > 0) {
       continue;
     }
+    role->start_s = isnan(start) || column->interval > 0 ? column->start : start;
     if (work->mapping != NULL && !isnan(work->mapping->rate_Hz.si)) {
       role->interval_s = 1 / work->mapping->rate_Hz.si;
     } else if (clock > 0) {
