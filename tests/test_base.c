@@ -86,6 +86,11 @@ static void test_flat_text(void **state)
   char text[] = "a\nb\x1b[1m\x7f \xc2\x9b\xc2\xb5 \xff\x9b.";
   dea_text_flatten(text);
   assert_string_equal(text, "a b [1m    \xc2\xb5 \xff\x9b."); // bytes that are no letters stay
+  // what turns the direction of what follows: "V 0008" for "8000 V"
+  char turned[] = "a\xe2\x80\xae"
+                  "8\xe2\x80\xac\xe2\x81\xa6\xd8\x9c\xe2\x80\x8f\xe2\x80\x90.";
+  dea_text_flatten(turned);
+  assert_string_equal(turned, "a   8           \xe2\x80\x90.");
 }
 
 static void test_text_grows(void **state)

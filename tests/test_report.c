@@ -102,6 +102,7 @@ static void test_escaping(void **state)
   assert_writes(dea_html_text, "\364\220\200\200",
                 "\357\277\275\357\277\275\357\277\275\357\277\275");
   assert_writes(dea_html_text, "\001\177", "\357\277\275\357\277\275");
+  assert_writes(dea_html_text, "\342\200\256", "\357\277\275\357\277\275\357\277\275");
   assert_writes(dea_html_json_text, "</script>\n\"\\\302\265",
                 "\\u003c/script\\u003e\\u000a\\u0022\\u005c\302\265");
 }

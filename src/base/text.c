@@ -77,7 +77,9 @@ size_t dea_letter_read(const char *text, unsigned *code)
 
 bool dea_letter_is_control(unsigned code)
 {
-  return code < 0x20 || (code >= 0x7f && code < 0xa0);
+  bool directs = code == 0x61c || code == 0x200e || code == 0x200f ||
+                 (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return code < 0x20 || (code >= 0x7f && code < 0xa0) || directs;
 }
 
 size_t dea_text_cut(const char *text, size_t most)

@@ -22,8 +22,9 @@ void dea_text_free(struct dea_text *text);
  * letter is: a stray or missing byte, one written longer than need be, a surrogate, beyond
  * 0x10ffff. Control characters are letters like others; the text's end is code 0 of one byte. */
 size_t dea_letter_read(const char *text, unsigned *code);
-/* Whether a letter is a control character (C0, DEL, C1): a terminal obeys it, a line end among
- * them. */
+/* Whether a letter is a control character (C0, DEL, C1), which a terminal obeys, a line end among
+ * them, or turns the direction of what follows (Unicode's Bidi_Control), so that a text shows as
+ * another one. */
 bool dea_letter_is_control(unsigned code);
 /* Bytes of a text, at most so many, cut between letters. */
 size_t dea_text_cut(const char *text, size_t most);

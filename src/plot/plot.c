@@ -125,4 +125,5 @@ void dea_label_escape(const char *text, char *out, size_t size)
     out[n++] = (char)c;
   }
   out[n] = '\0';
+  dea_text_flatten(out);
 }

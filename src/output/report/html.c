@@ -10,8 +10,7 @@ static size_t sign_length(const char *c)
 {
   unsigned code;
   size_t length = dea_letter_read(c, &code);
-  bool control = (code < ' ' && code != '\t' && code != '\n') || (code >= 0x7F && code < 0xA0);
-  return control ? 0 : length;
+  return dea_letter_is_control(code) && code != '\t' && code != '\n' ? 0 : length;
 }
 
 /* What JSON within HTML has to write in another way; buffer[8] for the answer. */
