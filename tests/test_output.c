@@ -412,6 +412,28 @@ static void test_gnuplot_that_fails_is_reported(void **state)
   assert_int_equal(count_hidden(in_folder("f")), 0);
 }
 
+/* One that ends well and leaves no picture, or an empty one. */
+static void test_gnuplot_that_draws_nothing_is_reported(void **state)
+{
+  (void)state;
+  static const char *const programs[] = {
+      "#!/bin/sh\nexit 0\n",
+      "#!/bin/sh\nfor f in *.gp; do : >\"$(echo .drawing.*)/${f%.gp}.svg\"; done\n"};
+  char path[4096], with[5000];
+  snprintf(path, sizeof path, "%s", getenv("PATH"));
+  snprintf(with, sizeof with, "%s:%s", folder, path);
+  for (size_t i = 0; i < 2; i++) {
+    write_file("gnuplot", programs[i]);
+    assert_int_equal(chmod(in_folder("gnuplot"), 0755), 0);
+    setenv("PATH", with, 1);
+    dea_status status = dea_figures_write(ctx, result, in_folder("f"), &svg_only, NULL);
+    setenv("PATH", path, 1);
+    assert_int_equal(status, DEA_E_TOOL);
+    assert_non_null(strstr(dea_context_message(ctx), "gnuplot has drawn nothing into "));
+    assert_int_equal(count_hidden(in_folder("f")), 0);
+  }
+}
+
 static void test_run_folder_is_not_overwritten(void **state)
 {
   (void)state;
@@ -543,6 +565,7 @@ int main(void)
       OUTPUT_TEST(test_colours_keep_the_sign_in_grey),
       OUTPUT_TEST(test_without_gnuplot_the_scripts_stay),
       OUTPUT_TEST(test_gnuplot_that_fails_is_reported),
+      OUTPUT_TEST(test_gnuplot_that_draws_nothing_is_reported),
       OUTPUT_TEST(test_run_folder_is_not_overwritten),
       OUTPUT_TEST(test_run_folder_where_a_file_is),
       OUTPUT_TEST(test_every_allocation_may_fail),

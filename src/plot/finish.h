@@ -4,8 +4,9 @@
 
 #include "base/context.h"
 
-/* Completes NAME.svg and NAME.png in folder `pictures`, where they are there. scripts: folder of
- * NAME.gp, whose first line has the caption. */
+/* Completes NAME.svg and NAME.png in folder `pictures`, where they are there. DEA_E_TOOL where one
+ * of the formats that the script draws is missing or empty. scripts: folder of NAME.gp, whose first
+ * line has the caption. */
 dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, const char *scripts,
                               const char *name);
 

@@ -74,6 +74,9 @@ static dea_status empty_folder(struct dea_context *ctx, const char *from, const 
     if (path == NULL) {
       status = DEA_E_MEMORY;
       unlinkat(dirfd(folder), entry->d_name, 0);
+    } else if (dea_path_check_target(ctx, path) != DEA_OK) {
+      status = dea_context_status(ctx);
+      unlinkat(dirfd(folder), entry->d_name, 0);
     } else if (renameat(dirfd(folder), entry->d_name, AT_FDCWD, path) != 0) {
       status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(errno));
       unlinkat(dirfd(folder), entry->d_name, 0);
