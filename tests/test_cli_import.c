@@ -98,12 +98,59 @@ static void test_errors(void **state)
   assert_contains(command_out, "per_unit");
 }
 
+/* What is written replaces neither what is read nor a pipe, with --force too, under a given name or
+ * the usual one. */
+static void test_what_is_not_replaced(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *arguments, *part;
+  } cases[] = {
+      {"import in.csv -f -o in.csv", "in.csv is read, and would be written over"},
+      {"import in.csv -f -oin.csv", "is read, and would be written over"},
+      {"import in.csv -f --output=./in.csv", "is read, and would be written over"},
+      {"import in.csv -f -o same.csv", "is read, and would be written over"},
+      {"import in.csv -f -o map.yaml --map=map.yaml", "map.yaml is read, and would be"},
+      {"import -o in.csv other.csv in.csv -f", "is read, and would be written over"},
+      {"import in.csv -f -o pipe", "pipe is a pipe and is not replaced"},
+      {"import in.csv -f", "in.h5 is a pipe and is not replaced"},
+      {"import in.csv -f -o /dev/stdout", "/dev/stdout is a device and is not replaced"},
+      {"check design.yaml --svg design.yaml", "design.yaml is read, and would be written over"},
+      {"check design.yaml --svg pipe", "pipe is a pipe and is not replaced"},
+      {"mesh design.yaml -o design.yaml --force", "design.yaml is read, and would be"},
+      {"drive protocol.yaml --sim --force -o pipe", "pipe is a pipe and is not replaced"},
+      {"drive protocol.yaml --sim --force -o protocol.yaml", "protocol.yaml is read, and would"},
+  };
+  char text[2000], before[400];
+  command_write("in.csv", "Time (s),HV (kV)\n0,0\n0.5,1\n1,2\n");
+  command_write("other.csv", "Time (s),F (N)\n0,0\n0.5,1\n1,2\n");
+  command_write("map.yaml", "dea-import: 1\nrate: 1 kHz\n");
+  command_write("protocol.yaml", "dea-protocol: 1\n");
+  snprintf(text, sizeof text,
+           "cd '%s' && ln -s in.csv same.csv && mkfifo pipe in.h5 && cp '%s/examples/frdea-4.yaml' "
+           "design.yaml && cat in.csv map.yaml protocol.yaml design.yaml | cksum >before",
+           command_folder, DEA_SOURCE_DIR);
+  assert_int_equal(system(text), 0);
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    assert_int_equal(command_run(cases[i].arguments), 5);
+    assert_contains(command_err, cases[i].part);
+  }
+  snprintf(before, sizeof before, "cat in.csv map.yaml protocol.yaml design.yaml | cksum");
+  snprintf(text, sizeof text,
+           "cd '%s' && %s | cmp - before && test -p pipe && test -p in.h5 && test -h same.csv",
+           command_folder, before);
+  assert_int_equal(system(text), 0);
+  assert_int_equal(command_run("check design.yaml --svg drawing.svg"), 0);
+  assert_int_equal(command_run("check design.yaml --svg drawing.svg"), 0); // of its own making
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_list),
       cmocka_unit_test(test_recording),
       cmocka_unit_test(test_errors),
+      cmocka_unit_test(test_what_is_not_replaced),
   };
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

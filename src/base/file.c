@@ -98,6 +98,26 @@ dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, 
   return status;
 }
 
+dea_status dea_path_check_target(struct dea_context *ctx, const char *path)
+{
+  struct stat own, target;
+  if (lstat(path, &own) != 0 || stat(path, &target) != 0) {
+    return DEA_OK;
+  }
+  bool device = S_ISLNK(own.st_mode) && strncmp(path, "/dev/", 5) == 0;
+  return !device && (S_ISREG(target.st_mode) || S_ISDIR(target.st_mode))
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_IO, "%s is %s and is not replaced: give the name of a file",
+                        path, device ? "a device" : kind_name(target.st_mode));
+}
+
+bool dea_path_is_same(const char *a, const char *b)
+{
+  struct stat first, second;
+  return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+         first.st_ino == second.st_ino;
+}
+
 bool dea_file_head(const char *path, void *head, size_t size, size_t *length)
 {
   struct stat info;

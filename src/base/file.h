@@ -10,6 +10,12 @@
 dea_status dea_file_read(struct dea_context *ctx, const char *file, size_t max, char **bytes,
                          size_t *length);
 
+/* Nothing where a file of that name can be written or replaced; DEA_E_IO where a pipe, a socket or
+ * a device has it, or a name in /dev that leads to what the program was started with. */
+dea_status dea_path_check_target(struct dea_context *ctx, const char *path);
+/* Whether two names are of one file that exists. */
+bool dea_path_is_same(const char *a, const char *b);
+
 /* The first bytes of a file; *length: how many there are, at most size. false: it is no regular
  * file, or cannot be opened.
  */

@@ -1,6 +1,8 @@
 #define _GNU_SOURCE // uselocale, fileno
 #include "base/write_file.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
@@ -53,11 +55,22 @@ dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, con
     return DEA_E_MEMORY;
   }
   bool there = dea_path_exists(path) && !dea_path_is_folder(path);
-  if (there && force) {
+  dea_status status = there && force ? dea_path_check_target(ctx, path) : DEA_OK;
+  if (there && force && status == DEA_OK) {
     unlink(path);
   }
   dea_free(ctx, path);
-  return there && !force ? dea_path_refuse(ctx, directory, name) : DEA_OK;
+  return there && !force ? dea_path_refuse(ctx, directory, name) : status;
+}
+
+void dea_path_forget(struct dea_context *ctx, const char *directory, const char *name)
+{
+  struct stat info;
+  char *path = dea_path_join(ctx, directory, name);
+  if (path != NULL && lstat(path, &info) == 0 && (S_ISREG(info.st_mode) || S_ISLNK(info.st_mode))) {
+    unlink(path);
+  }
+  dea_free(ctx, path);
 }
 
 static dea_status folder_make_one(struct dea_context *ctx, const char *directory)
@@ -123,12 +136,14 @@ char *dea_partial_name(struct dea_context *ctx, const char *path)
 
 dea_status dea_partial_finish(struct dea_context *ctx, const char *partial, const char *path)
 {
-  if (rename(partial, path) == 0) {
-    return DEA_OK;
+  dea_status status = dea_path_check_target(ctx, path);
+  if (status == DEA_OK && rename(partial, path) != 0) {
+    status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(errno));
   }
-  int reason = errno;
-  unlink(partial);
-  return dea_fail(ctx, DEA_E_IO, "cannot write %s: %s", path, strerror(reason));
+  if (status != DEA_OK) {
+    unlink(partial);
+  }
+  return status;
 }
 
 bool dea_write_all(int file, const void *bytes, size_t length)

@@ -20,10 +20,14 @@ dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const
 dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, const char *name,
                              bool force);
 
+/* Removes a file of that name; one that is not there, is no file or cannot be removed stays. */
+void dea_path_forget(struct dea_context *ctx, const char *directory, const char *name);
+
 /* All bytes [length] to an open file; false where that fails, and errno says why. */
 bool dea_write_all(int file, const void *bytes, size_t length);
 /* Writes a file as a whole: the bytes go to a hidden file beside it, which then takes the name, so
- * that no interruption leaves half a file. Replaces an existing file. */
+ * that no interruption leaves half a file. Replaces an existing file, but neither a pipe nor a
+ * device. */
 dea_status dea_file_write(struct dea_context *ctx, const char *path, const char *bytes,
                           size_t length);
 /* The same as file directory/name. */

@@ -79,6 +79,7 @@ enum cli_kind {
   CLI_FLAG, // no value
   CLI_TEXT, // nothing to offer
   CLI_FILE,
+  CLI_NEW_FILE, // that is written
   CLI_FOLDER,
   CLI_DESIGN,
   CLI_COMMAND,

@@ -258,7 +258,7 @@ static const struct cli_option options[] = {
     CLI_SET_ROW(0, CLI_KEY, "film.thickness=200um; 'null' takes a key away"),
     {"changed", 0, CLI_FLAG, NULL, "only the values that the file or --set gives, no defaults",
      CLI_AT(changed)},
-    {"svg", 0, CLI_FILE, "FILE", "a drawing of the device", CLI_AT(svg)},
+    {"svg", 0, CLI_NEW_FILE, "FILE", "a drawing of the device", CLI_AT(svg)},
     CLI_JSON_ROW("values, derived numbers and findings as JSON"),
     {0}};
 

@@ -432,7 +432,7 @@ static const struct cli_option options[] = {
     {"checked", 0, CLI_FLAG, NULL,
      "somebody has looked at supply and specimen after an unclean end", CLI_AT(checked)},
     CLI_OUTPUT_ROW(
-        CLI_FILE, "FILE",
+        CLI_NEW_FILE, "FILE",
         "name of the recording; by default that of the protocol with .h5, in the current folder"),
     CLI_FORCE_ROW('f', "replace a recording or files of that name"),
     CLI_SET_ROW(0, CLI_PROTOCOL_KEY, "rate=2kHz"),

@@ -153,6 +153,7 @@ static dea_status copy_one(struct dea_context *ctx, const struct cli_data_file *
     return DEA_E_MEMORY;
   }
   dea_status status = make_parents(ctx, path.data);
+  status = status == DEA_OK ? dea_path_check_target(ctx, path.data) : status;
   FILE *out = status == DEA_OK ? fopen(path.data, force ? "wb" : "wbx") : NULL;
   if (status == DEA_OK && out == NULL) {
     status = dea_fail(ctx, DEA_E_IO, "cannot write %s: %s%s", path.data, strerror(errno),

@@ -294,7 +294,7 @@ static const struct cli_option options[] = {
              "a file is missing", "more than 64 files"),
     {"map", 0, CLI_FILE, "FILE", "mapping in YAML", CLI_AT(map)},
     {"format", 0, CLI_IMPORTER, "NAME", "format, when it is not recognised", CLI_AT(format)},
-    CLI_OUTPUT_ROW(CLI_FILE, "FILE",
+    CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE",
                    "the recording; without it the first file's name with .h5, here"),
     {"design", 0, CLI_DESIGN, "DESIGN",
      "put this design inside, so that 'dea reduce' knows the geometry", CLI_AT(design)},

@@ -170,7 +170,7 @@ static int run(struct dea_cli *cli, void *user)
 
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
-    CLI_OUTPUT_ROW(CLI_FILE, "FILE", "write the mesh as FILE, in Gmsh's format 2.2 (.msh)"),
+    CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE", "write the mesh as FILE, in Gmsh's format 2.2 (.msh)"),
     CLI_FORCE_ROW('f', "replace a file of that name"),
     CLI_SET_ROW(0, CLI_KEY, "compute.solid.refinement=2"),
     CLI_JSON_ROW("size and quality of the mesh as JSON"),

@@ -308,7 +308,7 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_RECORDING_ROW,
     CLI_OUTPUT_ROW(
-        CLI_FILE, "FILE",
+        CLI_NEW_FILE, "FILE",
         "write a clean copy as FILE, which must not exist: also of a recording whose program was "
         "killed, and in a form that programs with older versions of HDF5 read"),
     {"with", 0, CLI_FILE, "OTHER",

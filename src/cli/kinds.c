@@ -112,6 +112,7 @@ static dea_status list_shells(struct dea_cli *cli, struct dea_text *out)
 const struct cli_kind_info cli_kinds[CLI_KINDS] = {
     [CLI_TEXT] = {.name = "nothing"},
     [CLI_FILE] = {.name = NULL},
+    [CLI_NEW_FILE] = {.name = NULL},
     [CLI_FOLDER] = {.folder = true},
     [CLI_DESIGN] = {.ending = "yaml"},
     [CLI_COMMAND] = {"commands", .list = list_commands},

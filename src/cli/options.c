@@ -145,6 +145,23 @@ int cli_take_common(struct dea_cli *cli, int argc, char **argv)
   return kept;
 }
 
+/* What is written is no pipe or device, and nothing that is read: no other word of the line names
+ * it. word: of argv that it is, or begins behind the option in. */
+static dea_status check_written(struct dea_cli *cli, int argc, char **argv, int word,
+                                const char *file)
+{
+  DEA_TRY(cli->ctx, dea_path_check_target(cli->ctx, file));
+  for (int i = 1; i < argc; i++) {
+    const char *equals = argv[i][0] == '-' ? strchr(argv[i], '=') : NULL;
+    const char *other = equals != NULL ? equals + 1 : argv[i];
+    if (i != word && dea_path_is_same(other, file)) {
+      return dea_fail(cli->ctx, DEA_E_IO,
+                      "%s is read, and would be written over: give another name", file);
+    }
+  }
+  return DEA_OK;
+}
+
 int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, char **argv,
               void *request)
 {
@@ -187,6 +204,10 @@ int cli_parse(struct dea_cli *cli, const struct dea_command *command, int argc, 
     }
     given[option - command->options] = true;
     code = take(cli, command, option, optarg, request);
+    if (option->kind == CLI_NEW_FILE && code == 0) {
+      dea_status status = check_written(cli, argc, argv, optind - 1, optarg);
+      code = status == DEA_OK ? 0 : cli_report(cli, status);
+    }
   }
   code = code != 0 ? code : check_exclusions(cli, command, given);
   return code != 0 ? code : take_arguments(cli, command, argc - optind, argv + optind, request);

@@ -36,16 +36,6 @@ static void state_name(const char *model, char out[NAME_SIZE])
   snprintf(out, NAME_SIZE, "%.63s_state.h5", model);
 }
 
-/* Removes a file; one that is not there is gone already. */
-static void forget(struct dea_context *ctx, const char *directory, const char *name)
-{
-  char *path = dea_path_join(ctx, directory, name);
-  if (path != NULL) {
-    unlink(path);
-  }
-  dea_free(ctx, path);
-}
-
 void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const char *model,
                            size_t count)
 {
@@ -54,12 +44,12 @@ void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const
   bool fields = folder != NULL && dea_path_exists(folder);
   for (size_t i = 0; i < count && fields; i++) {
     field_name(model, i, name);
-    forget(ctx, directory, name);
+    dea_path_forget(ctx, directory, name);
   }
   pvd_name(model, name);
-  forget(ctx, directory, name);
+  dea_path_forget(ctx, directory, name);
   state_name(model, name);
-  forget(ctx, directory, name);
+  dea_path_forget(ctx, directory, name);
   if (fields) {
     rmdir(folder); // when nothing else is in it
   }
@@ -127,7 +117,7 @@ static dea_status keep_fields(struct dea_context *ctx, const struct dea_keep *ke
                          design->report.fields_of.value == DEA_FIELDS_WHOLE));
   if (design->report.fields.value == DEA_FIELDS_LAST && last > 0) {
     field_name(curve->model, last - 1, name);
-    forget(ctx, keep->directory, name);
+    dea_path_forget(ctx, keep->directory, name);
   }
   DEA_TRY(ctx, write_pvd(ctx, keep->directory, curve->model, curve));
   return DEA_OK;

@@ -58,16 +58,6 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
   return DEA_OK;
 }
 
-/* Removes a file of that name; one that is not there or cannot be removed is left to the writer. */
-static void forget(struct dea_context *ctx, const char *directory, const char *name)
-{
-  char *path = dea_path_join(ctx, directory, name);
-  if (path != NULL) {
-    unlink(path);
-  }
-  dea_free(ctx, path);
-}
-
 static void forget_figures(struct dea_context *ctx, const char *directory)
 {
   static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
@@ -76,7 +66,7 @@ static void forget_figures(struct dea_context *ctx, const char *directory)
     for (size_t e = 0; e < sizeof endings / sizeof endings[0]; e++) {
       char name[128];
       snprintf(name, sizeof name, DEA_FIGURE_FOLDER "/%s.%s", figure->name, endings[e]);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
     }
   }
   char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
@@ -94,11 +84,11 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       const struct dea_curve *curve = &old->result->curves[i];
       char name[2 * DEA_NAME_SIZE + 32];
       snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_%s_events.csv", curve->model, curve->kind);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_profiles.csv", curve->model);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
       dea_checkpoint_forget(ctx, directory, curve->model, curve->count);
       snprintf(name, sizeof name, "%s_%s", curve->model, curve->kind); // shapes of modes
       dea_checkpoint_forget(ctx, directory, name, curve->count);
@@ -107,14 +97,14 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
       const struct dea_curve *curve = &old->result->variants[i].curve;
       char name[2 * DEA_NAME_SIZE + 32];
       snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
       snprintf(name, sizeof name, "%s_%s_profiles.csv", curve->model, curve->kind);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
     }
     for (size_t i = 0; i < old->result->table_count; i++) {
       char name[DEA_RESULT_TABLE_FILE_SIZE];
       dea_csv_table_name(&old->result->tables[i], name);
-      forget(ctx, directory, name);
+      dea_path_forget(ctx, directory, name);
     }
     dea_run_destroy(ctx, old);
   }
@@ -122,7 +112,7 @@ void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
   forget_figures(ctx, directory);
   for (size_t i = 0; i < EXPORT_COUNT; i++) {
     if (exports[i]->file != NULL) {
-      forget(ctx, directory, exports[i]->file);
+      dea_path_forget(ctx, directory, exports[i]->file);
     }
   }
 }
