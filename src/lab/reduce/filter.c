@@ -31,6 +31,12 @@ double dea_filter_reach(double cutoff_Hz)
   return cutoff_Hz > 0.0 ? 15.0 * time_constant(cutoff_Hz) : 0.0; // exp(-15) = 3e-7
 }
 
+double dea_filter_rise(double cutoff_Hz)
+{
+  // of a step behind both ways: 1 - exp(-t/tau)/2 after it, and the mirror image before it
+  return cutoff_Hz > 0.0 ? 2.0 * log(5.0) * time_constant(cutoff_Hz) : 0.0;
+}
+
 void dea_filter_apply(const struct dea_channel *channel, double cutoff_Hz, double *values)
 {
   for (size_t i = 0; i < channel->count; i++) {

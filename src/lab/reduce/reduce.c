@@ -438,6 +438,24 @@ static dea_status check_clock(const struct job *job, enum dea_reduced_kind kind)
                                 : "the film lags so far, or their clocks do not agree");
 }
 
+/* Says where rise and fall are those of the channel's own filter. */
+static dea_status note_filter(const struct job *job, enum dea_reduced_kind kind)
+{
+  const struct dea_reduction *r = job->out;
+  const struct dea_channel *series = &r->series[kind];
+  double own_s = dea_filter_rise(series->filter_Hz), shortest_s = INFINITY;
+  for (size_t l = 0; l < r->level_count; l++) {
+    shortest_s = fmin(shortest_s, fmin(r->levels[l].rise_s[kind], r->levels[l].fall_s[kind]));
+  }
+  if (shortest_s <= 1.1 * own_s) {
+    NOTE(job->ctx,
+         "'%s' rises or falls within %.3g ms, which is its filter of %.4g Hz (%.3g ms of a step): "
+         "the film is faster than that; give it a higher one, or none, for these times",
+         series->name, 1e3 * shortest_s, series->filter_Hz, 1e3 * own_s);
+  }
+  return DEA_OK;
+}
+
 static dea_status reduce_cycles(struct job *job)
 {
   struct dea_reduction *r = job->out;
@@ -459,6 +477,9 @@ static dea_status reduce_cycles(struct job *job)
   }
   DEA_TRY(job->ctx, dea_levels_form(job->ctx, r->cycles, r->cycle_count, 0.5 * job->scale.active_V,
                                     &r->levels, &r->level_count));
+  for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
+    DEA_TRY(job->ctx, note_filter(job, (enum dea_reduced_kind)kind));
+  }
   return job->offsets == NULL || r->level_count == 0
              ? DEA_OK
              : dea_profiles_levels(job->ctx, &job->recording->profiles, job->list.parts,

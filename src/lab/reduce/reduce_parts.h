@@ -32,6 +32,9 @@ void dea_filter_apply(const struct dea_channel *channel, double cutoff_Hz, doubl
 /* How long before an edge it is seen [s]: no way back in time is without that. 0 for NAN. */
 double dea_filter_reach(double cutoff_Hz);
 
+/* Rise from 10 to 90 % of a step that was filtered [s]; 0 for NAN. */
+double dea_filter_rise(double cutoff_Hz);
+
 // plateau.c: what the voltage does ---------------------------------------------------------------
 
 struct dea_voltage_scale {
