@@ -268,6 +268,12 @@ static void test_bad_files(void **state)
        "breakdown:\n  - {id: a, at_rest: 80 V/um, source: s}\n"
        "  - {id: a, at_rest: 90 V/um, source: s}\n",
        "the id 'a' is taken", 6},
+      {"dea_material: 1\nname: bad\nkind: elastomer\nlaws:\n  - id: a\n    law: mooney-rivlin\n"
+       "    parameters: {c10: 301 kPa, c01: -394 kPa}\n    source: s\n",
+       "the shear modulus at rest is -186 kPa with these parameters", 7},
+      {"dea_material: 1\nname: bad\nkind: elastomer\nlaws:\n  - id: a\n    law: ogden\n"
+       "    parameters: {mu1: 100 kPa, alpha1: -2}\n    source: s\n",
+       "the shear modulus at rest is -100 kPa with these parameters", 7},
   };
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     struct dea_catalogue_entry *entry;

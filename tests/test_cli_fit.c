@@ -368,6 +368,53 @@ static void test_unstable(void **state)
   assert_null(strstr(command_out, "differs by"));
 }
 
+/* The value of "name": {... "value": in fit.json on the last output. */
+static double found_value(const char *name)
+{
+  char key[64];
+  snprintf(key, sizeof key, "\"name\": \"%s\"", name);
+  const char *at = strstr(command_out, key);
+  assert_non_null(at);
+  at = strstr(at, "\"value\": ");
+  assert_non_null(at);
+  return strtod(at + 9, NULL);
+}
+
+/* Curves that Mooney and Rivlin's law follows best with a film that is not stable at rest. */
+static void test_modulus_at_rest(void **state)
+{
+  (void)state;
+  static const char *const files[] = {"d", "e", "f"};
+  for (size_t i = 0; i < 3; i++) {
+    char text[200];
+    snprintf(text, sizeof text, "fit @/tests/cases/fit/fit-ogden2/%s.yaml --force -o rest",
+             files[i]);
+    assert_int_equal(command_run(text), 0);
+    assert_contains(command_out, "mooney-rivlin      cannot be fitted: the shear modulus at rest");
+    const char *taken = strstr(command_out, "<- taken");
+    while (taken > command_out && taken[-1] != '\n') {
+      taken--;
+    }
+    assert_memory_equal(taken, "ogden-2", 7);
+    assert_contains(command_out, "30 rows, off by ");
+    const double rms_kPa = strtod(strstr(command_out, "30 rows, off by ") + 16, NULL);
+    assert_true(rms_kPa < 0.007 * 4115); // of the largest stress
+  }
+  command_expect("fit @/tests/cases/fit/fit-negative-modulus/mooney.yaml -o none", 4,
+                 "the shear modulus at rest would be -184.9 kPa");
+}
+
+/* Strips of Gent's law far beyond the values that a search used to begin from. */
+static void test_gent_far(void **state)
+{
+  (void)state;
+  assert_int_equal(command_run("fit @/tests/cases/fit/fit-gent-large/to17.yaml --json -o far"), 0);
+  assert_close(found_value("mu"), 35e3, 1e-5, 0);
+  assert_close(found_value("jm"), 1.6 * (17 * 17 + 2.0 / 17 - 3), 1e-5, 0); // as it was made
+  assert_int_equal(command_run("fit @/tests/cases/fit/fit-gent-large/s16.yaml --json -o s16"), 0);
+  assert_true(found_value("mu") > 25e3 && found_value("jm") > 16 * 16 + 2.0 / 16 - 3);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -380,6 +427,8 @@ int main(void)
       cmocka_unit_test(test_band_of_what_is_not_known),
       cmocka_unit_test(test_creep),
       cmocka_unit_test(test_unstable),
+      cmocka_unit_test(test_modulus_at_rest),
+      cmocka_unit_test(test_gent_far),
       cmocka_unit_test(test_example),
       cmocka_unit_test(test_vhb),
   };

@@ -241,6 +241,17 @@ static bool is_better(const struct dea_fit_candidate *candidate,
   return candidate->held_out < (simpler ? 1.05 : 1 / 1.05) * best->held_out;
 }
 
+/* Below 0 a film at rest would be unstable, however well the law follows the tests. */
+static dea_status check_rest(struct work *w, const struct dea_material *material)
+{
+  const double modulus_Pa = material->law->shear_modulus(material->param);
+  return modulus_Pa > 0 ? DEA_OK
+                        : dea_fail(w->ctx, DEA_E_DOMAIN,
+                                   "the shear modulus at rest would be %.4g kPa, and no such "
+                                   "film is stable",
+                                   1e-3 * modulus_Pa);
+}
+
 /* One law, its branches and how well it foretells; a failure is kept with its message. */
 static dea_status try_law(struct work *w, const struct dea_label *name, struct dea_fit_model *model,
                           struct dea_material *material, struct dea_fit_candidate *candidate)
@@ -261,6 +272,7 @@ static dea_status try_law(struct work *w, const struct dea_label *name, struct d
   candidate->aicc = criterion(&found, candidate->free_count, fit->scale_known);
   dea_fit_model_material(model, found.p, material);
   dea_lsq_free(&found);
+  DEA_TRY(w->ctx, check_rest(w, material));
   find_stability(fit, material, candidate);
   return fit->file->law_count > 1 ? hold_out_all(w, model, candidate) : DEA_OK;
 }
@@ -292,7 +304,9 @@ static dea_status choose_law(struct work *w)
       any = true;
     }
   }
-  return any ? DEA_OK : dea_fail(w->ctx, DEA_E_NOT_CONVERGED, "none of the laws could be fitted");
+  return any ? DEA_OK
+             : dea_fail(w->ctx, DEA_E_NOT_CONVERGED, "none of the laws could be fitted; %s: %.150s",
+                        fit->candidates[0].name, fit->candidates[0].why);
 }
 
 /* Largest difference of other laws that foretell about as well, in modes that no test has. */
@@ -421,7 +435,6 @@ static dea_status settle_open(struct work *w)
       memcpy(found->p, p, found->params * sizeof *p);
       memcpy(found->r, r, found->rows * sizeof *r);
       found->chi2 = chi2;
-      dea_fit_model_material(&fit->model, p, &w->materials[fit->chosen]);
       status = dea_lsq_jacobian(w->ctx, &problem, p, found->J);
       status = status == DEA_OK ? find_statistics(w) : status;
     }
@@ -570,6 +583,8 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, choose_law(w));
   DEA_TRY(w->ctx, solve_chosen(w));
   DEA_TRY(w->ctx, settle_open(w));
+  dea_fit_model_material(&fit->model, fit->least_squares.p, &w->materials[fit->chosen]);
+  DEA_TRY(w->ctx, check_rest(w, &w->materials[fit->chosen]));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));
   dea_fit_tell_weak(fit);

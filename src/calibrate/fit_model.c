@@ -11,10 +11,19 @@
 
 enum { THIN_ROWS = 40, GRID_MAX = 4096 };
 
+// of coefficients of either sign, over the modulus that the tests speak of
+#define CANCEL 10.0
+
 // Values of parameters without a unit that a search begins from: exponents, extensibilities,
 // limits.
 static const double grid_values[] = {-6, -2, -0.5, 0.5, 1.3, 2, 3, 5, 8, 14, 25, 50, 100, 250};
 enum { GRID_VALUES = sizeof grid_values / sizeof grid_values[0] };
+
+/* Of one at whose lower bound the law locks up: from close to the bound to far away. */
+static double grid_value(const struct dea_fit_param *param, size_t k)
+{
+  return param->locks ? param->low * (1 + 1e-3 * pow(3, (double)k)) : grid_values[k];
+}
 
 /* ---- the parameters ---- */
 
@@ -45,6 +54,35 @@ static double guess_modulus(const struct dea_fit_series *series, size_t count)
     }
   }
   return mu > 0 ? mu : 1e5;
+}
+
+/* The parameter that says where a law locks up is bounded by how far the tests went: by the value
+ * at which the chains would be fully stretched there. */
+static void bound_locking(struct dea_fit_model *model, const struct dea_fit_series *series,
+                          size_t count)
+{
+  double p[DEA_LAW_PARAM_MAX], I1 = 3;
+  for (size_t s = 0; s < count; s++) {
+    for (size_t i = 0; i < series[s].rows && dea_fit_series_used(&series[s]); i++) {
+      I1 = fmax(I1, dea_coupon_I1(series[s].coupon.mode, series[s].stretch[i]));
+    }
+  }
+  for (size_t j = 0; j < model->law_count; j++) {
+    p[j] = model->params[j].low;
+  }
+  for (size_t j = 0; j < model->law_count && model->law->locking_share != NULL; j++) {
+    struct dea_fit_param *param = &model->params[j];
+    double low = param->low, high = param->high;
+    if (is_modulus(param) || !(model->law->locking_share(p, I1) > 1)) {
+      continue;
+    }
+    while (high > low * (1 + 1e-12)) {
+      p[j] = sqrt(low * high);
+      *(model->law->locking_share(p, I1) > 1 ? &low : &high) = p[j];
+    }
+    param->low = high;
+    param->locks = true;
+  }
 }
 
 static dea_status read_number(struct dea_context *ctx, const struct dea_label *label,
@@ -111,6 +149,7 @@ static dea_status take_texts(struct dea_context *ctx, const struct dea_fit_file 
     }
     if (j < model->law_count) {
       model->params[j].fixed = false;
+      model->params[j].limit = INFINITY; // whoever names it bounds it
       DEA_TRY(ctx, dea_fit_param_take(ctx, text, &model->params[j]));
       continue;
     }
@@ -201,17 +240,20 @@ dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file
     const struct dea_law_param *param = &out->law->params[j];
     const bool wanted = terms > 0 ? term_of(param->key) <= terms : param->required;
     const bool modulus = strcmp(param->unit, "Pa") == 0;
+    const bool cancels = modulus && param->min < 0;
     out->params[j] = (struct dea_fit_param){.unit = param->unit,
                                             .fixed = !wanted,
                                             .start = modulus ? 0.5 * mu : 2,
                                             .low = param->min,
                                             .high = param->max,
+                                            .limit = cancels ? CANCEL * mu : INFINITY,
                                             .scale = modulus ? mu : 1,
                                             .prior = NAN,
                                             .prior_std = NAN};
     out->params[j].start = out->params[j].fixed ? 0 : out->params[j].start;
     snprintf(out->params[j].name, sizeof out->params[j].name, "%s", param->key);
   }
+  bound_locking(out, series, series_count);
   DEA_TRY(ctx, take_texts(ctx, file, out));
   return dea_finding_count(ctx, DEA_ERROR) == errors
              ? DEA_OK
@@ -450,7 +492,7 @@ static bool is_worth_it(const struct dea_fit_model *model, const size_t *index, 
 {
   for (size_t k = 0; k < count; k++) {
     const struct dea_fit_param *param = &model->params[index[k]];
-    const double value = grid_values[at[k]];
+    const double value = grid_value(param, at[k]);
     if (value < param->low || value > param->high) {
       return false;
     }
@@ -461,16 +503,81 @@ static bool is_worth_it(const struct dea_fit_model *model, const size_t *index, 
   return true;
 }
 
+static bool is_stable_at_rest(const struct dea_fit_model *model, const double *p)
+{
+  return model->law->shear_modulus(p) > 0;
+}
+
+/* In the search over a grid all but the moduli are. */
+static bool is_held(const struct dea_fit_param *param)
+{
+  return param->fixed || !is_modulus(param) || param->started;
+}
+
+/* The residuals as functions of the parameters that are no moduli alone: at each of them the moduli
+ * are those that fit best. */
+struct projection {
+  struct dea_context *ctx;
+  const struct dea_lsq_problem *problem;
+  const bool *held;             // all but the moduli
+  double p[DEA_LSQ_PARAMS_MAX]; // with the moduli found last
+};
+
+static dea_status project(void *user, const double *p, double *r)
+{
+  struct projection *w = user;
+  struct dea_lsq_fit fit;
+  const dea_status status = dea_lsq_solve(w->ctx, w->problem, p, w->held, &fit);
+  if (status == DEA_OK) {
+    memcpy(r, fit.r, fit.rows * sizeof *r);
+    memcpy(w->p, fit.p, fit.params * sizeof *fit.p);
+    dea_lsq_free(&fit);
+  } else if (status == DEA_E_DOMAIN || status == DEA_E_NOT_CONVERGED) {
+    dea_context_clear(w->ctx);
+    return DEA_E_DOMAIN;
+  }
+  return status;
+}
+
+/* Moves p to the minimum near by, where there is one with a modulus at rest above 0. */
+static dea_status refine_start(struct dea_context *ctx, const struct dea_fit_model *model,
+                               const struct dea_lsq_problem *problem, double *p)
+{
+  bool held[DEA_LSQ_PARAMS_MAX], moduli[DEA_LSQ_PARAMS_MAX];
+  struct projection w = {.ctx = ctx, .problem = problem, .held = held};
+  struct dea_lsq_problem reduced = *problem;
+  struct dea_lsq_fit fit;
+  for (size_t j = 0; j < model->count; j++) {
+    held[j] = is_held(&model->params[j]);
+    moduli[j] = !held[j] || model->params[j].fixed || model->params[j].started;
+  }
+  reduced.residual = project;
+  reduced.user = &w;
+  reduced.tolerance = 1e-10;
+  dea_status status = dea_lsq_solve(ctx, &reduced, p, moduli, &fit);
+  if (status == DEA_OK) {
+    status = project(&w, fit.p, fit.r);
+    dea_lsq_free(&fit);
+  }
+  if (status == DEA_OK && is_stable_at_rest(model, w.p)) {
+    memcpy(p, w.p, model->count * sizeof *p);
+  } else if (status == DEA_E_DOMAIN || status == DEA_E_NOT_CONVERGED) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
 /* Best start over the grid into p; it stays as it is when no point has an answer. */
 static dea_status find_start(struct dea_context *ctx, const struct dea_fit_model *model,
                              const struct dea_lsq_problem *problem, double *p)
 {
   size_t index[DEA_LSQ_PARAMS_MAX], at[DEA_LSQ_PARAMS_MAX] = {0}, count = 0, tried = 0;
-  bool held[DEA_LSQ_PARAMS_MAX];
+  bool held[DEA_LSQ_PARAMS_MAX], stable = false;
   double best = INFINITY, q[DEA_LSQ_PARAMS_MAX];
   for (size_t j = 0; j < model->count; j++) {
     const struct dea_fit_param *param = &model->params[j];
-    held[j] = param->fixed || !is_modulus(param) || param->started;
+    held[j] = is_held(param);
     if (!param->fixed && !param->started && !is_modulus(param)) {
       index[count++] = j;
     }
@@ -482,7 +589,7 @@ static dea_status find_start(struct dea_context *ctx, const struct dea_fit_model
       continue;
     }
     for (size_t k = 0; k < count; k++) {
-      q[index[k]] = grid_values[at[k]];
+      q[index[k]] = grid_value(&model->params[index[k]], at[k]);
     }
     dea_status status = dea_lsq_solve(ctx, problem, q, held, &fit);
     if (status == DEA_E_MEMORY) {
@@ -492,12 +599,71 @@ static dea_status find_start(struct dea_context *ctx, const struct dea_fit_model
       dea_context_clear(ctx);
       continue;
     }
-    if (fit.chi2 < best) {
+    const bool is_stable = is_stable_at_rest(model, fit.p);
+    if (is_stable == stable ? fit.chi2 < best : is_stable) {
       best = fit.chi2;
+      stable = is_stable;
       memcpy(p, fit.p, model->count * sizeof *p);
     }
     dea_lsq_free(&fit);
   } while (next_combination(at, count));
+  return count > 0 && stable ? refine_start(ctx, model, problem, p) : DEA_OK;
+}
+
+/* The coefficient that is furthest beyond its limit: where two exponents come together, theirs grow
+ * without end, cancel, and follow the tests hardly better. -1: none is; any: the largest one. */
+static int find_cancelling(const struct dea_fit_model *model, const double *p, bool any)
+{
+  double most = any ? 0 : 1;
+  int found = -1;
+  for (size_t j = 0; j < model->law_count; j++) {
+    if (!model->params[j].fixed && fabs(p[j]) / model->params[j].limit > most) {
+      most = fabs(p[j]) / model->params[j].limit;
+      found = (int)j;
+    }
+  }
+  return found;
+}
+
+/* The minimum next to p over all rows; coefficients that would grow beyond their limit are held
+ * there, one after the other. */
+static dea_status search_within(struct dea_context *ctx, const struct dea_fit_model *model,
+                                const struct dea_lsq_problem *quick,
+                                const struct dea_lsq_problem *problem, double *p,
+                                struct dea_lsq_fit *out)
+{
+  struct dea_fit_model own = *model;
+  bool held[DEA_LSQ_PARAMS_MAX];
+  dea_status status;
+  for (int j = find_cancelling(&own, p, false);; j = find_cancelling(&own, p, false)) {
+    if (j >= 0) {
+      own.params[j].fixed = true;
+      p[j] = copysign(own.params[j].limit, p[j]);
+      DEA_TRY(ctx, refine_start(ctx, &own, quick, p));
+    }
+    for (size_t k = 0; k < own.count; k++) {
+      held[k] = own.params[k].fixed;
+    }
+    status = dea_lsq_solve(ctx, problem, p, held, out);
+    const bool endless = status == DEA_E_NOT_CONVERGED && find_cancelling(&own, p, true) >= 0;
+    if (status != DEA_OK && !endless) {
+      return status;
+    }
+    if (endless) { // along the way
+      j = find_cancelling(&own, p, true);
+      p[j] = copysign(2 * own.params[j].limit, p[j]);
+      dea_context_clear(ctx);
+      continue;
+    }
+    if (find_cancelling(&own, out->p, false) < 0) {
+      break;
+    }
+    memcpy(p, out->p, own.count * sizeof *p);
+    dea_lsq_free(out);
+  }
+  for (size_t k = 0; k < own.count; k++) {
+    out->at_bound[k] = out->at_bound[k] || (own.params[k].fixed && !model->params[k].fixed);
+  }
   return DEA_OK;
 }
 
@@ -507,7 +673,6 @@ dea_status dea_fit_model_solve(struct dea_context *ctx, const struct dea_fit_mod
   struct dea_arena memory = {.ctx = ctx};
   struct dea_lsq_problem problem, quick;
   double p[DEA_LSQ_PARAMS_MAX];
-  bool held[DEA_LSQ_PARAMS_MAX];
   struct dea_fit_series *few = dea_arena_alloc(&memory, rows->count, sizeof *few);
   const struct dea_fit_rows few_rows = {few, rows->count, SIZE_MAX, 0, 0, rows->std_Pa};
   dea_status status = dea_arena_status(&memory);
@@ -516,10 +681,9 @@ dea_status dea_fit_model_solve(struct dea_context *ctx, const struct dea_fit_mod
   status = status == DEA_OK ? dea_fit_model_problem(&memory, model, rows, &problem) : status;
   for (size_t j = 0; j < model->count; j++) {
     p[j] = model->params[j].start;
-    held[j] = model->params[j].fixed;
   }
   status = status == DEA_OK ? find_start(ctx, model, &quick, p) : status;
-  status = status == DEA_OK ? dea_lsq_solve(ctx, &problem, p, held, out) : status;
+  status = status == DEA_OK ? search_within(ctx, model, &quick, &problem, p, out) : status;
   dea_arena_free(&memory);
   return status;
 }

@@ -13,7 +13,9 @@ struct dea_fit_param {
   char name[DEA_FIT_PARAM_NAME];    // "c1", "modulus 2", "time 2"
   const char *unit;                 // of the value: "Pa", "1", "s"
   bool fixed, logarithmic, started; // started: the file says where the search begins
+  bool locks; // the tests reach where the chains would be fully stretched at `low`
   double start, low, high, scale;
+  double limit; // of a coefficient of either sign: beyond it, it could only cancel another one
   double prior, prior_std; // NAN: none
 };
 
@@ -56,7 +58,8 @@ void dea_fit_model_material(const struct dea_fit_model *model, const double *p,
 bool dea_fit_series_used(const struct dea_fit_series *series);
 
 /* Finds the minimum: moduli by linear least squares over a grid of the other parameters, on few
- * rows; from the best of them over all rows. */
+ * rows; from the best of them with a shear modulus at rest above 0 by variable projection (G. H.
+ * Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432), and then over all rows. */
 dea_status dea_fit_model_solve(struct dea_context *ctx, const struct dea_fit_model *model,
                                const struct dea_fit_rows *rows, struct dea_lsq_fit *out);
 /* The problem that the above solves; memory of the arena, which has to outlive it. */

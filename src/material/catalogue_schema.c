@@ -494,6 +494,24 @@ static dea_status check_correlations(const struct dea_reader *reader, const stru
                                 "parameter");
 }
 
+/* Below 0 the unstretched film is unstable: any small shear lowers its energy. */
+static dea_status check_rest(const struct dea_reader *reader, const struct dea_law_set *set)
+{
+  double param[DEA_LAW_PARAM_MAX];
+  bool complete = set->law != NULL && set->parameters != NULL;
+  for (size_t i = 0; complete && i < set->law->param_count; i++) {
+    complete = !isnan(set->param[i].si) || !set->law->params[i].required;
+    param[i] = isnan(set->param[i].si) ? 0 : set->param[i].si;
+  }
+  const double modulus_Pa = complete ? set->law->shear_modulus(param) : 1;
+  return modulus_Pa > 0 ? DEA_OK
+                        : dea_schema_error(reader, set->parameters->location,
+                                           "the shear modulus at rest is %.4g kPa with these "
+                                           "parameters; it has to be above 0, else the film has "
+                                           "no equilibrium",
+                                           1e-3 * modulus_Pa);
+}
+
 /* Two sets of one name: a design could never choose the second. */
 static dea_status check_id(const struct dea_reader *reader, const struct dea_label *id,
                            const struct dea_label *other)
@@ -617,6 +635,7 @@ dea_status dea_material_data_finish(const struct dea_reader *reader, const char 
               read_parameters(reader, inner, set, set->uncertainties, true, set->param_std));
     }
     DEA_TRY(reader->ctx, check_correlations(reader, set));
+    DEA_TRY(reader->ctx, check_rest(reader, set));
   }
   return check_sets(reader, data);
 }
