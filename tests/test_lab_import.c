@@ -221,9 +221,9 @@ static void test_refused(void **state)
 {
   (void)state;
   static const struct refused cases[] = {
-      {"t;V\n0;1,234.5\n1;2,345.6\n", 3, "a comma and a point"},
-      {"t,V\n0,\"1,234.5\"\n1,\"2,345.6\"\n", 3, "a comma and a point"},
-      {"t;V\n0;1.234.567,5\n1;-2.345.678,5\n", 3, "'-2.345.678,5' has a comma and a point"},
+      {"t;V\n0;1,234.5\n1;2,345.6\n", 2, "'1,234.5' has marks between thousands"},
+      {"t,V\n0,\"1,234.5\"\n1,\"2,345.6\"\n", 2, "between thousands"},
+      {"t;V\n0;1.234.567,5\n1;-2.345.678,5\n", 2, "'1.234.567,5' has marks between thousands"},
       {"t,V\n0,1\n1,oops\n2,3\n", 3, "'oops' stands in a line of numbers"},
       {"t,V\n0,1\n1,2\nt,V\n0,1\n1,2\n2,3\n", 2, "from line 5 on"},
       {"t,V\n0,1\n1,2\n2,3,4\n3,4,5\n4,5,6\n", 2, "from line 4 on"},

@@ -15,13 +15,29 @@ static size_t next_number(const struct dea_table_column *column, size_t i)
   return i;
 }
 
+/* How often a time is that of the row before. */
+static size_t count_repeats(const struct dea_table_column *column)
+{
+  size_t count = 0, before = next_number(column, 0);
+  for (size_t i = before; i < column->count; i = next_number(column, i + 1)) {
+    count += i > before && column->values[i] == column->values[before];
+    before = i;
+  }
+  return count;
+}
+
 static dea_status refuse(struct dea_context *ctx, const struct dea_table *table,
                          const struct dea_table_column *column, size_t row, size_t row_before)
 {
   const struct dea_location location = {table->file, 0, 0};
   double first = column->values[next_number(column, 0)];
   double before = column->values[row_before], now = column->values[row];
-  if (now == before) {
+  if (now == before && count_repeats(column) == 1) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
+                                 "the time column '%.60s' repeats %.10g in row %zu of its numbers: "
+                                 "row %zu repeats the time of row %zu: take one out",
+                                 column->name, now, row + 1, row + 1, row_before + 1));
+  } else if (now == before) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                  "the time column '%.60s' repeats %.10g in row %zu of its numbers: "
                                  "it has too few digits; give the rate in a mapping (rate: 10 kHz)",

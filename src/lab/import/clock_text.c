@@ -118,13 +118,15 @@ bool dea_clock_text(struct dea_slice field, double *days, double *seconds, bool 
   return field.length == 0;
 }
 
-bool dea_text_clock_next(struct dea_text_clock *clock, struct dea_slice field, double *seconds)
+bool dea_text_clock_next(struct dea_text_clock *clock, struct dea_slice field, double fraction_s,
+                         double *seconds)
 {
   double days, now_s;
   bool dated, first = !clock->begun;
   if (!dea_clock_text(field, &days, &now_s, &dated) || (clock->begun && dated != clock->dated)) {
     return false;
   }
+  now_s += fraction_s;
   if (first) {
     *clock = (struct dea_text_clock){true, dated, days, now_s, now_s, 0, -1, false};
   }

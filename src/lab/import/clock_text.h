@@ -19,7 +19,9 @@ struct dea_text_clock {
   double before_s;  // the last one since the first
   bool stands;      // one repeats or falls: it is no clock of rows
 };
-/* False: it is no such text, or one with a date where the others have none. */
-bool dea_text_clock_next(struct dea_text_clock *clock, struct dea_slice field, double *seconds);
+/* fraction_s: what a column of its own adds to it. False: it is no such text, or one with a date
+ * where the others have none. */
+bool dea_text_clock_next(struct dea_text_clock *clock, struct dea_slice field, double fraction_s,
+                         double *seconds);
 
 #endif

@@ -137,6 +137,9 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
   if ((a->rows > 0) != (b->rows > 0) || a->rows == 0) {
     return a->rows > 0;
   }
+  if (a->separator == ' ' && b->separator == '\t' && b->rows > a->rows) {
+    return false; // "1 000" between tabs
+  }
   if (a->all_numeric != b->all_numeric) {
     return a->all_numeric;
   }
@@ -146,55 +149,67 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
   return a->count > b->count; // "2," is a number and a missing one, not 2.0
 }
 
-/* "1,234.5" or "1.234,5": up to three digits, then a mark and three more as often as there are,
- * then the other mark. */
-static bool has_thousands(struct dea_slice field)
+/* The first field of the lines from `from` on that has marks between thousands and is no number;
+ * only: [best->count] columns that count, NULL: all. An error then. */
+static dea_status find_thousands(const struct sample *sample, size_t from,
+                                 const struct candidate *best, const bool *only, bool *found)
 {
-  size_t i = field.length > 0 && strchr("+-", field.text[0]) != NULL, digits = 0, groups = 0;
-  char mark = '\0';
-  for (; i < field.length; i++) {
-    char c = field.text[i];
-    if (isdigit((unsigned char)c)) {
-      digits++;
-      continue;
+  for (size_t i = from; i < sample->count && !*found; i++) {
+    struct dea_slice rest = sample->lines[i], field;
+    double value;
+    for (size_t k = 0; !*found && dea_slice_field(&rest, best->separator, &field); k++) {
+      *found = (only == NULL || (k < best->count && only[k])) && dea_slice_has_groups(field) &&
+               !dea_slice_number(field, best->decimal, &value);
     }
-    bool good = groups == 0 ? digits > 0 && digits <= 3 : digits == 3;
-    if (!good || (c != ',' && c != '.')) {
-      return false;
-    }
-    if (groups > 0 && c != mark) {
-      break;
-    }
-    mark = c;
-    digits = 0;
-    groups++;
-  }
-  for (size_t k = i + 1; k < field.length; k++) {
-    if (!isdigit((unsigned char)field.text[k])) {
-      return false;
-    }
-  }
-  return i < field.length;
-}
-
-static dea_status refuse_thousands(const struct sample *sample, size_t last, bool *found)
-{
-  static const char separators[] = {';', '\t', ',', '|', ' '};
-  for (size_t i = 0; i < sizeof separators; i++) {
-    struct dea_slice rest = sample->lines[last], field;
-    while (dea_slice_field(&rest, separators[i], &field)) {
-      if (has_thousands(field)) {
-        const struct dea_location location = {sample->file, sample->numbers[last],
-                                              (size_t)(field.text - sample->lines[last].text) + 1};
-        *found = true;
-        return dea_finding_add(sample->ctx, DEA_ERROR, location,
-                               "'%.*s' has a comma and a point: numbers with marks between "
-                               "thousands are not read; export them without",
-                               (int)(field.length < 40 ? field.length : 40), field.text);
-      }
+    if (*found) {
+      const struct dea_location location = {sample->file, sample->numbers[i],
+                                            (size_t)(field.text - sample->lines[i].text) + 1};
+      return dea_finding_add(sample->ctx, DEA_ERROR, location,
+                             "'%.*s' has marks between thousands: export numbers without them",
+                             (int)(field.length < 40 ? field.length : 40), field.text);
     }
   }
   return DEA_OK;
+}
+
+/* Whether a column of text has a number with the other decimal mark. */
+static bool has_other_decimal(const struct sample *sample, const struct candidate *best,
+                              const bool *text, char other)
+{
+  for (size_t i = best->first; i < sample->count; i++) {
+    struct dea_slice rest = sample->lines[i], field;
+    double value;
+    for (size_t k = 0; dea_slice_field(&rest, best->separator, &field); k++) {
+      if (k < best->count && text[k] && dea_slice_number(field, other, &value) && value == value &&
+          memchr(field.text, other, field.length) != NULL) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/* Numbers with marks between thousands would be columns of text. best->rows 0: no line is of
+ * numbers. text: room for the columns. */
+static dea_status refuse_thousands(const struct sample *sample, const struct candidate *best,
+                                   bool *text, bool *found)
+{
+  static const char separators[] = {';', '\t', ',', '|', ' '};
+  size_t count;
+  for (size_t i = 0; best->rows == 0 && i < sizeof separators && !*found; i++) {
+    const struct candidate one = {.separator = separators[i], .decimal = '.'};
+    DEA_TRY(sample->ctx, find_thousands(sample, sample->count - 1, &one, NULL, found));
+  }
+  if (best->rows == 0 || best->all_numeric) {
+    return DEA_OK;
+  }
+  classify_fields(sample->lines[best->last], best, text, &count);
+  DEA_TRY(sample->ctx, find_thousands(sample, best->first, best, text, found));
+  struct candidate other = *best; // "1.000" beside "0,120"
+  other.decimal = best->decimal == '.' ? ',' : '.';
+  return !*found && has_other_decimal(sample, best, text, other.decimal)
+             ? find_thousands(sample, best->first, &other, NULL, found)
+             : DEA_OK;
 }
 
 /* The best way to read the sample; best->rows 0 when there is none. */
@@ -315,6 +330,22 @@ static char find_decimal(struct dea_slice text, const struct candidate *best, co
   return best->decimal;
 }
 
+/* Fields at the ends of all lines of numbers that are empty and have no title, which separators
+ * there make. */
+static size_t count_trailing(const struct sample *sample, const struct candidate *best,
+                             const struct dea_csv_dialect *dialect)
+{
+  size_t full =
+      dialect->title_count == 0 ? 1 : dea_slice_count(dialect->titles[0], best->separator);
+  for (size_t i = best->first; i < sample->count && full < best->count; i++) {
+    struct dea_slice rest = sample->lines[i], field;
+    for (size_t k = 0; dea_slice_field(&rest, best->separator, &field); k++) {
+      full = field.length > 0 && k >= full ? k + 1 : full;
+    }
+  }
+  return full < best->count ? best->count - full : 0;
+}
+
 static dea_status fill(const struct sample *sample, struct dea_slice text,
                        const struct candidate *best, struct dea_csv_dialect *out)
 {
@@ -324,6 +355,7 @@ static dea_status fill(const struct sample *sample, struct dea_slice text,
   out->line = sample->numbers[best->first] - 1;
   out->decimal = find_decimal(text, best, out->data);
   find_titles(text, out);
+  out->count -= count_trailing(sample, best, out);
   // "1,5" below one title is a number with a decimal comma, not two
   if (out->separator == ',' && out->count == 2 && out->title_count > 0 &&
       dea_slice_count(out->titles[0], ',') == 1 &&
@@ -380,8 +412,8 @@ static dea_status find_dialect(struct sample *sample, struct dea_slice text, boo
   bool found = false;
   DEA_TRY(sample->ctx, take_sample(sample, text));
   choose(sample, flags, flags + DEA_TABLE_COLUMNS_MAX, &best);
-  if (sample->count > 0 && (best.rows == 0 || !best.all_numeric)) {
-    DEA_TRY(sample->ctx, refuse_thousands(sample, sample->count - 1, &found));
+  if (sample->count > 0) {
+    DEA_TRY(sample->ctx, refuse_thousands(sample, &best, flags, &found));
   }
   if (found) {
     return dea_fail(sample->ctx, DEA_E_IO, "'%s' cannot be read", sample->file);

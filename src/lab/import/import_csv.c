@@ -40,20 +40,27 @@ static bool part(const struct dea_csv_dialect *dialect, size_t line, struct dea_
   return false;
 }
 
-static bool is_row_of_units(struct dea_context *ctx, const struct dea_slice *fields, size_t count)
+/* text: columns of text, which may hold any word beside two units or more; NULL: none is. What is
+ * no unit is emptied then. */
+static bool is_row_of_units(struct dea_context *ctx, struct dea_slice *fields, size_t count,
+                            const bool *text)
 {
-  size_t units = 0;
+  size_t units = 0, words = 0;
   for (size_t i = 0; i < count; i++) {
     struct dea_slice f = fields[i];
     if (f.length > 2 && (f.text[0] == '(' || f.text[0] == '[')) {
       f = dea_slice_trim((struct dea_slice){f.text + 1, f.length - 2});
     }
-    if (f.length > 0 && !dea_title_is_unit(ctx, f)) {
+    bool unit = f.length > 0 && dea_title_is_unit(ctx, f);
+    bool word = f.length > 0 && !unit && text != NULL && (text[i] || dea_slice_is(f, "no."));
+    if (f.length > 0 && !unit && !word) {
       return false;
     }
-    units += f.length > 0;
+    units += unit;
+    words += word;
+    fields[i].length = word ? 0 : fields[i].length;
   }
-  return units > 0;
+  return units > (words > 0 ? 1 : 0);
 }
 
 /* Whether all fields are words: "Second,Volt" tells units where "t,V" names quantities. */
@@ -81,7 +88,7 @@ static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
       for (size_t i = 0; i < dialect->count; i++) {
         struct dea_slice name, unit;
         dea_title_split(ctx, titles[i], &name, &unit);
-        bool taken = i > 0 && unit.length == 0 && is_row_of_units(ctx, &out[i], 1);
+        bool taken = i > 0 && unit.length == 0 && is_row_of_units(ctx, &out[i], 1, NULL);
         out[i].length = taken ? out[i].length : 0;
         any = any || taken;
       }
@@ -100,7 +107,8 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
   const struct dea_location location = {table->file, dialect->line + 1, 1};
   *units = false;
   for (size_t i = 0; i < 2 && i < dialect->title_count; i++) {
-    if (part(dialect, i, unit_fields) && is_row_of_units(ctx, unit_fields, dialect->count) &&
+    if (part(dialect, i, unit_fields) &&
+        is_row_of_units(ctx, unit_fields, dialect->count, dialect->text) &&
         part(dialect, i + 1, titles)) {
       *units = true;
       return DEA_OK;
@@ -108,7 +116,7 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
   }
   if (part(dialect, 0, titles)) {
     *units = dialect->count > 1 && part(dialect, 0, unit_fields) &&
-             is_row_of_units(ctx, unit_fields, dialect->count) &&
+             is_row_of_units(ctx, unit_fields, dialect->count, NULL) &&
              are_words(unit_fields, dialect->count); // names and units in one
     *units = *units || find_vertical_units(ctx, text, dialect, titles, unit_fields);
     return DEA_OK;

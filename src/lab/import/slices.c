@@ -127,14 +127,21 @@ size_t dea_slice_count(struct dea_slice line, char separator)
 /* What instruments and programs write where they have no number. */
 static bool is_missing(struct dea_slice slice)
 {
-  static const char *const words[] = {"",         "nan",      "-nan",     "+nan",
-                                      "na",       "n/a",      "#n/a",     "null",
-                                      "none",     "-",        "--",       "---",
-                                      "inf",      "-inf",     "+inf",     "ol",
-                                      "-ol",      "+ol",      "1.#qnan",  "1.#ind",
-                                      "-1.#ind",  "1.#inf",   "-1.#inf",  "invalid",
-                                      "overload", "overflow", "infinity", "-infinity",
-                                      "nan(ind)", "-nan(ind)"}; // of Windows' printf
+  static const char *const words[] = {"",          "nan",      "-nan",      "+nan",      "na",
+                                      "n/a",       "#n/a",     "null",      "none",      "-",
+                                      "inf",       "-inf",     "+inf",      "ol",        "-ol",
+                                      "+ol",       "1.#qnan",  "1.#ind",    "-1.#ind",   "1.#inf",
+                                      "-1.#inf",   "invalid",  "overload",  "overflow",  "infinity",
+                                      "-infinity", "nan(ind)", "-nan(ind)", // of Windows' printf
+                                      "over",      "under",    "ovld",      "overrange", "n.a.",
+                                      "n. a.",     "nd",       "no data",   "burnout",   "b.o."};
+  size_t same = 0; // "+++++++" of data loggers, "#####" of spreadsheets
+  while (same < slice.length && slice.text[same] == slice.text[0]) {
+    same++;
+  }
+  if (same > 1 && same == slice.length && strchr("+-*#?", slice.text[0]) != NULL) {
+    return true;
+  }
   for (size_t i = 0; slice.length < 10 && i < sizeof words / sizeof words[0]; i++) {
     if (dea_slice_is(slice, words[i])) {
       return true;
@@ -157,6 +164,9 @@ static struct digits read_digits(struct dea_slice slice, char decimal)
   bool after = false;
   d.negative = slice.length > 0 && slice.text[0] == '-';
   i += slice.length > 0 && (slice.text[0] == '-' || slice.text[0] == '+');
+  while (i > 0 && i < slice.length && is_blank(slice.text[i])) { // "+  0.5"
+    i++;
+  }
   for (; i < slice.length; i++) {
     char c = slice.text[i];
     if (c == decimal && !after) {
@@ -214,18 +224,75 @@ bool dea_slice_number(struct dea_slice slice, char decimal, double *value)
     return true;
   }
   char copy[400];
+  size_t n = 0;
   if (slice.length >= sizeof copy) {
     return false;
   }
   for (size_t i = 0; i < slice.length; i++) {
     char c = slice.text[i];
-    copy[i] = (char)(c == decimal ? '.' : c == 'd' || c == 'D' ? 'e' : c);
+    if (!is_blank(c)) {
+      copy[n++] = (char)(c == decimal ? '.' : c == 'd' || c == 'D' ? 'e' : c);
+    }
   }
-  copy[slice.length] = '\0';
+  copy[n] = '\0';
   const char *end;
   *value = dea_text_to_double(copy, &end);
   *value = or_missing(*value);
   return *end == '\0';
+}
+
+/* Bytes of a mark between thousands at the start of a text; 0: there is none. */
+static size_t group_mark(struct dea_slice slice)
+{
+  static const char *const marks[] = {
+      ".", ",", "'", " ", "_", "\xc2\xa0", "\xe2\x80\xaf", "\xe2\x80\x89", "\xe2\x80\x99", "\xa0"};
+  for (size_t i = 0; i < sizeof marks / sizeof marks[0]; i++) {
+    const size_t n = strlen(marks[i]);
+    if (slice.length >= n && memcmp(slice.text, marks[i], n) == 0) {
+      return n;
+    }
+  }
+  return 0;
+}
+
+bool dea_slice_has_groups(struct dea_slice slice)
+{
+  size_t i = slice.length > 0 && strchr("+-", slice.text[0]) != NULL, digits = 0, groups = 0;
+  struct dea_slice mark = {"", 0};
+  if (i >= slice.length || slice.text[i] == '0') {
+    return false;
+  }
+  while (i < slice.length) {
+    const struct dea_slice rest = {slice.text + i, slice.length - i};
+    const size_t n = group_mark(rest);
+    if (isdigit((unsigned char)slice.text[i])) {
+      digits++;
+      i++;
+      continue;
+    }
+    if (n == 0 || (groups == 0 ? digits < 1 || digits > 3 : digits != 3)) {
+      return false;
+    }
+    if (groups > 0 && !dea_slice_same(mark, (struct dea_slice){rest.text, n})) {
+      if (strchr(".,", slice.text[i]) == NULL) {
+        return false;
+      }
+      break; // the decimal mark
+    }
+    mark = (struct dea_slice){rest.text, n};
+    groups++;
+    digits = 0;
+    i += n;
+  }
+  if (i == slice.length) {
+    return groups > 0 && digits == 3;
+  }
+  for (i++; i < slice.length; i++) {
+    if (!isdigit((unsigned char)slice.text[i])) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool dea_slice_same(struct dea_slice a, struct dea_slice b)

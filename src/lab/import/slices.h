@@ -36,6 +36,10 @@ size_t dea_slice_count(struct dea_slice line, char separator);
  */
 bool dea_slice_number(struct dea_slice slice, char decimal, double *value);
 
+/* Whether it is a number as people write it with marks between thousands: "1.002.000", "1'000",
+ * "2 000,5", also where the mark could be a decimal one ("1.000"). */
+bool dea_slice_has_groups(struct dea_slice slice);
+
 /* True for the same bytes; of empty ones the text may be NULL. */
 bool dea_slice_same(struct dea_slice a, struct dea_slice b);
 

@@ -64,27 +64,6 @@ bool dea_text_file_is(const unsigned char *head, size_t length)
   return utf16_mark(head, length) != 0 || memchr(head, 0, length) == NULL;
 }
 
-/* Whether what is not ASCII comes in pairs as Chinese letters are written (GB 2312, the letters of
- * GB 18030 that are used): two of them at least, and no single byte as those of Latin-1. UTF-8 is
- * none: its letters have three bytes, or a second one below 0xa1 sooner or later. */
-static bool is_chinese(const unsigned char *bytes, size_t length)
-{
-  enum { ENOUGH = 2 };
-  size_t pairs = 0;
-  for (size_t i = 0; i < length; i++) {
-    if (bytes[i] >= 0x80) {
-      bool pair = i + 1 < length && bytes[i] >= 0xa1 && bytes[i] <= 0xf7 && bytes[i + 1] >= 0xa1 &&
-                  bytes[i + 1] <= 0xfe;
-      if (!pair) {
-        return false;
-      }
-      pairs++;
-      i++;
-    }
-  }
-  return pairs >= ENOUGH;
-}
-
 static bool is_utf8(const unsigned char *bytes, size_t length)
 {
   for (size_t i = 0; i < length;) {
@@ -102,28 +81,137 @@ static bool is_utf8(const unsigned char *bytes, size_t length)
   return true;
 }
 
-/* Text of GB 18030 as UTF-8; *copy stays NULL where the system cannot. */
-static dea_status from_chinese(struct dea_context *ctx, struct dea_slice text, char **copy,
-                               struct dea_slice *out)
+/* What the bytes beyond ASCII look like, of a text that is no UTF-8. */
+struct letters {
+  size_t runs;       // of three and more, which words of Latin-1 do not have
+  bool odd;          // one of these has an odd number: single bytes
+  size_t japanese;   // pairs of Shift-JIS that begin with 0x81 to 0x9f
+  bool pairs;        // all are pairs from 0xa1 on
+  size_t count, far; // of these; those beyond the Korean ones (0xb0 to 0xc8) and signs
+  bool cyrillic;     // all are letters of Windows-1251
+};
+
+static struct letters look_at_letters(const unsigned char *bytes, size_t length)
 {
-  iconv_t converter = iconv_open("UTF-8", "GB18030");
-  if (converter == (iconv_t)-1) {
-    return DEA_OK;
+  struct letters l = {.pairs = true, .cyrillic = true};
+  size_t run = 0;
+  for (size_t i = 0; i <= length; i++) {
+    if (i < length && bytes[i] >= 0x80) {
+      run++;
+      l.cyrillic = l.cyrillic && (bytes[i] >= 0xc0 || bytes[i] == 0xa8 || bytes[i] == 0xb8);
+      continue;
+    }
+    l.runs += run >= 3;
+    l.odd = l.odd || (run >= 3 && run % 2 == 1);
+    run = 0;
   }
-  size_t left = text.length, most = 2 * text.length + 4, room = most; // 3 bytes for 2
+  for (size_t i = 0; i < length && l.pairs; i++) {
+    const bool high = bytes[i] >= 0x80;
+    l.pairs = !high || (i + 1 < length && bytes[i] >= 0xa1 && bytes[i] <= 0xf7 &&
+                        bytes[i + 1] >= 0xa1 && bytes[i + 1] <= 0xfe);
+    l.count += high;
+    l.far += high && bytes[i] > 0xc8;
+    i += high;
+  }
+  for (size_t i = 0; i + 1 < length; i++) {
+    const bool lead = (bytes[i] >= 0x81 && bytes[i] <= 0x9f) || bytes[i] >= 0xe0;
+    l.japanese += bytes[i] >= 0x81 && bytes[i] <= 0x9f;
+    i += lead;
+  }
+  return l;
+}
+
+/* The encoding of bytes that are no UTF-8, by a rule each: Shift-JIS has pairs whose first byte no
+ * other one uses for letters; of Chinese and Korean ones only the Chinese go beyond 0xc8; Cyrillic
+ * words have odd numbers of letters; Latin-1 has signs and single letters. "": Latin-1, which stays
+ * as it is. NULL: none fits, or more than one. */
+static const char *encoding_of(const unsigned char *bytes, size_t length)
+{
+  enum { ENOUGH = 2 };
+  const struct letters l = look_at_letters(bytes, length);
+  if (l.pairs && l.count >= ENOUGH) {
+    return l.far > 0 && !(l.cyrillic && !l.odd && l.runs > 0) ? "GB18030" : NULL;
+  }
+  if (l.cyrillic && l.odd) {
+    return "CP1251";
+  }
+  return l.japanese >= ENOUGH ? "CP932" : l.runs == 0 ? "" : NULL;
+}
+
+/* The text as UTF-8. false: it is none of that encoding, or out of memory, and *copy is NULL. */
+static bool convert(struct dea_context *ctx, const char *encoding, struct dea_slice text,
+                    char **copy, struct dea_slice *out)
+{
+  iconv_t converter = iconv_open("UTF-8", encoding);
+  if (converter == (iconv_t)-1) {
+    return false;
+  }
+  size_t left = text.length, most = 3 * text.length + 4, room = most;
   *copy = dea_alloc(ctx, most, 1);
   char *from = (char *)text.text, *to = *copy;
-  bool good = to != NULL && iconv(converter, &from, &left, &to, &room) != (size_t)-1;
+  const bool good = to != NULL && iconv(converter, &from, &left, &to, &room) != (size_t)-1;
   iconv_close(converter);
-  if (*copy == NULL) {
-    return DEA_E_MEMORY;
-  }
-  if (good) {
-    *out = (struct dea_slice){*copy, most - room};
-  } else {
+  *out = (struct dea_slice){*copy, most - room};
+  if (!good) {
     dea_free(ctx, *copy);
     *copy = NULL;
   }
+  return good;
+}
+
+/* Where the first byte beyond ASCII stands. */
+static struct dea_location find_letter(const char *file, struct dea_slice text)
+{
+  struct dea_location at = {file, 1, 1};
+  for (size_t i = 0; i < text.length && (unsigned char)text.text[i] < 0x80; i++) {
+    at.column = text.text[i] == '\n' ? 1 : at.column + 1;
+    at.line += text.text[i] == '\n';
+  }
+  return at;
+}
+
+/* Text that is no UTF-8 as such; Latin-1 stays. */
+static dea_status decode(struct dea_context *ctx, const char *file, char **copy,
+                         struct dea_slice *text)
+{
+  const unsigned char *bytes = (const unsigned char *)text->text;
+  const size_t head = text->length < HEAD_BYTES ? text->length : HEAD_BYTES;
+  if (is_utf8(bytes, head)) {
+    return DEA_OK;
+  }
+  const char *encoding = encoding_of(bytes, head);
+  if (encoding != NULL && (encoding[0] == '\0' || convert(ctx, encoding, *text, copy, text))) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_context_status(ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK);
+  DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, find_letter(file, *text),
+                               "letters in an encoding that is not known: save as UTF-8"));
+  return dea_fail(ctx, DEA_E_IO, "'%s' cannot be read", file);
+}
+
+/* Full-width signs of Japanese and Chinese keyboards ("\xef\xbc\x88kV\xef\xbc\x89") become those
+ * of ASCII. */
+static dea_status narrow(struct dea_context *ctx, char **copy, struct dea_slice *text)
+{
+  if (dea_slice_find(*text, "\xef\xbc") == text->length &&
+      dea_slice_find(*text, "\xef\xbd") == text->length) {
+    return DEA_OK;
+  }
+  char *out = dea_alloc(ctx, text->length, 1);
+  if (out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  size_t n = 0;
+  for (size_t i = 0; i < text->length; i++) {
+    const unsigned char *c = (const unsigned char *)text->text + i;
+    const bool wide = i + 2 < text->length && c[0] == 0xef &&
+                      ((c[1] == 0xbc && c[2] >= 0x81) || (c[1] == 0xbd && c[2] <= 0x9e));
+    out[n++] = (char)(wide ? c[2] + (c[1] == 0xbd ? 0x60 : 0x20) - 0x80 : c[0]);
+    i += wide ? 2 : 0;
+  }
+  dea_free(ctx, *copy);
+  *copy = out;
+  *text = (struct dea_slice){out, n};
   return DEA_OK;
 }
 
@@ -152,9 +240,7 @@ static dea_status open_text(struct dea_context *ctx, const char *file, const uns
                     "'%s' is no text: byte %zu is 0 (UTF-16 needs its byte order mark)", file,
                     (size_t)(zero - bytes));
   }
-  size_t head = length < HEAD_BYTES ? length : HEAD_BYTES;
-  return is_chinese(bytes, head) && !is_utf8(bytes, head) ? from_chinese(ctx, *text, copy, text)
-                                                          : DEA_OK;
+  return decode(ctx, file, copy, text);
 }
 
 /* Lines that end with a carriage return alone get line feeds. *copy: as of open_text. */
@@ -185,6 +271,9 @@ dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *byte
   char *copy;
   struct dea_slice text;
   dea_status status = open_text(ctx, out->file, bytes, length, &copy, &text);
+  if (status == DEA_OK) {
+    status = narrow(ctx, &copy, &text);
+  }
   if (status == DEA_OK) {
     status = end_lines(ctx, &copy, &text);
   }

@@ -6,8 +6,9 @@
 #include "lab/import/slices.h"
 
 /* Hands the bytes as text to a reader: without a byte order mark, UTF-16 with one as UTF-8, and so
- * Chinese text of GB 18030. UTF-8 and Latin-1 stay as they are: what is not ASCII is in names only,
- * which dea_table_add converts. DEA_E_IO when a byte 0 says that it is no text. */
+ * text of Shift-JIS, GB 18030 and Windows-1251. UTF-8 and Latin-1 stay as they are: what is not
+ * ASCII is in names only, which dea_table_add converts. Letters that may be of several encodings
+ * are a finding, and DEA_E_IO, as is a byte 0, which says that it is no text. */
 dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *bytes, size_t length,
                               dea_status (*read)(struct dea_context *ctx, struct dea_slice text,
                                                  struct dea_table *out),

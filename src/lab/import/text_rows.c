@@ -16,6 +16,7 @@ struct marks {
   size_t others;    // with a mark that can only be the decimal one
   size_t plain;     // without a mark
   size_t line;      // first one of the first kind
+  struct dea_slice first;
 };
 
 struct rows {
@@ -26,6 +27,8 @@ struct rows {
   double *row;                   // [dialect->count]
   struct marks *marks;           // [dialect->count]
   struct dea_text_clock *clocks; // [dialect->count], begun for columns of times as text
+  size_t fraction;               // column with the "ms" of the clock before it, 0: none
+  double fraction_s;             // its unit
   size_t count;                  // of rows so far
   size_t blank;                  // lines of separators only since the last row
   size_t errors;
@@ -99,8 +102,35 @@ static struct dea_slice first_field(const struct rows *rows, struct dea_slice te
 /* Whether a column of text is one of times, by its first row. */
 static bool is_clock(struct rows *rows, struct dea_slice text, size_t index)
 {
-  double seconds;
-  return dea_text_clock_next(&rows->clocks[index], first_field(rows, text, index), &seconds);
+  double seconds, part = 0;
+  if (rows->fraction == index + 1) {
+    dea_slice_number(first_field(rows, text, index + 1), rows->dialect->decimal, &part);
+  }
+  return dea_text_clock_next(&rows->clocks[index], first_field(rows, text, index),
+                             part * rows->fraction_s, &seconds);
+}
+
+/* A column that is called "ms" or "us", beside one of times as text, belongs to those. */
+static void find_fraction(struct rows *rows, struct dea_slice text, const struct dea_slice *titles,
+                          const struct dea_slice *units)
+{
+  for (size_t i = rows->dialect->skipped + 1; i < rows->dialect->count; i++) {
+    struct dea_slice name, unit;
+    char word[64];
+    double factor, days, seconds;
+    bool dated;
+    name_and_unit(rows->ctx, titles[i], units != NULL ? &units[i] : NULL, &name, &unit);
+    unit = unit.length > 0 ? unit : name;
+    snprintf(word, sizeof word, "%.*s", shown(unit), unit.text);
+    const char *si = unit.length > 0 ? dea_title_unit(rows->ctx, word, &factor) : NULL;
+    if ((name.length == 0 || dea_slice_same(name, unit)) && si != NULL && strcmp(si, "s") == 0 &&
+        factor < 0.5 && !rows->dialect->text[i] && rows->dialect->text[i - 1] &&
+        dea_clock_text(first_field(rows, text, i - 1), &days, &seconds, &dated)) {
+      rows->fraction = i;
+      rows->fraction_s = factor;
+      return;
+    }
+  }
 }
 
 /* Whether a column of numbers has the times, by its unit or its name. */
@@ -115,7 +145,7 @@ static bool has_times(const struct rows *rows, const struct dea_slice *titles,
     snprintf(text, sizeof text, "%.*s", shown(unit), unit.text);
     const char *si = unit.length > 0 ? dea_title_unit(rows->ctx, text, &factor) : NULL;
     snprintf(text, sizeof text, "%.*s", shown(name), name.text);
-    if (i >= rows->dialect->skipped && !rows->dialect->text[i] &&
+    if (i >= rows->dialect->skipped && !rows->dialect->text[i] && i != rows->fraction &&
         ((si != NULL && strcmp(si, "s") == 0) || dea_guess_by_name(text) == DEA_GUESS_TIME)) {
       return true;
     }
@@ -128,10 +158,11 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
 {
   static const struct dea_slice second = {"s", 1};
   size_t room = rows_room(text, rows->dialect);
+  find_fraction(rows, text, titles, units);
   bool numbers = has_times(rows, titles, units);
   for (size_t i = 0; i < rows->dialect->count; i++) {
     rows->column[i] = NONE;
-    if (i < rows->dialect->skipped) {
+    if (i < rows->dialect->skipped || (i > 0 && i == rows->fraction)) {
       continue;
     }
     if (!numbers && rows->dialect->text[i] && is_clock(rows, text, i)) {
@@ -193,7 +224,10 @@ static void count_marks(struct marks *marks, struct dea_slice field, char decima
   } else if (field.text[mark] == decimal) {
     bool like = before >= 1 && before <= 3 && field.text[sign] != '0' &&
                 digits(field, mark + 1) == 3 && mark + 4 == field.length;
-    marks->line = like && marks->thousands == 0 ? line : marks->line;
+    if (like && marks->thousands == 0) {
+      marks->line = line;
+      marks->first = field;
+    }
     marks->thousands += like;
     marks->others += !like;
   }
@@ -217,22 +251,30 @@ static dea_status refuse_thousands(struct rows *rows)
     rows->errors++;
     DEA_TRY(rows->ctx,
             dea_finding_add(rows->ctx, DEA_ERROR, location,
-                            "the '%c' in '%.60s' seems to stand between thousands, since three "
-                            "digits always follow it: export numbers without such marks, or with "
-                            "the same number of decimals throughout",
-                            rows->dialect->decimal, rows->table->columns[rows->column[i]].name));
+                            "the '%c' of '%.*s' in '%.60s' seems to stand between thousands, since "
+                            "three digits always follow it: export numbers without such marks, or "
+                            "with the same number of decimals throughout",
+                            rows->dialect->decimal, shown(m->first), m->first.text,
+                            rows->table->columns[rows->column[i]].name));
   }
   return DEA_OK;
 }
 
+/* rest: the fields behind it. */
 static dea_status read_field(struct rows *rows, size_t line, struct dea_slice whole, size_t index,
-                             struct dea_slice field)
+                             struct dea_slice field, struct dea_slice rest)
 {
   if (index >= rows->dialect->count || rows->column[index] == NONE) {
     return DEA_OK;
   }
-  bool clock = rows->clocks[index].begun;
-  if (clock && dea_text_clock_next(&rows->clocks[index], field, &rows->row[index])) {
+  bool clock = rows->clocks[index].begun, parted = clock && rows->fraction == index + 1;
+  struct dea_slice part_field = {"", 0};
+  double part = 0;
+  bool good = !parted || (dea_slice_field(&rest, rows->dialect->separator, &part_field) &&
+                          dea_slice_number(part_field, rows->dialect->decimal, &part));
+  if (clock && good &&
+      dea_text_clock_next(&rows->clocks[index], field, part * rows->fraction_s,
+                          &rows->row[index])) {
     return DEA_OK;
   }
   if (!clock && dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
@@ -245,6 +287,11 @@ static dea_status read_field(struct rows *rows, size_t line, struct dea_slice wh
   if (clock) {
     return dea_finding_add(rows->ctx, DEA_ERROR, location,
                            "'%.*s' is no time as those above it are", shown(field), field.text);
+  }
+  if (dea_slice_has_groups(field)) {
+    return dea_finding_add(rows->ctx, DEA_ERROR, location,
+                           "'%.*s' has marks between thousands: export numbers without them",
+                           shown(field), field.text);
   }
   return dea_finding_add(rows->ctx, DEA_ERROR, location,
                          "'%.*s' is not a number%s; write a missing one as NaN or leave it empty",
@@ -278,7 +325,7 @@ static dea_status read_line(struct rows *rows, size_t line, struct dea_slice who
   size_t before = rows->errors;
   rest = whole;
   for (size_t i = 0; dea_slice_field(&rest, dialect->separator, &field); i++) {
-    DEA_TRY(rows->ctx, read_field(rows, line, whole, i, field));
+    DEA_TRY(rows->ctx, read_field(rows, line, whole, i, field, rest));
   }
   if (rows->errors == before) {
     keep_row(rows);

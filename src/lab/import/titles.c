@@ -32,16 +32,61 @@ static int read_unit(struct dea_context *ctx, const char *unit, const char **si,
   return 0;
 }
 
+/* The unit that a word of another alphabet, or a letter for a whole unit, stands for; the word
+ * itself for others. */
+static const char *in_latin(const char *unit)
+{
+  static const char *const words[][2] = {{"\xe7\xa7\x92", "s"},
+                                         {"\xe3\x83\x9f\xe3\x83\xaa\xe7\xa7\x92", "ms"},
+                                         {"\xe6\xaf\xab\xe7\xa7\x92", "ms"},
+                                         {"\xec\xb4\x88", "s"},
+                                         {"\xd1\x81", "s"},
+                                         {"\xd0\xbc\xd1\x81", "ms"},
+                                         {"\xd0\xbc\xd0\xba\xd1\x81", "us"},
+                                         {"\xd0\x92", "V"},
+                                         {"\xd0\xba\xd0\x92", "kV"},
+                                         {"\xd0\xbc\xd0\x92", "mV"},
+                                         {"\xd0\x90", "A"},
+                                         {"\xd0\xbc\xd0\x90", "mA"},
+                                         {"\xd0\xbc\xd0\xba\xd0\x90", "uA"},
+                                         {"\xd0\xbc", "m"},
+                                         {"\xd0\xbc\xd0\xbc", "mm"},
+                                         {"\xd0\xbc\xd0\xba\xd0\xbc", "um"},
+                                         {"\xd0\x9d", "N"},
+                                         {"\xd0\xbc\xd0\x9d", "mN"},
+                                         {"\xd0\xba\xd0\x9f\xd0\xb0", "kPa"},
+                                         {"\xd0\x9c\xd0\x9f\xd0\xb0", "MPa"},
+                                         {"\xe3\x8e\x9c", "mm"},
+                                         {"\xe3\x8e\x9b", "um"},
+                                         {"\xe3\x8e\x9d", "cm"},
+                                         {"\xe3\x8e\xb2", "us"},
+                                         {"\xe3\x8e\xb3", "ms"},
+                                         {"\xe3\x8e\xb8", "kV"},
+                                         {"\xe3\x8e\xb7", "mV"},
+                                         {"\xe3\x8e\x83", "mA"},
+                                         {"\xe3\x8e\x82", "uA"},
+                                         {"\xe3\x8e\xaa", "kPa"},
+                                         {"\xe3\x8e\xab", "MPa"}};
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    if (strcmp(unit, words[i][0]) == 0) {
+      return words[i][1];
+    }
+  }
+  return unit;
+}
+
 const char *dea_title_unit(struct dea_context *ctx, const char *unit, double *factor)
 {
   const char *si = NULL;
-  char lower[UNIT_SIZE];
+  char lower[UNIT_SIZE], own[UNIT_SIZE];
+  unit = in_latin(unit);
   size_t n = strlen(unit);
   if (n == 0 || n >= UNIT_SIZE) {
     return NULL;
   }
-  if (n == 2 && unit[0] == 'K' && strchr("VN", unit[1]) != NULL) { // "KV" is no kelvin
-    unit = unit[1] == 'V' ? "kV" : "kN";
+  if (strcmp(unit, "KV") == 0 || strcmp(unit, "KN") == 0 || strcmp(unit, "KPa") == 0) {
+    snprintf(own, sizeof own, "k%s", unit + 1); // no kelvin
+    unit = own;
   }
   if (read_unit(ctx, unit, &si, factor) != 1 && n > 2) { // "Volts", but not "MV" as "mv"
     for (size_t i = 0; i <= n; i++) {
