@@ -2,7 +2,7 @@
 #define _GNU_SOURCE
 #include "import_text.h"
 
-#include "lab/import/clock_text.h"
+#include "table/clock_text.h"
 
 /* All fixtures hold the same pull of a strip: 10 Hz, these displacements and forces. */
 static const double pulled_m[] = {0, 0.167e-3, 0.334e-3, 0.501e-3};

@@ -27,7 +27,7 @@ NOT_SET = "-Wno-analyzer-use-of-uninitialized-value"
 # False findings of gcc 12: (file, warning, part of the source line, why it is none).
 FALSE = [
     ("src/lab/import/mat.c", "-Wanalyzer-null-dereference", "type->", "open_module sets it or fails"),
-    ("src/lab/import/text_file.c", "-Wanalyzer-malloc-leak", "converter == (iconv_t)-1",
+    ("src/table/text_file.c", "-Wanalyzer-malloc-leak", "converter == (iconv_t)-1",
      "on that way none was opened"),
     ("src/geometry/dxf_text.c", "-Wanalyzer-malloc-leak", "return before + 4", "the same"),
     ("src/api/design.c", "-Wanalyzer-null-argument", "strlen(text)",

@@ -5,29 +5,8 @@
 #define DEA_LAB_IMPORT_IMPORT_H
 
 #include "base/schema.h"
-#include "lab/import/slices.h"
 #include "lab/recording/recording.h"
-
-enum { DEA_TABLE_COLUMNS_MAX = 8192 };
-
-/* A column as the file has it. */
-struct dea_table_column {
-  char *name;             // "Dev1/ai0", UTF-8; owned
-  char *unit;             // as written, "": none; owned
-  double start, interval; // of its samples when the file says so [s]; interval NAN: it does not
-  double *values;         // [count], owned; NAN: missing
-  size_t count;
-  size_t clock;    // 1 + the column with its times when the file says so; 0: it does not
-  double origin_s; // of times of day, which count from their first: that, since some midnight; NAN
-};
-
-struct dea_table {
-  const char *file;   // interned
-  const char *format; // name of its importer
-  struct dea_table_column *columns;
-  size_t column_count, column_room;
-  char *note; // what the file says of itself; NULL; owned
-};
+#include "table/table.h"
 
 struct dea_importer {
   const char *name;    // "csv"
@@ -50,19 +29,10 @@ dea_status dea_importer_read(struct dea_context *ctx, const struct dea_importer 
                              struct dea_table *out);
 /* Whether a file's name ends so (".csv"; lower case), in letters of either case. */
 bool dea_name_ends(const char *file, const char *ending);
-/* Adds an empty column with room for `room` values; NULL on failure. Name and unit become UTF-8. */
-struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table *table,
-                                       const char *name, size_t name_length, const char *unit,
-                                       size_t unit_length, size_t room);
-/* What the file says of itself, instead of what was there. */
-dea_status dea_table_note(struct dea_context *ctx, struct dea_table *table, const char *text,
-                          size_t length);
-
 /* Reads a file with the format that recognises it, or the one of that name (NULL: any). out: owned
  * by the caller, NULL on failure. */
 dea_status dea_table_read(struct dea_context *ctx, const char *file, const char *format,
                           struct dea_table **out);
-void dea_table_destroy(struct dea_context *ctx, struct dea_table *table);
 
 /* What columns mean; read from YAML, or guessed from names and units. */
 struct dea_mapping;

@@ -4,9 +4,9 @@
  * (...)" and "% Data (w (um))", each above its own rows. */
 #include "lab/import/import.h"
 
-#include "lab/import/text_file.h"
-#include "lab/import/text_rows.h"
-#include "lab/import/titles.h"
+#include "table/text_file.h"
+#include "table/text_rows.h"
+#include "table/titles.h"
 
 #include <ctype.h>
 #include <string.h>

@@ -6,7 +6,7 @@
  * Source: NI, "Specification for the LabVIEW Measurement File (.lvm)". */
 #include "lab/import/lvm.h"
 
-#include "lab/import/text_file.h"
+#include "table/text_file.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* MATLAB's .mat files. */
 #include "base/h5.h"
 #include "lab/import/mat.h"
-#include "lab/import/titles.h"
+#include "table/titles.h"
 
 #include <stdint.h>
 #include <stdio.h>

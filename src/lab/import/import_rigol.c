@@ -6,8 +6,8 @@
  *                                                  0,2.00e+00,1.00e-02, */
 #include "lab/import/import.h"
 
-#include "lab/import/text_file.h"
-#include "lab/import/text_rows.h"
+#include "table/text_file.h"
+#include "table/text_rows.h"
 
 #include <math.h>
 

@@ -8,8 +8,8 @@
 #include "lab/import/import.h"
 
 #include "base/text.h"
-#include "lab/import/text_file.h"
-#include "lab/import/text_rows.h"
+#include "table/text_file.h"
+#include "table/text_rows.h"
 
 enum { KEY, VALUE, BESIDE, TIME, SAMPLE, FIELDS, HEADER_LINES = 40 };
 

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "lab/import/import_list.h"
-#include "lab/import/text_file.h"
+#include "table/text_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -27,6 +27,17 @@ const struct dea_importer *const *dea_importer_all(size_t *count)
 #undef IMPORTER_ROW
   *count = sizeof all / sizeof all[0];
   return all;
+}
+
+bool dea_name_ends(const char *file, const char *ending)
+{
+  size_t n = strlen(file), m = strlen(ending);
+  bool same = n >= m;
+  for (size_t i = 0; same && i < m; i++) {
+    char c = file[n - m + i];
+    same = (c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) == ending[i];
+  }
+  return same;
 }
 
 static dea_status find_format(struct dea_context *ctx, const char *format,

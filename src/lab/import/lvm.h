@@ -3,7 +3,7 @@
 #define DEA_LAB_IMPORT_LVM_H
 
 #include "lab/import/import.h"
-#include "lab/import/slices.h"
+#include "table/slices.h"
 
 enum { DEA_LVM_CHANNELS_MAX = 1024 };
 

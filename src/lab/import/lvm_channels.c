@@ -1,6 +1,6 @@
 #include "lab/import/lvm.h"
 
-#include "lab/import/clock_text.h"
+#include "table/clock_text.h"
 
 #include <math.h>
 #include <stdint.h>

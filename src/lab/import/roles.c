@@ -3,7 +3,8 @@
 #include "lab/import/guess.h"
 #include "lab/import/mapping.h"
 #include "lab/import/scale.h"
-#include "lab/import/titles.h"
+#include "table/titles.h"
+#include "table/words.h"
 
 #include <math.h>
 #include <string.h>
@@ -225,7 +226,7 @@ static dea_status guess_times(struct work *work)
       role->why = odd_unit;
       continue;
     }
-    enum dea_clock_part clock = dea_guess_clock(column->name);
+    enum dea_clock_part clock = dea_word_clock(column->name);
     const char *si = dea_title_unit(work->ctx, column->unit, &factor);
     if (column->count == 1 && clock != DEA_CLOCK_NOTHING) {
       bool rate = clock == DEA_CLOCK_RATE;
@@ -349,7 +350,7 @@ static double lone_clock(const struct work *work, bool start)
     const struct dea_table_column *column = &work->table->columns[k];
     if (work->roles[k].use == DEA_USE_CLOCK) {
       double value = column->values[0] * work->roles[k].factor;
-      enum dea_clock_part part = dea_guess_clock(column->name);
+      enum dea_clock_part part = dea_word_clock(column->name);
       value = part == DEA_CLOCK_RATE ? 1 / value : value;
       if ((part == DEA_CLOCK_START) == start && isfinite(value) && (start || value > 0)) {
         return value;

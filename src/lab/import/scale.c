@@ -2,7 +2,7 @@
 
 #include "base/text.h"
 #include "base/units.h"
-#include "lab/import/titles.h"
+#include "table/titles.h"
 
 #include <stdio.h>
 #include <string.h>

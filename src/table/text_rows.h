@@ -1,8 +1,8 @@
 /* Rows of numbers of a text file into the columns of a table. */
-#ifndef DEA_LAB_IMPORT_TEXT_ROWS_H
-#define DEA_LAB_IMPORT_TEXT_ROWS_H
+#ifndef DEA_TABLE_TEXT_ROWS_H
+#define DEA_TABLE_TEXT_ROWS_H
 
-#include "lab/import/csv_dialect.h"
+#include "table/csv_dialect.h"
 
 /* Adds a column for each one that is not of text, with its title (titles: [dialect->count]; units:
  * the same, NULL to find them in the titles), and reads all rows into them. Errors are findings

@@ -1,9 +1,9 @@
 /* Bytes of a text file, whatever its encoding, as text that slices are taken of. */
-#ifndef DEA_LAB_IMPORT_TEXT_FILE_H
-#define DEA_LAB_IMPORT_TEXT_FILE_H
+#ifndef DEA_TABLE_TEXT_FILE_H
+#define DEA_TABLE_TEXT_FILE_H
 
-#include "lab/import/import.h"
-#include "lab/import/slices.h"
+#include "table/slices.h"
+#include "table/table.h"
 
 /* Hands the bytes as text to a reader: without a byte order mark, UTF-16 with one as UTF-8, and so
  * text of Shift-JIS, GB 18030 and Windows-1251. UTF-8 and Latin-1 stay as they are: what is not

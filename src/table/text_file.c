@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L // iconv
-#include "lab/import/text_file.h"
+#include "table/text_file.h"
 
 #include <iconv.h>
 #include <string.h>

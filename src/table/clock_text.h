@@ -1,8 +1,8 @@
 /* Times that are written as text: "09:15:00.5", "2026-03-02 09:15:00". */
-#ifndef DEA_LAB_IMPORT_CLOCK_TEXT_H
-#define DEA_LAB_IMPORT_CLOCK_TEXT_H
+#ifndef DEA_TABLE_CLOCK_TEXT_H
+#define DEA_TABLE_CLOCK_TEXT_H
 
-#include "lab/import/slices.h"
+#include "table/slices.h"
 
 /* A time of the day in seconds (hours, minutes, seconds, with a decimal point or comma), with a
  * date before it or not: YYYY-MM-DD, YYYY/MM/DD or DD.MM.YYYY, then a blank or T; in days since

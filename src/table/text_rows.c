@@ -1,8 +1,8 @@
-#include "lab/import/text_rows.h"
+#include "table/text_rows.h"
 
-#include "lab/import/clock_text.h"
-#include "lab/import/guess.h"
-#include "lab/import/titles.h"
+#include "table/clock_text.h"
+#include "table/titles.h"
+#include "table/words.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -146,7 +146,7 @@ static bool has_times(const struct rows *rows, const struct dea_slice *titles,
     const char *si = unit.length > 0 ? dea_title_unit(rows->ctx, text, &factor) : NULL;
     snprintf(text, sizeof text, "%.*s", shown(name), name.text);
     if (i >= rows->dialect->skipped && !rows->dialect->text[i] && i != rows->fraction &&
-        ((si != NULL && strcmp(si, "s") == 0) || dea_guess_by_name(text) == DEA_GUESS_TIME)) {
+        ((si != NULL && strcmp(si, "s") == 0) || dea_word_of_quantity(text) == DEA_WORD_TIME)) {
       return true;
     }
   }

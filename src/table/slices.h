@@ -1,6 +1,6 @@
 /* Pieces of the text of a file that is never changed: lines, fields, numbers. */
-#ifndef DEA_LAB_IMPORT_SLICES_H
-#define DEA_LAB_IMPORT_SLICES_H
+#ifndef DEA_TABLE_SLICES_H
+#define DEA_TABLE_SLICES_H
 
 #include <stdbool.h>
 #include <stddef.h>

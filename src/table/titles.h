@@ -1,9 +1,9 @@
 /* Titles of columns: names, units, what they look like. */
-#ifndef DEA_LAB_IMPORT_TITLES_H
-#define DEA_LAB_IMPORT_TITLES_H
+#ifndef DEA_TABLE_TITLES_H
+#define DEA_TABLE_TITLES_H
 
 #include "base/context.h"
-#include "lab/import/slices.h"
+#include "table/slices.h"
 
 /* SI unit of a unit as people write it ("kV", "Volts", "µm") and the factor to it; NULL when it is
  * none, or one with an offset such as °C. */

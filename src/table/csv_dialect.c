@@ -1,4 +1,4 @@
-#include "lab/import/csv_dialect.h"
+#include "table/csv_dialect.h"
 
 #include <ctype.h>
 #include <string.h>

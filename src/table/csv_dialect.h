@@ -1,9 +1,9 @@
 /* What a file of lines of numbers is like: where they begin, what parts them. */
-#ifndef DEA_LAB_IMPORT_CSV_DIALECT_H
-#define DEA_LAB_IMPORT_CSV_DIALECT_H
+#ifndef DEA_TABLE_CSV_DIALECT_H
+#define DEA_TABLE_CSV_DIALECT_H
 
-#include "lab/import/import.h"
-#include "lab/import/slices.h"
+#include "table/slices.h"
+#include "table/table.h"
 
 enum { DEA_CSV_TITLES_MAX = 4 };
 

@@ -1,4 +1,4 @@
-#include "lab/import/clock_text.h"
+#include "table/clock_text.h"
 
 static const double day_s = 86400;
 

@@ -1,4 +1,4 @@
-#include "lab/import/slices.h"
+#include "table/slices.h"
 
 #include "base/text.h"
 

@@ -1,7 +1,7 @@
-#include "lab/import/titles.h"
+#include "table/titles.h"
 
 #include "base/units.h"
-#include "lab/import/guess.h"
+#include "table/words.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -151,7 +151,7 @@ static bool is_bare_unit(struct dea_slice name, struct dea_slice unit)
       known = known || strcmp(text, units[i]) == 0;
     }
   }
-  return known || (unit.length == 1 && unit.text[0] == 'A' && dea_guess_takes_ampere(name));
+  return known || (unit.length == 1 && unit.text[0] == 'A' && dea_word_takes_ampere(name));
 }
 
 /* How many letters part name and unit there: '/', '_' or " in "; weak: ':', ',', and a blank before

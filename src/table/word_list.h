@@ -1,14 +1,14 @@
 /* Words that columns and numbers of files are known by; of those that fit a name the first counts.
  */
-#ifndef DEA_LAB_IMPORT_GUESS_LIST_H
-#define DEA_LAB_IMPORT_GUESS_LIST_H
+#ifndef DEA_TABLE_WORD_LIST_H
+#define DEA_TABLE_WORD_LIST_H
 
 // X(language, word in lower case, where it stands in a name, what that then is)
 // where: PART anywhere; WORD as a word of its own; WHOLE it is the whole name
 // what: TIME; RATE [Hz] or INTERVAL [s] between samples, of a single number; POSITION where
 // something is, not how it moves; AMPERE a bare 'A' behind it is a unit; UNCERTAINTY how far the
 // rest of the name may be off, whatever that is; else a kind of channel
-#define DEA_GUESS_LIST(X)                                                                          \
+#define DEA_WORD_LIST(X)                                                                           \
   X(ENGLISH, "std", WORD, UNCERTAINTY)                                                             \
   X(ENGLISH, "stdev", WORD, UNCERTAINTY)                                                           \
   X(ENGLISH, "stddev", WORD, UNCERTAINTY)                                                          \
