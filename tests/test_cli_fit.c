@@ -75,8 +75,17 @@ static void test_bad_data(void **state)
   expect("stretch;stress (kPa)\n1,1;27,355\n1,2;50,556\n", 0, "");
   expect("stretch,load (N)\n1.1,27\n1.4,89\n", 5, "has no column 'stress (kPa)' or 'force (N)'");
   expect("displacement (mm),stress (kPa)\n1,27\n4,89\n", 5, "give the length of the strip");
-  expect("strain,stress (kPa)\n0.1,27\n0.4,89\n", 5,
-         "has no column 'stretch' or 'displacement (mm)'; a strain needs 1 added");
+  expect("strain,stress (kPa)\n0.1,27.355\n0.4,88.980\n", 0, "");
+  assert_contains(command_out, "mu                    100 +- ");
+  expect("way,stress (kPa)\n0.1,27\n0.4,89\n", 5,
+         "has no column 'stretch', 'strain (%)' or 'displacement (mm)'");
+  expect("true strain,stress (kPa)\n0.1,27\n0.4,89\n", 5, "has no column 'stretch'");
+  expect("stretch,stress (kPa)\n1.1,27.355\n1.2,odd\n1.4,88.980\n", 5,
+         "strip.csv:3:5: error: 'odd' stands in a line of numbers");
+  expect("stretch,stress (kPa)\n1.1,27.355\n1.4,88.980\n1.5,odd\n", 5,
+         "strip.csv:4:5: error: 'odd' is not a number");
+  expect("stretch,stress (Pa)\n1.1,\"27,355\"\n1.4,\"88,980\"\n", 5,
+         "strip.csv:2:6: error: '27,355' has marks between thousands");
   expect("stretch,true stress (kPa)\n1.1,27\n1.4,89\n", 5,
          "a true stress is to be divided by the stretch, to force over the unstretched section");
   expect("stretch,force (N)\n1.1,27\n1.4,89\n", 5, "give the section of the strip");
@@ -404,6 +413,23 @@ static void test_modulus_at_rest(void **state)
                  "the shear modulus at rest would be -184.9 kPa");
 }
 
+/* Tables as machines write them: preamble, units in a line of their own, strains, columns of text
+ * that nobody asked for. All are of a neo-Hookean film of 100 kPa. */
+static void test_tables_of_machines(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"a-blank-lines",   "a-no-blank", "a2",       "a3", "a4",
+                                      "b-units-row",     "c-preface",  "d-strain", "d2", "d3",
+                                      "e-strain-percent"};
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+    char text[200];
+    snprintf(text, sizeof text, "fit @/tests/cases/fit/fit-preface/%s.yaml --force --json -o pre",
+             names[i]);
+    command_expect(text, 0, "");
+    assert_close(found_value("mu"), 100e3, 1e-4, 0);
+  }
+}
+
 /* Strips of Gent's law far beyond the values that a search used to begin from. */
 static void test_gent_far(void **state)
 {
@@ -429,6 +455,7 @@ int main(void)
       cmocka_unit_test(test_unstable),
       cmocka_unit_test(test_modulus_at_rest),
       cmocka_unit_test(test_gent_far),
+      cmocka_unit_test(test_tables_of_machines),
       cmocka_unit_test(test_example),
       cmocka_unit_test(test_vhb),
   };

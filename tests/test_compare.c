@@ -92,7 +92,7 @@ static void test_one_model_against_another(void **state)
 static void test_misfit_figures_are_drawn(void **state)
 {
   (void)state;
-  command_write("t.csv", "V (kV),z centre (um),z centre std (um),strain\n");
+  command_write("t.csv", "V (kV),z centre (um),z centre std (um),strain\n0,10,2,1\n");
   assert_int_equal(command_run("compare a t.csv -o fig"), 5); // 'strain' is not known
   assert_contains(command_err, "t.csv:1:40: error:");
   command_write("t.csv", "V (kV),z centre (um),z centre std (um)\n0,10,2\n1,1500,\n2,2500,100\n");

@@ -100,7 +100,7 @@ static void test_bad_files_with_their_places(void **state)
   is_bad("profiles.csv", "", "no rows of numbers");
   is_bad("history.csv", "time (s),V (kV)\n1,1\n0,1\n", "history.csv:3:1: error: the time falls");
   is_bad("history.csv", "V (kV)\n1\n", "history.csv:1:1: error: no column such as 'time (s)'");
-  is_bad("history.csv", "time (s)\n1e999\n", "history.csv:2:1: error: '1e999' is not a number");
+  is_bad("history.csv", "time (s)\n0\n1e999\n", "history.csv:3:1: error: '1e999' is not a number");
   command_write("bad/profiles.csv", "V (kV),x (mm),z (um),colour\n2,0,1,7\n");
   command_write("bad/history.csv", "time (s)\n0\n");
   assert_int_equal(command_run("compare run bad"), 0);
@@ -113,14 +113,14 @@ static void test_many_errors_are_cut(void **state)
 {
   (void)state;
   FILE *file = open_table("bad/history.csv");
-  fputs("time (s)\n", file);
+  fputs("time (s),V (kV)\n", file);
   for (int i = 0; i < 1000; i++) {
-    fputs("x\n", file);
+    fprintf(file, "%d,x\n", i);
   }
   fclose(file);
   assert_int_equal(command_run("compare run bad"), 5);
-  assert_contains(command_err, "history.csv:21:1");
-  assert_null(strstr(command_err, "history.csv:23:1"));
+  assert_contains(command_err, "history.csv:21:4");
+  assert_null(strstr(command_err, "history.csv:23:"));
 }
 
 /* Reading, computing and JSON with failing allocations. */

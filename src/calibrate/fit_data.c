@@ -41,8 +41,7 @@ static dea_status take_stretch(struct work *w)
     FOUND(w, w->test->file.location, "'%.60s' has displacements: give the length of the strip",
           w->test->name.text);
   } else if (stretch == NULL && displacement == NULL && !held) {
-    FOUND(w, w->test->file.location,
-          "'%.80s' has no column '%s' or '%s'; a strain needs 1 added: the stretch is 1 at rest",
+    FOUND(w, w->test->file.location, "'%.80s' has no column '%s', 'strain (%%)' or '%s'",
           w->raw->file, dea_fit_columns[DEA_FIT_STRETCH].example,
           dea_fit_columns[DEA_FIT_DISPLACEMENT].example);
   }
@@ -212,7 +211,8 @@ static dea_status check_zero(struct work *w)
         w->out->time_s == NULL) { // unloading in time may do so
       FOUND(w, line_of(w, i),
             "a stress of %.3g kPa at the stretch %g, before the strip is stretched: take the force "
-            "at zero off, or count the stretch from where the force begins",
+            "at zero off, or count the stretch from where the force begins (a strain is 0 there, "
+            "and its title says so)",
             1e-3 * w->out->stress_Pa[i], w->out->stretch[i]);
     }
   }

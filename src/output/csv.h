@@ -46,12 +46,11 @@ struct dea_measurement {
   const char *file;           // interned
 };
 
-/* Reads a CSV of measurements. The first line that is neither empty nor a comment (#) is the
- * header: a header or key of DEA_LOAD_POINT_LIST (or a common name of it, "voltage", "stretch")
- * with its unit in parentheses or brackets; a key with unit ("centre_z_m") needs none. " std" after
- * the name marks the standard uncertainty. Separator comma, semicolon or tab; with the latter two a
- * decimal comma is understood. An empty field is a missing value. A voltage column is needed. All
- * errors become findings with file:line:column; DEA_E_IO then. out: owned by the caller. */
+/* Reads a table of measurements as the reader of text tables finds it (table/fields.h): its titles
+ * are headers or keys of DEA_LOAD_POINT_LIST (or a common name of it, "voltage", "stretch") with
+ * their units; a key with unit ("centre_z_m") needs none. " std" after the name marks the standard
+ * uncertainty. An empty field is a missing value. A voltage column is needed. All errors become
+ * findings with file:line:column; DEA_E_IO then. out: owned by the caller. */
 dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
                                 struct dea_measurement **out);
 void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *measurement);

@@ -13,6 +13,7 @@ struct dea_csv_wanted {
   struct dea_measure measure; // what its unit becomes, {"m", "1 um"}
   bool needed;                // without it the file is of no use
   bool filled;                // every row has it
+  bool strain;                // a column that is called a strain counts too: it is 1 less
 };
 
 struct dea_csv_columns {
@@ -23,8 +24,8 @@ struct dea_csv_columns {
 };
 
 /* Reads the columns wanted, count <= DEA_CSV_COLUMNS_MAX; others become notes and are left out.
- * The first line that is neither empty nor a comment (#) holds the titles with their units.
- * Separators and decimal comma as in dea_measurement_read. All errors become findings with
+ * Encoding, separators, preamble, titles and units as the reader of text tables finds them
+ * (table/fields.h). All errors become findings with
  * file:line:column; DEA_E_IO then. out: freed by the caller after success, empty on failure. */
 dea_status dea_csv_columns_read(struct dea_context *ctx, const char *file,
                                 const struct dea_csv_wanted *wanted, size_t count,

@@ -2,15 +2,14 @@
 #include "output/csv.h"
 
 #include "base/csv_line.h"
-#include "base/file.h"
-#include "base/write_file.h"
 #include "output/csv_columns.h"
+#include "table/fields.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { FIELD_MAX = DEA_CSV_FIELD_MAX, FIELDS_MAX = 64, FILE_MAX = 100000000, FINDINGS_MAX = 20 };
+enum { FIELD_MAX = DEA_CSV_FIELD_MAX, FIELDS_MAX = 64, FINDINGS_MAX = 20 };
 
 enum role { ROLE_VALUE, ROLE_STD, ROLE_STABLE, ROLE_MODES, ROLE_TRUSTED, ROLE_FLAGS };
 
@@ -22,10 +21,9 @@ struct field_meaning {
 
 struct reader {
   struct dea_context *ctx;
-  const char *file;
-  char separator;
-  size_t line;
+  struct dea_fields table;
   struct field_meaning fields[FIELDS_MAX];
+  struct dea_text_marks marks[FIELDS_MAX];
   size_t field_count;
   size_t errors;
 };
@@ -44,9 +42,10 @@ static const struct {
 };
 enum { OTHER_NAMES = sizeof other_names / sizeof other_names[0] };
 
+/* Where the title of a column stands. */
 static struct dea_location place_of(const struct reader *r, size_t column)
 {
-  return (struct dea_location){r->file, r->line, column};
+  return dea_fields_place(&r->table, r->table.titles[column]);
 }
 
 /* Counts an error; false when its finding should no longer be added (too many, or no memory). */
@@ -197,7 +196,7 @@ static void read_title(struct reader *r, const char *title, size_t column,
 {
   char name[FIELD_MAX], unit[FIELD_MAX];
   bool by_key;
-  dea_csv_split_title(title, name, unit);
+  dea_fields_title(r->ctx, &r->table, column, name, unit);
   bool is_std = take_std(name);
   *field = (struct field_meaning){.role = is_std ? ROLE_STD : ROLE_VALUE, .factor = 1.0};
   if (find_state(name, &field->role)) {
@@ -222,27 +221,25 @@ static void read_title(struct reader *r, const char *title, size_t column,
   }
 }
 
-static void read_header(struct reader *r, const char *line)
+static void read_header(struct reader *r)
 {
-  const char *cursor = line;
-  char title[FIELD_MAX];
-  size_t column;
   bool has_voltage = false;
-  r->separator = dea_csv_separator(line);
-  while (dea_csv_field(line, &cursor, r->separator, title, &column)) {
-    if (r->field_count == FIELDS_MAX) {
-      if (one_more_error(r)) {
-        dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "more than %d columns", FIELDS_MAX);
-      }
-      return;
-    }
+  if (r->table.count > FIELDS_MAX && one_more_error(r)) {
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 0), "more than %d columns", FIELDS_MAX);
+    return;
+  }
+  for (size_t i = 0; i < r->table.count; i++) {
+    char title[FIELD_MAX];
     struct field_meaning field;
-    read_title(r, title, column, &field);
+    const struct dea_slice slice = r->table.titles[i];
+    snprintf(title, sizeof title, "%.*s", (int)(slice.length < FIELD_MAX ? slice.length : 0),
+             slice.text);
+    read_title(r, title, i, &field);
     r->fields[r->field_count++] = field;
     has_voltage = has_voltage || (field.role == ROLE_VALUE && field.column == 0);
   }
   if (!has_voltage && one_more_error(r)) {
-    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "no column of voltages such as 'V (kV)'");
+    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 0), "no column of voltages such as 'V (kV)'");
   }
 }
 
@@ -268,45 +265,37 @@ static void set_field(const struct field_meaning *field, double value, struct de
   }
 }
 
-/* Reads a line of numbers; false when it has errors (then counted). */
-static bool read_row(struct reader *r, const char *line, struct dea_load_point *point,
+/* Reads a row of numbers; false when it has errors (then counted). */
+static bool read_row(struct reader *r, size_t row, struct dea_load_point *point,
                      struct dea_load_point *std)
 {
-  const char *cursor = line;
-  char text[FIELD_MAX];
-  size_t column = 1, i = 0, before = r->errors;
-  bool more = false;
+  struct dea_slice rest = r->table.lines[row], field;
+  const size_t before = r->errors;
   *point = *std = dea_load_point_empty();
-  for (; dea_csv_field(line, &cursor, r->separator, text, &column); i++) {
+  for (size_t i = 0; i < r->field_count && dea_slice_field(&rest, r->table.separator, &field);
+       i++) {
     double value;
-    if (i == r->field_count) {
-      more = true;
-      break;
-    }
-    char shown[FIELD_MAX];
-    memcpy(shown, text, sizeof shown);
     if (r->fields[i].role == ROLE_FLAGS) {
+      char text[FIELD_MAX];
+      snprintf(text, sizeof text, "%.*s", (int)(field.length < FIELD_MAX ? field.length : 0),
+               field.text);
       point->told = dea_flags_of_text(text);
-    } else if (!dea_csv_number(r->separator, text, &value)) {
-      if (one_more_error(r)) {
-        dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column), "'%s' is not a number", shown);
-      }
-    } else {
+    } else if (dea_fields_number(r->ctx, &r->table, row, field, &r->marks[i], &value)) {
       set_field(&r->fields[i], value, point, std);
+    } else {
+      r->errors++;
     }
   }
-  if ((more || i < r->field_count) && one_more_error(r)) {
-    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
-                    "%s fields than the header, which has %zu", more ? "more" : "fewer",
-                    r->field_count);
-  } else if (r->errors == before && isnan(point->voltage_V) && one_more_error(r)) {
-    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "a row without a voltage");
+  if (r->errors == before && isnan(point->voltage_V) && one_more_error(r)) {
+    const struct dea_location here = {r->table.file, r->table.numbers[row], 1};
+    dea_finding_add(r->ctx, DEA_ERROR, here, "a row without a voltage");
   }
   return r->errors == before;
 }
 
 static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *room_now,
-                          const struct dea_load_point *point, const struct dea_load_point *std)
+                          size_t line, const struct dea_load_point *point,
+                          const struct dea_load_point *std)
 {
   if (m->curve.count == *room_now) {
     size_t room = *room_now > 0 ? 2 * *room_now : 64;
@@ -320,74 +309,48 @@ static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *r
     *room_now = room;
   }
   m->std[m->curve.count] = *std;
-  m->line[m->curve.count] = r->line;
+  m->line[m->curve.count] = line;
   return dea_curve_add_point(r->ctx, &m->curve, point);
 }
 
-/* Takes the lines of text one by one (they are cut in place). */
-static dea_status read_lines(struct reader *r, char *text, struct dea_measurement *m)
+static dea_status read_rows(struct reader *r, struct dea_measurement *m)
 {
   size_t room = 0;
-  bool has_header = false;
-  for (char *line; (line = dea_csv_line(&text, &r->line)) != NULL;) {
-    if (!has_header) {
-      has_header = true;
-      read_header(r, line);
-      if (r->errors > 0) {
-        break; // without a header the rows say nothing
-      }
-      continue;
-    }
+  dea_context_clear(r->ctx); // so that the status below can only be of a finding
+  read_header(r);
+  const size_t rows = r->errors == 0 ? r->table.rows : 0; // without a header they say nothing
+  for (size_t row = 0; row < rows && r->errors < FINDINGS_MAX; row++) {
     struct dea_load_point point, std;
-    if (read_row(r, line, &point, &std)) {
-      DEA_TRY(r->ctx, add_row(r, m, &room, &point, &std));
+    if (read_row(r, row, &point, &std)) {
+      DEA_TRY(r->ctx, add_row(r, m, &room, r->table.numbers[row], &point, &std));
     }
   }
-  if (m->curve.count == 0 && r->errors == 0 && one_more_error(r)) {
-    dea_finding_add(r->ctx, DEA_ERROR, place_of(r, 1), "no rows of numbers");
+  for (size_t i = 0; i < r->field_count && r->errors == 0; i++) {
+    r->errors += dea_text_marks_refuse(r->ctx, &r->marks[i], r->table.separator, r->table.decimal,
+                                       r->table.file, "a column");
   }
-  return DEA_OK;
-}
-
-static dea_status read_text(struct dea_context *ctx, const char *file, char *text, size_t length,
-                            struct dea_measurement *m)
-{
-  struct reader r = {.ctx = ctx, .file = file};
-  if (memchr(text, '\0', length) != NULL) {
-    return dea_fail(ctx, DEA_E_IO, "%s is not a text file", file);
+  if (dea_context_status(r->ctx) != DEA_OK) {
+    return dea_context_status(r->ctx); // a finding could not be kept, or there are no units
   }
-  dea_context_clear(ctx); // so that the status below can only be of a finding
-  dea_status status = read_lines(&r, text, m);
-  if (status == DEA_OK && dea_context_status(ctx) != DEA_OK) {
-    return dea_context_status(ctx); // a finding could not be kept, or there are no units
-  }
-  if (status == DEA_OK && r.errors > 0) {
-    status = dea_fail(ctx, DEA_E_IO, "%s cannot be used: %zu error%s", file, r.errors,
-                      r.errors == 1 ? "" : "s");
-  }
-  return status;
+  return r->errors == 0 ? DEA_OK
+                        : dea_fail(r->ctx, DEA_E_IO, "%s cannot be used: %zu error%s",
+                                   r->table.file, r->errors, r->errors == 1 ? "" : "s");
 }
 
 dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
                                 struct dea_measurement **out)
 {
+  struct reader r = {.ctx = ctx};
   *out = NULL;
-  const char *name = dea_intern(ctx, file);
-  if (name == NULL) {
-    return DEA_E_MEMORY;
-  }
-  char *text;
-  size_t length;
-  dea_status read = dea_file_read(ctx, file, FILE_MAX, &text, &length);
-  DEA_TRY(ctx, read == DEA_E_DESIGN ? dea_fail(ctx, DEA_E_IO, "'%s' is too large", file) : read);
+  DEA_TRY(ctx, dea_fields_read(ctx, file, &r.table));
   struct dea_measurement *m = dea_alloc(ctx, 1, sizeof *m);
   dea_status status = DEA_E_MEMORY;
   if (m != NULL) {
-    m->file = name;
+    m->file = r.table.file;
     m->curve = (struct dea_curve){.model = "measurement", .kind = "sweep", .complete = true};
-    status = read_text(ctx, name, text, length, m);
+    status = read_rows(&r, m);
   }
-  dea_free(ctx, text);
+  dea_fields_free(ctx, &r.table);
   if (status != DEA_OK) {
     dea_measurement_destroy(ctx, m);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

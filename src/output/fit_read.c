@@ -9,6 +9,21 @@
 
 enum { FILE_MAX = 100000000 };
 
+/* The other column that says the same; -1: there is none. */
+static int twin_of(int column)
+{
+  static const int twins[DEA_FIT_COLUMNS] = {
+      [DEA_FIT_TIME] = -1,
+      [DEA_FIT_STRETCH] = DEA_FIT_DISPLACEMENT,
+      [DEA_FIT_DISPLACEMENT] = DEA_FIT_STRETCH,
+      [DEA_FIT_STRESS] = DEA_FIT_FORCE,
+      [DEA_FIT_FORCE] = DEA_FIT_STRESS,
+      [DEA_FIT_STRESS_STD] = DEA_FIT_FORCE_STD,
+      [DEA_FIT_FORCE_STD] = DEA_FIT_STRESS_STD,
+  };
+  return twins[column];
+}
+
 /* What a test wants of its file, by the titles that it names. */
 static void want(const struct dea_fit_test *test, char names[][DEA_CSV_FIELD_MAX],
                  struct dea_csv_wanted *wanted)
@@ -22,7 +37,13 @@ static void want(const struct dea_fit_test *test, char names[][DEA_CSV_FIELD_MAX
                                         .title = title[0] != '\0' ? title : type->example,
                                         .measure = {type->unit, type->example},
                                         .needed = title[0] != '\0',
-                                        .filled = true};
+                                        .filled = true,
+                                        .strain = c == DEA_FIT_STRETCH};
+    const int twin = twin_of(c); // another title for the same was chosen
+    if (title[0] == '\0' && twin >= 0 && test->columns[twin].text[0] != '\0') {
+      wanted[c].name = " "; // none has that
+      wanted[c].strain = false;
+    }
   }
   for (int c = 0; c < DEA_FIT_COLUMNS && test->use.value == DEA_FIT_PREDICTED; c++) {
     const bool result = c >= DEA_FIT_STRESS;

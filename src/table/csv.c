@@ -1,6 +1,7 @@
 #include "table/csv.h"
 
 #include "base/text.h"
+#include "table/fields.h"
 #include "table/text_rows.h"
 #include "table/titles.h"
 #include "table/words.h"
@@ -90,6 +91,42 @@ static bool find_vertical_units(struct dea_context *ctx, struct dea_slice text,
   return false;
 }
 
+/* Fields of a line by the separator that gives most. */
+static size_t count_fields(struct dea_slice line)
+{
+  static const char separators[] = {'\t', ';', ','};
+  size_t most = 0;
+  for (size_t i = 0; i < sizeof separators; i++) {
+    const size_t count = dea_slice_count(line, separators[i]);
+    most = count > most ? count : most;
+  }
+  return most;
+}
+
+/* Rows that have more or less fields than there are titles: an error where columns are wanted by
+ * name, and where decimal commas would make two of one. */
+static dea_status check_header(struct dea_context *ctx, struct dea_slice text,
+                               const struct dea_table *table, const struct dea_csv_dialect *dialect,
+                               size_t named)
+{
+  const bool comma = dialect->separator == ',' && 2 * named == dialect->count;
+  struct dea_slice rest = {dialect->data, (size_t)(text.text + text.length - dialect->data)};
+  struct dea_slice field = {dialect->data, 0};
+  if (named < 2 || !(comma || table->fields != NULL)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i <= named && i < dialect->count; i++) {
+    dea_slice_field(&rest, dialect->separator, &field);
+  }
+  const struct dea_location location = {table->file, dialect->line + 1,
+                                        (size_t)(field.text - dialect->data) + 1};
+  DEA_TRY(ctx, dea_finding_add(
+                   ctx, DEA_ERROR, location, "%s fields than the header, which has %zu%s",
+                   dialect->count > named ? "more" : "fewer", named,
+                   comma ? "; where the decimal sign is a comma, columns are parted by ;" : ""));
+  return dea_fail(ctx, DEA_E_IO, "'%s' cannot be read", table->file);
+}
+
 /* Names and units from the lines above the numbers: names alone, names and units, or names, units
  * and comments, in this order. *units says whether there are any. */
 static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
@@ -106,7 +143,13 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
       return DEA_OK;
     }
   }
-  if (part(dialect, 0, titles)) {
+  // of a single column what parts fields is not known
+  const size_t named = dialect->title_count == 0 ? 0
+                       : dialect->count > 1
+                           ? dea_slice_count(dialect->titles[0], dialect->separator)
+                           : count_fields(dialect->titles[0]);
+  const bool alone = table->fields != NULL && dialect->count == 1 && named > 1;
+  if (!alone && part(dialect, 0, titles)) {
     *units = dialect->count > 1 && part(dialect, 0, unit_fields) &&
              is_row_of_units(ctx, unit_fields, dialect->count, NULL) &&
              are_words(unit_fields, dialect->count); // names and units in one
@@ -116,7 +159,8 @@ static dea_status find_titles(struct dea_context *ctx, struct dea_slice text,
   for (size_t i = 0; i < dialect->count; i++) {
     titles[i] = (struct dea_slice){"", 0};
   }
-  if (dialect->title_count > 0) {
+  DEA_TRY(ctx, check_header(ctx, text, table, dialect, named));
+  if (named > 0) {
     return dea_finding_add(ctx, DEA_NOTE, location,
                            "the lines above the numbers name no %zu columns: they are called "
                            "'column 1' and so on",
@@ -214,6 +258,12 @@ static dea_status read_with(struct dea_context *ctx, struct dea_slice text,
   bool units;
   struct dea_slice *unit_fields = slices + dialect->count;
   DEA_TRY(ctx, find_titles(ctx, text, out, dialect, slices, unit_fields, &units));
+  if (out->fields != NULL) {
+    for (size_t i = 0; i < dialect->count && !units; i++) {
+      unit_fields[i] = (struct dea_slice){"", 0};
+    }
+    return dea_text_lines_read(ctx, text, dialect, out);
+  }
   DEA_TRY(ctx, dea_text_rows_read(ctx, text, dialect, slices, units ? unit_fields : NULL, out));
   drop_empty(ctx, out, 1);
   return read_preamble(ctx, text, dialect, out);
@@ -228,6 +278,15 @@ dea_status dea_table_read_text(struct dea_context *ctx, struct dea_slice text,
   if (status == DEA_OK) {
     slices = dea_alloc(ctx, 2 * dialect.count, sizeof *slices);
     status = slices != NULL ? read_with(ctx, text, &dialect, slices, out) : DEA_E_MEMORY;
+  }
+  if (out->fields != NULL && slices != NULL) {
+    out->fields->separator = dialect.separator;
+    out->fields->decimal = dialect.decimal;
+    out->fields->count = dialect.count;
+    out->fields->titles = slices;
+    out->fields->units = slices + dialect.count;
+    out->fields->text = text;
+    slices = NULL;
   }
   dea_free(ctx, slices);
   dea_free(ctx, dialect.text);

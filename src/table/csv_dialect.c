@@ -419,6 +419,8 @@ static dea_status find_dialect(struct sample *sample, struct dea_slice text, boo
     return dea_fail(sample->ctx, DEA_E_IO, "'%s' cannot be read", sample->file);
   }
   if (best.rows == 0) {
+    const struct dea_location location = {sample->file, 1, 1};
+    DEA_TRY(sample->ctx, dea_finding_add(sample->ctx, DEA_ERROR, location, "no rows of numbers"));
     return dea_fail(sample->ctx, DEA_E_IO,
                     "'%s' has no lines of numbers parted by commas, semicolons, tabs or blanks",
                     sample->file);

@@ -23,7 +23,8 @@ struct dea_table {
   const char *format; // name of its importer
   struct dea_table_column *columns;
   size_t column_count, column_room;
-  char *note; // what the file says of itself; NULL; owned
+  char *note;                // what the file says of itself; NULL; owned
+  struct dea_fields *fields; // of a text: rows are kept there as they are, and no columns made
 };
 
 /* Adds an empty column with room for `room` values; NULL on failure. Name and unit become UTF-8. */

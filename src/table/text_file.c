@@ -1,6 +1,8 @@
 #define _POSIX_C_SOURCE 200809L // iconv
 #include "table/text_file.h"
 
+#include "table/fields.h"
+
 #include <iconv.h>
 #include <string.h>
 
@@ -279,6 +281,10 @@ dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *byte
   }
   if (status == DEA_OK) {
     status = read(ctx, text, out);
+  }
+  if (out->fields != NULL) { // slices of it
+    out->fields->copy = copy;
+    copy = NULL;
   }
   dea_free(ctx, copy);
   return status;

@@ -1,6 +1,7 @@
 #include "table/text_rows.h"
 
 #include "table/clock_text.h"
+#include "table/fields.h"
 #include "table/titles.h"
 #include "table/words.h"
 
@@ -10,22 +11,13 @@
 
 enum { ERRORS_MAX = 20, NONE = -1 };
 
-/* How the numbers of a column are written, to tell marks between thousands from decimal ones. */
-struct marks {
-  size_t thousands; // "12.345": three digits behind the mark, no 0 first
-  size_t others;    // with a mark that can only be the decimal one
-  size_t plain;     // without a mark
-  size_t line;      // first one of the first kind
-  struct dea_slice first;
-};
-
 struct rows {
   struct dea_context *ctx;
   const struct dea_csv_dialect *dialect;
   struct dea_table *table;
   int *column;                   // [dialect->count] of the table, or NONE: text
   double *row;                   // [dialect->count]
-  struct marks *marks;           // [dialect->count]
+  struct dea_text_marks *marks;  // [dialect->count]
   struct dea_text_clock *clocks; // [dialect->count], begun for columns of times as text
   size_t fraction;               // column with the "ms" of the clock before it, 0: none
   double fraction_s;             // its unit
@@ -215,7 +207,8 @@ static size_t digits(struct dea_slice field, size_t i)
   return n;
 }
 
-static void count_marks(struct marks *marks, struct dea_slice field, char decimal, size_t line)
+void dea_text_marks_count(struct dea_text_marks *marks, struct dea_slice field, char decimal,
+                          size_t line)
 {
   size_t sign = field.length > 0 && (field.text[0] == '-' || field.text[0] == '+');
   size_t before = digits(field, sign), mark = sign + before;
@@ -236,28 +229,31 @@ static void count_marks(struct marks *marks, struct dea_slice field, char decima
 /* "980, 1.020": a mark that comes with four digits parts thousands, also when it could be read as
  * the decimal one. So does a comma within quotes where commas part the fields. Points part
  * thousands where semicolons or tabs part the fields. */
+bool dea_text_marks_refuse(struct dea_context *ctx, const struct dea_text_marks *m, char separator,
+                           char decimal, const char *file, const char *name)
+{
+  const bool comma = decimal == ',', may = comma || separator == ';' || separator == '\t';
+  if (!may || m->others > 0 || m->thousands < 2 || !(m->plain > 0 || (comma && separator == ','))) {
+    return false;
+  }
+  const struct dea_location location = {file, m->line, 1};
+  (void)dea_finding_add(ctx, DEA_ERROR, location,
+                        "the '%c' of '%.*s' in '%.60s' seems to stand between thousands, since "
+                        "three digits always follow it: export numbers without such marks, or "
+                        "with the same number of decimals throughout",
+                        decimal, shown(m->first), m->first.text, name);
+  return true;
+}
+
 static dea_status refuse_thousands(struct rows *rows)
 {
   for (size_t i = 0; i < rows->dialect->count; i++) {
-    const struct marks *m = &rows->marks[i];
-    char separator = rows->dialect->separator;
-    bool comma = rows->dialect->decimal == ',';
-    bool may = comma || separator == ';' || separator == '\t';
-    if (rows->column[i] == NONE || !may || m->others > 0 || m->thousands < 2 ||
-        !(m->plain > 0 || (comma && separator == ','))) {
-      continue;
-    }
-    const struct dea_location location = {rows->table->file, m->line, 1};
-    rows->errors++;
-    DEA_TRY(rows->ctx,
-            dea_finding_add(rows->ctx, DEA_ERROR, location,
-                            "the '%c' of '%.*s' in '%.60s' seems to stand between thousands, since "
-                            "three digits always follow it: export numbers without such marks, or "
-                            "with the same number of decimals throughout",
-                            rows->dialect->decimal, shown(m->first), m->first.text,
-                            rows->table->columns[rows->column[i]].name));
+    rows->errors += rows->column[i] != NONE &&
+                    dea_text_marks_refuse(rows->ctx, &rows->marks[i], rows->dialect->separator,
+                                          rows->dialect->decimal, rows->table->file,
+                                          rows->table->columns[rows->column[i]].name);
   }
-  return DEA_OK;
+  return dea_context_status(rows->ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK;
 }
 
 /* rest: the fields behind it. */
@@ -278,7 +274,7 @@ static dea_status read_field(struct rows *rows, size_t line, struct dea_slice wh
     return DEA_OK;
   }
   if (!clock && dea_slice_number(field, rows->dialect->decimal, &rows->row[index])) {
-    count_marks(&rows->marks[index], field, rows->dialect->decimal, line);
+    dea_text_marks_count(&rows->marks[index], field, rows->dialect->decimal, line);
     return DEA_OK;
   }
   const struct dea_location location = {rows->table->file, line,
@@ -321,6 +317,11 @@ static dea_status read_line(struct rows *rows, size_t line, struct dea_slice who
                            "the line has %zu field%s where %zu are due: when another table begins "
                            "here, split the file",
                            count, count == 1 ? "" : "s", dialect->count);
+  }
+  if (rows->table->fields != NULL) {
+    rows->table->fields->lines[rows->count] = whole;
+    rows->table->fields->numbers[rows->count++] = line;
+    return DEA_OK;
   }
   size_t before = rows->errors;
   rest = whole;
@@ -376,12 +377,13 @@ static dea_status read_lines(struct rows *rows, struct dea_slice text)
       }
     }
   }
-  for (size_t i = 0; i < rows->dialect->count; i++) { // a table may have those of other sections
+  for (size_t i = 0; rows->column != NULL && i < rows->dialect->count;
+       i++) { // a table may have those of other sections
     if (rows->column[i] != NONE) {
       rows->table->columns[rows->column[i]].count = rows->count;
     }
   }
-  if (rows->errors == 0) {
+  if (rows->errors == 0 && rows->column != NULL) {
     DEA_TRY(rows->ctx, refuse_thousands(rows));
     DEA_TRY(rows->ctx, drop_standing_clocks(rows));
   }
@@ -407,5 +409,20 @@ dea_status dea_text_rows_read(struct dea_context *ctx, struct dea_slice text,
   dea_free(ctx, rows.row);
   dea_free(ctx, rows.marks);
   dea_free(ctx, rows.clocks);
+  return status;
+}
+
+dea_status dea_text_lines_read(struct dea_context *ctx, struct dea_slice text,
+                               const struct dea_csv_dialect *dialect, struct dea_table *out)
+{
+  struct rows rows = {.ctx = ctx, .dialect = dialect, .table = out};
+  const size_t room = rows_room(text, dialect);
+  out->fields->lines = dea_alloc(ctx, room, sizeof *out->fields->lines);
+  out->fields->numbers = dea_alloc(ctx, room, sizeof *out->fields->numbers);
+  if (out->fields->lines == NULL || out->fields->numbers == NULL) {
+    return DEA_E_MEMORY;
+  }
+  const dea_status status = read_lines(&rows, text);
+  out->fields->rows = rows.count;
   return status;
 }
