@@ -130,6 +130,19 @@ static void test_thousands(void **state)
   assert_error("thousands/value-two-marks.csv", 2, "'1.002.000' has marks between thousands");
 }
 
+/* A column that a mapping names is never left out in silence. */
+static void test_named_column_of_text(void **state)
+{
+  (void)state;
+  struct dea_table *table = read_text("t.csv", "t (s),V (kV),F (N)\n0,1,1\n1,sat,1\n2,sat,1\n");
+  struct dea_mapping *mapping = map_text("dea-import: 1\ncolumns:\n  - {column: V, as: voltage}\n");
+  struct dea_recording *recording;
+  assert_int_equal(dea_table_record(ctx, table, mapping, &recording), DEA_E_DESIGN);
+  assert_true(is_said(DEA_ERROR, "'sat' of the column 'V' is not a number"));
+  dea_mapping_destroy(ctx, mapping);
+  dea_table_destroy(ctx, table);
+}
+
 /* Letters of Shift-JIS hold bytes of ASCII that are no words; full-width units are units. */
 static void test_encodings(void **state)
 {
@@ -174,7 +187,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_trailing_blanks), cmocka_unit_test(test_graphtec),
       cmocka_unit_test(test_repeated_rows),   cmocka_unit_test(test_thousands),
-      cmocka_unit_test(test_encodings),
+      cmocka_unit_test(test_encodings),       cmocka_unit_test(test_named_column_of_text),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -68,6 +68,20 @@ struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table
   return column;
 }
 
+dea_status dea_table_leave(struct dea_context *ctx, struct dea_table *table, struct dea_slice name,
+                           struct dea_slice field, size_t line)
+{
+  void *moved = dea_resize(ctx, table->left, table->left_count + 1, sizeof *table->left);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  table->left = moved;
+  struct dea_table_left *left = &table->left[table->left_count++];
+  *left = (struct dea_table_left){copy_text(ctx, name.text, name.length),
+                                  copy_text(ctx, field.text, field.length), line};
+  return left->name != NULL && left->field != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
 dea_status dea_table_note(struct dea_context *ctx, struct dea_table *table, const char *text,
                           size_t length)
 {
@@ -83,7 +97,12 @@ void dea_table_destroy(struct dea_context *ctx, struct dea_table *table)
     dea_free(ctx, table->columns[i].unit);
     dea_free(ctx, table->columns[i].values);
   }
+  for (size_t i = 0; table != NULL && i < table->left_count; i++) {
+    dea_free(ctx, table->left[i].name);
+    dea_free(ctx, table->left[i].field);
+  }
   if (table != NULL) {
+    dea_free(ctx, table->left);
     dea_free(ctx, table->columns);
     dea_free(ctx, table->note);
     dea_free(ctx, table);

@@ -91,6 +91,24 @@ static struct dea_slice first_field(const struct rows *rows, struct dea_slice te
   return more ? field : (struct dea_slice){"", 0};
 }
 
+/* Notes a column of text with its first field that is no number, and where that is. */
+static dea_status leave_column(const struct rows *rows, struct dea_slice text, size_t index,
+                               struct dea_slice name)
+{
+  struct dea_lines lines = {rows->dialect->data, text.text + text.length, rows->dialect->line};
+  struct dea_slice line, field = {"", 0};
+  bool number = true;
+  double value;
+  while (number && dea_lines_next(&lines, &line)) {
+    bool more = !dea_csv_is_comment(line) && !dea_csv_is_blank(line);
+    for (size_t i = 0; i <= index && more; i++) {
+      more = dea_slice_field(&line, rows->dialect->separator, &field);
+    }
+    number = !more || dea_slice_number(field, rows->dialect->decimal, &value);
+  }
+  return dea_table_leave(rows->ctx, rows->table, name, field, lines.line);
+}
+
 /* Whether a column of text is one of times, by its first row. */
 static bool is_clock(struct rows *rows, struct dea_slice text, size_t index)
 {
@@ -170,6 +188,7 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
       dea_title_split(rows->ctx, titles[i], &name, &unit);
       double value; // numbers with something else among them, in the lines that were looked at
       bool odd = dea_slice_number(field, rows->dialect->decimal, &value);
+      DEA_TRY(rows->ctx, leave_column(rows, text, i, name));
       DEA_TRY(rows->ctx,
               dea_finding_add(rows->ctx, unit.length > 0 || odd ? DEA_WARNING : DEA_NOTE, location,
                               "column %zu '%.*s' holds text ('%.*s') and is left out", i + 1,

@@ -57,6 +57,15 @@ static dea_status find_column(struct work *work, const struct dea_label *wanted,
       return DEA_OK;
     }
   }
+  for (size_t i = 0; i < table->left_count; i++) {
+    const struct dea_table_left *left = &table->left[i];
+    if (dea_mapping_matches(left->name, wanted->text, false)) {
+      work->errors++;
+      return dea_finding_add(
+          work->ctx, DEA_ERROR, (struct dea_location){table->file, left->line, 0},
+          "'%.60s' of the column '%.60s' is not a number", left->field, left->name);
+    }
+  }
   for (size_t i = 0; i < count; i++) {
     names[i] = table->columns[i].name;
   }
