@@ -5,10 +5,10 @@
 #include "base/write_file.h"
 #include "base/yaml_write.h"
 #include "material/catalogue.h"
-#include "output/csv_columns.h"
 #include "output/fit_common.h"
 #include "output/weibull_picture.h"
 #include "result/provenance.h"
+#include "table/columns.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #include "output/csv.h"
 
 #include "base/csv_line.h"
-#include "output/csv_columns.h"
+#include "table/columns.h"
 #include "table/fields.h"
 
 #include <math.h>

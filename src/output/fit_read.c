@@ -1,8 +1,8 @@
 #include "base/csv_line.h"
 #include "base/file.h"
-#include "output/csv_columns.h"
 #include "output/fit_files.h"
 #include "result/provenance.h"
+#include "table/columns.h"
 
 #include <stdio.h>
 #include <string.h>

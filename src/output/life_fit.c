@@ -3,9 +3,9 @@
 #include "base/csv_line.h"
 #include "base/file.h"
 #include "base/write_file.h"
-#include "output/csv_columns.h"
 #include "output/fit_common.h"
 #include "output/weibull_picture.h"
+#include "table/columns.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #define DEA_OUTPUT_MEASURED_H
 
 #include "output/csv.h"
-#include "output/csv_columns.h"
+#include "table/columns.h"
 
 /* Mean profile of a voltage against rest; arrays [count] lent from the table. */
 struct dea_measured_profile {

@@ -223,7 +223,7 @@ static void choose(const struct sample *sample, bool *text, bool *other, struct 
       {.separator = ' ', .decimal = '.'},  {.separator = ' ', .decimal = ','}};
   *best = (struct candidate){0};
   // the last line may be cut off, or be none of the numbers
-  for (size_t back = 1; back <= 2 && back <= sample->count; back++) {
+  for (size_t back = 1; back <= 2 && back <= sample->count && best->rows < 2; back++) {
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
       struct candidate c = all[i];
       if (sample->given != '\0' && c.separator != sample->given) {

@@ -108,3 +108,14 @@ void dea_table_destroy(struct dea_context *ctx, struct dea_table *table)
     dea_free(ctx, table);
   }
 }
+
+bool dea_name_ends(const char *file, const char *ending)
+{
+  size_t n = strlen(file), m = strlen(ending);
+  bool same = n >= m;
+  for (size_t i = 0; same && i < m; i++) {
+    char c = file[n - m + i];
+    same = (c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) == ending[i];
+  }
+  return same;
+}

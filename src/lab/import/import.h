@@ -27,8 +27,6 @@ const struct dea_importer *const *dea_importer_all(size_t *count);
 dea_status dea_importer_read(struct dea_context *ctx, const struct dea_importer *importer,
                              const char *file, const unsigned char *bytes, size_t length,
                              struct dea_table *out);
-/* Whether a file's name ends so (".csv"; lower case), in letters of either case. */
-bool dea_name_ends(const char *file, const char *ending);
 /* Reads a file with the format that recognises it, or the one of that name (NULL: any). out: owned
  * by the caller, NULL on failure. */
 dea_status dea_table_read(struct dea_context *ctx, const char *file, const char *format,

@@ -29,17 +29,6 @@ const struct dea_importer *const *dea_importer_all(size_t *count)
   return all;
 }
 
-bool dea_name_ends(const char *file, const char *ending)
-{
-  size_t n = strlen(file), m = strlen(ending);
-  bool same = n >= m;
-  for (size_t i = 0; same && i < m; i++) {
-    char c = file[n - m + i];
-    same = (c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) == ending[i];
-  }
-  return same;
-}
-
 static dea_status find_format(struct dea_context *ctx, const char *format,
                               const struct dea_importer **out)
 {

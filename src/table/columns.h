@@ -1,6 +1,6 @@
 /* Columns of numbers of a CSV file, found by their titles. */
-#ifndef DEA_OUTPUT_CSV_COLUMNS_H
-#define DEA_OUTPUT_CSV_COLUMNS_H
+#ifndef DEA_TABLE_COLUMNS_H
+#define DEA_TABLE_COLUMNS_H
 
 #include "base/units.h"
 
@@ -13,6 +13,7 @@ struct dea_csv_wanted {
   struct dea_measure measure; // what its unit becomes, {"m", "1 um"}
   bool needed;                // without it the file is of no use
   bool filled;                // every row has it
+  const char *other[2];       // names that people use beside it, NULL: none
   bool strain;                // a column that is called a strain counts too: it is 1 less
 };
 

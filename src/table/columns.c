@@ -1,4 +1,4 @@
-#include "output/csv_columns.h"
+#include "table/columns.h"
 
 #include "base/csv_line.h"
 #include "table/fields.h"
@@ -85,6 +85,15 @@ static bool is_strain(const char *name)
   return false;
 }
 
+static bool has_name(const struct dea_csv_wanted *wanted, const char *name)
+{
+  bool has = strcmp(name, wanted->name) == 0;
+  for (size_t i = 0; i < 2; i++) {
+    has = has || (wanted->other[i] != NULL && strcmp(name, wanted->other[i]) == 0);
+  }
+  return has;
+}
+
 static dea_status read_title(struct reader *r, size_t column)
 {
   char name[DEA_CSV_FIELD_MAX], unit[DEA_CSV_FIELD_MAX];
@@ -93,7 +102,7 @@ static dea_status read_title(struct reader *r, size_t column)
   const struct dea_location location = dea_fields_place(&r->fields, title);
   dea_fields_title(r->ctx, &r->fields, column, name, unit);
   size_t w = 0;
-  while (w < r->wanted_count && strcmp(name, r->wanted[w].name) != 0) {
+  while (w < r->wanted_count && !has_name(&r->wanted[w], name)) {
     w++;
   }
   for (size_t k = 0; w == r->wanted_count && k < r->wanted_count; k++) {
