@@ -99,6 +99,24 @@ static void test_titles_of_spreadsheets(void **state)
   dea_measurement_destroy(ctx, m);
 }
 
+/* As programs export them: lines above the titles, units in a line below, a column that nobody
+ * asked for would have a name that is not known. */
+static void test_preamble_and_row_of_units(void **state)
+{
+  (void)state;
+  struct dea_measurement *m = read_good("Bench 3;;\nOperator;A. B.;\n;;\n"
+                                        "Voltage;z centre;err\n(kV);(um);(um)\n"
+                                        "0,5;-12,5;3\n1,0;n/a;4\n");
+  assert_int_equal(m->curve.count, 2);
+  assert_close(m->curve.points[0].voltage_V, 500, 1e-15, 0);
+  assert_close(m->curve.points[0].centre_z_m, -12.5e-6, 1e-12, 0);
+  assert_close(m->std[0].centre_z_m, 3e-6, 1e-12, 0);
+  assert_true(isnan(m->curve.points[1].centre_z_m));
+  assert_int_equal(m->line[1], 7);
+  dea_measurement_destroy(ctx, m);
+  assert_error("V (V),force (mN)\n900,2\n\"1,000\",3\n\"1,500\",4\n", 3, 1, "between thousands");
+}
+
 static void test_keys_carry_their_unit(void **state)
 {
   (void)state;
@@ -248,6 +266,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
       CSV_TEST(test_units_names_and_uncertainties),
       CSV_TEST(test_titles_of_spreadsheets),
+      CSV_TEST(test_preamble_and_row_of_units),
       CSV_TEST(test_keys_carry_their_unit),
       CSV_TEST(test_decimal_comma_quotes_and_windows_lines),
       CSV_TEST(test_errors_have_places),
