@@ -107,6 +107,8 @@ dea_status dea_actuator_create(struct dea_context *ctx, const struct dea_device 
                     "compute.solid.field: coupled needs a film with a thickness; take "
                     "compute.solid.film: solid");
   }
+  constituents[DEA_CONSTITUENT_GLUE].thickness_m = out->plate.glue_thickness;
+  constituents[DEA_CONSTITUENT_FIBRE].thickness_m = out->plate.fibre_thickness;
   set_densities(d, constituents);
   if (out->plate.membrane) {
     DEA_TRY(ctx, make_membrane(ctx, film.electrode != NULL, out));

@@ -123,7 +123,8 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   }
   out->thickness_m = ply->thickness_m;
   out->density_kg_per_m3 = material->density_kg_per_m3;
-  model->films[i] = (struct dea_solid_film_data){dielectric ? material : NULL, sqrt(l[0] * l[1])};
+  model->films[i] =
+      (struct dea_solid_film_data){material->law != NULL ? material : NULL, sqrt(l[0] * l[1])};
   model->leakage_per_s[i] = dielectric ? dea_leakage_per_s(material, out) : 0;
   dea_branches_of_material(material, &model->branches[i]);
   if (dea_constituent_relax(out) != DEA_OK) {
@@ -158,7 +159,7 @@ static dea_status fill_constituents(struct dea_context *ctx, struct dea_model *m
   model->film = DEA_LAYOUT_NONE;
   for (size_t i = 0; i < l->ply_count; i++) {
     DEA_TRY(ctx, fill_constituent(ctx, model, i));
-    if (model->film == DEA_LAYOUT_NONE && model->films[i].material != NULL) {
+    if (model->film == DEA_LAYOUT_NONE && model->mesh.dielectric[i]) {
       model->film = i;
     }
   }
@@ -609,7 +610,7 @@ static void find_thinnest(struct dea_model *model)
   double ratio = 1e-3;
   model->thinnest_m = model->flat_m = INFINITY;
   for (size_t i = 0; i < model->layout->ply_count; i++) {
-    if (model->films[i].material != NULL) {
+    if (model->mesh.dielectric[i]) {
       const struct dea_layout_ply *ply = &model->layout->plies[i];
       model->thinnest_m = fmin(model->thinnest_m, ply->thickness_unstretched_m);
       model->flat_m = fmin(model->flat_m, ply->thickness_m);
@@ -762,6 +763,7 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   describe(model, voltage_V, out);
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
+  out->breakdown_probability = extremes.breakdown_probability;
   out->min_tension_N_per_m =
       isinf(extremes.min_tension_N_per_m) ? NAN : extremes.min_tension_N_per_m; // without a film
   out->locking_share = extremes.reach.locking_share;

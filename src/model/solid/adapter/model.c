@@ -194,10 +194,8 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
 
 static void set_films(struct dea_model *model)
 {
-  for (int i = 0; i < DEA_CONSTITUENT_COUNT; i++) {
-    model->films[i] =
-        (struct dea_solid_film_data){&model->device->film, model->device->pre_stretch};
-  }
+  model->films[DEA_CONSTITUENT_FILM] =
+      (struct dea_solid_film_data){&model->device->film, model->device->pre_stretch};
 }
 
 /* The rest in steps of the electrodes' pre-stretch: from where they have no stress and the flat
@@ -402,9 +400,9 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   describe(model, voltage_V, out);
   out->true_field_V_per_m = extremes.true_field_V_per_m;
   out->breakdown_margin = extremes.breakdown_margin;
-  out->breakdown_probability =
-      dea_breakdown_probability(&model->device->film.breakdown, extremes.breakdown_margin);
-  out->min_tension_N_per_m = extremes.min_tension_N_per_m;
+  out->breakdown_probability = extremes.breakdown_probability;
+  out->min_tension_N_per_m =
+      isinf(extremes.min_tension_N_per_m) ? NAN : extremes.min_tension_N_per_m;
   out->locking_share = extremes.reach.locking_share;
   out->range_share = extremes.reach.range_share;
   out->compression_ratio = copies * extremes.compression_ratio;

@@ -38,55 +38,38 @@ static int corner_of(const struct dea_grid *grid, size_t e, bool across)
   return grid->column[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(across ? plane - 1 : 0)]];
 }
 
-static bool is_electrode(const struct dea_solid *s, size_t e)
-{
-  return dea_solid_constituent(s, e)->part == DEA_PART_ELECTRODE;
-}
-
-/* first: [columns] an electrode whose first corner is there; next: [elements] another one; -1:
- * none.
- */
-static void find_electrodes(struct dea_solid *s, size_t columns, int *first, int *next)
+/* last: [columns] the highest element of a laminate whose first corner is there, -1: none; other:
+ * [elements] that of another such laminate. */
+static void find_laminates(struct dea_solid *s, size_t columns, int *last, int *other)
 {
   const struct dea_grid *grid = s->problem.grid;
-  memset(first, -1, columns * sizeof *first);
-  for (size_t e = 0; e < grid->element_count; e++) {
-    if (is_electrode(s, e)) {
-      int *to = &first[corner_of(grid, e, false)];
-      next[e] = *to;
-      *to = (int)e;
+  int *next = s->problem.laminate;
+  memset(last, -1, columns * sizeof *last);
+  for (size_t e = 0; e < grid->element_count; e++) { // from the lowest ply to the highest
+    int *below = &last[corner_of(grid, e, false)];
+    while (*below >= 0 && corner_of(grid, (size_t)*below, true) != corner_of(grid, e, true)) {
+      below = &other[*below];
     }
-  }
-  for (size_t e = 0; e < grid->element_count; e++) {
-    int *to = s->problem.electrodes[e], count = 0, other = first[corner_of(grid, e, false)];
-    to[0] = to[1] = -1;
-    for (; other >= 0 && dea_solid_constituent(s, e)->permittivity_F_per_m > 0;
-         other = next[other]) {
-      if (count < 2 && corner_of(grid, (size_t)other, true) == corner_of(grid, e, true)) {
-        to[count++] = other;
-      }
+    next[e] = *below >= 0 ? next[*below] : (int)e;
+    other[e] = *below >= 0 ? other[*below] : -1;
+    if (*below >= 0) {
+      next[*below] = (int)e;
     }
+    *below = (int)e;
   }
 }
 
-dea_status dea_solid_find_electrodes(struct dea_context *ctx, struct dea_solid *s)
+dea_status dea_solid_find_laminates(struct dea_context *ctx, struct dea_solid *s)
 {
   struct dea_solid_problem *p = &s->problem;
   const size_t elements = p->grid->element_count, columns = dea_grid_columns(p->grid);
-  bool any = false;
-  for (size_t e = 0; e < elements && !any; e++) {
-    any = is_electrode(s, e);
-  }
-  if (!any) {
-    return DEA_OK;
-  }
-  p->electrodes = dea_arena_alloc(&s->memory, elements, sizeof *p->electrodes);
+  p->laminate = dea_arena_alloc(&s->memory, elements, sizeof *p->laminate);
   DEA_TRY(ctx, dea_arena_status(&s->memory));
   int *room = dea_solid_alloc(ctx, columns + elements, sizeof *room);
   if (room == NULL) {
     return dea_fail_chain(ctx, DEA_E_MEMORY, __func__, __FILE__, __LINE__);
   }
-  find_electrodes(s, columns, room, room + columns);
+  find_laminates(s, columns, room, room + columns);
   dea_free(ctx, room);
   return DEA_OK;
 }

@@ -8,10 +8,9 @@
  * no potential in a coupled field. */
 dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s);
 
-/* Sets problem.electrodes: elements of DEA_PART_ELECTRODE in the columns of what has a
- * permittivity.
- */
-dea_status dea_solid_find_electrodes(struct dea_context *ctx, struct dea_solid *s);
+/* Sets problem.laminate: elements on the same quadrilateral of the plane mesh, whose plies lie on
+ * each other. */
+dea_status dea_solid_find_laminates(struct dea_context *ctx, struct dea_solid *s);
 
 /* Memory that an input lends from. */
 struct dea_solid_element_place {

@@ -16,99 +16,236 @@ static double smaller_of(const double T[3])
   return 0.5 * (T[0] + T[1]) - hypot(0.5 * (T[0] - T[1]), T[2]);
 }
 
-/* An element as a surface, with the forces of electrodes of a thickness that are bonded to it, on
- * their own bases: they wrinkle together. */
-static dea_status surface_of(const struct dea_solid *s, size_t e, double voltage_V,
-                             struct dea_solid_element_place *place, struct dea_element_input *in,
-                             struct dea_membrane_state *out)
+/* Height of an element [m]; of a surface what it is thick. */
+static double height_of(const struct dea_solid *s, size_t e)
+{
+  const struct dea_grid *grid = s->problem.grid;
+  const int *nodes;
+  const int count = dea_solid_nodes(s, e, &nodes);
+  return grid->levels[e] == 1 ? dea_solid_constituent(s, e)->thickness_m
+                              : grid->X[3 * nodes[count - 1] + 2] - grid->X[3 * nodes[0] + 2];
+}
+
+static bool is_dielectric(const struct dea_solid *s, size_t e)
+{
+  return dea_solid_constituent(s, e)->permittivity_F_per_m > 0;
+}
+
+static bool is_electrode(const struct dea_solid *s, size_t e)
+{
+  return dea_solid_constituent(s, e)->part == DEA_PART_ELECTRODE;
+}
+
+/* Whose forces a membrane force is: that of a dielectric ply with electrodes of a thickness on it,
+ * which wrinkle with it, or of all plies that are bonded to each other. */
+enum extent { OF_FILM, OF_LAMINATE };
+
+/* Whether an element of the same laminate counts in the membrane force of another one. */
+static bool counts(const struct dea_solid *s, size_t e, size_t k, enum extent extent)
+{
+  return extent == OF_LAMINATE || s->problem.grid->ply[k] == s->problem.grid->ply[e] ||
+         is_electrode(s, k);
+}
+
+/* An element as a surface, with the forces of what counts, on their own bases. */
+static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent extent,
+                             double voltage_V, struct dea_solid_element_place *place,
+                             struct dea_element_input *in, struct dea_membrane_state *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
+  double share = height_of(s, e) / dea_solid_constituent(s, e)->thickness_m;
   dea_solid_element_input(s, e, s->state.u, voltage_V, place, in);
   dea_status status = element->type->membrane_state(element, in, out);
-  for (int side = 0; side < 2 && status == DEA_OK && dea_solid_electrode(s, e, side) >= 0; side++) {
-    const size_t other = (size_t)dea_solid_electrode(s, e, side);
+  for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
+    out->force[i / 3][i % 3] *= share;
+  }
+  for (size_t k = (size_t)s->problem.laminate[e]; k != e && status == DEA_OK;
+       k = (size_t)s->problem.laminate[k]) {
     struct dea_solid_element_place at;
     struct dea_element_input of_other;
-    struct dea_membrane_state electrode;
-    element = dea_solid_element(s, other);
-    dea_solid_element_input(s, other, s->state.u, voltage_V, &at, &of_other);
-    status = element->type->membrane_state(element, &of_other, &electrode);
+    struct dea_membrane_state other;
+    if (!counts(s, e, k, extent)) {
+      continue;
+    }
+    element = dea_solid_element(s, k);
+    share = height_of(s, k) / dea_solid_constituent(s, k)->thickness_m;
+    dea_solid_element_input(s, k, s->state.u, voltage_V, &at, &of_other);
+    status = element->type->membrane_state(element, &of_other, &other);
     for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
-      out->force[i / 3][i % 3] += electrode.force[i / 3][i % 3];
+      out->force[i / 3][i % 3] += share * other.force[i / 3][i % 3];
     }
-    for (int p = 0; p < out->count && status == DEA_OK; p++) {
-      out->tension[p] = smaller_of(out->force[p]);
-    }
+  }
+  for (int p = 0; p < out->count && status == DEA_OK; p++) {
+    out->tension[p] = smaller_of(out->force[p]);
   }
   return status;
 }
 
-/* What a clamped circular plate bears is 14.7 D / R^2, by its area 46 D / A; 4 pi^2 D / A is about
- * that of any clamped plate as wide as long (docs/theory/trust.md). D = E h^3 / (12 (1 - nu^2)) of
- * an incompressible film, and that of electrodes on both of its faces. */
-static double compression_borne_N(const struct dea_solid *s, size_t e)
+/* D of docs/theory/trust.md, "Slack", of all plies that are bonded to an element. Surfaces of one
+ * place lie about it, those of electrodes outermost. */
+static double bending_stiffness_Nm(const struct dea_solid *s, size_t e)
 {
-  const double pi = 3.14159265358979323846;
-  const struct dea_constituent *film = dea_solid_constituent(s, e);
-  const double h = film->thickness_m;
-  double D = dea_constituent_modulus(film) * pow(h, 3) / 3, both = 0, modulus = 0;
-  for (int side = 0; side < 2 && dea_solid_electrode(s, e, side) >= 0; side++) {
-    const struct dea_constituent *electrode =
-        dea_solid_constituent(s, (size_t)dea_solid_electrode(s, e, side));
-    both += electrode->thickness_m;
-    modulus = dea_constituent_modulus(electrode);
+  const struct dea_grid *grid = s->problem.grid;
+  double A = 0, B = 0, D = 0, inner = 0;
+  for (int outer = 0; outer < 2; outer++) {
+    size_t k = e;
+    do {
+      const double Q = dea_constituent_plate_modulus(dea_solid_constituent(s, k));
+      const double h = height_of(s, k), z = grid->X[3 * grid->nodes[k * DEA_HEX_NODES_MAX] + 2];
+      const bool flat = grid->levels[k] == 1;
+      if (outer == (flat && is_electrode(s, k) ? 1 : 0)) {
+        const double bottom = z, top = z + h, rest = inner + h;
+        A += Q * h;
+        B += flat ? Q * h * z : Q * (top * top - bottom * bottom) / 2;
+        D += flat ? Q * (h * z * z + (pow(rest, 3) - pow(inner, 3)) / 12)
+                  : Q * (pow(top, 3) - pow(bottom, 3)) / 3;
+        inner = flat ? rest : inner;
+      }
+      k = (size_t)s->problem.laminate[k];
+    } while (k != e);
   }
-  D += modulus * (pow(h + both, 3) - pow(h, 3)) / 3;
-  return 4 * pi * pi * D;
+  return D - B * B / A;
+}
+
+/* What an element is in its laminate, and what that has. */
+struct ring {
+  bool lowest, lowest_of_ply; // the element
+  bool film, dielectric;      // the laminate has one
+  bool moves;                 // no film wrinkles in a clamp or under a rigid body
+};
+
+static bool can_move(const struct dea_solid *s, size_t e)
+{
+  const int *nodes;
+  const int count = dea_solid_nodes(s, e, &nodes);
+  bool free = false;
+  for (int i = 0; i < 3 * count && !free; i++) {
+    free = s->problem.held[3 * (size_t)nodes[i / 3] + (size_t)(i % 3)] == DEA_FREE;
+  }
+  return free;
+}
+
+static struct ring ring_of(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                           size_t e)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  struct ring out = {.lowest = true, .lowest_of_ply = true};
+  size_t k = e;
+  do {
+    const bool film = films[p->constituent_of[k]].material != NULL;
+    out.lowest = out.lowest && k >= e;
+    out.lowest_of_ply = out.lowest_of_ply && (k >= e || p->grid->ply[k] != p->grid->ply[e]);
+    out.film = out.film || film;
+    out.dielectric = out.dielectric || (film && is_dielectric(s, k));
+    out.moves = out.moves || can_move(s, k);
+    k = (size_t)p->laminate[k];
+  } while (k != e);
+  return out;
+}
+
+/* The tension of a film is asked of the lowest element of a dielectric ply, and of that of a
+ * laminate without one. */
+static bool has_tension(const struct dea_solid *s, const struct ring *ring, size_t e)
+{
+  return ring->moves && (is_dielectric(s, e) ? ring->lowest_of_ply
+                                             : ring->lowest && ring->film && !ring->dielectric);
+}
+
+static enum extent extent_of(const struct dea_solid *s, size_t e)
+{
+  return is_dielectric(s, e) ? OF_FILM : OF_LAMINATE;
 }
 
 // Extremes ----------------------------------------------------------------------------------------
 
-/* Compression and use of the law at the points in the plane of one element. */
-static dea_status wear_of(const struct dea_solid *s, size_t e, const struct dea_element_input *in,
-                          const struct dea_membrane_state *film,
-                          const struct dea_material *material, struct dea_solid_extremes *out)
+/* Use of the film's law at the points of one element. */
+static dea_status reach_of(const struct dea_solid *s, size_t e, const struct dea_material *material,
+                           struct dea_solid_extremes *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  const struct dea_constituent *constituent = in->constituent;
-  const double borne_N = compression_borne_N(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
   struct dea_element_strains strains;
-  dea_status status = element->type->strains(element, in, &strains);
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  dea_status status = element->type->strains(element, &in, &strains);
   for (int q = 0; status == DEA_OK && q < element->points; q++) {
-    int p = q % film->count; // point in the plane
-    double area = film->area[p] * strains.volume_m3[q] / constituent->thickness_m;
     const double *C = strains.C[q];
     double plane[3] = {C[0], C[1], C[5]};
-    dea_constituent_pull_back(constituent, plane, plane);
+    dea_constituent_pull_back(in.constituent, plane, plane);
     double root = hypot(0.5 * (plane[0] - plane[1]), plane[2]);
     double middle = 0.5 * (plane[0] + plane[1]);
-    out->compression_ratio += fmax(-film->tension[p], 0) * area / borne_N;
     dea_reach_take(&out->reach, dea_material_reach(material, sqrt(middle + root),
                                                    sqrt(fmax(middle - root, 1e-30))));
   }
   return status;
 }
 
-/* Takes the film's extremes of one element into *out. */
-static dea_status extremes_of(const struct dea_solid *s, size_t e,
-                              const struct dea_solid_film_data *data,
-                              struct dea_solid_extremes *out)
+/* The field of one element between electrodes. */
+static dea_status field_of(const struct dea_solid *s, size_t e,
+                           const struct dea_solid_film_data *data, struct dea_solid_extremes *out)
 {
+  const struct dea_element *element = dea_solid_element(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
   struct dea_membrane_state film;
-  dea_status status = surface_of(s, e, s->state.voltage_V, &place, &in, &film);
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  dea_status status = element->type->membrane_state(element, &in, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
     double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
     double stretch = data->pre_stretch * sqrt(film.area[p]);
-    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
-    if (s->problem.active[e]) {
-      out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
-      out->breakdown_margin =
-          fmin(out->breakdown_margin, 1 - field / dea_breakdown_field(data->material, stretch));
-    }
+    double margin = 1 - field / dea_breakdown_field(data->material, stretch);
+    out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
+    out->breakdown_margin = fmin(out->breakdown_margin, margin);
+    out->breakdown_probability = fmax(
+        out->breakdown_probability, dea_breakdown_probability(&data->material->breakdown, margin));
   }
-  return status == DEA_OK ? wear_of(s, e, &in, &film, data->material, out) : status;
+  return status;
+}
+
+/* Compression of the laminate whose lowest element this is, at the points in the plane, over what a
+ * clamped plate of it bears: 14.7 D / R^2 of a circular one, by its area 46 D / A; 4 pi^2 D / A is
+ * about that of any plate as wide as long (docs/theory/trust.md). */
+static dea_status compression_of(const struct dea_solid *s, size_t e,
+                                 const struct dea_membrane_state *laminate, double *ratio)
+{
+  const double pi = 3.14159265358979323846;
+  const double borne_Nm = 4 * pi * pi * bending_stiffness_Nm(s, e), height = height_of(s, e);
+  const struct dea_element *element = dea_solid_element(s, e);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  struct dea_element_strains strains;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  dea_status status = element->type->strains(element, &in, &strains);
+  for (int q = 0; status == DEA_OK && q < element->points; q++) {
+    const int p = q % laminate->count;
+    *ratio += fmax(-laminate->tension[p], 0) * laminate->area[p] * strains.volume_m3[q] / height /
+              borne_Nm;
+  }
+  return status;
+}
+
+/* Takes the tension that is asked of an element, and the compression of its laminate. */
+static dea_status tension_of(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                             size_t e, struct dea_solid_extremes *out)
+{
+  const struct ring ring = ring_of(s, films, e);
+  const bool tension = has_tension(s, &ring, e), laminate = ring.lowest && ring.film && ring.moves;
+  const bool same = extent_of(s, e) == OF_LAMINATE || s->problem.laminate[e] == (int)e;
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  struct dea_membrane_state film = {.count = 0};
+  dea_status status = DEA_OK;
+  if (tension) {
+    status = surface_of(s, e, extent_of(s, e), s->state.voltage_V, &place, &in, &film);
+  }
+  for (int p = 0; p < film.count && status == DEA_OK; p++) {
+    out->min_tension_N_per_m = fmin(out->min_tension_N_per_m, film.tension[p]);
+  }
+  if (status == DEA_OK && laminate && !(tension && same)) {
+    status = surface_of(s, e, OF_LAMINATE, s->state.voltage_V, &place, &in, &film);
+  }
+  return status == DEA_OK && laminate ? compression_of(s, e, &film, &out->compression_ratio)
+                                      : status;
 }
 
 /* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes
@@ -182,12 +319,19 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
                               struct dea_solid_extremes *out)
 {
   dea_status status = DEA_OK;
-  *out = (struct dea_solid_extremes){0, INFINITY, INFINITY, 0, {NAN, NAN}};
+  *out = (struct dea_solid_extremes){.breakdown_margin = INFINITY,
+                                     .breakdown_probability = NAN,
+                                     .min_tension_N_per_m = INFINITY,
+                                     .reach = {NAN, NAN}};
   for (size_t k = 0; k < s->problem.own_count && status == DEA_OK; k++) {
     size_t e = s->problem.own[k];
     const struct dea_solid_film_data *film = &films[s->problem.constituent_of[e]];
-    if (dea_solid_constituent(s, e)->permittivity_F_per_m > 0 && film->material != NULL) {
-      status = extremes_of(s, e, film, out);
+    status = film->material != NULL ? reach_of(s, e, film->material, out) : DEA_OK;
+    if (status == DEA_OK && film->material != NULL && s->problem.active[e]) {
+      status = field_of(s, e, film, out);
+    }
+    if (status == DEA_OK) {
+      status = tension_of(s, films, e, out);
     }
   }
   status = dea_solid_agree(NULL, status);
@@ -196,6 +340,7 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
   }
   out->true_field_V_per_m = dea_solid_largest(out->true_field_V_per_m);
   out->breakdown_margin = -dea_solid_largest(-out->breakdown_margin);
+  out->breakdown_probability = largest_known(out->breakdown_probability);
   out->min_tension_N_per_m = -dea_solid_largest(-out->min_tension_N_per_m);
   dea_solid_sum(&out->compression_ratio, 1);
   out->reach.locking_share = largest_known(out->reach.locking_share);
@@ -236,7 +381,8 @@ double dea_solid_extreme_at(const struct dea_solid *s, const struct dea_solid_fi
   struct dea_solid_element_place at;
   struct dea_element_input in;
   struct dea_membrane_state film;
-  return surface_of(s, place->element, voltage_V, &at, &in, &film) == DEA_OK
+  return surface_of(s, place->element, extent_of(s, place->element), voltage_V, &at, &in, &film) ==
+                 DEA_OK
              ? quantity_of(&in, &film, &films[s->problem.constituent_of[place->element]], which,
                            place->point, place->direction)
              : NAN;
@@ -253,9 +399,11 @@ bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_dat
   *out = (struct dea_film_place){.element = 0};
   for (size_t e = 0; e < s->problem.grid->element_count; e++) { // all ranks all of them
     const struct dea_solid_film_data *data = &films[s->problem.constituent_of[e]];
-    bool asked = dea_solid_constituent(s, e)->permittivity_F_per_m > 0 && data->material != NULL &&
-                 (which == DEA_FILM_TENSION || s->problem.active[e]);
-    asked = asked && surface_of(s, e, s->state.voltage_V, &at, &in, &film) == DEA_OK;
+    const struct ring ring = ring_of(s, films, e);
+    bool asked = which == DEA_FILM_TENSION ? has_tension(s, &ring, e)
+                                           : data->material != NULL && s->problem.active[e];
+    asked =
+        asked && surface_of(s, e, extent_of(s, e), s->state.voltage_V, &at, &in, &film) == DEA_OK;
     for (int p = 0; asked && p < film.count; p++) {
       struct dea_film_place place = {.element = e, .point = p};
       find_direction(film.force[p], place.direction);
@@ -283,13 +431,16 @@ static double slope_by(const struct dea_solid *s, const struct dea_solid_film_da
   return (sides[1] - sides[0]) / (2 * step);
 }
 
-/* Whether an element has a node, -1: no element. */
-static bool has_node(const struct dea_solid *s, int e, int node)
+/* Whether one of the elements of a laminate from `first` to before `e` counts and has a node. */
+static bool taken_before(const struct dea_solid *s, size_t first, size_t e, int node)
 {
-  const int *nodes;
   bool found = false;
-  for (int n = e < 0 ? 0 : dea_solid_nodes(s, (size_t)e, &nodes); n > 0 && !found; n--) {
-    found = nodes[n - 1] == node;
+  for (size_t k = first; k != e && !found; k = (size_t)s->problem.laminate[k]) {
+    const int *nodes;
+    int count = counts(s, first, k, extent_of(s, first)) ? dea_solid_nodes(s, k, &nodes) : 0;
+    for (int n = 0; n < count && !found; n++) {
+      found = nodes[n] == node;
+    }
   }
   return found;
 }
@@ -300,27 +451,26 @@ void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_f
 {
   static const double share = 1e-5; // of a part's thickness and of its modulus
   const size_t most = (size_t)s->problem.elements.pressures;
-  int elements[3] = {(int)place->element, -1, -1};
-  for (int side = 0; side < 2 && which == DEA_FILM_TENSION; side++) {
-    elements[1 + side] = dea_solid_electrode(s, place->element, side);
-  }
-  for (int k = 0; k < 3 && elements[k] >= 0; k++) {
-    const size_t e = (size_t)elements[k];
+  const size_t first = place->element;
+  size_t e = first;
+  do {
     const struct dea_constituent *part = dea_solid_constituent(s, e);
+    const bool has =
+        e == first || (which == DEA_FILM_TENSION && counts(s, first, e, extent_of(s, first)));
     const int *nodes;
-    int count = dea_solid_nodes(s, e, &nodes);
+    int count = has ? dea_solid_nodes(s, e, &nodes) : 0;
     for (int i = 0; i < 3 * count; i++) {
-      const int node = nodes[i / 3];
-      if (k == 0 || !has_node(s, elements[0], node)) { // electrodes share no node
-        size_t at = 3 * (size_t)node + (size_t)(i % 3);
+      size_t at = 3 * (size_t)nodes[i / 3] + (size_t)(i % 3);
+      if (!taken_before(s, first, e, nodes[i / 3])) {
         out[at] += slope_by(s, films, which, place, &s->state.u[at], share * part->thickness_m);
       }
     }
-    for (size_t j = e * most; j < (e + 1) * most; j++) {
+    for (size_t j = e * most; has && j < (e + 1) * most; j++) {
       pressures[j] += slope_by(s, films, which, place, &s->state.multiplier[j],
                                share * dea_constituent_modulus(part));
     }
-  }
+    e = (size_t)s->problem.laminate[e];
+  } while (e != first);
 }
 
 /* out += times the forces at the solid's displacements and the potentials that a voltage has there.

@@ -10,19 +10,22 @@
 dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *solid,
                                  double *capacitance_F);
 
-/* Extremes of the film (elements of constituents with a permittivity). */
+/* Extremes of films. Those that cannot move, in a clamp or under a rigid body, have no tension that
+ * counts. */
 struct dea_solid_extremes {
-  double true_field_V_per_m; // largest V over the current thickness
-  double breakdown_margin;   // smallest; NAN when unknown
-  /* Smallest principal membrane force per current length, of the film and electrodes of a thickness
-   * that are bonded to it. */
+  double true_field_V_per_m;    // largest V over the current thickness
+  double breakdown_margin;      // smallest; NAN when unknown
+  double breakdown_probability; // largest; NAN when unknown
+  /* Smallest principal membrane force per current length: of a dielectric ply and electrodes of a
+   * thickness on it, and where there is none of all plies together. INFINITY without a film. */
   double min_tension_N_per_m;
-  double compression_ratio; // integral of compression over 4 pi^2 D, D their bending stiffness
-  struct dea_reach reach;   // of the film's law
+  double compression_ratio; // integral of the compression of plies that are bonded to each other,
+                            // of which one is a film, over 4 pi^2 D, D their bending stiffness
+  struct dea_reach reach;   // of the films' laws
 };
-/* What a constituent is as a film, for its breakdown field. */
+/* What a constituent is as a film. */
 struct dea_solid_film_data {
-  const struct dea_material *material; // NULL: not looked at
+  const struct dea_material *material; // NULL: it is no film
   double pre_stretch;                  // root of its area's
 };
 /* films: [constituent_count]. */

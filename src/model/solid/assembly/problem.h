@@ -33,11 +33,11 @@ struct dea_solid_problem {
   enum dea_element_kind *kind;                // [elements] by dea_solid_set_kinds
   const struct dea_constituent *constituents; // [constituent_count]
   size_t constituent_count;
-  int *constituent_of;  // [elements] place in constituents
-  int (*electrodes)[2]; // [elements] electrodes of a thickness below and above, which the element
-                        // is bonded to, -1: none; NULL: none anywhere; by dea_solid_find_electrodes
-  int (*between)[2];    // [elements] channels at its top and bottom; 0, 0 without electrodes
-  bool *active;         // [elements] whether these are two, with a voltage in between
+  int *constituent_of; // [elements] place in constituents
+  int *laminate;     // [elements] the next one above in the same column, which it is bonded to, of
+                     // the last the first; by dea_solid_find_laminates
+  int (*between)[2]; // [elements] channels at its top and bottom; 0, 0 without electrodes
+  bool *active;      // [elements] whether these are two, with a voltage in between
   size_t channel_count; // ground not counted
   double *share;        // [channel_count + 1] of the voltage that a channel gets; [0]: 0
   double *spring; // [dofs] M of docs/theory/membrane.md by dea_solid_create_springs; NULL: none
@@ -185,12 +185,6 @@ static inline const struct dea_constituent *dea_solid_constituent(const struct d
                                                                   size_t e)
 {
   return &s->problem.constituents[s->problem.constituent_of[e]];
-}
-
-/* The electrode of a thickness that is bonded to an element, side 0 or 1; -1: none. */
-static inline int dea_solid_electrode(const struct dea_solid *s, size_t e, int side)
-{
-  return s->problem.electrodes != NULL ? s->problem.electrodes[e][side] : -1;
 }
 
 /* kappa of an element as it is [Pa]. */

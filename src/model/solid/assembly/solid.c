@@ -96,7 +96,7 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_frames_create(ctx, s, options));
   DEA_TRY(ctx, dea_solid_bodies_hold(ctx, s));
   DEA_TRY(ctx, dea_solid_set_kinds(ctx, s));
-  DEA_TRY(ctx, dea_solid_find_electrodes(ctx, s));
+  DEA_TRY(ctx, dea_solid_find_laminates(ctx, s));
   DEA_TRY(ctx, dea_solid_create_springs(ctx, s));
   DEA_TRY(ctx, dea_solid_field_create(ctx, s, options));
   find_sizes(s);

@@ -153,6 +153,12 @@ double dea_constituent_modulus(const struct dea_constituent *constituent)
   return constituent->law->shear_modulus(constituent->param);
 }
 
+double dea_constituent_plate_modulus(const struct dea_constituent *constituent)
+{
+  const double nu = dea_constituent_takes_pressure(constituent) ? 0.5 : constituent->param[1];
+  return 2 * dea_constituent_modulus(constituent) / (1 - nu);
+}
+
 void dea_constituent_set_law(struct dea_constituent *constituent, const struct dea_law *law,
                              const double *param)
 {

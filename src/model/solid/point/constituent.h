@@ -60,6 +60,9 @@ void dea_constituent_pull_back(const struct dea_constituent *constituent, const 
 /* Shear modulus of the ground state [Pa]. */
 double dea_constituent_modulus(const struct dea_constituent *constituent);
 
+/* E / (1 - nu^2) of the ground state [Pa], which plates bend with. */
+double dea_constituent_plate_modulus(const struct dea_constituent *constituent);
+
 /* Sets p0 so that the undeformed constituent has no stress through the thickness, and the kappa_s
  * that keeps such a constituent free of false unstable modes. Nothing to do for a compressible law.
  */
