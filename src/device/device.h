@@ -8,6 +8,9 @@
 #include "design/design.h"
 #include "device/layout.h"
 
+/* Acceleration of free fall, by definition (3rd CGPM, 1901). */
+#define DEA_STANDARD_GRAVITY_M_PER_S2 9.80665
+
 struct dea_device {
   struct dea_layout *layout; // owned; NULL of a device that was filled by hand
   bool general; // its parts are those of the layout; all that follows but gravity is 0 then

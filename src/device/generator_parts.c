@@ -111,9 +111,23 @@ static dea_status add_plies(struct maker *m)
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, resolve_ply(m, from, &to->material));
     DEA_TRY(m->ctx, check_reach(m, from, to));
-    dea_breakdown_specialise(to->thickness_unstretched_m, 0, &to->material.breakdown);
   }
   return DEA_OK;
+}
+
+/* Fits the breakdown fields to the plies' thicknesses and to the unstretched area between
+ * electrodes of all of them, any place of which may be the weakest (docs/theory/breakdown.md). */
+static void fit_breakdown(const struct maker *m)
+{
+  double area_m2 = 0;
+  for (size_t i = 0; i < m->out->ply_count; i++) {
+    const double *l = m->out->plies[i].pre_stretch;
+    area_m2 += dea_layout_active_area_m2(m->out, i) / (l[0] * l[1]);
+  }
+  for (size_t i = 0; i < m->out->ply_count; i++) {
+    struct dea_layout_ply *ply = &m->out->plies[i];
+    dea_breakdown_specialise(ply->thickness_unstretched_m, area_m2, &ply->material.breakdown);
+  }
 }
 
 /* What a ply needs that is a dielectric. */
@@ -478,7 +492,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   typedef dea_status (*add_fn)(struct maker *);
   static const add_fn parts[] = {add_plies,  add_channels, add_electrodes, add_supports,
                                  add_bodies, add_springs,  add_pressures,  add_monitors};
-  static const double g = 9.80665; // m/s2, standard
+  const double g = DEA_STANDARD_GRAVITY_M_PER_S2;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   struct maker m = {.ctx = ctx, .design = design, .parts = design->parts};
   device->general = true;
@@ -496,6 +510,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   if (dea_finding_count(ctx, DEA_ERROR) > errors) {
     return DEA_OK; // where things lie says nothing then
   }
+  fit_breakdown(&m);
   DEA_TRY(ctx, check_dielectrics(&m));
   DEA_TRY(ctx, dea_layout_check(ctx, m.out));
   DEA_TRY(ctx, dea_geometry_fit_studies(ctx, design, device));

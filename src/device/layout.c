@@ -69,19 +69,26 @@ static bool lies_on(const struct dea_layout_electrode *electrode, size_t ply, bo
          (!top && electrode->ply + 1 == ply && electrode->top);
 }
 
-bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply)
+bool dea_layout_next_pair(const struct dea_layout *layout, size_t ply, size_t *at,
+                          const struct dea_layout_electrode *pair[2])
 {
-  for (size_t a = 0; a < layout->electrode_count; a++) {
-    for (size_t b = 0; b < layout->electrode_count; b++) {
-      const struct dea_layout_electrode *above = &layout->electrodes[a];
-      const struct dea_layout_electrode *below = &layout->electrodes[b];
-      if (lies_on(above, ply, true) && lies_on(below, ply, false) &&
-          above->channel != below->channel) {
-        return true;
-      }
+  const size_t count = layout->electrode_count;
+  while (*at < count * count) {
+    pair[0] = &layout->electrodes[*at / count];
+    pair[1] = &layout->electrodes[*at % count];
+    ++*at;
+    if (lies_on(pair[0], ply, true) && lies_on(pair[1], ply, false) &&
+        pair[0]->channel != pair[1]->channel) {
+      return true;
     }
   }
   return false;
+}
+
+bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply)
+{
+  const struct dea_layout_electrode *pair[2];
+  return dea_layout_next_pair(layout, ply, &(size_t){0}, pair);
 }
 
 bool dea_support_is_frame(const struct dea_layout_support *support)

@@ -136,6 +136,10 @@ struct dea_layout {
 
 /* Whether a ply is between electrodes of two channels somewhere. */
 bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply);
+/* The next pair of electrodes of different channels on the upper and on the lower face of a ply,
+ * from *at on, which starts at 0; false: there is no more. */
+bool dea_layout_next_pair(const struct dea_layout *layout, size_t ply, size_t *at,
+                          const struct dea_layout_electrode *pair[2]);
 /* Number of a region, ply, body, or channel of that name; DEA_LAYOUT_NONE. */
 size_t dea_layout_find_region(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name);

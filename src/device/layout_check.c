@@ -53,6 +53,19 @@ double dea_layout_overlap_m2(const struct dea_layout *l, size_t a, size_t b)
   return area;
 }
 
+double dea_layout_active_area_m2(const struct dea_layout *l, size_t ply)
+{
+  const struct dea_layout_electrode *pair[2];
+  double area = 0;
+  for (size_t at = 0; dea_layout_next_pair(l, ply, &at, pair);) {
+    const double common = dea_layout_overlap_m2(l, pair[0]->region, pair[1]->region);
+    area += !isnan(common) ? common
+                           : fmin(dea_region_area_m2(region_of(l, pair[0]->region)),
+                                  dea_region_area_m2(region_of(l, pair[1]->region)));
+  }
+  return area;
+}
+
 bool dea_layout_holds(const struct dea_layout *l, size_t region, const double x_m[2])
 {
   const struct dea_region *r = region_of(l, region);

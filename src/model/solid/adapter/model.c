@@ -21,7 +21,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double free_fall_m_per_s2 = 9.81;
 static const double field_step_V_per_m = 10e6; // a longer way is gone in such steps of V/H0
 enum { resolved = 6 }; // elements through the film from which a coupled field is (coupled.md)
 
@@ -131,7 +130,7 @@ static dea_status find_weight(struct dea_context *ctx, const struct dea_model *m
     return DEA_E_MEMORY;
   }
   for (size_t n = 0; n < model->grid->node_count; n++) {
-    fall[3 * n + 2] = gravity == DEA_GRAVITY_FIBRES_UP ? -free_fall_m_per_s2 : free_fall_m_per_s2;
+    fall[3 * n + 2] = (gravity == DEA_GRAVITY_FIBRES_UP ? -1 : 1) * DEA_STANDARD_GRAVITY_M_PER_S2;
   }
   dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, out);
   dea_free(ctx, fall);

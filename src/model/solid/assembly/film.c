@@ -54,10 +54,14 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
 {
   const struct dea_element *element = dea_solid_element(s, e);
   double share = height_of(s, e) / dea_solid_constituent(s, e)->thickness_m;
+  bool alone = true;
   dea_solid_element_input(s, e, s->state.u, voltage_V, place, in);
   dea_status status = element->type->membrane_state(element, in, out);
   for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
     out->force[i / 3][i % 3] *= share;
+  }
+  for (int p = 0; p < out->count && status == DEA_OK; p++) {
+    out->tension[p] *= share;
   }
   for (size_t k = (size_t)s->problem.laminate[e]; k != e && status == DEA_OK;
        k = (size_t)s->problem.laminate[k]) {
@@ -67,6 +71,7 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
     if (!counts(s, e, k, extent)) {
       continue;
     }
+    alone = false;
     element = dea_solid_element(s, k);
     share = height_of(s, k) / dea_solid_constituent(s, k)->thickness_m;
     dea_solid_element_input(s, k, s->state.u, voltage_V, &at, &of_other);
@@ -75,7 +80,7 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
       out->force[i / 3][i % 3] += share * other.force[i / 3][i % 3];
     }
   }
-  for (int p = 0; p < out->count && status == DEA_OK; p++) {
+  for (int p = 0; p < out->count && status == DEA_OK && !alone; p++) {
     out->tension[p] = smaller_of(out->force[p]);
   }
   return status;
@@ -202,11 +207,34 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
   return status;
 }
 
-/* Compression of the laminate whose lowest element this is, at the points in the plane, over what a
- * clamped plate of it bears: 14.7 D / R^2 of a circular one, by its area 46 D / A; 4 pi^2 D / A is
- * about that of any plate as wide as long (docs/theory/trust.md). */
-static dea_status compression_of(const struct dea_solid *s, size_t e,
-                                 const struct dea_membrane_state *laminate, double *ratio)
+/* At which points in the plane a film of a laminate is in compression. */
+static dea_status find_compressed(const struct dea_solid *s,
+                                  const struct dea_solid_film_data *films, size_t e,
+                                  bool compressed[DEA_HEX_GAUSS_MAX])
+{
+  dea_status status = DEA_OK;
+  size_t k = e;
+  memset(compressed, 0, DEA_HEX_GAUSS_MAX * sizeof *compressed);
+  do {
+    struct dea_solid_element_place place;
+    struct dea_element_input in;
+    struct dea_membrane_state film = {.count = 0};
+    if (films[s->problem.constituent_of[k]].material != NULL) {
+      status = surface_of(s, k, OF_FILM, s->state.voltage_V, &place, &in, &film);
+    }
+    for (int p = 0; p < film.count && status == DEA_OK; p++) {
+      compressed[p] = compressed[p] || film.tension[p] < 0;
+    }
+    k = (size_t)s->problem.laminate[k];
+  } while (k != e && status == DEA_OK);
+  return status;
+}
+
+/* Compression of the laminate whose lowest element this is, where a film of it is in compression,
+ * over what a clamped plate of it bears: 14.7 D / R^2 of a circular one, by its area 46 D / A;
+ * 4 pi^2 D / A is about that of any plate as wide as long (docs/theory/trust.md). */
+static dea_status compression_of(const struct dea_solid *s, const struct dea_solid_film_data *films,
+                                 size_t e, const struct dea_membrane_state *laminate, double *ratio)
 {
   const double pi = 3.14159265358979323846;
   const double borne_Nm = 4 * pi * pi * bending_stiffness_Nm(s, e), height = height_of(s, e);
@@ -214,14 +242,28 @@ static dea_status compression_of(const struct dea_solid *s, size_t e,
   struct dea_solid_element_place place;
   struct dea_element_input in;
   struct dea_element_strains strains;
+  bool compressed[DEA_HEX_GAUSS_MAX];
+  dea_status status = find_compressed(s, films, e, compressed);
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  dea_status status = element->type->strains(element, &in, &strains);
+  if (status == DEA_OK) {
+    status = element->type->strains(element, &in, &strains);
+  }
   for (int q = 0; status == DEA_OK && q < element->points; q++) {
     const int p = q % laminate->count;
-    *ratio += fmax(-laminate->tension[p], 0) * laminate->area[p] * strains.volume_m3[q] / height /
-              borne_Nm;
+    *ratio += compressed[p] ? fmax(-laminate->tension[p], 0) * laminate->area[p] *
+                                  strains.volume_m3[q] / (height * borne_Nm)
+                            : 0;
   }
   return status;
+}
+
+static bool is_compressed(const struct dea_membrane_state *film)
+{
+  bool any = false;
+  for (int p = 0; p < film->count; p++) {
+    any = any || film->tension[p] < 0;
+  }
+  return any;
 }
 
 /* Takes the tension that is asked of an element, and the compression of its laminate. */
@@ -244,8 +286,9 @@ static dea_status tension_of(const struct dea_solid *s, const struct dea_solid_f
   if (status == DEA_OK && laminate && !(tension && same)) {
     status = surface_of(s, e, OF_LAMINATE, s->state.voltage_V, &place, &in, &film);
   }
-  return status == DEA_OK && laminate ? compression_of(s, e, &film, &out->compression_ratio)
-                                      : status;
+  return status == DEA_OK && laminate && is_compressed(&film)
+             ? compression_of(s, films, e, &film, &out->compression_ratio)
+             : status;
 }
 
 /* The step is small since a film that wrinkles gives way to V (docs/theory/membrane.md); for slopes
