@@ -11,6 +11,7 @@
 #include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/equilibrium/newton.h"
+#include "model/solid/equilibrium/spread.h"
 
 #include <math.h>
 #include <string.h>
@@ -457,7 +458,8 @@ dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid
   dea_solid_controls_get(s, path->controls);
   dea_solid_controls_goal(s, voltage_V, path->controls_goal);
   memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
-  return solve_in_steps(ctx, s, least, report);
+  DEA_TRY(ctx, solve_in_steps(ctx, s, least, report));
+  return dea_solid_spread(ctx, s, report);
 }
 
 dea_status dea_load_steps_solve_to(struct dea_context *ctx, struct dea_solid *s, const double *goal,
