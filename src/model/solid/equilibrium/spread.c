@@ -1,11 +1,14 @@
 #include "model/solid/equilibrium/spread.h"
 
+#include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/elements.h"
+#include "model/solid/assembly/matrix.h"
 #include "model/solid/equilibrium/equilibrate.h"
 #include "model/solid/equilibrium/newton.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Whether an element is of a film that has no tension somewhere. */
@@ -40,6 +43,35 @@ static void hold_heights(struct dea_solid *s)
   }
 }
 
+/* Whether forces of compression in the plane meet motions without stiffness: K has next to none of
+ * them, and they lead further than the solid is wide. films: those that bear compression. */
+static dea_status find_freedom(struct dea_context *ctx, struct dea_solid *s,
+                               const struct dea_constituent *films, bool *free)
+{
+  struct dea_solid_problem *p = &s->problem;
+  const struct dea_constituent *own = p->constituents;
+  const size_t nodes = p->grid->node_count;
+  double energy, far = 0, wide = 0;
+  *free = true;
+  if (!s->found.factor_fits) {
+    return DEA_OK;
+  }
+  p->constituents = films;
+  dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy);
+  p->constituents = own;
+  DEA_TRY(ctx, status);
+  for (size_t k = 0; k < 3 * nodes; k++) {
+    s->work.trial[k] = (k % 3 == 2) == dea_solid_turns_body(s, k / 3) ? -s->work.g[k] : 0;
+    wide = fmax(wide, fabs(p->grid->X[k]));
+  }
+  DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, s->work.trial, s->work.step));
+  for (size_t k = 0; k < 3 * nodes; k++) {
+    far = fmax(far, fabs(s->work.step[k]));
+  }
+  *free = far > wide;
+  return DEA_OK;
+}
+
 /* The equilibrium in the plane of films that bear compression, then that of the films as they are.
  */
 static dea_status spread(struct dea_context *ctx, struct dea_solid *s, unsigned char *held,
@@ -49,10 +81,15 @@ static dea_status spread(struct dea_context *ctx, struct dea_solid *s, unsigned 
   const struct dea_constituent *own = p->constituents;
   const size_t components = 3 * p->grid->node_count;
   struct dea_solid_report flat = {0};
+  bool free;
   memcpy(held, p->held, components);
   memcpy(stiff, own, p->constituent_count * sizeof *stiff);
   for (size_t i = 0; i < p->constituent_count; i++) {
     stiff[i].relaxed = false;
+  }
+  DEA_TRY(ctx, find_freedom(ctx, s, stiff, &free));
+  if (!free) {
+    return DEA_OK;
   }
   p->constituents = stiff;
   hold_heights(s);
