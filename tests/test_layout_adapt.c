@@ -150,7 +150,7 @@ static void test_cone(void **state)
   (void)state;
   struct dea_device *device = cone_new();
   device->layout->bodies[0].free = 4;
-  device->layout->bodies[0].force_N[2] = 20e-3 * 9.80665;
+  device->layout->bodies[0].force_N[2] = 20e-3 * DEA_STANDARD_GRAVITY_M_PER_S2;
   struct found found = adapt(device, 0, 1e-3, 5e3, 5, 1);
   assert_true(found.within);
   assert_close(found.value, 2.7982e-3, 1e-3, 0);

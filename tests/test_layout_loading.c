@@ -139,7 +139,7 @@ static void test_hung(void **state)
   struct dea_model *model;
   l->bodies[0].free = 4;
   l->bodies[0].mass_kg = 20e-3;
-  l->gravity_m_per_s2[2] = 9.80665;
+  l->gravity_m_per_s2[2] = DEA_STANDARD_GRAVITY_M_PER_S2;
   l->plies[0].material.density_kg_per_m3 = 1e-3; // the table knows no weight of the film
   assert_int_equal(dea_model_find("3d")->create(ctx, device, &settings, &model), DEA_OK);
   for (size_t i = 0; i < sizeof hung / sizeof hung[0]; i++) {

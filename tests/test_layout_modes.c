@@ -138,7 +138,7 @@ static void test_answers(void **state)
   struct dea_material *film = &l->plies[0].material;
   l->bodies[0].free = 4;
   l->bodies[0].mass_kg = 20e-3;
-  l->gravity_m_per_s2[2] = -9.81;
+  l->gravity_m_per_s2[2] = -DEA_STANDARD_GRAVITY_M_PER_S2;
   film->density_kg_per_m3 = 1e-3;
   l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
       .name = "point", .kind = DEA_MONITOR_POINT, .at_m = {{12e-3, 1e-3}}};

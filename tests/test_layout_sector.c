@@ -57,7 +57,7 @@ static void test_lines_that_everything_has(void **state)
   assert_int_equal(dea_layout_sector_of(l).fold, 0); // nobody looked for it
   assert_fold(device, 4, 0);
   hub->force_N[2] = 1;
-  l->gravity_m_per_s2[2] = -9.81;
+  l->gravity_m_per_s2[2] = -DEA_STANDARD_GRAVITY_M_PER_S2;
   l->springs[l->spring_count++] = (struct dea_layout_spring){.component = 2, .free_at = 1e-3};
   assert_fold(device, 4, 0);
   hub->force_N[0] = 1; // along x, on the line along x
@@ -228,7 +228,7 @@ static struct dea_device *loaded_cone(void)
   hub->free = 63;
   hub->mass_kg = 5e-3;
   hub->force_N[2] = 0.02;
-  l->gravity_m_per_s2[2] = 9.81;
+  l->gravity_m_per_s2[2] = DEA_STANDARD_GRAVITY_M_PER_S2;
   l->springs[l->spring_count++] = (struct dea_layout_spring){
       .component = 2, .free_at = 0.2e-3, .count = 4, .at = at, .force = force};
   l->springs[l->spring_count++] = (struct dea_layout_spring){.component = 2, .stiffness = 5};

@@ -236,7 +236,7 @@ static void test_as_one_supply(void **state)
     devices[i] = cone_new();
     devices[i]->layout->bodies[0].free = 4;
     devices[i]->layout->bodies[0].mass_kg = 20e-3;
-    devices[i]->layout->gravity_m_per_s2[2] = -9.81;
+    devices[i]->layout->gravity_m_per_s2[2] = -DEA_STANDARD_GRAVITY_M_PER_S2;
     models[i] = model_of(devices[i], DEA_FILM_MEMBRANE);
   }
   struct history h = begin(models[0], true, plays, 2);

@@ -182,7 +182,7 @@ static void test_swing(void **state)
   struct dea_layout *l = device->layout;
   l->bodies[0].free = 4;
   l->bodies[0].mass_kg = 20e-3;
-  l->gravity_m_per_s2[2] = -9.81;
+  l->gravity_m_per_s2[2] = -DEA_STANDARD_GRAVITY_M_PER_S2;
   struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE);
   struct dea_load_point start, point, mode;
   struct dea_field_mesh *shapes;

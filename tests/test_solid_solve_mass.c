@@ -40,7 +40,7 @@ static void test_inertia_of_rigid_motions(void **state)
   assert_true(v != NULL && inertia != NULL && weight != NULL);
   assert_int_equal(dea_element_set_create(ctx, slab.order, slab.order_z, &elements), DEA_OK);
   // free fall: the inertia is the weight, node by node
-  const double fall[3] = {0.3, -2, 9.81};
+  const double fall[3] = {0.3, -2, DEA_STANDARD_GRAVITY_M_PER_S2};
   for (size_t i = 0; i < 3 * grid->node_count; i++) {
     v[i] = fall[i % 3];
   }
@@ -97,7 +97,8 @@ static void test_sag_of_a_disc(void **state)
     d.film.density_kg_per_m3 = rho;
     d.gravity = DEA_GRAVITY_FIBRES_UP;
     const double stress = 797.745e3; // of Table 1 at 1.5, in closed form
-    double exact = rho * 9.81 * d.frame_radius_m * d.frame_radius_m / (4 * stress);
+    double exact =
+        rho * DEA_STANDARD_GRAVITY_M_PER_S2 * d.frame_radius_m * d.frame_radius_m / (4 * stress);
     // a solid film bends at its frame: over sqrt(D/T), a thickness, of the radius
     double tolerance = film == DEA_FILM_SOLID ? 5e-3 : 1e-4;
     assert_close(sag(&d, &settings, 0), -exact, tolerance, 0);

@@ -1,5 +1,6 @@
 /* A cone: annular film with a rigid hub that is pushed out, hung with a mass, and pushed by a
  * bistable spring; against numbers of membrane theory, and a path of one variable. */
+#include "device/device.h"
 #include "verify.h"
 
 #include "model/solid/assembly/channels.h"
@@ -13,7 +14,7 @@ static struct dea_context *ctx;
 
 static const double hub_m = 5e-3, frame_m = 20e-3, pi = 3.14159265358979323846;
 static const double pre_stretch = 1.2, unstretched_m = 100e-6;
-static const double gravity_m_per_s2 = 9.80665;
+static const double gravity_m_per_s2 = DEA_STANDARD_GRAVITY_M_PER_S2;
 
 static const double voltage_kV[VOLTAGES] = {0, 3, 5};
 static const double place_mm[PLACES] = {0.5, 1, 2, 4, 6, 8, 10};

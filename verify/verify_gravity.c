@@ -61,7 +61,7 @@ static void disc(void)
 {
   static const struct variant plain = {{{"fibres", "null"}}};
   struct swept run = sweep("3d", &plain, &way[1], 1e3, 0);
-  double exact = 970 * 9.81 * 15e-3 * 15e-3 / (4 * 797.745e3);
+  double exact = 970 * DEA_STANDARD_GRAVITY_M_PER_S2 * 15e-3 * 15e-3 / (4 * 797.745e3);
   printf("A plain film sags %.3f um at rest; rho g R^2 / (4 sigma) = %.3f um with the pre-stress "
          "of 797.7 kPa.\n\n",
          -centre_um(&run, 0), 1e6 * exact);
@@ -78,7 +78,7 @@ int main(int argc, char **argv)
   puts("# Weight, and turning the actuator over\n\n"
        "Made by `scripts/verify gravity`; not to be edited. Model `3d`, default mesh, a sector; "
        "film "
-       "970, fibres 1375 kg/m^3 (Table 1), g = 9.81 m/s^2;\n`gravity: fibres_up` and "
+       "970, fibres 1375 kg/m^3 (Table 1), g = 9.80665 m/s^2;\n`gravity: fibres_up` and "
        "`fibres_down` of a design. The paper (5.1) saw no influence of gravity.\n");
   disc();
   all_ways(&eight, small ? 3e3 : 1e3, small ? 3e3 : 7e3, run);

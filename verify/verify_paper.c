@@ -371,7 +371,8 @@ static void other_numbers(const struct swept *b4)
   struct opened open = open_model("lumped", &built4, NULL);
   const struct dea_device *device = open.device;
   double h = device->film_thickness_m, b = device->frame_radius_m, rho = 970; // Table 1
-  double sag = rho * 9.81 * h * b * b / (4 * point_of(b4, 0)->min_tension_N_per_m);
+  double sag =
+      rho * DEA_STANDARD_GRAVITY_M_PER_S2 * h * b * b / (4 * point_of(b4, 0)->min_tension_N_per_m);
   puts("## Other numbers of the text\n\n| place | what | paper | ours |\n|---|---|---|---|");
   printf("| 3.1 | electrode radius once stretched (5 mm diameter before) | | %.2f mm |\n",
          1e3 * device->electrode_radius_m);
