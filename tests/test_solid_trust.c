@@ -192,7 +192,7 @@ static void test_breakdown_of_both_forms(void **state)
     json_decref(root);
   }
   for (int i = 1; i < 3; i++) { // E_b goes with the root of the area stretch to 1.13
-    assert_close(field[i], field[0], 1e-2, 0);
+    assert_close(field[i], field[0], 2.5e-2, 0); // largest where the electrode ends
     assert_close(1 - margin[i], (1 - margin[0]) * pow(field[i] / field[0], 1 - 1.13 / 2), 1e-4, 0);
   }
 }

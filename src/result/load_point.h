@@ -46,8 +46,8 @@
   X(electrode_edge_u_error_m, "m", "um", 1e6, "error of u electrode edge",                         \
     "estimated error of the mesh in the displacement of the electrode edge")                       \
   X(compression_ratio, "1", "1", 1.0, "compression ratio",                                         \
-    "compression in the slack part of the film over what a clamped plate of its area bears: "      \
-    "from 1 on it wrinkles")                                                                       \
+    "compression in the slack part of the film, with the plies bonded to it, over what a clamped " \
+    "plate of its area bears: from 1 on it wrinkles")                                              \
   X(locking_share, "1", "%", 100.0, "share of locking",                                            \
     "stretch measure of the film's law over its value at lock-up, largest of the film")            \
   X(range_share, "1", "%", 100.0, "share of measured range",                                       \

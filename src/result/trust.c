@@ -88,8 +88,7 @@ void dea_trust_text(const struct dea_trust *trust, struct dea_text *out)
   }
   if (!isnan(trust->slack_V)) {
     dea_text_add(out,
-                 "; from %.4g kV on a part of the film has no tension left, too small a part to "
-                 "wrinkle",
+                 "; from %.4g kV on a part of the film is in compression, too little to wrinkle it",
                  1e-3 * trust->slack_V);
   }
   if (trust->doubts != 0) {
