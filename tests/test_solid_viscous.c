@@ -229,6 +229,54 @@ static void test_flat(void **state)
   }
 }
 
+/* A film that wrinkles while its branches carry stress on axes of their own: derivatives, and the
+ * same energy and stress as a taut one has at its natural width. */
+static void test_wrinkled(void **state)
+{
+  (void)state;
+  const double B[6] = {3e5, 2.4e5, 2.2e5, 0, 0, 4e4}, d = 1e-6, field = 4e7;
+  const double F[6] = {0.75, 0.1, -0.1, 1.1, 0.2, 0.3};
+  const double yeoh[] = {178.4e3, -6e3, 4.2e3};
+  struct dea_constituent layer = {.pre_stretch = {0.95, 1.15, 1 / (0.95 * 1.15 - 1e-4)},
+                                  .pre_shear = 0.01,
+                                  .permittivity_F_per_m = 2.5e-11,
+                                  .viscous = B,
+                                  .relaxed = true};
+  struct dea_membrane_point at, up, down;
+  dea_constituent_set_law(&layer, dea_law_find("yeoh"), yeoh);
+  assert_int_equal(dea_viscous_membrane_point(&layer, 0, F, field, &at), DEA_OK);
+  assert_int_equal(at.state, DEA_WRINKLED);
+  for (int a = 0; a < 6; a++) {
+    double moved[6];
+    memcpy(moved, F, sizeof moved);
+    moved[a] = F[a] + d;
+    assert_int_equal(dea_viscous_membrane_point(&layer, 0, moved, field, &up), DEA_OK);
+    moved[a] = F[a] - d;
+    assert_int_equal(dea_viscous_membrane_point(&layer, 0, moved, field, &down), DEA_OK);
+    assert_close(at.P[a], (up.W - down.W) / (2 * d), 0, 1e-8 * 3e5);
+    for (int b = 0; b < 6; b++) {
+      assert_close(at.A[6 * b + a], (up.P[b] - down.P[b]) / (2 * d), 0, 1e-8 * 3e5);
+    }
+  }
+  double low = 0.75, high = 1.3; // along 1, with axes of branches along those of C
+  const double straight[6] = {3e5, 2.4e5, 2.2e5, 0, 0, 0};
+  layer.viscous = straight;
+  layer.pre_shear = 0;
+  layer.pre_stretch[2] = 1 / (0.95 * 1.15);
+  for (int i = 0; i < 60; i++) {
+    const double middle[6] = {0.5 * (low + high), 0, 0, 1.1};
+    assert_int_equal(dea_viscous_membrane_point(&layer, 0, middle, field, &at), DEA_OK);
+    *(at.state == DEA_TAUT ? &high : &low) = middle[0];
+  }
+  const double narrow[6] = {0.75, 0, 0, 1.1}, wide[6] = {high, 0, 0, 1.1};
+  assert_int_equal(dea_viscous_membrane_point(&layer, 0, narrow, field, &down), DEA_OK);
+  assert_int_equal(dea_viscous_membrane_point(&layer, 0, wide, field, &up), DEA_OK);
+  assert_close(down.W, up.W, 0, 1e-6);
+  assert_close(down.P[3], up.P[3], 0, 1e-6);
+  assert_close(down.area, high * 1.1, 1e-12, 0);
+  assert_close(up.P[0], 0, 0, 1e-6);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -238,6 +286,7 @@ int main(void)
       cmocka_unit_test(test_one_step_is_as_good_as_many),
       cmocka_unit_test(test_work_is_stored_or_dissipated),
       cmocka_unit_test(test_flat),
+      cmocka_unit_test(test_wrinkled),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

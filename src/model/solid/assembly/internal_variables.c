@@ -149,6 +149,29 @@ void dea_internal_variables_begin(struct dea_internal_variables *h, const struct
   }
 }
 
+dea_status dea_internal_variables_energy(const struct dea_internal_variables *h,
+                                         const struct dea_solid *s, double *energy_J)
+{
+  const struct dea_solid_problem *p = &s->problem;
+  *energy_J = 0;
+  for (size_t e = 0; e < p->grid->element_count; e++) {
+    struct dea_element_strains strains;
+    if (h->first[e] == ELASTIC) {
+      continue;
+    }
+    dea_status status = find_strains(s, e, &strains);
+    if (status != DEA_OK) {
+      return status;
+    }
+    for (int q = 0; q < dea_solid_element(s, e)->points; q++) {
+      const double *B = h->B + 6 * (h->first[e] + (size_t)q);
+      *energy_J +=
+          strains.volume_m3[q] * dea_viscous_energy(B, h->b_Pa[p->constituent_of[e]], strains.C[q]);
+    }
+  }
+  return DEA_OK;
+}
+
 /* What the branches of a point store at the end of the step and dissipate in it. */
 static void add_energies(const struct dea_internal_variables *h, size_t at,
                          const struct dea_branches *branches, const struct dea_branch_step *steps,

@@ -139,11 +139,10 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
       return DEA_E_DOMAIN;
     }
     in_plane_columns(shape->nodes, in->u, gradient, F);
-    dea_status status = dea_membrane_point(constituent, F, field, &point);
+    dea_status status = dea_viscous_membrane_point(constituent, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
-    dea_viscous_add_flat(constituent, q, F, &point);
     out->energy_J += weight * point.W;
     out->volume_m3 += weight;
     if (order >= DEA_FORCE) {
@@ -173,11 +172,10 @@ static dea_status membrane_state(const struct dea_element *element,
     if (!(columns_at(shape, q, in->X, in->u, F) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = dea_membrane_point(constituent, F, field, &point);
+    dea_status status = dea_viscous_membrane_point(constituent, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
-    dea_viscous_add_flat(constituent, q, F, &point);
     out->area[q] = point.area;
     out->tension[q] = constituent->thickness_m * point.tension_Pa[1];
     dea_membrane_force(point.P, F, point.area, out->force[q]);
@@ -292,11 +290,10 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
       }
     }
     dea_element_at(shape->nodes, shape->value[q], motion->v, here);
-    dea_status status = dea_membrane_point(constituent, F, field, &point);
+    dea_status status = dea_viscous_membrane_point(constituent, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
-    dea_viscous_add_flat(constituent, q, F, &point);
     for (int a = 0; a < 36; a++) {
       *stiffness += weight * H[a / 6] * point.A[a] * H[a % 6];
     }

@@ -98,18 +98,20 @@ static dea_status find_charged(struct dea_context *ctx, struct dea_solid *s,
 }
 
 /* Elastic and electric energy and that of loads, without what steps add, and capacitance or, with
- * own voltages, what is charged. */
+ * own voltages, what is charged: of films as wide as they are with it, where they wrinkle. */
 static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t, double *stored,
                               double *capacitance_F, struct dea_solid_charged *charged)
 {
   struct dea_solid *s = t->solid;
-  double potential = 0, capacitance = 0;
-  s->state.internal_variables = NULL;
+  double potential = 0, capacitance = 0, step = 0;
   dea_status status = dea_solid_energy(s, s->state.u, s->state.voltage_V, &potential);
   if (status == DEA_OK) {
     status = t->own ? find_charged(ctx, s, charged) : dea_solid_capacitance(ctx, s, &capacitance);
   }
-  s->state.internal_variables = t->variables;
+  if (status == DEA_OK && t->variables != NULL) {
+    status = dea_internal_variables_energy(t->variables, s, &step);
+  }
+  potential -= step;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
   }

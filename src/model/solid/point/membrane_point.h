@@ -33,6 +33,13 @@ struct dea_membrane_point {
 dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
                               double field_V_per_m, struct dea_membrane_point *out);
 
+/* The same of a step in time, viscous: B of a point (viscous.h), NULL: none. It is in energy,
+ * stress and tangent of a film that wrinkles only, as dea_viscous_add_flat adds it to a taut one.
+ */
+dea_status dea_membrane_point_in_time(const struct dea_constituent *constituent,
+                                      const double *viscous, const double F[6],
+                                      double field_V_per_m, struct dea_membrane_point *out);
+
 /* Membrane force P F^T / area on an orthonormal basis of the current tangent plane, of which the
  * first vector is along F_1. P: per reference length [3][2], F: of the plane [3][2], area: |F_1 x
  * F_2|. out: 11 22 12. */

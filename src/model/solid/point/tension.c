@@ -14,6 +14,15 @@ dea_status dea_tension_taut(const struct dea_tension *film, double l1, double l2
     out->k22 += electric.k22;
     out->k12 += electric.k12;
   }
+  if (status == DEA_OK && film->viscous_Pa != NULL) {
+    const double *B = film->viscous_Pa, across = B[2] / (l1 * l1 * l2 * l2);
+    out->W += 0.5 * (B[0] * (l1 * l1 - 1) + B[1] * (l2 * l2 - 1) + across - B[2]);
+    out->s1 += B[0] * l1 - across / l1;
+    out->s2 += B[1] * l2 - across / l2;
+    out->k11 += B[0] + 3 * across / (l1 * l1);
+    out->k22 += B[1] + 3 * across / (l2 * l2);
+    out->k12 += 2 * across / (l1 * l2);
+  }
   return status;
 }
 
@@ -69,7 +78,7 @@ static dea_status slack(const struct dea_tension *film, double l, struct dea_pla
 {
   static const double most = 20; // no elastomer stretches so far
   const struct line equal = {film, 0};
-  double low = l > 1 ? l : 1, high = low, stress = 0, slope;
+  double low = l > 1 || film->viscous_Pa != NULL ? l : 1, high = low, stress = 0, slope;
   while (!(stress > 0)) {
     high *= 1.05;
     dea_status status = high > most ? DEA_E_DOMAIN : line_at(&equal, high, out, &stress, &slope);
@@ -102,19 +111,20 @@ dea_status dea_tension_relaxed(const struct dea_tension *film, double l1, double
                                enum dea_tension_state *state)
 {
   // at V = 0 the natural width is that of a uniaxial test; the field only adds to it
-  double narrow = 1 / sqrt(l1), stress, slope;
+  const bool elastic = film->viscous_Pa == NULL;
+  double narrow = elastic ? 1 / sqrt(l1) : l2, stress, slope;
   const struct line equal = {film, 0};
   natural[0] = l1;
   natural[1] = l2;
-  if (l2 >= narrow) {
+  if (l2 >= narrow && l2 > 0) {
     dea_status status = dea_tension_taut(film, l1, l2, out);
-    if (status != DEA_OK || (out->s2 >= 0 && out->s1 >= 0)) {
+    if (status != DEA_OK || (out->s2 >= 0 && (out->s1 >= 0 || !elastic))) {
       *state = DEA_TAUT;
       return status;
     }
   }
   *state = DEA_SLACK;
-  if (l1 <= 1) {
+  if (l1 <= 1 && elastic) {
     return slack(film, 1, out, natural);
   }
   dea_status status = line_at(&equal, l1, out, &stress, &slope);

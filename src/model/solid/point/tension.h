@@ -13,6 +13,9 @@
 struct dea_tension {
   const struct dea_material *material; // isotropic law; permittivity
   double nominal_field_V_per_m;        // V/H, H: thickness unstretched
+  /* B of a step in time along l1, along l2 and across the film (viscous.h), which then counts in f:
+   * 1/2 (B_1 (l1^2 - 1) + B_2 (l2^2 - 1) + B_3 (1/(l1 l2)^2 - 1)); NULL: none. */
+  const double *viscous_Pa;
 };
 
 enum dea_tension_state { DEA_TAUT, DEA_WRINKLED, DEA_SLACK };
@@ -22,6 +25,7 @@ dea_status dea_tension_taut(const struct dea_tension *film, double l1, double l2
                             struct dea_plane *out);
 
 /* The same of the quasi-convex envelope of f, l1 >= l2 >= 0: f, uniaxial tension, or a constant.
+ * With B the axes of wrinkles are those of l1 and l2.
  * natural: the stretches of the film itself, which is larger than its place where it wrinkles.
  * DEA_E_DOMAIN also where it has no natural width because it thins without limit. */
 dea_status dea_tension_relaxed(const struct dea_tension *film, double l1, double l2,

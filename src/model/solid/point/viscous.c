@@ -102,6 +102,18 @@ void dea_viscous_add_flat(const struct dea_constituent *constituent, int q, cons
   find_tensions(point->P, F, point->area, point->tension_Pa);
 }
 
+dea_status dea_viscous_membrane_point(const struct dea_constituent *constituent, int q,
+                                      const double F[6], double field_V_per_m,
+                                      struct dea_membrane_point *out)
+{
+  const double *B = constituent->viscous != NULL ? constituent->viscous + 6 * q : NULL;
+  dea_status status = dea_membrane_point_in_time(constituent, B, F, field_V_per_m, out);
+  if (status == DEA_OK && out->state == DEA_TAUT) {
+    dea_viscous_add_flat(constituent, q, F, out);
+  }
+  return status;
+}
+
 void dea_viscous_strain(const double F[9], const double cof[9], double J, double C[6],
                         double inverse[6])
 {
@@ -136,6 +148,12 @@ static double invert(const double t[6], double out[6])
 static double contract(const double s[6], const double t[6])
 {
   return s[0] * t[0] + s[1] * t[1] + s[2] * t[2] + 2 * (s[3] * t[3] + s[4] * t[4] + s[5] * t[5]);
+}
+
+double dea_viscous_energy(const double B[6], double b_Pa, const double C[6])
+{
+  double none[6];
+  return 0.5 * (contract(B, C) - B[0] - B[1] - B[2] - b_Pa * log(invert(C, none)));
 }
 
 double dea_branch_energy(double modulus_Pa, const double A[6], const double C[6])

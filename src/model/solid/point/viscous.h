@@ -22,8 +22,14 @@
 void dea_viscous_add(const struct dea_constituent *constituent, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point);
 
-/* The same of a membrane, of which B 23 and B 13 are not used: with C_33 = 1/det C of the plane,
- * 1/2 B : (C - 1). What branches see of a film that wrinkles is its mid-surface. */
+/* dea_membrane_point with the step of a point q of an element, which takes part in where the film
+ * wrinkles. */
+dea_status dea_viscous_membrane_point(const struct dea_constituent *constituent, int q,
+                                      const double F[6], double field_V_per_m,
+                                      struct dea_membrane_point *out);
+
+/* The same of a membrane that is taut, of which B 23 and B 13 are not used: with C_33 = 1/det C of
+ * the plane, 1/2 B : (C - 1). */
 void dea_viscous_add_flat(const struct dea_constituent *constituent, int q, const double F[6],
                           struct dea_membrane_point *point);
 
@@ -33,6 +39,9 @@ void dea_viscous_strain_flat(const double F[6], double C[6], double inverse[6]);
 /* C and C^-1 from F with cofactors cof and determinant J. */
 void dea_viscous_strain(const double F[9], const double cof[9], double J, double C[6],
                         double inverse[6]);
+
+/* 1/2 B : (C - 1) - b ln J. */
+double dea_viscous_energy(const double B[6], double b_Pa, const double C[6]);
 
 /* Energy stored in a branch per volume, modulus/2 (A : C - 3 - ln det A - ln det C). */
 double dea_branch_energy(double modulus_Pa, const double A[6], const double C[6]);
