@@ -87,9 +87,11 @@ void dea_trust_text(const struct dea_trust *trust, struct dea_text *out)
     }
   }
   if (!isnan(trust->slack_V)) {
-    dea_text_add(out,
-                 "; from %.4g kV on a part of the film is in compression, too little to wrinkle it",
-                 1e-3 * trust->slack_V);
+    dea_text_add(
+        out,
+        "; from %.4g kV on a part of the film has no tension left, with too little compression "
+        "to wrinkle it",
+        1e-3 * trust->slack_V);
   }
   if (trust->doubts != 0) {
     dea_text_add(out, "; at %.4g kV ", 1e-3 * trust->doubt_V);
