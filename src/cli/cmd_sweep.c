@@ -72,7 +72,8 @@ static void print_report(const struct dea_sweep_report *report, const struct req
 }
 
 /* Hands the sweep to Slurm. */
-static dea_status submit(struct dea_cli *cli, const struct request *request)
+static dea_status submit(struct dea_cli *cli, const struct request *request,
+                         const struct dea_question *question)
 {
   char array[32], merge[32];
   const struct dea_slurm_options options = {
@@ -83,6 +84,7 @@ static dea_status submit(struct dea_cli *cli, const struct request *request)
       .processes = request->processes > 0 ? (size_t)request->processes : 1,
       .ranks = request->ranks.count > 1 ? (size_t)request->ranks.count : 1,
   };
+  DEA_TRY(cli->ctx, dea_plan_check(question));
   DEA_TRY(cli->ctx, dea_slurm_submit(cli->ctx, &options, array, merge));
   printf("job %s: an array of %zu parts; job %s: the tables, after all of them, in %s\n", array,
          options.parts, merge, options.folder);
@@ -101,7 +103,7 @@ static dea_status sweep(struct dea_cli *cli, const struct request *request)
   if (status == DEA_OK && request->ranks.serve) {
     status = cli_ranks_serve(cli, question, &question->evaluator);
   } else if (status == DEA_OK) {
-    status = request->slurm > 0 ? submit(cli, request)
+    status = request->slurm > 0 ? submit(cli, request, question)
                                 : dea_sweep_run(question, &request->options, &report);
   }
   if (report.planned > 0) {

@@ -227,17 +227,8 @@ const struct dea_record dea_explore_record = {
 dea_status dea_explore_correlations_check(struct dea_context *ctx,
                                           const struct dea_explore_file *file)
 {
-  const int plan = file->plan.value;
   DEA_TRY(ctx, dea_correlations_check(ctx, file->correlations, file->correlation_count,
                                       file->variable_count, "variable"));
-  if (file->correlation_count > 0 && file->objective_count == 0 &&
-      (plan == DEA_PLAN_GRID || plan == DEA_PLAN_INDICES)) {
-    return dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
-                           "correlations are of samples: plan: %s",
-                           plan == DEA_PLAN_GRID ? "sobol, not grid"
-                                                 : "sobol; indices are of variables that are "
-                                                   "independent of each other");
-  }
   return DEA_OK;
 }
 

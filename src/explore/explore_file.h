@@ -88,7 +88,7 @@ extern const struct dea_record dea_explore_record;
  * failure. */
 dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
                                  struct dea_explore_file **out);
-/* Findings where numbers cannot have the file's correlations, or its plan has none. */
+/* Findings where numbers cannot have the file's correlations. */
 dea_status dea_explore_correlations_check(struct dea_context *ctx,
                                           const struct dea_explore_file *file);
 void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file);

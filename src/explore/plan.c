@@ -184,12 +184,41 @@ static double value_at(const struct dea_variable *variable, double u)
   return variable->param.whole ? round(value) : value;
 }
 
+static dea_status cannot_be_made(struct dea_context *ctx)
+{
+  return dea_fail(ctx, DEA_E_DESIGN, "the plan cannot be made");
+}
+
 static dea_status too_many(const struct dea_question *question, double count)
 {
   DEA_TRY(question->ctx,
           dea_finding_add(question->ctx, DEA_ERROR, question->file->plan.location,
                           "%.3g cases are too many: at most %d", count, DEA_EXPLORE_CASES_MAX));
-  return dea_fail(question->ctx, DEA_E_DESIGN, "the plan cannot be made");
+  return cannot_be_made(question->ctx);
+}
+
+dea_status dea_plan_check(const struct dea_question *question)
+{
+  const struct dea_explore_file *file = question->file;
+  struct dea_context *ctx = question->ctx;
+  const bool grid = file->plan.value == DEA_PLAN_GRID;
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  for (size_t j = 0; j < question->variable_count && grid; j++) {
+    const struct dea_label *name = &question->variables[j].text->text.name;
+    if (question->variables[j].value_count == 0) {
+      DEA_TRY(ctx,
+              dea_finding_add(ctx, DEA_ERROR, name->location,
+                              "%s: a grid needs values, or steps from low to high", name->text));
+    }
+  }
+  if (file->correlation_count > 0 && (grid || file->plan.value == DEA_PLAN_INDICES)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
+                                 "correlations are of samples: plan: %s",
+                                 grid ? "sobol, not grid"
+                                      : "sobol; indices are of variables that are independent of "
+                                        "each other"));
+  }
+  return dea_finding_count(ctx, DEA_ERROR) == errors ? DEA_OK : cannot_be_made(ctx);
 }
 
 static dea_status make_grid(const struct dea_question *question, struct dea_plan *out)
@@ -243,7 +272,7 @@ static dea_status make_samples(const struct dea_question *question, struct dea_p
     DEA_TRY(question->ctx,
             dea_finding_add(question->ctx, DEA_ERROR, question->file->plan.location,
                             "indices of at most %d variables", DEA_SOBOL_DIMENSIONS / 2));
-    return dea_fail(question->ctx, DEA_E_DESIGN, "the plan cannot be made");
+    return cannot_be_made(question->ctx);
   }
   if (samples * blocks > DEA_EXPLORE_CASES_MAX) {
     return too_many(question, (double)(samples * blocks));
@@ -273,6 +302,7 @@ static dea_status make_samples(const struct dea_question *question, struct dea_p
 dea_status dea_plan_make(const struct dea_question *question, struct dea_plan *out)
 {
   *out = (struct dea_plan){0};
+  DEA_TRY(question->ctx, dea_plan_check(question));
   dea_status status = question->file->plan.value == DEA_PLAN_GRID ? make_grid(question, out)
                                                                   : make_samples(question, out);
   if (status != DEA_OK) {

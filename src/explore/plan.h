@@ -28,6 +28,9 @@ struct dea_plan {
   double *p;
   size_t count, samples;
 };
+/* Whether a plan can be made of the variables as they are given, which a search does not ask.
+ * Errors are findings; DEA_E_DESIGN then. */
+dea_status dea_plan_check(const struct dea_question *question);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
 dea_status dea_plan_make(const struct dea_question *question, struct dea_plan *out);
 
