@@ -169,6 +169,51 @@ static void test_another_material(void **state)
   }
 }
 
+/* So is what no list of keys says: the direction of its fibres, and the voltages of the design, up
+ * to four times of which a critical voltage is looked for. */
+static void test_another_design(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *angle, *highest, *state;
+  } designs[] = {{"0 degree", "3 kV", "stretched"},
+                 {"80 degree", "3 kV", "stretched"},
+                 {"80 degree", "9 kV", "stretched"},
+                 {"80 degree", "9 kV", "unstretched"}};
+  command_write("other.yaml", "dea_explore: 1\nname: own\ndesign: own.yaml\n"
+                              "model: lumped\nvoltages: [1 kV]\n"
+                              "quantities: [min_tension_N_per_m, pull_in_voltage_V]\n"
+                              "variables: [{name: film.thickness, values: [100 um]}]\n");
+  for (size_t i = 0; i < sizeof designs / sizeof designs[0]; i++) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             "dea: 1\nfilm: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"
+             "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm %s}\n"
+             "compute: {models: [lumped], voltage: {values: [%s]}}\n"
+             "materials:\n  - name: mine\n    title: mine\n    kind: elastomer\n    laws:\n"
+             "      - {id: a, law: holzapfel-gasser-ogden, source: me,\n"
+             "         parameters: {mu: 200 kPa, k1: 100 kPa}, fibre_angle: %s}\n"
+             "    permittivity:\n      - {id: a, at_rest: 2.8, source: me}\n",
+             designs[i].state, designs[i].highest, designs[i].angle);
+    command_write("own.yaml", text);
+    if (i > 0) {
+      command_expect("sweep other.yaml", 5, "another question");
+    }
+    assert_int_equal(command_run("sweep other.yaml --force"), 0);
+  }
+}
+
+/* A search gives its variables ranges, of which a sweep knows no grid. */
+static void test_sweep_of_a_search(void **state)
+{
+  (void)state;
+  expect("{name: film.thickness, low: 80 um, high: 120 um}",
+         "objectives: [{quantity: electrode_edge_u_m}]", "a grid needs values, or steps");
+  write_file("{name: film.thickness, low: 80 um, high: 120 um}",
+             "objectives: [{quantity: electrode_edge_u_m}]\nplan: sobol\nsamples: 3");
+  assert_int_equal(command_run("sweep mine.yaml -q -o search.sweep"), 0);
+}
+
 /* Number of lines of a file that hold a text. */
 static int lines_with(const char *name, const char *text)
 {
@@ -403,7 +448,7 @@ static void test_optimise(void **state)
       " {quantity: electrode_edge_u_m, above: 1 um}, {quantity: breakdown_margin, above: 0.3}]");
   command_expect("optimise mine.yaml", 3, "breakdown_margin cannot be above 0.3 and below 0.25");
   write_file("{name: pre_stretch, low: 1.2, high: 1.8}", "");
-  command_expect("optimise mine.yaml", 3, "a grid needs values");
+  command_expect("optimise mine.yaml", 3, "objectives: say what is wanted");
   write_file("{name: pre_stretch, low: 1.2, high: 1.8}",
              "objectives: [{quantity: breakdown_margin}]\n"
              "limits: [{quantity: breakdown_margin, above: 0.99}]\nevaluations: 20\nstarts: 1");
@@ -534,6 +579,8 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors),
                                      cmocka_unit_test(test_another_material),
+                                     cmocka_unit_test(test_another_design),
+                                     cmocka_unit_test(test_sweep_of_a_search),
                                      cmocka_unit_test(test_flags),
                                      cmocka_unit_test(test_grid),
                                      cmocka_unit_test(test_killed),

@@ -17,6 +17,8 @@ static struct dea_design design;
 /* A model whose answer depends on all voltages before: z is the sum of V^2. */
 struct dea_model {
   double voltage_V, sum;
+  double profile[4][7]; // of 4 points
+  struct dea_event event;
 };
 
 static double fake_material = 1;       // what the state belongs to
@@ -79,12 +81,46 @@ static dea_status fake_load(struct dea_context *c, struct dea_model *model,
   return DEA_OK;
 }
 
+/* Numbers of the voltage. */
+static dea_status fake_profile(struct dea_context *c, struct dea_model *model,
+                               struct dea_profile *out)
+{
+  (void)c;
+  double *at = &model->profile[0][0];
+  for (size_t i = 0; i < 28; i++) {
+    at[i] = model->voltage_V + (double)i;
+  }
+  *out = (struct dea_profile){4, at, at + 4, at + 8, at + 12, at + 16, at + 20, at + 24};
+  return DEA_OK;
+}
+
+/* A limit point before the second voltage. */
+static const struct dea_event *fake_passed(const struct dea_model *model)
+{
+  struct dea_event *event = (struct dea_event *)&model->event;
+  *event = (struct dea_event){DEA_EVENT_PULL_IN, dea_load_point_empty()};
+  event->point.voltage_V = model->voltage_V - 50;
+  return model->voltage_V == 200 ? event : NULL;
+}
+
+/* Where it stops. */
+static const struct dea_event *fake_limit(const struct dea_model *model)
+{
+  struct dea_event *event = (struct dea_event *)&model->event;
+  *event = (struct dea_event){DEA_EVENT_PULL_IN, dea_load_point_empty()};
+  event->point.voltage_V = fake_limit_V;
+  return event;
+}
+
 static const struct dea_model_type fake_type = {.name = "fake",
                                                 .long_name = "Fake",
                                                 .create = fake_create,
                                                 .destroy = fake_destroy,
                                                 .solve = fake_solve,
                                                 .fields = fake_fields,
+                                                .profile = fake_profile,
+                                                .passed = fake_passed,
+                                                .limit = fake_limit,
                                                 .save = fake_save,
                                                 .load = fake_load};
 
@@ -124,6 +160,13 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
     if (status == DEA_OK) {
       assert_int_equal(sweep->count, count);
       assert_int_equal(result->surface_count, count);
+      assert_int_equal(result->profile_count, count);
+      for (size_t i = 0; i < count; i++) {
+        assert_close(result->profiles[i].voltage_V, voltages_V[i], 0, 0);
+        assert_close(result->profiles[i].columns[0], voltages_V[i], 0, 0);
+      }
+      assert_int_equal(sweep->event_count, 1); // of before it was stopped too
+      assert_close(sweep->events[0].point.voltage_V, 150, 0, 0);
       assert_true(sweep->complete);
     }
   }
@@ -165,6 +208,7 @@ static void test_resume_equals_one_run(void **state)
   const struct dea_curve *sweep = dea_result_find(read->result, "fake", "sweep");
   assert_int_equal(sweep->count, 8);
   assert_int_equal(read->result->surface_count, 8);
+  assert_int_equal(read->result->profile_count, 8);
   assert_false(sweep->complete); // as it was kept on the way
   dea_run_destroy(ctx, read);
 }

@@ -134,6 +134,30 @@ static dea_status read_settings(const struct dea_reader *reader, const struct de
   return read_section(reader, &inner);
 }
 
+/* "[[0 mm, 0 mm], [5 mm, 0 mm]]" */
+static void show_rows(const struct dea_node *node, struct dea_text *out)
+{
+  dea_text_add(out, "%s", node->kind == DEA_NODE_VALUE ? node->text : "[");
+  for (const struct dea_node *child = node->child; child != NULL; child = child->next) {
+    show_rows(child, out);
+    dea_text_add(out, "%s", child->next != NULL ? ", " : "");
+  }
+  dea_text_add(out, "%s", node->kind == DEA_NODE_VALUE ? "" : "]");
+}
+
+/* Keeps rows for who reads them, and lists them as one value. */
+static dea_status read_rows(const struct dea_reader *reader, const struct dea_node *node,
+                            const char *path, enum dea_origin origin, const struct dea_node **out)
+{
+  struct dea_text text = {.ctx = reader->ctx};
+  *out = node;
+  show_rows(node, &text);
+  const char *kept = text.failed ? NULL : dea_intern(reader->ctx, dea_text_get(&text));
+  dea_text_free(&text);
+  return kept != NULL ? dea_schema_list(reader, path, kept, NULL, NAN, origin, node->location)
+                      : DEA_E_MEMORY;
+}
+
 /* One given value, or one element of a given list. */
 static dea_status read_node(const struct dea_reader *reader, const struct dea_field *field,
                             const struct dea_node *node, const char *path, enum dea_origin origin,
@@ -147,7 +171,10 @@ static dea_status read_node(const struct dea_reader *reader, const struct dea_fi
   if (field->kind == DEA_FIELD_SETTINGS) {
     return read_settings(reader, field, node, path, node->key_place, target);
   }
-  if (field->kind == DEA_FIELD_SECTION || field->kind == DEA_FIELD_ROWS) {
+  if (field->kind == DEA_FIELD_ROWS) {
+    return read_rows(reader, node, path, origin, (const struct dea_node **)target);
+  }
+  if (field->kind == DEA_FIELD_SECTION) {
     *(const struct dea_node **)target = node;
     return DEA_OK;
   }

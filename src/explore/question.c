@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "base/write_file.h"
+#include "device/identity.h"
 #include "explore/from_fit.h"
 #include "result/columns.h"
 #include "result/provenance.h"
@@ -14,76 +15,14 @@
 
 // Identity ----------------------------------------------------------------------------------------
 
-/* What of a design does not change what the device does. */
-static bool is_aside(const char *path)
-{
-  static const char *const asides[] = {"dea",          "title",     "report.",
-                                       "fabrication.", "materials", "drive"};
-  for (size_t k = 0; k < sizeof asides / sizeof asides[0]; k++) {
-    if (strncmp(path, asides[k], strlen(asides[k])) == 0) {
-      return true;
-    }
-  }
-  return strncmp(path, "compute.", 8) == 0 && strncmp(path, "compute.solid", 13) != 0 &&
-         strncmp(path, "compute.cover", 13) != 0 && strncmp(path, "compute.force", 13) != 0;
-}
-
-static void add_material(struct dea_text *out, const struct dea_material *film)
-{
-  for (size_t i = 0; film->law != NULL && i < film->law->param_count; i++) {
-    dea_text_add(out, "%s.%s=%.12g\n", film->law->name, film->law->params[i].key, film->param[i]);
-  }
-  dea_text_add(
-      out, "permittivity=%.12g,%.12g\nbreakdown=%.12g,%.12g\n", film->permittivity.at_rest,
-      film->permittivity.slope, film->breakdown.known ? film->breakdown.at_rest_V_per_m : 0,
-      film->breakdown.known && film->breakdown.exponent_known ? film->breakdown.exponent : 0);
-  dea_text_add(out, "shape=%.12g\ndensity=%.12g\nrange=%.12g\n",
-               film->breakdown.known ? film->breakdown.law.shape : 0, film->density_kg_per_m3,
-               film->stretch_max);
-  if (film->law == NULL && film->young_modulus_Pa > 0) {
-    dea_text_add(out, "elastic=%.12g,%.12g\n", film->young_modulus_Pa, film->poisson_ratio);
-  }
-}
-
-/* What the listed values of a design of the general form leave out: shapes and materials. */
-static void add_layout(struct dea_text *out, const struct dea_layout *layout)
-{
-  for (size_t i = 0; i < layout->region_count; i++) {
-    const struct dea_region *region = &layout->regions[i].region;
-    for (size_t k = 0; k < region->vertex_count; k++) {
-      const struct dea_vertex *vertex = &region->vertex[k];
-      dea_text_add(out, "%.12g,%.12g,%.12g\n", vertex->x_m, vertex->y_m, vertex->bulge);
-    }
-  }
-  for (size_t i = 0; i < layout->ply_count; i++) {
-    add_material(out, &layout->plies[i].material);
-  }
-}
-
-/* All that a design says of the device, in SI, and with which model at which voltages. */
+/* All that the device depends on, and with which model at which voltages it is computed from where.
+ */
 static void resolve(const struct dea_question *question, const struct dea_design *design,
                     const struct dea_device *device, struct dea_text *out)
 {
-  for (size_t i = 0; i < design->values.count; i++) {
-    const struct dea_listed *item = &design->values.items[i];
-    if (is_aside(item->path) || item->text == NULL) {
-      continue;
-    }
-    if (isnan(item->si)) {
-      dea_text_add(out, "%s=%s\n", item->path, item->text);
-    } else {
-      dea_text_add(out, "%s=%.12g\n", item->path, item->si);
-    }
-  }
-  add_material(out, &device->film);
-  add_material(out, &device->fibre);
-  if (device->electrode_thickness_m > 0) {
-    add_material(out, &device->electrode);
-  }
-  if (device->general) {
-    add_layout(out, device->layout);
-  }
-  dea_text_add(out, "model=%s\n", question->model.type->name);
+  dea_device_identity(design, device, NULL, out);
+  dea_text_add(out, "model=%s\nbegin=%d\n", question->model.type->name,
+               question->file->begin.value);
   for (size_t k = 0; k < question->voltage_count; k++) {
     dea_text_add(out, "%.12g V\n", question->voltages_V[k]);
   }
@@ -406,10 +345,6 @@ static dea_status check_variable(struct dea_question *question, const struct dea
     wrong = "mean and std are of a normal or lognormal distribution";
   } else if (variable->value_count == 0 && !spread && !range) {
     wrong = "give low and high, or values";
-  } else if (question->file->plan.value == DEA_PLAN_GRID && question->file->objective_count == 0 &&
-             variable->value_count == 0 && text->steps.origin == DEA_ABSENT &&
-             !variable->param.whole) {
-    wrong = "a grid needs values, or steps from low to high";
   }
   return wrong == NULL ? DEA_OK
                        : dea_finding_add(question->ctx, DEA_ERROR, name->location, "%s: %s",

@@ -185,7 +185,8 @@ static dea_status keep_point(struct dea_context *ctx, void *user, const struct d
     status = dea_results_h5_write(ctx, result, store);
   }
   if (status == DEA_OK) {
-    status = dea_state_file_write(ctx, curve->model, state, curve->count, path);
+    const struct dea_state_reach reach = {curve->count, curve->event_count};
+    status = dea_state_file_write(ctx, curve->model, state, reach, path);
   }
   dea_free(ctx, store);
   dea_free(ctx, path);
@@ -265,6 +266,22 @@ static dea_status take_surfaces(struct dea_context *ctx, struct dea_result *from
   return DEA_OK;
 }
 
+/* Copies the profiles of a model at its first `count` points: each has at most one, in their order.
+ */
+static dea_status take_profiles(struct dea_context *ctx, const struct dea_result *from,
+                                const char *model, size_t count, struct dea_result *to)
+{
+  for (size_t i = 0; i < from->profile_count && count > 0; i++) {
+    const struct dea_profile_record *record = &from->profiles[i];
+    if (strcmp(record->model, model) == 0) {
+      const struct dea_profile profile = dea_profile_of_record(record);
+      DEA_TRY(ctx, dea_result_add_profile(ctx, to, model, record->voltage_V, &profile));
+      count--;
+    }
+  }
+  return DEA_OK;
+}
+
 /* Moves the tables that the sweep of a model makes as it goes, with the rows of its first `count`
  * points: each has as many. */
 static dea_status take_tables(struct dea_context *ctx, struct dea_result *from,
@@ -284,10 +301,11 @@ static dea_status take_sweep(struct dea_context *ctx, const char *directory, con
                              struct dea_result *old, const struct dea_curve *sweep,
                              struct dea_result *result)
 {
-  size_t count;
+  struct dea_state_reach reach;
   struct dea_curve *curve;
-  DEA_TRY(ctx, dea_state_file_points(ctx, state, &count));
-  if (count > sweep->count) {
+  DEA_TRY(ctx, dea_state_file_reach(ctx, state, &reach));
+  const size_t count = reach.points;
+  if (count > sweep->count || reach.events > sweep->event_count) {
     return dea_fail(ctx, DEA_E_IO, "%s is damaged: it stands after point %zu of %zu", state, count,
                     sweep->count);
   }
@@ -296,7 +314,11 @@ static dea_status take_sweep(struct dea_context *ctx, const char *directory, con
   for (size_t i = 0; i < count; i++) {
     DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &sweep->points[i]));
   }
+  for (size_t i = 0; i < reach.events; i++) { // not where it stopped, after the last point
+    DEA_TRY(ctx, dea_curve_add_event(ctx, curve, &sweep->events[i]));
+  }
   DEA_TRY(ctx, take_surfaces(ctx, old, sweep->model, count, result));
+  DEA_TRY(ctx, take_profiles(ctx, old, sweep->model, count, result));
   DEA_TRY(ctx, take_tables(ctx, old, sweep, count, result));
   return DEA_OK;
 }

@@ -7,7 +7,8 @@
 #include <string.h>
 
 dea_status dea_state_file_write(struct dea_context *ctx, const char *model,
-                                const struct dea_state *state, size_t points, const char *path)
+                                const struct dea_state *state, struct dea_state_reach reach,
+                                const char *path)
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
@@ -16,7 +17,8 @@ dea_status dea_state_file_write(struct dea_context *ctx, const char *model,
   dea_h5_put_int(&h, file, "schema", DEA_STATE_SCHEMA);
   dea_h5_put_text(&h, file, "version", DEA_VERSION);
   dea_h5_put_text(&h, file, "model", model);
-  dea_h5_put_int(&h, file, "points", (long long)points);
+  dea_h5_put_int(&h, file, "points", (long long)reach.points);
+  dea_h5_put_int(&h, file, "events", (long long)reach.events);
   hid_t marks = dea_h5_group_make(&h, file, "marks");
   for (size_t i = 0; i < state->mark_count; i++) {
     char hex[65];
@@ -101,14 +103,21 @@ dea_status dea_state_file_read(struct dea_context *ctx, const char *model,
   return h.status;
 }
 
-dea_status dea_state_file_points(struct dea_context *ctx, const char *path, size_t *points)
+static size_t get_count(struct h5 *h, hid_t file, const char *name)
+{
+  const long long count = dea_h5_get_int(h, file, name);
+  return h->status == DEA_OK && count > 0 ? (size_t)count : 0;
+}
+
+dea_status dea_state_file_reach(struct dea_context *ctx, const char *path,
+                                struct dea_state_reach *reach)
 {
   struct h5 h;
   dea_h5_begin(&h, ctx, path);
   hid_t file = dea_h5_file_open(&h, false);
-  long long count = dea_h5_get_int(&h, file, "points");
+  reach->points = get_count(&h, file, "points");
+  reach->events = get_count(&h, file, "events");
   dea_h5_close(file);
   dea_h5_end(&h);
-  *points = h.status == DEA_OK && count > 0 ? (size_t)count : 0;
   return h.status;
 }

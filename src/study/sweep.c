@@ -1,6 +1,7 @@
 /* Study "sweep": stable equilibria at the asked voltages, in their order, each from the one before;
  * a curve that has points already goes on after them.
  */
+#include "device/identity.h"
 #include "result/checkpoint.h"
 #include "result/trust.h"
 #include "study/observe.h"
@@ -64,6 +65,20 @@ static bool fields_wanted(const struct dea_design *design, double voltage_V)
          design->report.fields.value == DEA_FIELDS_LAST;
 }
 
+/* Adds to a state which design it is of, but for its voltages: more may follow. identity: lent to
+ * the state. */
+static dea_status mark_design(struct dea_context *ctx, const struct dea_result *result,
+                              struct dea_text *identity, struct dea_state *state)
+{
+  if (result->design == NULL || result->device == NULL) {
+    return DEA_OK;
+  }
+  dea_device_identity(result->design, result->device, "compute.voltage", identity);
+  return identity->failed
+             ? DEA_E_MEMORY
+             : dea_state_add_mark(ctx, state, "design", dea_text_get(identity), identity->length);
+}
+
 /* Gives fields and state of the last point to who keeps them. */
 static dea_status keep_point(struct dea_context *ctx, const struct dea_model_type *type,
                              struct dea_model *model, const struct dea_result *result,
@@ -72,6 +87,7 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
   const struct dea_checkpoint_sink *sink = result->checkpoint;
   struct dea_field_mesh *fields = NULL;
   struct dea_state state = {0};
+  struct dea_text identity = {.ctx = ctx};
   dea_status status = DEA_OK;
   if (type->fields != NULL && result->design != NULL &&
       fields_wanted(result->design, curve->points[curve->count - 1].voltage_V)) {
@@ -79,21 +95,26 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
   }
   if (type->save != NULL) {
     status = dea_model_save(ctx, type, model, &state);
+    status = status == DEA_OK ? mark_design(ctx, result, &identity, &state) : status;
   }
   if (status == DEA_OK) {
     status =
         sink->point(ctx, sink->user, result, curve, fields, type->save != NULL ? &state : NULL);
   }
+  dea_text_free(&identity);
   dea_field_mesh_destroy(ctx, fields);
   return status;
 }
 
 /* Brings a model to the state that was kept at the last point of a curve. */
 static dea_status restore(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_checkpoint_sink *sink)
+                          struct dea_model *model, const struct dea_result *result)
 {
+  const struct dea_checkpoint_sink *sink = result->checkpoint;
   struct dea_state wanted = {0}, state = {0};
+  struct dea_text identity = {.ctx = ctx};
   dea_status status = dea_model_save(ctx, type, model, &wanted);
+  status = status == DEA_OK ? mark_design(ctx, result, &identity, &wanted) : status;
   if (status == DEA_OK) {
     status = sink->restore(ctx, sink->user, type->name, &wanted, &state);
   }
@@ -101,6 +122,7 @@ static dea_status restore(struct dea_context *ctx, const struct dea_model_type *
     status = dea_model_load(ctx, type, model, &state);
   }
   dea_state_free_values(ctx, &state);
+  dea_text_free(&identity);
   if (status != DEA_OK) {
     sink->refuse(sink->user);
   }
@@ -142,7 +164,6 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
 static void open_curve(struct dea_curve *curve)
 {
   curve->complete = false;
-  curve->event_count = 0;
   curve->status = DEA_E_INTERRUPTED;
   snprintf(curve->stopped, sizeof curve->stopped, "the run was ended before the sweep");
 }
@@ -200,7 +221,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   DEA_TRY(ctx, dea_study_observe_passes(ctx, type, model, result));
   dea_status status = DEA_OK;
   if (result->checkpoint != NULL && type->load != NULL && curve->count > 0) {
-    status = restore(ctx, type, model, result->checkpoint);
+    status = restore(ctx, type, model, result);
   }
   for (size_t i = curve->count; i < total && status == DEA_OK; i++) {
     status = sweep_point(ctx, type, model, design->compute.voltages_V[i], result, curve);

@@ -18,12 +18,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
   struct dea_context *ctx = fuzz_context("state.h5", begin);
   struct dea_state out = {0};
-  size_t points;
-  if (dea_state_file_write(ctx, "3d", &saved, 7, fuzz_path) != DEA_OK) {
+  struct dea_state_reach reach;
+  if (dea_state_file_write(ctx, "3d", &saved, (struct dea_state_reach){7, 2}, fuzz_path) !=
+      DEA_OK) {
     abort();
   }
   fuzz_h5_edit_file(fuzz_path, data, size);
-  dea_status counted = dea_state_file_points(ctx, fuzz_path, &points);
+  dea_status counted = dea_state_file_reach(ctx, fuzz_path, &reach);
   if (counted != DEA_OK && dea_context_message(ctx)[0] == '\0') {
     __builtin_trap(); // an error that nobody is told about
   }
@@ -31,7 +32,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   dea_status status = dea_state_file_read(ctx, "3d", &saved, fuzz_path, &out);
   if ((status != DEA_OK && dea_context_message(ctx)[0] == '\0') ||
       (status == DEA_OK && out.array_count != saved.array_count) ||
-      (size < 3 && (status != DEA_OK || points != 7))) {
+      (size < 3 && (status != DEA_OK || reach.points != 7))) {
     __builtin_trap();
   }
   dea_state_free_values(ctx, &out);
