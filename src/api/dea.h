@@ -29,7 +29,8 @@
  * fibres. Growth. Structs that the library hands out get new members at their end; structs that you
  * fill begin with their size, which their DEA_..._INIT sets, and a member that is 0 means the
  * default. Threads. A context and what it made belong to one thread at a time; different contexts
- * may compute at once, but not read or write results at once. dea_run only reads the design.
+ * may compute at once (3D models take turns), but not read or write results at once. dea_run only
+ * reads the design.
  *
  * The lines between the two marks of each part are plain C declarations, for the wrappers of other
  * languages. */

@@ -216,7 +216,8 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
     status = take_plies(ctx, &all, ply_elements, fills, &spec);
   }
   status = status == DEA_OK ? dea_solid_access_open(inner, &solid->access) : status;
-  status = status == DEA_OK ? solid->access->create(inner, &spec, &solid->object) : status;
+  status = status == DEA_OK ? DEA_SOLID_IN_TURN(solid->access->create(inner, &spec, &solid->object))
+                            : status;
   dea_free(inner, bodies);
   dea_free(inner, copies);
   dea_free(inner, ply_elements);
@@ -235,7 +236,9 @@ void dea_solid_free(dea_solid *solid)
 {
   if (solid != NULL) {
     door_mesh_free(solid->ctx->inner, solid->mesh);
+    dea_solid_enter();
     solid->access->destroy(solid->ctx->inner, solid->object);
+    dea_solid_leave(DEA_OK);
     dea_free(solid->ctx->inner, solid);
   }
 }
@@ -251,9 +254,10 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
                           const double high_m[3], int components, const double displacement_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
-                                          (struct dea_solid_place){low_m, high_m, NULL, NULL, 0},
-                                          components, displacement_m));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->hold(
+              ctx->inner, solid->object, (struct dea_solid_place){low_m, high_m, NULL, NULL, 0},
+              components, displacement_m)));
   return DEA_OK;
 }
 
@@ -261,9 +265,10 @@ dea_status dea_solid_hold_nodes(dea_context *ctx, dea_solid *solid, const int *n
                                 int components, const double displacement_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
-                                          (struct dea_solid_place){NULL, NULL, NULL, nodes, count},
-                                          components, displacement_m));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->hold(
+              ctx->inner, solid->object, (struct dea_solid_place){NULL, NULL, NULL, nodes, count},
+              components, displacement_m)));
   return DEA_OK;
 }
 
@@ -275,9 +280,10 @@ dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *
   if ((low_m == NULL) != (high_m == NULL)) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box has two corners");
   }
-  DEA_TRY(ctx->inner, solid->access->hold(ctx->inner, solid->object,
-                                          (struct dea_solid_place){low_m, high_m, curve, NULL, 0},
-                                          components, displacement_m));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->hold(
+              ctx->inner, solid->object, (struct dea_solid_place){low_m, high_m, curve, NULL, 0},
+              components, displacement_m)));
   return DEA_OK;
 }
 
@@ -285,8 +291,8 @@ dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, 
                                const double shift_m[3], const double turn_rad[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner,
-          solid->access->hold_body(ctx->inner, solid->object, body, components, shift_m, turn_rad));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->hold_body(ctx->inner, solid->object, body,
+                                                                 components, shift_m, turn_rad)));
   return DEA_OK;
 }
 
@@ -294,8 +300,8 @@ dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
                                const double force_N[3], const double moment_N_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner,
-          solid->access->push_body(ctx->inner, solid->object, body, force_N, moment_N_m));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->push_body(ctx->inner, solid->object, body,
+                                                                 force_N, moment_N_m)));
   return DEA_OK;
 }
 
@@ -313,14 +319,16 @@ dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_bo
   while (spec.component < 6 && all.component != 1 << spec.component) {
     spec.component++;
   }
-  DEA_TRY(ctx->inner, solid->access->add_spring(ctx->inner, solid->object, &spec));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->add_spring(ctx->inner, solid->object, &spec)));
   return DEA_OK;
 }
 
 dea_status dea_solid_move_spring(dea_context *ctx, dea_solid *solid, size_t spring, double place)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->move_spring(ctx->inner, solid->object, spring, place));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->move_spring(ctx->inner, solid->object, spring, place)));
   return DEA_OK;
 }
 
@@ -328,23 +336,24 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
                           const double high_m[3], const double traction_Pa[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner,
-          solid->access->pull(ctx->inner, solid->object,
-                              (struct dea_solid_place){low_m, high_m, NULL, NULL, 0}, traction_Pa));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->pull(
+                          ctx->inner, solid->object,
+                          (struct dea_solid_place){low_m, high_m, NULL, NULL, 0}, traction_Pa)));
   return DEA_OK;
 }
 
 dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->set_channel(ctx->inner, solid->object, channel, voltage_V));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->set_channel(ctx->inner, solid->object,
+                                                                   channel, voltage_V)));
   return DEA_OK;
 }
 
 dea_status dea_solid_find_charges(dea_context *ctx, dea_solid *solid)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->find_charges(ctx->inner, solid->object));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->find_charges(ctx->inner, solid->object)));
   return DEA_OK;
 }
 
@@ -363,21 +372,23 @@ const dea_solid_setting *dea_solid_setting_at(dea_context *ctx, const dea_solid 
 dea_status dea_solid_set(dea_context *ctx, dea_solid *solid, const char *name, double value)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->set(ctx->inner, solid->object, name, value));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->set(ctx->inner, solid->object, name, value)));
   return DEA_OK;
 }
 
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->solve(ctx->inner, solid->object, voltage_V));
+  DEA_TRY(ctx->inner,
+          DEA_SOLID_IN_TURN(solid->access->solve(ctx->inner, solid->object, voltage_V)));
   return DEA_OK;
 }
 
 dea_status dea_solid_modes(dea_context *ctx, dea_solid *solid, size_t count)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->modes(ctx->inner, solid->object, count));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->modes(ctx->inner, solid->object, count)));
   return DEA_OK;
 }
 
@@ -385,14 +396,15 @@ dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double volta
                                 double unit_m)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->path(ctx->inner, solid->object, voltage_V, step, unit_m));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(
+                          solid->access->path(ctx->inner, solid->object, voltage_V, step, unit_m)));
   return DEA_OK;
 }
 
 dea_status dea_solid_path_step(dea_context *ctx, dea_solid *solid)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  DEA_TRY(ctx->inner, solid->access->step(ctx->inner, solid->object));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->step(ctx->inner, solid->object)));
   return DEA_OK;
 }
 
@@ -408,7 +420,9 @@ dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
   const char *unit = "";
   size_t shape[3] = {0, 0, 0};
   *out = NULL;
+  dea_solid_enter();
   const double *data = solid->access->array(solid->object, name, &unit, shape);
+  dea_solid_leave(DEA_OK);
   if (data == NULL) {
     return door_unknown(ctx, "array", name, known, sizeof known / sizeof known[0]);
   }
@@ -431,7 +445,7 @@ dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **o
   door_mesh_free(ctx->inner, solid->mesh);
   solid->mesh = NULL;
   (void)solid->access->number(solid->object, "voltage_V", &voltage_V);
-  DEA_TRY(ctx->inner, solid->access->mesh(ctx->inner, solid->object, &mesh));
+  DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->mesh(ctx->inner, solid->object, &mesh)));
   DEA_TRY(ctx->inner, door_mesh_make(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
   *out = &solid->mesh->shown;
   return DEA_OK;

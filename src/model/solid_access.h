@@ -131,6 +131,13 @@ struct dea_solid_access {
   bool (*number)(const struct dea_solid_object *object, const char *name, double *out);
 };
 
+/* PETSc, MPI and MUMPS keep what they do in global variables: a call into the module is made
+ * between these two, by one thread at a time, in the order in which the threads came. Calls in a
+ * call are fine. The second returns its argument. */
+void dea_solid_enter(void);
+dea_status dea_solid_leave(dea_status status);
+#define DEA_SOLID_IN_TURN(call) (dea_solid_enter(), dea_solid_leave(call))
+
 /* Loads the module. *out: static storage of it. */
 dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out);
 

@@ -1,10 +1,12 @@
 /* Model "3d" as the rest of the library sees it: a door to a module that is loaded only when a
  * model is made, since PETSc and what it brings along take longer to load than most commands to
  * run. */
+#define _POSIX_C_SOURCE 200809L // pthread_mutex_t
 #include "base/module.h"
 #include "model/model.h"
 #include "model/solid_access.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -17,6 +19,41 @@ struct dea_model {
   struct dea_model *inner;
 };
 
+/* Whose turn it is: numbers are given and called out as at a counter, as a mutex alone may be given
+ * to the same thread again and again. */
+static struct {
+  pthread_mutex_t mutex;
+  pthread_cond_t called;
+  unsigned long given, now; // numbers
+  pthread_t owner;          // of the number `now`
+  unsigned depth;           // its calls in calls; 0: nobody is in
+} turn = {.mutex = PTHREAD_MUTEX_INITIALIZER, .called = PTHREAD_COND_INITIALIZER};
+
+void dea_solid_enter(void)
+{
+  pthread_mutex_lock(&turn.mutex);
+  if (turn.depth == 0 || !pthread_equal(turn.owner, pthread_self())) {
+    const unsigned long own = turn.given++;
+    while (turn.now != own) {
+      pthread_cond_wait(&turn.called, &turn.mutex);
+    }
+    turn.owner = pthread_self();
+  }
+  turn.depth++;
+  pthread_mutex_unlock(&turn.mutex);
+}
+
+dea_status dea_solid_leave(dea_status status)
+{
+  pthread_mutex_lock(&turn.mutex);
+  if (--turn.depth == 0) {
+    turn.now++;
+    pthread_cond_broadcast(&turn.called);
+  }
+  pthread_mutex_unlock(&turn.mutex);
+  return status;
+}
+
 bool dea_solid_module_find(char *out, size_t size)
 {
   return dea_module_find(module_file, out, size);
@@ -28,7 +65,8 @@ static dea_status open_module(struct dea_context *ctx, bool general,
 {
   const void *type = NULL;
   const char *name = general ? "dea_solid_layout_module" : "dea_solid_module";
-  DEA_TRY(ctx, dea_module_open(ctx, module_file, name, "the 3D engine", advice, &type));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
+                   dea_module_open(ctx, module_file, name, "the 3D engine", advice, &type)));
   *out = type;
   return DEA_OK;
 }
@@ -36,8 +74,8 @@ static dea_status open_module(struct dea_context *ctx, bool general,
 dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out)
 {
   const void *access = NULL;
-  DEA_TRY(ctx,
-          dea_module_open(ctx, module_file, "dea_solid_access", "the 3D engine", advice, &access));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_module_open(ctx, module_file, "dea_solid_access",
+                                                 "the 3D engine", advice, &access)));
   *out = access;
   return DEA_OK;
 }
@@ -45,7 +83,9 @@ dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid
 static void destroy(struct dea_context *ctx, struct dea_model *model)
 {
   if (model != NULL) {
+    dea_solid_enter();
     model->type->destroy(ctx, model->inner);
+    dea_solid_leave(DEA_OK);
     dea_free(ctx, model);
   }
 }
@@ -64,7 +104,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   struct dea_model_settings own = settings != NULL ? *settings : (struct dea_model_settings){0};
   own.mesh_from = own.mesh_from != NULL ? own.mesh_from->inner : NULL;
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
-  dea_status status = type->create(ctx, device, &own, &model->inner);
+  dea_status status = DEA_SOLID_IN_TURN(type->create(ctx, device, &own, &model->inner));
   if (status != DEA_OK) {
     dea_free(ctx, model);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -78,7 +118,7 @@ static dea_status tell(struct dea_context *ctx, void *bytes, size_t length)
   const struct dea_model_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, false, &type));
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
-  DEA_TRY(ctx, type->tell(ctx, bytes, length));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->tell(ctx, bytes, length)));
   return DEA_OK;
 }
 
@@ -86,7 +126,7 @@ static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
   const struct dea_model_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, false, &type));
-  DEA_TRY(ctx, type->libraries(ctx, out, size));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->libraries(ctx, out, size)));
   return DEA_OK;
 }
 
@@ -191,21 +231,23 @@ static const struct dea_event *passed(const struct dea_model *model)
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  DEA_TRY(ctx, model->type->solve(ctx, model->inner, voltage_V, out));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(model->type->solve(ctx, model->inner, voltage_V, out)));
   return DEA_OK;
 }
 
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, dea_model_indent(ctx, model->type, model->inner, probe, depth_m, out));
+  DEA_TRY(ctx,
+          DEA_SOLID_IN_TURN(dea_model_indent(ctx, model->type, model->inner, probe, depth_m, out)));
   return DEA_OK;
 }
 
 static dea_status move(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_control *control, double value, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, dea_model_move(ctx, model->type, model->inner, control, value, out));
+  DEA_TRY(ctx,
+          DEA_SOLID_IN_TURN(dea_model_move(ctx, model->type, model->inner, control, value, out)));
   return DEA_OK;
 }
 
@@ -213,28 +255,31 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_path_options *options, dea_point_sink points,
                             dea_event_sink events, void *user)
 {
-  DEA_TRY(ctx, dea_model_path(ctx, model->type, model->inner, options, points, events, user));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
+                   dea_model_path(ctx, model->type, model->inner, options, points, events, user)));
   return DEA_OK;
 }
 
 static dea_status soften(struct dea_context *ctx, struct dea_model *model, size_t count,
                          double *stiffness_N_per_m4)
 {
-  DEA_TRY(ctx, dea_model_soften(ctx, model->type, model->inner, count, stiffness_N_per_m4));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
+                   dea_model_soften(ctx, model->type, model->inner, count, stiffness_N_per_m4)));
   return DEA_OK;
 }
 
 static dea_status push(struct dea_context *ctx, struct dea_model *model, const struct dea_push *way,
                        struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, dea_model_push(ctx, model->type, model->inner, way, out, found));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_push(ctx, model->type, model->inner, way, out, found)));
   return DEA_OK;
 }
 
 static dea_status carry(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, dea_model_carry(ctx, model->type, model->inner, from->inner, out, found));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
+                   dea_model_carry(ctx, model->type, model->inner, from->inner, out, found)));
   return DEA_OK;
 }
 
@@ -242,7 +287,7 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_gradient_ask *ask, double *out)
 {
   return model->type->gradient != NULL
-             ? model->type->gradient(ctx, model->inner, ask, out)
+             ? DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out))
              : dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' knows no gradients of this device",
                         model->type->name);
 }
@@ -250,13 +295,13 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
                           struct dea_observation *out)
 {
-  DEA_TRY(ctx, dea_model_observe(ctx, model->type, model->inner, out));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_observe(ctx, model->type, model->inner, out)));
   return DEA_OK;
 }
 
 static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
 {
-  DEA_TRY(ctx, model->type->errors(ctx, model->inner, error));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(model->type->errors(ctx, model->inner, error)));
   return DEA_OK;
 }
 
@@ -267,7 +312,7 @@ static const struct dea_adapt_pass *passes(const struct dea_model *model, size_t
 
 static dea_status profile(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out)
 {
-  DEA_TRY(ctx, dea_model_profile(ctx, model->type, model->inner, out));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_profile(ctx, model->type, model->inner, out)));
   return DEA_OK;
 }
 
@@ -275,7 +320,8 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_load_point *at, size_t count,
                         struct dea_load_point *points, struct dea_field_mesh **shapes)
 {
-  DEA_TRY(ctx, dea_model_modes(ctx, model->type, model->inner, at, count, points, shapes));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
+                   dea_model_modes(ctx, model->type, model->inner, at, count, points, shapes)));
   return DEA_OK;
 }
 
@@ -284,8 +330,8 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_ac_excitation *excitation, const double *frequency_Hz,
                           size_t count, struct dea_load_point *points)
 {
-  DEA_TRY(ctx, dea_model_respond(ctx, model->type, model->inner, at, excitation, frequency_Hz,
-                                 count, points));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_respond(ctx, model->type, model->inner, at, excitation,
+                                                   frequency_Hz, count, points)));
   return DEA_OK;
 }
 
@@ -297,27 +343,27 @@ static const double *answers(const struct dea_model *model)
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
                          enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  DEA_TRY(ctx, dea_model_fields(ctx, model->type, model->inner, part, out));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_fields(ctx, model->type, model->inner, part, out)));
   return DEA_OK;
 }
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  DEA_TRY(ctx, dea_model_save(ctx, model->type, model->inner, out));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_save(ctx, model->type, model->inner, out)));
   return DEA_OK;
 }
 
 static dea_status load(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_state *state)
 {
-  DEA_TRY(ctx, dea_model_load(ctx, model->type, model->inner, state));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_load(ctx, model->type, model->inner, state)));
   return DEA_OK;
 }
 
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *options, struct dea_load_point *out)
 {
-  DEA_TRY(ctx, dea_model_begin(ctx, model->type, model->inner, options, out));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_begin(ctx, model->type, model->inner, options, out)));
   return DEA_OK;
 }
 
@@ -325,13 +371,16 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
                           const struct dea_time_step *step, struct dea_load_point *out,
                           double *error)
 {
-  DEA_TRY(ctx, dea_model_advance(ctx, model->type, model->inner, step, out, error));
+  DEA_TRY(ctx,
+          DEA_SOLID_IN_TURN(dea_model_advance(ctx, model->type, model->inner, step, out, error)));
   return DEA_OK;
 }
 
 static void accept(struct dea_model *model)
 {
+  dea_solid_enter();
   model->type->accept(model->inner);
+  dea_solid_leave(DEA_OK);
 }
 
 static void size(const struct dea_model *model, struct dea_model_size *out)
