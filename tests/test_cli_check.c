@@ -336,6 +336,69 @@ static void test_layout(void **state)
   assert_contains(command_err, "this needs a disc in a round frame");
 }
 
+/* A design with a material of its own. */
+static void write_with(const char *name, const char *parts, const char *material)
+{
+  char text[2000];
+  snprintf(text, sizeof text,
+           "dea: 1\n%s\nmaterials:\n  - {name: mine, title: mine, kind: elastomer,\n"
+           "     laws: [{id: a, source: me, %s}],\n"
+           "     permittivity: [{id: a, at_rest: 2.8, source: me}]}\n",
+           parts, material);
+  command_write(name, text);
+}
+
+/* What a run refuses before it solves, check refuses with the same words. */
+static void test_what_run_refuses(void **state)
+{
+  (void)state;
+#define DISC                                                                                       \
+  "film: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"                                  \
+  "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm stretched}\n"
+#define PLIES                                                                                      \
+  "shapes: [{name: film, kind: circle, radius: 9 mm}]\nsupports: [{edge: film}]\n"                 \
+  "plies: [{name: film, shape: film, material: mine, thickness: 100 um}]\n"
+#define AT_REST "voltage: {values: [0 kV]}"
+  static const char plain[] = "law: neo-hookean, parameters: {mu: 200 kPa}";
+  static const char hgo[] = "law: holzapfel-gasser-ogden, parameters: {mu: 200 kPa, k1: 200 kPa}";
+  static const char density[] = "weight and inertia need the density of the material 'mine'";
+  static const struct {
+    const char *parts, *material, *message;
+  } cases[] = {
+      {DISC "gravity: fibres_up\ncompute: {models: [3d], " AT_REST "}", plain, density},
+      {PLIES "gravity: top_up\ncompute: {" AT_REST "}", plain, density},
+      {DISC "compute: {models: [3d], modal: {}, " AT_REST "}", plain, density},
+      {DISC "compute: {models: [3d], frequency: {bias: [1 V]}, " AT_REST "}", plain, density},
+      {DISC "drive: {waveform: {kind: sine, amplitude: 1 kV, frequency: 1 Hz}}\n"
+            "compute: {models: [lumped], transient: {inertia: yes}, " AT_REST "}",
+       plain, density},
+      {PLIES "compute: {" AT_REST "}", hgo, "does not know films with a direction of their own"},
+      {DISC "compute: {models: [3d], " AT_REST "}", hgo, "the film's law has a direction"},
+      {DISC "compute: {models: [axisymmetric], " AT_REST "}", hgo, "pulls harder in one direction"},
+      {PLIES "compute: {models: [lumped], " AT_REST "}", plain,
+       "this needs a disc in a round frame"},
+      {DISC "compute: {models: [3d], frequency: {bias: [1 V]}, solid: {field: coupled}, " AT_REST
+            "}",
+       plain, "the study 'frequency' needs the field V/h"},
+      {DISC "compute: {models: [3d], compare: [{name: a, set: {film: {thickness: 100 um}, "
+            "electrodes: {diameter: 50 mm stretched}}}], " AT_REST "}",
+       plain, "the electrode"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char ran[4096];
+    write_with("refused.yaml", cases[i].parts, cases[i].material);
+    command_expect("run refused.yaml -o refused.run", 3, cases[i].message);
+    snprintf(ran, sizeof ran, "%.4000s", command_err);
+    command_expect("check refused.yaml", 3, cases[i].message);
+    for (char *save = NULL, *line = strtok_r(ran, "\n", &save); line != NULL;
+         line = strtok_r(NULL, "\n", &save)) {
+      if (strstr(line, "error: ") != NULL) {
+        assert_contains(command_err, line);
+      }
+    }
+  }
+}
+
 /* What only a disc has is refused, not passed over. */
 static void test_keys_of_a_disc(void **state)
 {
@@ -421,6 +484,7 @@ int main(void)
       cmocka_unit_test(test_schema),
       cmocka_unit_test(test_reference_is_that_of_the_table),
       cmocka_unit_test(test_layout),
+      cmocka_unit_test(test_what_run_refuses),
       cmocka_unit_test(test_keys_of_a_disc),
       cmocka_unit_test(test_doctor_without_modules),
       cmocka_unit_test(test_materials),

@@ -4,10 +4,10 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
+#include "job/job.h"
 #include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 #include "study/study.h"
-#include "study/uncertainty.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -331,51 +331,22 @@ dea_status dea_design_write(dea_context *ctx, dea_design *design, const char *pa
   return DEA_OK;
 }
 
-/* Models that the design names but that there are not. */
-static dea_status check_models(struct dea_context *ctx, const struct dea_design *design)
-{
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i < design->compute.model_count; i++) {
-    const struct dea_label *model = &design->compute.models[i];
-    const struct dea_model_type *type;
-    DEA_TRY(ctx, dea_model_seek(ctx, model->text, model->location, &type));
-    if (type == NULL) {
-      status = dea_fail(ctx, DEA_E_DESIGN, "there is no model '%.60s'", model->text);
-    } else if (design->parts != NULL && type->of_layouts == NULL) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, model->location,
-                                   "the model '%.60s' knows only a disc in a round frame; a design "
-                                   "with 'plies' is computed by 3d",
-                                   model->text));
-      status = dea_fail(ctx, DEA_E_DESIGN, "the model '%.60s' knows only a disc in a round frame",
-                        model->text);
-    }
-  }
-  return status;
-}
-
 dea_status dea_design_check(dea_context *ctx, const dea_design *design)
 {
   struct dea_context *inner_ctx = door_begin(ctx);
   struct dea_design *inner;
   struct dea_device *device;
+  struct dea_job job = {.folder = NULL};
   dea_status status = door_design_build(inner_ctx, design, &inner, &device);
-  dea_status models = inner != NULL ? check_models(inner_ctx, inner) : DEA_OK;
-  status = status != DEA_OK ? status : models;
-  models = status == DEA_OK ? dea_models_check(inner_ctx, inner, device) : DEA_OK;
-  status = status != DEA_OK ? status : models;
-  models = status == DEA_OK ? dea_study_warn(inner_ctx, inner, device) : DEA_OK;
-  status = status != DEA_OK ? status : models;
-  models = status == DEA_OK ? dea_uncertainty_check(inner_ctx, inner, device, &dea_rerun_designs)
-                            : DEA_OK;
-  status = status != DEA_OK ? status : models;
-  dea_device_destroy(inner_ctx, device);
-  for (size_t i = 0; inner != NULL && i < inner->compute.compare_count; i++) {
-    const struct dea_design *variant = inner->compute.compare[i].design;
-    struct dea_device *other = NULL;
-    dea_status built = variant != NULL ? dea_device_build(inner_ctx, variant, &other) : DEA_OK;
-    dea_device_destroy(inner_ctx, other);
-    status = status != DEA_OK ? status : built;
+  if (inner != NULL) {
+    const dea_status known = dea_job_models(inner_ctx, inner, &job);
+    status = status != DEA_OK ? status : known;
+    const struct dea_result result = {.design = inner, .device = device};
+    const dea_status good = dea_job_check(inner_ctx, &job, true, &result);
+    status = status != DEA_OK ? status : good;
   }
+  status = status == DEA_OK ? dea_study_warn(inner_ctx, inner, device) : status;
+  dea_device_destroy(inner_ctx, device);
   dea_design_destroy(inner_ctx, inner);
   return status;
 }

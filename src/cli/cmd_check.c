@@ -1,13 +1,13 @@
-#include "cli/models.h"
+#include "cli/cli.h"
 
 #include "base/text.h"
 #include "base/write_file.h"
 #include "cli/print_layout.h"
 #include "device/device.h"
+#include "job/job.h"
 #include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 #include "study/study.h"
-#include "study/uncertainty.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -215,6 +215,20 @@ static dea_status write_drawing(struct dea_cli *cli, const char *file,
   return status;
 }
 
+/* All that a run would refuse, and what it would leave out. */
+static dea_status check(struct dea_context *ctx, const struct dea_design *design,
+                        struct dea_device **device)
+{
+  struct dea_job job = {.folder = NULL};
+  const dea_status known = dea_job_models(ctx, design, &job);
+  dea_status status = dea_device_build(ctx, design, device);
+  status = status != DEA_OK ? status : known;
+  const struct dea_result result = {.design = design, .device = *device};
+  const dea_status good = dea_job_check(ctx, &job, true, &result);
+  status = status != DEA_OK ? status : good;
+  return status == DEA_OK ? dea_study_warn(ctx, design, *device) : status;
+}
+
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
@@ -222,22 +236,7 @@ static int run(struct dea_cli *cli, void *user)
   struct dea_device *device = NULL;
   dea_status status = dea_design_read(cli->ctx, request->design, request->overrides.at,
                                       request->overrides.count, &design);
-  if (status == DEA_OK) {
-    dea_status known = cli_models_check(cli, design);
-    status = dea_device_build(cli->ctx, design, &device);
-    status = status != DEA_OK ? status : known;
-    known = dea_study_check(cli->ctx, NULL, 0, design);
-    status = status != DEA_OK ? status : known;
-    known = device != NULL ? dea_uncertainty_check(cli->ctx, design, device, &dea_rerun_designs)
-                           : DEA_OK;
-    status = status != DEA_OK ? status : known;
-    known = device != NULL ? dea_models_check(cli->ctx, design, device) : DEA_OK;
-    status = status != DEA_OK ? status : known;
-    known = device != NULL ? dea_study_warn(cli->ctx, design, device) : DEA_OK;
-    status = status != DEA_OK ? status : known;
-    known = cli_variants_check(cli, design);
-    status = status != DEA_OK ? status : known;
-  }
+  status = status == DEA_OK ? check(cli->ctx, design, &device) : status;
   if (request->svg != NULL && status == DEA_OK) {
     status = write_drawing(cli, request->svg, device);
   }

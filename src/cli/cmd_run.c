@@ -104,7 +104,6 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
                                         count, &run->design));
   }
   DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
-  DEA_TRY(ctx, cli_variants_check(cli, run->design));
   DEA_TRY(ctx, dea_result_create(ctx, run->design, run->device, &run->result));
   DEA_TRY(ctx, dea_provenance_fill(ctx, bytes, length, overrides, count, cli->command_line,
                                    &run->result->provenance));

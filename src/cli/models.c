@@ -14,38 +14,6 @@ const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *nam
   return type;
 }
 
-dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design)
-{
-  bool bad = false;
-  for (size_t i = 0; i < design->compute.model_count; i++) {
-    const struct dea_label *label = &design->compute.models[i];
-    const struct dea_model_type *type = cli_model_find(cli, label->text, label->location);
-    bad = type == NULL || bad;
-    if (type != NULL && design->parts != NULL && type->of_layouts == NULL) {
-      dea_finding_add(cli->ctx, DEA_ERROR, label->location,
-                      "the model '%.60s' knows only a disc in a round frame; a design with 'plies' "
-                      "is computed by 3d",
-                      label->text);
-      bad = true;
-    }
-  }
-  return bad ? dea_fail(cli->ctx, DEA_E_DESIGN, "a model is not known, or not for this device")
-             : DEA_OK;
-}
-
-dea_status cli_variants_check(struct dea_cli *cli, const struct dea_design *design)
-{
-  dea_status first = DEA_OK;
-  for (size_t i = 0; i < design->compute.compare_count; i++) {
-    const struct dea_design *variant = design->compute.compare[i].design;
-    struct dea_device *device = NULL;
-    dea_status status = variant != NULL ? dea_device_build(cli->ctx, variant, &device) : DEA_OK;
-    dea_device_destroy(cli->ctx, device);
-    first = first == DEA_OK ? status : first;
-  }
-  return first;
-}
-
 /* Text in YAML's double quotes. */
 static void add_quoted(struct dea_text *out, const char *text, size_t length)
 {

@@ -9,12 +9,6 @@
 /* Model of that name, or NULL after a finding at `place` that names those that there are. */
 const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *name,
                                             struct dea_location location);
-/* DEA_E_DESIGN after a finding for each model of the design that this version lacks. */
-dea_status cli_models_check(struct dea_cli *cli, const struct dea_design *design);
-
-/* Whether the designs that a design compares itself with can be built; all are tried, what is wrong
- * becomes findings. */
-dea_status cli_variants_check(struct dea_cli *cli, const struct dea_design *design);
 /* Value of `compute.compare` that names design files after their names without folder and ending:
  * paths count from here. */
 void cli_designs_text(const char *const files[], size_t count, struct dea_text *out);

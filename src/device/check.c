@@ -2,6 +2,7 @@
 #include "material/plane.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* A range of one of its numbers; NAN is in none. */
 struct range {
@@ -35,6 +36,46 @@ dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *d)
     }
   }
   return DEA_OK;
+}
+
+static dea_status check_density(struct dea_context *ctx, const struct dea_material *material)
+{
+  return material->density_kg_per_m3 > 0
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN,
+                        "weight and inertia need the density of the material '%s' "
+                        "(materials[].density)",
+                        material->name);
+}
+
+dea_status dea_layout_check_densities(struct dea_context *ctx, const struct dea_layout *l)
+{
+  for (size_t i = 0; i < l->ply_count; i++) {
+    DEA_TRY(ctx, check_density(ctx, &l->plies[i].material));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_device_check_densities(struct dea_context *ctx, const struct dea_device *d)
+{
+  if (d->general) {
+    return dea_layout_check_densities(ctx, d->layout);
+  }
+  DEA_TRY(ctx, check_density(ctx, &d->film));
+  return d->fibre_count > 0 ? check_density(ctx, &d->fibre) : DEA_OK;
+}
+
+dea_status dea_device_refuse_densities(struct dea_context *ctx, struct dea_location where,
+                                       const struct dea_device *device)
+{
+  char why[DEA_TITLE_SIZE];
+  const dea_status status = dea_device_check_densities(ctx, device);
+  if (status == DEA_OK) {
+    return DEA_OK;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  dea_context_clear(ctx);
+  return dea_refuse(ctx, where, why);
 }
 
 void dea_device_fit_breakdown(struct dea_device *device)

@@ -49,6 +49,11 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
  * device, and with the number that none can have for one that was filled by hand, such as a
  * coverage that is not between 0 and 1. */
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
+/* Whether all that has weight and inertia has a density: film, fibres, plies. DEA_E_DESIGN. */
+dea_status dea_device_check_densities(struct dea_context *ctx, const struct dea_device *device);
+/* The same with a finding at what asks for weight or inertia. */
+dea_status dea_device_refuse_densities(struct dea_context *ctx, struct dea_location where,
+                                       const struct dea_device *device);
 /* Fits the breakdown field of the film, if it is known, to its thickness and to the area of the
  * electrodes, by the law of its material. */
 void dea_device_fit_breakdown(struct dea_device *device);

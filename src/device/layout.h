@@ -145,6 +145,8 @@ size_t dea_layout_find_region(const struct dea_layout *layout, const char *name)
 size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_body(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name);
+/* DEA_E_DESIGN where the material of a ply has no density, which weight and inertia need. */
+dea_status dea_layout_check_densities(struct dea_context *ctx, const struct dea_layout *layout);
 /* Whether it holds a whole boundary in all directions, as a frame does. */
 bool dea_support_is_frame(const struct dea_layout_support *support);
 /* {x min, y min, x max, y max} of all plies. */

@@ -35,33 +35,105 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
   return DEA_OK;
 }
 
+/* Where a design names a model; nowhere: who runs it has. */
+static struct dea_location place_of(const struct dea_design *design, const char *model)
+{
+  for (size_t i = 0; i < design->compute.model_count; i++) {
+    if (strcmp(design->compute.models[i].text, model) == 0) {
+      return design->compute.models[i].location;
+    }
+  }
+  return (struct dea_location){0};
+}
+
 static dea_status check_model(struct dea_context *ctx, const struct dea_model_type *type,
                               const struct dea_result *result)
 {
-  if (type->of_layouts == NULL) {
-    DEA_TRY(ctx, dea_device_check(ctx, result->device));
+  if (result->device->general && type->of_layouts == NULL) {
+    char why[400];
+    dea_device_check(ctx, result->device);
+    snprintf(why, sizeof why, "model %s: %.300s", type->name, dea_context_message(ctx));
+    dea_context_clear(ctx);
+    return dea_refuse(ctx, place_of(result->design, type->name), why);
   }
   DEA_TRY(ctx, dea_model_check(ctx, type, result->design, result->device));
   return DEA_OK;
 }
 
-/* Whether some model takes the design; what each lacks is said where none does, else by its run. */
-static dea_status check_models(struct dea_context *ctx, const struct dea_job *job,
+/* Whether each model takes the design, or some model, where what the others lack is said by their
+ * runs. */
+static dea_status check_models(struct dea_context *ctx, const struct dea_job *job, bool each,
                                const struct dea_result *result)
 {
   size_t able = 0;
   const size_t errors = dea_finding_trial_begin(ctx);
-  for (size_t i = 0; i < job->model_count; i++) {
+  for (size_t i = 0; i < job->model_count && !each; i++) {
     able += check_model(ctx, job->models[i], result) == DEA_OK;
   }
   dea_finding_trial_end(ctx, errors);
-  dea_context_clear(ctx);
+  if (able > 0) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
   dea_status first = DEA_OK;
-  for (size_t i = 0; i < job->model_count && able == 0; i++) {
+  for (size_t i = 0; i < job->model_count; i++) {
     dea_status status = check_model(ctx, job->models[i], result);
     first = first == DEA_OK ? status : first;
   }
   return first;
+}
+
+/* Whether the devices of all designs that this one is compared with can be built. */
+static dea_status check_variants(struct dea_context *ctx, const struct dea_design *design)
+{
+  dea_status first = DEA_OK;
+  for (size_t i = 0; i < design->compute.compare_count; i++) {
+    const struct dea_design *variant = design->compute.compare[i].design;
+    struct dea_device *device = NULL;
+    dea_status status = variant != NULL ? dea_device_build(ctx, variant, &device) : DEA_OK;
+    dea_device_destroy(ctx, device);
+    first = first == DEA_OK ? status : first;
+  }
+  return first;
+}
+
+dea_status dea_job_models(struct dea_context *ctx, const struct dea_design *design,
+                          struct dea_job *job)
+{
+  job->model_count = 0;
+  for (size_t i = 0; i < design->compute.model_count; i++) {
+    const struct dea_label *label = &design->compute.models[i];
+    const struct dea_model_type *type;
+    DEA_TRY(ctx, dea_model_seek(ctx, label->text, label->location, &type));
+    job->models[job->model_count] = type;
+    job->model_count += type != NULL ? 1U : 0U;
+  }
+  return job->model_count == design->compute.model_count
+             ? DEA_OK
+             : dea_fail(ctx, DEA_E_DESIGN, "a model is not known");
+}
+
+dea_status dea_job_check(struct dea_context *ctx, const struct dea_job *job, bool each,
+                         const struct dea_result *result)
+{
+  const bool built = result->device != NULL;
+  dea_status first = DEA_OK;
+  char message[1024] = "";
+  for (int step = 0; step < (built ? 5 : 2); step++) {
+    dea_status status =
+        step == 0   ? dea_study_check(ctx, job->studies, job->study_count, result->design)
+        : step == 1 ? check_variants(ctx, result->design)
+        : step == 2 ? check_models(ctx, job, each, result)
+        : step == 3
+            ? dea_study_check_models(ctx, job->models, job->model_count, job->studies,
+                                     job->study_count, result)
+            : dea_uncertainty_check(ctx, result->design, result->device, &dea_rerun_designs);
+    if (status != DEA_OK && first == DEA_OK) {
+      first = status;
+      snprintf(message, sizeof message, "%s", dea_context_message(ctx));
+    }
+  }
+  return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
 }
 
 /* Adds what has computed a model's results to where they come from. */
@@ -87,11 +159,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   dea_status first = DEA_OK;
   char message[1024] = "";
   *began = false;
-  DEA_TRY(ctx, dea_study_check(ctx, job->studies, job->study_count, result->design));
-  DEA_TRY(ctx, check_models(ctx, job, result));
-  DEA_TRY(ctx, dea_study_check_models(ctx, job->models, job->model_count, job->studies,
-                                      job->study_count, result));
-  DEA_TRY(ctx, dea_uncertainty_check(ctx, result->design, result->device, &dea_rerun_designs));
+  DEA_TRY(ctx, dea_job_check(ctx, job, false, result));
   DEA_TRY(ctx, open_folder(ctx, job, result));
   *began = true;
   result->rerun = &dea_rerun_designs;

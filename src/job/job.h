@@ -21,7 +21,16 @@ struct dea_job {
   struct dea_folder_lock *lock; // of the folder, until the job ends
 };
 
-/* Checks names, makes the folder ready and runs every model. The first failure of a study comes
+/* Models of a job: all that a design names. DEA_E_DESIGN after findings where one is not known; the
+ * others are there also then. */
+dea_status dea_job_models(struct dea_context *ctx, const struct dea_design *design,
+                          struct dea_job *job);
+/* What a run refuses before it computes, as findings: studies, the designs that it is compared
+ * with, models, uncertainties. each: every model has to take the design, else one of them. result:
+ * design and device alone are looked at; without a device (NULL) less is. */
+dea_status dea_job_check(struct dea_context *ctx, const struct dea_job *job, bool each,
+                         const struct dea_result *result);
+/* Checks that, makes the folder ready and runs every model. The first failure of a study comes
  * back after all had their turn (an interrupt ends it at once), with the model's name before its
  * message; the result has what was computed. *began: false when nothing could run. */
 dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,

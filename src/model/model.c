@@ -1,5 +1,7 @@
 #include "model/model.h"
 
+#include "model/film.h"
+
 #include "result/columns.h"
 
 #include <math.h>
@@ -44,6 +46,10 @@ dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type 
                            const struct dea_design *design, const struct dea_device *device)
 {
   const struct dea_model_type *own = dea_model_of_device(type, device);
+  if (!device->general) {
+    struct dea_film film;
+    DEA_TRY(ctx, dea_film_create(ctx, device, &film));
+  }
   if (own->check != NULL) {
     DEA_TRY(ctx, own->check(ctx, design, device));
   }

@@ -307,9 +307,6 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 /* What a model does not take of a design, as `check` above. */
 dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
                            const struct dea_design *design, const struct dea_device *device);
-/* The same of all models that a design names; names that there are not are passed over. */
-dea_status dea_models_check(struct dea_context *ctx, const struct dea_design *design,
-                            const struct dea_device *device);
 /* A model of a device with the settings of its design, which it has to take; type: the one that
  * speaks for it. */
 dea_status dea_model_create(struct dea_context *ctx, const struct dea_model_type *type,

@@ -51,15 +51,3 @@ dea_status dea_model_seek(struct dea_context *ctx, const char *name, struct dea_
   dea_text_free(&known);
   return status;
 }
-
-dea_status dea_models_check(struct dea_context *ctx, const struct dea_design *design,
-                            const struct dea_device *device)
-{
-  dea_status first = DEA_OK;
-  for (size_t i = 0; i < design->compute.model_count; i++) {
-    const struct dea_model_type *type = dea_model_find(design->compute.models[i].text);
-    dea_status status = type != NULL ? dea_model_check(ctx, type, design, device) : DEA_OK;
-    first = first == DEA_OK ? status : first;
-  }
-  return first;
-}

@@ -5,10 +5,10 @@
 #include "base/module.h"
 #include "model/model.h"
 #include "model/solid_access.h"
+#include "model/solid_check.h"
 
 #include <pthread.h>
 #include <stdio.h>
-#include <string.h>
 
 static const char module_file[] = "dea_solid_module.so";
 static const char advice[] =
@@ -127,94 +127,6 @@ static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
   const struct dea_model_type *type = NULL;
   DEA_TRY(ctx, open_module(ctx, false, &type));
   DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->libraries(ctx, out, size)));
-  return DEA_OK;
-}
-
-static dea_status check(struct dea_context *ctx, const struct dea_design *design,
-                        const struct dea_device *device)
-{
-  const struct dea_material *film = &device->film;
-  bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
-  if (coupled && film->permittivity.slope != 0) {
-    DEA_TRY(ctx,
-            dea_refuse(ctx, design->compute.solid.field.location,
-                       "model 3d: a coupled field needs a constant permittivity, and that of the "
-                       "film depends on stretch (film.permittivity)"));
-  }
-  if (coupled && design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
-    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.field.location,
-                            "model 3d: a coupled field needs a film with a thickness "
-                            "(compute.solid.film: solid)"));
-  }
-  if (design->compute.solid.adapt.asked) {
-    DEA_TRY(ctx,
-            dea_refuse(ctx, design->compute.solid.adapt.monitor.location,
-                       "model 3d: compute.solid.adapt is of devices made of `plies`; of a disc in "
-                       "a frame take compute.solid.refinement and the study convergence"));
-  }
-  if (film->law != NULL && film->law->anisotropic) {
-    DEA_TRY(ctx, dea_refuse(ctx,
-                            design->film.law.origin == DEA_ABSENT ||
-                                    design->film.law.origin == DEA_DEFAULT
-                                ? design->film.material.location
-                                : design->film.law.location,
-                            "model 3d: the film's law has a direction of its own, which this model "
-                            "does not know yet"));
-  }
-  return DEA_OK;
-}
-
-/* Keys that a design with `plies` may have and that only a disc in a frame has a use for. */
-static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_design *design)
-{
-  const struct dea_choice *path = &design->compute.solid.path;
-  const struct dea_choice *side = &design->compute.solid.buckling_branch;
-  const struct dea_choice *field = &design->compute.solid.field;
-  const struct dea_quantity *tips = &design->compute.solid.tip_refinement;
-  const struct dea_quantity *end = &design->compute.path_max_stretch;
-  const struct {
-    bool asked;
-    const struct dea_location *where;
-    const char *key;
-  } keys[] = {
-      {path->value != 0, &path->location, "solid.path"},
-      {side->value != DEA_BRANCH_ANY, &side->location, "solid.buckling_branch"},
-      {field->value == DEA_FIELD_COUPLED, &field->location, "solid.field: coupled"},
-      {tips->origin == DEA_GIVEN || tips->origin == DEA_OVERRIDE, &tips->location,
-       "solid.tip_refinement"},
-      {end->origin == DEA_GIVEN || end->origin == DEA_OVERRIDE, &end->location, "path.max_stretch"},
-  };
-  dea_status first = DEA_OK;
-  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
-    char message[160];
-    snprintf(message, sizeof message,
-             "model 3d: compute.%s is of a disc in a frame, not of devices made of `plies`",
-             keys[i].key);
-    dea_status status = keys[i].asked ? dea_refuse(ctx, *keys[i].where, message) : DEA_OK;
-    first = first == DEA_OK ? status : first;
-  }
-  return first;
-}
-
-/* Of devices of any layout: no key of a disc, and the monitor that a mesh is refined for is there.
- */
-static dea_status check_layout(struct dea_context *ctx, const struct dea_design *design,
-                               const struct dea_device *device)
-{
-  DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
-  const struct dea_layout *l = device->layout;
-  const char *name = design->compute.solid.adapt.monitor.text;
-  for (size_t i = 0; i < l->monitor_count; i++) {
-    if (strcmp(l->monitors[i].name, name) == 0) {
-      return DEA_OK;
-    }
-  }
-  if (design->compute.solid.adapt.asked) {
-    char message[300];
-    snprintf(message, sizeof message,
-             "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name)", name);
-    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.adapt.monitor.location, message));
-  }
   return DEA_OK;
 }
 
@@ -392,7 +304,7 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
 static const struct dea_model_type of_layouts = {
     .name = "3d",
     .long_name = "3D solid",
-    .check = check_layout,
+    .check = dea_solid_check_layout,
     .tell = tell,
     .create = create,
     .destroy = destroy,
@@ -426,7 +338,7 @@ const struct dea_model_type dea_model_3d = {
     .libraries = libraries,
     .create = create,
     .destroy = destroy,
-    .check = check,
+    .check = dea_solid_check_disc,
     .limit = limit,
     .passed = passed,
     .solve = solve,

@@ -664,12 +664,15 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
   return type->respond != NULL;
 }
 
-static dea_status refuse(struct dea_context *ctx, const struct dea_design *design)
+static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
+                         const struct dea_device *device)
 {
   static const char why[] = "the study 'frequency' needs the field V/h: take compute.solid.field: "
                             "thin, or leave compute.frequency away";
   const struct dea_choice *field = &design->compute.solid.field;
-  return field->value == DEA_FIELD_COUPLED ? dea_refuse(ctx, field->location, why) : DEA_OK;
+  return field->value == DEA_FIELD_COUPLED
+             ? dea_refuse(ctx, field->location, why)
+             : dea_device_refuse_densities(ctx, settings_of(design)->biases_V[0].location, device);
 }
 
 const struct dea_study dea_study_frequency = {

@@ -190,6 +190,13 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
   return type->modes != NULL;
 }
 
+static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
+                         const struct dea_device *device)
+{
+  const struct settings *settings = dea_design_settings(design, &section)->values;
+  return dea_device_refuse_densities(ctx, settings->count.location, device);
+}
+
 const struct dea_study dea_study_modal = {
     .name = study_name,
     .keys = &section,
@@ -197,6 +204,7 @@ const struct dea_study dea_study_modal = {
     .any_layout = true,
     .ability = "vibrations",
     .able = able,
+    .refuse = refuse,
     .run = run,
     .tables = tables,
     .figures = figures,

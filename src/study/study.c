@@ -186,7 +186,7 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_model_type *c
   for (size_t k = 0; k < STUDIES; k++) {
     if (studies[k]->refuse != NULL && is_wanted(studies[k], names, name_count, result->design) &&
         is_known_to_some(studies[k], types, type_count, result)) {
-      DEA_TRY(ctx, studies[k]->refuse(ctx, result->design));
+      DEA_TRY(ctx, studies[k]->refuse(ctx, result->design, result->device));
     }
   }
   return DEA_OK;
@@ -244,7 +244,6 @@ dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *desi
       DEA_TRY(ctx, status);
     }
   }
-  DEA_TRY(ctx, refuse(ctx, types, count, NULL, 0, &result));
   return DEA_OK;
 }
 

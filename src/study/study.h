@@ -23,7 +23,8 @@ struct dea_study {
   bool (*able)(const struct dea_model_type *type, const struct dea_result *result);
   /* What a design has that models that are able do not take with it: a finding at its place, and
    * DEA_E_DESIGN. NULL: nothing. */
-  dea_status (*refuse)(struct dea_context *ctx, const struct dea_design *design);
+  dea_status (*refuse)(struct dea_context *ctx, const struct dea_design *design,
+                       const struct dea_device *device);
   /* Runs with a model made for it and adds its curves to the result. Partial results stay in the
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,

@@ -1028,6 +1028,16 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
   return type->advance != NULL;
 }
 
+/* The film of a disc alone, as a model may take a fibre for rigid. */
+static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
+                         const struct dea_device *device)
+{
+  const struct dea_choice *inertia = &settings_of(design)->inertia;
+  return inertia->value == 1 && (device->general || !(device->film.density_kg_per_m3 > 0))
+             ? dea_device_refuse_densities(ctx, inertia->location, device)
+             : DEA_OK;
+}
+
 const struct dea_study dea_study_transient = {
     .name = study_name,
     .keys = &section,
@@ -1037,6 +1047,7 @@ const struct dea_study dea_study_transient = {
     .any_layout = true,
     .ability = "time",
     .able = able,
+    .refuse = refuse,
     .run = run,
     .tables = tables,
     .figures = figures,

@@ -26,12 +26,7 @@ dea_status dea_actuator_check_mass(struct dea_context *ctx, const struct dea_act
 {
   const struct dea_device *d = a->device;
   bool fibres = d->fibre_count > 0;
-  if (!known(d->film.density_kg_per_m3) || (fibres && !known(d->fibre.density_kg_per_m3))) {
-    return dea_fail(ctx, DEA_E_DESIGN,
-                    "weight and inertia need the density of the material '%s' "
-                    "(materials[].density)",
-                    known(d->film.density_kg_per_m3) ? d->fibre.name : d->film.name);
-  }
+  DEA_TRY(ctx, dea_device_check_densities(ctx, d));
   if (a->plate.electrode_thickness > 0 && !known(d->electrode.density_kg_per_m3)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: the density of the electrodes is unknown; that of the "

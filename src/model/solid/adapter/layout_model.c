@@ -16,6 +16,7 @@
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
+#include "model/solid_check.h"
 #include "result/columns.h"
 #include "result/copies.h"
 
@@ -101,22 +102,11 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_mod
   struct dea_constituent *out = &model->constituents[i];
   bool dielectric = model->mesh.dielectric[i];
   const double *l = ply->pre_stretch;
-  if (material->law != NULL && material->law->anisotropic) {
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "model 3d does not know films with a direction of their own (law '%s') yet",
-                    material->law->name);
-  }
+  DEA_TRY(ctx, dea_solid_check_ply(ctx, model->layout, i));
   enum dea_part part = dielectric ? DEA_PART_FILM : DEA_PART_FIBRE;
   *out = material->law != NULL
              ? dea_constituent_stretched(part, material, l, ply->angle_rad)
              : dea_constituent_free(part, material->young_modulus_Pa, material->poisson_ratio);
-  if (dielectric && (material->law == NULL || material->permittivity.at_rest == 0)) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, ply->location,
-                                 "ply '%s' lies between electrodes: its material '%s' needs a law "
-                                 "and a permittivity",
-                                 ply->name, material->name));
-    return dea_fail(ctx, DEA_E_DESIGN, "the ply '%s' is no dielectric", ply->name);
-  }
   if (dielectric) {
     dea_constituent_set_permittivity(out, &material->permittivity, ply->thickness_m);
     out->relaxed = model->mesh.membrane;
@@ -140,19 +130,6 @@ static bool has_weight(const struct dea_layout *l)
   return g[0] != 0 || g[1] != 0 || g[2] != 0;
 }
 
-static dea_status check_densities(struct dea_context *ctx, const struct dea_layout *l)
-{
-  for (size_t i = 0; i < l->ply_count; i++) {
-    if (!(l->plies[i].material.density_kg_per_m3 > 0)) {
-      return dea_fail(ctx, DEA_E_DESIGN,
-                      "weight and inertia need the density of the material '%s' "
-                      "(materials[].density)",
-                      l->plies[i].material.name);
-    }
-  }
-  return DEA_OK;
-}
-
 static dea_status fill_constituents(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_layout *l = model->layout;
@@ -164,7 +141,7 @@ static dea_status fill_constituents(struct dea_context *ctx, struct dea_model *m
     }
   }
   if (has_weight(l)) {
-    DEA_TRY(ctx, check_densities(ctx, l));
+    DEA_TRY(ctx, dea_layout_check_densities(ctx, l));
   }
   model->film = model->film == DEA_LAYOUT_NONE ? 0 : model->film;
   return DEA_OK;
@@ -1291,7 +1268,7 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
   const struct dea_solid_problem *p = &model->solid->problem;
   dea_standing_end_history(ctx, &model->at);
   if (dea_gradient_asks_mode(ask)) {
-    DEA_TRY(ctx, check_densities(ctx, model->layout));
+    DEA_TRY(ctx, dea_layout_check_densities(ctx, model->layout));
   }
   struct variant *v = model->variant = dea_arena_alloc(&memory, 1, sizeof *v);
   double *values = dea_arena_alloc(&memory, 4 * p->dofs, sizeof *values);
@@ -1325,7 +1302,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                                           .thickness_m =
                                               model->layout->plies[model->film].thickness_m};
   if (time->inertia) {
-    DEA_TRY(ctx, check_densities(ctx, model->layout));
+    DEA_TRY(ctx, dea_layout_check_densities(ctx, model->layout));
   }
   DEA_TRY(ctx, dea_standing_begin(ctx, &model->at, &driven, time, out));
   return DEA_OK;
@@ -1419,7 +1396,7 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
                               .grid = model->mesh.grid,
                               .branches = model->branches,
                               .constituent_count = model->layout->ply_count};
-  DEA_TRY(ctx, check_densities(ctx, model->layout));
+  DEA_TRY(ctx, dea_layout_check_densities(ctx, model->layout));
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                          "model 3d: frequencies are those in vacuo; the air that moves with a film "
                          "makes it slower%s",

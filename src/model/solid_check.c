@@ -1,0 +1,130 @@
+#include "model/solid_check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Weight needs densities; said where the design asks for it. */
+static dea_status check_weight(struct dea_context *ctx, const struct dea_design *design,
+                               const struct dea_device *device)
+{
+  return design->gravity.value > DEA_GRAVITY_OFF
+             ? dea_device_refuse_densities(ctx, design->gravity.location, device)
+             : DEA_OK;
+}
+
+dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout *layout, size_t i)
+{
+  const struct dea_layout_ply *ply = &layout->plies[i];
+  const struct dea_material *material = &ply->material;
+  char why[400];
+  if (material->law != NULL && material->law->anisotropic) {
+    snprintf(
+        why, sizeof why,
+        "model 3d does not know films with a direction of their own yet: ply '%.60s' is of the "
+        "law '%s'",
+        ply->name, material->law->name);
+    return dea_refuse(ctx, ply->location, why);
+  }
+  if (dea_layout_is_dielectric(layout, i) &&
+      (material->law == NULL || !(material->permittivity.at_rest > 0))) {
+    snprintf(
+        why, sizeof why,
+        "ply '%.60s' lies between electrodes: its material '%s' needs a law and a permittivity",
+        ply->name, material->name);
+    return dea_refuse(ctx, ply->location, why);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_solid_check_disc(struct dea_context *ctx, const struct dea_design *design,
+                                const struct dea_device *device)
+{
+  const struct dea_material *film = &device->film;
+  bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
+  if (coupled && film->permittivity.slope != 0) {
+    DEA_TRY(ctx,
+            dea_refuse(ctx, design->compute.solid.field.location,
+                       "model 3d: a coupled field needs a constant permittivity, and that of the "
+                       "film depends on stretch (film.permittivity)"));
+  }
+  if (coupled && design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
+    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.field.location,
+                            "model 3d: a coupled field needs a film with a thickness "
+                            "(compute.solid.film: solid)"));
+  }
+  if (design->compute.solid.adapt.asked) {
+    DEA_TRY(ctx,
+            dea_refuse(ctx, design->compute.solid.adapt.monitor.location,
+                       "model 3d: compute.solid.adapt is of devices made of `plies`; of a disc in "
+                       "a frame take compute.solid.refinement and the study convergence"));
+  }
+  if (film->law != NULL && film->law->anisotropic) {
+    DEA_TRY(ctx, dea_refuse(ctx,
+                            design->film.law.origin == DEA_ABSENT ||
+                                    design->film.law.origin == DEA_DEFAULT
+                                ? design->film.material.location
+                                : design->film.law.location,
+                            "model 3d: the film's law has a direction of its own, which this model "
+                            "does not know yet"));
+  }
+  DEA_TRY(ctx, check_weight(ctx, design, device));
+  return DEA_OK;
+}
+
+/* Keys that a design with `plies` may have and that only a disc in a frame has a use for. */
+static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_design *design)
+{
+  const struct dea_choice *path = &design->compute.solid.path;
+  const struct dea_choice *side = &design->compute.solid.buckling_branch;
+  const struct dea_choice *field = &design->compute.solid.field;
+  const struct dea_quantity *tips = &design->compute.solid.tip_refinement;
+  const struct dea_quantity *end = &design->compute.path_max_stretch;
+  const struct {
+    bool asked;
+    const struct dea_location *where;
+    const char *key;
+  } keys[] = {
+      {path->value != 0, &path->location, "solid.path"},
+      {side->value != DEA_BRANCH_ANY, &side->location, "solid.buckling_branch"},
+      {field->value == DEA_FIELD_COUPLED, &field->location, "solid.field: coupled"},
+      {tips->origin == DEA_GIVEN || tips->origin == DEA_OVERRIDE, &tips->location,
+       "solid.tip_refinement"},
+      {end->origin == DEA_GIVEN || end->origin == DEA_OVERRIDE, &end->location, "path.max_stretch"},
+  };
+  dea_status first = DEA_OK;
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+    char message[160];
+    snprintf(message, sizeof message,
+             "model 3d: compute.%s is of a disc in a frame, not of devices made of `plies`",
+             keys[i].key);
+    dea_status status = keys[i].asked ? dea_refuse(ctx, *keys[i].where, message) : DEA_OK;
+    first = first == DEA_OK ? status : first;
+  }
+  return first;
+}
+
+/* Of devices of any layout: no key of a disc, and the monitor that a mesh is refined for is there.
+ */
+dea_status dea_solid_check_layout(struct dea_context *ctx, const struct dea_design *design,
+                                  const struct dea_device *device)
+{
+  const struct dea_layout *l = device->layout;
+  DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
+  for (size_t i = 0; i < l->ply_count; i++) {
+    DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));
+  }
+  DEA_TRY(ctx, check_weight(ctx, design, device));
+  const char *name = design->compute.solid.adapt.monitor.text;
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    if (strcmp(l->monitors[i].name, name) == 0) {
+      return DEA_OK;
+    }
+  }
+  if (design->compute.solid.adapt.asked) {
+    char message[300];
+    snprintf(message, sizeof message,
+             "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name)", name);
+    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.adapt.monitor.location, message));
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,18 @@
+/* What model "3d" does not take of a design, as far as it is known without a mesh: in the core, so
+ * that no module is loaded for it. */
+#ifndef DEA_MODEL_SOLID_CHECK_H
+#define DEA_MODEL_SOLID_CHECK_H
+
+#include "device/device.h"
+
+/* Findings at their places, and DEA_E_DESIGN, as `check` of a model: of a disc, and of any layout.
+ */
+dea_status dea_solid_check_disc(struct dea_context *ctx, const struct dea_design *design,
+                                const struct dea_device *device);
+dea_status dea_solid_check_layout(struct dea_context *ctx, const struct dea_design *design,
+                                  const struct dea_device *device);
+/* The same of the material of one ply. */
+dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout *layout,
+                               size_t ply);
+
+#endif
