@@ -642,6 +642,84 @@ static void test_settings(void **state)
   dea_solid_free(solid);
 }
 
+/* What is no number is refused by every function that takes numbers, and what is large by physics.
+ */
+static void test_numbers(void **state)
+{
+  (void)state;
+  static const double size[3] = {1e-3, 1e-3, 1e-3}, top[3] = {0, 0, 1e-3};
+  const double mu = 1e5;
+  const dea_part part = rubber(&mu);
+  dea_solid *solid = box(&part, size, 1, 1, 1);
+  for (int k = 0; k < 2; k++) {
+    const double bad = k == 0 ? (double)NAN : (double)INFINITY, low[3] = {NAN, 0, 0};
+    const double bads[3] = {0, bad, 0};
+    const dea_status refused[] = {
+        dea_solid_hold(ctx, solid, nothing, size, 7, bads),
+        dea_solid_hold(ctx, solid, low, size, 7, nothing),
+        dea_solid_hold_nodes(ctx, solid, (const int[]){0}, 1, 7, bads),
+        dea_solid_pull(ctx, solid, top, size, bads),
+        dea_solid_pull(ctx, solid, low, size, nothing),
+        dea_solid_hold_body(ctx, solid, 0, 1, bads, nothing),
+        dea_solid_push_body(ctx, solid, 0, bads, nothing),
+        dea_solid_move_spring(ctx, solid, 0, bad),
+        dea_solid_set_channel(ctx, solid, 1, bad),
+        dea_solid_set(ctx, solid, "tolerance", bad),
+        dea_solid_solve(ctx, solid, bad),
+        dea_solid_path_begin(ctx, solid, 0, bad, 1),
+    };
+    for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++) {
+      assert_int_equal(refused[i], DEA_E_ARGUMENT);
+    }
+    assert_int_equal(dea_solid_solve(ctx, solid, bad), DEA_E_ARGUMENT);
+    assert_non_null(strstr(dea_error_message(ctx), "voltage_V is "));
+    assert_non_null(strstr(dea_error_message(ctx), "and has to be a finite number"));
+    dea_part other = part;
+    dea_solid_options options = DEA_SOLID_OPTIONS_INIT;
+    const dea_part *parts = &other;
+    dea_solid *none;
+    memcpy(options.box_m, size, sizeof size);
+    options.elements[0] = options.elements[1] = options.elements[2] = 1;
+    options.parts = &parts;
+    options.part_count = 1;
+    other.density_kg_per_m3 = bad;
+    assert_int_equal(dea_solid_new(ctx, &options, &none), DEA_E_ARGUMENT);
+    assert_non_null(strstr(dea_error_message(ctx), "density_kg_per_m3 is "));
+    other.density_kg_per_m3 = 1;
+    options.box_m[1] = bad;
+    assert_int_equal(dea_solid_new(ctx, &options, &none), DEA_E_ARGUMENT);
+    assert_non_null(strstr(dea_error_message(ctx), "box_m[1] is "));
+  }
+  dea_solid_free(solid);
+}
+
+/* A voltage that no film bears is one without an equilibrium, in all models. */
+static void test_voltage_out_of_all_range(void **state)
+{
+  (void)state;
+  static const char *const models[] = {"lumped", "axisymmetric", "3d"};
+  static const char text[] = "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\n"
+                             "pre_stretch: 1.3\nframe: {inner_diameter: 40 mm}\n"
+                             "electrodes: {diameter: 20 mm stretched}\n"
+                             "compute: {solid: {film: membrane}}\n";
+  dea_design *design;
+  good(dea_design_parse(ctx, text, "d.yaml", &design));
+  for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
+    for (int sign = -1; sign < 2; sign += 2) {
+      dea_actuator *actuator;
+      double z;
+      good(dea_actuator_open(ctx, design, models[i], &actuator));
+      const dea_status status = dea_actuator_solve(ctx, actuator, sign * 1e300);
+      assert_true(status == DEA_E_NO_EQUILIBRIUM || status == DEA_E_DOMAIN);
+      good(dea_actuator_solve(ctx, actuator, 100)); // it goes on
+      good(dea_actuator_get(ctx, actuator, "voltage_V", &z));
+      assert_close(z, 100, 0, 0);
+      dea_actuator_free(actuator);
+    }
+  }
+  dea_design_free(design);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -650,6 +728,7 @@ int main(void)
       cmocka_unit_test(test_msh),      cmocka_unit_test(test_body),
       cmocka_unit_test(test_springs),  cmocka_unit_test(test_memory),
       cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_numbers),  cmocka_unit_test(test_voltage_out_of_all_range),
   };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;

@@ -111,9 +111,7 @@ static dea_status begin(dea_context *ctx, dea_actuator *actuator)
 dea_status dea_actuator_solve(dea_context *ctx, dea_actuator *actuator, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, actuator));
-  if (!isfinite(voltage_V)) {
-    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a voltage of %g V", voltage_V);
-  }
+  DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false});
   struct dea_load_point point;
   DEA_TRY(ctx->inner, actuator->type->solve(ctx->inner, actuator->model, voltage_V, &point));
   actuator->point = point;
@@ -126,8 +124,8 @@ dea_status dea_actuator_indent(dea_context *ctx, dea_actuator *actuator, dea_ind
   static const enum dea_probe_shape shapes[] = {DEA_PROBE_SPHERE, DEA_PROBE_FLAT,
                                                 DEA_PROBE_CYLINDER};
   DEA_TRY(ctx->inner, begin(ctx, actuator));
-  if ((size_t)shape >= sizeof shapes / sizeof shapes[0] || !(radius_m > 0) || !isfinite(radius_m) ||
-      !isfinite(depth_m)) {
+  DOOR_CHECK(ctx, {"radius_m", &radius_m, 1, false}, {"depth_m", &depth_m, 1, false});
+  if ((size_t)shape >= sizeof shapes / sizeof shapes[0] || !(radius_m > 0)) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "an indenter of shape %d, radius %g m, at %g m",
                     (int)shape, radius_m, depth_m);
   }

@@ -3,6 +3,7 @@
 
 #include "base/version.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -143,6 +144,24 @@ dea_status door_check_owner(dea_context *ctx, const dea_context *owner, const ch
              ? DEA_OK
              : dea_fail(ctx->inner, DEA_E_ARGUMENT,
                         "the %s belongs to the context that made it, this is another one", what);
+}
+
+dea_status door_check_numbers(dea_context *ctx, const struct door_numbers *numbers, size_t count)
+{
+  for (size_t k = 0; k < count; k++) {
+    const struct door_numbers *n = &numbers[k];
+    for (size_t i = 0; n->values != NULL && i < n->count; i++) {
+      if (!isfinite(n->values[i]) && !(n->endless && !isnan(n->values[i]))) {
+        return n->count > 1
+                   ? dea_fail(ctx->inner, DEA_E_ARGUMENT,
+                              "%s[%zu] is %g, and has to be a finite number", n->name, i,
+                              n->values[i])
+                   : dea_fail(ctx->inner, DEA_E_ARGUMENT, "%s is %g, and has to be a finite number",
+                              n->name, n->values[i]);
+      }
+    }
+  }
+  return DEA_OK;
 }
 
 dea_status door_unknown(dea_context *ctx, const char *what, const char *name,

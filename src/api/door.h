@@ -75,6 +75,19 @@ struct door_mesh {
 struct dea_context *door_begin(dea_context *ctx);
 /* DEA_E_ARGUMENT when an object belongs to another context. */
 dea_status door_check_owner(dea_context *ctx, const dea_context *owner, const char *what);
+/* Numbers of a call, as dea.h names them. values: NULL: not given. */
+struct door_numbers {
+  const char *name;
+  const double *values; // [count]
+  size_t count;
+  bool endless; // infinity means something, only NAN does not
+};
+/* DEA_E_ARGUMENT where one is no finite number. */
+dea_status door_check_numbers(dea_context *ctx, const struct door_numbers *numbers, size_t count);
+#define DOOR_CHECK(ctx, ...)                                                                       \
+  DEA_TRY((ctx)->inner, door_check_numbers(ctx, (const struct door_numbers[]){__VA_ARGS__},        \
+                                           sizeof((const struct door_numbers[]){__VA_ARGS__}) /    \
+                                               sizeof(struct door_numbers)))
 /* "there is no WHAT 'NAME'", with the nearest of those that there are. */
 dea_status door_unknown(dea_context *ctx, const char *what, const char *name,
                         const char *const known[], size_t count);

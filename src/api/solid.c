@@ -80,6 +80,14 @@ static dea_status take_part(dea_context *ctx, const dea_part *given, size_t numb
 {
   dea_part part = DEA_PART_INIT;
   memcpy(&part, given, given->size < sizeof part ? given->size : sizeof part);
+  DOOR_CHECK(ctx, {"young_modulus_Pa", &part.young_modulus_Pa, 1, false},
+             {"poisson_ratio", &part.poisson_ratio, 1, false},
+             {"parameters", part.parameters, part.parameter_count, false},
+             {"bulk_modulus_Pa", &part.bulk_modulus_Pa, 1, false},
+             {"pre_stretch", &part.pre_stretch, 1, false},
+             {"permittivity", &part.permittivity, 1, false},
+             {"electrode_gap_m", &part.electrode_gap_m, 1, false},
+             {"density_kg_per_m3", &part.density_kg_per_m3, 1, false});
   *out = (struct dea_part_spec){.young_modulus_Pa = part.young_modulus_Pa,
                                 .poisson_ratio = part.poisson_ratio,
                                 .pre_stretch = part.pre_stretch > 0 ? part.pre_stretch : 1,
@@ -137,6 +145,8 @@ static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
                                  .order_z = o->order_z > 0 ? o->order_z : 2,
                                  .part_count = o->part_count,
                                  .parts = parts};
+  DOOR_CHECK(ctx, {"box_m", o->box_m, 3, false}, {"msh_unit_m", &o->msh_unit_m, 1, false},
+             {"ply_thickness_m", o->ply_thickness_m, o->ply_count, false});
   if (out->order > 3 || out->order_z > 3) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the order of elements is 1 to 3");
   }
@@ -167,8 +177,8 @@ static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
 }
 
 /* bodies: [body_count] places and copies that those lend from, of the caller. */
-static void take_bodies(const dea_solid_options *o, dea_body *copies, struct dea_body_spec *bodies,
-                        struct dea_solid_spec *out)
+static dea_status take_bodies(dea_context *ctx, const dea_solid_options *o, dea_body *copies,
+                              struct dea_body_spec *bodies, struct dea_solid_spec *out)
 {
   static const dea_body all = DEA_BODY_INIT;
   for (size_t i = 0; i < o->body_count; i++) {
@@ -184,10 +194,13 @@ static void take_bodies(const dea_solid_options *o, dea_body *copies, struct dea
                                        .curve = copies[i].curve,
                                        .nodes = copies[i].nodes,
                                        .node_count = copies[i].node_count};
+    DOOR_CHECK(ctx, {"low_m", copies[i].low_m, 3, true}, {"high_m", copies[i].high_m, 3, true},
+               {"centre_m", copies[i].centre_m, 3, false});
     memcpy(bodies[i].centre_m, copies[i].centre_m, sizeof bodies[i].centre_m);
   }
   out->body_count = o->body_count;
   out->bodies = bodies;
+  return DEA_OK;
 }
 
 dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea_solid **out)
@@ -210,7 +223,7 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
                 copies != NULL && bodies != NULL;
   dea_status status = enough ? take_options(ctx, &all, parts, &spec) : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    take_bodies(&all, copies, bodies, &spec);
+    status = take_bodies(ctx, &all, copies, bodies, &spec);
   }
   if (status == DEA_OK && all.msh_file != NULL) {
     status = take_plies(ctx, &all, ply_elements, fills, &spec);
@@ -254,6 +267,8 @@ dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m
                           const double high_m[3], int components, const double displacement_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"low_m", low_m, 3, true}, {"high_m", high_m, 3, true},
+             {"displacement_m", displacement_m, 3, false});
   DEA_TRY(ctx->inner,
           DEA_SOLID_IN_TURN(solid->access->hold(
               ctx->inner, solid->object, (struct dea_solid_place){low_m, high_m, NULL, NULL, 0},
@@ -265,6 +280,7 @@ dea_status dea_solid_hold_nodes(dea_context *ctx, dea_solid *solid, const int *n
                                 int components, const double displacement_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"displacement_m", displacement_m, 3, false});
   DEA_TRY(ctx->inner,
           DEA_SOLID_IN_TURN(solid->access->hold(
               ctx->inner, solid->object, (struct dea_solid_place){NULL, NULL, NULL, nodes, count},
@@ -277,6 +293,8 @@ dea_status dea_solid_hold_curve(dea_context *ctx, dea_solid *solid, const char *
                                 const double displacement_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"low_m", low_m, 3, true}, {"high_m", high_m, 3, true},
+             {"displacement_m", displacement_m, 3, false});
   if ((low_m == NULL) != (high_m == NULL)) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "a box has two corners");
   }
@@ -291,6 +309,7 @@ dea_status dea_solid_hold_body(dea_context *ctx, dea_solid *solid, size_t body, 
                                const double shift_m[3], const double turn_rad[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"shift_m", shift_m, 3, false}, {"turn_rad", turn_rad, 3, false});
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->hold_body(ctx->inner, solid->object, body,
                                                                  components, shift_m, turn_rad)));
   return DEA_OK;
@@ -300,6 +319,7 @@ dea_status dea_solid_push_body(dea_context *ctx, dea_solid *solid, size_t body,
                                const double force_N[3], const double moment_N_m[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"force_N", force_N, 3, false}, {"moment_N_m", moment_N_m, 3, false});
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->push_body(ctx->inner, solid->object, body,
                                                                  force_N, moment_N_m)));
   return DEA_OK;
@@ -310,6 +330,8 @@ dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_bo
   dea_body_spring all = DEA_BODY_SPRING_INIT;
   DEA_TRY(ctx->inner, begin(ctx, solid));
   memcpy(&all, spring, spring->size < sizeof all ? spring->size : sizeof all);
+  DOOR_CHECK(ctx, {"place", &all.place, 1, false}, {"stiffness", &all.stiffness, 1, false},
+             {"at", all.at, all.count, false}, {"force", all.force, all.count, false});
   struct dea_spring_spec spec = {.body = all.body,
                                  .place = all.place,
                                  .stiffness = all.stiffness,
@@ -327,6 +349,7 @@ dea_status dea_solid_add_spring(dea_context *ctx, dea_solid *solid, const dea_bo
 dea_status dea_solid_move_spring(dea_context *ctx, dea_solid *solid, size_t spring, double place)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"place", &place, 1, false});
   DEA_TRY(ctx->inner,
           DEA_SOLID_IN_TURN(solid->access->move_spring(ctx->inner, solid->object, spring, place)));
   return DEA_OK;
@@ -336,6 +359,8 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
                           const double high_m[3], const double traction_Pa[3])
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"low_m", low_m, 3, true}, {"high_m", high_m, 3, true},
+             {"traction_Pa", traction_Pa, 3, false});
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->pull(
                           ctx->inner, solid->object,
                           (struct dea_solid_place){low_m, high_m, NULL, NULL, 0}, traction_Pa)));
@@ -345,6 +370,7 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
 dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false});
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->set_channel(ctx->inner, solid->object,
                                                                    channel, voltage_V)));
   return DEA_OK;
@@ -372,6 +398,7 @@ const dea_solid_setting *dea_solid_setting_at(dea_context *ctx, const dea_solid 
 dea_status dea_solid_set(dea_context *ctx, dea_solid *solid, const char *name, double value)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"value", &value, 1, false});
   DEA_TRY(ctx->inner,
           DEA_SOLID_IN_TURN(solid->access->set(ctx->inner, solid->object, name, value)));
   return DEA_OK;
@@ -380,6 +407,7 @@ dea_status dea_solid_set(dea_context *ctx, dea_solid *solid, const char *name, d
 dea_status dea_solid_solve(dea_context *ctx, dea_solid *solid, double voltage_V)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false});
   DEA_TRY(ctx->inner,
           DEA_SOLID_IN_TURN(solid->access->solve(ctx->inner, solid->object, voltage_V)));
   return DEA_OK;
@@ -396,6 +424,8 @@ dea_status dea_solid_path_begin(dea_context *ctx, dea_solid *solid, double volta
                                 double unit_m)
 {
   DEA_TRY(ctx->inner, begin(ctx, solid));
+  DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false}, {"step", &step, 1, false},
+             {"unit_m", &unit_m, 1, false});
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(
                           solid->access->path(ctx->inner, solid->object, voltage_V, step, unit_m)));
   return DEA_OK;

@@ -1,8 +1,10 @@
 #include "model/solid/adapter/ending.h"
 
+#include "base/whole.h"
 #include "model/make.h"
 #include "model/solid/equilibrium/newton.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -384,8 +386,9 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
                          double voltage_V, struct dea_solid_report *report)
 {
   double way = voltage_V - from_V, at_V = from_V;
-  int steps = isfinite(e->owner.step_V) ? (int)ceil(fabs(way) / e->owner.step_V - 1e-9) : 1;
-  steps = steps < 1 ? 1 : steps;
+  int steps = isfinite(e->owner.step_V)
+                  ? dea_whole(ceil(fabs(way) / e->owner.step_V - 1e-9), 1, INT_MAX - 1)
+                  : 1;
   e->limited = e->has_passed = false;
   drop_limit(e);
   for (int i = 1; i <= steps; i++) {

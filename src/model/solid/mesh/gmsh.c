@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/program.h"
 #include "base/text.h"
+#include "base/whole.h"
 #include "base/write_file.h"
 #include "model/solid/mesh/msh_read.h"
 
@@ -88,7 +89,7 @@ struct numbers {
  * their last bits differ, as those of one shape do that was moved or read from a file. */
 static int decimals_of(const struct dea_gmsh_plan *plan)
 {
-  return (int)fmax(0, 10 - floor(log10(mm * plan->size_m)));
+  return dea_whole(10 - floor(log10(mm * plan->size_m)), 0, 300);
 }
 
 static void write_place(struct dea_text *out, int decimals, const double x[2])
@@ -167,7 +168,7 @@ static void write_field(struct dea_text *out, const struct dea_gmsh_plan *plan,
   for (size_t k = 0; k < shape->count; k++) {
     for (size_t i = 0; i < dea_contour_pieces(&shape->contours[k]); i++) {
       const struct dea_piece piece = dea_contour_piece(&shape->contours[k], i);
-      int parts = (int)ceil(piece.length_m / step - 1e-9) + 1;
+      int parts = dea_whole(ceil(piece.length_m / step - 1e-9), 0, SAMPLES_MAX) + 1;
       for (int j = 0; j <= parts; j++) {
         double x[2];
         dea_piece_point(&piece, (double)j / parts, x);
