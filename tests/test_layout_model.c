@@ -6,6 +6,8 @@
 
 #include "layout_device.h"
 
+#include <stdio.h>
+
 static struct dea_model *model_of(const struct dea_device *device, enum dea_solid_film film,
                                   double refinement)
 {
@@ -466,6 +468,54 @@ static void test_saved_state(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* Why the model of a device cannot be made. */
+static const char *why_none(struct dea_device *device, const struct dea_model_settings *settings)
+{
+  struct dea_model *model;
+  assert_int_equal(dea_model_find("3d")->create(ctx, device, settings, &model),
+                   DEA_E_NOT_CONVERGED);
+  dea_device_destroy(ctx, device);
+  return dea_context_message(ctx);
+}
+
+/* A pressure above the largest that a film bears is said to be that, and about how large that is.
+ */
+static void test_limit_of_the_pressure(void **state)
+{
+  (void)state;
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 0.5};
+  struct dea_device *device = disc_new(10e-3, 5e-3, 1.1);
+  struct dea_layout *l = device->layout;
+  l->plies[0].material.law = dea_law_find("neo-hookean");
+  l->plies[0].material.param[0] = 100e3;
+  l->pressures[l->pressure_count++] =
+      (struct dea_layout_pressure){.region = 0, .ply = 0, .top = false, .pressure_Pa = 6e3};
+  double limit_Pa, of_Pa;
+  const char *why = why_none(device, &settings);
+  assert_non_null(strstr(why, "a limit of the pressure"));
+  assert_int_equal(sscanf(strstr(why, "about "), "about %lf Pa of %lf", &limit_Pa, &of_Pa), 2);
+  assert_close(of_Pa, 6e3, 0, 0);
+  print_message("%s\n", why);
+  dea_context_clear(ctx);
+}
+
+/* A film without tension whose hub is turned: what to do. */
+static void test_twisted_slack_film(void **state)
+{
+  (void)state;
+  const struct dea_model_settings settings = {.refinement = 0.4, .order_z = 1, .elements_z = 1};
+  struct dea_device *device = cone_new();
+  struct dea_layout *l = device->layout;
+  l->plies[0].pre_stretch[0] = l->plies[0].pre_stretch[1] = 1;
+  l->bodies[0].moved = 63;
+  l->bodies[0].free = 0;
+  l->bodies[0].turn_rad[2] = 2.5;
+  const char *why = why_none(device, &settings);
+  assert_non_null(strstr(why, "a film without tension wrinkles when it is twisted"));
+  assert_non_null(strstr(why, "give its ply a pre_stretch above 1"));
+  dea_context_clear(ctx);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -480,6 +530,8 @@ int main(void)
       cmocka_unit_test(test_pull_in_is_told),
       cmocka_unit_test(test_leaps_are_located),
       cmocka_unit_test(test_saved_state),
+      cmocka_unit_test(test_limit_of_the_pressure),
+      cmocka_unit_test(test_twisted_slack_film),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -15,6 +15,7 @@
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/modes.h"
 #include "model/solid/load/loads.h"
 #include "model/solid_check.h"
 #include "result/columns.h"
@@ -485,6 +486,82 @@ static dea_status hold_supports(struct dea_context *ctx, struct dea_model *model
   return DEA_OK;
 }
 
+/* Lowest stiffness at the equilibrium where the solid is, per volume; NAN: it cannot be had. */
+static double lowest_stiffness(struct dea_context *ctx, struct dea_model *model)
+{
+  double value;
+  if (dea_solid_modes_lowest(ctx, model->solid, DEA_MODES_BY_VOLUME, 1, &value, NULL) != DEA_OK) {
+    dea_context_clear(ctx);
+    return NAN;
+  }
+  return value;
+}
+
+/* The pressures have a limit where the stiffness goes to 0 with them: near it as the root of what
+ * is missing, so that at the last equilibrium that was found it is far below that at half of the
+ * pressure, where the solid is left. */
+static dea_status explain_pressure(struct dea_context *ctx, struct dea_model *model,
+                                   dea_status status)
+{
+  static const double falls = 0.25, least = 1e-3; // of the stiffness; step, of the pressure found
+  const struct dea_layout_pressure *pressure = &model->layout->pressures[0];
+  char why[160];
+  double way = model->at.report.way;
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  set_pressures(model, fmin(1, 1.1 * way)); // closer to where it ends
+  if (dea_load_steps_solve_within(ctx, model->solid, 0, 10 * least, &model->at.report) == DEA_OK) {
+    return dea_fail(ctx, status, "%s", why);
+  }
+  way += model->at.report.way * (fmin(1, 1.1 * way) - way);
+  const double low = lowest_stiffness(ctx, model);
+  set_pressures(model, 0.5 * way);
+  const double half = dea_load_steps_solve(ctx, model->solid, 0, &model->at.report) == DEA_OK
+                          ? lowest_stiffness(ctx, model)
+                          : NAN;
+  if (!(low < falls * half)) {
+    return dea_fail(ctx, status, "%s", why);
+  }
+  return dea_fail(ctx, status,
+                  "a limit of the pressure: the film bears no more than about %.4g Pa of %.4g Pa, "
+                  "where its lowest stiffness falls towards 0 (%.2g of that at half of it)",
+                  way * pressure->pressure_Pa, pressure->pressure_Pa, low / half);
+}
+
+/* Whether a part is moved in its plane, and a ply has no tension to begin with. */
+static bool is_twisted_slack(const struct dea_layout *l)
+{
+  bool moved = false, slack = false;
+  for (size_t i = 0; i < l->body_count; i++) {
+    const struct dea_layout_body *body = &l->bodies[i];
+    moved = moved || body->shift_m[0] != 0 || body->shift_m[1] != 0 || body->turn_rad[2] != 0;
+  }
+  for (size_t i = 0; i < l->support_count; i++) {
+    moved = moved || l->supports[i].move_m[0] != 0 || l->supports[i].move_m[1] != 0;
+  }
+  for (size_t i = 0; i < l->ply_count; i++) {
+    slack = slack || l->plies[i].pre_stretch[0] <= 1 || l->plies[i].pre_stretch[1] <= 1;
+  }
+  return moved && slack;
+}
+
+/* Why there is no state of the loads, where that is known. */
+static dea_status explain_loads(struct dea_context *ctx, struct dea_model *model, dea_status status)
+{
+  const struct dea_layout *l = model->layout;
+  char why[200];
+  if (dea_solid_may_shorten(status) && is_twisted_slack(l)) {
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    return dea_fail(
+        ctx, status,
+        "a film without tension wrinkles when it is twisted or shifted in its plane, and "
+        "no state is found beyond %.3g %% of that: give its ply a pre_stretch above 1 "
+        "(%s)",
+        100 * model->at.report.way, why);
+  }
+  const bool alone = l->pressure_count == 1 && l->body_count == 0;
+  return dea_solid_may_shorten(status) && alone ? explain_pressure(ctx, model, status) : status;
+}
+
 /* From the flat state, in which everything is held, to that of the loads at 0 V
  * (docs/theory/devices.md). What held the film and is no support goes away on the way as dead
  * forces, under which the flat state is an equilibrium, fall to nothing. */
@@ -504,7 +581,8 @@ static dea_status release(struct dea_context *ctx, struct dea_model *model)
   set_pressures(model, 1);
   DEA_TRY(ctx, set_weight(ctx, model));
   DEA_TRY(ctx, load_bodies(ctx, model));
-  DEA_TRY(ctx, dea_load_steps_solve(ctx, model->solid, 0, &model->at.report));
+  const dea_status status = dea_load_steps_solve(ctx, model->solid, 0, &model->at.report);
+  DEA_TRY(ctx, explain_loads(ctx, model, status));
   model->at.left_a_state = model->at.report.snapped;
   return DEA_OK;
 }
