@@ -495,24 +495,7 @@ static void test_limit_of_the_pressure(void **state)
   assert_non_null(strstr(why, "a limit of the pressure"));
   assert_int_equal(sscanf(strstr(why, "about "), "about %lf Pa of %lf", &limit_Pa, &of_Pa), 2);
   assert_close(of_Pa, 6e3, 0, 0);
-  print_message("%s\n", why);
-  dea_context_clear(ctx);
-}
-
-/* A film without tension whose hub is turned: what to do. */
-static void test_twisted_slack_film(void **state)
-{
-  (void)state;
-  const struct dea_model_settings settings = {.refinement = 0.4, .order_z = 1, .elements_z = 1};
-  struct dea_device *device = cone_new();
-  struct dea_layout *l = device->layout;
-  l->plies[0].pre_stretch[0] = l->plies[0].pre_stretch[1] = 1;
-  l->bodies[0].moved = 63;
-  l->bodies[0].free = 0;
-  l->bodies[0].turn_rad[2] = 2.5;
-  const char *why = why_none(device, &settings);
-  assert_non_null(strstr(why, "a film without tension wrinkles when it is twisted"));
-  assert_non_null(strstr(why, "give its ply a pre_stretch above 1"));
+  assert_close(limit_Pa, 1.95e3, 0.03, 0); // 2.0 kPa where the square of the stiffness is 0
   dea_context_clear(ctx);
 }
 
@@ -531,7 +514,6 @@ int main(void)
       cmocka_unit_test(test_leaps_are_located),
       cmocka_unit_test(test_saved_state),
       cmocka_unit_test(test_limit_of_the_pressure),
-      cmocka_unit_test(test_twisted_slack_film),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -46,7 +46,7 @@ dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type 
                            const struct dea_design *design, const struct dea_device *device)
 {
   const struct dea_model_type *own = dea_model_of_device(type, device);
-  if (!device->general) {
+  if (device != NULL && !device->general) {
     struct dea_film film;
     DEA_TRY(ctx, dea_film_create(ctx, device, &film));
   }
