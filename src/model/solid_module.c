@@ -27,30 +27,30 @@ static struct {
   unsigned long given, now; // numbers
   pthread_t owner;          // of the number `now`
   unsigned depth;           // its calls in calls; 0: nobody is in
-} turn = {.mutex = PTHREAD_MUTEX_INITIALIZER, .called = PTHREAD_COND_INITIALIZER};
+} solid_lock = {.mutex = PTHREAD_MUTEX_INITIALIZER, .called = PTHREAD_COND_INITIALIZER};
 
 void dea_solid_enter(void)
 {
-  pthread_mutex_lock(&turn.mutex);
-  if (turn.depth == 0 || !pthread_equal(turn.owner, pthread_self())) {
-    const unsigned long own = turn.given++;
-    while (turn.now != own) {
-      pthread_cond_wait(&turn.called, &turn.mutex);
+  pthread_mutex_lock(&solid_lock.mutex);
+  if (solid_lock.depth == 0 || !pthread_equal(solid_lock.owner, pthread_self())) {
+    const unsigned long own = solid_lock.given++;
+    while (solid_lock.now != own) {
+      pthread_cond_wait(&solid_lock.called, &solid_lock.mutex);
     }
-    turn.owner = pthread_self();
+    solid_lock.owner = pthread_self();
   }
-  turn.depth++;
-  pthread_mutex_unlock(&turn.mutex);
+  solid_lock.depth++;
+  pthread_mutex_unlock(&solid_lock.mutex);
 }
 
 dea_status dea_solid_leave(dea_status status)
 {
-  pthread_mutex_lock(&turn.mutex);
-  if (--turn.depth == 0) {
-    turn.now++;
-    pthread_cond_broadcast(&turn.called);
+  pthread_mutex_lock(&solid_lock.mutex);
+  if (--solid_lock.depth == 0) {
+    solid_lock.now++;
+    pthread_cond_broadcast(&solid_lock.called);
   }
-  pthread_mutex_unlock(&turn.mutex);
+  pthread_mutex_unlock(&solid_lock.mutex);
   return status;
 }
 
