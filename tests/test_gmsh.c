@@ -38,10 +38,10 @@ static const struct dea_vertex quarter_vertex[] = {{.y_m = -15e-3, .bulge = 0.41
                                                    {.x_m = 15e-3}};
 static const struct dea_contour quarter_contour = {quarter_vertex, 2, false};
 
-static const struct dea_gmsh_shape shapes[] = {{"film", film_contours, 2, 0},
-                                               {"electrode", &electrode, 1, 2e-4},
-                                               {"strips", strip_contours, 2, 2e-4}};
-static const struct dea_gmsh_shape quarter = {"quarter", &quarter_contour, 1, 5e-4};
+static const struct dea_gmsh_shape shapes[] = {{"film", film_contours, 2, 0, 0, false},
+                                               {"electrode", &electrode, 1, 2e-4, 0, false},
+                                               {"strips", strip_contours, 2, 2e-4, 0, false}};
+static const struct dea_gmsh_shape quarter = {"quarter", &quarter_contour, 1, 5e-4, 0, false};
 
 static const struct dea_gmsh_plan plan = {.shapes = shapes,
                                           .shape_count = 3,
@@ -131,6 +131,49 @@ static void test_shapes(void **state)
   dea_plane_mesh_destroy(ctx, mesh);
 }
 
+/* Rows on both sides of an electrode's edge and of strips that cross it, none inside the strips:
+ * areas and edges stay, and the nodes next to an edge are as far from it as the first row is wide.
+ */
+static void test_rows(void **state)
+{
+  (void)state;
+  if (!has_gmsh()) {
+    skip();
+  }
+  struct dea_plane_mesh *bare, *mesh;
+  struct dea_gmsh_shape layered[] = {shapes[0], shapes[1], shapes[2]};
+  struct dea_gmsh_plan other = plan;
+  other.shapes = layered;
+  layered[1].edge_size_m = layered[2].edge_size_m = 5e-4;
+  assert_int_equal(dea_gmsh_mesh(ctx, &other, &bare), DEA_OK);
+  layered[1].layer_m = layered[2].layer_m = 6e-5;
+  layered[2].rigid = true;
+  other.layer_rows = 2;
+  assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_OK);
+  assert_true(mesh->quad_count > bare->quad_count && mesh->node_count > bare->node_count);
+  assert_true(dea_plane_mesh_smallest_jacobian(mesh, NULL) >= 0.1);
+  assert_int_equal(mesh->edge_count, bare->edge_count);
+  static const char *const names[] = {"film", "electrode", "strips"};
+  for (size_t i = 0; i < 3; i++) {
+    assert_close(area_within(mesh, names[i]), area_within(bare, names[i]), 1e-5, 0);
+    assert_close(length_of(mesh, names[i]), length_of(bare, names[i]), i > 0 ? 1e-9 : 3e-3, 0);
+  }
+  size_t off = 0, inside[2] = {0};
+  for (int rows = 0; rows < 2; rows++) {
+    const struct dea_plane_mesh *it = rows ? mesh : bare;
+    for (size_t n = 0; n < it->node_count; n++) {
+      const double x = fabs(it->x[2 * n]), y = fabs(it->x[2 * n + 1]);
+      const bool beside = x > 6e-3 && x < 16e-3;
+      off += rows && beside && fabs(y - 0.5 * w - 2e-5) < 1e-9; // a third of the width
+      inside[rows] += beside && y < 0.5 * w;
+    }
+  }
+  assert_true(off > 4 * 10e-3 / 5e-4);
+  assert_int_equal(inside[0], inside[1]);
+  dea_plane_mesh_destroy(ctx, bare);
+  dea_plane_mesh_destroy(ctx, mesh);
+}
+
 /* A wide strip from the electrode's edge outwards, whose end leaves a crescent within it, .1 mm
  * thick. With an end that touches the electrode in a point nothing can be done: what is said
  * names both. */
@@ -147,9 +190,9 @@ static void test_crescent(void **state)
                                              {.x_m = 14e-3, .y_m = 1e-3},
                                              {.x_m = x, .y_m = 1e-3}};
     const struct dea_contour wide = {wide_vertex, 4, true};
-    const struct dea_gmsh_shape crescent[] = {{"film", film_contours, 1, 0},
-                                              {"electrode", &electrode, 1, 0.5e-3},
-                                              {"wide", &wide, 1, 0.5e-3}};
+    const struct dea_gmsh_shape crescent[] = {{"film", film_contours, 1, 0, 0, false},
+                                              {"electrode", &electrode, 1, 0.5e-3, 0, false},
+                                              {"wide", &wide, 1, 0.5e-3, 0, false}};
     struct dea_gmsh_plan other = plan;
     other.shapes = crescent;
     other.curve_count = 0;
@@ -217,7 +260,8 @@ static void test_faults_of_gmsh(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes), cmocka_unit_test(test_crescent),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes), cmocka_unit_test(test_rows),
+                                     cmocka_unit_test(test_crescent),
                                      cmocka_unit_test(test_faults_of_gmsh)};
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -13,6 +13,11 @@ static const double size_share = 0.12, edge_share = 0.4, growth = 0.7;
 /* A narrow region has an element across: its size over the region's area by its boundary, which is
  * half its width. */
 static const double across_share = 2;
+/* Rows of elements along the edges of electrodes, plies, bodies and supports: their width at
+ * refinement 1 over the thickness of the film, how many they are, and the share of the size of
+ * elements beside them. */
+static const double layer_share = 4.5, layer_rows = 2, layered_edge_share = 0.7,
+                    most_rows_finer = 8;
 static const double near_share = 1e-6;  // of the size of all: a node on a boundary
 static const double least_share = 1e-6; // of the area of all: what is smaller is as good as a point
 
@@ -70,11 +75,51 @@ static bool is_fine(const struct dea_layout *l, size_t region, double largest_m2
 
 /* Of elements along the boundary of a region. */
 static double size_at_edge(const struct dea_layout *l, size_t region, double largest_m2,
-                           double size_m, double finer)
+                           double size_m, double finer, bool layered)
 {
+  const double share = layered ? layered_edge_share : edge_share;
   const struct dea_region *r = &l->regions[region].region;
   double across = across_share * dea_region_area_m2(r) / dea_region_boundary_m(r);
-  return fmin(is_fine(l, region, largest_m2) ? edge_share * size_m : size_m, across * finer);
+  return fmin(is_fine(l, region, largest_m2) ? share * size_m : size_m, across * finer);
+}
+
+/* Thickness of what is between electrodes, or of all plies. */
+static double film_thickness_m(const struct dea_layout *l)
+{
+  double film = 0, all = 0;
+  for (size_t p = 0; p < l->ply_count; p++) {
+    bool film_here = false;
+    for (size_t i = 0; i < l->electrode_count; i++) {
+      film_here = film_here || l->electrodes[i].ply == p;
+    }
+    all += l->plies[p].thickness_m;
+    film += film_here ? l->plies[p].thickness_m : 0;
+  }
+  return film > 0 ? film : all;
+}
+
+/* Whether the motion through the thickness changes at the boundary of a region. */
+static bool has_layer(const struct dea_layout *l, size_t region)
+{
+  bool layer = is_fine(l, region, INFINITY);
+  for (size_t i = 0; i < l->support_count; i++) {
+    layer = layer || l->supports[i].region == region;
+  }
+  return layer;
+}
+
+/* Whether all of a region is held or moves as one. */
+static bool is_rigid(const struct dea_layout *l, size_t region)
+{
+  bool rigid = false;
+  for (size_t i = 0; i < l->support_count; i++) {
+    rigid = rigid || (l->supports[i].region == region && !l->supports[i].edge &&
+                      l->supports[i].within == DEA_LAYOUT_NONE);
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    rigid = rigid || l->bodies[i].region == region;
+  }
+  return rigid;
 }
 
 /* All plies, and the sector, of which no more than these is left; an empty one: the whole. */
@@ -189,6 +234,7 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
 {
   const struct dea_layout *l = mesh->layout;
   double largest_m2 = largest_ply_m2(l), finer = exp2(1 - fmax(1, settings->refinement));
+  const double layer_m = mesh->membrane ? 0 : layer_share * film_thickness_m(l);
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
   struct dea_gmsh_shape *curves = dea_arena_alloc(memory, l->region_count, sizeof *curves);
   if (shapes == NULL || curves == NULL) {
@@ -198,7 +244,8 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
                                  .curves = curves,
                                  .order = settings->order == 1 ? 1 : 2,
                                  .size_m = size_share * sqrt(largest_m2) * finer,
-                                 .growth = growth};
+                                 .growth = growth,
+                                 .layer_rows = (size_t)lround(layer_rows / finer)};
   for (size_t i = 0; i < l->region_count; i++) {
     const struct dea_region *region =
         clipped[i].contour_count > 0 ? &clipped[i] : &l->regions[i].region;
@@ -206,31 +253,38 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
       continue;
     }
     struct dea_gmsh_shape *shape = &shapes[plan->shape_count++];
-    *shape =
-        (struct dea_gmsh_shape){.name = l->regions[i].name,
-                                .contours = contours_of(memory, region),
-                                .count = region->contour_count,
-                                .edge_size_m = size_at_edge(l, i, largest_m2, plan->size_m, finer)};
+    *shape = (struct dea_gmsh_shape){
+        .name = l->regions[i].name,
+        .contours = contours_of(memory, region),
+        .count = region->contour_count,
+        .edge_size_m = size_at_edge(l, i, largest_m2, plan->size_m, finer, layer_m > 0),
+        .layer_m = has_layer(l, i) ? layer_m : 0,
+        .rigid = is_rigid(l, i)};
     if (mesh->sector.fold > 0) {
       curves[plan->curve_count] = *shape;
       curves[plan->curve_count].contours = contours_of(memory, &l->regions[i].region);
       curves[plan->curve_count++].count = l->regions[i].region.contour_count;
-      shape->edge_size_m = 0;
+      shape->edge_size_m = shape->layer_m = 0;
     }
   }
   return dea_arena_status(memory);
 }
 
-/* Sizes of elements that were asked for, in the place of those of the plan. */
+/* Sizes of elements that were asked for, in the place of those of the plan; rows along edges are as
+ * many times more as the smallest of them is finer. */
 static void take_sizes(const struct dea_model_settings *settings, struct dea_gmsh_plan *plan)
 {
+  const double usual_m = layered_edge_share * plan->size_m;
+  double least_m = usual_m;
   plan->sizes = settings->sizes;
   plan->size_count = settings->size_count;
   plan->growth = 0; // the usual one
   plan->size_m = 0;
   for (size_t i = 0; i < plan->size_count; i++) {
     plan->size_m = fmax(plan->size_m, plan->sizes[i][2]);
+    least_m = fmin(least_m, plan->sizes[i][2]);
   }
+  plan->layer_rows = (size_t)lround(layer_rows * fmin(most_rows_finer, usual_m / least_m));
 }
 
 static dea_status make_plane(struct dea_context *ctx, const struct dea_model_settings *settings,

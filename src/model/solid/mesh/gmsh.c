@@ -5,11 +5,13 @@
 #define _GNU_SOURCE // mkdtemp
 #include "model/solid/mesh/gmsh.h"
 
+#include "base/arena.h"
 #include "base/file.h"
 #include "base/program.h"
 #include "base/text.h"
 #include "base/whole.h"
 #include "base/write_file.h"
+#include "model/solid/mesh/edge_layers.h"
 #include "model/solid/mesh/msh_read.h"
 
 #include <dirent.h>
@@ -613,6 +615,27 @@ static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *
   return DEA_OK;
 }
 
+static dea_status add_layers(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
+                             struct dea_plane_mesh *mesh)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  double *width_m = dea_arena_alloc(&memory, mesh->curve_count, sizeof *width_m);
+  bool *rigid = dea_arena_alloc(&memory, mesh->group_count, sizeof *rigid);
+  dea_status status = dea_arena_status(&memory);
+  for (size_t k = 0; status == DEA_OK && k < mesh->curve_count; k++) {
+    width_m[k] = curve_of(plan, k)->layer_m;
+  }
+  for (size_t g = 0; status == DEA_OK && g < mesh->group_count; g++) {
+    rigid[g] = plan->shapes[g].rigid;
+  }
+  if (status == DEA_OK) {
+    const struct dea_edge_layers layers = {width_m, rigid, plan->layer_rows};
+    status = dea_edge_layers_add(ctx, mesh, &layers);
+  }
+  dea_arena_free(&memory);
+  return status;
+}
+
 static dea_status check_plan(struct dea_context *ctx, const struct dea_gmsh_plan *plan)
 {
   bool good = plan->shape_count > 0 && (plan->order == 1 || plan->order == 2) && plan->size_m > 0 &&
@@ -638,6 +661,9 @@ dea_status dea_gmsh_mesh(struct dea_context *ctx, const struct dea_gmsh_plan *pl
   dea_status status = mesh_all(ctx, plan, out);
   if (status == DEA_OK) {
     status = classify(ctx, plan, *out);
+  }
+  if (status == DEA_OK) {
+    status = add_layers(ctx, plan, *out);
   }
   if (status != DEA_OK) {
     dea_plane_mesh_destroy(ctx, *out);

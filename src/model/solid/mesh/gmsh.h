@@ -12,6 +12,8 @@ struct dea_gmsh_shape {
   const struct dea_contour *contours; // [count], none crosses itself; closed, but those of curves
   size_t count;
   double edge_size_m; // of elements at the contours; 0: as elsewhere
+  double layer_m;     // width of the rows of thin elements on both sides of them; 0: none
+  bool rigid;         // inside of it none
 };
 
 struct dea_gmsh_plan {
@@ -24,6 +26,7 @@ struct dea_gmsh_plan {
   double growth;            // by that share of the distance from them; 0: 0.4
   const double (*sizes)[3]; // [size_count] x, y, size there [m], in the place of all that; between
   size_t size_count;        // them sizes grow by that share
+  size_t layer_rows;        // in that width
   double time_limit_s;      // of processor time; 0: 120
   const char *program;      // NULL: gmsh, from the PATH
 };

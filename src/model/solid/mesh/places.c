@@ -4,6 +4,12 @@
 #include <stdint.h>
 #include <string.h>
 
+void dea_places_empty(struct dea_places *places)
+{
+  memset(places->table, -1, places->table_size * sizeof *places->table);
+  places->count = 0;
+}
+
 dea_status dea_places_create(struct dea_context *ctx, double *x, size_t room, double close,
                              struct dea_places *out)
 {
@@ -12,7 +18,7 @@ dea_status dea_places_create(struct dea_context *ctx, double *x, size_t room, do
   if (out->table == NULL) {
     return DEA_E_MEMORY;
   }
-  memset(out->table, -1, out->table_size * sizeof *out->table);
+  dea_places_empty(out);
   return DEA_OK;
 }
 

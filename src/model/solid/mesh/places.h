@@ -15,6 +15,8 @@ struct dea_places {
 /* x: room for [room][2], lent until dea_places_release. DEA_E_MEMORY. */
 dea_status dea_places_create(struct dea_context *ctx, double *x, size_t room, double close,
                              struct dea_places *out);
+/* Forgets all nodes. */
+void dea_places_empty(struct dea_places *places);
 void dea_places_release(struct dea_context *ctx, struct dea_places *places);
 
 /* Node at a place, made when there is none. */
