@@ -4,7 +4,6 @@ these; --keep FOLDER: runs that are there are not made again; --jobs N: at once.
 
 import concurrent.futures
 import csv
-import json
 import math
 import os
 import pathlib
@@ -119,8 +118,8 @@ OF_PLIES = [
     ("beside a stiff ring, under pressure", 3, stiff(100, 6, 12, 100, 1.15, 300), {}),
     ("bar in a clamped film", 3, bar(24, 12, 100, 1.2, 50), {}),
     ("bar in a clamped film of 200 um", 4, bar(24, 12, 200, 1.15, 80), {}),
-    ("bender", 1, "devices/bender", {}),
-    ("contractile (membrane)", 3, "devices/contractile", {}),
+    ("cone, pre-stretch 1.3, 60 g", 4, cone(5, 60, 100, 1.3), {}),
+    ("two electrodes (membrane)", 4, "devices/two-electrodes", {"compute.solid.film": "membrane"}),
 ]
 OF_DISCS = [
     ("as built", 4, "frdea-4", {}),

@@ -105,6 +105,43 @@ static void faces(const struct dea_grid *grid, size_t e, const int **lower, cons
   *upper = *lower + (grid->levels[e] - 1) * per;
 }
 
+/* The elements of a ply: those of its lowest layer, [first, end), and how many further in the grid
+ * the highest ones above them are. */
+struct layers {
+  size_t first, end, to_highest;
+};
+
+static struct layers layers_of(const struct dea_grid *grid, size_t ply)
+{
+  struct layers out = {0};
+  size_t count = 0, layer = 0;
+  for (size_t e = 0; e < grid->element_count; e++) {
+    if ((size_t)grid->ply[e] == ply) {
+      out.first = count == 0 ? e : out.first;
+      const int *first = grid->nodes + out.first * DEA_HEX_NODES_MAX,
+                *own = grid->nodes + e * DEA_HEX_NODES_MAX;
+      const int last = (grid->order + 1) * (grid->order + 1) - 1;
+      const bool above = count > 0 && grid->column[own[0]] == grid->column[first[0]] &&
+                         grid->column[own[last]] == grid->column[first[last]];
+      layer = above && layer == 0 ? count : layer;
+      count++;
+    }
+  }
+  layer = layer == 0 ? count : layer;
+  out.end = out.first + layer;
+  out.to_highest = count - layer;
+  return out;
+}
+
+/* Nodes of the faces of a ply below and above an element of its lowest layer. */
+static void ply_faces(const struct dea_grid *grid, const struct layers *layers, size_t e,
+                      const int *face[2])
+{
+  const int *own;
+  faces(grid, e, &face[0], &own);
+  faces(grid, e + layers->to_highest, &own, &face[1]);
+}
+
 /* From a copy into the sector: a mirror is its own inverse, a rotation goes back. */
 static struct dea_motion back_to_sector(const struct dea_layout_mesh *mesh, size_t copy)
 {
@@ -286,8 +323,8 @@ static void add_copies(const struct dea_layout_mesh *mesh, const double v[3], co
   }
 }
 
-/* Means over the middle surface: of displacements, of the lengths of its two tangents, of its area.
- * What lies above each other counts once an element, so with the same weights. */
+/* Means over the middle surface, halfway between the faces of the ply whatever number of elements
+ * it has: of displacements, of the lengths of its two tangents, of its area. */
 static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
                            const double *u, double *out)
 {
@@ -296,12 +333,13 @@ static void observe_region(const struct dea_layout_mesh *mesh, const struct dea_
   double place[DEA_HEX_LINE_MAX], weight[DEA_HEX_LINE_MAX], sum[6] = {0}, area = 0;
   int per = (grid->order + 1) * (grid->order + 1);
   dea_gauss_rule(points, place, weight);
-  for (size_t e = 0; e < grid->element_count; e++) {
-    if ((size_t)grid->ply[e] != m->ply || !dea_layout_mesh_within(mesh, e, m->region)) {
+  const struct layers layers = layers_of(grid, m->ply);
+  for (size_t e = layers.first; e < layers.end; e++) {
+    if (!dea_layout_mesh_within(mesh, e, m->region)) {
       continue;
     }
     const int *face[2];
-    faces(grid, e, &face[0], &face[1]);
+    ply_faces(grid, &layers, e, face);
     for (size_t p = 0; p < points * points; p++) {
       const double at[2] = {place[p % points], place[p / points]};
       double value[PLANE_MAX], slope[PLANE_MAX][2], X[3][2] = {{0}}, x[3][2] = {{0}}, v[3] = {0};
@@ -595,12 +633,11 @@ static double gradient_of_region(const struct dea_layout_mesh *mesh,
     share_of_copies(&mesh->sector, motion, share);
   }
   dea_gauss_rule(points, place, part);
-  for (size_t e = 0; e < grid->element_count; e++) {
+  const struct layers layers = layers_of(grid, m->ply);
+  for (size_t e = layers.first; e < layers.end; e++) {
     const int *face[2];
-    faces(grid, e, &face[0], &face[1]);
-    for (size_t p = 0; p < points * points && (size_t)grid->ply[e] == m->ply &&
-                       dea_layout_mesh_within(mesh, e, m->region);
-         p++) {
+    ply_faces(grid, &layers, e, face);
+    for (size_t p = 0; p < points * points && dea_layout_mesh_within(mesh, e, m->region); p++) {
       const double at[2] = {place[p % points], place[p / points]};
       double value[PLANE_MAX], slope[PLANE_MAX][2], F[3][2];
       double dA =

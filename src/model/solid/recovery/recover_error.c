@@ -14,9 +14,9 @@ enum { TENSOR = 9, WIDTH_MAX = TENSOR + (TENSOR + 1) * DEA_ERRORS_MAX };
 enum { SECOND = 2 * DEA_RECOVER_LEVELS, CORNERS = 4 };
 
 /* Of an error how many times what recovery sees of it, 1 / (1 - (2/3)^2p): recovery sees elements
- * of one order more. p = 2 of membranes, whose solutions are regular, 1 of solids, which have edges
- * and layers as wide as they are thick. */
-static const double unseen_of_membranes = 81.0 / 65.0, unseen_of_solids = 9.0 / 5.0;
+ * of one order more. p is the least order that is believed, so that it is the most that can be
+ * unseen: 1 of membranes, 1/2 of solids, which have edges and corners of something stiff. */
+static const double unseen_of_membranes = 9.0 / 5.0, unseen_of_solids = 3;
 
 struct work {
   struct dea_context *ctx;
