@@ -258,8 +258,7 @@ def summary(name, rows):
 
 HEAD = """# How many numbers are within their stated error
 
-Made by `scripts/verify error-bars`; not to be edited. {count} devices, half of them of plies, the others discs with and without
-fibres; each at half the voltage and at the voltage that is written, with the default mesh, whose run states an error beside each
+Made by `scripts/verify error-bars`; not to be edited. {plies} devices of plies and {discs} discs with and without fibres, each at half the voltage and at the voltage that is written, with the default mesh, whose run states an error beside each
 number ([theory](../theory/trust.md#the-estimated-error)).
 
 * **Limit**: what the default mesh and two that are finer in all directions go to (of plies refinement 2 and 2.5 with two and three
@@ -279,7 +278,7 @@ def main():
         devices = [d for d in devices if d[0][0] in ("cone, pre-stretch 1.1", "no fibres")]
     if ONLY is not None:
         devices = [d for d in devices if d[0][0] in ONLY.split(";")]
-    print(HEAD.format(count=len(devices), low=ORDERS[0], high=ORDERS[1], negligible=100 * NEGLIGIBLE))
+    print(HEAD.format(plies=sum(d[1] is PLIES for d in devices), discs=sum(d[1] is DISCS for d in devices), low=ORDERS[0], high=ORDERS[1], negligible=100 * NEGLIGIBLE))
     with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
         rows = [r for some in pool.map(lambda d: rows_of_device(*d), devices) for r in some]
     print("\n| numbers of | count | inside | of those that matter | least effectivity | 5 % | 25 % | median | 75 % | 95 % | "
