@@ -37,7 +37,8 @@ struct fake_daq {
   struct dea_instrument common;
   struct fake_script script;
   size_t inputs;
-  double out[FAKE_SAMPLES_MAX]; // control voltages
+  double out[FAKE_SAMPLES_MAX];  // control voltages
+  const struct fake_daq *player; // whose output its inputs show; NULL: its own
   size_t put, got, puts, gets, starts, stops;
   volatile sig_atomic_t *flag; // that a signal sets
   double begun_s, stopped_s;   // by the computer's clock
@@ -96,7 +97,8 @@ static inline dea_status fake_put(struct dea_context *context, struct dea_instru
 static inline void fake_read(const struct fake_daq *daq, size_t i, double *volts)
 {
   const struct fake_script *s = &daq->script;
-  const double before = i > 0 && i <= daq->put ? daq->out[i - 1] : 0;
+  const struct fake_daq *player = daq->player != NULL ? daq->player : daq;
+  const double before = i > 0 && i <= player->put ? player->out[i - 1] : 0;
   bool broken = s->broken_from > 0 && (long)i >= s->broken_from;
   const double all[3] = {broken                                               ? 0.01 * (before > 0)
                          : s->voltage_from >= 0 && (long)i >= s->voltage_from ? before + 1

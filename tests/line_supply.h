@@ -5,6 +5,7 @@
 #define DEA_TESTS_LINE_SUPPLY_H
 
 #include "base/clock.h"
+#include "supply.h"
 #include "testing.h"
 
 #include <fcntl.h>
@@ -50,6 +51,7 @@ struct line_supply {
   double set_V, volts, turned_s, highest_V, lied_V, frequency_Hz, busy_until_s;
   size_t commands, overflows, hurried; // hurried: came before the one before was answered
   unsigned noise;
+  struct supply_wrong wrong;
 };
 
 /* The output follows; called with the lock held. */
@@ -57,13 +59,16 @@ static inline void line_supply_follow(struct line_supply *s)
 {
   int fault = atomic_load(&s->fault);
   double now_s = dea_clock_s(), most_V = s->slew_V_per_s * (now_s - s->turned_s);
-  double target_V = s->set_V, left_V = target_V - s->volts; // of its converter, in any mode
-  bool stays =
-      fault == LINE_SUPPLY_HANGS || fault == LINE_SUPPLY_STUCK || fault == LINE_SUPPLY_PULLED;
+  double target_V = supply_wrong_target(&s->wrong, s->set_V); // of its converter, in any mode
+  double left_V = target_V - s->volts;
+  bool stays = s->wrong.latched || fault == LINE_SUPPLY_HANGS || fault == LINE_SUPPLY_STUCK ||
+               fault == LINE_SUPPLY_PULLED;
   if (!stays) {
     s->volts = fabs(left_V) <= most_V ? target_V : s->volts + copysign(most_V, left_V);
   }
-  if (fault != LINE_SUPPLY_LIES) {
+  if (s->wrong.blind) {
+    s->lied_V = 0;
+  } else if (fault != LINE_SUPPLY_LIES && !s->wrong.frozen) {
     s->lied_V = s->volts;
   }
   s->highest_V = fmax(s->highest_V, fabs(s->volts));
@@ -185,6 +190,14 @@ static inline void line_supply_stop(struct line_supply *s)
     close(s->keep);
     close(s->master);
   }
+}
+
+static inline void line_supply_go_wrong(struct line_supply *s, const struct supply_wrong *wrong)
+{
+  pthread_mutex_lock(&s->lock);
+  line_supply_follow(s);
+  s->wrong = *wrong;
+  pthread_mutex_unlock(&s->lock);
 }
 
 /* The output, by amount: now, and the highest since this was asked last. */

@@ -35,6 +35,22 @@ enum supply_fault {
   SUPPLY_FAULTS
 };
 
+/* What is wrong with its output and its meter, of a supply that answers all the same; 0: nothing.
+ */
+struct supply_wrong {
+  bool latched;         // the output stays
+  bool scaled;          // the output is `scale` times what is set
+  double scale, most_V; // the output is cut off there; 0: it is not
+  bool blind, frozen;   // the meter shows 0, or what it showed last
+  bool deaf;            // to what would set it
+};
+
+static inline double supply_wrong_target(const struct supply_wrong *w, double set_V)
+{
+  double target_V = w->scaled ? w->scale * set_V : set_V;
+  return w->most_V > 0 ? fmin(target_V, w->most_V) : target_V;
+}
+
 struct supply_line {
   char text[SUPPLY_LINE];
   int client;
@@ -55,6 +71,8 @@ struct supply {
   atomic_bool ended;
   atomic_int fault;
   // of the thread, under the lock
+  struct supply_wrong wrong;
+  double shown_V; // by the meter
   int listener, clients[SUPPLY_CLIENTS];
   char partial[SUPPLY_CLIENTS][SUPPLY_LINE];
   size_t lengths[SUPPLY_CLIENTS];
@@ -77,8 +95,11 @@ static inline void supply_follow(struct supply *s)
   if (!isnan(s->fed_s) && now_s - s->fed_s > s->watchdog_s) {
     s->on = false; // its watchdog: in hardware, whatever else it does
   }
-  double target_V = s->on ? s->set_V : 0, left_V = target_V - s->volts;
+  double target_V = supply_wrong_target(&s->wrong, s->on ? s->set_V : 0);
+  double left_V = s->wrong.latched ? 0 : target_V - s->volts;
+  target_V = s->wrong.latched ? s->volts : target_V;
   s->volts = fabs(left_V) <= most_V ? target_V : s->volts + copysign(most_V, left_V);
+  s->shown_V = s->wrong.blind ? 0 : s->wrong.frozen ? s->shown_V : s->volts;
   s->highest_V = fmax(s->highest_V, fabs(s->volts));
   s->turned_s = now_s;
 }
@@ -102,7 +123,7 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
   char text[64];
   s->commands++;
   const char *word = strncmp(line->text, "C1:", 3) == 0 ? line->text + 3 : line->text;
-  if (s->deaf && strchr(word, '?') == NULL) {
+  if ((s->deaf || s->wrong.deaf) && strchr(word, '?') == NULL) {
     return;
   }
   if (sscanf(word, "VOLT %lf", &s->set_V) == 1 || sscanf(word, "BSWV OFST,%lf", &s->set_V) == 1) {
@@ -120,7 +141,8 @@ static inline void supply_do(struct supply *s, const struct supply_line *line)
   } else if (strcmp(line->text, "SYST:ERR?") == 0) {
     supply_answer(s, line->client, "0,\"No error\"");
   } else if (strcmp(line->text, "MEAS:VOLT?") == 0) {
-    snprintf(text, sizeof text, "%.3f%s", s->volts * (s->behind != NULL ? 1e-3 : 1),
+    supply_follow(s);
+    snprintf(text, sizeof text, "%.3f%s", s->shown_V * (s->behind != NULL ? 1e-3 : 1),
              s->behind != NULL ? s->behind : "");
     if (s->comma) {
       *strchr(text, '.') = ',';
@@ -283,6 +305,14 @@ static inline void supply_stop(struct supply *s)
     }
   }
   close(s->listener);
+}
+
+static inline void supply_go_wrong(struct supply *s, const struct supply_wrong *wrong)
+{
+  pthread_mutex_lock(&s->lock);
+  supply_follow(s);
+  s->wrong = *wrong;
+  pthread_mutex_unlock(&s->lock);
 }
 
 static inline bool supply_is_on(struct supply *s)

@@ -8,6 +8,7 @@
 
 #include <signal.h>
 #include <stdbool.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 
 /* Volts that are 0 V for these tests and in their protocols. */
@@ -39,6 +40,30 @@ static inline void supply_protocol(const struct supply *s, int seconds, const ch
   command_write("p.yaml", text);
 }
 
+/* Ends the guards that went on after the end of their programs, which are children of the test
+ * then; `but`: of them; 0: all. What they would do is not done any more. */
+static inline void supply_end_guards(pid_t but)
+{
+  char path[64];
+  int child;
+  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)getpid(), (int)getpid());
+  FILE *file = fopen(path, "r");
+  while (file != NULL && fscanf(file, "%d", &child) == 1) {
+    if (child != but && kill(child, SIGKILL) == 0) {
+      waitpid(child, NULL, 0);
+    }
+  }
+  if (file != NULL) {
+    fclose(file);
+  }
+}
+
+static inline int supply_tear_down(void **state)
+{
+  supply_end_guards(0);
+  return command_tear_down(state);
+}
+
 /* Starts dea with these arguments, at most 11 and a NULL; what it says goes to out.txt, err.txt. */
 static inline pid_t supply_begin(const char *const *arguments)
 {
@@ -50,6 +75,7 @@ static inline pid_t supply_begin(const char *const *arguments)
     n++;
   }
   snprintf(state, sizeof state, "%s/state", command_folder);
+  prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   fflush(NULL);
   pid_t child = fork();
   assert_true(child >= 0);

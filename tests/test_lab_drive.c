@@ -323,7 +323,8 @@ static void test_reader_apart_from_the_player(void **state)
     t.daq->script.fail_get = fail;
     t.daq->script.at_a_time = 40;
     t.daq->script.ahead_put = 0;
-    t.daq->puts = 1; // of nothing: it reads 0 V on its own clock
+    t.daq->puts = 1; // of nothing: it reads on its own clock
+    t.daq->player = player;
     struct dea_instrument *all[2] = {&player->common, &t.daq->common};
     struct dea_drive_bench bench = {all, 2, 0.005, 3, NULL, NULL, 0};
     unlink(in_folder("drive.h5"));

@@ -348,7 +348,7 @@ static void test_read_back_that_is_off(void **state)
     if (k < 2) {
       assert_non_null(strstr(why, "off by more than safety.readback_error of 5 % for 5 s"));
       assert_true(w.event_count == 1 && w.events[0].kind == DEA_NOTICED_READ_BACK &&
-                  !w.contradicted);
+                  !w.evidence[0].contradicted);
     }
   }
   dea_protocol_destroy(ctx, p);
@@ -381,7 +381,7 @@ static void test_no_channel_hides_another(void **state)
     }
     assert_int_equal(ended, 4);
     assert_non_null(strstr(why, "the current is 2 mA"));
-    assert_true(w.contradicted);
+    assert_true(w.evidence[voltage].contradicted);
     assert_true(w.largest_current_A == 3e-3 && w.sample == 200);
     dea_protocol_destroy(ctx, p);
   }
@@ -421,8 +421,8 @@ static void test_film_that_pulls_down(void **state)
     }
     assert_true(ended >= 0);
     if ((sign > 0 && strstr(why, cases[k / 2].why) == NULL) ||
-        w.contradicted != cases[k / 2].contradicted) {
-      fail_msg("case %zu: %s, %d", k, why, w.contradicted);
+        w.evidence[0].contradicted != cases[k / 2].contradicted) {
+      fail_msg("case %zu: %s, %d", k, why, w.evidence[0].contradicted);
     }
   }
   dea_protocol_destroy(ctx, p);

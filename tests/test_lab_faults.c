@@ -5,8 +5,7 @@
  * (verify/drive-faults.sh). */
 // ctest: supply
 #define _GNU_SOURCE
-#include "command.h"
-#include "supply.h"
+#include "shvps_supply.h"
 
 #include <signal.h>
 #include <sys/resource.h>
@@ -132,16 +131,23 @@ static void begin_fault(const struct run *r, const char *folder, struct supply *
   }
 }
 
-static bool has_text(const char *folder, const char *name, const char *text)
+static size_t read_text(const char *folder, const char *name, char *bytes, size_t room)
 {
-  char path[700], bytes[4096];
+  char path[700];
   snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *file = fopen(path, "rb");
-  size_t length = file != NULL ? fread(bytes, 1, sizeof bytes - 1, file) : 0;
+  size_t length = file != NULL ? fread(bytes, 1, room - 1, file) : 0;
   bytes[length] = '\0';
   if (file != NULL) {
     fclose(file);
   }
+  return length;
+}
+
+static bool has_text(const char *folder, const char *name, const char *text)
+{
+  char bytes[4096];
+  size_t length = read_text(folder, name, bytes, sizeof bytes);
   return text != NULL ? strstr(bytes, text) != NULL : length > 0;
 }
 
@@ -275,7 +281,7 @@ static void write_table(const char *path)
 }
 
 static unsigned first_seed = 1;
-static const char *table;
+static const char *table, *meter_table;
 
 static void test_faults_at_random_moments(void **state)
 {
@@ -312,11 +318,341 @@ static void test_faults_at_random_moments(void **state)
   assert_int_equal(wrong, 0);
 }
 
+// Meters that lie, outputs that do something else -------------------------------------------------
+
+enum { METERS_TOGETHER = 16 };
+static const double played_s = 12, deaf_s = 8, watched_s = 20, top_V = 2000;
+
+enum wave { SQUARE, SINE, TRIANGLE, TRAPEZOID, PULSES, WAVES };
+static const char *const wave_names[] = {"square", "sine", "triangle", "trapezoid", "pulses"};
+static const double frequencies_Hz[] = {0.5, 1, 2};
+
+/* What goes wrong; `always`: from the start on, else at a random moment at times. */
+struct kind {
+  const char *name;
+  struct supply_wrong wrong;
+  bool always;
+};
+static const struct kind kinds[] = {
+    {"honest", {0}, true},
+    {"meter at 0 V, output stays", {.blind = true, .latched = true}, false},
+    {"meter at 0 V", {.blind = true}, false},
+    {"meter stays", {.frozen = true}, false},
+    {"meter and output stay", {.frozen = true, .latched = true}, false},
+    {"output stays", {.latched = true}, false},
+    {"output twice", {.scaled = true, .scale = 2}, true},
+    {"output 0.4 times", {.scaled = true, .scale = 0.4}, true},
+    {"output never moves", {.scaled = true, .scale = 0}, true},
+    {"output cut off at 0.9 kV", {.most_V = 900}, true},
+    {"deaf for 8 s", {.deaf = true}, false},
+};
+enum { HONEST, KINDS = sizeof kinds / sizeof kinds[0], DEAF = KINDS - 1 };
+
+struct meter_run {
+  unsigned seed;
+  size_t kind;
+  enum wave wave;
+  double frequency_Hz, fault_s; // after the output rose first; below 0: from the start on
+  bool serial;
+  int code;               // -1: it did not end
+  bool said_zero, warned; // warned: before, that it is too fast to be told
+  double end_V, later_V;  // at its end, and the highest from then on
+  double zero_s;          // from a deaf one's hearing to 0 V; INFINITY: not while looked at
+};
+static struct meter_run *meters;
+static size_t meter_count;
+
+static void choose_meter(struct meter_run *r, unsigned seed)
+{
+  unsigned s = r->seed = seed;
+  for (int i = 0; i < 4; i++) {
+    (void)rand_r(&s);
+  }
+  r->kind = (seed / WAVES) % (KINDS + 2); // three times as many honest ones
+  r->kind = r->kind < KINDS ? r->kind : HONEST;
+  r->wave = (enum wave)(seed % WAVES);
+  r->frequency_Hz = frequencies_Hz[rand_r(&s) % 3];
+  r->serial = rand_r(&s) % 3 == 0;
+  bool later = !kinds[r->kind].always && rand_r(&s) % 2 == 0;
+  r->fault_s = later ? uniform(&s, 0, 0.6 * played_s) : r->kind == DEAF ? uniform(&s, 0, 1) : -1;
+  r->zero_s = INFINITY;
+}
+
+/* Either of the two. */
+struct imitation {
+  bool serial;
+  struct supply network;
+  struct line_supply line;
+};
+
+static double volts_of(struct imitation *m)
+{
+  return m->serial ? line_supply_volts(&m->line) : supply_volts(&m->network);
+}
+
+static double highest_of(struct imitation *m)
+{
+  return m->serial ? line_supply_highest(&m->line) : supply_highest(&m->network);
+}
+
+static void go_wrong(struct imitation *m, const struct supply_wrong *wrong)
+{
+  if (m->serial) {
+    line_supply_go_wrong(&m->line, wrong);
+  } else {
+    supply_go_wrong(&m->network, wrong);
+  }
+}
+
+static void start_imitation(struct imitation *m, const struct meter_run *r)
+{
+  unsigned seed = r->seed + 1;
+  memset(m, 0, sizeof *m);
+  m->serial = r->serial;
+  m->network.slew_V_per_s = m->line.slew_V_per_s = uniform(&seed, 20e3, 200e3);
+  if (r->serial) {
+    shvps_begin(&m->line);
+  } else {
+    supply_start(&m->network);
+  }
+}
+
+static void write_meter_protocol(const struct meter_run *r, const struct imitation *m,
+                                 const char *folder)
+{
+  static const char *const shapes[] = {
+      "square, high: 2 kV", "sine, amplitude: 1 kV, mean: 1 kV, phase: -90 degree",
+      "triangle, low: 0 kV, high: 2 kV", "", "square, high: 2 kV, duty: 0.2"};
+  char shape[128], name[600];
+  if (r->wave == TRAPEZOID) {
+    snprintf(shape, sizeof shape, "square, high: 2 kV, rise_time: %g s", 0.15 / r->frequency_Hz);
+  } else {
+    snprintf(shape, sizeof shape, "%s", shapes[r->wave]);
+  }
+  snprintf(name, sizeof name, "%s/p.yaml", folder);
+  FILE *file = fopen(name, "wb");
+  if (file == NULL) {
+    return;
+  }
+  fprintf(file,
+          "dea-protocol: 1\nwaveform: {kind: %s, frequency: %g Hz, cycles: %.0f}\n"
+          "amplifier: {gain: 1000, max_voltage: 5 kV%s}\nrate: 100 Hz\n"
+          "safety: {ramp: 4 kV/s, voltage_error: 300 V, at_zero: %g V, zero_time: 3 s}\n"
+          "instruments:\n",
+          shape, r->frequency_Hz, played_s * r->frequency_Hz, r->serial ? ", min_voltage: 0 V" : "",
+          zero_V);
+  if (r->serial) {
+    fprintf(file, "  - {kind: shvps, device: %s, queue: 1 s}\n", m->line.device);
+  } else {
+    fprintf(file,
+            "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON], queue: "
+            "1 s,\n     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF, "
+            "measure: \"MEAS:VOLT?\"}\n",
+            m->network.port);
+  }
+  fclose(file);
+}
+
+static pid_t begin_drive(const char *folder)
+{
+  pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder) != 0 || freopen("out", "w", stdout) == NULL ||
+        freopen("err", "w", stderr) == NULL) {
+      _exit(99);
+    }
+    setenv("XDG_STATE_HOME", folder, 1);
+    execl(DEA_COMMAND, "dea", "drive", "p.yaml", "--arm", "-o", "r.h5", (char *)NULL);
+    _exit(98);
+  }
+  return child;
+}
+
+/* The guard of a program, while that one lives; 0: none. */
+static pid_t guard_of(pid_t program)
+{
+  char path[64];
+  int guard = 0;
+  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)program, (int)program);
+  FILE *file = fopen(path, "r");
+  if (file != NULL) {
+    guard = fscanf(file, "%d", &guard) == 1 ? guard : 0;
+    fclose(file);
+  }
+  return guard;
+}
+
+static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, const char *folder)
+{
+  double began_s = dea_clock_s(), ended_s = INFINITY, wrong_s = INFINITY, up_s = began_s;
+  double now_s = began_s, until_s = INFINITY, risen_s = INFINITY;
+  bool deaf = r->kind == DEAF;
+  pid_t guard = 0;
+  int status;
+  while (now_s < began_s + limit_s && now_s < until_s) {
+    now_s = dea_clock_s();
+    double volts = volts_of(m);
+    risen_s = isinf(risen_s) && volts > zero_V ? now_s : risen_s;
+    if (isinf(wrong_s) && r->fault_s >= 0 && now_s >= risen_s + r->fault_s &&
+        (volts > 0.5 * top_V || !deaf)) {
+      go_wrong(m, &kinds[r->kind].wrong);
+      wrong_s = now_s;
+    }
+    if (deaf && now_s > wrong_s + deaf_s) {
+      go_wrong(m, &kinds[HONEST].wrong);
+    }
+    if (isinf(ended_s) && guard == 0 && now_s > began_s + 0.1) {
+      guard = guard_of(child);
+    }
+    if (isinf(ended_s) && waitpid(child, &status, WNOHANG) == child) {
+      ended_s = now_s;
+      r->code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+      r->end_V = volts_of(m);
+      (void)highest_of(m);
+      r->said_zero =
+          has_text(folder, "out", "  at 0 V") || has_text(folder, "err", "the output is at 0 V");
+      r->warned = has_text(folder, "err", "too short to tell a wrong height");
+      until_s = deaf && r->code != 0 ? wrong_s + deaf_s + watched_s : now_s + after_s;
+    }
+    up_s = volts > zero_V ? now_s : up_s;
+    if (deaf && now_s > fmax(wrong_s + deaf_s, up_s) + 2 && now_s > ended_s + after_s) {
+      break; // down for good
+    }
+    dea_clock_wait(0.004);
+  }
+  if (isinf(ended_s)) {
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
+  r->later_V = highest_of(m);
+  r->zero_s = deaf && now_s > up_s + 1 ? fmax(up_s - wrong_s - deaf_s, 0) : INFINITY;
+  if (guard > 0 && waitpid(guard, &status, WNOHANG) == 0) { // it goes on, and is a child by now
+    kill(guard, SIGKILL);
+    waitpid(guard, &status, 0);
+  }
+}
+
+static void make_meter_run(struct meter_run *r)
+{
+  struct imitation *m = malloc(sizeof *m);
+  char folder[560];
+  snprintf(folder, sizeof folder, "%s/meter-%u", command_folder, r->seed);
+  r->code = -1;
+  if (m == NULL || mkdir(folder, 0777) != 0) {
+    free(m);
+    return;
+  }
+  start_imitation(m, r);
+  if (r->fault_s < 0) {
+    struct supply_wrong wrong = kinds[r->kind].wrong;
+    wrong.latched = false; // it moves at first, else it stays at 0 V
+    go_wrong(m, &wrong);
+    r->fault_s = kinds[r->kind].wrong.latched ? 0.25 / r->frequency_Hz : -1;
+  }
+  write_meter_protocol(r, m, folder);
+  play_meter(r, m, begin_drive(folder), folder);
+  if (r->serial) {
+    line_supply_stop(&m->line);
+  } else {
+    supply_stop(&m->network);
+  }
+  free(m);
+}
+
+static void *make_meter_runs(void *user)
+{
+  for (;;) {
+    pthread_mutex_lock(&next_lock);
+    size_t i = next_run++;
+    pthread_mutex_unlock(&next_lock);
+    if (i >= meter_count) {
+      return user;
+    }
+    make_meter_run(&meters[i]);
+  }
+}
+
+static bool says_wrong(const struct meter_run *r)
+{
+  return r->said_zero && (r->end_V > zero_V || r->later_V > zero_V);
+}
+
+/* An honest supply was stopped, or not believed; a wrong one was not noticed. */
+static bool judges_wrong(const struct meter_run *r)
+{
+  return r->kind == HONEST ? r->code != 0 || !r->said_zero : r->code == 0 && !r->warned;
+}
+
+static void write_meter_table(const char *path)
+{
+  FILE *file = fopen(path, "wb");
+  assert_non_null(file);
+  fprintf(file, "seed,kind,waveform,frequency (Hz),supply,from (s),exit,said at 0 V,end (V),"
+                "later (V),warned,said wrongly,judged wrongly,heard to 0 V (s)\n");
+  for (size_t i = 0; i < meter_count; i++) {
+    const struct meter_run *r = &meters[i];
+    fprintf(file, "%u,\"%s\",%s,%g,%s,%.2f,%d,%d,%.0f,%.0f,%d,%d,%d,%g\n", r->seed,
+            kinds[r->kind].name, wave_names[r->wave], r->frequency_Hz, r->serial ? "shvps" : "scpi",
+            r->fault_s, r->code, r->said_zero, r->end_V, r->later_V, r->warned, says_wrong(r),
+            judges_wrong(r), r->zero_s);
+  }
+  assert_int_equal(fclose(file), 0);
+}
+
+/* Whatever meter and output do: "at 0 V" is said of an output that is there, and one that does
+ * something else than what was asked is noticed. */
+static void test_meters_that_lie(void **state)
+{
+  (void)state;
+  pthread_t threads[METERS_TOGETHER];
+  size_t wrong = 0;
+  meters = calloc(meter_count, sizeof *meters);
+  assert_non_null(meters);
+  prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
+  next_run = 0;
+  for (size_t i = 0; i < meter_count; i++) {
+    choose_meter(&meters[i], first_seed + (unsigned)i);
+  }
+  for (size_t i = 0; i < METERS_TOGETHER; i++) {
+    assert_int_equal(pthread_create(&threads[i], NULL, make_meter_runs, NULL), 0);
+  }
+  for (size_t i = 0; i < METERS_TOGETHER; i++) {
+    pthread_join(threads[i], NULL);
+  }
+  if (meter_table != NULL) {
+    write_meter_table(meter_table);
+  }
+  for (size_t i = 0; i < meter_count; i++) {
+    const struct meter_run *r = &meters[i];
+    bool heard = r->kind != DEAF || isfinite(r->zero_s);
+    if (says_wrong(r) || judges_wrong(r) || !heard) {
+      char folder[560], said[1500];
+      wrong++;
+      snprintf(folder, sizeof folder, "%s/meter-%u", command_folder, r->seed);
+      (void)read_text(folder, "err", said, sizeof said);
+      print_message("seed %u, %s, %s of %g Hz, %s, from %.2f s: exit %d, said at 0 V %d, %.0f V at "
+                    "the end, then up to %.0f V\n%s\n",
+                    r->seed, kinds[r->kind].name, wave_names[r->wave], r->frequency_Hz,
+                    r->serial ? "shvps" : "scpi", r->fault_s, r->code, r->said_zero, r->end_V,
+                    r->later_V, said);
+    }
+  }
+  free(meters);
+  assert_int_equal(wrong, 0);
+}
+
 int main(int count, char **arguments)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_faults_at_random_moments)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_faults_at_random_moments),
+                                     cmocka_unit_test(test_meters_that_lie)};
+  const struct CMUnitTest lies[] = {cmocka_unit_test(test_meters_that_lie)};
+  bool only_meters = count > 1 && strcmp(arguments[1], "meters") == 0;
+  count -= only_meters;
+  arguments += only_meters;
   run_count = count > 1 ? (size_t)strtoul(arguments[1], NULL, 10) : 12;
+  meter_count = only_meters ? run_count : METERS_TOGETHER;
   first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
-  table = count > 3 ? arguments[3] : NULL;
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  table = meter_table = count > 3 ? arguments[3] : NULL;
+  return only_meters ? cmocka_run_group_tests(lies, command_set_up, supply_tear_down)
+                     : cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }

@@ -90,7 +90,11 @@ static void test_two_names_of_one_supply(void **state)
   kill(first, SIGINT);
   (void)supply_wait(first, 20);
   supply_protocol(&s, 5, SUPPLY_MEASURES);
-  assert_int_equal(supply_run_dea(zero, 20), 0);
+  // it measured 0 V, which the second name had commanded, where it had set another voltage
+  static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
+  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_contains(command_out, "it had measured another voltage than was set");
+  assert_int_equal(supply_run_dea(checked, 20), 0);
   assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
   supply_stop(&s);
 }
@@ -219,6 +223,41 @@ static void test_watchdog_of_the_supply(void **state)
   supply_stop(&s);
 }
 
+/* Deaf for 8 s, and then it obeys again: the guard, which has gone on after the program's end,
+ * brings it to 0 V and says so; the next measurement waits until somebody has looked. */
+static void test_deaf_for_a_while(void **state)
+{
+  (void)state;
+  static const struct supply_wrong deaf = {.deaf = true}, good = {0};
+  static struct supply s;
+  s = (struct supply){0};
+  supply_start(&s);
+  supply_protocol(&s, 20, SUPPLY_MEASURES);
+  pid_t child = supply_arm("deaf.h5");
+  assert_true(supply_reaches(&s, 1500, 10));
+  supply_go_wrong(&s, &deaf);
+  double deaf_s = dea_clock_s();
+  int code = supply_wait(child, 20);
+  assert_true(code == 6 && !supply_said_zero() && supply_volts(&s) > 1000);
+  assert_contains(command_err, "switch the supply off; its guard goes on for 10 min");
+  dea_clock_wait(deaf_s + 8 - dea_clock_s());
+  assert_true(supply_volts(&s) > 1000);
+  supply_go_wrong(&s, &good);
+  double took_s = comes_down(&s, 20);
+  print_message("at 0 V %.2f s after it obeys again\n", took_s);
+  assert_true(isfinite(took_s));
+  for (double until_s = dea_clock_s() + 10; strstr(command_err, "the guard of p.yaml") == NULL ||
+                                            strstr(command_err, "(0 V read back") == NULL;) {
+    assert_true(dea_clock_s() < until_s);
+    command_read("err.txt", command_err);
+    dea_clock_wait(0.05);
+  }
+  assert_int_equal(supply_wait(supply_arm("next.h5"), 30), 6);
+  assert_contains(command_err, "did not end at 0 V as far as is known");
+  supply_end_guards(0);
+  supply_stop(&s);
+}
+
 /* Another supply in the place of the first, at its address; `there` keeps its voltage. */
 static void swap(struct supply *there, struct supply *next)
 {
@@ -257,7 +296,9 @@ static void test_neighbour(void **state)
       assert_true(isfinite(comes_down(&s, 20))); // by the guard, which has gone on
     }
     code = supply_run_dea(zero, 20);
-    assert_true(code == 0 && supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+    if (!(code == 0 && supply_said_zero() && supply_volts(&s) <= supply_zero_V)) {
+      fail_msg("%d, %g V: %s%s", code, supply_volts(&s), command_out, command_err);
+    }
     supply_stop(&s);
   }
 }
@@ -293,8 +334,9 @@ int main(void)
       cmocka_unit_test(test_stall_is_no_jump),
       cmocka_unit_test(test_watchdog_of_the_supply),
       cmocka_unit_test(test_neighbour),
+      cmocka_unit_test(test_deaf_for_a_while),
       cmocka_unit_test(test_zero_while_it_plays),
       cmocka_unit_test(test_guard_that_is_gone),
   };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }

@@ -203,5 +203,5 @@ int main(void)
       cmocka_unit_test(test_zero_beside_a_stopped_program),
       cmocka_unit_test(test_two_names_of_one_line),
   };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }

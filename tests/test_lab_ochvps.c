@@ -125,5 +125,5 @@ int main(void)
       cmocka_unit_test(test_faults),
       cmocka_unit_test(test_refused),
   };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }

@@ -659,20 +659,17 @@ static void test_late_samples(void **state)
  * verdict. The measured voltage is `share` of the one of late_s before, and at most most_V. */
 static double off_at(double frequency_Hz, double share, double late_s, double most_V)
 {
-  struct dea_timed_output o = {.behind_s = 0.5, .rate_Hz = 100};
-  dea_timed_start(&o, 0);
+  struct dea_evidence e = {.lag_s = 0.5, .error_V = 1e9, .share = 0.05, .zero_V = 20};
   for (int i = 1; i < 6000; i++) { // every 20 ms
     double time_s = 0.02 * i, past_s = fmax(time_s - late_s, 0);
     double volts =
         2000 * (1 - fabs(2 * (frequency_Hz * time_s - floor(frequency_Hz * time_s)) - 1));
     double past_V =
         2000 * (1 - fabs(2 * (frequency_Hz * past_s - floor(frequency_Hz * past_s)) - 1));
-    dea_timed_sent(&o, volts, time_s);
-    if (i % 10 == 0) {
-      o.measured_s = time_s;
-      if (dea_timed_measured(&o, fmin(share * past_V, most_V), 1e9, 0.05, 20) == DEA_TIMED_OFF) {
-        return time_s;
-      }
+    dea_evidence_sent(&e, volts, time_s);
+    if (i % 10 == 0 && dea_evidence_measured(&e, fmin(share * past_V, most_V), time_s, time_s) ==
+                           DEA_EVIDENCE_OFF) {
+      return time_s;
     }
   }
   return (double)INFINITY;
@@ -694,24 +691,96 @@ static void test_read_back_that_is_off(void **state)
     assert_true(low_s >= 5 && low_s < 25 && high_s >= 5 && high_s < 25 && cut_s > 5 && cut_s < 60);
   }
   assert_true(off_at(0.02, 0.92, 0, INFINITY) < 30);
-  assert_message(
-      dea_timed_off(ctx, "it", 1000, 2000, 0.05), DEA_E_INTERLOCK,
-      "it measures 1 kV where 2 kV was set, off by more than safety.readback_error of 5 %");
+}
+
+enum shape { SQUARE, SINE, TRIANGLE };
+
+/* Between 0 and 2 kV, at 0 V first. */
+static double shape_at(enum shape shape, double cycles)
+{
+  double phase = cycles - floor(cycles);
+  return shape == SQUARE ? (phase < 0.5 ? 2000 : 0)
+         : shape == SINE ? 1000 - 1000 * cos(2 * 3.14159265358979 * phase)
+                         : 2000 * (1 - fabs(2 * phase - 1));
+}
+
+/* When an output that is `share` of what is set, cut off at most_V, is found to be wrong within the
+ * 12 s of a waveform; it answers after 2 ms, and is measured every 0.5 s or so. */
+static double found_at(enum shape shape, double frequency_Hz, double share, double most_V)
+{
+  static const double golden = 0.6180339887498949;
+  struct dea_evidence e = {.lag_s = 0.5, .error_V = 300, .share = 0.05, .zero_V = 20};
+  double next_s = 0.1;
+  for (int i = 1; i < 600; i++) { // every 20 ms
+    double time_s = 0.02 * i, volts = shape_at(shape, frequency_Hz * time_s);
+    if (time_s >= next_s) { // what was sent before
+      double shown_V = fmin(share * shape_at(shape, frequency_Hz * (time_s - 0.02)), most_V);
+      next_s = time_s + 0.5 * (0.5 + fmod(golden * (double)e.readings, 1));
+      if (dea_evidence_measured(&e, shown_V, time_s - 2e-3, time_s) != DEA_EVIDENCE_FOLLOWS) {
+        assert_true(e.contradicted || e.off);
+        return time_s;
+      }
+    }
+    dea_evidence_sent(&e, volts, time_s);
+  }
+  assert_true(share != 1 || most_V < 2000 || dea_evidence_doubt(&e) == NULL);
+  return (double)INFINITY;
+}
+
+/* Fast waveforms, where each voltage alone may be one that is a little late: twice the voltage, 0.4
+ * times, none, and a cut-off are found all the same, and none where all is well. */
+static void test_wrong_outputs_of_fast_waveforms(void **state)
+{
+  (void)state;
+  for (enum shape shape = SQUARE; shape <= TRIANGLE; shape++) {
+    for (double frequency_Hz = 0.5; frequency_Hz < 3; frequency_Hz *= 2) {
+      double good_s = found_at(shape, frequency_Hz, 1, INFINITY);
+      double twice_s = found_at(shape, frequency_Hz, 2, INFINITY);
+      double less_s = found_at(shape, frequency_Hz, 0.4, INFINITY);
+      double none_s = found_at(shape, frequency_Hz, 0, INFINITY);
+      double cut_s = found_at(shape, frequency_Hz, 1, 900);
+      print_message("shape %d of %g Hz: found after %g, %g, %g, %g s\n", (int)shape, frequency_Hz,
+                    twice_s, less_s, none_s, cut_s);
+      assert_true(isinf(good_s));
+      assert_true(twice_s < 12 && less_s < 12 && none_s < 12 && cut_s < 12);
+    }
+  }
+}
+
+/* 0 V is believed of a meter that was seen to follow, and that has contradicted nothing since: not
+ * of one that shows 0 V whatever is set, at first or from some moment on. */
+static void test_evidence_of_zero(void **state)
+{
+  (void)state;
+  for (int from = 0; from < 3; from++) { // never, always, after 4 s
+    struct dea_evidence e = {.lag_s = 0.5, .error_V = 300, .share = 0.05, .zero_V = 20};
+    assert_null(dea_evidence_doubt(&e)); // nothing was sent
+    for (int i = 1; i < 800; i++) {
+      double time_s = 0.01 * i, volts = shape_at(SQUARE, time_s);
+      dea_evidence_sent(&e, volts, time_s);
+      assert_true(i > 1 || dea_evidence_doubt(&e) == dea_zero_unseen);
+      if (i % 37 == 0) {
+        bool lies = from == 1 || (from == 2 && time_s > 4);
+        (void)dea_evidence_measured(&e, lies ? 0 : volts, time_s, time_s);
+      }
+    }
+    assert_true(from == 0 ? dea_evidence_doubt(&e) == NULL
+                          : dea_evidence_doubt(&e) == dea_zero_contradicted);
+  }
 }
 
 /* When a supply that stays at past_V is found to be wrong, where now_V were sent at 10 s and
  * nothing since; it is measured every 0.1 s. */
 static double wrong_at(double past_V, double now_V)
 {
-  struct dea_timed_output o = {.behind_s = 0.5, .rate_Hz = 100};
-  dea_timed_start(&o, 0);
-  dea_timed_sent(&o, past_V, 1);
+  struct dea_evidence e = {.lag_s = 0.5, .error_V = 200, .share = 1e9, .zero_V = 20};
+  dea_evidence_sent(&e, past_V, 1);
   for (int i = 11; i < 1000; i++) {
-    o.measured_s = 0.1 * i;
+    double time_s = 0.1 * i;
     if (i == 100) {
-      dea_timed_sent(&o, now_V, o.measured_s);
-    } else if (dea_timed_measured(&o, past_V, 200, 1e9, 1e9) == DEA_TIMED_WRONG) {
-      return o.measured_s;
+      dea_evidence_sent(&e, now_V, time_s);
+    } else if (dea_evidence_measured(&e, past_V, time_s, time_s) == DEA_EVIDENCE_WRONG) {
+      return time_s;
     }
   }
   return (double)INFINITY;
@@ -820,15 +889,15 @@ static void test_name_that_nobody_knows(void **state)
   b.protocol.document = yaml;
   b.protocol.instruments[0].section = dea_yaml_root(yaml);
   for (int program = 0; program < 2; program++) { // of which it is the guard
-    const struct dea_instrument_past past = {usual.identity, program, 1, host};
+    const struct dea_instrument_past past = {usual.identity, program, 1, host, NULL};
     assert_int_equal(
         dea_instrument_zero(ctx, &b.protocol.instruments[0], &b.protocol, &past, &zero), DEA_OK);
     assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
     dea_context_clear(ctx);
   }
   atomic_store(&no_names, false);
-  const struct dea_instrument_past moved = {usual.identity, 0, 1, "127.0.0.99"},
-                                   fresh = {"", 0, 1, ""};
+  const struct dea_instrument_past moved = {usual.identity, 0, 1, "127.0.0.99", NULL},
+                                   fresh = {"", 0, 1, "", NULL};
   assert_int_equal(dea_instrument_zero(ctx, &b.protocol.instruments[0], &b.protocol, &moved, &zero),
                    DEA_OK);
   assert_int_equal(zero.state, DEA_ZERO_READ_BACK);
@@ -860,6 +929,8 @@ int main(void)
       cmocka_unit_test(test_reads),
       cmocka_unit_test(test_read_back_that_is_off),
       cmocka_unit_test(test_stays_where_it_was),
+      cmocka_unit_test(test_wrong_outputs_of_fast_waveforms),
+      cmocka_unit_test(test_evidence_of_zero),
       cmocka_unit_test(test_late_samples),
       cmocka_unit_test(test_plays),
       cmocka_unit_test(test_makes_no_sense),

@@ -133,7 +133,9 @@ static void test_ramp_of_one_that_is_off(void **state)
   assert_true(line_supply_reaches(&s, 1990, 10));
   assert_int_equal(supply_wait(child, 40), 6);
   assert_contains(command_err, "off by more than safety.readback_error");
-  assert_true(supply_said_zero());
+  if (!supply_said_zero()) {
+    fail_msg("%s%s", command_out, command_err);
+  }
   const char *ended = strstr(command_err, "ended after ");
   assert_non_null(ended);
   double played_s = strtod(ended + strlen("ended after "), NULL);
@@ -442,7 +444,7 @@ int main(int count, char **arguments)
   if (count > 1) {
     run_count = (size_t)strtoul(arguments[1], NULL, 10);
     first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
-    return cmocka_run_group_tests(many, command_set_up, command_tear_down);
+    return cmocka_run_group_tests(many, command_set_up, supply_tear_down);
   }
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }

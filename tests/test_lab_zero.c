@@ -97,6 +97,36 @@ static void test_other_faults(void **state)
   }
 }
 
+/* Its meter shows 0 V from the start, and its output stays where it was at 1 kV: that is not known
+ * to be at 0 V, to `--zero` neither, until somebody says that they have looked. */
+static void test_meter_that_shows_0_V(void **state)
+{
+  (void)state;
+  static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
+  static const struct supply_wrong blind = {.blind = true},
+                                   stays = {.blind = true, .latched = true}, good = {0};
+  static struct supply s;
+  s = (struct supply){.wrong = blind};
+  supply_start(&s);
+  supply_protocol(&s, 12, SUPPLY_MEASURES);
+  pid_t child = supply_arm("blind.h5");
+  assert_true(supply_reaches(&s, 1000, 10));
+  supply_go_wrong(&s, &stays);
+  int code = supply_wait(child, 30);
+  assert_true(supply_volts(&s) > 900);
+  assert_int_equal(code, 6);
+  assert_false(supply_said_zero());
+  assert_contains(command_out, "(0 V read back; it had measured another voltage than was set)");
+  assert_contains(command_err, "its guard goes on for 10 min");
+  assert_int_equal(supply_run_dea(zero, 20), 6);
+  assert_false(supply_said_zero());
+  supply_go_wrong(&s, &good);
+  assert_int_equal(supply_run_dea(checked, 20), 0);
+  assert_true(supply_said_zero() && supply_volts(&s) <= supply_zero_V);
+  supply_end_guards(0);
+  supply_stop(&s);
+}
+
 /* What cannot be read back is commanded, and never "at 0 V". */
 static void test_without_measure(void **state)
 {
@@ -279,6 +309,7 @@ int main(void)
       cmocka_unit_test(test_zero_without_its_design),
       cmocka_unit_test(test_zero_without_other_files),
       cmocka_unit_test(test_zero_without_a_place),
+      cmocka_unit_test(test_meter_that_shows_0_V),
       cmocka_unit_test(test_hangs_before_anything_is_played),
       cmocka_unit_test(test_slow_supply),
       cmocka_unit_test(test_hung_supply),
@@ -287,5 +318,5 @@ int main(void)
       cmocka_unit_test(test_checked_by_somebody),
       cmocka_unit_test(test_other_words_for_volts),
   };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }

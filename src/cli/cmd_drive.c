@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L // fstat
 #include "cli/cli.h"
 
 #include "base/file.h"
@@ -13,6 +14,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 struct request {
   const char *protocol, *output, *folder; // NULL: not given
@@ -256,12 +259,24 @@ static int zero(struct dea_cli *cli, const struct request *request, struct dea_p
   return code;
 }
 
+/* Where a guard may say something after the program's end: a terminal or a file, of which nobody
+ * waits for the end; -1: nowhere. */
+static int told_later(void)
+{
+  struct stat info;
+  bool file = fstat(STDERR_FILENO, &info) == 0 && S_ISREG(info.st_mode);
+  return file || isatty(STDERR_FILENO) ? STDERR_FILENO : -1;
+}
+
 static dea_status play(struct dea_cli *cli, const struct request *request,
                        const struct dea_protocol *protocol, const char *file,
                        struct dea_drive_report *report)
 {
-  struct dea_drive_options options = {
-      .simulate = request->simulate, .file = file, .checked = request->checked, .guard = true};
+  struct dea_drive_options options = {.simulate = request->simulate,
+                                      .file = file,
+                                      .checked = request->checked,
+                                      .guard = true,
+                                      .tell = told_later()};
   char *folder = NULL;
   if (request->arm && protocol->instrument_count == 0) {
     return dea_fail(cli->ctx, DEA_E_INSTRUMENT,

@@ -65,10 +65,23 @@ static dea_status find_supply(struct dea_context *ctx, const struct dea_protocol
                        : dea_supply_ask(ctx, folder, address, wait_s, &armed->supply);
 }
 
+/* How long a program that was asked to end may take, or the guard of one that has died: an attempt
+ * of it waits for the line, and reads back. */
+static double longest_end_s(const struct dea_protocol *protocol)
+{
+  double zero_s = protocol->safety.zero_time_s.si;
+  return protocol->safety.guard_time_s.si + protocol->safety.longest_ramp_s.si + 3 * zero_s + 1;
+}
+
 static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protocol,
                       const struct dea_drive_options *options, struct armed *armed)
 {
-  DEA_TRY(ctx, find_supply(ctx, protocol, options->state_folder, NAN, armed));
+  dea_status found = find_supply(ctx, protocol, options->state_folder, NAN, armed);
+  if (found == DEA_E_INTERLOCK && strstr(armed->supply.left, dea_guard_goes_on) != NULL) {
+    dea_context_clear(ctx); // no program plays on it: its guard gives it away
+    found = find_supply(ctx, protocol, options->state_folder, longest_end_s(protocol), armed);
+  }
+  DEA_TRY(ctx, found);
   if (armed->section == NULL) {
     return DEA_OK;
   }
@@ -82,9 +95,9 @@ static dea_status arm(struct dea_context *ctx, const struct dea_protocol *protoc
   snprintf(armed->left, sizeof armed->left, "armed by process %ld with %.100s, which did not end",
            (long)getpid(), dea_path_name(protocol->file));
   DEA_TRY(ctx, dea_supply_leave(ctx, &armed->supply, armed->left));
-  return options->guard
-             ? dea_guard_begin(ctx, protocol, armed->section, &armed->supply, &armed->guard)
-             : DEA_OK;
+  return options->guard ? dea_guard_begin(ctx, protocol, armed->section, &armed->supply,
+                                          options->tell, &armed->guard)
+                        : DEA_OK;
 }
 
 /* Keeps what tells the supply from another one, and where it is, now that it is open. */
@@ -106,12 +119,18 @@ static dea_status know(struct dea_context *ctx, const struct opened *opened, str
 static dea_status disarm(struct dea_context *ctx, struct armed *armed, struct dea_zero zero)
 {
   char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE] = "";
-  if (zero.state == DEA_ZERO_UNKNOWN) {
+  bool is_known = zero.state != DEA_ZERO_UNKNOWN;
+  if (!is_known) {
     dea_zero_text(zero, known);
-    snprintf(text, sizeof text, "its output was %s at the end", known);
+    snprintf(text, sizeof text, "%s: the output is %s",
+             armed->guard != NULL ? dea_guard_goes_on : "at the end", known);
+  } else {
+    dea_guard_end(ctx, armed->guard, true);
   }
-  dea_guard_end(ctx, armed->guard);
   dea_status status = dea_supply_leave(ctx, &armed->supply, text);
+  if (!is_known) { // which writes there from now on
+    dea_guard_end(ctx, armed->guard, false);
+  }
   dea_supply_close(&armed->supply);
   return status;
 }
@@ -161,14 +180,6 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-/* How long a program that was asked to end may take, or the guard of one that has died: an attempt
- * of it waits for the line, and reads back. */
-static double longest_end_s(const struct dea_protocol *protocol)
-{
-  double zero_s = protocol->safety.zero_time_s.si;
-  return protocol->safety.guard_time_s.si + protocol->safety.longest_ramp_s.si + 3 * zero_s + 1;
-}
-
 dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
                           const char *state_folder, bool checked, struct dea_zero *out)
 {
@@ -184,9 +195,11 @@ dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *pr
   } else if (status != DEA_OK) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  const struct dea_instrument_past past = {checked ? "" : armed.supply.mark, 0,
-                                           driven ? 0 : protocol->safety.zero_time_s.si,
-                                           armed.supply.host};
+  const struct dea_instrument_past past = {
+      checked ? "" : armed.supply.mark, 0, driven ? 0 : protocol->safety.zero_time_s.si,
+      armed.supply.host,
+      !checked && strstr(armed.supply.left, dea_zero_contradicted) != NULL ? dea_zero_contradicted
+                                                                           : NULL};
   status = armed.section != NULL ? dea_instrument_zero(ctx, armed.section, protocol, &past, out)
                                  : dea_fail(ctx, DEA_E_INSTRUMENT,
                                             "%s names no instrument that plays", protocol->file);

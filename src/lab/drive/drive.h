@@ -14,7 +14,11 @@ struct dea_drive_options {
    * that was not is refused, unless `checked` says that somebody has looked. */
   const char *state_folder;
   bool checked;
-  bool guard; // a second process brings the output to 0 V should this one die
+  /* A second process brings the output to 0 V should this one die, or end without knowing that it
+   * is there. It says in `tell`, a file that nobody waits for the end of, what came of it; -1: to
+   * nobody, but it is kept with the supply. */
+  bool guard;
+  int tell;
 };
 
 struct dea_drive_report {

@@ -105,6 +105,7 @@ static void resume(struct loop *loop, double volts);
  * only the ramp is. */
 static bool is_guarded(struct loop *loop)
 {
+  dea_guard_doubt(loop->guard, loop->player->instrument->doubt);
   enum dea_guard_state state = dea_guard_beat(loop->guard);
   if (state == DEA_GUARD_GONE) {
     end_early(loop, DEA_E_INSTRUMENT,
@@ -692,12 +693,11 @@ static void stop_all(struct loop *loop)
   if (m->window == 0 || loop->output.played == 0 || zero->state == DEA_ZERO_UNKNOWN) {
     return;
   }
-  if (m->zero && !loop->watch.contradicted) { // else it may be the channel that is wrong
-    *zero = (struct dea_zero){DEA_ZERO_READ_BACK, m->volts, NULL};
+  if (m->zero) {
+    *zero = dea_zero_believe((struct dea_zero){DEA_ZERO_READ_BACK, m->volts, NULL},
+                             dea_drive_watch_doubt(&loop->watch));
   } else if (zero->state == DEA_ZERO_COMMANDED || isfinite(m->volts)) { // the channel is to show it
-    const char *why = m->zero    ? "it had shown another voltage than was asked"
-                      : m->flows ? "more than safety.trip_current still flows"
-                                 : NULL;
+    const char *why = m->flows ? "more than safety.trip_current still flows" : NULL;
     *zero = (struct dea_zero){DEA_ZERO_UNKNOWN, m->volts,
                               isnan(m->volts) ? "the voltage channel does not show it" : why};
   }
@@ -805,10 +805,11 @@ static dea_status finish(struct loop *loop)
   if (loop->status != DEA_OK || unknown) {
     return dea_fail(loop->ctx,
                     unknown && loop->status != DEA_E_INTERLOCK ? DEA_E_INSTRUMENT : loop->status,
-                    "the measurement %s%.4g s%s%s; the output is %s%s",
+                    "the measurement %s%.4g s%s%s; the output is %s%s%s",
                     loop->status != DEA_OK ? "ended after " : "was played to its end at ",
                     report->played_s, loop->status != DEA_OK ? ": " : "", report->ended, zero,
-                    unknown ? ": switch the supply off" : "");
+                    unknown ? ": switch the supply off" : "",
+                    unknown && loop->guard != NULL ? "; its guard goes on for 10 min" : "");
   }
   return finished;
 }

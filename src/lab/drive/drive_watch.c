@@ -1,13 +1,13 @@
 #include "lab/drive/drive_watch.h"
 
+#include "lab/instrument/zero.h"
+
 #include <math.h>
 #include <stdio.h>
 
 static const double blind_s = 0.5;
-static const double off_most_s = 5;    // that a voltage may be off by readback_error
-static const double off_forgets = 0.1; // of a second, for each in which it is not
-static const double off_from = 0.2;    // of the largest voltage, from which on it is looked at
-static const double cap_margin = 0.1;  // above the largest voltage, for errors of the monitor
+static const double golden = 0.6180339887498949;
+static const double cap_margin = 0.1; // above the largest voltage, for errors of the monitor
 
 static size_t samples_of(double time_s, double rate_Hz)
 {
@@ -52,6 +52,15 @@ static struct dea_arc_limits find_arc_limits(const struct dea_protocol *protocol
   return out;
 }
 
+static void start_evidence(struct dea_evidence *e, const struct dea_protocol *protocol,
+                           double settle_s)
+{
+  *e = (struct dea_evidence){.lag_s = settle_s + 1 / protocol->rate_Hz.si,
+                             .error_V = protocol->safety.voltage_error_V.si,
+                             .share = protocol->safety.readback_error.si,
+                             .zero_V = protocol->safety.at_zero_V.si};
+}
+
 void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_protocol *protocol,
                            double settle_s, double capacitance_F)
 {
@@ -60,16 +69,13 @@ void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_proto
   watch->lasting = samples_of(protocol->safety.trip_time_s.si, rate_Hz);
   watch->blind = samples_of(blind_s, rate_Hz);
   watch->window = samples_of(settle_s, rate_Hz) + 1; // a sample may show what was asked before it
-  for (size_t i = 0; i < protocol->step_count; i++) {
-    watch->largest_V = fmax(watch->largest_V, fabs(protocol->steps[i].lowest_V));
-    watch->largest_V = fmax(watch->largest_V, fabs(protocol->steps[i].highest_V));
-  }
   dea_protocol_cap(protocol, &watch->cap_V[0], &watch->cap_V[1]);
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_arc_limits limits =
         find_arc_limits(protocol, &protocol->inputs[i], settle_s, capacitance_F);
     dea_arc_watch_start(&watch->arcs[i], &limits);
     dea_leak_watch_start(&watch->leaks[i], protocol);
+    start_evidence(&watch->evidence[i], protocol, settle_s);
   }
 }
 
@@ -137,14 +143,6 @@ static void find_asked(const struct dea_drive_watch *watch, double *lowest_V, do
   *highest_V = fmax(watch->highest_V[0], watch->highest_V[1]);
 }
 
-/* By amount; 0: of both signs. */
-static double find_nearest(const struct dea_drive_watch *watch)
-{
-  double lowest_V, highest_V;
-  find_asked(watch, &lowest_V, &highest_V);
-  return lowest_V * highest_V > 0 ? fmin(fabs(lowest_V), fabs(highest_V)) : 0;
-}
-
 /* A channel that followed shows less than is asked while a current flows that ends the measurement:
  * the film pulls the amplifier down. One that did not follow before may be what is wrong. */
 static bool is_pulled_down(const struct dea_drive_watch *watch, size_t i, double voltage_V)
@@ -152,7 +150,8 @@ static bool is_pulled_down(const struct dea_drive_watch *watch, size_t i, double
   double lowest_V, highest_V;
   find_asked(watch, &lowest_V, &highest_V);
   double error_V = watch->protocol->safety.voltage_error_V.si;
-  return watch->over && watch->follows[i] && voltage_V >= (lowest_V < 0 ? lowest_V : -error_V) &&
+  return watch->over && watch->evidence[i].follows &&
+         voltage_V >= (lowest_V < 0 ? lowest_V : -error_V) &&
          voltage_V <= (highest_V > 0 ? highest_V : error_V);
 }
 
@@ -170,14 +169,11 @@ static bool check_voltage(struct dea_drive_watch *watch, size_t i, double asked_
     return true; // the current says it
   }
   watch->exceeded[i] = wrong ? watch->exceeded[i] + 1 : 0;
-  if (!wrong && fabs(voltage_V) > error_V && find_nearest(watch) > off_from * watch->largest_V) {
-    watch->follows[i] = true;
-  }
   if (watch->exceeded[i] < watch->lasting) {
     return true;
   }
-  watch->follows[i] = false;
-  watch->contradicted = true;
+  watch->evidence[i].follows = false;
+  watch->evidence[i].contradicted = true;
   snprintf(why, DEA_WHY_ENDED_SIZE,
            "the voltage is %.4g kV where %.4g kV is asked: more than safety.voltage_error of %.4g "
            "V away; is the amplifier on, and are gain and channel right?",
@@ -194,32 +190,33 @@ static void add_event(struct dea_drive_watch *watch, enum dea_noticed_kind kind,
   }
 }
 
-/* Off by less than voltage_error, and for long: what stands still on the way between two voltages,
- * or near 0 V, is not looked at. */
+/* What no single sample says: a few of them, about as far apart as a limit has to last, against
+ * what was asked. */
 static bool check_readback(struct dea_drive_watch *watch, size_t i, double asked_V,
                            double voltage_V, char why[DEA_WHY_ENDED_SIZE])
 {
-  double lowest_V, highest_V;
-  find_asked(watch, &lowest_V, &highest_V);
-  double share = watch->protocol->safety.readback_error.si;
-  double nearest_V = find_nearest(watch);
-  if (nearest_V < off_from * watch->largest_V || nearest_V == 0 ||
-      is_pulled_down(watch, i, voltage_V)) {
+  struct dea_evidence *e = &watch->evidence[i];
+  double time_s = watch->sample / watch->protocol->rate_Hz.si;
+  double turn = 1 + fmod(golden * (double)e->readings, 1);
+  char text[DEA_EVIDENCE_TEXT_SIZE];
+  if (is_pulled_down(watch, i, voltage_V) ||
+      (e->readings > 0 && time_s < e->looked_s + turn * watch->protocol->safety.trip_time_s.si)) {
     return true;
   }
-  double most_V =
-      fmax(share * fmax(fabs(lowest_V), fabs(highest_V)), watch->protocol->safety.at_zero_V.si);
-  bool off = voltage_V < lowest_V - most_V || voltage_V > highest_V + most_V;
-  double sample_s = 1 / watch->protocol->rate_Hz.si;
-  watch->off_s[i] = fmax(0, watch->off_s[i] + (off ? sample_s : -off_forgets * sample_s));
-  if (watch->off_s[i] < off_most_s) {
+  enum dea_evidence_verdict verdict = dea_evidence_measured(e, voltage_V, time_s, time_s);
+  if (verdict == DEA_EVIDENCE_FOLLOWS) {
     return true;
   }
-  add_event(watch, DEA_NOTICED_READ_BACK, i, voltage_V, asked_V);
-  snprintf(why, DEA_WHY_ENDED_SIZE,
-           "the voltage read back is %.4g kV where %.4g kV is asked, off by more than "
-           "safety.readback_error of %.3g %% for %g s",
-           1e-3 * voltage_V, 1e-3 * asked_V, 100 * share, off_most_s);
+  dea_evidence_text(e, 1, text);
+  bool off = verdict == DEA_EVIDENCE_OFF;
+  if (off) {
+    add_event(watch, DEA_NOTICED_READ_BACK, i, voltage_V, asked_V);
+  }
+  snprintf(why, DEA_WHY_ENDED_SIZE, "channel '%.40s' %.110s, %s of %.4g %s",
+           watch->protocol->inputs[i].name.text, text,
+           off ? "off by more than safety.readback_error"
+               : "away by more than safety.voltage_error",
+           off ? 100 * e->share : e->error_V, off ? "% for 5 s" : "V");
   return false;
 }
 
@@ -279,6 +276,18 @@ static bool check_channel(struct dea_drive_watch *watch, size_t i, double asked_
                        check_readback(watch, i, asked_V, value, why);
 }
 
+const char *dea_drive_watch_doubt(const struct dea_drive_watch *watch)
+{
+  const char *doubt = NULL;
+  for (size_t i = 0; i < watch->protocol->input_count && doubt != dea_zero_contradicted; i++) {
+    const char *own = watch->protocol->inputs[i].kind.value == DEA_CHANNEL_VOLTAGE
+                          ? dea_evidence_doubt(&watch->evidence[i])
+                          : NULL;
+    doubt = own != NULL ? own : doubt;
+  }
+  return doubt;
+}
+
 bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,
                             char why[DEA_WHY_ENDED_SIZE])
 {
@@ -295,6 +304,9 @@ bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const
   // all of them, also once one has ended it: what the others show counts until the output is at 0 V
   for (size_t i = 0; i < watch->protocol->input_count; i++) {
     int kind = watch->protocol->inputs[i].kind.value;
+    if (kind == DEA_CHANNEL_VOLTAGE) {
+      dea_evidence_sent(&watch->evidence[i], asked_V, watch->sample / watch->protocol->rate_Hz.si);
+    }
     if (kind == DEA_CHANNEL_CURRENT || kind == DEA_CHANNEL_VOLTAGE) {
       good = check_channel(watch, i, asked_V, change_V, values[i], good ? why : later) && good;
     }

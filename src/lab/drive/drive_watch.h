@@ -4,6 +4,7 @@
 
 #include "lab/drive/arc_watch.h"
 #include "lab/drive/leak_watch.h"
+#include "lab/instrument/evidence.h"
 #include "lab/protocol/protocol.h"
 #include "lab/recording/recording.h"
 
@@ -22,23 +23,21 @@ struct dea_drive_watch {
   struct dea_arc_watch arcs[DEA_PROTOCOL_INPUTS_MAX]; // of the currents
   double asked_V;                                     // of the last sample
   double cap_V[2]; // lowest and highest voltage that may be measured at all
-  struct dea_leak_watch leaks[DEA_PROTOCOL_INPUTS_MAX]; // of the currents
-  double off_s[DEA_PROTOCOL_INPUTS_MAX]; // for how long a voltage has been off by a share of it
-  double sample;                         // number of the next one
-  double largest_V;                      // of the sequence
+  struct dea_leak_watch leaks[DEA_PROTOCOL_INPUTS_MAX];   // of the currents
+  double sample;                                          // number of the next one
+  struct dea_evidence evidence[DEA_PROTOCOL_INPUTS_MAX];  // of the voltages
   struct dea_recorded_event events[DEA_WATCH_EVENTS_MAX]; // of the last sample; channel: of inputs
   size_t event_count;
-  bool over;                             // a current of this sample is above trip_current
-  bool follows[DEA_PROTOCOL_INPUTS_MAX]; // a voltage that is not near 0 was shown as asked, last
-  bool pulled_down;  // a voltage channel showed less than was asked, which a current explained
-  bool contradicted; // a voltage channel did not show what was asked, and no current explains it:
-                     // it may be the channel
+  bool over;        // a current of this sample is above trip_current
+  bool pulled_down; // a voltage channel showed less than was asked, which a current explained
 };
 
 /* settle_s: time that the voltage has to follow what is asked. capacitance_F: of the film; 0 or
  * NAN: not known. */
 void dea_drive_watch_start(struct dea_drive_watch *watch, const struct dea_protocol *protocol,
                            double settle_s, double capacitance_F);
+/* Why 0 V is not believed should the voltage channels show it, static; NULL: it is. */
+const char *dea_drive_watch_doubt(const struct dea_drive_watch *watch);
 /* Whether the channel of a current shows more than trip_current. */
 bool dea_drive_watch_is_over(const struct dea_protocol *protocol, size_t input, double current_A);
 /* Looks at one sample: asked voltage, and the values of all inputs in SI (NAN: lost). False when

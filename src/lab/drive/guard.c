@@ -1,7 +1,8 @@
-#define _DEFAULT_SOURCE // fork, pipe, MAP_ANONYMOUS
+#define _DEFAULT_SOURCE // fork, pipe, dprintf, MAP_ANONYMOUS
 #include "lab/drive/guard.h"
 
 #include "base/clock.h"
+#include "base/file.h"
 #include "lab/instrument/instrument.h"
 
 #include <errno.h>
@@ -19,7 +20,8 @@
 static const double again_s = 0.2, longest_s = 600; // between attempts, and for all of them
 static const double silent_least_s = 1;             // that the guard may be, on a busy computer
 static const double last_s = 2; // for its end, once it was told that all is done
-static const char clean_end = 'E';
+static const char clean_end = 'E', not_known = 'N';
+const char dea_guard_goes_on[] = "it was not known to be at 0 V at the end; its guard goes on";
 enum { poll_ms = 50 };
 
 /* In memory of both. */
@@ -28,6 +30,7 @@ struct signs {
   atomic_uint turns;           // of the guard
   atomic_bool taken;           // the guard has begun to bring the output to 0 V
   atomic_bool known;           // mark and host are there
+  _Atomic(const char *) doubt; // static, and so the same in both
   char mark[DEA_INSTRUMENT_MARK_SIZE], host[DEA_INSTRUMENT_HOST_SIZE];
 };
 
@@ -43,17 +46,17 @@ struct dea_guard {
 // The guard's side -------------------------------------------------------------------------------
 
 /* Nothing of the program's is kept open: what waits for its end must not wait for the guard. */
-static void let_go(int pipe, const struct dea_supply *supply)
+static void let_go(int pipe, int tell, const struct dea_supply *supply)
 {
   long most = sysconf(_SC_OPEN_MAX);
   for (int file = 0; file < (most > 0 && most < 65536 ? (int)most : 65536); file++) {
-    if (file != pipe && file != supply->file && file != supply->ask) {
+    if (file != pipe && file != tell && file != supply->file && file != supply->ask) {
       close(file);
     }
   }
-  (void)open("/dev/null", O_RDWR);
-  (void)!dup(0);
-  (void)!dup(0);
+  for (int file = open("/dev/null", O_RDWR); file >= 0 && file < 2;) {
+    file = dup(file);
+  }
   for (int number = 1; number < 32; number++) {
     if (number != SIGCHLD) {
       signal(number, SIG_IGN); // KILL and STOP cannot be
@@ -66,9 +69,9 @@ static void let_go(int pipe, const struct dea_supply *supply)
   setsid();
 }
 
-/* Waits for the end. True: the clean one. Time in which this process itself did not run counts for
- * little: the other one may not have run either. */
-static bool wait_for_end(int pipe, struct signs *signs)
+/* Waits for the end, and what was said of it; 0: nothing, or it is silent. Time in which this
+ * process itself did not run counts for little: the other one may not have run either. */
+static char wait_for_end(int pipe, struct signs *signs)
 {
   unsigned beats = atomic_load(&signs->beats);
   double turned_s = dea_clock_s(), silent_s = 0;
@@ -79,7 +82,7 @@ static bool wait_for_end(int pipe, struct signs *signs)
     if (poll(&entry, 1, poll_ms) > 0) {
       ssize_t got = read(pipe, &byte, 1);
       if (got >= 0 || (errno != EINTR && errno != EAGAIN)) {
-        return got == 1 && byte == clean_end;
+        return got == 1 ? byte : 0;
       }
     }
     unsigned limit_ms = atomic_load(&signs->limit_ms), now = atomic_load(&signs->beats);
@@ -89,22 +92,58 @@ static bool wait_for_end(int pipe, struct signs *signs)
     turned_s = now_s;
     beats = now;
     if (1e3 * silent_s > limit_ms) {
-      return false;
+      return 0;
     }
+  }
+}
+
+/* Until the output is at 0 V, somebody else has brought it there or drives it, or the time is over.
+ * died: as the program has; else it ended, and somebody is to look whatever comes of it. */
+static void bring_to_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
+                          const struct dea_protocol_instrument *section, struct dea_supply *supply,
+                          const struct dea_instrument_past *past, bool died, int tell)
+{
+  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
+  char known[DEA_ZERO_TEXT_SIZE], said[DEA_ZERO_TEXT_SIZE] = "", text[DEA_SUPPLY_LEFT_SIZE];
+  double began_s = dea_clock_s(), until_s = began_s + longest_s;
+  for (bool more = true; more;) {
+    if (dea_instrument_zero(ctx, section, protocol, past, &zero) != DEA_OK) {
+      zero.state = DEA_ZERO_UNKNOWN;
+    }
+    zero.volts *= protocol->amplifier.gain.si;
+    dea_zero_text(zero, known);
+    more = zero.state == DEA_ZERO_UNKNOWN && dea_clock_s() < until_s &&
+           (died || zero.why != dea_zero_other);
+    snprintf(text, sizeof text, "%s%s: the output is %s",
+             died ? "the program that drove it died" : dea_guard_goes_on,
+             !died && !more ? " no more" : "", known);
+    (void)dea_supply_leave(ctx, supply, died && zero.state == DEA_ZERO_READ_BACK ? "" : text);
+    if (tell >= 0 && (!more || strcmp(known, said) != 0)) {
+      dprintf(tell, "dea: %.1f s after the end the guard of %s says: the output is %s%s\n",
+              dea_clock_s() - began_s, dea_path_name(protocol->file), known,
+              more                             ? "; it goes on"
+              : zero.state == DEA_ZERO_UNKNOWN ? ", and it has given up"
+                                               : "");
+      memcpy(said, known, sizeof said);
+    }
+    if (more && dea_supply_is_asked(supply)) {
+      more = dea_supply_give(supply, until_s - dea_clock_s()) &&
+             strncmp(supply->left, text, strcspn(text, "(")) == 0;
+    }
+    dea_clock_wait(more ? again_s : 0);
   }
 }
 
 static void guard(const struct dea_protocol *protocol,
                   const struct dea_protocol_instrument *section, struct dea_supply supply,
-                  struct signs *signs, int pipe)
+                  struct signs *signs, int pipe, int tell)
 {
-  const struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si,
-                                           supply.host};
+  struct dea_instrument_past past = {supply.mark, getppid(), protocol->safety.zero_time_s.si,
+                                     supply.host, NULL};
   struct dea_context *ctx;
-  struct dea_zero zero = {DEA_ZERO_UNKNOWN, NAN, NULL};
-  char known[DEA_ZERO_TEXT_SIZE], text[DEA_SUPPLY_LEFT_SIZE];
-  let_go(pipe, &supply);
-  if (wait_for_end(pipe, signs)) {
+  let_go(pipe, tell, &supply);
+  char end = wait_for_end(pipe, signs);
+  if (end == clean_end) {
     return;
   }
   atomic_store(&signs->taken, true);
@@ -112,24 +151,11 @@ static void guard(const struct dea_protocol *protocol,
     memcpy(supply.mark, signs->mark, sizeof supply.mark);
     memcpy(supply.host, signs->host, sizeof supply.host);
   }
+  past.doubt = atomic_load(&signs->doubt);
   if (dea_context_create(NULL, &ctx) != DEA_OK) {
     return;
   }
-  for (double until_s = dea_clock_s() + longest_s; dea_clock_s() < until_s;) {
-    if (dea_instrument_zero(ctx, section, protocol, &past, &zero) != DEA_OK) {
-      zero.state = DEA_ZERO_UNKNOWN;
-    }
-    zero.volts *= protocol->amplifier.gain.si;
-    dea_zero_text(zero, known);
-    snprintf(text, sizeof text, "the program that drove it died; the output is %s", known);
-    (void)dea_supply_leave(ctx, &supply, zero.state == DEA_ZERO_READ_BACK ? "" : text);
-    if (zero.state != DEA_ZERO_UNKNOWN ||
-        (dea_supply_is_asked(&supply) &&
-         (!dea_supply_give(&supply, until_s - dea_clock_s()) || supply.left[0] == '\0'))) {
-      break; // done, or somebody else has done it
-    }
-    dea_clock_wait(again_s);
-  }
+  bring_to_zero(ctx, protocol, section, &supply, &past, end != not_known, tell);
   dea_context_destroy(ctx);
 }
 
@@ -137,7 +163,7 @@ static void guard(const struct dea_protocol *protocol,
 
 dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *protocol,
                            const struct dea_protocol_instrument *section,
-                           const struct dea_supply *supply, struct dea_guard **out)
+                           const struct dea_supply *supply, int tell, struct dea_guard **out)
 {
   int ends[2];
   *out = NULL;
@@ -161,7 +187,7 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
   made->process = fork();
   if (made->process == 0) {
     close(ends[1]);
-    guard(protocol, section, *supply, signs, ends[0]);
+    guard(protocol, section, *supply, signs, ends[0], tell);
     _exit(0);
   }
   close(ends[0]);
@@ -183,6 +209,13 @@ void dea_guard_know(struct dea_guard *guard, const struct dea_instrument *instru
     memcpy(guard->signs->mark, instrument->mark, sizeof guard->signs->mark);
     memcpy(guard->signs->host, instrument->host, sizeof guard->signs->host);
     atomic_store(&guard->signs->known, true);
+  }
+}
+
+void dea_guard_doubt(struct dea_guard *guard, const char *doubt)
+{
+  if (guard != NULL) {
+    atomic_store(&guard->signs->doubt, doubt);
   }
 }
 
@@ -237,17 +270,17 @@ enum dea_guard_state dea_guard_beat(struct dea_guard *guard)
   return guard->process != 0 ? DEA_GUARD_WATCHES : DEA_GUARD_GONE;
 }
 
-void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard)
+void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard, bool known)
 {
   if (guard == NULL) {
     return;
   }
   struct sigaction ignore = {.sa_handler = SIG_IGN}, before;
   sigaction(SIGPIPE, &ignore, &before);
-  (void)!write(guard->pipe, &clean_end, 1);
+  (void)!write(guard->pipe, known ? &clean_end : &not_known, 1);
   sigaction(SIGPIPE, &before, NULL);
   close(guard->pipe);
-  if (guard->process != 0) {
+  if (guard->process != 0 && known) {
     reap(guard, last_s);
   }
   munmap(guard->signs, sizeof *guard->signs);

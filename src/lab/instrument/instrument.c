@@ -124,7 +124,7 @@ dea_status dea_instrument_zero(struct dea_context *ctx,
   *out = (struct dea_zero){DEA_ZERO_NONE, NAN, NULL};
   DEA_TRY(ctx, read_good(ctx, section, protocol, &type, &raw));
   if (type->zero != NULL) {
-    *out = type->zero(ctx, raw, protocol, past);
+    *out = dea_zero_believe(type->zero(ctx, raw, protocol, past), past->doubt);
   }
   dea_free(ctx, raw);
   return DEA_OK;

@@ -52,14 +52,17 @@ struct dea_instrument {
   char mark[DEA_INSTRUMENT_MARK_SIZE];
   /* Number of the host that it is connected to: 0 V must not wait for a name. "": there is none. */
   char host[DEA_INSTRUMENT_HOST_SIZE];
+  /* Why 0 V is not believed should it measure that now, static; NULL: it is. */
+  const char *doubt;
 };
 
 /* What is known of an instrument that is not open, of the time when it was. */
 struct dea_instrument_past {
-  const char *mark; // as above; "": whatever has its address and, where there is one, its name
-  long program;     // process that may still have its line, but plays nothing any more; 0: none
-  double wait_s;    // how long its line is waited for where another program has it
-  const char *host; // as above; "": only its name is known
+  const char *mark;  // as above; "": whatever has its address and, where there is one, its name
+  long program;      // process that may still have its line, but plays nothing any more; 0: none
+  double wait_s;     // how long its line is waited for where another program has it
+  const char *host;  // as above; "": only its name is known
+  const char *doubt; // as above
 };
 
 struct dea_instrument_type {

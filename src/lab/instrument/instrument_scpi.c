@@ -200,7 +200,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
                             raw->output_factor.si);
   }
   return plays && raw->measure.origin != DEA_ABSENT
-             ? dea_timed_check(reader->ctx, &raw->behind_s, &protocol->safety.zero_time_s)
+             ? dea_timed_check(reader->ctx, &raw->behind_s, protocol)
              : DEA_OK;
 }
 

@@ -90,7 +90,7 @@ dea_status dea_line_supply_check(const struct dea_reader *reader, const void *da
                              "this supply gives one sign only: write 'min_voltage: 0 V' in the "
                              "protocol's amplifier"));
   }
-  DEA_TRY(reader->ctx, dea_timed_check(reader->ctx, &raw->behind_s, &protocol->safety.zero_time_s));
+  DEA_TRY(reader->ctx, dea_timed_check(reader->ctx, &raw->behind_s, protocol));
   return raw->channel.origin != DEA_ABSENT
              ? dea_instrument_check_reading(reader, protocol, &raw->channel, &sketch)
              : DEA_OK;
@@ -195,6 +195,7 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
                                         .behind_s = s->raw.behind_s.si,
                                         .output_interval_s = s->raw.output_interval_s.si,
                                         .measure_interval_s = s->raw.interval_s.si};
+  dea_timed_limits(&s->output, protocol);
   s->link.socket.descriptor = -1;
   dea_status status = dea_timed_begin(ctx, &s->output);
   if (status == DEA_OK) {
@@ -263,6 +264,7 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_line_supply *
   }
   s->set_V = (long)(output_V + rounding_V);
   dea_timed_sent(&s->output, volts, dea_clock_s());
+  s->base.doubt = dea_evidence_doubt(&s->output.evidence);
   set_command(s, s->set_V, command);
   return ask(ctx, s, DEA_LINE_SUPPLY_SET, command);
 }
@@ -277,10 +279,11 @@ static const char *asked_command(const struct dea_line_supply *s,
   return s->asked == DEA_LINE_SUPPLY_MARK ? s->language->mark : s->language->measure;
 }
 
-/* The voltage and the mark take turns. */
+/* The voltage and the mark take turns, but for a voltage that has yet to be seen away from 0 V. */
 static dea_status ask_back(struct dea_context *ctx, struct dea_line_supply *s)
 {
-  bool mark = s->language->mark != NULL && s->last == DEA_LINE_SUPPLY_MEASURE;
+  bool wanted = s->output.sent_V != 0 && dea_evidence_wants(&s->output.evidence);
+  bool mark = s->language->mark != NULL && s->last == DEA_LINE_SUPPLY_MEASURE && !wanted;
   s->last = mark ? DEA_LINE_SUPPLY_MARK : DEA_LINE_SUPPLY_MEASURE;
   return ask(ctx, s, s->last, mark ? s->language->mark : s->language->measure);
 }
@@ -314,24 +317,14 @@ static dea_status play(struct dea_context *ctx, struct dea_line_supply *s, doubl
 
 static dea_status take_voltage(struct dea_context *ctx, struct dea_line_supply *s, double volts)
 {
-  double gain = s->protocol->amplifier.gain.si, error_V = s->protocol->safety.voltage_error_V.si;
   if (s->pending_count < DEA_LINE_SUPPLY_PENDING && s->base.reading_count > 0) {
     s->pending[s->pending_count].time_s = 0.5 * (s->asked_s + dea_clock_s()) - s->start_s;
     s->pending[s->pending_count++].volts = volts;
   }
-  double share = s->protocol->safety.readback_error.si;
-  switch (dea_timed_measured(&s->output, volts / gain, error_V / gain, share,
-                             s->protocol->safety.at_zero_V.si / gain)) {
-  case DEA_TIMED_FOLLOWS:
-    return DEA_OK;
-  case DEA_TIMED_OFF:
-    return dea_timed_off(ctx, s->link.socket.name, volts, (double)s->set_V, share);
-  default:
-    return dea_fail(ctx, DEA_E_INSTRUMENT,
-                    "%s measures %.4g kV where %.4g kV was set, more than "
-                    "safety.voltage_error of %.4g V away",
-                    s->link.socket.name, 1e-3 * volts, 1e-3 * (double)s->set_V, error_V);
-  }
+  dea_status status = dea_timed_measured(ctx, &s->output, s->protocol, s->link.socket.name,
+                                         volts / s->protocol->amplifier.gain.si);
+  s->base.doubt = dea_evidence_doubt(&s->output.evidence);
+  return status;
 }
 
 static dea_status take(struct dea_context *ctx, struct dea_line_supply *s, const char *answer)

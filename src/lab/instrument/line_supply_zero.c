@@ -176,7 +176,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct zeroing *z)
       told = command_zero(ctx, z) && (turn.beside || (is_same(ctx, z) && read_back(ctx, z, &zero)));
       if (turn.beside) {
         tell_of_other(ctx, &link.socket, turn.holder);
-        zero.why = "another program has its line";
+        zero.why = dea_zero_other;
       }
       dea_socket_close(&link.socket);
     }
@@ -197,7 +197,7 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
                       .raw = &s->raw,
                       .protocol = s->protocol,
                       .until_s = dea_clock_s() + s->protocol->safety.zero_time_s.si,
-                      .past = {s->base.mark, 0, s->protocol->safety.zero_time_s.si, ""}};
+                      .past = {s->base.mark, 0, s->protocol->safety.zero_time_s.si, "", NULL}};
   bool told = false;
   if (s->link.socket.descriptor >= 0) {
     const char *answer;
@@ -209,10 +209,7 @@ struct dea_zero dea_line_supply_stop(struct dea_context *ctx, struct dea_instrum
     dea_socket_close(&s->link.socket);
   }
   zero = told ? zero : zero_anew(ctx, &z);
-  if (dea_timed_contradicted(&s->output)) {
-    dea_zero_doubt(&zero, dea_zero_contradicted);
-  }
-  return zero;
+  return dea_zero_believe(zero, dea_evidence_doubt(&s->output.evidence));
 }
 
 struct dea_zero dea_line_supply_zero(struct dea_context *ctx,

@@ -59,6 +59,7 @@ static dea_status send_voltage(struct dea_context *ctx, struct dea_scpi *s, doub
   DEA_TRY(ctx, dea_protocol_guard(ctx, s->protocol, &volts, 1));
   dea_scpi_output_command(&s->raw, volts, command);
   dea_timed_sent(&s->output, volts, dea_clock_s());
+  s->base.doubt = dea_evidence_doubt(&s->output.evidence);
   DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, s->raw.behind_s.si, command));
   return ask(ctx, s, DEA_SCPI_CONFIRM, s->raw.confirm.text);
 }
@@ -83,6 +84,7 @@ dea_status dea_scpi_output_begin(struct dea_context *ctx, struct dea_scpi *s)
   s->output.output_interval_s = raw->output_interval_s.si;
   s->output.measure_interval_s =
       raw->measure.origin != DEA_ABSENT ? raw->interval_s.si : (double)INFINITY;
+  dea_timed_limits(&s->output, s->protocol);
   return dea_timed_begin(ctx, &s->output);
 }
 
@@ -224,26 +226,6 @@ dea_status dea_scpi_output_hold(struct dea_context *ctx, struct dea_instrument *
 
 // Answers ----------------------------------------------------------------------------------------
 
-/* A supply that is where it was asked to be within `behind` measures what was sent since. */
-static dea_status check_measured(struct dea_context *ctx, struct dea_scpi *s, double volts)
-{
-  double gain = s->protocol->amplifier.gain.si;
-  double error_V = s->protocol->safety.voltage_error_V.si / gain;
-  double share = s->protocol->safety.readback_error.si;
-  switch (dea_timed_measured(&s->output, volts, error_V, share,
-                             s->protocol->safety.at_zero_V.si / gain)) {
-  case DEA_TIMED_FOLLOWS:
-    return DEA_OK;
-  case DEA_TIMED_OFF:
-    return dea_timed_off(ctx, s->name, gain * volts, gain * s->output.sent_V, share);
-  default:
-    return dea_fail(ctx, DEA_E_INSTRUMENT,
-                    "%s measures %.4g kV where %.4g kV was set, more than "
-                    "safety.voltage_error of %.4g V away",
-                    s->name, 1e-3 * gain * volts, 1e-3 * gain * s->output.sent_V, gain * error_V);
-  }
-}
-
 dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
                                     const char *response)
 {
@@ -254,7 +236,9 @@ dea_status dea_scpi_output_response(struct dea_context *ctx, struct dea_scpi *s,
     return DEA_OK;
   }
   if (!confirms && dea_scpi_measured(&s->raw, s->protocol, response, &volts)) {
-    return check_measured(ctx, s, volts);
+    dea_status status = dea_timed_measured(ctx, &s->output, s->protocol, s->name, volts);
+    s->base.doubt = dea_evidence_doubt(&s->output.evidence);
+    return status;
   }
   s->broken = true;
   return no_sense(ctx, s, confirms ? s->raw.confirm.text : s->raw.measure.text, response);

@@ -182,7 +182,7 @@ static struct dea_zero zero_anew(struct dea_context *ctx, struct meant *m, doubl
     }
   }
   if (driven) {
-    dea_zero_doubt(&zero, "another program drives it");
+    dea_zero_doubt(&zero, dea_zero_other);
   }
   return zero;
 }
@@ -214,10 +214,7 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
     dea_socket_close(&s->link.socket); // some supplies have one connection only
     zero = zero_anew(ctx, &m, until_s);
   }
-  if (dea_timed_contradicted(&s->output)) {
-    dea_zero_doubt(&zero, dea_zero_contradicted);
-  }
-  return zero;
+  return dea_zero_believe(zero, dea_evidence_doubt(&s->output.evidence));
 }
 
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *data,

@@ -2,16 +2,56 @@
 
 #include <math.h>
 
-enum { DEVIATIONS_MAX = 2 };
-static const double off_most_s = 5, off_forgets = 0.1; // as of lab/drive/drive_watch.c
-static const double off_from = 0.2;
-static const double zero_least = 4; // times `behind`: two tries, and a late answer in each
+enum { TOP_SAMPLES = 4000 };
+static const double told_share = 0.5; // of `behind`, that a voltage must stay to be compared
+static const double tops_most = 100;  // of that time, that are looked at
+static const double zero_least = 4;   // times `behind`: two tries, and a late answer in each
 // an output that can be read back is, however seldom that is recorded
 static const double measure_at_least_s = 1;
+// while a meter has yet to be seen to follow; and the least that it is asked sooner or later than
+// its turn would be, so that it does not look at a waveform at the same places only
+static const double urgent_s = 0.1, golden = 0.6180339887498949;
+
+/* The shortest time for which a step is beyond half of its largest voltage in one go. */
+static double shortest_top_s(const struct dea_protocol_step *step, double longest_s)
+{
+  double largest_V = fmax(fabs(step->lowest_V), fabs(step->highest_V)), since_s = 0;
+  double end_s = fmin(step->waveform->end_s, tops_most * longest_s), shortest_s = longest_s;
+  double sample_s = end_s / TOP_SAMPLES;
+  for (int i = 0; i < TOP_SAMPLES; i++) {
+    double time_s = sample_s * i;
+    if (fabs(dea_waveform_value(step->waveform, time_s)) <= 0.5 * largest_V) {
+      shortest_s =
+          time_s > since_s + 0.5 * sample_s ? fmin(shortest_s, time_s - since_s) : shortest_s;
+      since_s = time_s + sample_s;
+    }
+  }
+  return shortest_s;
+}
+
+/* Warns of what is too short for a meter that may be late by `behind`. */
+static dea_status check_tops(struct dea_context *ctx, const struct dea_quantity *behind,
+                             const struct dea_protocol *protocol)
+{
+  double least_s = told_share * behind->si;
+  for (size_t i = 0; i < protocol->step_count; i++) {
+    double top_s = shortest_top_s(&protocol->steps[i], least_s);
+    if (top_s < least_s * (1 - 1e-9)) {
+      return dea_finding_add(ctx, DEA_WARNING, behind->location,
+                             "step %zu is beyond half of its voltage for %.2g s at a time: too "
+                             "short to tell a wrong height from an answer that is late by up to "
+                             "`behind`, %g s; where the supply is faster, write behind: %.2g s",
+                             i + 1, top_s, behind->si, top_s / told_share);
+    }
+  }
+  return DEA_OK;
+}
 
 dea_status dea_timed_check(struct dea_context *ctx, const struct dea_quantity *behind,
-                           const struct dea_quantity *zero_time)
+                           const struct dea_protocol *protocol)
 {
+  const struct dea_quantity *zero_time = &protocol->safety.zero_time_s;
+  DEA_TRY(ctx, check_tops(ctx, behind, protocol));
   double least_s = zero_least * behind->si;
   return zero_time->si >= least_s * (1 - 1e-9)
              ? DEA_OK
@@ -23,6 +63,17 @@ dea_status dea_timed_check(struct dea_context *ctx, const struct dea_quantity *b
                    zero_time->si > behind->si ? "a late answer leaves it not known to be at 0 V"
                                               : "it will never be known to be at 0 V",
                    least_s);
+}
+
+void dea_timed_limits(struct dea_timed_output *o, const struct dea_protocol *protocol)
+{
+  double gain = protocol->amplifier.gain.si;
+  o->evidence.slew_V_per_s = protocol->amplifier.slew_V_per_s.origin != DEA_ABSENT
+                                 ? protocol->amplifier.slew_V_per_s.si / gain
+                                 : 0;
+  o->evidence.error_V = protocol->safety.voltage_error_V.si / gain;
+  o->evidence.share = protocol->safety.readback_error.si;
+  o->evidence.zero_V = protocol->safety.at_zero_V.si / gain;
 }
 
 dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *o)
@@ -44,7 +95,8 @@ void dea_timed_end(struct dea_context *ctx, struct dea_timed_output *o)
 
 void dea_timed_start(struct dea_timed_output *o, double now_s)
 {
-  o->turned_s = o->clock_s = o->window_s = o->measured_s = o->times_s = o->looked_s = now_s;
+  o->turned_s = o->clock_s = o->measured_s = now_s;
+  o->evidence.lag_s = o->behind_s;
 }
 
 bool dea_timed_plays(const struct dea_timed_output *o)
@@ -106,10 +158,32 @@ dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *o, d
   return DEA_OK;
 }
 
+/* When the voltage is asked for next: about every `measure_interval_s`, not in step with what is
+ * played. Sooner where the meter has yet to be seen to follow, and the output should be away from
+ * 0 V; at the latest before it leaves that. */
+static double measure_at(const struct dea_timed_output *o, double now_s)
+{
+  const struct dea_evidence *e = &o->evidence;
+  double away_V = fmax(2 * e->zero_V, 0.5 * e->largest_V);
+  double again_s = o->measured_s + fmin(urgent_s, o->measure_interval_s);
+  bool due_now = !isnan(o->waiting_s) && now_s >= o->sent_s + o->output_interval_s;
+  double turn = 0.5 + fmod(golden * (double)e->readings, 1);
+  bool away = fabs(o->sent_V) >= away_V && o->sent_V != 0 && o->sent_s > o->measured_s;
+  bool leaves = away && due_now && fabs(o->wanted_V) < away_V;
+  double turn_s = o->measured_s + turn * o->measure_interval_s;
+  if (isinf(o->measure_interval_s) || !away || !dea_evidence_wants(e)) {
+    // every other one is at the end of a level, where there is one
+    bool end =
+        leaves && e->readings % 2 == 1 && now_s > o->measured_s + 0.5 * o->measure_interval_s;
+    return end ? now_s : turn_s;
+  }
+  return leaves ? now_s : again_s;
+}
+
 enum dea_timed_action dea_timed_next(struct dea_timed_output *o, double now_s, double late_s,
                                      double *next_s)
 {
-  double measure_s = o->measured_s + o->measure_interval_s;
+  double measure_s = measure_at(o, now_s);
   *next_s = o->count > 0 ? due(o) : INFINITY;
   if (now_s > late_s) {
     return DEA_TIMED_LATE;
@@ -135,42 +209,9 @@ enum dea_timed_action dea_timed_next(struct dea_timed_output *o, double now_s, d
   return DEA_TIMED_NOTHING;
 }
 
-/* What stands there, and what is sent, counts for the newest of the shorter times. */
-static void follow(struct dea_timed_output *o, double volts, double now_s)
-{
-  for (int i = 0; i < DEA_TIMED_TIMES && now_s - o->times_s >= 0.125 * o->behind_s; i++) {
-    for (int k = DEA_TIMED_TIMES - 1; k > 0; k--) {
-      o->lows_V[k] = o->lows_V[k - 1];
-      o->highs_V[k] = o->highs_V[k - 1];
-    }
-    o->lows_V[0] = o->highs_V[0] = o->sent_V;
-    o->times_s = i + 1 < DEA_TIMED_TIMES ? o->times_s + 0.125 * o->behind_s : now_s;
-  }
-  o->lows_V[0] = fmin(o->lows_V[0], volts);
-  o->highs_V[0] = fmax(o->highs_V[0], volts);
-}
-
-/* A window ends after `behind`, also while nothing is sent: then it has what stands there. */
-static void turn_windows(struct dea_timed_output *o, double now_s)
-{
-  double gone_s = now_s - o->window_s;
-  if (gone_s < o->behind_s) {
-    return;
-  }
-  bool long_ago = gone_s >= 2 * o->behind_s;
-  o->lowest_V[1] = long_ago ? o->sent_V : o->lowest_V[0];
-  o->highest_V[1] = long_ago ? o->sent_V : o->highest_V[0];
-  o->lowest_V[0] = o->highest_V[0] = o->sent_V;
-  o->window_s = now_s;
-}
-
 void dea_timed_sent(struct dea_timed_output *o, double volts, double now_s)
 {
-  turn_windows(o, now_s);
-  follow(o, volts, now_s);
-  o->largest_V = fmax(o->largest_V, fabs(volts));
-  o->lowest_V[0] = fmin(o->lowest_V[0], volts);
-  o->highest_V[0] = fmax(o->highest_V[0], volts);
+  dea_evidence_sent(&o->evidence, volts, now_s);
   o->sent_V = volts;
   o->sent_s = now_s;
   o->waiting_s = NAN;
@@ -186,53 +227,23 @@ double dea_timed_hold(struct dea_timed_output *o, double now_s)
   return o->sent_V;
 }
 
-/* Near 0 V, and on the way from one sign to the other, nothing is looked at. */
-static bool is_off(struct dea_timed_output *o, double volts, double share, double least_V)
+dea_status dea_timed_measured(struct dea_context *ctx, struct dea_timed_output *o,
+                              const struct dea_protocol *protocol, const char *name, double volts)
 {
-  double since_s = fmin(o->measured_s - o->looked_s, 2 * measure_at_least_s);
-  double lowest_V = INFINITY, highest_V = -INFINITY;
-  follow(o, o->sent_V, o->measured_s);
-  o->looked_s = o->measured_s;
-  for (int i = 0; i < DEA_TIMED_TIMES; i++) {
-    lowest_V = fmin(lowest_V, o->lows_V[i]);
-    highest_V = fmax(highest_V, o->highs_V[i]);
+  double gain = protocol->amplifier.gain.si, share = protocol->safety.readback_error.si;
+  char text[DEA_EVIDENCE_TEXT_SIZE];
+  enum dea_evidence_verdict verdict =
+      dea_evidence_measured(&o->evidence, volts, o->measured_s, fmax(o->measured_s, o->turned_s));
+  dea_evidence_text(&o->evidence, gain, text);
+  switch (verdict) {
+  case DEA_EVIDENCE_FOLLOWS:
+    return DEA_OK;
+  case DEA_EVIDENCE_OFF: // the output goes to 0 V along the ramp
+    return dea_fail(ctx, DEA_E_INTERLOCK,
+                    "%s %s, off by more than safety.readback_error of %.3g %% for 5 s", name, text,
+                    100 * share);
+  default:
+    return dea_fail(ctx, DEA_E_INSTRUMENT, "%s %s, more than safety.voltage_error of %.4g V away",
+                    name, text, protocol->safety.voltage_error_V.si);
   }
-  double nearest_V = lowest_V * highest_V > 0 ? fmin(fabs(lowest_V), fabs(highest_V)) : 0;
-  if (nearest_V == 0 || nearest_V < off_from * o->largest_V) {
-    return false;
-  }
-  double most_V = fmax(share * fmax(fabs(lowest_V), fabs(highest_V)), least_V);
-  bool off = volts < lowest_V - most_V || volts > highest_V + most_V;
-  o->off_s = fmax(0, o->off_s + (off ? since_s : -off_forgets * since_s));
-  return o->off_s >= off_most_s;
-}
-
-enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *o, double volts, double error_V,
-                                          double share, double least_V)
-{
-  turn_windows(o, o->measured_s); // when it was asked for
-  double lowest_V = fmin(o->lowest_V[0], o->lowest_V[1]);
-  double highest_V = fmax(o->highest_V[0], o->highest_V[1]);
-  bool wrong = volts < lowest_V - error_V || volts > highest_V + error_V;
-  o->deviations = wrong ? o->deviations + 1 : 0;
-  if (o->deviations >= DEVIATIONS_MAX) {
-    return DEA_TIMED_WRONG;
-  }
-  bool told = o->off_told;
-  o->off_told = is_off(o, volts, share, least_V) || told;
-  return o->off_told && !told ? DEA_TIMED_OFF : DEA_TIMED_FOLLOWS;
-}
-
-bool dea_timed_contradicted(const struct dea_timed_output *o)
-{
-  return o->deviations > 0;
-}
-
-dea_status dea_timed_off(struct dea_context *ctx, const char *name, double measured_V, double set_V,
-                         double share)
-{
-  return dea_fail(ctx, DEA_E_INTERLOCK,
-                  "%s measures %.4g kV where %.4g kV was set, off by more than "
-                  "safety.readback_error of %.3g %% for %g s",
-                  name, 1e-3 * measured_V, 1e-3 * set_V, 100 * share, off_most_s);
 }

@@ -9,6 +9,8 @@
 
 #include "base/context.h"
 #include "base/value.h"
+#include "lab/instrument/evidence.h"
+#include "lab/protocol/protocol.h"
 
 /* What is to be done now. */
 enum dea_timed_action {
@@ -19,38 +21,30 @@ enum dea_timed_action {
   DEA_TIMED_SEND     // send wanted_V, then note it
 };
 
-enum { DEA_TIMED_TIMES = 5 };
-
 /* Zero-initialised: it plays nothing. */
 struct dea_timed_output {
   double *queue; // [room], a ring; owned. NULL: it plays nothing
   size_t room, first, count;
-  size_t played;                    // samples taken out of the queue since clock_s
-  double queue_s, behind_s;         // that the queue holds; that a voltage may take
-  double output_interval_s;         // shortest time between two voltages
-  double measure_interval_s;        // between two measured ones; INFINITY: none
-  double rate_Hz, clock_s;          // sample 0 is at clock_s, by the computer's clock; NAN: not
-                                    // started
-  double wanted_V, sent_V;          // what the output should be, and the last that was sent
-  double sent_s, waiting_s;         // when that was; since when `wanted_V` waits, NAN: it does not
-  double measured_s;                // when the voltage was asked for last
-  double lowest_V[2], highest_V[2]; // sent in this window and the one before
-  double window_s;                  // when this window began; each is `behind` long
-  size_t deviations;                // measured voltages in a row that were none of these
-  /* The same of a few shorter times, the newest first, for what is off by less. */
-  double lows_V[DEA_TIMED_TIMES], highs_V[DEA_TIMED_TIMES];
-  double times_s;   // when the newest of them began
-  double largest_V; // that was sent, by amount
-  double looked_s;  // when what was measured was compared last
-  double off_s;     // for how long what was measured has been off by a share of it
-  bool off_told;    // that it was for too long: the ramp, which it ends with, is not begun anew
-  double turned_s;  // when it was played last
+  size_t played;                // samples taken out of the queue since clock_s
+  double queue_s, behind_s;     // that the queue holds; that a voltage may take
+  double output_interval_s;     // shortest time between two voltages
+  double measure_interval_s;    // between two measured ones; INFINITY: none
+  double rate_Hz, clock_s;      // sample 0 is at clock_s, by the computer's clock; NAN: not
+                                // started
+  double wanted_V, sent_V;      // what the output should be, and the last that was sent
+  double sent_s, waiting_s;     // when that was; since when `wanted_V` waits, NAN: it does not
+  double measured_s;            // when the voltage was asked for last
+  struct dea_evidence evidence; // of the measured voltage
+  double turned_s;              // when it was played last
 };
 
 /* Warns where the time in which 0 V has to be read back is too short for that to last `behind`: one
- * late answer would leave the output not known to be at 0 V. */
+ * late answer would leave the output not known to be at 0 V; and where the sequence is too fast for
+ * a meter that may be so late. */
 dea_status dea_timed_check(struct dea_context *ctx, const struct dea_quantity *behind,
-                           const struct dea_quantity *zero_time);
+                           const struct dea_protocol *protocol);
+/* The limits of what is measured. */
+void dea_timed_limits(struct dea_timed_output *output, const struct dea_protocol *protocol);
 /* Makes the queue; the times are set before. */
 dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *output);
 void dea_timed_end(struct dea_context *ctx, struct dea_timed_output *output);
@@ -73,22 +67,9 @@ enum dea_timed_action dea_timed_next(struct dea_timed_output *output, double now
 void dea_timed_sent(struct dea_timed_output *output, double volts, double now_s);
 /* After a stall: drops the queue; the voltage where the output stands. */
 double dea_timed_hold(struct dea_timed_output *output, double now_s);
-enum dea_timed_verdict {
-  DEA_TIMED_FOLLOWS,
-  DEA_TIMED_WRONG, // two in a row were more than error_V from all that was sent within `behind`:
-                   // one may be taken while it moves
-  DEA_TIMED_OFF // once: for 5 s off by more than a share, and more than least_V, from all that was
-                // sent within half of that
-};
-/* A measured voltage. */
-enum dea_timed_verdict dea_timed_measured(struct dea_timed_output *output, double volts,
-                                          double error_V, double share, double least_V);
-/* Says so: DEA_E_INTERLOCK, after which the output goes to 0 V along the ramp. Voltages of the
- * output. */
-dea_status dea_timed_off(struct dea_context *ctx, const char *name, double measured_V, double set_V,
-                         double share);
-/* Whether the last measured voltage was one of these: either the output or what measures it is
- * wrong, and nobody knows which. What it measures then says nothing of 0 V. */
-bool dea_timed_contradicted(const struct dea_timed_output *output);
+/* A measured voltage. name: of the supply. What is off is DEA_E_INTERLOCK, after which the output
+ * goes to 0 V along the ramp; what contradicts what was sent DEA_E_INSTRUMENT. */
+dea_status dea_timed_measured(struct dea_context *ctx, struct dea_timed_output *output,
+                              const struct dea_protocol *protocol, const char *name, double volts);
 
 #endif

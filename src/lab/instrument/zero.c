@@ -5,7 +5,9 @@
 
 const char dea_zero_no_answer[] = "no answer that can be believed",
            dea_zero_not_for_long[] = "not for as long as `behind` within `zero_time`",
-           dea_zero_contradicted[] = "it had measured another voltage than was set";
+           dea_zero_contradicted[] = "it had measured another voltage than was set",
+           dea_zero_other[] = "another program drives it",
+           dea_zero_unseen[] = "what measures it was not seen to follow the output away from 0 V";
 
 const char *dea_zero_name(enum dea_zero_state state)
 {
@@ -27,6 +29,14 @@ void dea_zero_doubt(struct dea_zero *zero, const char *why)
     zero->why = why;
   }
   zero->state = DEA_ZERO_UNKNOWN;
+}
+
+struct dea_zero dea_zero_believe(struct dea_zero zero, const char *doubt)
+{
+  if (doubt != NULL && (zero.state == DEA_ZERO_READ_BACK || doubt == dea_zero_contradicted)) {
+    dea_zero_doubt(&zero, doubt);
+  }
+  return zero;
 }
 
 void dea_zero_text(struct dea_zero zero, char out[DEA_ZERO_TEXT_SIZE])

@@ -18,10 +18,15 @@ struct dea_zero {
 
 enum { DEA_ZERO_TEXT_SIZE = 160 };
 
-extern const char dea_zero_no_answer[], dea_zero_not_for_long[], dea_zero_contradicted[]; // why
+extern const char dea_zero_no_answer[], dea_zero_not_for_long[], dea_zero_contradicted[],
+    dea_zero_other[], dea_zero_unseen[]; // why
 
 /* What was measured is not believed; why: NULL where what is said anyway tells it. */
 void dea_zero_doubt(struct dea_zero *zero, const char *why);
+
+/* The same where there is a doubt of what has measured it, NULL: none. What was only commanded is
+ * not doubted because nothing has measured it. */
+struct dea_zero dea_zero_believe(struct dea_zero zero, const char *doubt);
 
 /* "at 0 V", "commanded to 0 V, not read back", "not known to be at 0 V", "not armed". */
 const char *dea_zero_name(enum dea_zero_state state);
