@@ -166,14 +166,15 @@ static bool fits(struct dea_evidence *e, const struct dea_evidence_window *w, do
 /* Alone: whether it may be that, and whether it says that the meter follows. */
 static bool look(struct dea_evidence *e, double volts, double from_s, double to_s)
 {
-  double low_V, high_V, away_V = 2 * e->zero_V;
+  double low_V, high_V, now_low_V, now_high_V, away_V = 2 * e->zero_V;
   find_between(e, from_s - e->lag_s, to_s, &low_V, &high_V);
+  find_between(e, from_s, to_s, &now_low_V, &now_high_V);
   bool good = volts >= low_V - e->error_V && volts <= high_V + e->error_V;
   e->wrong = good ? 0 : e->wrong + 1;
   if (good && ((volts > away_V && high_V > away_V) || (volts < -away_V && low_V < -away_V))) {
     e->follows = true;
     e->unseen = 0;
-  } else if (!good || fmax(high_V, -low_V) > away_V) {
+  } else if (!good || fmax(now_low_V, -now_high_V) > away_V) {
     e->unseen++;
     e->follows = e->follows && good && e->unseen < DEA_EVIDENCE_READINGS;
   }

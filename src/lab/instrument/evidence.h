@@ -49,7 +49,7 @@ struct dea_evidence {
   struct dea_evidence_window few[2], many; // the first two begin at different readings
   double looked_s;
   size_t readings, wrong,
-      unseen; // wrong: in a row; unseen: near 0 V where it may be that, in a row
+      unseen; // wrong: in a row; unseen: near 0 V where more is sent, in a row
   bool follows, contradicted, off;
   /* The last that did not fit: "peak" of so many readings, of 1 itself. */
   const char *what;
