@@ -3,7 +3,7 @@
 
     random_designs.py DEA [--count 200] [--first 0] [--model 3d] [--coarse] [--seconds 60]
                       [--jobs 1] [--keep DIR] [--out rows.jsonl] [--compare rows.jsonl]
-                      [--beside axisymmetric] [--share 0.01]
+                      [--beside axisymmetric] [--share 0.01] [--plies] [--steps 1,0.5,0.25]
 
 A design follows from its number alone, so that two versions of the program are asked the same.
 What may vary: catalogue and own laws, 0 to 24 fibres, pre-stretch 1 to 4, 10 um to 1 mm, glue,
@@ -13,6 +13,10 @@ stiff electrodes, weight, membrane and solid film, thin and coupled field, up to
 --out     one line of JSON a design
 --beside  designs without fibres are swept by that model too, and where its verdict, pull-in, loss of
           tension or last stretch is another one, it is listed
+--plies   devices of plies instead: cones, plates, benders, stacks, strips and diaphragms, with springs,
+          masses, forces, pressures, stiff electrodes and one to three channels
+--steps   sweeps each design once a step, in kV, and prints the voltages of its verdicts in a table; fails
+          where those of a design are apart by more than --apart. Only designs that go to 2 to 20 kV
 --compare the lines of another version: designs whose verdict is another one are listed
 --share   fails (exit 1) where more than this share of the designs that ran ends as "ours"
 
@@ -21,6 +25,7 @@ Sizes: 20 as a test, 200 and 2000 by hand (docs/theory/stops.md).
 import argparse
 import concurrent.futures
 import json
+import math
 import os
 import random
 import re
@@ -121,6 +126,155 @@ def design_of(number, coarse):
                                                     "coupled" if coupled else "thin",
                                                     ", order: 1, order_z: 1" if coarse else "")]
     return "\n".join(lines) + "\n"
+
+
+def film_ply(r):
+    """(material, thickness in um, pre-stretch, voltage in kV up to which it may go)"""
+    name, field, exponent = r.choice([("elastosil-2030", 80, 0), ("elastosil-2030", 80, 0),
+                                      ("vhb-4910", 30.6, 1.13)])
+    pre = r.choice([1, 1.05, 1.1, 1.2, 1.3, 1.5, r.uniform(1, 2.5)])
+    thickness = 10 ** r.uniform(1.5, 2.7)
+    return name, thickness, pre, 1e-3 * field * pre ** (exponent - 2) * thickness * r.uniform(.3, 1.2)
+
+
+def ply(name, shape, material, thickness, pre=1):
+    return "  - {name: %s, shape: %s, material: %s, thickness: %.4g um, pre_stretch: %.4g}" % (
+        name, shape, material, thickness, pre)
+
+
+def electrodes_of(film, shapes):
+    lines = ["electrodes:", "  - {ply: %s, side: bottom, shape: back, channel: ground}" % film]
+    return lines + ["  - {ply: %s, side: top, shape: %s, channel: %s}" % (film, s, s) for s in shapes]
+
+
+def channels_of(r, names):
+    return ["channels:"] + ["  - {name: %s, ratio: %.3g}" % (n, 1 if i == 0 else r.choice(
+        [0, 0.5, 1, r.uniform(0, 1)])) for i, n in enumerate(names)]
+
+
+def cone_or_plate(r):
+    """A film in a ring with a rigid hub that a mass, a force, a spring or a bistable one moves."""
+    name, thickness, pre, highest = film_ply(r)
+    R = r.uniform(8, 30)
+    hub = R * r.uniform(0.15, 0.45)
+    sectors = r.choice([0, 0, 2, 3])
+    lines = ["shapes:", "  - {name: film, kind: circle, radius: %.4g mm}" % R,
+             "  - {name: hub, kind: circle, radius: %.4g mm}" % hub,
+             "  - {name: back, kind: ring, inner_radius: %.4g mm, outer_radius: %.4g mm}" %
+             (hub * 1.05, R * 0.95)]
+    names = ["s%d" % i for i in range(sectors)] or ["all"]
+    for i, n in enumerate(names):
+        if sectors:
+            start = 360 * i / sectors
+            lines += ["  - {name: %s, kind: sector, inner_radius: %.4g mm, outer_radius: %.4g mm, "
+                      "start: %.4g degree, end: %.4g degree}" %
+                      (n, hub * 1.05, R * 0.95, start + 6, start + 360 / sectors - 6)]
+        else:
+            lines += ["  - {name: all, kind: copy, of: back}"]
+    lines += ["plies:", ply("film", "film", name, thickness, pre)]
+    lines += electrodes_of("film", names) + channels_of(r, names) + ["supports:", "  - {edge: film}"]
+    kind = r.choice(["mass", "force", "spring", "bistable", "free"])
+    free = "[z]" if not sectors or kind in ("spring", "bistable") else "[x, y, z]"
+    hold = {"mass": ", mass: %.3g g" % 10 ** r.uniform(0, 1.5),
+            "force": ", force_z: %.3g mN" % 10 ** r.uniform(0.5, 2.3)}.get(kind, "")
+    lines += ["bodies:", "  - {name: hub, shape: hub%s%s}" % (hold, ", free: " + free)]
+    if kind == "mass":
+        lines += ["gravity: " + r.choice(["top_up", "top_down"])]
+    if kind == "spring":
+        lines += ["springs:", "  - {body: hub, direction: z, stiffness: %.3g N/m, free_at: %.3g mm}" %
+                  (10 ** r.uniform(0.5, 2.5), R * r.uniform(-0.2, 0.3))]
+    if kind == "bistable":
+        s, F = R / 20, 10 ** r.uniform(1, 2.5)
+        lines += ["springs:", "  - {body: hub, direction: z, table: [" + ", ".join(
+            "[%.4g mm, %.4g mN]" % (s * x, F * y) for x, y in
+            [(0, 0), (1, 1), (2, 0.5), (4, -1.5), (6, -2)]) + "]}"]
+    return lines + ["monitors:", "  - {name: hub, body: hub}"], highest
+
+
+def bender(r):
+    name, thickness, _, highest = film_ply(r)
+    long, wide = r.uniform(10, 40), r.uniform(3, 12)
+    lines = ["shapes:", "  - {name: strip, kind: rectangle, x: %.4g mm, width: %.4g mm, height: %.4g mm}" %
+             (long / 2, long, wide),
+             "  - {name: back, kind: rectangle, x: %.4g mm, width: %.4g mm, height: %.4g mm}" %
+             (long / 2 + 0.5, long - 3, 0.8 * wide), "  - {name: all, kind: copy, of: back}",
+             "  - {name: root, kind: rectangle, width: 1 mm, height: %.4g mm}" % (1.2 * wide), "plies:",
+             ply("passive", "strip", r.choice([name, name, "pet"]), thickness * r.uniform(0.2, 1)),
+             ply("film", "strip", name, thickness)]
+    return lines + electrodes_of("film", ["all"]) + ["supports:", "  - {edge: strip, within: root}",
+                                                     "monitors:", "  - {name: tip, at: [%.4g mm, 0 mm], "
+                                                     "ply: film}" % (0.998 * long)], highest * r.uniform(0.2, 1)
+
+
+def stack(r):
+    name, thickness, pre, highest = film_ply(r)
+    count, R = r.choice([2, 2, 3, 4]), r.uniform(5, 20)
+    thickness, highest = thickness / count, highest / count
+    lines = ["shapes:", "  - {name: film, kind: circle, radius: %.4g mm}" % R,
+             "  - {name: active, kind: circle, radius: %.4g mm}" % (R * r.uniform(0.2, 0.8)), "plies:"]
+    lines += [ply("film %d" % (i + 1), "film", name, thickness, pre) for i in range(count)]
+    lines += ["electrodes:", "  - {ply: film 1, side: bottom, shape: active, channel: ground}"]
+    lines += ["  - {ply: film %d, side: top, shape: active, channel: %s}" %
+              (i + 1, "drive" if i % 2 == 0 else "ground") for i in range(count)]
+    return lines + ["supports:", "  - {edge: film}", "monitors:",
+                    "  - {name: edge, at: [%.4g mm, 0 mm], ply: film 1}" % (R / 5)], highest
+
+
+def diaphragm(r):
+    """A film that a pressure bulges, round or rectangular."""
+    name, thickness, pre, highest = film_ply(r)
+    R = r.uniform(4, 20)
+    outline = r.choice(["kind: circle, radius: %.4g mm" % R, "kind: rectangle, width: %.4g mm, "
+                        "height: %.4g mm" % (2 * R, 2 * R * r.uniform(0.4, 1))])
+    lines = ["shapes:", "  - {name: film, %s}" % outline,
+             "  - {name: back, kind: circle, radius: %.4g mm}" % (R * r.uniform(0.15, 0.38)),
+             "  - {name: all, kind: copy, of: back}", "plies:", ply("film", "film", name, thickness, pre)]
+    mu = 40e3 if name.startswith("vhb") else 357e3  # Pa
+    p = mu * thickness * 1e-6 / (R * 1e-3) * r.uniform(0.05, 1.2)
+    return lines + electrodes_of("film", ["all"]) + [
+        "supports:", "  - {edge: film}", "pressures:",
+        "  - {ply: film, side: bottom, shape: film, pressure: %.4g kPa}" % (1e-3 * p), "monitors:",
+        "  - {name: middle, at: [0 mm, 0 mm]}"], highest
+
+
+def strip(r):
+    """A strip that a bar pulls, with or without stiff cross bars."""
+    name, thickness, pre, highest = film_ply(r)
+    long, wide = r.uniform(15, 50), r.uniform(8, 30)
+    stripes = r.random() < 0.5
+    lines = ["shapes:", "  - {name: film, kind: rectangle, width: %.4g mm, height: %.4g mm}" % (long, wide),
+             "  - {name: back, kind: rectangle, width: %.4g mm, height: %.4g mm}" %
+             (long - 4, 0.85 * wide), "  - {name: all, kind: copy, of: back}",
+             "  - {name: left, kind: rectangle, x: %.4g mm, width: 1 mm, height: %.4g mm}" %
+             (-long / 2, wide * 1.1),
+             "  - {name: bar, kind: rectangle, x: %.4g mm, width: 1 mm, height: %.4g mm}" %
+             (long / 2 - 0.5, wide)]
+    if stripes:
+        lines += ["  - {name: stripe, kind: rectangle, x: %.4g mm, width: 1 mm, height: %.4g mm}" %
+                  (-long / 4, wide),
+                  "  - {name: stripes, kind: array, of: stripe, count_x: 3, pitch_x: %.4g mm}" % (long / 4)]
+    lines += ["plies:", ply("film", "film", name, thickness, pre)]
+    lines += [ply("stripes", "stripes", "pet", 200)] if stripes else []
+    mu = 40e3 if name.startswith("vhb") else 357e3
+    force = mu * thickness * 1e-6 / pre ** 2 * wide * 1e-3 * (pre ** 2 - pre ** -4) * r.uniform(0.6, 1.4)
+    return lines + electrodes_of("film", ["all"]) + [
+        "supports:", "  - {edge: film, within: left}", "bodies:",
+        "  - {name: bar, shape: bar, free: [x], force_x: %.4g mN}" % (1e3 * max(force, 1e-3)), "monitors:",
+        "  - {name: bar, body: bar}"], highest
+
+
+def plies_of(number, coarse):
+    """Text of the design file of a number, in the form of plies."""
+    r = random.Random("libdea plies %d" % number)
+    kind = r.choice([cone_or_plate, cone_or_plate, bender, stack, diaphragm, strip])
+    lines, highest = kind(r)
+    membrane = kind is not bender and r.random() < 0.35
+    steps = 6
+    return "\n".join(["dea: 1", "title: Random plies %d, %s" % (number, kind.__name__)] + lines + [
+        "compute:", "  models: [3d]",
+        "  voltage: {from: 0 kV, to: %.12g kV, step: %.12g kV}" % (highest, highest / steps),
+        "  solid: {film: %s%s}" % ("membrane" if membrane else "solid",
+                                            ", order: 1, order_z: 1" if coarse else "")]) + "\n"
 
 
 OURS = "ours: not converged"
@@ -246,10 +400,82 @@ def differs(mine, other, within):
         "%s, pull-in at %s V" % (k, e) if e and k != "pull_in" else k for k, e in zip(kinds, ends))
 
 
+def ending_of(verdict, summary):
+    """(kind, kV) of what ends or leaves the taut film's path first; None: no verdict."""
+    if summary is None or verdict == OURS:
+        return None
+    limits = summary.get("limits", {})
+    for kind in ("pull_in", "slack"):
+        at = limits.get(kind + "_voltage_V")
+        if at is not None and (kind == "pull_in" or verdict == "slack"):
+            return kind, 1e-3 * at
+    if verdict == "slack":
+        return verdict, 0.0  # it has no tension from the start
+    if verdict.startswith("complete"):
+        return "complete", 1e-3 * summary["points"][-1]["voltage_V"]
+    at = re.search(r" at ([0-9.e+-]+) kV", summary.get("stopped", ""))
+    return (verdict, float(at[1])) if at else None
+
+
+def in_steps(a, path, highest):
+    """One line a step: verdict, (kind, kV) or None, processor seconds."""
+    rows = []
+    with open(path) as f:
+        text = f.read()
+    for step in a.steps:
+        with open(path, "w") as f:
+            f.write(re.sub(r"voltage: {from.*}", "voltage: {from: 0 kV, to: %.6g kV, step: %g kV}" %
+                           (highest, step), text))
+        verdict, _, seconds, summary = run_one(a.dea, path, a.model, a.seconds)
+        rows.append((step, verdict, ending_of(verdict, summary), round(seconds, 2)))
+    return rows
+
+
+def apart(rows):
+    """Largest difference of the voltages at which the film's path ends; inf: of another kind."""
+    ends = [row[2] for row in rows]
+    if None in ends or len({end[0] for end in ends}) > 1:
+        return math.inf
+    volts = [end[1] for end in ends]
+    return max(volts) / min(volts) - 1 if min(volts) > 0 else 0
+
+
+def steps_table(a, folder):
+    """The designs that go to 2 to 20 kV, each in all of the steps; True: too far apart."""
+    print("| design | goes to | " + " | ".join("%g kV" % step for step in a.steps) + " | apart |")
+    print("|---|---|" + "---|" * len(a.steps) + "---|")
+    number, done, off = a.first, 0, []
+    while done < a.count:
+        text = a.design(number, a.coarse)
+        highest = float(re.search(r"to: ([0-9.e+-]+) kV", text)[1])
+        path = os.path.join(folder, "%05d.yaml" % number)
+        with open(path, "w") as f:
+            f.write(text)
+        number += 1
+        highest = math.floor(highest / max(a.steps)) * max(a.steps)  # which all steps come to
+        if not 2 <= highest <= 20:
+            continue
+        rows = in_steps(a, path, highest)
+        if all(row[1] == "refused" for row in rows):
+            continue
+        done += 1
+        far = apart(rows)
+        off += [number - 1] if far > a.apart else []
+        cells = ["%s, %.5g kV" % row[2] if row[2] else row[1] for row in rows]
+        print("| %d | %.4g kV | %s | %s |" % (number - 1, highest, " | ".join(cells),
+                                             "%.2f %%" % (100 * far) if far < 10 else "-"), flush=True)
+        if a.out:
+            with open(a.out, "a") as f:
+                f.write(json.dumps({"design": number - 1, "steps": rows}) + "\n")
+    print("\n%d designs, of which %d are farther apart than %g %%: %s" % (
+        done, len(off), 100 * a.apart, ", ".join(map(str, off)) or "none"))
+    return bool(off)
+
+
 def run_design(a, folder, number):
     """The row of a design."""
     path = os.path.join(folder, "%05d.yaml" % number)
-    text = design_of(number, a.coarse)
+    text = a.design(number, a.coarse)
     with open(path, "w") as f:
         f.write(text)
     verdict, why, seconds, summary = run_one(a.dea, path, a.model, a.seconds)
@@ -305,10 +531,16 @@ def main():
     p.add_argument("--out")
     p.add_argument("--compare")
     p.add_argument("--share", type=float, default=1)
+    p.add_argument("--plies", action="store_true")
+    p.add_argument("--steps", type=lambda x: [float(step) for step in x.split(",")])
+    p.add_argument("--apart", type=float, default=0.005)
     a = p.parse_args()
+    a.design = plies_of if a.plies else design_of
     rows, spent = [], 0
     folder = a.keep or tempfile.mkdtemp()
     os.makedirs(folder, exist_ok=True)
+    if a.steps:
+        return steps_table(a, folder)
     out = open(a.out, "w") if a.out else None
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         numbers, waiting = iter(range(a.first, a.first + a.count)), set()

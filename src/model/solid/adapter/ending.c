@@ -95,6 +95,10 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
     drop_limit(e);
     DEA_TRY(ctx, dea_solid_stand_keep(ctx, e->owner.solid, &e->at_limit));
   }
+  if (where == DEA_STOP_PASSED) {
+    e->limited = false;
+    return look_at_tension(ctx, e);
+  }
   if (where == DEA_STOP_NEAR && !e->leapt) {
     bool slack;
     dea_status status = see_slack_beyond(ctx, e, &slack);
@@ -166,6 +170,8 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
 {
   char why[160];
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  // the film is past a limit point where that is not the cause
+  e->limited &= e->limit.kind == DEA_EVENT_SLACK || stop->kind != DEA_STOP_UNKNOWN;
   if (e->limited && e->limit.kind != DEA_EVENT_SLACK) {
     char stretch[60] = ""; // of a disc
     if (!isnan(e->limit.point.electrode_stretch)) {
@@ -306,7 +312,7 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
   bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
   bool bent = dea_solid_left_plane(e->owner.solid, from, e->owner.flat_thickness_m);
   bool strays = voltage_V != from_V && dea_solid_strays(e->owner.solid, from);
-  if (thins && seen) {
+  if (seen && (thins || (taut && report->snapped))) {
     e->passed = e->limit;
     e->has_passed = true;
   } else if (thins || (taut && is_taut(e) && (bent || ((rushed || strays) && !report->snapped)))) {

@@ -958,13 +958,37 @@ static dea_status follow_control(struct dea_context *ctx, struct dea_model *mode
   struct dea_solid_stand from;
   dea_status status = dea_solid_stand_keep(ctx, model->solid, &from);
   if (status == DEA_OK) {
-    status = dea_load_steps_solve(ctx, model->solid, model->at.voltage_V, &model->at.report);
+    status = dea_solid_reach(ctx, model->solid, model->at.voltage_V, &model->at.report);
   }
   if (status == DEA_OK && !model->at.report.snapped) {
     status = look_at_move(ctx, model, control, from_value, value, &from);
   }
   dea_solid_stand_free(&from);
   return status;
+}
+
+/* A limit point of the control at a value. */
+static dea_status fail_at_limit(struct dea_context *ctx, const struct dea_model *model,
+                                const struct dea_control *control, double value)
+{
+  const bool turns = control->component >= 3;
+  double scale = 1e3, largest = 0;
+  const char *name = turns ? "moment limit" : "force limit", *unit = turns ? "mN m" : "mN";
+  if (control->kind == DEA_CONTROL_PRESSURE) {
+    for (size_t i = 0; i < model->layout->pressure_count; i++) {
+      largest = fmax(largest, fabs(model->layout->pressures[i].pressure_Pa));
+    }
+    scale = 1e-3 * largest;
+    name = "pressure limit";
+    unit = "kPa";
+  } else if (control->kind == DEA_CONTROL_PLACE) {
+    scale = turns ? 1 : 1e3;
+    name = "limit point";
+    unit = turns ? "rad" : "mm";
+  }
+  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                  "%s at %.5g %s and %.4g kV: beyond it there is no stable equilibrium", name,
+                  scale * value, unit, 1e-3 * model->at.voltage_V);
 }
 
 static dea_status move(struct dea_context *ctx, struct dea_model *model,
@@ -980,6 +1004,9 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
     double reached = from + model->at.report.way * (value - from);
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
     DEA_TRY(ctx, set_control(ctx, model, control, reached));
+    if (status == DEA_E_NO_EQUILIBRIUM) {
+      return fail_at_limit(ctx, model, control, from + model->at.report.limit * (value - from));
+    }
     return dea_fail(ctx, status, "stopped %.3g of the way to the next value (%s)",
                     model->at.report.way, why);
   }

@@ -59,8 +59,8 @@
   X(double, approach_part_least, 0.25, "of the way asked for",                                     \
     "shortest step where it says nothing")                                                         \
   X(int, approach_rounds, 12, "1", "times that load steps go on from a point of the path")         \
-  X(int, approach_iterations, 15, "1",                                                             \
-    "of one minimum of a taut film, before the path is followed")                                  \
+  X(int, coupled_iterations, 15, "1",                                                              \
+    "of one minimum of a taut film with a coupled field, before the path is followed")             \
   X(int, slack_iterations, 160, "1", "of one minimum from a slack film")                           \
   X(int, slack_iterations_free, 120, "1", "those that may go up in energy there")                  \
   X(int, approach_lost, 12, "1", "`lost` on the way to a voltage")                                 \
@@ -69,6 +69,7 @@
   X(double, approach_step, 0.5, "of the way or of that displacement", "first step on it")          \
   X(double, approach_step_most, 4, "of the way or of that displacement", "longest step")           \
   X(double, astray, 1, "of what the tangent foresees", "off it, at most, up to a limit point")     \
+  X(double, limit_close, 0.1, "of the displacement", "to a state that lies beyond a limit point")  \
   X(double, leap_way, 1e-3, "of the way", "to a limit point that the path does not get around")    \
   X(double, leap_jump, 0.25, "of the whole", "motion that is left there, at least")                \
   X(int, descent_modes, 4, "1", "unstable modes that are left one after the other")                \

@@ -20,6 +20,7 @@ struct search {
   struct dea_solid_stand start; // where the approach began
   struct dea_solid_stand limit; // where the path turns back, once that is known
   bool leapt;                   // a load step has gone past a limit point to another state
+  bool snapped;                 // the solid has, on the way, to one that is not close by
   bool went_on;                 // the solid is at a stable equilibrium further on
   bool looks;     // it is known where the solid goes, and only asked what is on the way
   bool bent;      // it looks from a flat film to one that is no more
@@ -32,7 +33,7 @@ struct search {
 static dea_status see(struct dea_context *ctx, const struct search *a,
                       enum dea_solid_stop_kind where)
 {
-  return a->watch->points(ctx, a->watch->user, where);
+  return a->watch != NULL ? a->watch->points(ctx, a->watch->user, where) : DEA_OK;
 }
 
 // Flat films -------------------------------------------------------------------------------------
@@ -88,6 +89,17 @@ bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *fro
 }
 
 // The path ----------------------------------------------------------------------------------------
+
+/* Root of the mean square of the nodes' displacements there. */
+static double size_m(const struct dea_solid *s, const struct dea_solid_stand *at)
+{
+  size_t count = 3 * s->problem.grid->node_count;
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) {
+    sum += at->state[i] * at->state[i];
+  }
+  return sqrt(3 * sum / (double)count);
+}
 
 /* Displacement that counts as much as the whole load: a share of that on the way, as far as the
  * displacements that are there tell, which go with the square of the voltage. */
@@ -166,7 +178,7 @@ static dea_status look_at_modes(struct dea_context *ctx, const struct search *a,
 {
   struct dea_solid *s = a->s;
   double value;
-  if (unstable <= *of_mesh || !a->watch->taut(a->watch->user) ||
+  if (unstable <= *of_mesh || a->watch == NULL || !a->watch->taut(a->watch->user) ||
       is_deflected(s, s->problem.length_m)) {
     *of_mesh = unstable < *of_mesh ? unstable : *of_mesh;
     return DEA_OK;
@@ -202,6 +214,16 @@ static dea_status stay_flat(struct dea_context *ctx, struct search *a,
   return DEA_OK;
 }
 
+/* From a limit point beyond the goal, which turns back behind it, to the goal. */
+static dea_status return_to_goal(struct dea_context *ctx, struct search *a)
+{
+  *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+  dea_solid_stand_again(a->s, &a->limit);
+  DEA_TRY(ctx, dea_load_steps_solve_to(ctx, a->s, a->goal, a->report));
+  a->went_on = a->report->unstable_modes == 0;
+  return see(ctx, a, DEA_STOP_PASSED);
+}
+
 /* Along the path until something has happened. */
 static dea_status follow(struct dea_context *ctx, struct search *a,
                          struct dea_solid_continuation *path)
@@ -217,7 +239,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
     first = i == 0 ? at.slope : first;
     if (at.passed == DEA_CONTINUATION_LIMIT) {
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
-      return DEA_OK;
+      return a->looks || a->stop->way < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
     DEA_TRY(ctx, see(ctx, a, DEA_STOP_UNKNOWN));
     DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
@@ -281,10 +303,10 @@ static void foresee(struct dea_solid *s, double voltage_V)
   s->found.foreseen_V = voltage_V;
 }
 
-/* A taut film is solved in a few iterations, or not at all. */
+/* With a coupled field a taut film is solved in a few iterations, or leaps. */
 static void take_fewer_iterations(struct dea_solid_settings *o)
 {
-  o->iterations = o->approach_iterations < o->iterations ? o->approach_iterations : o->iterations;
+  o->iterations = o->coupled_iterations < o->iterations ? o->coupled_iterations : o->iterations;
   o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
 }
 
@@ -300,10 +322,10 @@ static dea_status try_steps(struct dea_context *ctx, struct search *a, double vo
 {
   struct dea_solid_settings *o = &a->s->settings;
   const struct dea_solid_settings own = *o;
-  if (taut) {
-    take_fewer_iterations(o);
-  } else {
+  if (!taut) {
     take_more_iterations(o);
+  } else if (a->s->problem.field != NULL) {
+    take_fewer_iterations(o);
   }
   dea_status status =
       dea_load_steps_solve_within(ctx, a->s, voltage_V, o->approach_part, a->report);
@@ -342,92 +364,56 @@ static dea_status end_at_limit(struct dea_context *ctx, const struct search *a)
   return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV", 1e-3 * a->stop->voltage_V);
 }
 
-/* Down in energy from the limit point, a little beyond it, and on to the voltage. */
-static dea_status descend_from_limit(struct dea_context *ctx, struct search *a, double voltage_V)
+/* Down in energy from the limit point that was found to a stable state a little beyond it. *beyond:
+ * there is one, to which the film has not grown at once, and the solid is there; otherwise it is
+ * where the search began. One that is close by is where a spot of the mesh has turned over. */
+static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool taut, bool *beyond)
 {
   struct dea_solid *s = a->s;
-  const double least = s->settings.load_step_least;
+  struct dea_solid_stand limit;
+  struct dea_solid_report report = {0};
+  bool grew = true, close = false;
   dea_solid_stand_again(s, &a->limit);
-  set_between(s, a->from, a->goal, fmin(a->stop->way + least, 1), a->limit.controls);
-  DEA_TRY(ctx, dea_load_steps_solve_to(ctx, s, a->limit.controls, a->report));
-  DEA_TRY(ctx, dea_load_steps_solve_within(ctx, s, voltage_V, least, a->report));
-  return DEA_OK;
-}
-
-/* The limit point of a film that has lost its tension may be that of one wave or pit of it, beyond
- * which it leaps to another shape. */
-static dea_status leap(struct dea_context *ctx, struct search *a, double voltage_V)
-{
-  dea_status status = descend_from_limit(ctx, a, voltage_V);
-  if (status == DEA_OK) {
-    a->report->snapped = true;
+  DEA_TRY(ctx, dea_solid_stand_keep(ctx, s, &limit));
+  set_between(s, a->from, a->goal, fmin(a->stop->way + s->settings.load_step_least, 1),
+              a->limit.controls);
+  const struct dea_solid_settings own = s->settings;
+  if (!taut) {
+    take_more_iterations(&s->settings);
+  }
+  dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
+  s->settings = own;
+  if (status == DEA_OK && report.unstable_modes == 0) {
+    grew = false;
+    status = a->watch != NULL ? a->watch->grew(ctx, a->watch->user, &grew) : DEA_OK;
+    close = dea_solid_moved_m(s, &limit) < s->settings.limit_close * size_m(s, &limit);
+  }
+  memcpy(a->limit.controls, limit.controls,
+         s->work.load_steps.control_count * sizeof *limit.controls);
+  dea_solid_stand_free(&limit);
+  *beyond = status == DEA_OK && !grew;
+  if (*beyond) {
+    a->snapped |= !close || !taut;
+    s->found.foreseen = false;
     *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+    return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
   }
-  if (!dea_solid_may_shorten(status)) {
-    return status;
+  dea_solid_state_set(s, a->state);
+  dea_solid_controls_set(s, a->from);
+  dea_solid_forget(s);
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
   }
-  dea_context_clear(ctx);
-  dea_solid_state_set(a->s, a->state);
-  dea_solid_controls_set(a->s, a->from);
-  dea_solid_forget(a->s);
-  return end_at_limit(ctx, a);
+  return status;
 }
 
 // Closing in on where load steps end, of a path that cannot be followed ---------------------------
 
-/* The last four equilibria on the way. */
-struct nearing {
-  struct dea_arena memory;
-  double *rate;   // [3 nodes] motion of the last step over its way
-  int count;      // of them
-  double at[4];   // shares of the way
-  double bend[2]; // how far the rates of two steps in a row are apart
-};
-
-/* The solid has come from `last` to that share of the way. */
-static void take_near(struct nearing *n, const struct dea_solid *s,
-                      const struct dea_solid_stand *last, double at)
-{
-  double sum = 0;
-  if (n->count == 4) {
-    memmove(n->at, n->at + 1, 3 * sizeof *n->at);
-    n->bend[0] = n->bend[1];
-    n->count = 3;
-  }
-  for (size_t i = 0; i < 3 * s->problem.grid->node_count; i++) {
-    double rate = (s->state.u[i] - last->state[i]) / (at - n->at[n->count - 1]);
-    sum += (rate - n->rate[i]) * (rate - n->rate[i]);
-    n->rate[i] = rate;
-  }
-  if (n->count > 1) {
-    n->bend[n->count - 2] = sqrt(sum);
-  }
-  n->at[n->count++] = at;
-}
-
-/* Whether they go rather to a limit point at `end` of the way, u = u_c + s w - c sqrt(end - w),
- * than on along an arc, u = u_0 + s w + c w^2 (docs/theory/stops.md). */
-static bool nears_limit(const struct nearing *n, double end)
-{
-  double root[4], fold[3];
-  if (n->count < 4) {
-    return false;
-  }
-  for (int i = 0; i < 4; i++) {
-    root[i] = sqrt(end - n->at[i]);
-  }
-  for (int i = 0; i < 3; i++) {
-    fold[i] = 1 / (root[i] + root[i + 1]);
-  }
-  double of_fold = (fold[2] - fold[1]) / (fold[1] - fold[0]);
-  double of_arc = (n->at[3] - n->at[1]) / (n->at[2] - n->at[0]);
-  return n->bend[1] > 0.5 * (of_fold + of_arc) * n->bend[0];
-}
-
 /* One load step to a share of the way from a->from; *there: it has found a stable state and leapt
  * past no other, and *last then is there too. */
 static dea_status step_near(struct dea_context *ctx, struct search *a, double share,
-                            struct dea_solid_stand *last, struct nearing *near, bool *there)
+                            struct dea_solid_stand *last, bool *there)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
@@ -447,62 +433,48 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, double sh
   }
   report.snapped |= a->report->snapped;
   *a->report = report;
-  take_near(near, s, last, share);
   dea_solid_state_get(s, last->state);
   dea_solid_controls_get(s, last->controls);
   return see(ctx, a, DEA_STOP_UNKNOWN);
 }
 
-/* Halves of what is left, until the state on one side and the failure on the other are `leap_way`
- * apart; then to the goal, where nothing has failed. *there: it is reached. */
-static dea_status halve_way(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
-                            struct nearing *near, bool *there)
+/* From the last equilibrium that load steps have found on, in halves of what is left, until the
+ * state on one side and the failure on the other are `leap_way` apart; then by the path, which
+ * alone tells a limit point, or to the goal, where nothing has failed. *there: it is reached. */
+static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
+                           bool *there)
 {
   double low = 0, high = 1;
-  bool found;
+  *there = false;
   while (high - low > a->s->settings.leap_way * (low > 0 ? high : 1)) {
+    bool found;
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
     double next = 0.5 * (low + high);
-    DEA_TRY(ctx, step_near(ctx, a, next, last, near, &found));
+    DEA_TRY(ctx, step_near(ctx, a, next, last, &found));
     low = found ? next : low;
     high = found ? high : next;
   }
   if (high == 1) {
-    return step_near(ctx, a, 1, last, near, there);
+    return step_near(ctx, a, 1, last, there);
   }
-  if (a->leapt || nears_limit(near, high)) { // beyond it is another state, and no way to there
+  if (a->leapt) { // beyond it is another state, and no way to there
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), low, 0};
     return see(ctx, a, DEA_STOP_NEAR);
   }
-  return DEA_OK;
+  return search_path(ctx, a);
 }
 
-/* From the last equilibrium that load steps have found on. *there: the goal is reached. */
-static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
-                           bool *there)
-{
-  struct nearing near = {.memory = {.ctx = ctx}, .count = 1};
-  *there = false;
-  near.rate = dea_arena_alloc(&near.memory, 3 * a->s->problem.grid->node_count, sizeof(double));
-  dea_status status = dea_solid_agree(ctx, dea_arena_status(&near.memory));
-  if (status == DEA_OK) {
-    status = halve_way(ctx, a, last, &near, there);
-  }
-  dea_arena_free(&near.memory);
-  return status;
-}
-
-/* All that load steps can, where the path says nothing. A taut film that they leave without an
- * equilibrium has a limit point there, or the cause is not known. */
+/* All that load steps can, where the path says nothing. *on: the path goes on from where they have
+ * closed in on what they do not get past. */
 static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double voltage_V,
-                               bool taut)
+                               bool taut, bool *on)
 {
   struct dea_solid *s = a->s;
-  const struct dea_solid_settings own = s->settings;
   char why[160];
   bool there = false;
   dea_status status =
       dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.approach_part_least, a->report);
+  *on = false;
   if (status != DEA_E_NOT_CONVERGED || !taut) {
     return status;
   }
@@ -513,24 +485,21 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   dea_status closed = dea_solid_stand_keep(ctx, s, &last);
   dea_solid_controls_get(s, a->from);
   dea_solid_controls_goal(s, voltage_V, a->goal);
-  take_fewer_iterations(&s->settings);
   if (closed == DEA_OK) {
     closed = close_in(ctx, a, &last, &there);
   }
   s->found.foreseen = false; // each of its steps has been looked at
-  s->settings = own;
   dea_solid_stand_free(&last);
   DEA_TRY(ctx, closed);
-  if (a->stop->kind == DEA_STOP_LIMIT) {
-    return end_at_limit(ctx, a);
-  }
-  return there ? DEA_OK : dea_fail(ctx, status, "%s", why);
+  *on = !there && (a->went_on || a->stop->kind == DEA_STOP_LIMIT);
+  return there || *on ? DEA_OK : dea_fail(ctx, status, "%s", why);
 }
 
 /* Long load steps and the path in turn; where the path says nothing, all that load steps can. */
 static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
 {
   for (int i = 0; i < a->s->settings.approach_rounds; i++) {
+    bool on;
     dea_status status = try_steps(ctx, a, voltage_V, taut);
     if (!dea_solid_may_shorten(status)) {
       return status;
@@ -541,14 +510,35 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
     DEA_TRY(ctx, search_path(ctx, a));
     a->left |= a->went_on && has_left(a);
     a->s->found.foreseen = a->s->found.foreseen && !a->went_on; // it has been followed
-    if (a->stop->kind == DEA_STOP_LIMIT) {
-      return taut ? end_at_limit(ctx, a) : leap(ctx, a, voltage_V);
+    if (!a->went_on && a->stop->kind != DEA_STOP_LIMIT) {
+      status = end_by_steps(ctx, a, voltage_V, taut, &on);
+      if (status != DEA_OK || !on) {
+        return status;
+      }
     }
-    if (!a->went_on) {
-      break;
+    if (a->stop->kind == DEA_STOP_LIMIT) {
+      DEA_TRY(ctx, pass_limit(ctx, a, taut, &on));
+      DEA_TRY(ctx, on ? DEA_OK : end_at_limit(ctx, a));
     }
   }
-  return end_by_steps(ctx, a, voltage_V, taut);
+  bool on;
+  DEA_TRY(ctx, end_by_steps(ctx, a, voltage_V, taut, &on));
+  return on ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path to there has too many turns") : DEA_OK;
+}
+
+/* Share of the way from some controls to others that the controls `at` are at: all go in
+ * proportion, of the voltage its square. */
+static double share_of(const struct dea_solid *s, const double *from, const double *goal,
+                       const double *at)
+{
+  double most = fabs(goal[0] * goal[0] - from[0] * from[0]);
+  double share =
+      most > 0 ? (at[0] * at[0] - from[0] * from[0]) / (goal[0] * goal[0] - from[0] * from[0]) : 0;
+  for (size_t i = 1; i < s->work.load_steps.control_count && !(most > 0); i++) {
+    share = goal[i] != from[i] ? (at[i] - from[i]) / (goal[i] - from[i]) : share;
+    most = fabs(goal[i] - from[i]);
+  }
+  return share;
 }
 
 dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
@@ -574,12 +564,44 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
     s->settings.lost = s->settings.approach_lost;
     foresee(s, voltage_V);
     status = go(ctx, &a, voltage_V, taut);
+    report->snapped |= a.snapped;
+    if (stop->kind == DEA_STOP_LIMIT) {
+      stop->way = share_of(s, a.start.controls, a.goal, a.limit.controls);
+    }
     s->settings.lost = lost;
   }
   dea_solid_stand_free(&a.limit);
   dea_solid_stand_free(&a.start);
   dea_arena_free(&memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
+                           struct dea_solid_report *report)
+{
+  struct dea_solid_stand from;
+  struct dea_solid_stop stop;
+  char why[160];
+  const dea_status failed = dea_load_steps_solve(ctx, s, voltage_V, report);
+  const double way = report->way;
+  if (!dea_solid_may_shorten(failed)) {
+    return failed;
+  }
+  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  dea_context_clear(ctx);
+  DEA_TRY(ctx, dea_solid_stand_keep(ctx, s, &from));
+  dea_status status = dea_solid_approach(ctx, s, voltage_V, true, NULL, report, &stop);
+  report->way = status == DEA_OK ? 1 : way;
+  if (status == DEA_E_NO_EQUILIBRIUM) { // it is the limit point's
+    dea_solid_stand_again(s, &from);
+    report->limit = way + stop.way * (1 - way);
+  } else if (dea_solid_may_shorten(status)) {
+    dea_solid_stand_again(s, &from);
+    dea_context_clear(ctx);
+    status = dea_fail(ctx, failed, "%s", why);
+  }
+  dea_solid_stand_free(&from);
+  return status;
 }
 
 // What load steps have gone past ------------------------------------------------------------------

@@ -10,6 +10,7 @@ enum dea_solid_stop_kind {
   DEA_STOP_UNKNOWN,  // the path cannot be followed either
   DEA_STOP_LIMIT,    // it turns back: a limit point
   DEA_STOP_NEAR,     // only for sinks: one that was closed in on, and is not where the solid is
+  DEA_STOP_PASSED,   // only for sinks: that limit point was none of the film
   DEA_STOP_UNSTABLE, // it turns unstable, and no way down from there was found
 };
 
@@ -38,13 +39,19 @@ struct dea_solid_watch {
 };
 
 /* As dea_load_steps_solve; load steps that fail go on along the path by arc length, around a
- * bifurcation too, and then by load steps again. watch: sees each point of such a path. taut: the
- * film has tension, so that what takes more than approach_iterations is not looked for at first. A
- * failure leaves the solid at the last equilibrium that was found: DEA_E_NO_EQUILIBRIUM beyond a
- * limit point; otherwise the status of the last load step, and *stop says what is known. */
+ * bifurcation too, and then by load steps again. watch: sees each point of such a path; NULL:
+ * nobody does. taut: the film has tension. A failure leaves the solid at the last equilibrium that
+ * was found: DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step,
+ * and *stop says what is known. */
 dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                               bool taut, const struct dea_solid_watch *watch,
                               struct dea_solid_report *report, struct dea_solid_stop *stop);
+
+/* As dea_load_steps_solve, and where load steps fail by the path, whose limit points the solid may
+ * pass to a stable state. DEA_E_NO_EQUILIBRIUM: one ends it at report->limit of the way; the solid
+ * is at report->way of it then. */
+dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
+                           struct dea_solid_report *report);
 
 /* Where the solid has been. */
 struct dea_solid_stand {
