@@ -211,8 +211,8 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
                     1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
   }
   return dea_fail(ctx, status,
-                  "ours: not converged at %.6g kV, on the way to %.6g kV (%s). The points before "
-                  "are kept; please send the design",
+                  "the solver did not converge at %.6g kV, on the way to %.6g kV (%s); please "
+                  "report the design. The points before are kept",
                   1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
 }
 

@@ -246,8 +246,8 @@ static dea_status find_rest(struct dea_context *ctx, struct dea_model *model)
   if (status == DEA_E_NOT_CONVERGED) {
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
     return dea_fail(ctx, status,
-                    "ours: not converged: the film at rest is not found (%s)%s. Please send the "
-                    "design",
+                    "the solver did not converge: the film at rest is not found (%s)%s; please "
+                    "report the design",
                     why, far);
   }
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
