@@ -20,7 +20,8 @@ static struct dea_plane_mesh *square(int order, double size, bool curved)
       {0.25, 0.2, 0, {0}}, {0.8, 0.45, 0, {0}}, {0.3, 0.75, 0, {0}}};
   const struct dea_contour outer = {outline, 4, true};
   const struct dea_contour inner = {curved ? circle : triangle, curved ? 2 : 3, true};
-  const struct dea_gmsh_shape shapes[] = {{"square", &outer, 1, 0}, {"inner", &inner, 1, 0}};
+  const struct dea_gmsh_shape shapes[] = {{.name = "square", .contours = &outer, .count = 1},
+                                          {.name = "inner", .contours = &inner, .count = 1}};
   const struct dea_gmsh_plan plan = {
       .shapes = shapes, .shape_count = 2, .order = order, .size_m = size};
   struct dea_plane_mesh *mesh;
@@ -227,9 +228,11 @@ static struct answer by_free_mesh(double size, double edge)
   const struct dea_vertex disc[] = {{0, 0, 0, {0}}, {a_m, 0, quarter, {0}}, {0, a_m, 0, {0}}};
   const struct dea_contour contours[] = {
       {film, 3, true}, {disc, 3, true}, {disc + 1, 2, false}}; // the last one: the arc alone
-  const struct dea_gmsh_shape shapes[] = {{"film", &contours[0], 1, 0},
-                                          {"electrode", &contours[1], 1, 0}};
-  const struct dea_gmsh_shape edge_curve = {"edge", &contours[2], 1, edge};
+  const struct dea_gmsh_shape shapes[] = {
+      {.name = "film", .contours = &contours[0], .count = 1},
+      {.name = "electrode", .contours = &contours[1], .count = 1}};
+  const struct dea_gmsh_shape edge_curve = {
+      .name = "edge", .contours = &contours[2], .count = 1, .edge_size_m = edge};
   const struct dea_gmsh_plan plan = {.shapes = shapes,
                                      .shape_count = 2,
                                      .curves = &edge_curve,
