@@ -356,6 +356,7 @@ struct meter_run {
   bool serial;
   int code;               // -1: it did not end
   bool said_zero, warned; // warned: before, that it is too fast to be told
+  bool late;              // ended since the imitation of a busy computer was late, not by its meter
   double end_V, later_V;  // at its end, and the highest from then on
   double zero_s;          // from a deaf one's hearing to 0 V; INFINITY: not while looked at
 };
@@ -442,7 +443,7 @@ static void write_meter_protocol(const struct meter_run *r, const struct imitati
           shape, r->frequency_Hz, played_s * r->frequency_Hz, r->serial ? ", min_voltage: 0 V" : "",
           zero_V);
   if (r->serial) {
-    fprintf(file, "  - {kind: shvps, device: %s, queue: 1 s}\n", m->line.device);
+    fprintf(file, "  - {kind: shvps, device: %s, timeout: 3 s, queue: 1 s}\n", m->line.device);
   } else {
     fprintf(file,
             "  - {kind: scpi, address: 127.0.0.1, port: %d, timeout: 1 s, setup: [OUTP ON], queue: "
@@ -512,6 +513,8 @@ static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, co
       r->said_zero =
           has_text(folder, "out", "  at 0 V") || has_text(folder, "err", "the output is at 0 V");
       r->warned = has_text(folder, "err", "too short to tell a wrong height");
+      r->late = has_text(folder, "err", "did not answer") ||
+                has_text(folder, "err", "behind with its voltage");
       until_s = deaf && r->code != 0 ? wrong_s + deaf_s + watched_s : now_s + after_s;
     }
     up_s = volts > zero_V ? now_s : up_s;
@@ -580,7 +583,8 @@ static bool says_wrong(const struct meter_run *r)
 /* An honest supply was stopped, or not believed; a wrong one was not noticed. */
 static bool judges_wrong(const struct meter_run *r)
 {
-  return r->kind == HONEST ? r->code != 0 || !r->said_zero : r->code == 0 && !r->warned;
+  return r->kind == HONEST ? (r->code != 0 && !r->late) || !r->said_zero
+                           : r->code == 0 && !r->warned;
 }
 
 static void write_meter_table(const char *path)
