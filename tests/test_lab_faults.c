@@ -151,6 +151,31 @@ static bool has_text(const char *folder, const char *name, const char *text)
   return text != NULL ? strstr(bytes, text) != NULL : length > 0;
 }
 
+/* The guard of a program, while that one lives; 0: none. */
+static pid_t guard_of(pid_t program)
+{
+  char path[64];
+  int guard = 0;
+  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)program, (int)program);
+  FILE *file = fopen(path, "r");
+  if (file != NULL) {
+    guard = fscanf(file, "%d", &guard) == 1 ? guard : 0;
+    fclose(file);
+  }
+  return guard;
+}
+
+/* A guard that goes on after its program, and is a child by now, is not to write to the next line
+ * or port of that name. */
+static void end_guard(pid_t guard)
+{
+  int status;
+  if (guard > 0 && waitpid(guard, &status, WNOHANG) == 0) {
+    kill(guard, SIGKILL);
+    waitpid(guard, &status, 0);
+  }
+}
+
 /* Plays, lets the fault come and go, and looks at the supply until some time after the end. */
 static void make_run(struct run *r)
 {
@@ -168,6 +193,7 @@ static void make_run(struct run *r)
   (void)supply_reaches(s, 1, 10); // it plays
   began_s = dea_clock_s();
   fault_at_s = began_s + r->fault_s;
+  const pid_t guard = guard_of(child);
   while (now_s < began_s + limit_s && !(gone && now_s > ended_s + after_s)) {
     now_s = dea_clock_s();
     if (!faulty && now_s >= fault_at_s && !gone) {
@@ -201,6 +227,7 @@ static void make_run(struct run *r)
   r->alarm_s = ended_s - fault_at_s;
   snprintf(state, sizeof state, "dea/supplies/scpi-127.0.0.1-%d", s->port);
   r->clean = !has_text(folder, state, NULL);
+  end_guard(guard);
   supply_stop(s);
   free(s);
 }
@@ -469,20 +496,6 @@ static pid_t begin_drive(const char *folder)
   return child;
 }
 
-/* The guard of a program, while that one lives; 0: none. */
-static pid_t guard_of(pid_t program)
-{
-  char path[64];
-  int guard = 0;
-  snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)program, (int)program);
-  FILE *file = fopen(path, "r");
-  if (file != NULL) {
-    guard = fscanf(file, "%d", &guard) == 1 ? guard : 0;
-    fclose(file);
-  }
-  return guard;
-}
-
 static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, const char *folder)
 {
   double began_s = dea_clock_s(), ended_s = INFINITY, wrong_s = INFINITY, up_s = began_s;
@@ -529,10 +542,7 @@ static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, co
   }
   r->later_V = highest_of(m);
   r->zero_s = deaf && now_s > up_s + 1 ? fmax(up_s - wrong_s - deaf_s, 0) : INFINITY;
-  if (guard > 0 && waitpid(guard, &status, WNOHANG) == 0) { // it goes on, and is a child by now
-    kill(guard, SIGKILL);
-    waitpid(guard, &status, 0);
-  }
+  end_guard(guard);
 }
 
 static void make_meter_run(struct meter_run *r)
@@ -583,7 +593,7 @@ static bool says_wrong(const struct meter_run *r)
 /* An honest supply was stopped, or not believed; a wrong one was not noticed. */
 static bool judges_wrong(const struct meter_run *r)
 {
-  return r->kind == HONEST ? (r->code != 0 && !r->late) || !r->said_zero
+  return r->kind == HONEST ? !r->late && (r->code != 0 || !r->said_zero)
                            : r->code == 0 && !r->warned;
 }
 
@@ -612,7 +622,6 @@ static void test_meters_that_lie(void **state)
   size_t wrong = 0;
   meters = calloc(meter_count, sizeof *meters);
   assert_non_null(meters);
-  prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   next_run = 0;
   for (size_t i = 0; i < meter_count; i++) {
     choose_meter(&meters[i], first_seed + (unsigned)i);
@@ -650,6 +659,7 @@ int main(int count, char **arguments)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_faults_at_random_moments),
                                      cmocka_unit_test(test_meters_that_lie)};
   const struct CMUnitTest lies[] = {cmocka_unit_test(test_meters_that_lie)};
+  prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   bool only_meters = count > 1 && strcmp(arguments[1], "meters") == 0;
   count -= only_meters;
   arguments += only_meters;

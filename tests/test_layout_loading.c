@@ -274,28 +274,29 @@ static void test_diaphragm(void **state)
   check_diaphragm(2);
 }
 
-/* Of a branch of modulus 1 at the stretch 1 + rate t in pure shear: nominal stress
- * l A_1 - l^-3 A_3 with dA/dt = (C^-1 - A)/tau (docs/theory/time.md), by the midpoint rule. */
-static double branch_stress(double rate, double time_s, double turn_s, double end_s)
+/* Of a branch of modulus 1 that is relaxed at the stretch `start` and pulled from there at a rate,
+ * in pure shear: nominal stress l A_1 - l^-3 A_3 with dA/dt = (C^-1 - A)/tau (docs/theory/time.md),
+ * by the midpoint rule. */
+static double branch_stress(double start, double rate, double time_s, double turn_s, double end_s)
 {
   enum { STEPS = 20000 };
-  double A1 = 1, A3 = 1, h = end_s / STEPS, l = 1;
+  double A1 = 1 / (start * start), A3 = start * start, h = end_s / STEPS, l = start;
   for (int i = 0; i < STEPS; i++) {
     const double t = (i + 0.5) * h;
-    l = 1 + rate * (t < turn_s ? t : 2 * turn_s - t);
+    l = start + rate * (t < turn_s ? t : 2 * turn_s - t);
     A1 += (1 / (l * l) - A1) * -expm1(-h / time_s);
     A3 += (l * l - A3) * -expm1(-h / time_s);
   }
-  l = 1 + rate * (end_s < turn_s ? end_s : 2 * turn_s - end_s);
+  l = start + rate * (end_s < turn_s ? end_s : 2 * turn_s - end_s);
   return l * A1 - A3 / (l * l * l);
 }
 
-/* A strip of 16 mm whose width is held, pulled to the stretch 2 in 4 s and back, with a branch and
- * a voltage, against the homogeneous solution. */
+/* A strip of 16 mm whose width is held, pulled from the stretch 1.25 to 2 in 3 s and back, with a
+ * branch and a voltage, against the homogeneous solution. */
 static void test_at_a_rate(void **state)
 {
   enum { STEPS = 8 };
-  static const double thickness_m = 100e-6, width_m = 10e-3, length_m = 16e-3, duration_s = 4;
+  static const double thickness_m = 100e-6, width_m = 10e-3, length_m = 16e-3, duration_s = 3;
   (void)state;
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
@@ -316,12 +317,11 @@ static void test_at_a_rate(void **state)
   film->branches[0] = (struct dea_branch){.modulus_Pa = G, .time_s = tau_s};
   film->branch_count = 1;
   struct ran r = run(device,
-                     "{body: bar, direction: x, from: 0 mm, to: 16 mm, steps: 8, duration: 4 s,"
+                     "{body: bar, direction: x, from: 4 mm, to: 16 mm, steps: 8, duration: 3 s,"
                      " back: yes, voltage: [0 kV, 1 kV]}",
                      DEA_OK);
   const double c[3] = {film->param[0], film->param[1], film->param[2]};
   const double field = voltage_V / thickness_m;
-  size_t tested = 0;
   assert_int_equal(r.points->row_count, 2 * (2 * STEPS + 1));
   for (size_t row = 0; row < r.points->row_count; row++) {
     const size_t i = row % (2 * STEPS + 1);
@@ -329,15 +329,11 @@ static void test_at_a_rate(void **state)
     const double s = 1 + point(&r, row, "shift_m") / length_m, first = s * s + 1 / (s * s) - 2;
     double stress =
         2 * (c[0] + 2 * c[1] * first + 3 * c[2] * first * first) * (s - 1 / (s * s * s));
-    stress += G * branch_stress(1 / duration_s, tau_s, duration_s, time_s);
+    stress += G * branch_stress(1.25, 0.75 / duration_s, tau_s, duration_s, time_s);
     stress -= row > 2 * STEPS ? DEA_EPSILON_0 * 2.8 * field * field * s : 0;
-    if (stress > 0) { // else it is slack
-      assert_close(point(&r, row, "force_N"), stress * thickness_m * width_m, 0,
-                   8e-4); // 0.1 % of the peak
-      tested++;
-    }
+    assert_close(point(&r, row, "force_N"), stress * thickness_m * width_m, 0,
+                 8e-4); // 0.1 % of the peak
   }
-  assert_true(tested > 2 * STEPS);
   end(&r, device);
 }
 
