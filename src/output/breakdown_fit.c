@@ -22,12 +22,28 @@ enum { FILE_MAX = 100000000 };
 enum column { VOLTAGE, FIELD, THICKNESS, STRETCH, AREA, SURVIVED, COLUMNS };
 
 static const struct dea_csv_wanted wanted[COLUMNS] = {
-    [VOLTAGE] = {"voltage", "voltage (kV)", {"V", "1 kV"}, false, true},
-    [FIELD] = {"field", "field (V/um)", {"V/m", "80 V/um"}, false, true},
-    [THICKNESS] = {"thickness", "thickness (um)", {"m", "100 um"}, false, true},
-    [STRETCH] = {"stretch", "stretch", {"1", "1.5"}, false, true},
-    [AREA] = {"area", "area (mm^2)", {"m^2", "20 mm^2"}, false, true},
-    [SURVIVED] = {"survived", "survived", {"1", "1"}, true, true},
+    [VOLTAGE] = {.name = "voltage",
+                 .title = "voltage (kV)",
+                 .measure = {"V", "1 kV"},
+                 .filled = true},
+    [FIELD] = {.name = "field",
+               .title = "field (V/um)",
+               .measure = {"V/m", "80 V/um"},
+               .filled = true},
+    [THICKNESS] = {.name = "thickness",
+                   .title = "thickness (um)",
+                   .measure = {"m", "100 um"},
+                   .filled = true},
+    [STRETCH] = {.name = "stretch", .title = "stretch", .measure = {"1", "1.5"}, .filled = true},
+    [AREA] = {.name = "area",
+              .title = "area (mm^2)",
+              .measure = {"m^2", "20 mm^2"},
+              .filled = true},
+    [SURVIVED] = {.name = "survived",
+                  .title = "survived",
+                  .measure = {"1", "1"},
+                  .needed = true,
+                  .filled = true},
 };
 
 /* What the file says for all films, or the table for each; both or neither are errors. */

@@ -31,15 +31,29 @@ enum column {
 
 /* life.csv of `dea reduce`. */
 static const struct dea_csv_wanted wanted[COLUMNS] = {
-    [END] = {"end", "end (s)", {"s", "1 s"}, true, true},
-    [UNDER_VOLTAGE] = {"under voltage", "under voltage (s)", {"s", "1 s"}, true, true},
-    [CHARGE] = {"charge", "charge (uC)", {"C", "1 uC"}, false, false},
-    [ASKED] = {"asked v", "asked V (kV)", {"V", "1 kV"}, true, true},
-    [DISPLACEMENT] = {"displacement", "displacement (um)", {"m", "1 um"}, false, false},
-    [FORCE] = {"force", "force (mN)", {"N", "1 mN"}, false, false},
-    [LEAKAGE] = {"leakage", "leakage (nA)", {"A", "1 nA"}, false, false},
-    [BREAKDOWNS] = {"breakdowns", "breakdowns", {"1", "1"}, false, false},
-    [ENDED] = {"ended early", "ended early", {"1", "1"}, false, false},
+    [END] = {.name = "end",
+             .title = "end (s)",
+             .measure = {"s", "1 s"},
+             .needed = true,
+             .filled = true},
+    [UNDER_VOLTAGE] = {.name = "under voltage",
+                       .title = "under voltage (s)",
+                       .measure = {"s", "1 s"},
+                       .needed = true,
+                       .filled = true},
+    [CHARGE] = {.name = "charge", .title = "charge (uC)", .measure = {"C", "1 uC"}},
+    [ASKED] = {.name = "asked v",
+               .title = "asked V (kV)",
+               .measure = {"V", "1 kV"},
+               .needed = true,
+               .filled = true},
+    [DISPLACEMENT] = {.name = "displacement",
+                      .title = "displacement (um)",
+                      .measure = {"m", "1 um"}},
+    [FORCE] = {.name = "force", .title = "force (mN)", .measure = {"N", "1 mN"}},
+    [LEAKAGE] = {.name = "leakage", .title = "leakage (nA)", .measure = {"A", "1 nA"}},
+    [BREAKDOWNS] = {.name = "breakdowns", .title = "breakdowns", .measure = {"1", "1"}},
+    [ENDED] = {.name = "ended early", .title = "ended early", .measure = {"1", "1"}},
 };
 
 struct specimen {

@@ -9,18 +9,28 @@
 enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_STD, PROFILE_COLUMNS };
 
 static const struct dea_csv_wanted profile_columns[PROFILE_COLUMNS] = {
-    [PROFILE_V] = {"v", "V (kV)", {"V", "1 kV"}, true, true},
-    [PROFILE_X] = {"x", "x (mm)", {"m", "1 mm"}, true, true},
-    [PROFILE_Z] = {"z", "z (um)", {"m", "1 um"}, true, false},
-    [PROFILE_STD] = {"z std", "z std (um)", {"m", "1 um"}, false, false},
+    [PROFILE_V] =
+        {.name = "v", .title = "V (kV)", .measure = {"V", "1 kV"}, .needed = true, .filled = true},
+    [PROFILE_X] =
+        {.name = "x", .title = "x (mm)", .measure = {"m", "1 mm"}, .needed = true, .filled = true},
+    [PROFILE_Z] = {.name = "z", .title = "z (um)", .measure = {"m", "1 um"}, .needed = true},
+    [PROFILE_STD] = {.name = "z std", .title = "z std (um)", .measure = {"m", "1 um"}},
 };
 
 static const struct dea_csv_wanted history_columns[DEA_MEASURED_COLUMNS] = {
-    [DEA_MEASURED_TIME] = {"time", "time (s)", {"s", "1 s"}, true, true},
-    [DEA_MEASURED_VOLTAGE] = {"v", "V (kV)", {"V", "1 kV"}, false, false},
-    [DEA_MEASURED_CENTRE] = {"z centre", "z centre (um)", {"m", "1 um"}, false, false},
-    [DEA_MEASURED_TIP] = {"z fibre tip", "z fibre tip (um)", {"m", "1 um"}, false, false},
-    [DEA_MEASURED_FORCE] = {"force", "force (mN)", {"N", "1 mN"}, false, false},
+    [DEA_MEASURED_TIME] = {.name = "time",
+                           .title = "time (s)",
+                           .measure = {"s", "1 s"},
+                           .needed = true,
+                           .filled = true},
+    [DEA_MEASURED_VOLTAGE] = {.name = "v", .title = "V (kV)", .measure = {"V", "1 kV"}},
+    [DEA_MEASURED_CENTRE] = {.name = "z centre",
+                             .title = "z centre (um)",
+                             .measure = {"m", "1 um"}},
+    [DEA_MEASURED_TIP] = {.name = "z fibre tip",
+                          .title = "z fibre tip (um)",
+                          .measure = {"m", "1 um"}},
+    [DEA_MEASURED_FORCE] = {.name = "force", .title = "force (mN)", .measure = {"N", "1 mN"}},
 };
 
 int dea_measured_point_column(enum dea_measured_column column)
