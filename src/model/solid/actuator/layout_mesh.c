@@ -98,6 +98,17 @@ static double film_thickness_m(const struct dea_layout *l)
   return film > 0 ? film : all;
 }
 
+/* Whether a ply is stretched: the boundary layer sqrt(D/T) of a film without tension is as long as
+ * the film. */
+static bool is_stretched(const struct dea_layout *l)
+{
+  bool any = false;
+  for (size_t p = 0; p < l->ply_count; p++) {
+    any = any || l->plies[p].pre_stretch[0] != 1 || l->plies[p].pre_stretch[1] != 1;
+  }
+  return any;
+}
+
 /* Whether the motion through the thickness changes at the boundary of a region. */
 static bool has_layer(const struct dea_layout *l, size_t region)
 {
@@ -234,7 +245,8 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
 {
   const struct dea_layout *l = mesh->layout;
   double largest_m2 = largest_ply_m2(l), finer = exp2(1 - fmax(1, settings->refinement));
-  const double layer_m = mesh->membrane ? 0 : layer_share * film_thickness_m(l);
+  const bool rows = !mesh->membrane && is_stretched(l);
+  const double layer_m = rows ? layer_share * film_thickness_m(l) : 0;
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
   struct dea_gmsh_shape *curves = dea_arena_alloc(memory, l->region_count, sizeof *curves);
   if (shapes == NULL || curves == NULL) {
