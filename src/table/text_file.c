@@ -153,8 +153,9 @@ static bool convert(struct dea_context *ctx, const char *encoding, struct dea_sl
   char *from = (char *)text.text, *to = *copy;
   const bool good = to != NULL && iconv(converter, &from, &left, &to, &room) != (size_t)-1;
   iconv_close(converter);
-  *out = (struct dea_slice){*copy, most - room};
-  if (!good) {
+  if (good) {
+    *out = (struct dea_slice){*copy, most - room};
+  } else {
     dea_free(ctx, *copy);
     *copy = NULL;
   }
