@@ -18,41 +18,30 @@ ONLY = sys.argv[sys.argv.index("--only") + 1].split(";") if "--only" in sys.argv
 FOLDER = tempfile.TemporaryDirectory(prefix="dea-trust-")
 WORK = pathlib.Path(sys.argv[sys.argv.index("--keep") + 1] if "--keep" in sys.argv else FOLDER.name)
 WITHIN = (0.5, 2)
-HEAD = """# What the estimated errors are worth
+HEAD = """# Estimated errors of model 3d against finer meshes
 
 Made by `scripts/verify trust`; not to be edited. {count} designs: [frdea-4.yaml](../../examples/frdea-4.yaml) and what is
 changed of it, [plain-disc.yaml](../../examples/plain-disc.yaml), devices of `examples/devices/`; each at half the voltage and at
 the voltage that is written, taut or with its tension lost in places, with the default mesh, whose run estimates its error
 ([theory](../theory/trust.md)).
 
-* **Found** is the error of the default mesh (elements of order 2, one through the film) against a limit: that of it, of the
-  same mesh with elements of order 3 in all directions, and of that with half the size in all directions (two through the film);
-  of devices of plies, whose meshes are of order 2 in the plane, those of half and a third of the size in all directions;
-  of solid films without stiff parts those of a quarter and an eighth of the size in the plane (of pure shear a half and a
-  quarter): those of order 3
-  had another limit, which finer meshes in the plane went beyond; of the coupled field half and a third in the plane, with
-  six elements through the film throughout;
-  of numbers with a `*`, whose meshes above do not show a limit, that of order 2 on meshes that were computed once for all: of the
-  finest of them, and of what halving its smallest elements in the plane and at the film's faces would go on to change, each as its
-  last three meshes show it, with the orders and the doubt below added up (order: in the plane; above 2 it counts as none).
-  At the edges of fibres, where the stress is singular, errors go with size / order^2 to a power p (twice the rate for the order;
-  Babuska and Suri 1987). p is what the three values show (column order, at half the voltage and at the voltage), taken
-  between 1 and 2: an incompressible film that is bonded along an edge of something stiff has stresses of 1/sqrt(r) there, that
-  is p = 1. `none`: the changes do not fall, `-`: they are not monotone; p is 1 then, and the limit less certain.
-* **+-** is how far the limit itself may be off, in % of the quantity: what it moves by between p = {least_order:g}, or the p that is
-  seen where that is more, and p = 2; without an order three times the last change, as study `convergence` has it. Where that is
-  more than a third of what is found, the true error is not known to a factor of 1.5, and the effectivity says little: it
-  has a `~`.
-* Nothing of the estimate is fitted to these designs or to others. That it is added up around corners was decided by those of
-  the first table, before those of the second had been computed; that the larger side is reported, and not both, by
-  those of the first two, before those of the third.
-* Where a mesh did not get to the voltage that the design was asked for, the row is of half of it, and that is its voltage.
-* **Effectivity**: estimated over found, of root mean squares over both voltages of errors over the quantity, so that an error
-  that passes through zero at one voltage does not make it. In brackets and not counted: both below {negligible:g} % of the quantity.
-* Values in um (stretches: 1) at the voltage, errors in % of the value."""
+* **Found**: the error of the default mesh (order 2, one element through the film) against a limit, extrapolated from it, the same
+  mesh with elements of order 3, and that with half the size in all directions. Devices of plies: order 2 with half and a
+  third of the size in all directions; solid films without stiff parts: a quarter and an eighth in the plane (pure shear a half
+  and a quarter); coupled field: half and a third in the plane, six elements through the film. With a `*`: from meshes of order 2
+  that were computed once (`FINE` in `verify/trust.py`).
+  Errors go with (size / order^2)^p (Babuska and Suri 1987); p is the one observed, between 1 and 2: an incompressible film that
+  is bonded along an edge of something stiff has stresses of 1/sqrt(r), that is p = 1, which is also taken where none is observed.
+* **+-**: how far the limit may be off, in % of the quantity: its change between p = {least_order:g} (or the observed p, if
+  larger) and p = 2; without an observed order three times the last change. Above a third of what is found the effectivity has a `~`.
+* **Effectivity**: estimated over found, of root mean squares over both voltages. In brackets and not counted: both below
+  {negligible:g} % of the quantity.
+* Nothing of the estimate is fitted to these designs. The sum around corners was chosen with the first table, the larger side
+  with the first two.
+* Values in um (stretches: 1) at the voltage, errors in % of the value. Where a mesh did not reach the voltage, the row is of half of it."""
 COLUMNS = """
-| design | kV | quantity | default mesh | limit | order | found (%) | +- (%) | estimated (%) | effectivity |
-|---|---|---|---|---|---|---|---|---|---|"""
+| design | kV | quantity | limit | found (%) | +- (%) | estimated (%) | effectivity |
+|---|---|---|---|---|---|---|---|"""
 # The default mesh and two finer ones: order of the elements (all three directions) and elements in a length (in
 # the plane and through the film). The error at a singular edge goes with length / order^2.
 MESHES = ((2, 1, 1), (3, 1, 1), (3, 2, 2))
@@ -346,9 +335,8 @@ def print_row(name, quantity, states, tally):
     else:
         said = f"({estimated / found:.2f})"
     digits = ".5f" if "stretch" in quantity else ".3f"
-    orders = ", ".join("-" if math.isnan(s[3]) else "none" if s[3] < LEAST_SEEN else f"{s[3]:.1f}" for s in states)
     star = " *" if (name, quantity) in FINE else ""
-    print(f"| {name} | {states[-1][0]:g} | {quantity}{star} | {states[-1][1]:{digits}} | {states[-1][2]:{digits}} | {orders} "
+    print(f"| {name} | {states[-1][0]:g} | {quantity}{star} | {states[-1][2]:{digits}} "
           f"| {100 * found:.3f} | {100 * off:.3f} | {100 * estimated:.3f} | {said} |", flush=True)
 
 
@@ -382,10 +370,10 @@ def main():
     print(HEAD.format(count=len(DESIGNS) + len(HELD_BACK) + len(NEWER), negligible=100 * NEGLIGIBLE, least_order=LEAST_ORDER))
     every = print_table(DESIGNS)
     if HELD_BACK:
-        print("\n## Designs that were held back\n\nOther designs, computed when it was decided how to add up.")
+        print("\n## Second set\n\nComputed after the sum around corners had been chosen.")
         print_table(HELD_BACK)
     if NEWER:
-        print("\n## Designs that nobody had looked at\n\nComputed when the estimate was as it is.")
+        print("\n## Third set\n\nComputed when the estimate was as it is.")
         print_table(NEWER)
     if not SMALL and ONLY is None:
         check_reference()
@@ -398,8 +386,8 @@ def check_reference():
     name, kV, design, sets = DESIGNS[0]
     first = design_rows(name, kV, design, sets)[0]
     runs = [read(sweep(name, kV, design, sets, 2, elements, elements))[0] for elements in HALVED]
-    print("\n## The limit itself\n\nThat of " + name + ", beside one that shares nothing with it but the default mesh: elements of "
-          "order 2,\nhalved twice in the plane and through the film.\n")
+    print("\n## The limit\n\nThat of " + name + " and one from elements of order 2, halved twice in the plane and through the "
+          "film.\n")
     print("| quantity | V (kV) | default mesh | limit | order | halved twice | its limit | order | found errors' ratio |")
     print("|---|---|---|---|---|---|---|---|---|")
     for quantity, states in first.items():

@@ -1,5 +1,5 @@
 /* Second derivatives in the plane of what is linear within each element (docs/theory/trust.md,
- * "What neighbours know of an element"). */
+ * "Neighbours' slopes"). */
 #ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_SECOND_H
 #define DEA_MODEL_SOLID_RECOVERY_RECOVER_SECOND_H
 
