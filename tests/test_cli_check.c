@@ -300,7 +300,6 @@ static void test_reference_is_that_of_the_table(void **state)
 {
   (void)state;
   check_page("design-file.md", "schema --markdown", NULL, NULL);
-  check_page("design-file.md", "schema --markdown --material", NULL, NULL);
   check_page("devices.md", "schema --markdown --general", NULL, "| `drive` | section");
   check_page("devices.md", "schema --markdown --general", "| `fabrication` | section",
              "| `report` | section");
