@@ -442,7 +442,7 @@ int main(int argc, char **argv)
   verify_ok(ctx, dea_solid_start(ctx));
   puts("# Films under voltage: limit points and buckling by arc-length\n\n"
        "Made by `scripts/verify homogeneous`; not to be edited. Solids that are followed by "
-       "arc-length ([branches.md](../theory/branches.md)):\nbenchmark 2, and a plate that "
+       "arc-length ([continuation.md](../theory/continuation.md)):\nbenchmark 2, and a plate that "
        "buckles.\n");
   equal_stretch(small);
   early_modes(small);

@@ -1,5 +1,5 @@
 /* Voltages at which a film comes to an end, found to solver accuracy, and their slopes by numbers
- * of the device (docs/theory/gradients.md, "Critical voltages"). */
+ * of the device (docs/theory/critical.md). */
 #ifndef DEA_STUDY_CRITICAL_H
 #define DEA_STUDY_CRITICAL_H
 

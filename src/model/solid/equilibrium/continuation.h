@@ -1,6 +1,6 @@
 /* Paths of equilibria, stable or not, through limit points and bifurcations, by arc-length
- * (docs/theory/branches.md), from where a solid is. All controls go together, by a load tau: at 0
- * as they stand at the start, at 1 as they are asked for - the square of the voltage, dead loads,
+ * (docs/theory/continuation.md), from where a solid is. All controls go together, by a load tau: at
+ * 0 as they stand at the start, at 1 as they are asked for - the square of the voltage, dead loads,
  * prescribed displacements and parameters of loads, each in proportion. tau is found with the
  * displacements: it may turn back at a limit point, and go below 0 or above 1.
  *
