@@ -57,21 +57,18 @@ EOF
 table 3.75
 table 5
 cat <<'EOF'
-## Why, and what to take
+## Reason
 
-Eq 17 gives the passive film one equibiaxial stretch. Really it is squeezed along the radius and pulled around it, most of
-all at the electrode's edge, and resists more than a film that only relaxes. For small voltages that can be written down
-([lumped](../theory/lumped.md), section 2): with k11 and k12 the tangent moduli of the pre-stretched film,
+Eq 17 gives the passive film one equibiaxial stretch, whereas it is compressed along the radius and pulled around it, most of all at the
+electrode's edge, which is stiffer. For small voltages ([lumped](../theory/lumped.md), section 2), with k11 and k12 the tangent
+moduli of the pre-stretched film,
 
     lumped/exact = 2 (1 - R)/(1 - (r_a/L_r)^2) k11/(k11 + k12)
 
 which the first rows confirm: for Table 1 at 1.5, k12/k11 = 0.414, so 1.131 and 1.061 by radius, 1.414 by area whatever the
-electrode, and 1.207 and 1.273 with R = 0.2. The excess thus depends on what is taken for R more than on anything else. R by
-radius keeps the length of a radius, as the frame demands, and is the best of the three; R by area lets too long a passive film
-take up the electrode's growth; R = 0.2 lies between them for both electrodes and does not know their size. "About 20 to 30 %
-at 6 kV" therefore describes R = 0.2 with the 5 mm electrode of Fig 2, and at its upper end R by area; with R by radius it
-is about 10 %. At high voltage the excess falls, because the electrode then stiffens (Yeoh) more than the passive film, which
-relaxes, and decides the strain more by itself.
+electrode, and 1.207 and 1.273 with R = 0.2. R by radius keeps the length of a radius, as the frame requires, and is the best of the
+three: about 10 % too much at 6 kV, where R = 0.2 and R by area have 17 to 30 %. At high voltage the excess falls, because the
+electrode stiffens (Yeoh) and the passive film relaxes.
 
 ## Each column by hand
 
