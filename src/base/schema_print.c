@@ -153,6 +153,9 @@ static void add_cell(struct dea_text *out, const char *text)
 static void print_row(const struct dea_record *record, const struct dea_field *field,
                       const char *path, struct dea_text *out)
 {
+  if (strstr(path, ").kind") != NULL) {
+    return; // the path has it
+  }
   dea_text_add(out, "| `%s` | ", path);
   add_form(out, field);
   dea_text_add(out, " | ");
