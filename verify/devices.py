@@ -380,10 +380,11 @@ Two of the measured values, the frequency ratios, are known as intervals only; b
         ratio = p["high"] / p["low"] if p["low"] > 0 else math.inf
         line([p["device"], p["label"] + (f" ({p['unit']})" if p["unit"] else ""), number(p["measured"]) + error, number(p["nominal"]),
               f"{number(p['low'])} to {number(p['high'])}{star}", f"{ratio:.2f}" if ratio < 100 else "over 100", "yes" if p["inside"] else "**no**"])
-    print("""
-\\* In some of the runs the film has lost its tension there; a real one wrinkles, and the number is no longer its own.
-\\*\\* Some of the runs have no such state.
-""")
+    if any(p["slack"] for p in found):
+        print("\n\\* In some of the runs the film has lost its tension there; a real one wrinkles, and the number is no longer its own.")
+    if any(p["none"] for p in found):
+        print("\n\\*\\* Some of the runs have no such state.")
+    print()
     for device in DEVICES:
         print(f"## {device['name']}\n\n[verify/devices/{device['design']}.yaml](../../verify/devices/{device['design']}.yaml).")
         for text in (f"Source: {device['source']}.", f"Missing or assumed: {device['missing']}."):
