@@ -38,10 +38,13 @@ the voltage that is written, taut or with its tension lost in places, with the d
   {negligible:g} % of the quantity.
 * Nothing of the estimate is fitted to these designs. The sum around corners was chosen with the first table, the larger side
   with the first two.
-* Values in um (stretches: 1) at the voltage, errors in % of the value. Where a mesh did not reach the voltage, the row is of half of it."""
+* All rows are in [trust.csv](trust.csv): values in um (stretches: 1) at the voltage, errors in % of the value. Where a mesh did not reach
+  the voltage, the row is of half of it. The tables below have the numbers outside of {within[0]:g} to {within[1]:g}."""
 COLUMNS = """
 | design | kV | quantity | limit | found (%) | +- (%) | estimated (%) | effectivity |
 |---|---|---|---|---|---|---|---|"""
+CSV_COLUMNS = ("set,design,voltage (kV),quantity,default mesh,limit,order at half the voltage,order,found (%),+- (%),estimated (%),"
+               "effectivity,counted,true error known to a factor of 1.5")
 # The default mesh and two finer ones: order of the elements (all three directions) and elements in a length (in
 # the plane and through the film). The error at a singular edge goes with length / order^2.
 MESHES = ((2, 1, 1), (3, 1, 1), (3, 2, 2))
@@ -323,21 +326,25 @@ def effectivity(states):
     return mean(lambda s: s[2] - s[1]), mean(lambda s: s[4]), mean(lambda s: s[5])
 
 
-def print_row(name, quantity, states, tally):
+def row_of(name, quantity, states, tally):
+    """The row of the page, NONE where nothing is to be said, that of the file, and whether the number is outside."""
     relative = effectivity(states)
     if relative is None:
-        return
+        return None
     found, off, estimated = relative
-    if max(found, estimated) > NEGLIGIBLE:
-        tally.setdefault(quantity if quantity in SHORT.values() else "of plies", []).append(
-            (estimated / found, off <= WELL_KNOWN * found))
-        said = f"{estimated / found:.2f}" + ("" if off <= WELL_KNOWN * found else " ~")
-    else:
-        said = f"({estimated / found:.2f})"
+    counted, known = max(found, estimated) > NEGLIGIBLE, off <= WELL_KNOWN * found
+    ratio = estimated / found
+    if counted:
+        tally.setdefault(quantity if quantity in SHORT.values() else "of plies", []).append((ratio, known))
     digits = ".5f" if "stretch" in quantity else ".3f"
+    orders = ["-" if math.isnan(s[3]) else "none" if s[3] < LEAST_SEEN else f"{s[3]:.1f}" for s in states]
     star = " *" if (name, quantity) in FINE else ""
-    print(f"| {name} | {states[-1][0]:g} | {quantity}{star} | {states[-1][2]:{digits}} "
-          f"| {100 * found:.3f} | {100 * off:.3f} | {100 * estimated:.3f} | {said} |", flush=True)
+    errors = [f"{100 * x:.3f}" for x in relative]
+    page = f"| {name} | {states[-1][0]:g} | {quantity}{star} | {states[-1][2]:{digits}} | {' | '.join(errors)} | {ratio:.2f}"
+    page += ("" if known else " ~") + " |"
+    line = [name, f"{states[-1][0]:g}", quantity + star, f"{states[-1][1]:{digits}}", f"{states[-1][2]:{digits}}"]
+    line += ([""] + orders)[-2:] + errors + [f"{ratio:.2f}", "yes" if counted else "no", "yes" if known else "no"]
+    return page, line, counted and not WITHIN[0] <= ratio <= WITHIN[1]
 
 
 def print_count(name, ratios):
@@ -347,14 +354,16 @@ def print_count(name, ratios):
           f"{sum(r > WITHIN[1] for r in ratios)} above, {sum(r < WITHIN[0] for r in ratios)} below.")
 
 
-def print_table(designs):
-    """Rows of designs and how many of them are within; returns all effectivities."""
-    print(COLUMNS)
-    tally = {}
+def print_set(number, designs, lines):
+    """How many numbers are within, and those that are not; adds the lines of the file, returns all effectivities."""
+    tally, outside = {}, []
     for design in designs:
         per, _ = design_rows(*design)
         for quantity, states in per.items():
-            print_row(design[0], quantity, states, tally)
+            row = row_of(design[0], quantity, states, tally)
+            if row is not None:
+                lines.append([number, *row[1]])
+                outside += [row[0]] if row[2] else []
     print()
     for quantity, ratios in tally.items():
         print_count(quantity, [r for r, _ in ratios])
@@ -363,19 +372,27 @@ def print_table(designs):
         print_count("all", [r for r, _ in every])
     if any(known for _, known in every):
         print_count("those whose true error is known to a factor of 1.5", [r for r, known in every if known])
+    if outside:
+        print(COLUMNS + "\n" + "\n".join(outside))
     return [r for r, _ in every]
 
 
 def main():
-    print(HEAD.format(count=len(DESIGNS) + len(HELD_BACK) + len(NEWER), negligible=100 * NEGLIGIBLE, least_order=LEAST_ORDER))
-    every = print_table(DESIGNS)
+    print(HEAD.format(count=len(DESIGNS) + len(HELD_BACK) + len(NEWER), negligible=100 * NEGLIGIBLE, least_order=LEAST_ORDER,
+                      within=WITHIN))
+    lines = []
+    print("\n## First set")
+    every = print_set(1, DESIGNS, lines)
     if HELD_BACK:
         print("\n## Second set\n\nComputed after the sum around corners had been chosen.")
-        print_table(HELD_BACK)
+        print_set(2, HELD_BACK, lines)
     if NEWER:
         print("\n## Third set\n\nComputed when the estimate was as it is.")
-        print_table(NEWER)
+        print_set(3, NEWER, lines)
     if not SMALL and ONLY is None:
+        with open(ROOT / "docs/verification/trust.csv", "w", encoding="utf-8", newline="") as table:
+            table.write(CSV_COLUMNS + "\n")
+            csv.writer(table, lineterminator="\n").writerows(lines)
         check_reference()
     if SMALL and not (every and all(TOLERATED[0] <= r <= TOLERATED[1] for r in every)):
         sys.exit("effectivities are out of tolerance")
