@@ -12,10 +12,9 @@ enum {
 
 /* What a name of a number that may change can be. */
 #define DEA_DEVICE_PARAM_DOC                                                                       \
-  "any number that dea run --sensitivity has a slope by but the voltage: a key of the design "     \
-  "that is a number (film.thickness, plies.NAME.thickness), or one of a material "                 \
-  "(film.law.NAME of a parameter of the law, film.permittivity.at_rest or .slope, film.density, "  \
-  "fibres.young_modulus, plies.NAME.poisson_ratio, ...)"
+  "number of the design or of a material by its name in dea run --sensitivity, but the voltage "   \
+  "(film.thickness, plies.NAME.thickness, film.law.NAME, film.permittivity.at_rest, "              \
+  "fibres.young_modulus, ...)"
 
 enum dea_device_kind { DEA_DEVICE_SWEEP, DEA_DEVICE_FORCE, DEA_DEVICE_TRANSIENT };
 enum dea_device_slack { DEA_DEVICE_SLACK_CUT, DEA_DEVICE_SLACK_KEEP };

@@ -63,12 +63,10 @@ static const struct dea_field fields[] = {
 
 static const struct dea_record record = {
     study_name,
-    "study of what matters, made when this section is there ({}) or with --sensitivity: slopes of "
-    "displacements, field, tension, capacitance and energy by the numbers of the design; with "
-    "study modal also of frequencies, with study force also of the force on the tip, at "
-    "each of its stops, with study loading also where its lines end; and of the voltages of loss "
-    "of tension, breakdown and pull-in that the run has come to; at given stretches of the "
-    "electrode also of the voltage",
+    "study of sensitivity, made when this section is there ({}) or with --sensitivity: slopes by "
+    "the "
+    "numbers of the design of displacements, field, tension, capacitance and energy, with studies "
+    "modal, force and loading of what they add, and of critical voltages that the run has reached",
     fields, COUNT(fields)};
 
 static const struct dea_design_section section = {
