@@ -208,4 +208,46 @@ static inline bool has(const struct exact *exact, enum norm norm)
   }
 }
 
+static inline int theory_of(enum norm norm, int order)
+{
+  return norm == NORM_U || norm == NORM_PHI ? order + 1 : order;
+}
+
+/* The error on the finest mesh, and the order between the last two. */
+struct converged {
+  double error, order;
+};
+
+/* A table of all states up to an order, those that were not solved left out. */
+static inline void print_orders(const struct exact states[STATES], size_t count, int orders,
+                                struct converged found[STATES][3][NORMS])
+{
+  printf("| order | error |");
+  for (size_t k = 0; k < count; k++) {
+    printf(" %s |", states[k].name);
+  }
+  printf(" theory |\n|---|---|");
+  for (size_t k = 0; k < count; k++) {
+    printf("---|");
+  }
+  puts("---|");
+  for (int order = 1; order <= orders; order++) {
+    for (enum norm norm = 0; norm < NORMS; norm++) {
+      bool any = false;
+      for (size_t k = 0; k < count; k++) {
+        any = any || has(&states[k], norm);
+      }
+      if (!any) {
+        continue;
+      }
+      printf("| %d | %s |", order, norm_name[norm]);
+      for (size_t k = 0; k < count; k++) {
+        const struct converged *c = &found[k][order - 1][norm];
+        has(&states[k], norm) ? printf(" %.2e (%.2f) |", c->error, c->order) : printf(" |");
+      }
+      printf(" %d |\n", theory_of(norm, order));
+    }
+  }
+}
+
 #endif
