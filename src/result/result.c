@@ -225,18 +225,8 @@ bool dea_curve_is_slack(const struct dea_curve *curve)
 {
   static const double tension_none = 1e-6; // [N/m] below: rounding of a film free of stress
   const struct dea_event *pull_in = dea_curve_first_event(curve, DEA_EVENT_PULL_IN);
-  size_t known = 0;
-  if (pull_in != NULL && (dea_load_point_flags(&pull_in->point) >> DEA_FLAG_SLACK & 1u) != 0) {
-    return true;
-  }
-  for (size_t i = 0; curve != NULL && i < curve->count; i++) {
-    double tension = curve->points[i].min_tension_N_per_m;
-    if (tension > tension_none) {
-      return false;
-    }
-    known += isnan(tension) ? 0 : 1;
-  }
-  return known > 0;
+  return pull_in != NULL && (pull_in->point.min_tension_N_per_m <= tension_none ||
+                             (dea_load_point_flags(&pull_in->point) >> DEA_FLAG_SLACK & 1u) != 0);
 }
 
 const char *dea_verdict_of(dea_status status)

@@ -151,8 +151,8 @@ dea_status dea_result_add_surface(struct dea_context *ctx, struct dea_result *re
 /* How a curve ended, and for a failure the recorded message as the reason. Returns the status, for
  * DEA_TRY. */
 dea_status dea_curve_end(struct dea_context *ctx, struct dea_curve *curve, dea_status status);
-/* Whether the film has no tension anywhere along a curve, or is slack where its pull-in is, where
- * the model says so: that pull-in is one of a flat film, which one without tension does not stay
+/* Whether the film has no tension somewhere where its pull-in is, as far as
+ * the model tells it: that pull-in is one of a flat film, which one without tension does not stay
  * (docs/theory/stops.md). */
 bool dea_curve_is_slack(const struct dea_curve *curve);
 /* Kind of a stop, for tables and JSON (docs/theory/stops.md): "pull_in", "slack", "law_end",

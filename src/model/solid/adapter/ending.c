@@ -75,7 +75,8 @@ static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e
   const double square = V * V;
   const double beyond = square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1]);
   const double near = 1 + e->owner.solid->settings.leap_way;
-  *slack = at_V[1] == V && T[0] > T[1] && beyond >= square && beyond <= square * near * near;
+  *slack = at_V[1] == V && (T[0] - T[1]) * (square - at_V[0] * at_V[0]) > 0 && beyond >= square &&
+           beyond <= square * near * near;
   if (*slack) {
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
     e->limit.point.voltage_V = sqrt(beyond);
@@ -187,7 +188,9 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
   bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
   if (status == DEA_E_NOT_CONVERGED && !e->limited) {
     bool slack;
-    const dea_status seen = see_slack_beyond(ctx, e, &slack);
+    dea_status seen =
+        e->tension_V[1] != dea_solid_voltage(e->owner.solid) ? look_at_tension(ctx, e) : DEA_OK;
+    seen = seen == DEA_OK ? see_slack_beyond(ctx, e, &slack) : seen;
     if (seen != DEA_OK && !dea_solid_may_shorten(seen)) {
       return dea_fail_chain(ctx, seen, __func__, __FILE__, __LINE__);
     }

@@ -19,6 +19,7 @@ struct search {
   struct dea_solid_stop *stop;
   struct dea_solid_stand start; // where the approach began
   struct dea_solid_stand limit; // where the path turns back, once that is known
+  bool slack;                   // the film has no tension all over where it began
   bool leapt;                   // a load step has gone past a limit point to another state
   bool snapped;                 // the solid has, on the way, to one that is not close by
   bool went_on;                 // the solid is at a stable equilibrium further on
@@ -34,6 +35,14 @@ static dea_status see(struct dea_context *ctx, const struct search *a,
                       enum dea_solid_stop_kind where)
 {
   return a->watch != NULL ? a->watch->points(ctx, a->watch->user, where) : DEA_OK;
+}
+
+/* Whether a film without tension has grown at once to where the solid is: nothing but the end of
+ * its law holds it there, so that it is no state (docs/theory/membrane.md). */
+static dea_status see_growth(struct dea_context *ctx, const struct search *a, bool *grew)
+{
+  *grew = false;
+  return a->slack && a->watch != NULL ? a->watch->grew(ctx, a->watch->user, grew) : DEA_OK;
 }
 
 // Flat films -------------------------------------------------------------------------------------
@@ -147,8 +156,12 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
     dea_solid_controls_set(s, a->goal);
   }
   dea_solid_forget(s);
+  bool grew = false;
   dea_status status = dea_solid_descend_unstable(ctx, s, 0, &report);
-  if (status == DEA_OK && report.unstable_modes == 0) {
+  if (status == DEA_OK) {
+    status = see_growth(ctx, a, &grew);
+  }
+  if (status == DEA_OK && report.unstable_modes == 0 && !grew) {
     *a->report = report;
     a->went_on = true;
     return DEA_OK;
@@ -241,6 +254,9 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
       return a->looks || a->stop->way < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
+    bool grew;
+    DEA_TRY(ctx, see_growth(ctx, a, &grew));
+    DEA_TRY(ctx, grew ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path thins at once") : DEA_OK);
     DEA_TRY(ctx, see(ctx, a, DEA_STOP_UNKNOWN));
     DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
     const bool unstable = at.unstable_modes > of_mesh;
@@ -340,10 +356,10 @@ static bool has_left(const struct search *a)
 
 /* Load steps that have failed may have leapt on the way, or have left the plane of a flat film,
  * which its tension holds there as long as the path has any and stays in it. */
-static void step_back(struct search *a, bool taut)
+static void step_back(struct search *a, bool taut, bool grew)
 {
-  const bool strays = !a->report->snapped && dea_solid_strays(a->s, &a->start);
-  if (taut && (strays || (!a->left && has_left(a)))) {
+  const bool strays = grew || (!a->report->snapped && dea_solid_strays(a->s, &a->start));
+  if (grew || (taut && (strays || (!a->left && has_left(a))))) {
     dea_solid_stand_again(a->s, &a->start);
     a->leapt |= strays;
   }
@@ -420,7 +436,10 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, double sh
   set_between(s, a->from, a->goal, share, a->limit.controls);
   foresee(s, a->limit.controls[0]);
   dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
-  bool leaps = status == DEA_OK && !report.snapped && dea_solid_strays(s, last);
+  bool leaps = status == DEA_OK && !a->slack && !report.snapped && dea_solid_strays(s, last);
+  if (status == DEA_OK && a->slack) {
+    status = see_growth(ctx, a, &leaps);
+  }
   *there = status == DEA_OK && report.unstable_modes == 0 && !leaps;
   a->leapt |= leaps;
   if (!*there) {
@@ -472,15 +491,20 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   struct dea_solid *s = a->s;
   char why[160];
   bool there = false;
+  bool grew = false;
   dea_status status =
       dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.approach_part_least, a->report);
+  if (status == DEA_OK) {
+    status = see_growth(ctx, a, &grew);
+  }
   *on = false;
-  if (status != DEA_E_NOT_CONVERGED || !taut) {
+  if (!grew && (status != DEA_E_NOT_CONVERGED || !taut)) {
     return status;
   }
-  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+  snprintf(why, sizeof why, "%s", grew ? "it thins at once" : dea_context_message(ctx));
+  status = DEA_E_NOT_CONVERGED;
   dea_context_clear(ctx);
-  step_back(a, taut);
+  step_back(a, taut, grew);
   struct dea_solid_stand last;
   dea_status closed = dea_solid_stand_keep(ctx, s, &last);
   dea_solid_controls_get(s, a->from);
@@ -500,12 +524,16 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
 {
   for (int i = 0; i < a->s->settings.approach_rounds; i++) {
     bool on;
+    bool grew = false;
     dea_status status = try_steps(ctx, a, voltage_V, taut);
-    if (!dea_solid_may_shorten(status)) {
+    if (status == DEA_OK) {
+      status = see_growth(ctx, a, &grew);
+    }
+    if (!grew && !dea_solid_may_shorten(status)) {
       return status;
     }
     dea_context_clear(ctx);
-    step_back(a, taut);
+    step_back(a, taut, grew);
     dea_solid_controls_goal(a->s, voltage_V, a->goal);
     DEA_TRY(ctx, search_path(ctx, a));
     a->left |= a->went_on && has_left(a);
@@ -545,7 +573,7 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
                               bool taut, const struct dea_solid_watch *watch,
                               struct dea_solid_report *report, struct dea_solid_stop *stop)
 {
-  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop};
+  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .slack = !taut};
   struct dea_arena memory = {.ctx = ctx};
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
