@@ -106,7 +106,7 @@ static void test_monitors(void **state)
       {"devices/diaphragm", "middle.turn_x_rad",
        "mine.yaml:5:14: error: 'middle.turn_x_rad' is no quantity: of 'middle' there are x_m, y_m, "
        "z_m"},
-      {"devices/diaphragm", "midle.z_m", "the design has no monitor 'midle'"},
+      {"devices/diaphragm", "midle.z_m", "'midle.z_m' is no quantity; did you mean 'middle_z_m'?"},
       {"devices/diaphragm", "energy_J, energy_J", "mine.yaml:5:24: error: energy_J is there twice"},
       {"devices/diaphragm", "middle.z_m", "mine.yaml:5:14: error: model lumped knows no monitors"},
       {"devices/diaphragm", "capacitanc_F", "did you mean 'capacitance_F'?"},

@@ -194,16 +194,30 @@ static const char cone[] =
     "monitors: [{name: hub, body: hub}, {name: ring, shape: ring}]\n"
     "compute: {models: [3d], voltage: {values: [2 kV, 3 kV]}, solid: {film: membrane}}\n";
 
-/* What monitors show as quantities, beside the table of dea run; as objective and limit of a search
- * by the model's gradients, which ends where the limit is. */
+/* A quantity of the last point of a run of dea run. */
+static double last_of(const char *summary, const char *key)
+{
+  static char bytes[COMMAND_TEXT_MAX];
+  char text[80];
+  double value = NAN;
+  command_read(summary, bytes);
+  snprintf(text, sizeof text, "\"%s\": ", key);
+  for (const char *at = strstr(bytes, text); at != NULL; at = strstr(at + 1, text)) {
+    value = atof(at + strlen(text));
+  }
+  return value;
+}
+
+/* What monitors show as quantities, beside the points of dea run; as objective and limit of a
+ * search by the model's gradients, which ends where the limit is. */
 static void test_monitors(void **state)
 {
   (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   static const char head[] = "dea_explore: 1\nname: seen\ndesign: cone.yaml\nmodel: 3d\n"
-                             "quantities: [hub.z_m, ring.z_m, ring.area_stretch]\n";
+                             "quantities: [hub.z_m, ring.z_m, ring_area_stretch]\n";
   char text[1200];
-  double hub[2], ring[2], area[2], best, wanted[3];
+  double hub[2], ring[2], area[2], best;
   command_write("cone.yaml", cone);
   snprintf(
       text, sizeof text,
@@ -213,20 +227,14 @@ static void test_monitors(void **state)
   run_solid("sweep seen.yaml -j 1 -q");
   command_read("seen.sweep/cases.csv", bytes);
   assert_contains(bytes,
-                  ",hub.z_m@2000 (m),ring.z_m@2000 (m),ring.area_stretch@2000 (1),hub.z_m@3");
+                  ",hub.z_m@2000 (m),ring.z_m@2000 (m),ring_area_stretch@2000 (1),hub.z_m@3");
   assert_int_equal(sscanf(strchr(bytes, '\n'), "\n%*d,%*[^,],%*f,%lf,%lf,%lf,%lf,%lf,%lf", &hub[0],
                           &ring[0], &area[0], &hub[1], &ring[1], &area[1]),
                    6);
   assert_int_equal(command_run("run cone.yaml --study sweep -q -o seen.run"), 0);
-  command_read("seen.run/3d_sweep_monitors.csv", bytes);
-  const char *of_hub = strstr(bytes, "\n3,hub,"), *of_ring = strstr(bytes, "\n3,ring,");
-  assert_true(of_hub != NULL && of_ring != NULL);
-  assert_int_equal(sscanf(of_hub, "\n3,hub,%*f,%*f,%lf", &wanted[0]), 1);
-  assert_int_equal(sscanf(of_ring, "\n3,ring,%*f,%*f,%lf,,,,,%*f,%*f,%lf", &wanted[1], &wanted[2]),
-                   2);
-  assert_close(1e6 * hub[1], wanted[0], 1e-6, 0);
-  assert_close(1e6 * ring[1], wanted[1], 1e-6, 0);
-  assert_close(area[1], wanted[2], 1e-8, 0);
+  assert_close(hub[1], last_of("seen.run/summary.json", "hub_z_m"), 1e-6, 0);
+  assert_close(ring[1], last_of("seen.run/summary.json", "ring_z_m"), 1e-6, 0);
+  assert_close(area[1], last_of("seen.run/summary.json", "ring_area_stretch"), 1e-8, 0);
   assert_true(hub[0] < hub[1] && ring[0] < ring[1] && area[0] < area[1]);
   snprintf(text, sizeof text,
            "%svoltages: [3 kV]\nobjectives: [{quantity: hub.z_m}]\nstarts: 1\n"
@@ -241,11 +249,40 @@ static void test_monitors(void **state)
   assert_true(best > hub[1]);
   command_write("best.yaml", bytes);
   assert_int_equal(command_run("run best.yaml --study sweep -q -o best.run"), 0);
-  command_read("best.run/3d_sweep_monitors.csv", bytes);
-  of_ring = strstr(bytes, "\n3,ring,");
-  assert_non_null(of_ring);
-  assert_int_equal(sscanf(of_ring, "\n3,ring,%*f,%*f,%lf", &wanted[1]), 1);
-  assert_close(wanted[1], 350, 1e-3, 0);
+  assert_close(last_of("best.run/summary.json", "ring_z_m"), 350e-6, 1e-3, 0);
+}
+
+/* What a monitor shows is a column like any other: in the sweep's table, beside a measurement, in a
+ * fit, which finds the thickness that the measured device was computed with, and on the report. */
+static void test_columns_of_monitors(void **state)
+{
+  (void)state;
+  static char bytes[COMMAND_TEXT_MAX];
+  char text[400];
+  command_write("cone.yaml", cone);
+  run_solid("run cone.yaml --study sweep -q -o true.run --set 'plies[0].thickness=93 um'");
+  const double z_m = last_of("true.run/summary.json", "hub_z_m");
+  command_read("true.run/3d_sweep.csv", bytes);
+  assert_contains(bytes, ",hub z (um),");
+  assert_contains(bytes, ",ring area stretch,");
+  assert_contains(bytes, ",drive charge (nC),");
+  snprintf(text, sizeof text, "V (kV),hub z (mm),hub z std (um)\n3,%.9g,2\n", 1e3 * z_m);
+  command_write("hub.csv", text);
+  assert_int_equal(command_run("compare true.run hub.csv --quantity hub_z --tolerance 0.001%"), 0);
+  assert_int_equal(command_run("compare true.run hub.csv --quantity hub.z_m"), 0);
+  command_write("typo.csv", "V (kV),hab z (mm)\n3,1\n");
+  command_expect("compare true.run typo.csv", 5, "did you mean 'hub z (um)'?");
+  command_write("fit.yaml", "dea_fit: 1\nname: cone\ndesign: cone.yaml\nmodel: 3d\n"
+                            "parameters: [{name: plies.film.thickness, low: 85 um, high: 115 um}]\n"
+                            "curves: [{name: hub, file: hub.csv}]\n");
+  assert_int_equal(command_run("fit fit.yaml -q -o fitted"), 0);
+  command_read("fitted/fit.json", bytes);
+  const char *value = strstr(bytes, "\"value\": ");
+  assert_non_null(value);
+  assert_close(atof(value + strlen("\"value\": ")), 93e-6, 1e-5, 0);
+  assert_int_equal(command_run("report true.run -q -o true.html"), 0);
+  command_read("true.html", bytes);
+  assert_contains(bytes, "<dt>hub z</dt>");
 }
 
 /* A number of a ply beside what its tolerance does to a monitor; angles and places have none. */
@@ -256,8 +293,8 @@ static void test_tolerances_of_plies(void **state)
   static const struct {
     const char *row;
     double tolerance;
-  } rows[] = {{"\n3,plies.film.thickness,0.0001,m,hub.z_m,", 5e-6},
-              {"\n3,plies.film.pre_stretch,1.2,1,hub.z_m,", 0.02}};
+  } rows[] = {{"\n3,plies.film.thickness,0.0001,m,hub_z_m,", 5e-6},
+              {"\n3,plies.film.pre_stretch,1.2,1,hub_z_m,", 0.02}};
   double slope, tolerance, change;
   command_write("cone.yaml", cone);
   run_solid("run cone.yaml --study sensitivity -q -o cone.run");
@@ -270,8 +307,8 @@ static void test_tolerances_of_plies(void **state)
     assert_close(tolerance, rows[i].tolerance, 1e-9, 0);
     assert_close(change, slope * tolerance, 1e-9, 0);
   }
-  assert_int_equal(sscanf(strstr(bytes, "\n3,shapes.hub.radius,0.005,m,hub.z_m,"),
-                          "\n3,shapes.hub.radius,0.005,m,hub.z_m,%*f,%*f,%*f,%lf", &tolerance),
+  assert_int_equal(sscanf(strstr(bytes, "\n3,shapes.hub.radius,0.005,m,hub_z_m,"),
+                          "\n3,shapes.hub.radius,0.005,m,hub_z_m,%*f,%*f,%*f,%lf", &tolerance),
                    0);
 }
 
@@ -299,10 +336,10 @@ static void test_end_of_a_line(void **state)
     do { // the first are of the film that moves freely
       row = strstr(row + 1, start);
       assert_non_null(row);
-    } while (strstr(row, ",hub.force_z_N,") == NULL ||
-             strstr(row, ",hub.force_z_N,") > strchr(row + 1, '\n'));
-    row = strstr(row, ",hub.force_z_N,");
-    assert_int_equal(sscanf(row, ",hub.force_z_N,%*f,%*f,%lf,,,,%lf", &by[i], &to), 2);
+    } while (strstr(row, ",hub_force_z_N,") == NULL ||
+             strstr(row, ",hub_force_z_N,") > strchr(row + 1, '\n'));
+    row = strstr(row, ",hub_force_z_N,");
+    assert_int_equal(sscanf(row, ",hub_force_z_N,%*f,%*f,%lf,,,,%lf", &by[i], &to), 2);
     assert_close(to, 3e-3, 1e-12, 0);
     sum += i <= PERMITTIVITY ? by[i] : 0;
   }
@@ -370,6 +407,7 @@ int main(void)
       cmocka_unit_test(test_critical_voltage),
       cmocka_unit_test(test_force),
       cmocka_unit_test(test_monitors),
+      cmocka_unit_test(test_columns_of_monitors),
       cmocka_unit_test(test_tolerances_of_plies),
       cmocka_unit_test(test_end_of_a_line),
       cmocka_unit_test(test_frequency),

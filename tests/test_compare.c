@@ -121,52 +121,42 @@ static void test_uncertainty_of_the_column_before(void **state)
  * and stands aside by less than the solver knows; slack from 2 kV on. */
 static void make_device_run(const char *name, double scale)
 {
-  static const struct dea_result_column columns[] = {
-      DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage"),
-      DEA_TEXT_COLUMN("monitor", "monitor", "name"),
-      DEA_NUMBER_COLUMN("x_m", "m", "um", 1e6, "x", "displacement along x"),
-      DEA_NUMBER_COLUMN("z_m", "m", "um", 1e6, "z", "displacement out of the plane"),
-      DEA_NUMBER_COLUMN("stretch", "1", "1", 1, "stretch", "of a line"),
-      DEA_NUMBER_COLUMN("error_m", "m", "um", 1e6, "error", "estimated error")};
-  static const struct dea_result_table_type type = {.study = "sweep",
-                                                    .name = "monitors",
-                                                    .key = "monitors",
-                                                    .title = "Monitors",
-                                                    .where = DEA_IN_JSON | DEA_IN_CSV,
-                                                    .columns = columns,
-                                                    .column_count = 6};
+  static const struct dea_column columns[] = {
+      {"the_hub_x_m", "m", "um", 1e6, "the hub x", "displacement along x"},
+      {"the_hub_z_m", "m", "um", 1e6, "the hub z", "displacement out of the plane"},
+      {"the_hub_z_error_m", "m", "um", 1e6, "error of the hub z", "estimated error"},
+      {"gauge_stretch", "1", "1", 1, "gauge stretch", "of a line"}};
+  struct dea_arena memory = {0};
+  int numbers[4];
   const struct dea_run_folder_options options = {.no_figures = true};
   struct dea_design design = fake_design();
   struct dea_context *ctx;
   struct dea_result *result = NULL;
   struct dea_curve *sweep;
-  struct dea_result_table *table;
   char path[600];
   snprintf(path, sizeof path, "%s/%s", command_folder, name);
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   assert_int_equal(dea_result_create(ctx, &design, NULL, &result), DEA_OK);
   assert_int_equal(dea_provenance_fill(ctx, "x", 1, NULL, 0, "dea run x", &result->provenance), 0);
   assert_int_equal(dea_result_add_curve(ctx, result, "3d", "sweep", &sweep), DEA_OK);
-  assert_int_equal(dea_result_add_table(ctx, result, &type, "3d", 0, &table), DEA_OK);
+  memory.ctx = ctx;
+  for (int i = 0; i < 4; i++) {
+    assert_int_equal(dea_column_add(ctx, &columns[i], &numbers[i]), DEA_OK);
+  }
   for (int i = 0; i <= 4; i++) {
     const double V = 1e3 * i;
     struct dea_load_point point = dea_load_point_empty();
     point.voltage_V = V;
     point.energy_J = -1e-6 * i;
     point.told = i > 1 ? 1u << DEA_FLAG_STATES : 0;
+    point.monitors = dea_monitor_values_create(&memory, numbers, 4);
+    dea_point_set(&point, numbers[0], (i - 2) * scale * 1e-15);
+    dea_point_set(&point, numbers[1], i * scale * 1e-6);
+    dea_point_set(&point, numbers[2], 1e-9);
+    dea_point_set(&point, numbers[3], 1.25);
     assert_int_equal(dea_curve_add_point(ctx, sweep, &point), DEA_OK);
-    const struct dea_result_table_value hub[] = {{.number = V},
-                                                 {.text = "the hub"},
-                                                 {.number = (i - 2) * scale * 1e-15},
-                                                 {.number = i * scale * 1e-6},
-                                                 {.number = NAN},
-                                                 {.number = 1e-9}};
-    const struct dea_result_table_value gauge[] = {{.number = V},    {.text = "gauge"},
-                                                   {.number = NAN},  {.number = NAN},
-                                                   {.number = 1.25}, {.number = NAN}};
-    assert_int_equal(dea_result_table_add_row(ctx, table, hub), DEA_OK);
-    assert_int_equal(dea_result_table_add_row(ctx, table, gauge), DEA_OK);
   }
+  dea_arena_free(&memory);
   assert_int_equal(dea_run_folder_write(ctx, result, path, &options), DEA_OK);
   dea_result_destroy(ctx, result);
   dea_context_destroy(ctx);
@@ -185,18 +175,18 @@ static void test_monitors(void **state)
   const json_t *all = json_object_get(one, "quantities");
   assert_int_equal(json_array_size(all), 3); // the energy, the hub's z, the gauge
   const json_t *hub = json_array_get(all, 1), *gauge = json_array_get(all, 2);
-  assert_string_equal(json_string_value(json_object_get(hub, "quantity")), "the hub.z_m");
+  assert_string_equal(json_string_value(json_object_get(hub, "quantity")), "the_hub_z_m");
   assert_string_equal(json_string_value(json_object_get(hub, "unit")), "m");
   assert_close(json_number_value(json_object_get(hub, "largest")), 4e-6, 1e-9, 0);
   assert_close(json_number_value(json_object_get(hub, "largest_at_V")), 4e3, 1e-9, 0);
   assert_close(json_number_value(json_object_get(hub, "relative_largest")), 0.5, 1e-9, 0);
   assert_true(json_is_true(json_object_get(hub, "within")));
-  assert_string_equal(json_string_value(json_object_get(gauge, "quantity")), "gauge.stretch");
+  assert_string_equal(json_string_value(json_object_get(gauge, "quantity")), "gauge_stretch");
   assert_close(json_number_value(json_object_get(gauge, "largest")), 0, 0, 0);
   json_decref(root);
   command_expect("compare once twice --tolerance 40%", 1,
-                 "the hub.z_m of once, 3d differs by 50 % of its range, more than 40 %");
-  assert_contains(command_out, "  the hub, z (um)                 5 ");
+                 "the_hub_z_m of once, 3d differs by 50 % of its range, more than 40 %");
+  assert_contains(command_out, "  the hub z (um)                  5 ");
   assert_contains(command_out, "out of tolerance");
   assert_int_equal(command_run("compare once twice --quantity 'gauge.stretch' --tolerance 0 -o m"),
                    0);
@@ -204,16 +194,16 @@ static void test_monitors(void **state)
   assert_null(strstr(command_out, "hub"));
   assert_true(exists("m/compare_gauge_stretch.svg"));
   assert_false(exists("m/compare_energy_J.svg"));
-  command_expect("compare once twice --quantity hub.z_m", 2, "no curve has hub.z_m of a monitor");
+  command_expect("compare once twice --quantity hub.z_m", 2, "'hub.z_m' is not a quantity");
   assert_int_equal(command_run("compare once twice -o pair"), 0);
   static char text[COMMAND_TEXT_MAX];
   command_read("pair/compare_the_hub_z_m.gp", text);
-  assert_contains(text, "The hub, z (\302\265m)");
+  assert_contains(text, "The hub z (\302\265m)");
   assert_contains(text, "not to be trusted");
   assert_null(
       strstr(text, "set ytics 0.5\n")); // of what is to be trusted, not of all that is drawn
   assert_int_equal(command_run("compare once once twice -o three"), 0);
-  assert_contains(command_out, "\nthe hub, z (um) ");
+  assert_contains(command_out, "\nthe hub z (um) ");
   assert_true(exists("three/compare_the_hub_z_m.svg"));
 }
 

@@ -112,22 +112,21 @@ static void test_quadrants_round(void **state)
   assert_int_equal(dea_device_build(ctx, round.design, &round.device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, round.design, round.device, &result), DEA_OK);
   assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, 1, result), DEA_OK);
-  const struct dea_result_table *monitors =
-      dea_result_find_table(result, "3d", "transient", "monitors");
-  const struct dea_result_table *channels =
-      dea_result_find_table(result, "3d", "transient", "channels");
-  assert_true(monitors != NULL && monitors->row_count >= 4); // rest, the jump, steps
-  assert_true(channels != NULL && channels->row_count == 4 * monitors->row_count);
+  static const char *const turns[] = {"plate_turn_x_rad", "plate_turn_y_rad"};
+  static const char *const channels[] = {"east_voltage_V", "north_voltage_V", "west_voltage_V",
+                                         "south_voltage_V"};
+  const struct dea_curve *curve = dea_result_find(result, "3d", "transient");
+  assert_true(curve != NULL && curve->count >= 4); // rest, the jump, steps
   double turn[2][2];
   for (int k = 0; k < 2; k++) { // after the jump, and at the end
-    size_t row = k == 0 ? 1 : monitors->row_count - 1;
-    assert_close(dea_result_table_cell(monitors, row, 0)->number, 0.25 * k, 1e-12, 0);
+    const struct dea_load_point *p = &curve->points[k == 0 ? 1 : curve->count - 1];
+    assert_close(p->time_s, 0.25 * k, 1e-12, 0);
     for (size_t i = 0; i < 2; i++) {
-      turn[k][i] = dea_result_table_cell(monitors, row, 2 + DEA_OBSERVED_TURN_X + i)->number;
+      turn[k][i] = dea_point_get(p, dea_column_find(ctx, turns[i]));
     }
     for (size_t c = 0; c < 4; c++) { // east leads, a quarter each
       double V = 2e3 + 2e3 * cos(0.5 * acos(-1.0) * ((double)k - (double)c));
-      assert_close(dea_result_table_cell(channels, 4 * row + c, 2)->number, V, 1e-9, 1e-6);
+      assert_close(dea_point_get(p, dea_column_find(ctx, channels[c])), V, 1e-9, 1e-6);
     }
   }
   double size = hypot(turn[0][0], turn[0][1]);

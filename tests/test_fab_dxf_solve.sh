@@ -19,7 +19,7 @@ command = os.environ["DEA_COMMAND"]
 def monitors(design, out):
     subprocess.run([command, "--quiet", "run", design, "-o", out, "--study", "sweep", "--set",
                     "compute.voltage={to: 2 kV, step: 2 kV}"], check=True)
-    return json.load(open(f"{out}/summary.json"))["monitors"]
+    return json.load(open(f"{out}/summary.json"))["points"]
 
 
 def kind(key):
@@ -47,9 +47,9 @@ for name in ("arcs", "film"):
     made = subprocess.run([command, "run", f"{source}/tests/cases/drawings/bezier/{name}.yaml", "-o", f"{folder}/{name}"],
                           check=True, capture_output=True, text=True)
     sizes.append(int(re.search(r"(\d+) unknowns", made.stderr).group(1)))
-    moved.append(json.load(open(f"{folder}/{name}/summary.json"))["monitors"][-1])
+    moved.append(json.load(open(f"{folder}/{name}/summary.json"))["points"][-1])
 print("circles, and of cubics:", sizes, moved)
 # the meshes are not the same: a hundredth of what each says its mesh costs
-bad += sizes[1] > 1.1 * sizes[0] or not abs(moved[1]["x_m"] - moved[0]["x_m"]) <= 0.01 * moved[0]["error_m"]
+bad += sizes[1] > 1.1 * sizes[0] or not abs(moved[1]["edge_x_m"] - moved[0]["edge_x_m"]) <= 0.01 * moved[0]["edge_x_error_m"]
 sys.exit(bad > 0)
 PYTHON

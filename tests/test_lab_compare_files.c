@@ -138,8 +138,7 @@ static void compare_once(struct dea_context *ctx)
   status = status == DEA_OK ? dea_compare_set_add(ctx, set, "3d", result, "3d", "") : status;
   status =
       status == DEA_OK ? dea_compare_set_add(ctx, set, "lumped", result, "lumped", "") : status;
-  status =
-      status == DEA_OK ? dea_compare_set_compute(ctx, set, &(struct dea_compare_ask){0}) : status;
+  status = status == DEA_OK ? dea_compare_set_compute(ctx, set, NULL, 0) : status;
   failing_check(ctx, status);
   dea_compare_set_destroy(ctx, set);
   dea_result_destroy(ctx, result);
@@ -149,34 +148,32 @@ static void compare_once(struct dea_context *ctx)
 /* Two runs with monitors: here a run and itself. */
 static void compare_monitors_once(struct dea_context *ctx)
 {
-  static const struct dea_result_column columns[] = {
-      DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage"),
-      DEA_TEXT_COLUMN("monitor", "monitor", "name"),
-      DEA_NUMBER_COLUMN("z_m", "m", "um", 1e6, "z", "displacement")};
-  static const struct dea_result_table_type type = {
-      .study = "sweep", .name = "monitors", .columns = columns, .column_count = 3};
+  static const struct dea_column hub = {"hub_z_m", "m", "um", 1e6, "hub z", "displacement"};
   struct dea_compare_set *set = NULL;
   struct dea_result *result = NULL;
-  struct dea_result_table *table = NULL;
   struct dea_design design = fake_design();
+  int column;
   dea_status status = known_result(ctx, &design, &result);
-  status = status == DEA_OK ? dea_result_add_table(ctx, result, &type, "3d", 0, &table) : status;
-  const struct dea_curve *sweep = status == DEA_OK ? dea_result_find(result, "3d", "sweep") : NULL;
+  status = status == DEA_OK ? dea_column_add(ctx, &hub, &column) : status;
+  struct dea_curve *sweep = NULL;
+  status = status == DEA_OK ? dea_result_get_curve(ctx, result, "3d", "sweep", &sweep) : status;
+  struct dea_arena memory = {.ctx = ctx};
   for (size_t i = 0; sweep != NULL && i < sweep->count && status == DEA_OK; i++) {
-    const struct dea_result_table_value row[] = {
-        {.number = sweep->points[i].voltage_V}, {.text = "hub"}, {.number = 1e-6}};
-    status = dea_result_table_add_row(ctx, table, row);
+    sweep->points[i].monitors = dea_monitor_values_create(&memory, &column, 1);
+    status = dea_arena_status(&memory);
+    dea_point_set(&sweep->points[i], column, 1e-6);
   }
   status = status == DEA_OK ? dea_compare_set_create(ctx, "it", NULL, result, &set) : status;
   status = status == DEA_OK ? dea_compare_set_add(ctx, set, "3d", result, "3d", "") : status;
-  status =
-      status == DEA_OK ? dea_compare_set_compute(ctx, set, &(struct dea_compare_ask){0}) : status;
+  status = status == DEA_OK ? dea_compare_set_compute(ctx, set, NULL, 0) : status;
   if (status == DEA_OK) {
-    assert_int_equal(set->monitor_count, 1);
+    const struct dea_comparison *c = set->curves[0].comparison;
+    assert_string_equal(c->misfits[c->misfit_count - 1].quantity->key, "hub_z_m");
   }
   failing_check(ctx, status);
   dea_compare_set_destroy(ctx, set);
   dea_result_destroy(ctx, result);
+  dea_arena_free(&memory);
 }
 
 static void test_with_failing_allocations(void **state)

@@ -3,6 +3,8 @@
 #define _GNU_SOURCE // mkdtemp
 #include "command.h"
 #include "material/material.h"
+#include "output/results_h5.h"
+#include "result/columns.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -85,11 +87,8 @@ static void test_film_on_a_sheet(void **state)
   const double V = 1e3, h1 = 100e-6, apart_m = 3e-3;
   const double mu = 2 * 178.4e3, stress = 2.8 * DEA_EPSILON_0 * pow(V / h1, 2);
   const double wanted = bilayer_curvature_per_m(3 * mu, 0.5, h1, 2950e6, 0.38, 50e-6, stress);
-  const json_t *monitors = json_object_get(root, "monitors");
-  double z[3];
-  for (size_t i = 0; i < 3; i++) {
-    z[i] = number(json_array_get(monitors, i), "z_m");
-  }
+  const double z[] = {number(point(root, 0), "a_z_m"), number(point(root, 0), "b_z_m"),
+                      number(point(root, 0), "c_z_m")};
   assert_close((2 * z[1] - z[0] - z[2]) / (apart_m * apart_m), wanted, 6e-3, 0);
   for (size_t i = 0; i < 2; i++) { // 1 and 3 kV
     assert_true(json_is_true(json_object_get(point(root, i), "trusted")));
@@ -152,12 +151,11 @@ static void test_membrane_that_nothing_pulls(void **state)
   assert_close(pure_shear(1.2, 1e7, 0), 1.0025, 0, 5e-5);
   assert_close(pure_shear(1.2, 8e7, 0), 1.30, 0, 5e-4);
   json_t *root = run("@/tests/cases/trust/pure-shear.yaml", "");
-  const json_t *monitors = json_object_get(root, "monitors");
-  assert_int_equal(json_array_size(monitors), 4);
+  assert_int_equal(json_array_size(json_object_get(root, "points")), 4);
   for (size_t i = 0; i < 4; i++) { // up, and down again
-    const json_t *at = json_array_get(monitors, i);
-    assert_close(number(at, "stretch"), pure_shear(1.2, number(at, "voltage_V") / 100e-6, 0), 1e-8,
-                 0);
+    const json_t *at = point(root, i);
+    assert_close(number(at, "gauge_stretch"), pure_shear(1.2, number(at, "voltage_V") / 100e-6, 0),
+                 1e-8, 0);
     assert_true(json_is_true(json_object_get(point(root, i), "stable")));
   }
   json_decref(root);
@@ -166,20 +164,26 @@ static void test_membrane_that_nothing_pulls(void **state)
 /* Right after a jump of the voltage the branches are springs; later they give way. */
 static void test_membrane_with_a_branch(void **state)
 {
-  static const char row[] = "\n0,gauge,,,,,,,";
+  struct dea_context *ctx;
+  struct dea_run *run;
   (void)state;
   assert_int_equal(command_run("run @/tests/cases/trust/pure-shear-viscous.yaml --no-figures "
                                "--force --study transient -o out.run"),
                    0);
-  command_read("out.run/3d_transient_monitors.csv", command_out);
-  const char *before = strstr(command_out, row);
-  const char *jump = before != NULL ? strstr(before + 1, row) : NULL;
-  assert_non_null(jump);
-  assert_close(atof(before + strlen(row)), 1, 1e-9, 0);
-  assert_close(atof(jump + strlen(row)), pure_shear(1.2, 2e7, 356.8e3), 1e-8, 0);
-  const char *last = strstr(command_out, "\n1,gauge,,,,,,,");
-  assert_non_null(last);
-  assert_true(atof(last + strlen(row)) > 1.006 && atof(last + strlen(row)) < 1.008);
+  snprintf(command_out, sizeof command_out, "%s/out.run", command_folder);
+  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
+  assert_int_equal(dea_run_read(ctx, command_out, &run), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(run->result, "3d", "transient");
+  const int gauge = dea_column_find(ctx, "gauge_stretch");
+  assert_true(curve != NULL && curve->count > 3 && gauge >= 0);
+  const struct dea_load_point *p = curve->points, *last = &p[curve->count - 1];
+  assert_close(p[1].time_s, 0, 0, 0);
+  assert_close(dea_point_get(&p[0], gauge), 1, 1e-9, 0);
+  assert_close(dea_point_get(&p[1], gauge), pure_shear(1.2, 2e7, 356.8e3), 1e-8, 0);
+  assert_close(last->time_s, 1, 1e-12, 0);
+  assert_true(dea_point_get(last, gauge) > 1.006 && dea_point_get(last, gauge) < 1.008);
+  dea_run_destroy(ctx, run);
+  dea_context_destroy(ctx);
 }
 
 /* One disc in both forms, and that disc exactly: the same law of breakdown, of the same area. */

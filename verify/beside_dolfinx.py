@@ -190,8 +190,8 @@ def measured(words, ranks=1):
 def run_dea(dea, design, options, folder, ranks=1):
     """Facts of model 3d at the voltage."""
     facts = measured([dea, "run", design, "--model", "3d", "--no-figures", "--quiet", "-o", folder, *options], ranks)
-    with open(os.path.join(folder, "3d_sweep_monitors.csv"), encoding="utf-8") as table:
-        z = {row["monitor"]: float(row["z (um)"]) for row in csv.DictReader(table)}
+    with open(os.path.join(folder, "3d_sweep.csv"), encoding="utf-8") as table:
+        z = {place: float(row[f"{place} z (um)"]) for row in csv.DictReader(table) for place in PLACES}
     return {"wall_s": max(f["wall_s"] for f in facts), "cpu_s": sum(f["cpu_s"] for f in facts),
             "memory_GB": sum(f["memory_GB"] for f in facts), "z_um": z}
 

@@ -183,19 +183,13 @@ def number(row, key):
 def read(folder):
     """{(quantity, unit, kV): (value, stated error)} of a run."""
     out = {}
-    if not (folder / "3d_sweep_monitors.csv").exists():
-        for r in rows_of(folder / "3d_sweep.csv"):
-            for key, short in DISC.items():
-                out[short, "um", number(r, "V (kV)")] = (number(r, key), number(r, "error of " + key))
-        return out
-    for r in rows_of(folder / "3d_sweep_monitors.csv"):
-        for keys, error, unit in ((("x (um)", "y (um)", "z (um)"), "error (um)", "um"),
-                                  (("stretch", "area stretch"), "stretch error", "1")):
-            values = [number(r, k) for k in keys]
-            values = [v for v in values if not math.isnan(v)]
-            if values and not math.isnan(number(r, error)):
-                name = r["monitor"] + (", stretch" if unit == "1" else "")
-                out[name, unit, number(r, "V (kV)")] = (max(values, key=abs), number(r, error))
+    for r in rows_of(folder / "3d_sweep.csv"):
+        for error in [key for key in r if key.startswith("error of ")]:
+            q = error.removeprefix("error of ")
+            monitor, component = q.split(" (")[0].rsplit(" ", 1)
+            name = DISC.get(q) or (monitor if component in "xyz" else monitor.removesuffix(" area") + ", stretch")
+            if q in DISC or not math.isnan(number(r, error)):
+                out[name, "um" if "(um)" in q else "1", number(r, "V (kV)")] = (number(r, q), number(r, error))
     return out
 
 

@@ -213,23 +213,16 @@ def number(row, key):
 
 def read(folder):
     """Values and estimated errors {quantity: {kV: (value, error)}} of a run, and {kV: flags}."""
-    flags, out = {number(r, "V (kV)"): r["flags"] for r in rows_of(folder / "3d_sweep.csv")}, {}
-    if not (folder / "3d_sweep_monitors.csv").exists():
-        for r in rows_of(folder / "3d_sweep.csv"):
-            for q in DISC:
-                if not math.isnan(number(r, q)):
-                    out.setdefault(SHORT[q], {})[number(r, "V (kV)")] = (number(r, q), number(r, "error of " + q))
-        return out, flags
-    table = rows_of(folder / "3d_sweep_monitors.csv")
-    for monitor in dict.fromkeys(r["monitor"] for r in table):
-        mine = [r for r in table if r["monitor"] == monitor]
-        for keys, error in ((("x (um)", "y (um)", "z (um)"), "error (um)"),
-                            (("stretch", "area stretch"), "stretch error")):
-            if all(math.isnan(number(r, error)) for r in mine):
-                continue
-            key = max(keys, key=lambda k, last=mine[-1]: -1 if math.isnan(number(last, k)) else abs(number(last, k)))
-            out[monitor + ("" if error == "error (um)" else ", stretch")] = {
-                number(r, "V (kV)"): (number(r, key), number(r, error)) for r in mine}
+    table = rows_of(folder / "3d_sweep.csv")
+    flags, out = {number(r, "V (kV)"): r["flags"] for r in table}, {}
+    for error in [key for key in table[0] if key.startswith("error of ")]:
+        q = error.removeprefix("error of ")
+        if math.isnan(number(table[-1], error)) or q in DISC and math.isnan(number(table[-1], q)):
+            continue
+        monitor, component = q.split(" (")[0].rsplit(" ", 1)
+        name = SHORT[q] if q in DISC else monitor if component in "xyz" else monitor.removesuffix(" area") + ", stretch"
+        out[name] = {
+            number(r, "V (kV)"): (number(r, q), number(r, error)) for r in table}
     return out, flags
 
 

@@ -153,7 +153,7 @@ static struct dea_compare_set *compare(struct dea_context *ctx, const struct tru
   verify_ok(ctx, dea_measured_read(ctx, folder, measured));
   verify_ok(ctx, dea_compare_set_create(ctx, "measured", *measured, NULL, &set));
   verify_ok(ctx, dea_compare_set_add(ctx, set, "lumped", truth->result, "lumped", ""));
-  verify_ok(ctx, dea_compare_set_compute(ctx, set, &(struct dea_compare_ask){0}));
+  verify_ok(ctx, dea_compare_set_compute(ctx, set, NULL, 0));
   for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
     snprintf(path, sizeof path, "%s/%s", folder, files[i]);
     unlink(path);

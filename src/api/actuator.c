@@ -3,6 +3,7 @@
 
 #include "result/columns.h"
 #include "study/force.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -53,7 +54,8 @@ struct dea_actuator_handle {
   struct dea_device *device;
   const struct dea_model_type *type;
   struct dea_model *model;
-  struct dea_load_point point; // the last one
+  struct dea_load_point point;     // the last one
+  struct dea_monitor_set monitors; // whose values it lends
   struct door_mesh *mesh;
 };
 
@@ -65,6 +67,7 @@ void dea_actuator_free(dea_actuator *actuator)
     if (actuator->model != NULL) {
       actuator->type->destroy(ctx, actuator->model);
     }
+    dea_monitor_set_free(&actuator->monitors);
     dea_device_destroy(ctx, actuator->device);
     dea_design_destroy(ctx, actuator->design);
     dea_free(ctx, actuator);
@@ -90,6 +93,9 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
     status = dea_model_create(inner, actuator->type, actuator->design, actuator->device,
                               &actuator->model);
   }
+  status = status == DEA_OK
+               ? dea_monitor_set_init(inner, actuator->type, actuator->device, &actuator->monitors)
+               : status;
   if (status != DEA_OK) {
     dea_actuator_free(actuator);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
@@ -114,6 +120,8 @@ dea_status dea_actuator_solve(dea_context *ctx, dea_actuator *actuator, double v
   DOOR_CHECK(ctx, {"voltage_V", &voltage_V, 1, false});
   struct dea_load_point point;
   DEA_TRY(ctx->inner, actuator->type->solve(ctx->inner, actuator->model, voltage_V, &point));
+  DEA_TRY(ctx->inner, dea_monitor_set_read(ctx->inner, &actuator->monitors, actuator->type,
+                                           actuator->model, false, &point));
   actuator->point = point;
   return DEA_OK;
 }
@@ -144,17 +152,20 @@ dea_status dea_actuator_indent(dea_context *ctx, dea_actuator *actuator, dea_ind
 dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, const char *key,
                             double *out)
 {
-  int column = dea_point_column_find(key);
+  int column = dea_column_find(ctx->inner, key);
   const struct dea_point_state *state = dea_point_state_find(key);
   *out = NAN;
   if (state != NULL) {
     *out = state->get(&actuator->point);
   } else if (column < 0) {
-    const char *known[DEA_LOAD_POINT_COLUMNS];
-    for (int i = 0; i < DEA_LOAD_POINT_COLUMNS; i++) {
-      known[i] = dea_point_columns[i].key;
+    const char **known = dea_column_keys(ctx->inner);
+    if (known == NULL) {
+      return DEA_E_MEMORY;
     }
-    return door_unknown(ctx, "quantity", key, known, DEA_LOAD_POINT_COLUMNS);
+    dea_status status =
+        door_unknown(ctx, "quantity", key, known, (size_t)dea_column_count(ctx->inner));
+    dea_free(ctx->inner, known);
+    return status;
   } else {
     *out = dea_point_get(&actuator->point, column);
   }

@@ -241,14 +241,15 @@ typedef struct {
 } dea_array;
 
 /* Arrays are named by model, study and quantity:
- *   MODEL/STUDY/KEY           of each point; keys as in docs/results.md, and stable (1 or 0),
- *                             unstable_modes, trusted (1 or 0), flags (a sum of powers of two)
- *   MODEL/STUDY/KIND/KEY      where its path turns or ends: KIND pull_in, snap_back, slack,
- * breakdown MODEL/profiles/NNNN/KEY   along the radius, NNNN counts the points of the sweep from
- * 0000 MODEL/STUDY/NNNN/KEY      of studies convergence and compare-design, one NNNN a mesh or
- * design */
+ *   MODEL/STUDY/KEY           of each point; keys as in docs/results.md, those of a device's
+ * monitors (hub_z_m) and channels too, and stable (1 or 0), unstable_modes, trusted (1 or 0), flags
+ * (a sum of powers of two) MODEL/STUDY/KIND/KEY      where its path turns or ends: KIND pull_in,
+ * snap_back, slack, breakdown MODEL/profiles/NNNN/KEY   along the radius, NNNN counts the points of
+ * the sweep from 0000 MODEL/STUDY/NNNN/KEY      of studies convergence and compare-design, one NNNN
+ * a mesh or design */
 const dea_array *dea_result_array_at(const dea_result *result, size_t index);
-/* DEA_E_ARGUMENT when there is none of that name. */
+/* Of a monitor or channel the unit at the end may be left out: 3d/sweep/hub_z. DEA_E_ARGUMENT when
+ * there is none of that name. */
 dea_status dea_result_array(dea_context *ctx, const dea_result *result, const char *name,
                             const dea_array **out);
 /* Texts: title, file, design (the text), set ("key=value" a line), program, libraries, started,

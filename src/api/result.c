@@ -108,13 +108,14 @@ static void add_points(struct filling *f, const struct dea_load_point *points, s
                        size_t count)
 {
   const char *bytes = (const char *)points;
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && count > 0; c++) {
+  const struct dea_context *ctx = f->result->ctx->inner;
+  for (int c = 0; c < dea_column_count(ctx) && count > 0; c++) {
     bool any = false;
     for (size_t i = 0; i < count && !any; i++) {
       const void *at = bytes + i * stride;
       any = !isnan(dea_point_get(at, c));
     }
-    double *values = any ? add_array(f, &dea_point_columns[c], count) : NULL;
+    double *values = any ? add_array(f, dea_column_at(ctx, c), count) : NULL;
     for (size_t i = 0; i < count && values != NULL; i++) {
       values[i] = dea_point_get((const void *)(bytes + i * stride), c);
     }
@@ -337,9 +338,15 @@ const dea_array *dea_result_array_at(const dea_result *result, size_t index)
 dea_status dea_result_array(dea_context *ctx, const dea_result *result, const char *name,
                             const dea_array **out)
 {
+  const char *key = strrchr(name, '/');
+  const int column = key != NULL ? dea_column_find(ctx->inner, key + 1) : -1; // "hub_z"
   *out = NULL;
   for (size_t i = 0; i < result->array_count; i++) {
-    if (strcmp(result->arrays[i]->name, name) == 0) {
+    const char *full = result->arrays[i]->name;
+    const size_t folder = key != NULL ? (size_t)(key + 1 - name) : 0;
+    if (strcmp(full, name) == 0 ||
+        (column >= 0 && strncmp(full, name, folder) == 0 &&
+         strcmp(full + folder, dea_column_at(ctx->inner, column)->key) == 0)) {
       *out = result->arrays[i];
       return DEA_OK;
     }

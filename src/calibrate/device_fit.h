@@ -34,7 +34,8 @@ struct dea_device_curve {
   const struct dea_device_curve_text *text; // lent
   const char *file;                         // interned
   char sha256[65];
-  int column; // of dea_point_columns
+  int column;                        // of the context
+  const struct dea_column *quantity; // that; lent
   size_t rows;
   size_t *line, *stop;                                // line in the file; point of the model
   double *voltage_V, *time_s, *depth_m, *value, *std; // time_s, depth_m, std: NAN: there is none

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SIDES_MAX = 17, QUANTITIES_MAX = DEA_LOAD_POINT_COLUMNS };
+enum { SIDES_MAX = 17 };
 
 /* Models asked for: of the runs, of the reference. */
 struct models {
@@ -17,17 +17,10 @@ struct models {
   char at[DEA_DESIGN_MODELS_MAX][2][DEA_NAME_SIZE];
 };
 
-struct columns {
-  size_t count;
-  int at[QUANTITIES_MAX];
-  size_t monitor_count;
-  const char *monitors[QUANTITIES_MAX]; // "hub.z_m"
-};
-
 struct request {
   struct cli_words names; // runs, and last what they are compared with
   struct models models;
-  struct columns columns;
+  struct cli_words quantities;
   double tolerance;   // NAN for none
   const char *output; // folder; NULL for none
   struct dea_plot_format format;
@@ -41,43 +34,6 @@ struct side {
 };
 
 // Command line -----------------------------------------------------------------------------------
-
-static int take_quantity(struct dea_cli *cli, const struct dea_command *command,
-                         const struct cli_option *option, const char *text, void *target)
-{
-  struct columns *columns = target;
-  int column = dea_point_column_find(text);
-  (void)option;
-  if (column >= 0) {
-    if (columns->count == QUANTITIES_MAX) {
-      return cli_usage_error(cli, command, "too many quantities");
-    }
-    columns->at[columns->count++] = column;
-    return 0;
-  }
-  if (strchr(text, '.') != NULL) { // of a monitor; of which there are the runs say
-    if (columns->monitor_count == QUANTITIES_MAX) {
-      return cli_usage_error(cli, command, "too many quantities");
-    }
-    columns->monitors[columns->monitor_count++] = text;
-    return 0;
-  }
-  const char *keys[DEA_LOAD_POINT_COLUMNS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    keys[c] = dea_point_columns[c].key;
-  }
-  const char *nearest = dea_nearest_name(text, keys, DEA_LOAD_POINT_COLUMNS);
-  struct dea_text all = {.ctx = cli->ctx};
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && nearest == NULL; c++) {
-    dea_text_add(&all, "%s%s", c > 0 ? ", " : "", keys[c]);
-  }
-  int code =
-      cli_usage_error(cli, command, "'%s' is not a quantity; %s%s%s", text,
-                      nearest != NULL ? "did you mean '" : "there are ",
-                      nearest != NULL ? nearest : dea_text_get(&all), nearest != NULL ? "'?" : "");
-  dea_text_free(&all);
-  return code;
-}
 
 /* "5%" or "0.05". */
 static int take_tolerance(struct dea_cli *cli, const struct dea_command *command,
@@ -108,6 +64,38 @@ static int take_models(struct dea_cli *cli, const struct dea_command *command,
   return 0;
 }
 
+/* Says of which quantities there are, or which of them is near. */
+static dea_status no_quantity(struct dea_context *ctx, const char *text)
+{
+  const size_t count = (size_t)dea_column_count(ctx);
+  struct dea_text all = {.ctx = ctx};
+  const char **keys = dea_column_keys(ctx);
+  if (keys == NULL) {
+    return DEA_E_MEMORY;
+  }
+  const char *nearest = dea_nearest_name(text, keys, count);
+  for (size_t c = 0; c < count && nearest == NULL; c++) {
+    dea_text_add(&all, "%s%s", c > 0 ? ", " : "", keys[c]);
+  }
+  dea_free(ctx, keys);
+  const dea_status status =
+      dea_fail(ctx, DEA_E_ARGUMENT, "'%.80s' is not a quantity; %s%s%s", text,
+               nearest != NULL ? "did you mean '" : "there are ",
+               nearest != NULL ? nearest : dea_text_get(&all), nearest != NULL ? "'?" : "");
+  dea_text_free(&all);
+  return status;
+}
+
+/* Columns of the quantities asked for [quantities.count]; which there are the runs say. */
+static dea_status find_columns(struct dea_context *ctx, const struct request *request, int *out)
+{
+  for (size_t i = 0; i < request->quantities.count; i++) {
+    out[i] = dea_column_find(ctx, request->quantities.at[i]);
+    DEA_TRY(ctx, out[i] >= 0 ? DEA_OK : no_quantity(ctx, request->quantities.at[i]));
+  }
+  return DEA_OK;
+}
+
 // What is compared --------------------------------------------------------------------------------
 
 /* True for a run: a folder, a store by its name or its first bytes. */
@@ -132,20 +120,23 @@ static bool is_pair(const struct request *request)
 static dea_status read_sides(struct dea_context *ctx, const struct request *request,
                              struct side *sides)
 {
+  bool run = false; // whose voltages are not below 0
   for (size_t i = 0; i < request->names.count; i++) {
     const char *name = request->names.at[i];
     if (dea_measured_is_folder(name) && i + 1 < request->names.count) {
       return dea_fail(ctx, DEA_E_ARGUMENT, "%s is a measurement: name it last, and runs before it",
                       name);
     }
-    bool run = is_run(name) && !dea_measured_is_folder(name);
-    DEA_TRY(ctx, run || (i + 1 < request->names.count && !is_pair(request))
-                     ? dea_run_read(ctx, name, &sides[i].run)
-                     : dea_measured_read(ctx, name, &sides[i].measured));
+    if ((is_run(name) && !dea_measured_is_folder(name)) ||
+        (i + 1 < request->names.count && !is_pair(request))) {
+      DEA_TRY(ctx, dea_run_read(ctx, name, &sides[i].run));
+      run = true;
+    }
   }
-  bool run = false; // whose voltages are not below 0
-  for (size_t i = 0; i < request->names.count; i++) {
-    run = run || sides[i].run != NULL;
+  for (size_t i = 0; i < request->names.count; i++) { // whose columns are those of the runs
+    DEA_TRY(ctx, sides[i].run != NULL
+                     ? DEA_OK
+                     : dea_measured_read(ctx, request->names.at[i], &sides[i].measured));
   }
   for (size_t i = 0; i < request->names.count && run; i++) {
     DEA_TRY(ctx, sides[i].measured == NULL ? DEA_OK : dea_measured_fold(ctx, sides[i].measured));
@@ -301,7 +292,8 @@ static void print_row(const char *name, const struct dea_misfit *m, double at_fa
 }
 
 /* Prints the misfits of a quantity; true when some has uncertainties. */
-static bool print_quantity(const struct dea_compare_set *set, int column, double tolerance)
+static bool print_quantity(const struct dea_context *ctx, const struct dea_compare_set *set,
+                           int column, double tolerance)
 {
   const struct dea_misfit *rows[DEA_SET_CURVES_MAX] = {NULL};
   bool any = false, std = false;
@@ -316,8 +308,8 @@ static bool print_quantity(const struct dea_compare_set *set, int column, double
     }
   }
   if (any) {
-    char title[96];
-    dea_column_title(&dea_point_columns[column], title, sizeof title);
+    char title[DEA_COLUMN_TITLE_SIZE];
+    dea_column_title(dea_column_at(ctx, column), title, sizeof title);
     print_head(title, "at kV", std);
   }
   for (size_t i = 0; i < set->curve_count; i++) {
@@ -326,30 +318,6 @@ static bool print_quantity(const struct dea_compare_set *set, int column, double
     }
   }
   return std;
-}
-
-/* A table for each thing that a monitor shows, in the order in which they come first. */
-static void print_monitors(const struct dea_compare_set *set, double tolerance)
-{
-  for (size_t i = 0; i < set->monitor_count; i++) {
-    const char *key = set->monitors[i]->quantity.key;
-    bool first = true;
-    for (size_t k = 0; k < i; k++) {
-      first = first && strcmp(set->monitors[k]->quantity.key, key) != 0;
-    }
-    if (!first) {
-      continue;
-    }
-    char title[96];
-    dea_column_title(&set->monitors[i]->quantity, title, sizeof title);
-    print_head(title, "at kV", false);
-    for (size_t k = i; k < set->monitor_count; k++) {
-      const struct dea_set_monitor *m = set->monitors[k];
-      if (strcmp(m->quantity.key, key) == 0) {
-        print_row(set->curves[m->curve].name, dea_set_monitor_misfit(m), 1e-3, tolerance);
-      }
-    }
-  }
 }
 
 static bool print_profiles(const struct dea_compare_set *set)
@@ -383,8 +351,8 @@ static void print_histories(const struct dea_compare_set *set)
         continue;
       }
       if (first) {
-        char title[96], text[112];
-        dea_column_title(&dea_point_columns[h->misfit.column], title, sizeof title);
+        char title[DEA_COLUMN_TITLE_SIZE], text[DEA_COLUMN_TITLE_SIZE + 16];
+        dea_column_title(h->misfit.quantity, title, sizeof title);
         snprintf(text, sizeof text, "%s in time", title);
         print_head(text, "at s", false);
         first = false;
@@ -398,7 +366,7 @@ static void print_histories(const struct dea_compare_set *set)
 static bool print_pair(const struct dea_compare_set *set, size_t curve, double tolerance)
 {
   const struct dea_comparison *c = set->curves[curve].comparison;
-  char beside[DEA_LABEL_SIZE], title[96];
+  char beside[DEA_LABEL_SIZE], title[DEA_COLUMN_TITLE_SIZE];
   bool std = false;
   dea_compare_set_beside(set, curve, beside);
   for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
@@ -409,12 +377,6 @@ static bool print_pair(const struct dea_compare_set *set, size_t curve, double t
   for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
     dea_column_title(c->misfits[i].quantity, title, sizeof title);
     print_row(title, &c->misfits[i], 1e-3, tolerance);
-  }
-  for (size_t i = 0; i < set->monitor_count; i++) {
-    if (set->monitors[i]->curve == curve) {
-      dea_column_title(&set->monitors[i]->quantity, title, sizeof title);
-      print_row(title, dea_set_monitor_misfit(set->monitors[i]), 1e-3, tolerance);
-    }
   }
   return std;
 }
@@ -433,7 +395,8 @@ static bool has_model_std(const struct dea_compare_set *set)
   return false;
 }
 
-static void print_tables(const struct dea_compare_set *set, double tolerance)
+static void print_tables(const struct dea_context *ctx, const struct dea_compare_set *set,
+                         double tolerance)
 {
   bool std = false;
   for (size_t i = 0; set->pairs && i < set->curve_count; i++) {
@@ -443,11 +406,8 @@ static void print_tables(const struct dea_compare_set *set, double tolerance)
     printf("Each curve minus %s%s\n", set->reference,
            set->measured != NULL ? ", as measured" : " (a run)");
   }
-  for (int c = 0; !set->pairs && c < DEA_LOAD_POINT_COLUMNS; c++) {
-    std = print_quantity(set, c, tolerance) || std;
-  }
-  if (!set->pairs) {
-    print_monitors(set, tolerance);
+  for (int c = 0; !set->pairs && c < dea_column_count(ctx); c++) {
+    std = print_quantity(ctx, set, c, tolerance) || std;
   }
   std = print_profiles(set) || std;
   print_histories(set);
@@ -488,17 +448,16 @@ static dea_status compare(struct dea_context *ctx, const struct request *request
 {
   DEA_TRY(ctx,
           set->pairs ? fill_pairs(ctx, request, sides, set) : fill_set(ctx, request, sides, set));
-  const struct columns *columns = &request->columns;
-  const struct dea_compare_ask ask = {columns->at, columns->count, columns->monitors,
-                                      columns->monitor_count};
-  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, &ask));
+  int columns[CLI_WORDS_MAX];
+  DEA_TRY(ctx, find_columns(ctx, request, columns));
+  DEA_TRY(ctx, dea_compare_set_compute(ctx, set, columns, request->quantities.count));
   if (request->json) {
     char *text;
     DEA_TRY(ctx, dea_json_text(ctx, dea_compare_set_json(set, request->tolerance), &text));
     fputs(text, stdout);
     dea_free(ctx, text);
   } else {
-    print_tables(set, request->tolerance);
+    print_tables(ctx, set, request->tolerance);
   }
   if (request->output != NULL) {
     DEA_TRY(ctx, dea_compare_set_draw(ctx, set, &request->format, request->output));
@@ -545,8 +504,8 @@ static const struct cli_option options[] = {
     {"tolerance", 0, CLI_TEXT, "SHARE", "largest difference allowed, such as 5%", CLI_AT(tolerance),
      take_tolerance},
     {"quantity", 0, CLI_QUANTITY, "KEY",
-     "only this quantity, such as fibre_tip_z_m, or hub.z_m of a monitor; can be repeated",
-     CLI_AT(columns), take_quantity, .most = QUANTITIES_MAX},
+     "only this quantity, such as fibre_tip_z_m, or hub_z_m of a monitor; can be repeated",
+     CLI_AT(quantities), .most = CLI_WORDS_MAX, .too_many = "too many quantities"},
     {"model", 0, CLI_MODEL, "MODEL",
      "only this model; can be repeated. lumped:axisymmetric takes one of A, the other of B. There "
      "are",

@@ -10,6 +10,7 @@
 #include "output/csv.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
+#include "result/observation.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
 #include "study/study.h"
@@ -18,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STUDIES_MAX = 8, TABLE_ROWS = 9 };
+enum { STUDIES_MAX = 8, TABLE_ROWS = 9, SHOWN_MAX = 4, SHOWN_WIDTH = 16 };
 static const char sensitivity_name[] = "sensitivity";
 
 struct request {
@@ -206,13 +207,35 @@ static void print_tip(const struct dea_load_point *p)
   printf("%12s", text);
 }
 
-/* general: of a device of any layout, in place of what a disc has. */
-static void print_row(const struct dea_load_point *p, bool general)
+/* Columns of a device of any layout in place of what a disc has: what its monitors show, or without
+ * any how far the film goes. */
+struct shown {
+  int columns[SHOWN_MAX];
+  size_t count;
+};
+
+static struct shown find_shown(const struct dea_context *ctx, const struct dea_curve *sweep)
+{
+  struct shown shown;
+  shown.count = dea_curve_headlines(ctx, sweep, shown.columns, SHOWN_MAX);
+  if (shown.count == 0) {
+    shown = (struct shown){
+        {dea_point_column_find("lowest_z_m"), dea_point_column_find("highest_z_m")}, 2};
+  }
+  return shown;
+}
+
+/* shown: of a device of any layout; NULL: of a disc. */
+static void print_row(const struct dea_context *ctx, const struct dea_load_point *p,
+                      const struct shown *shown)
 {
   print_cell(p->voltage_V, 1e-3, 9, 3);
-  if (general) {
-    print_cell(p->lowest_z_m, 1e6, 12, 1);
-    print_cell(p->highest_z_m, 1e6, 12, 1);
+  if (shown != NULL) {
+    for (size_t i = 0; i < shown->count; i++) {
+      const struct dea_column *c = dea_column_at(ctx, shown->columns[i]);
+      print_cell(dea_point_get(p, shown->columns[i]), c->factor, SHOWN_WIDTH,
+                 strcmp(c->si_unit, "m") == 0 ? 1 : 4);
+    }
   } else {
     print_cell(p->electrode_stretch, 1, 10, 5);
     print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
@@ -241,12 +264,28 @@ static size_t row_step(size_t count)
   }
 }
 
-/* A few rows of the sweep, the last one among them. */
-static void print_sweep(const struct dea_curve *sweep, bool general)
+/* Titles and units of the columns before the field. */
+static void print_shown(const struct dea_context *ctx, const struct shown *shown)
 {
+  printf("%9s", "V");
+  for (size_t i = 0; i < shown->count; i++) {
+    printf(" %*.*s", SHOWN_WIDTH - 1, SHOWN_WIDTH - 1,
+           dea_column_at(ctx, shown->columns[i])->header);
+  }
+  printf("%12s%10s%10s\n%9s", "field", "margin", "tension", "kV");
+  for (size_t i = 0; i < shown->count; i++) {
+    const char *unit = dea_column_at(ctx, shown->columns[i])->display_unit;
+    printf("%*s", SHOWN_WIDTH, strcmp(unit, "1") == 0 ? "" : unit);
+  }
+  printf("%12s%10s%10s\n", "V/um", "%", "N/m");
+}
+
+/* A few rows of the sweep, the last one among them. */
+static void print_sweep(const struct dea_context *ctx, const struct dea_curve *sweep, bool general)
+{
+  const struct shown shown = find_shown(ctx, sweep);
   if (general) {
-    printf("%9s%12s%12s%12s%10s%10s\n", "V", "lowest z", "highest z", "field", "margin", "tension");
-    printf("%9s%12s%12s%12s%10s%10s\n", "kV", "um", "um", "V/um", "%", "N/m");
+    print_shown(ctx, &shown);
   } else {
     printf("%9s%10s%12s%12s%12s%10s%10s\n", "V", "stretch", "u edge", "z tip", "field", "margin",
            "tension");
@@ -254,13 +293,14 @@ static void print_sweep(const struct dea_curve *sweep, bool general)
   }
   size_t step = row_step(sweep->count);
   for (size_t i = 0; i + 1 < sweep->count; i += step) {
-    print_row(&sweep->points[i], general);
+    print_row(ctx, &sweep->points[i], general ? &shown : NULL);
   }
-  print_row(&sweep->points[sweep->count - 1], general);
+  print_row(ctx, &sweep->points[sweep->count - 1], general ? &shown : NULL);
 }
 
 /* The sweep, or how long the path is where that was asked for alone, and the path's events. */
-static void print_model(const struct dea_result *result, const char *model)
+static void print_model(const struct dea_context *ctx, const struct dea_result *result,
+                        const char *model)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   const struct dea_curve *path = dea_result_find(result, model, "path");
@@ -269,7 +309,7 @@ static void print_model(const struct dea_result *result, const char *model)
   }
   printf("\n%s\n", model);
   if (sweep != NULL && sweep->count > 0) {
-    print_sweep(sweep, result->device->general);
+    print_sweep(ctx, sweep, result->device->general);
   } else if (sweep == NULL && path->count > 0) {
     double highest_V = 0;
     for (size_t i = 0; i < path->count; i++) {
@@ -310,7 +350,7 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
   if (!request->json) {
     puts(run->design->title.text);
     for (size_t i = 0; i < run->job.model_count; i++) {
-      print_model(run->result, run->job.models[i]->name);
+      print_model(ctx, run->result, run->job.models[i]->name);
       DEA_TRY(ctx, cli_print_tables(ctx, run->result, run->job.models[i]->name));
     }
     if (!cli->quiet &&

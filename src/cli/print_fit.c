@@ -212,7 +212,7 @@ static void print_curves(const struct dea_device_fit *fit)
   putchar('\n');
   for (size_t c = 0; c < fit->curve_count; c++) {
     const struct dea_device_curve *curve = &fit->curves[c];
-    const struct dea_column *column = &dea_point_columns[curve->column];
+    const struct dea_column *column = curve->quantity;
     const bool bare = strcmp(column->display_unit, "1") == 0;
     printf("%-20s %-20s %-7s %3zu rows", curve->text->name.text, column->key,
            curve->text->use.value == DEA_FIT_USED ? "fitted" : "checked", curve->rows);

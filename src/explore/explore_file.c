@@ -129,8 +129,8 @@ static const struct dea_field file_fields[] = {
      .element_size = sizeof(struct dea_label),
      .count_offset = AT(quantity_count),
      .required = true,
-     .doc = "keys of the quantities that are kept, as dea compare --quantity has them, and "
-            "MONITOR.KEY of what a monitor shows (plate.turn_y_rad); force_N: "
+     .doc = "keys of the quantities that are kept, as dea compare --quantity has them, "
+            "those of monitors and channels (plate_turn_y_rad); force_N: "
             "with the tip of compute.force held at its first depth; frequency_Hz: of the lowest "
             "mode (model 3d); slack_voltage_V, "
             "breakdown_voltage_V, pull_in_voltage_V, buckling_voltage_V: where the film comes to "

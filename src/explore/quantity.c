@@ -2,28 +2,9 @@
 
 #include "base/text.h"
 #include "study/critical.h"
-#include "study/observe.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static const struct dea_result_column motions[] = {DEA_OBSERVED_COLUMNS};
-
-/* Whether a monitor has such a quantity. */
-static bool has(enum dea_layout_monitor_kind kind, int observed)
-{
-  switch (kind) {
-  case DEA_MONITOR_POINT:
-    return observed <= DEA_OBSERVED_Z;
-  case DEA_MONITOR_LINE:
-    return observed == DEA_OBSERVED_STRETCH;
-  case DEA_MONITOR_REGION:
-    return observed <= DEA_OBSERVED_Z ||
-           (observed >= DEA_OBSERVED_STRETCH_X && observed <= DEA_OBSERVED_AREA_STRETCH);
-  default:
-    return observed <= DEA_OBSERVED_TURN_Z || observed >= DEA_OBSERVED_FORCE_X;
-  }
-}
 
 dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *label,
                                const char *what, const char *const names[], size_t count)
@@ -36,25 +17,53 @@ dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *
 
 static dea_status no_quantity(struct dea_context *ctx, const struct dea_label *label)
 {
-  const char *keys[DEA_LOAD_POINT_COLUMNS + DEA_CRITICAL_KINDS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    keys[c] = dea_point_columns[c].key;
+  const size_t count = (size_t)dea_column_count(ctx);
+  const char **keys = dea_column_keys(ctx);
+  const char **all =
+      keys != NULL ? dea_resize(ctx, keys, count + DEA_CRITICAL_KINDS, sizeof *all) : NULL;
+  if (all == NULL) {
+    dea_free(ctx, keys);
+    return DEA_E_MEMORY;
   }
-  for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
-    keys[DEA_LOAD_POINT_COLUMNS + i] = dea_critical_kinds[i].key;
+  for (size_t i = 0; i < DEA_CRITICAL_KINDS; i++) {
+    all[count + i] = dea_critical_kinds[i].key;
   }
-  return dea_explore_unknown(ctx, label, "quantity", keys,
-                             DEA_LOAD_POINT_COLUMNS + DEA_CRITICAL_KINDS);
+  const dea_status status =
+      dea_explore_unknown(ctx, label, "quantity", all, count + DEA_CRITICAL_KINDS);
+  dea_free(ctx, all);
+  return status;
 }
 
-/* What a monitor does have. */
-static dea_status no_motion(struct dea_context *ctx, const struct dea_label *label,
-                            const struct dea_layout_monitor *monitor)
+/* Monitor whose name or part of a key the text begins with; NULL: none. */
+static const struct dea_layout_monitor *monitor_of(const struct dea_device *device,
+                                                   const char *text)
 {
+  const struct dea_layout *layout = device->layout;
+  for (size_t i = 0; device->general && i < layout->monitor_count; i++) {
+    const struct dea_layout_monitor *monitor = &layout->monitors[i];
+    char part[DEA_KEY_PART_SIZE];
+    const size_t length = strlen(monitor->name);
+    dea_key_part(monitor->name, part);
+    if ((strncmp(text, monitor->name, length) == 0 && text[length] == '.') ||
+        (strncmp(text, part, strlen(part)) == 0 && text[strlen(part)] == '_')) {
+      return monitor;
+    }
+  }
+  return NULL;
+}
+
+/* What a monitor does have; of no monitor the nearest quantity. */
+static dea_status refuse(struct dea_context *ctx, const struct dea_device *device,
+                         const struct dea_label *label)
+{
+  const struct dea_layout_monitor *monitor = monitor_of(device, label->text);
   struct dea_text known = {.ctx = ctx};
+  if (monitor == NULL) {
+    return no_quantity(ctx, label);
+  }
   for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
-    if (has(monitor->kind, k)) {
-      dea_text_add(&known, "%s%s", known.length > 0 ? ", " : "", motions[k].key);
+    if (dea_observed_has(monitor->kind, (enum dea_observed)k)) {
+      dea_text_add(&known, "%s%s", known.length > 0 ? ", " : "", dea_observed_columns[k].key);
     }
   }
   const dea_status status = known.failed
@@ -66,66 +75,48 @@ static dea_status no_motion(struct dea_context *ctx, const struct dea_label *lab
   return status;
 }
 
-static dea_status of_monitor(struct dea_context *ctx, const struct dea_layout *layout,
-                             const struct dea_label *label, const char *dot,
-                             struct dea_explored *out, bool *good)
+static bool find_critical(struct dea_explored *out)
 {
-  const size_t length = (size_t)(dot - label->text);
-  const struct dea_layout_monitor *monitor = NULL;
-  for (size_t i = 0; i < layout->monitor_count; i++) {
-    const char *name = layout->monitors[i].name;
-    if (strlen(name) == length && memcmp(name, label->text, length) == 0) {
-      monitor = &layout->monitors[i];
-      out->monitor = i;
-    }
-  }
-  if (monitor == NULL) {
-    return dea_finding_add(ctx, DEA_ERROR, label->location,
-                           "'%.60s' is no quantity: the design has no monitor '%.*s'", label->text,
-                           (int)(length < 40 ? length : 40), label->text);
-  }
-  for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
-    if (strcmp(motions[k].key, dot + 1) == 0 && has(monitor->kind, k)) {
-      out->observed = (enum dea_observed)k;
-      out->column = -1;
-      snprintf(out->header, sizeof out->header, "%.40s %s", monitor->name, motions[k].title);
+  for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
+    const struct dea_critical_kind *critical = &dea_critical_kinds[i];
+    if (strcmp(out->key, critical->key) == 0) {
+      out->is_critical = true;
+      out->event = critical->kind;
       out->shown =
-          (struct dea_column){out->key,          motions[k].si_unit, motions[k].display_unit,
-                              motions[k].factor, out->header,        motions[k].meaning};
-      *good = true;
-      return DEA_OK;
+          (struct dea_column){out->key, "V", "kV", 1e-3, critical->title, critical->meaning};
+      return true;
     }
   }
-  return no_motion(ctx, label, monitor);
+  return false;
 }
 
 dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *device,
                              const struct dea_label *label, struct dea_explored *out, bool *good)
 {
-  const char *dot = strrchr(label->text, '.');
   *good = false;
-  *out = (struct dea_explored){.column = dea_point_column_find(label->text)};
+  *out = (struct dea_explored){.column = -1};
   if (strlen(label->text) >= sizeof out->key) {
     return no_quantity(ctx, label);
   }
   snprintf(out->key, sizeof out->key, "%.79s", label->text);
-  if (out->column >= 0) {
-    out->shown = dea_point_columns[out->column];
-    out->is_frequency = strcmp(out->key, "frequency_Hz") == 0;
+  if (find_critical(out)) {
     *good = true;
     return DEA_OK;
   }
-  for (int i = 0; i < DEA_CRITICAL_KINDS; i++) {
-    const struct dea_critical_kind *critical = &dea_critical_kinds[i];
-    if (strcmp(label->text, critical->key) == 0) {
-      out->is_critical = true;
-      out->event = critical->kind;
-      out->shown =
-          (struct dea_column){out->key, "V", "kV", 1e-3, critical->title, critical->meaning};
-      *good = true;
-      return DEA_OK;
-    }
+  if (device->general) { // adds its columns to those that are looked through
+    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, -1, &out->of, &out->is_seen));
   }
-  return dot != NULL && device->general ? of_monitor(ctx, device->layout, label, dot, out, good)
-                                        : no_quantity(ctx, label);
+  out->column = dea_column_find(ctx, label->text);
+  if (out->column >= 0 && device->general) {
+    DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, out->column, &out->of, &out->is_seen));
+    out->is_seen = out->is_seen && out->of.source != DEA_OF_MONITOR_ERROR;
+  }
+  if (out->column < 0 || (out->column >= DEA_LOAD_POINT_COLUMNS && !out->is_seen)) {
+    return refuse(ctx, device, label);
+  }
+  out->shown = *dea_column_at(ctx, out->column);
+  out->shown.key = out->key; // as the file has it
+  out->is_frequency = out->column == dea_point_column_find("frequency_Hz");
+  *good = true;
+  return DEA_OK;
 }

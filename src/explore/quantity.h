@@ -13,24 +13,19 @@ dea_status dea_explore_unknown(struct dea_context *ctx, const struct dea_label *
                                const char *what, const char *const names[], size_t count);
 
 struct dea_explored {
-  struct dea_column shown;  // its key and header are the texts below
-  char key[80], header[80]; // "centre_z_m", "plate.turn_y_rad"
-  int column;               // of load points; -1: none of them
-  bool is_frequency;        // that of the lowest mode, which solving leaves out
-  bool is_critical;         // a voltage of the event below
+  struct dea_column shown; // its key is the text below
+  char key[80];            // as the file has it: "centre_z_m", "plate_turn_y_rad"
+  int column;              // of the context; -1: a voltage of an event
+  bool is_frequency;       // that of the lowest mode, which solving leaves out
+  bool is_critical;        // a voltage of the event below
   enum dea_event_kind event;
-  size_t monitor;             // of the layout
-  enum dea_observed observed; // of that monitor
+  bool is_seen; // of a monitor or channel: that below
+  struct dea_monitor_column of;
 };
 
-/* Whether it is of a monitor. */
-static inline bool dea_explored_is_seen(const struct dea_explored *quantity)
-{
-  return quantity->column < 0 && !quantity->is_critical;
-}
-
-/* Finds a quantity by its key, KEY, MONITOR.KEY or EVENT_voltage_V. *good: false after a finding at
- * its place. The texts that `shown` lends are those of *out, which stays where it is. */
+/* Finds a quantity by the key of a column (dea_column_find) or EVENT_voltage_V. *good: false after
+ * a finding at its place. The texts that `shown` lends are those of *out, which stays where it is.
+ */
 dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *device,
                              const struct dea_label *label, struct dea_explored *out, bool *good);
 

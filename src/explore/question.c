@@ -8,6 +8,7 @@
 #include "result/columns.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
+#include "study/observe.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -124,7 +125,8 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
                ->points[question->model.groups[dea_question_is_held(question, i) ? 1 : 0].first +
                         k];
       double *q = &io->q[k * count + i];
-      *q = question->quantities[i].column >= 0 && !question->quantities[i].is_frequency
+      *q = !question->quantities[i].is_critical && !question->quantities[i].is_seen &&
+                   !question->quantities[i].is_frequency
                ? dea_point_get(point, question->quantities[i].column)
                : question->seen[k][i];
       if (isnan(*q) && io->why[0] == '\0' && question->quantities[i].is_critical) {
@@ -191,22 +193,23 @@ static dea_status stand(void *user, struct dea_model *model, const struct dea_de
 {
   struct dea_question *question = user;
   struct dea_context *ctx = question->model.ctx;
-  struct dea_observation observed = {.monitor_count = 0};
+  struct dea_monitor_set set;
+  struct dea_load_point seen = dea_load_point_empty();
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, question->model.type, device, &set));
+  dea_status status = dea_monitor_set_read(ctx, &set, question->model.type, model, false, &seen);
   for (size_t i = 0; i < question->quantity_count && stop < question->voltage_count; i++) {
     const struct dea_explored *quantity = &question->quantities[i];
-    if (dea_explored_is_seen(quantity)) {
-      if (observed.monitor_count == 0) {
-        DEA_TRY(ctx, dea_model_observe(ctx, question->model.type, model, &observed));
-      }
-      question->seen[stop][i] = observed.monitor[quantity->monitor][quantity->observed];
-    } else if (quantity->is_frequency) {
-      DEA_TRY(ctx, find_frequency(question, model, stop, &question->seen[stop][i]));
+    if (quantity->is_seen) {
+      question->seen[stop][i] = dea_point_get(&seen, quantity->column);
+    } else if (quantity->is_frequency && status == DEA_OK) {
+      status = find_frequency(question, model, stop, &question->seen[stop][i]);
     }
   }
+  dea_monitor_set_free(&set);
+  DEA_TRY(ctx, status);
   const struct dea_model_settings settings = dea_model_settings_of(design);
-  dea_status status = stop + 1 == question->voltage_count
-                          ? find_critical(question, &settings, design, device)
-                          : DEA_OK;
+  status = stop + 1 == question->voltage_count ? find_critical(question, &settings, design, device)
+                                               : DEA_OK;
   if (status == DEA_OK && question->stood != NULL) {
     status = question->stood(question, model, device, stop);
   }
@@ -304,7 +307,7 @@ static dea_status take_quantities(struct dea_question *question)
     if (twice) {
       DEA_TRY(question->ctx, dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,
                                              "%s is there twice", out->key));
-    } else if (good && dea_explored_is_seen(out) && question->model.type != NULL &&
+    } else if (good && out->is_seen && question->model.type != NULL &&
                question->model.type->observe == NULL) {
       DEA_TRY(question->ctx,
               dea_finding_add(question->ctx, DEA_ERROR, file->quantities[i].location,

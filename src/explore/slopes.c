@@ -46,13 +46,14 @@ static struct wanted find_wanted(const struct dea_question *question, bool held)
     for (size_t i = 0; i < question->quantity_count; i++) {
       const struct dea_explored *quantity = &question->quantities[i];
       if (!is_wanted(question, i) || dea_question_is_held(question, i) != held ||
-          quantity->is_critical || (quantity->column < 0) != (of_monitors == 1)) {
+          quantity->is_critical || quantity->is_seen != (of_monitors == 1) ||
+          (quantity->is_seen && quantity->of.source != DEA_OF_MONITOR)) {
         continue;
       }
       out.quantity[out.column_count + out.monitor_count] = i;
       if (of_monitors == 1) {
-        out.monitors[out.monitor_count] = quantity->monitor;
-        out.motions[out.monitor_count++] = quantity->observed;
+        out.monitors[out.monitor_count] = quantity->of.index;
+        out.motions[out.monitor_count++] = (enum dea_observed)quantity->of.number;
       } else {
         out.columns[out.column_count++] = quantity->column;
       }

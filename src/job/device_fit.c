@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/yaml_write.h"
 #include "job/device_fit_parts.h"
+#include "result/observation.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
 
@@ -87,6 +88,9 @@ static dea_status read_design(struct work *w)
   DEA_TRY(w->ctx,
           dea_design_read_memory(w->ctx, w->path, w->bytes, w->length, NULL, 0, &w->design));
   DEA_TRY(w->ctx, dea_device_build(w->ctx, w->design, &w->device));
+  DEA_TRY(w->ctx, dea_device_columns_add(w->ctx, w->device));
+  w->model.observed = w->device->general;
+  w->model.type = dea_model_of_device(w->model.type, w->device);
   w->model.ctx = w->ctx;
   w->model.name = w->path;
   w->model.bytes = w->bytes;
@@ -197,12 +201,11 @@ static dea_status look_at_uncertainties(struct work *w)
   fit->scale_known = lacking == NULL;
   fit->scatter = scatter_guess * (most > 0 ? most : 1);
   if (lacking != NULL && (known || several)) {
-    DEA_TRY(w->ctx,
-            dea_finding_add(w->ctx, DEA_ERROR, lacking->text->name.location,
-                            "%s of '%.60s' has no uncertainty: %s",
-                            dea_point_columns[lacking->column].key, lacking->text->name.text,
-                            known ? "others have one, so give it one too"
-                                  : "several quantities can only be weighed by theirs"));
+    DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, lacking->text->name.location,
+                                    "%s of '%.60s' has no uncertainty: %s", lacking->quantity->key,
+                                    lacking->text->name.text,
+                                    known ? "others have one, so give it one too"
+                                          : "several quantities can only be weighed by theirs"));
     return dea_fail(w->ctx, DEA_E_DESIGN, "the curves cannot be weighed");
   }
   return DEA_OK;
@@ -360,10 +363,9 @@ static dea_status check_start(struct work *w, const struct dea_load_point *point
                     : missing;
     }
     if (solved > 0 && known == 0) {
-      DEA_TRY(w->ctx,
-              dea_finding_add(w->ctx, DEA_ERROR, curve->text->name.location,
-                              "the model %s does not know %s, a quantity of '%.80s'", w->fit->model,
-                              dea_point_columns[curve->column].key, curve->file));
+      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, curve->text->name.location,
+                                      "the model %s does not know %s, a quantity of '%.80s'",
+                                      w->fit->model, curve->quantity->key, curve->file));
     } else if (missing < curve->rows) {
       const struct dea_location location = {curve->file, curve->line[missing], 1};
       DEA_TRY(w->ctx,

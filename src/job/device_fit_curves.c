@@ -34,10 +34,11 @@ static dea_status no_memory(const struct dea_device_fit *fit)
 }
 
 /* Whether a quantity is wanted of a file; what is wanted but no quantity is a finding. */
-static bool is_wanted(const struct dea_device_curve_text *text, int column)
+static bool is_wanted(const struct dea_context *ctx, const struct dea_device_curve_text *text,
+                      int column)
 {
   for (size_t k = 0; k < text->quantity_count; k++) {
-    if (dea_point_column_find(text->quantities[k].text) == column) {
+    if (dea_column_find(ctx, text->quantities[k].text) == column) {
       return true;
     }
   }
@@ -46,15 +47,16 @@ static bool is_wanted(const struct dea_device_curve_text *text, int column)
 
 static dea_status check_quantities(struct reading *r)
 {
-  const char *keys[DEA_LOAD_POINT_COLUMNS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    keys[c] = dea_point_columns[c].key;
-  }
   for (size_t k = 0; k < r->text->quantity_count; k++) {
     const struct dea_label *label = &r->text->quantities[k];
-    const int column = dea_point_column_find(label->text);
-    const char *nearest = dea_nearest_name(label->text, keys, DEA_LOAD_POINT_COLUMNS);
+    const int column = dea_column_find(r->ctx, label->text);
     if (column < 0) {
+      const char **keys = dea_column_keys(r->ctx);
+      if (keys == NULL) {
+        return DEA_E_MEMORY;
+      }
+      const char *nearest = dea_nearest_name(label->text, keys, (size_t)dea_column_count(r->ctx));
+      dea_free(r->ctx, keys);
       DEA_TRY(r->ctx,
               dea_finding_add(r->ctx, DEA_ERROR, label->location, "'%.60s' is not a quantity%s%s%s",
                               label->text, nearest != NULL ? "; did you mean '" : "",
@@ -84,7 +86,7 @@ static dea_status take_std(struct reading *r, const struct dea_device_curve *cur
     return dea_finding_add(r->ctx, DEA_ERROR, location,
                            "the uncertainty of %s is %g here: it has to be above 0 "
                            "(uncertainty_absolute)",
-                           dea_point_columns[curve->column].key, *out);
+                           curve->quantity->key, *out);
   }
   return DEA_OK;
 }
@@ -93,7 +95,7 @@ static dea_status take_std(struct reading *r, const struct dea_device_curve *cur
 static dea_status read_absolute(struct reading *r, int column, double *out)
 {
   const struct dea_label *label = &r->text->absolute;
-  const struct dea_column *of = &dea_point_columns[column];
+  const struct dea_column *of = dea_column_at(r->ctx, column);
   char why[DEA_WHY_SIZE] = "", example[32];
   snprintf(example, sizeof example, "2%s%s", strcmp(of->display_unit, "1") == 0 ? "" : " ",
            strcmp(of->display_unit, "1") == 0 ? "" : of->display_unit);
@@ -118,8 +120,12 @@ static dea_status add_curve(struct reading *r, int column)
                     DEA_DEVICE_CURVES_MAX);
   }
   struct dea_device_curve *curve = &fit->curves[fit->curve_count++];
-  *curve = (struct dea_device_curve){
-      .text = r->text, .file = r->table->file, .column = column, .lag = NAN, .effective = NAN};
+  *curve = (struct dea_device_curve){.text = r->text,
+                                     .file = r->table->file,
+                                     .column = column,
+                                     .quantity = dea_column_at(r->ctx, column),
+                                     .lag = NAN,
+                                     .effective = NAN};
   memcpy(curve->sha256, r->sha256, sizeof curve->sha256);
   double **arrays[] = {&curve->voltage_V, &curve->time_s, &curve->depth_m,   &curve->value,
                        &curve->std,       &curve->model,  &curve->model_std, &curve->designed};
@@ -162,7 +168,7 @@ static dea_status add_curve(struct reading *r, int column)
                                share ? text->relative.location : text->absolute.location,
                                "%s of '%.80s' has a column of uncertainties: where it says one, "
                                "that counts",
-                               dea_point_columns[column].key, curve->file);
+                               curve->quantity->key, curve->file);
 }
 
 static dea_status read_table(struct reading *r, const char *path)
@@ -179,11 +185,11 @@ static dea_status read_table(struct reading *r, const char *path)
   dea_status status = in_time ? DEA_OK : dea_measurement_fold(r->ctx, table);
   status = status == DEA_OK ? check_quantities(r) : status;
   size_t taken = 0;
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && status == DEA_OK; c++) {
+  for (int c = 0; c < dea_column_count(r->ctx) && status == DEA_OK; c++) {
     const bool axis = c == dea_point_column_find("voltage_V") ||
                       c == dea_point_column_find("time_s") ||
                       c == dea_point_column_find("tip_depth_m");
-    if (!axis && is_wanted(r->text, c) &&
+    if (!axis && is_wanted(r->ctx, r->text, c) &&
         dea_points_have(table->curve.points, table->curve.count, c)) {
       status = add_curve(r, c);
       taken++;

@@ -34,7 +34,7 @@ static void add_head(struct dea_text *out, const struct dea_device_fit *fit)
                fit->design_sha256, fit->model);
   for (size_t c = 0; c < fit->curve_count; c++) {
     if (fit->curves[c].text->use.value == DEA_FIT_USED) {
-      dea_text_add(out, "# %s of %s (%s)\n", dea_point_columns[fit->curves[c].column].key,
+      dea_text_add(out, "# %s of %s (%s)\n", fit->curves[c].quantity->key,
                    dea_path_name(fit->curves[c].file), fit->curves[c].sha256);
     }
   }

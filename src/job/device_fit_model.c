@@ -4,6 +4,7 @@
 #include "result/compare.h"
 #include "study/design_file.h"
 #include "study/force.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -103,7 +104,10 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
   DEA_TRY(ctx, dea_model_create(ctx, model->type, design, device, &m));
   dea_status status = DEA_OK;
   bool left = false; // the branch that begins at 0 V
-  if (group->held) {
+  struct dea_monitor_set set = {.count = 0};
+  model->monitors.ctx = ctx;
+  status = model->observed ? dea_monitor_set_init(ctx, model->type, device, &set) : DEA_OK;
+  if (group->held && status == DEA_OK) {
     struct dea_probe tip = dea_force_indenter(design);
     struct dea_load_point touched;
     status = dea_model_indent(ctx, model->type, m, &tip,
@@ -116,8 +120,11 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
       break;
     }
     status = solve(model, m, group->first + k, &point);
+    status =
+        status == DEA_OK ? dea_monitor_set_read(ctx, &set, model->type, m, false, &point) : status;
     if (status == DEA_OK) {
       points[group->first + k] = point;
+      points[group->first + k].monitors = dea_monitor_values_copy(&model->monitors, point.monitors);
       left = left || (model->type->passed != NULL && model->type->passed(m) != NULL);
       if (left && model->states != NULL) { // it has come here by a leap
         drop_state(model, &model->states[group->first + k]);
@@ -128,6 +135,8 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
     }
   }
   model->type->destroy(ctx, m);
+  dea_monitor_set_free(&set);
+  status = status == DEA_OK ? dea_arena_status(&model->monitors) : status;
   if (status != DEA_OK && !is_fatal(status)) {
     snprintf(model->why, sizeof model->why, "%.199s", dea_context_message(ctx));
     dea_context_clear(ctx);
@@ -137,14 +146,18 @@ static dea_status follow(struct dea_device_model *model, const struct dea_design
 }
 
 /* Points at the times of a group, on the straight pieces between the steps of the study. */
-static void take_times(const struct dea_device_model *model, const struct dea_device_group *group,
+static void take_times(struct dea_device_model *model, const struct dea_device_group *group,
                        const struct dea_curve *curve, double *time_s, double *values,
                        struct dea_load_point *points)
 {
   for (size_t i = 0; i < curve->count; i++) {
     time_s[i] = curve->points[i].time_s;
   }
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+  model->monitors.ctx = model->ctx;
+  for (size_t k = group->first; k < group->first + group->count && model->observed; k++) {
+    points[k].monitors = dea_monitor_values_copy(&model->monitors, curve->points[0].monitors);
+  }
+  for (int c = 0; c < dea_column_count(model->ctx); c++) {
     for (size_t i = 0; i < curve->count; i++) {
       values[i] = dea_point_get(&curve->points[i], c);
     }
@@ -171,7 +184,7 @@ static dea_status play(struct dea_device_model *model, const struct dea_design *
     if (both != NULL) {
       take_times(model, group, curve, both, both + curve->count, points);
     }
-    status = both != NULL ? status : DEA_E_MEMORY;
+    status = both != NULL && !model->monitors.failed ? status : DEA_E_MEMORY;
     dea_free(ctx, both);
   }
   dea_result_destroy(ctx, result);
@@ -256,6 +269,7 @@ void dea_device_model_want(struct dea_device_model *model, const bool *wanted)
 void dea_device_model_end(struct dea_device_model *model)
 {
   forget(model);
+  dea_arena_free(&model->monitors);
   drop_states(model, model->states);
   dea_free(model->ctx, model->states);
   model->states = NULL;

@@ -51,6 +51,8 @@ struct dea_device_model {
   bool from_start; // this evaluation begins from the states of start, which stay
   bool doubtful;   // it has gone another way than start
   size_t evaluations;
+  bool observed;             // points have what monitors show
+  struct dea_arena monitors; // of that, until dea_device_model_end
   /* Told of each design that is built, with its device; NULL: nobody. */
   dea_status (*built)(void *user, const struct dea_design *design, const struct dea_device *device);
   /* Told of each stop with the model that stands there, but of groups in time; NULL: nobody. */

@@ -43,12 +43,8 @@ void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *se
   for (size_t i = 0; i < set->history_count; i++) {
     dea_misfit_free(&set->histories[i].misfit);
   }
-  for (size_t i = 0; i < set->monitor_count; i++) {
-    dea_set_monitor_destroy(ctx, set->monitors[i]);
-  }
   dea_free(ctx, set->profiles);
   dea_free(ctx, set->histories);
-  dea_free(ctx, set->monitors);
   dea_free(ctx, set);
 }
 
@@ -156,10 +152,10 @@ static dea_status note_missing(struct dea_context *ctx, const struct dea_compare
 {
   struct dea_text list = {.ctx = ctx};
   const struct dea_curve *r = curve->reference;
-  for (int c = 1; c < DEA_LOAD_POINT_COLUMNS; c++) {
+  for (int c = 1; c < dea_column_count(ctx); c++) {
     if (is_wanted(c, columns, count) && dea_points_have(r->points, r->count, c) &&
         find_misfit(curve, c) == NULL) {
-      dea_text_add(&list, "%s'%s'", list.length > 0 ? ", " : "", dea_point_columns[c].header);
+      dea_text_add(&list, "%s'%s'", list.length > 0 ? ", " : "", dea_column_at(ctx, c)->header);
     }
   }
   dea_status status = DEA_OK;
@@ -264,7 +260,7 @@ static dea_status check_asked(struct dea_context *ctx, const struct dea_compare_
     }
     if (!found) {
       return dea_fail(ctx, DEA_E_ARGUMENT, "no curve has %s in common with %s",
-                      dea_point_columns[columns[q]].key, set->reference);
+                      dea_column_at(ctx, columns[q])->key, set->reference);
     }
   }
   return DEA_OK;
@@ -404,7 +400,7 @@ static dea_status add_histories(struct dea_context *ctx, struct dea_compare_set 
       set->history_count--;
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
                                    "the history of %s has no '%s' at the times measured", c->name,
-                                   dea_point_columns[column].header));
+                                   dea_column_at(ctx, column)->header));
     }
   }
   return DEA_OK;
@@ -426,44 +422,22 @@ static dea_status compute_histories(struct dea_context *ctx, struct dea_compare_
   return DEA_OK;
 }
 
-/* Fails for what a monitor shows that was asked for and that no curve has. */
-static dea_status check_monitors_asked(struct dea_context *ctx, const struct dea_compare_set *set,
-                                       const struct dea_compare_ask *ask)
-{
-  for (size_t q = 0; q < ask->monitor_count; q++) {
-    bool found = false;
-    for (size_t i = 0; i < set->monitor_count && !found; i++) {
-      found = strcmp(set->monitors[i]->quantity.key, ask->monitors[q]) == 0;
-    }
-    if (!found) {
-      return dea_fail(ctx, DEA_E_ARGUMENT, "no curve has %s of a monitor in common with %s",
-                      ask->monitors[q], set->reference);
-    }
-  }
-  return DEA_OK;
-}
-
 dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
-                                   const struct dea_compare_ask *ask)
+                                   const int *columns, size_t count)
 {
-  const int *columns = ask->columns;
-  const size_t count = ask->column_count;
-  const bool points = count > 0 || ask->monitor_count == 0; // else monitors alone
   size_t found = 0;
   for (size_t i = 0; i < set->curve_count; i++) {
-    DEA_TRY(ctx, points ? compute_curve(ctx, set, &set->curves[i], columns, count) : DEA_OK);
-    DEA_TRY(ctx, dea_compare_set_add_monitors(ctx, set, i, ask));
+    DEA_TRY(ctx, compute_curve(ctx, set, &set->curves[i], columns, count));
     found += set->curves[i].comparison != NULL ? set->curves[i].comparison->misfit_count : 0;
   }
-  if (set->measured != NULL && points) {
+  if (set->measured != NULL) {
     DEA_TRY(ctx, is_wanted(dea_point_column_find("centre_z_m"), columns, count)
                      ? compute_profiles(ctx, set)
                      : DEA_OK);
     DEA_TRY(ctx, compute_histories(ctx, set, columns, count));
   }
   DEA_TRY(ctx, check_asked(ctx, set, columns, count));
-  DEA_TRY(ctx, check_monitors_asked(ctx, set, ask));
-  return found + set->profile_count + set->history_count + set->monitor_count > 0
+  return found + set->profile_count + set->history_count > 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_ARGUMENT, "the runs have nothing in common with %s",
                         set->reference);
@@ -479,13 +453,6 @@ const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set
         worst = &c->misfits[k];
         *curve = i;
       }
-    }
-  }
-  for (size_t i = 0; i < set->monitor_count; i++) {
-    const struct dea_misfit *m = dea_set_monitor_misfit(set->monitors[i]);
-    if (worst == NULL || m->relative_largest > worst->relative_largest) {
-      worst = m;
-      *curve = set->monitors[i]->curve;
     }
   }
   return worst;
@@ -532,12 +499,6 @@ static json_t *curve_json(const struct dea_compare_set *set, size_t curve, doubl
   dea_json_put_text(object, "b", beside);
   for (size_t i = 0; comparison != NULL && i < comparison->misfit_count; i++) {
     json_array_append_new(quantities, misfit_json(&comparison->misfits[i], "V", tolerance));
-  }
-  for (size_t i = 0; i < set->monitor_count; i++) {
-    if (set->monitors[i]->curve == curve) {
-      const struct dea_misfit *m = dea_set_monitor_misfit(set->monitors[i]);
-      json_array_append_new(quantities, misfit_json(m, "V", tolerance));
-    }
   }
   json_object_set_new(object, "quantities", quantities);
   return object;

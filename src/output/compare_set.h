@@ -38,14 +38,6 @@ struct dea_set_history {
   struct dea_misfit misfit;     // owned
 };
 
-/* What a monitor of two runs of devices made of plies shows, against the voltage. */
-struct dea_set_monitor {
-  size_t curve;                      // of the set's curves
-  struct dea_column quantity;        // "hub.z_m"; its texts lent
-  struct dea_curve a, b;             // sweeps with it in the place of the misfit's column; owned
-  struct dea_comparison *comparison; // of that column alone; owned
-};
-
 struct dea_compare_set {
   char reference[DEA_LABEL_SIZE];
   bool pairs; // each curve has figures of its own; to be set before the set is computed
@@ -57,16 +49,6 @@ struct dea_compare_set {
   size_t profile_count;
   struct dea_set_history *histories; // owned
   size_t history_count;
-  struct dea_set_monitor **monitors; // [monitor_count], owned
-  size_t monitor_count;
-};
-
-/* Quantities that are wanted; none of both: all. */
-struct dea_compare_ask {
-  const int *columns; // [column_count] of load points
-  size_t column_count;
-  const char *const *monitors; // [monitor_count] what monitors show: "hub.z_m"
-  size_t monitor_count;
 };
 
 /* One of measured and reference_result is not NULL. out: owned by the caller, NULL on failure. */
@@ -85,23 +67,12 @@ dea_status dea_compare_set_add(struct dea_context *ctx, struct dea_compare_set *
 dea_status dea_compare_set_add_table(struct dea_context *ctx, struct dea_compare_set *set,
                                      const char *name, const struct dea_curve *table,
                                      const char *reference_model);
-/* Computes all misfits. What is left out, and signs that
+/* Computes all misfits of these columns [count], 0: of all. What is left out, and signs that
  * differ, become notes; DEA_E_ARGUMENT when nothing is left or no curve has a quantity that was
  * asked for. */
 dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
-                                   const struct dea_compare_ask *ask);
-/* Adds what monitors show in a curve's run and in that of its reference (compare_monitors.c): what
- * is asked for, without that all but motions and forces of the size of rounding. Nothing where one
- * of them is no run, or has no monitors. */
-dea_status dea_compare_set_add_monitors(struct dea_context *ctx, struct dea_compare_set *set,
-                                        size_t curve, const struct dea_compare_ask *ask);
-void dea_set_monitor_destroy(struct dea_context *ctx, struct dea_set_monitor *monitor);
-/* The misfit of a monitor; lent. */
-static inline const struct dea_misfit *dea_set_monitor_misfit(const struct dea_set_monitor *monitor)
-{
-  return &monitor->comparison->misfits[0];
-}
-/* Misfit of a quantity or monitor against the voltage with the largest relative difference, and its
+                                   const int *columns, size_t count);
+/* Misfit of a quantity against the voltage with the largest relative difference, and its
  * curve; NULL when there is none. Lent. */
 const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set, size_t *curve);
 

@@ -8,10 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum {
-  DEA_SET_FIGURES_MAX = DEA_LOAD_POINT_COLUMNS * DEA_DESIGN_MODELS_MAX + DEA_MEASURED_COLUMNS + 1,
-  DEA_SET_FIGURE_SIZE = 192
-}; // beside those of monitors
+enum { DEA_SET_FIGURE_SIZE = 192 };
 
 /* What is drawn so far. */
 struct dea_set_figures {
@@ -96,16 +93,6 @@ static void set_key_above(const struct dea_set_figures *f, struct dea_panel *pan
   panel->key = keys[rows > 1.0 ? (size_t)rows - 1 : 0];
 }
 
-/* An axis, with names of monitors as they are. */
-static void label_quantity(const struct dea_column *quantity, char *out, size_t size)
-{
-  struct dea_column plain = *quantity;
-  char header[DEA_LABEL_SIZE];
-  dea_label_escape(quantity->header, header, sizeof header);
-  plain.header = header;
-  dea_figure_label(&plain, out, size);
-}
-
 // Against the voltage -----------------------------------------------------------------------------
 
 /* Whether the measured points can carry a band: voltages rise, and each has its uncertainty. */
@@ -137,7 +124,7 @@ static dea_status add_measured(struct dea_context *ctx, struct dea_panel *panel,
 {
   struct dea_series *series;
   bool bars = !band && has_std(m, column) && !carries_band(m, column);
-  double factor = dea_point_columns[column].factor;
+  double factor = dea_column_at(ctx, column)->factor;
   size_t n = 0;
   DEA_TRY(ctx, dea_panel_add(ctx, panel, m->curve.count, &series));
   series->style = band ? DEA_BAND : bars ? DEA_ERROR_BARS : DEA_MARKERS;
@@ -172,7 +159,7 @@ static dea_status add_reference(struct dea_context *ctx, struct dea_panel *panel
     snprintf(title, sizeof title, "%.60s, %.60s", set->reference, reference->model);
     dea_label_escape(title, look.title, sizeof look.title);
     if (!seen) {
-      DEA_TRY(ctx, dea_figure_add(ctx, panel, reference, column, dea_point_columns[column].factor,
+      DEA_TRY(ctx, dea_figure_add(ctx, panel, reference, column, dea_column_at(ctx, column)->factor,
                                   0.0, &look));
     }
   }
@@ -189,72 +176,15 @@ static dea_status fill_quantity(struct dea_set_figures *f, int column, struct de
   for (size_t i = 0; i < set->curve_count; i++) {
     struct dea_series look = dea_figure_style(set->curves[i].name, i);
     DEA_TRY(f->ctx, dea_figure_add(f->ctx, panel, set->curves[i].curve, column,
-                                   dea_point_columns[column].factor, 0.0, &look));
+                                   dea_column_at(f->ctx, column)->factor, 0.0, &look));
   }
   DEA_TRY(f->ctx, m != NULL ? add_measured(f->ctx, panel, m, column, false)
                             : add_reference(f->ctx, panel, set, column));
-  dea_figure_label(&dea_point_columns[column], panel->y_label, sizeof panel->y_label);
+  dea_figure_label(dea_column_at(f->ctx, column), panel->y_label, sizeof panel->y_label);
   dea_panel_voltage_axis(panel);
   set_range(panel);
   dea_panel_even_tics(panel, 7);
   dea_panel_place_key(panel);
-  return DEA_OK;
-}
-
-/* All that show the same as the first of them, a monitor of the set. */
-static dea_status fill_monitors(struct dea_set_figures *f, size_t first, struct dea_panel *panel)
-{
-  const struct dea_compare_set *set = f->set;
-  const struct dea_set_monitor *of = set->monitors[first];
-  const int column = dea_set_monitor_misfit(of)->column;
-  for (int side = 0; side < 2; side++) { // the runs, then what they are set against
-    for (size_t i = first; i < set->monitor_count; i++) {
-      const struct dea_set_monitor *m = set->monitors[i];
-      struct dea_series look = dea_figure_style(set->curves[m->curve].name, m->curve);
-      if (side == 1) {
-        char title[DEA_LABEL_SIZE];
-        look = (struct dea_series){
-            .style = DEA_LINE_MARKED, .colour = DEA_BLACK, .marker = 5 + (int)m->curve};
-        dea_compare_set_beside(set, m->curve, title);
-        dea_label_escape(title, look.title, sizeof look.title);
-      }
-      if (strcmp(m->quantity.key, of->quantity.key) == 0 && (side == 0 || i == first)) {
-        DEA_TRY(f->ctx, dea_figure_add(f->ctx, panel, side == 0 ? &m->a : &m->b, column,
-                                       of->quantity.factor, 0.0, &look));
-      }
-    }
-  }
-  label_quantity(&of->quantity, panel->y_label, sizeof panel->y_label);
-  dea_panel_voltage_axis(panel);
-  set_range(panel);
-  dea_panel_even_tics(panel, 7);
-  dea_panel_place_key(panel);
-  return DEA_OK;
-}
-
-/* Whether no monitor of the set before that one shows the same. */
-static bool is_first_of_its_kind(const struct dea_compare_set *set, size_t monitor)
-{
-  for (size_t i = 0; i < monitor; i++) {
-    if (strcmp(set->monitors[i]->quantity.key, set->monitors[monitor]->quantity.key) == 0) {
-      return false;
-    }
-  }
-  return true;
-}
-
-static dea_status draw_monitors(struct dea_set_figures *f)
-{
-  for (size_t i = 0; i < f->set->monitor_count; i++) {
-    const struct dea_column *quantity = &f->set->monitors[i]->quantity;
-    struct dea_plot *plot;
-    char name[DEA_SET_FIGURE_SIZE];
-    if (is_first_of_its_kind(f->set, i)) {
-      name_figure(quantity, "", name);
-      DEA_TRY(f->ctx, begin_figure(f, name, quantity->header, &plot));
-      DEA_TRY(f->ctx, finish_figure(f, plot, fill_monitors(f, i, &plot->panels[0])));
-    }
-  }
   return DEA_OK;
 }
 
@@ -274,12 +204,13 @@ static bool was_compared(const struct dea_compare_set *set, int column)
 
 static dea_status draw_quantities(struct dea_set_figures *f)
 {
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+  for (int c = 0; c < dea_column_count(f->ctx); c++) {
+    const struct dea_column *column = dea_column_at(f->ctx, c);
     struct dea_plot *plot;
     char name[DEA_SET_FIGURE_SIZE];
     if (was_compared(f->set, c)) {
-      snprintf(name, sizeof name, "compare_%s", dea_point_columns[c].key);
-      DEA_TRY(f->ctx, begin_figure(f, name, dea_point_columns[c].header, &plot));
+      name_figure(column, "", name);
+      DEA_TRY(f->ctx, begin_figure(f, name, column->header, &plot));
       DEA_TRY(f->ctx, finish_figure(f, plot, fill_quantity(f, c, &plot->panels[0])));
     }
   }
@@ -493,7 +424,7 @@ static dea_status fill_pair(struct dea_context *ctx, const struct dea_set_curve 
   series->style = bars ? DEA_ERROR_BARS : DEA_LINE_MARKED;
   series->colour = DEA_BLACK;
   dea_panel_mark(low, false, 0.0, "");
-  label_quantity(m->quantity, top->y_label, sizeof top->y_label);
+  dea_figure_label(m->quantity, top->y_label, sizeof top->y_label);
   snprintf(low->y_label, sizeof low->y_label, "Difference");
   dea_panel_voltage_axis(top);
   dea_panel_voltage_axis(low);
@@ -530,15 +461,6 @@ static dea_status draw_pair(struct dea_set_figures *f, size_t curve)
   dea_compare_set_beside(f->set, curve, beside);
   for (size_t i = 0; c->comparison != NULL && i < c->comparison->misfit_count; i++) {
     DEA_TRY(f->ctx, draw_misfit(f, c, beside, &c->comparison->misfits[i]));
-  }
-  for (size_t i = 0; i < f->set->monitor_count; i++) {
-    const struct dea_set_monitor *m = f->set->monitors[i];
-    if (m->curve == curve) {
-      struct dea_set_curve shown = *c;
-      shown.curve = &m->a;
-      shown.reference = &m->b;
-      DEA_TRY(f->ctx, draw_misfit(f, &shown, beside, dea_set_monitor_misfit(m)));
-    }
   }
   return DEA_OK;
 }
@@ -697,7 +619,7 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
                                 const struct dea_plot_format *format, const char *directory)
 {
   struct dea_set_figures *f = dea_alloc(ctx, 1, sizeof *f);
-  const size_t room = DEA_SET_FIGURES_MAX + set->monitor_count;
+  const size_t room = (size_t)dea_column_count(ctx) * set->curve_count + DEA_MEASURED_COLUMNS + 1;
   const char **names = dea_alloc(ctx, room, sizeof *names);
   char(*texts)[DEA_SET_FIGURE_SIZE] = dea_alloc(ctx, room, sizeof *texts);
   if (f == NULL || names == NULL || texts == NULL) {
@@ -717,7 +639,6 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
     status = draw_pair(f, i);
   }
   status = status == DEA_OK && !set->pairs ? draw_quantities(f) : status;
-  status = status == DEA_OK && !set->pairs ? draw_monitors(f) : status;
   status = status == DEA_OK ? draw_profile(f) : status;
   status = status == DEA_OK ? draw_histories(f) : status;
   for (size_t i = 0; i < f->count; i++) {

@@ -23,56 +23,70 @@ static void add_number(struct dea_text *text, double value)
   }
 }
 
-/* Columns that hold a number at some point: adds to what is set already. */
-static void mark_used(const struct dea_curve *curve, bool *used)
+/* Columns that are written: [count] of them hold a number at some point. */
+struct used {
+  struct dea_context *ctx;
+  int count;
+  bool *columns; // owned
+};
+
+static dea_status used_create(struct dea_context *ctx, struct used *out)
 {
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    used[c] = used[c] || dea_points_have(curve->points, curve->count, c);
+  *out = (struct used){.ctx = ctx, .count = dea_column_count(ctx)};
+  out->columns = dea_alloc(ctx, (size_t)out->count, sizeof *out->columns);
+  return out->columns != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+/* Adds to what is used already. */
+static void mark_used(const struct dea_load_point *points, size_t count, struct used *used)
+{
+  for (int c = 0; c < used->count; c++) {
+    used->columns[c] = used->columns[c] || dea_points_have(points, count, c);
   }
 }
 
-/* Columns of standard uncertainties, behind all others. */
-static void add_std_header(struct dea_text *text, const struct dea_curve *curve)
+/* Columns of standard uncertainties, behind all others: the titles (point SIZE_MAX) or a row. */
+static void add_std(struct dea_text *text, const struct dea_curve *curve, size_t point)
 {
-  for (int c = 0; curve->std != NULL && c < DEA_LOAD_POINT_COLUMNS; c++) {
-    if (dea_points_have(curve->std, curve->count, c)) {
-      const struct dea_column *column = &dea_point_columns[c];
-      bool bare = strcmp(column->display_unit, "1") == 0;
-      dea_text_add(text, ",%s std%s%s%s", column->header, bare ? "" : " (",
-                   bare ? "" : column->display_unit, bare ? "" : ")");
+  for (int c = 0; curve->std != NULL && c < dea_column_count(text->ctx); c++) {
+    const struct dea_column *column = dea_column_at(text->ctx, c);
+    const bool bare = strcmp(column->display_unit, "1") == 0;
+    if (!dea_points_have(curve->std, curve->count, c)) {
+      continue;
     }
-  }
-}
-
-static void add_std(struct dea_text *text, const struct dea_curve *curve, size_t i)
-{
-  for (int c = 0; curve->std != NULL && c < DEA_LOAD_POINT_COLUMNS; c++) {
-    if (dea_points_have(curve->std, curve->count, c)) {
-      dea_text_add(text, ",");
-      add_number(text, dea_point_get(&curve->std[i], c) * fabs(dea_point_columns[c].factor));
+    dea_text_add(text, ",");
+    if (point == SIZE_MAX) {
+      char title[DEA_COLUMN_TITLE_SIZE];
+      snprintf(title, sizeof title, "%s std%s%s%s", column->header, bare ? "" : " (",
+               bare ? "" : column->display_unit, bare ? "" : ")");
+      dea_csv_add_name(text, title);
+    } else {
+      add_number(text, dea_point_get(&curve->std[point], c) * fabs(column->factor));
     }
   }
 }
 
 /* Without the end of the line. */
-static void add_header(struct dea_text *text, const bool *used)
+static void add_header(struct dea_text *text, const struct used *used)
 {
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    if (used[c]) {
-      char title[96];
-      dea_column_title(&dea_point_columns[c], title, sizeof title);
-      dea_text_add(text, "%s,", title);
+  for (int c = 0; c < used->count; c++) {
+    if (used->columns[c]) {
+      char title[DEA_COLUMN_TITLE_SIZE];
+      dea_column_title(dea_column_at(used->ctx, c), title, sizeof title);
+      dea_csv_add_name(text, title);
+      dea_text_add(text, ",");
     }
   }
   dea_text_add(text, "stable,unstable_modes,trusted,flags");
 }
 
 /* Without the end of the line. */
-static void add_point(struct dea_text *text, const bool *used, const struct dea_load_point *point)
+static void add_point(struct dea_text *text, const struct used *used,
+                      const struct dea_load_point *point)
 {
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    if (used[c]) {
-      add_number(text, dea_point_get(point, c) * dea_point_columns[c].factor);
+  for (int c = 0; c < used->count; c++) {
+    if (used->columns[c]) {
+      add_number(text, dea_point_get(point, c) * dea_column_at(used->ctx, c)->factor);
       dea_text_add(text, ",");
     }
   }
@@ -84,15 +98,16 @@ static void add_point(struct dea_text *text, const bool *used, const struct dea_
 dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
                                const char *directory)
 {
-  bool used[DEA_LOAD_POINT_COLUMNS] = {false};
-  mark_used(curve, used);
+  struct used used;
+  DEA_TRY(ctx, used_create(ctx, &used));
+  mark_used(curve->points, curve->count, &used);
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
-  add_header(&text, used);
-  add_std_header(&text, curve);
+  add_header(&text, &used);
+  add_std(&text, curve, SIZE_MAX);
   dea_text_add(&text, "\n");
   for (size_t i = 0; i < curve->count; i++) {
-    add_point(&text, used, &curve->points[i]);
+    add_point(&text, &used, &curve->points[i]);
     add_std(&text, curve, i);
     dea_text_add(&text, "\n");
   }
@@ -101,6 +116,7 @@ dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *
   snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
   dea_status status = dea_text_write(ctx, &text, directory, name);
   dea_text_free(&text);
+  dea_free(ctx, used.columns);
   return status;
 }
 
@@ -110,20 +126,19 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
   if (curve->event_count == 0) {
     return DEA_OK;
   }
-  bool used[DEA_LOAD_POINT_COLUMNS] = {false};
+  struct used used;
+  DEA_TRY(ctx, used_create(ctx, &used));
   for (size_t i = 0; i < curve->event_count; i++) {
-    for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-      used[c] = used[c] || !isnan(dea_point_get(&curve->events[i].point, c));
-    }
+    mark_used(&curve->events[i].point, 1, &used);
   }
   void *before = dea_c_locale_enter();
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "event,");
-  add_header(&text, used);
+  add_header(&text, &used);
   dea_text_add(&text, "\n");
   for (size_t i = 0; i < curve->event_count; i++) {
     dea_text_add(&text, "%s,", dea_event_name(curve->events[i].kind));
-    add_point(&text, used, &curve->events[i].point);
+    add_point(&text, &used, &curve->events[i].point);
     dea_text_add(&text, "\n");
   }
   dea_c_locale_leave(before);
@@ -131,6 +146,7 @@ dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve 
   snprintf(name, sizeof name, "%s_%s_events.csv", curve->model, curve->kind);
   dea_status status = dea_text_write(ctx, &text, directory, name);
   dea_text_free(&text);
+  dea_free(ctx, used.columns);
   return status;
 }
 
@@ -139,7 +155,7 @@ static void add_profile_header(struct dea_text *text, const char *first)
 {
   dea_text_add(text, "%sV (kV)", first);
   for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
-    char title[96];
+    char title[DEA_COLUMN_TITLE_SIZE];
     dea_column_title(&dea_profile_columns[c], title, sizeof title);
     dea_text_add(text, ",%s", title);
   }
@@ -187,7 +203,7 @@ dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_resu
 
 // Variants ---------------------------------------------------------------------------------------
 
-static void add_variant(struct dea_text *text, const bool *used, bool meshes,
+static void add_variant(struct dea_text *text, const struct used *used, bool meshes,
                         const struct dea_variant *variant)
 {
   for (size_t i = 0; i < variant->curve.count; i++) {
@@ -208,25 +224,28 @@ static void add_variant(struct dea_text *text, const bool *used, bool meshes,
 dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
                                   const char *model, const char *study, const char *directory)
 {
-  bool used[DEA_LOAD_POINT_COLUMNS] = {false}, any = false, meshes = false;
+  struct used used;
+  bool any = false, meshes = false;
+  DEA_TRY(ctx, used_create(ctx, &used));
   for (size_t i = 0; i < result->variant_count; i++) {
     if (dea_variant_is(&result->variants[i], model, study)) {
       any = true;
       meshes = meshes || result->variants[i].size.nodes > 0;
-      mark_used(&result->variants[i].curve, used);
+      mark_used(result->variants[i].curve.points, result->variants[i].curve.count, &used);
     }
   }
   if (!any) {
+    dea_free(ctx, used.columns);
     return DEA_OK;
   }
   struct dea_text text = {.ctx = ctx};
   void *before = dea_c_locale_enter();
   dea_text_add(&text, "name,%stime (s),", meshes ? "refinement,elements,nodes,unknowns," : "");
-  add_header(&text, used);
+  add_header(&text, &used);
   dea_text_add(&text, "\n");
   for (size_t i = 0; i < result->variant_count; i++) {
     if (dea_variant_is(&result->variants[i], model, study)) {
-      add_variant(&text, used, meshes, &result->variants[i]);
+      add_variant(&text, &used, meshes, &result->variants[i]);
     }
   }
   dea_c_locale_leave(before);
@@ -234,6 +253,7 @@ dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_resu
   snprintf(name, sizeof name, "%s_%s.csv", model, study);
   dea_status status = dea_text_write(ctx, &text, directory, name);
   dea_text_free(&text);
+  dea_free(ctx, used.columns);
   return status;
 }
 

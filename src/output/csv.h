@@ -6,6 +6,7 @@
 #include "result/result.h"
 
 /* "V (kV)": the header of a column, without unit when that is 1. */
+enum { DEA_COLUMN_TITLE_SIZE = 224 };
 void dea_column_title(const struct dea_column *column, char *out, size_t size);
 
 /* Writes directory/MODEL_KIND.csv. Columns without any number are left out, a missing number is an

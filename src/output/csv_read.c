@@ -9,13 +9,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FIELD_MAX = DEA_CSV_FIELD_MAX, FIELDS_MAX = 64, FINDINGS_MAX = 20 };
+enum { FIELD_MAX = DEA_CSV_FIELD_MAX, FIELDS_MAX = 512, FINDINGS_MAX = 20 };
 
 enum role { ROLE_VALUE, ROLE_STD, ROLE_STABLE, ROLE_MODES, ROLE_TRUSTED, ROLE_FLAGS };
 
 struct field_meaning {
   enum role role;
-  int column;    // of dea_point_columns
+  int column;    // of the context
   double factor; // number in the file -> SI
 };
 
@@ -26,6 +26,8 @@ struct reader {
   struct dea_text_marks marks[FIELDS_MAX];
   size_t field_count;
   size_t errors;
+  struct dea_arena memory;                  // of the two below
+  struct dea_monitor_values *row, *row_std; // of the columns of monitors that the file has
 };
 
 /* Names that people use beside the headers and keys of the list; folded (see dea_csv_fold). */
@@ -55,16 +57,16 @@ static bool one_more_error(struct reader *r)
 }
 
 /* Column of a folded name, or -1; by_key: it is the key, whose name carries the SI unit. */
-static int find_column(const char *name, bool *by_key)
+static int find_column(const struct dea_context *ctx, const char *name, bool *by_key)
 {
   char folded[FIELD_MAX];
   *by_key = false;
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    dea_csv_fold(dea_point_columns[c].header, folded);
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    dea_csv_fold(dea_column_at(ctx, c)->header, folded);
     if (strcmp(folded, name) == 0) {
       return c;
     }
-    dea_csv_fold(dea_point_columns[c].key, folded);
+    dea_csv_fold(dea_column_at(ctx, c)->key, folded);
     if (strcmp(folded, name) == 0) {
       *by_key = true;
       return c;
@@ -78,25 +80,36 @@ static int find_column(const char *name, bool *by_key)
   return -1;
 }
 
+/* The name nearest to one that is none; empty where none is near. Titles and keys of the columns,
+ * and the other names. */
+static dea_status find_nearest(struct reader *r, const char *name, char nearest[FIELD_MAX])
+{
+  const size_t count = (size_t)dea_column_count(r->ctx), all = 2 * count + OTHER_NAMES;
+  struct dea_arena memory = {.ctx = r->ctx};
+  char(*store)[FIELD_MAX] = dea_arena_alloc(&memory, 2 * count, sizeof *store);
+  const char **candidates = dea_arena_alloc(&memory, all, sizeof *candidates);
+  nearest[0] = '\0';
+  for (size_t c = 0; candidates != NULL && c < all; c++) {
+    if (c < 2 * count) {
+      const struct dea_column *column = dea_column_at(r->ctx, (int)(c / 2));
+      dea_csv_fold(c % 2 == 0 ? column->header : column->key, store[c]);
+    }
+    candidates[c] = c < 2 * count ? store[c] : other_names[c - 2 * count].name;
+  }
+  const char *found = candidates != NULL ? dea_nearest_name(name, candidates, all) : NULL;
+  snprintf(nearest, FIELD_MAX, "%s", found != NULL ? found : "");
+  const dea_status status = dea_arena_status(&memory);
+  dea_arena_free(&memory);
+  return status;
+}
+
 static void unknown_title(struct reader *r, const char *title, const char *name, size_t column)
 {
-  char store[2 * DEA_LOAD_POINT_COLUMNS][FIELD_MAX];
-  const char *candidates[2 * DEA_LOAD_POINT_COLUMNS + OTHER_NAMES];
-  int count = 0;
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++, count += 2) {
-    dea_csv_fold(dea_point_columns[c].header, store[count]);
-    dea_csv_fold(dea_point_columns[c].key, store[count + 1]);
-    candidates[count] = store[count];
-    candidates[count + 1] = store[count + 1];
-  }
-  for (int i = 0; i < OTHER_NAMES; i++) {
-    candidates[count++] = other_names[i].name;
-  }
-  const char *nearest = dea_nearest_name(name, candidates, (size_t)count);
-  if (!one_more_error(r)) {
+  char nearest[FIELD_MAX];
+  if (!one_more_error(r) || find_nearest(r, name, nearest) != DEA_OK) {
     return;
   }
-  if (nearest == NULL) {
+  if (nearest[0] == '\0') {
     dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
                     "'%s' is not a known quantity; known are, for example, 'V (kV)', 'z centre "
                     "(um)', 'electrode stretch', 'force (mN)'",
@@ -104,8 +117,9 @@ static void unknown_title(struct reader *r, const char *title, const char *name,
     return;
   }
   bool by_key;
-  char proper[96];
-  dea_column_title(&dea_point_columns[find_column(nearest, &by_key)], proper, sizeof proper);
+  char proper[DEA_COLUMN_TITLE_SIZE];
+  dea_column_title(dea_column_at(r->ctx, find_column(r->ctx, nearest, &by_key)), proper,
+                   sizeof proper);
   dea_finding_add(r->ctx, DEA_ERROR, place_of(r, column),
                   "'%s' is not a known quantity; did you mean '%s'?", title, proper);
 }
@@ -114,8 +128,8 @@ static void unknown_title(struct reader *r, const char *title, const char *name,
 static void read_unit(struct reader *r, const char *title, const char *unit, bool by_key,
                       size_t column, struct field_meaning *field)
 {
-  const struct dea_column *c = &dea_point_columns[field->column];
-  char proper[96];
+  const struct dea_column *c = dea_column_at(r->ctx, field->column);
+  char proper[DEA_COLUMN_TITLE_SIZE];
   dea_column_title(c, proper, sizeof proper);
   field->factor = 1.0;
   if (unit[0] == '\0') {
@@ -188,7 +202,7 @@ static int column_of(struct reader *r, const char *title, const char *name, size
                     "'%s' is taken for that of the centre; 'z fibre tip' is that of the tip",
                     title);
   }
-  return find_column(name, by_key);
+  return find_column(r->ctx, name, by_key);
 }
 
 static void read_title(struct reader *r, const char *title, size_t column,
@@ -272,6 +286,11 @@ static bool read_row(struct reader *r, size_t row, struct dea_load_point *point,
   struct dea_slice rest = r->table.lines[row], field;
   const size_t before = r->errors;
   *point = *std = dea_load_point_empty();
+  point->monitors = r->row;
+  std->monitors = r->row_std;
+  for (size_t i = 0; i < r->row->count; i++) {
+    r->row->at[i].value = r->row_std->at[i].value = NAN;
+  }
   for (size_t i = 0; i < r->field_count && dea_slice_field(&rest, r->table.separator, &field);
        i++) {
     double value;
@@ -308,9 +327,27 @@ static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *r
     m->line = lines;
     *room_now = room;
   }
+  m->curve.memory.ctx = r->ctx;
   m->std[m->curve.count] = *std;
+  m->std[m->curve.count].monitors = dea_monitor_values_copy(&m->curve.memory, std->monitors);
   m->line[m->curve.count] = line;
   return dea_curve_add_point(r->ctx, &m->curve, point);
+}
+
+/* Room for a row's columns of monitors. */
+static dea_status make_rows(struct reader *r)
+{
+  int columns[FIELDS_MAX];
+  size_t count = 0;
+  for (size_t i = 0; i < r->field_count; i++) {
+    if (r->fields[i].column >= DEA_LOAD_POINT_COLUMNS && r->fields[i].role == ROLE_VALUE) {
+      columns[count++] = r->fields[i].column;
+    }
+  }
+  r->memory.ctx = r->ctx;
+  r->row = dea_monitor_values_create(&r->memory, columns, count);
+  r->row_std = dea_monitor_values_create(&r->memory, columns, count);
+  return dea_arena_status(&r->memory);
 }
 
 static dea_status read_rows(struct reader *r, struct dea_measurement *m)
@@ -318,6 +355,7 @@ static dea_status read_rows(struct reader *r, struct dea_measurement *m)
   size_t room = 0;
   dea_context_clear(r->ctx); // so that the status below can only be of a finding
   read_header(r);
+  DEA_TRY(r->ctx, make_rows(r));
   const size_t rows = r->errors == 0 ? r->table.rows : 0; // without a header they say nothing
   for (size_t row = 0; row < rows && r->errors < FINDINGS_MAX; row++) {
     struct dea_load_point point, std;
@@ -351,6 +389,7 @@ dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
     status = read_rows(&r, m);
   }
   dea_fields_free(ctx, &r.table);
+  dea_arena_free(&r.memory);
   if (status != DEA_OK) {
     dea_measurement_destroy(ctx, m);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -363,6 +402,7 @@ void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *me
 {
   if (measurement != NULL) {
     dea_free(ctx, measurement->curve.points);
+    dea_arena_free(&measurement->curve.memory);
     dea_free(ctx, measurement->std);
     dea_free(ctx, measurement->line);
     dea_free(ctx, measurement);

@@ -83,7 +83,7 @@ static dea_status add_series(struct dea_context *ctx, struct dea_plot *plot,
 
 static void fill(const struct dea_device_curve *curve, const struct place *places, struct look *to)
 {
-  const double factor = dea_point_columns[curve->column].factor;
+  const double factor = curve->quantity->factor;
   const size_t n = curve->rows;
   struct dea_series *all[] = {to->band, to->designed, to->model,
                               to->data, to->left_out, to->residual};
@@ -134,7 +134,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
   enum { SHOWN_MAX = 7 }; // of the 48 series that a panel holds
   struct dea_plot *plot;
   size_t number = 0;
-  snprintf(name, 64, "fit_%s%.50s", in_time ? "time_" : "", dea_point_columns[column].key);
+  snprintf(name, 64, "fit_%s%.50s", in_time ? "time_" : "", dea_column_at(ctx, column)->key);
   DEA_TRY(ctx, dea_plot_create(ctx, name,
                                "measurements with the fitted device, its band of two standard "
                                "uncertainties and the design; model less measurement",
@@ -149,7 +149,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
   }
   *drawn = number > 0;
   if (status == DEA_OK && *drawn) {
-    dea_figure_label(&dea_point_columns[column], plot->panels[0].y_label,
+    dea_figure_label(dea_column_at(ctx, column), plot->panels[0].y_label,
                      sizeof plot->panels[0].y_label);
     const char *unit = strrchr(plot->panels[0].y_label, '(');
     snprintf(plot->panels[1].y_label, sizeof plot->panels[1].y_label, "Residual %.60s",
@@ -177,10 +177,10 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
 dea_status dea_device_fit_draw(struct dea_context *ctx, const struct dea_device_fit *fit,
                                const struct dea_plot_format *format, const char *directory)
 {
-  char names[2 * DEA_LOAD_POINT_COLUMNS][64];
-  const char *list[2 * DEA_LOAD_POINT_COLUMNS];
+  char names[DEA_DEVICE_CURVES_MAX + 1][64]; // a curve or more each
+  const char *list[DEA_DEVICE_CURVES_MAX + 1];
   size_t count = 0;
-  for (int k = 0; k < 2 * DEA_LOAD_POINT_COLUMNS; k++) {
+  for (int k = 0; k < 2 * dea_column_count(ctx); k++) {
     bool drawn = false;
     DEA_TRY(ctx, draw(ctx, fit, k / 2, k % 2 == 1, format, directory, names[count], &drawn));
     list[count] = names[count];

@@ -10,7 +10,7 @@
 
 static void add_rows(struct dea_text *out, const struct dea_device_curve *curve)
 {
-  const struct dea_column *column = &dea_point_columns[curve->column];
+  const struct dea_column *column = curve->quantity;
   for (size_t i = 0; i < curve->rows; i++) {
     dea_csv_add_name(out, curve->text->name.text);
     dea_text_add(out, ",%s,%s,%zu,%s", column->key, dea_fit_use_names[curve->text->use.value],
@@ -56,8 +56,8 @@ static json_t *curves_json(const struct dea_device_fit *fit)
     const struct dea_device_curve *curve = &fit->curves[c];
     json_t *object = json_object();
     dea_json_put_text(object, "name", curve->text->name.text);
-    dea_json_put_text(object, "quantity", dea_point_columns[curve->column].key);
-    dea_json_put_text(object, "unit", dea_point_columns[curve->column].si_unit);
+    dea_json_put_text(object, "quantity", curve->quantity->key);
+    dea_json_put_text(object, "unit", curve->quantity->si_unit);
     dea_json_put_text(object, "use", dea_fit_use_names[curve->text->use.value]);
     dea_fit_json_rows(object, curve->file, curve->sha256, curve->rows, curve->slack, curve->lag,
                       curve->effective);
@@ -126,15 +126,21 @@ json_t *dea_device_fit_json(const struct dea_device_fit *fit, const char *comman
 dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_device_file *file,
                                  const char *directory, bool force)
 {
-  enum { COUNT = 2 * DEA_LOAD_POINT_COLUMNS };
-  char names[COUNT][64];
-  const char *figures[COUNT];
-  for (int c = 0; c < COUNT; c++) {
+  const size_t count = 2 * (size_t)dea_column_count(ctx);
+  struct dea_arena memory = {.ctx = ctx};
+  char(*names)[64] = dea_arena_alloc(&memory, count, sizeof *names);
+  const char **figures = dea_arena_alloc(&memory, count, sizeof *figures);
+  for (size_t c = 0; figures != NULL && c < count; c++) {
     snprintf(names[c], sizeof names[c], "fit_%s%.50s", c % 2 == 0 ? "" : "time_",
-             dea_point_columns[c / 2].key);
+             dea_column_at(ctx, (int)(c / 2))->key);
     figures[c] = names[c];
   }
-  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, COUNT, force);
+  dea_status status = dea_arena_status(&memory);
+  status = status == DEA_OK
+               ? dea_fit_folder_make(ctx, directory, file->head.name.text, figures, count, force)
+               : status;
+  dea_arena_free(&memory);
+  return status;
 }
 
 static dea_status write_texts(struct dea_context *ctx, const struct dea_device_fit *fit,

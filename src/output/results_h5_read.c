@@ -3,6 +3,7 @@
 
 #include "base/h5.h"
 #include "base/write_file.h"
+#include "output/csv.h"
 #include "output/results_h5_surface.h"
 #include "output/results_h5_tables.h"
 #include "result/result.h"
@@ -23,9 +24,56 @@ static size_t get_count(struct h5 *h, hid_t group)
   return h->status == DEA_OK ? (size_t)count : 0;
 }
 
-/* Points of a group; *points owned by the caller, NULL for none. */
-static void get_points(struct h5 *h, hid_t group, struct dea_load_point **points, size_t *count)
+/* Adds the columns of monitors and channels to the context. */
+static void get_columns(struct h5 *h, hid_t file)
 {
+  hid_t columns = h->status == DEA_OK && dea_h5_has(h, file, "columns")
+                      ? dea_h5_group_open(h, file, "columns")
+                      : H5I_INVALID_HID;
+  const size_t count = columns >= 0 ? dea_h5_link_count(h, columns) : 0;
+  for (size_t i = 0; i < count && h->status == DEA_OK; i++) {
+    char key[2 * DEA_NAME_SIZE], title[DEA_COLUMN_TITLE_SIZE], unit[32], shown[32], meaning[256];
+    int column;
+    dea_h5_link_name(h, columns, i, key, sizeof key);
+    hid_t group = dea_h5_group_open(h, columns, key);
+    dea_h5_get_text(h, group, "key", key, sizeof key);
+    dea_h5_get_text(h, group, "title", title, sizeof title);
+    dea_h5_get_text(h, group, "unit", unit, sizeof unit);
+    dea_h5_get_text(h, group, "display_unit", shown, sizeof shown);
+    dea_h5_get_text(h, group, "meaning", meaning, sizeof meaning);
+    const double factor = dea_h5_get_real(h, group, "display_factor");
+    dea_h5_close(group);
+    if (h->status == DEA_OK) {
+      h->status = dea_column_add(
+          h->ctx, &(struct dea_column){key, unit, shown, factor, title, meaning}, &column);
+    }
+  }
+  dea_h5_close(columns);
+}
+
+/* Room at points for the columns of monitors that a group has. */
+static void make_monitors(struct h5 *h, hid_t group, struct dea_arena *memory,
+                          struct dea_load_point *points, size_t count)
+{
+  const int all = dea_column_count(h->ctx);
+  int *columns = dea_arena_alloc(memory, (size_t)all, sizeof *columns);
+  size_t found = 0;
+  for (int c = DEA_LOAD_POINT_COLUMNS; columns != NULL && c < all; c++) {
+    if (dea_h5_has(h, group, dea_column_at(h->ctx, c)->key)) {
+      columns[found++] = c;
+    }
+  }
+  for (size_t i = 0; i < count && found > 0; i++) {
+    points[i].monitors = dea_monitor_values_create(memory, columns, found);
+  }
+  h->status = h->status == DEA_OK ? dea_arena_status(memory) : h->status;
+}
+
+/* Points of a group; *points owned by the caller, NULL for none; memory: of their monitors. */
+static void get_points(struct h5 *h, hid_t group, struct dea_arena *memory,
+                       struct dea_load_point **points, size_t *count)
+{
+  memory->ctx = h->ctx;
   *points = NULL;
   *count = get_count(h, group);
   if (*count == 0) {
@@ -41,9 +89,13 @@ static void get_points(struct h5 *h, hid_t group, struct dea_load_point **points
   for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
     (*points)[i] = dea_load_point_empty();
   }
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    if (dea_h5_has(h, group, dea_point_columns[c].key)) {
-      dea_h5_get_array(h, group, dea_point_columns[c].key, H5T_NATIVE_DOUBLE, n, buffer);
+  if (h->status == DEA_OK) {
+    make_monitors(h, group, memory, *points, n);
+  }
+  for (int c = 0; c < dea_column_count(h->ctx); c++) {
+    const char *key = dea_column_at(h->ctx, c)->key;
+    if (dea_h5_has(h, group, key)) {
+      dea_h5_get_array(h, group, key, H5T_NATIVE_DOUBLE, n, buffer);
       for (size_t i = 0; h->status == DEA_OK && i < n; i++) {
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): else there is an error
         dea_point_set(&(*points)[i], c, buffer[i]);
@@ -73,7 +125,7 @@ static void get_events(struct h5 *h, hid_t parent, struct dea_curve *curve)
   hid_t group = dea_h5_group_open(h, parent, "events");
   struct dea_load_point *points;
   size_t count;
-  get_points(h, group, &points, &count);
+  get_points(h, group, &curve->memory, &points, &count);
   char *names = count > 0 ? dea_alloc(h->ctx, count + 1, KIND_SIZE) : NULL;
   if (count > 0 && names == NULL) {
     h->status = DEA_E_MEMORY;
@@ -168,7 +220,7 @@ static void get_std(struct h5 *h, hid_t parent, struct dea_curve *curve)
   if (h->status == DEA_OK && dea_h5_has(h, parent, "std")) {
     size_t count;
     hid_t group = dea_h5_group_get(h, parent, "std");
-    get_points(h, group, &curve->std, &count);
+    get_points(h, group, &curve->memory, &curve->std, &count);
     if (h->status == DEA_OK && count != curve->count) {
       h->status = dea_fail(h->ctx, DEA_E_IO, "%s is damaged: %zu points with %zu uncertainties",
                            h->path, curve->count, count);
@@ -185,7 +237,7 @@ static void get_content(struct h5 *h, hid_t group, struct dea_curve *curve)
   dea_h5_get_text(h, group, "status", name, sizeof name);
   curve->status = status_of_name(name);
   dea_h5_get_text(h, group, "stopped", curve->stopped, sizeof curve->stopped);
-  get_points(h, group, &curve->points, &curve->count);
+  get_points(h, group, &curve->memory, &curve->points, &curve->count);
   curve->room = curve->count;
   get_std(h, group, curve);
   get_events(h, group, curve);
@@ -350,6 +402,7 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
   dea_h5_begin(&h, ctx, path);
   hid_t file = dea_h5_file_open(&h, false);
   check_schema(&h, file);
+  get_columns(&h, file);
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): made before
   get_all(&h, file, "curves", true, get_curve, run->result);
   get_all(&h, file, "profiles", true, get_profile, run->result);

@@ -21,7 +21,7 @@ static void put_column(struct h5 *h, hid_t group, const char *points, size_t str
         dea_point_get((const struct dea_load_point *)(const void *)(points + i * stride), column);
     any = any || !isnan(buffer[i]);
   }
-  const struct dea_column *c = &dea_point_columns[column];
+  const struct dea_column *c = dea_column_at(h->ctx, column);
   if (any) {
     dea_h5_put_array(h, group, c->key, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, count, buffer, c->si_unit,
                      c->meaning);
@@ -53,7 +53,7 @@ static void put_points(struct h5 *h, hid_t group, const char *points, size_t str
     dea_free(h->ctx, buffer);
     return;
   }
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+  for (int c = 0; c < dea_column_count(h->ctx); c++) {
     put_column(h, group, points, stride, count, c, buffer);
   }
   put_states(h, group, points, stride, count, whole);
@@ -108,6 +108,43 @@ static void put_curve(struct h5 *h, hid_t group, size_t index, const struct dea_
   put_points(h, group, (const char *)curve->points, sizeof *curve->points, curve->count);
   put_std(h, group, curve);
   put_events(h, group, curve);
+}
+
+static bool any_has(const struct dea_result *result, int column)
+{
+  bool any = false;
+  for (size_t i = 0; i < result->curve_count && !any; i++) {
+    any = dea_points_have(result->curves[i].points, result->curves[i].count, column);
+  }
+  for (size_t i = 0; i < result->variant_count && !any; i++) {
+    const struct dea_curve *curve = &result->variants[i].curve;
+    any = dea_points_have(curve->points, curve->count, column);
+  }
+  return any;
+}
+
+/* columns/0000, 0001, ...: those of monitors and channels, in their order. */
+static void put_columns(struct h5 *h, hid_t file, const struct dea_result *result)
+{
+  hid_t columns = H5I_INVALID_HID;
+  for (int c = DEA_LOAD_POINT_COLUMNS; c < dea_column_count(h->ctx); c++) {
+    if (!any_has(result, c)) {
+      continue;
+    }
+    const struct dea_column *column = dea_column_at(h->ctx, c);
+    columns = columns < 0 ? dea_h5_group_make(h, file, "columns") : columns;
+    char name[24];
+    snprintf(name, sizeof name, "%04zu", dea_h5_link_count(h, columns));
+    hid_t group = dea_h5_group_make(h, columns, name);
+    dea_h5_put_text(h, group, "key", column->key);
+    dea_h5_put_text(h, group, "title", column->header);
+    dea_h5_put_text(h, group, "unit", column->si_unit);
+    dea_h5_put_text(h, group, "display_unit", column->display_unit);
+    dea_h5_put_real(h, group, "display_factor", column->factor);
+    dea_h5_put_text(h, group, "meaning", column->meaning);
+    dea_h5_close(group);
+  }
+  dea_h5_close(columns);
 }
 
 static void put_curves(struct h5 *h, hid_t file, const struct dea_result *result)
@@ -297,6 +334,7 @@ dea_status dea_results_h5_write(struct dea_context *ctx, const struct dea_result
   hid_t file = dea_h5_file_make(&h);
   dea_h5_put_text(&h, file, "format", "libdea results");
   dea_h5_put_int(&h, file, "schema", DEA_RESULTS_H5_SCHEMA);
+  put_columns(&h, file, result);
   put_curves(&h, file, result);
   put_profiles(&h, file, result);
   put_surfaces(&h, file, result);

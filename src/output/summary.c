@@ -58,11 +58,12 @@ static json_t *trust_json(const struct dea_curve *sweep)
 }
 
 /* Puts what is known of one model into an object. */
-static void put_model(json_t *object, const struct dea_result *result, const char *model)
+static void put_model(const struct dea_context *ctx, const struct dea_result *result,
+                      const char *model, json_t *object)
 {
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   json_object_set_new(object, "model", json_string(model));
-  json_object_set_new(object, "points", dea_points_json(sweep));
+  json_object_set_new(object, "points", dea_points_json(ctx, sweep));
   json_object_set_new(object, "trust", trust_json(sweep));
   const struct dea_curve *stopped = first_stopped(result, model);
   json_object_set_new(object, "complete", json_boolean(stopped == NULL));
@@ -73,7 +74,7 @@ static void put_model(json_t *object, const struct dea_result *result, const cha
                       json_string(stopped != NULL ? dea_verdict_of(stopped->status) : ""));
   const struct dea_curve *path = dea_result_find(result, model, "path");
   json_object_set_new(object, "limits", limits_json(path != NULL ? path : sweep));
-  dea_summary_put_studies(result, model, object);
+  dea_summary_put_studies(ctx, result, model, object);
 }
 
 static json_t *design_json(const struct dea_result *result)
@@ -126,7 +127,7 @@ dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *re
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
     json_t *object = m == 0 ? root : json_object();
-    put_model(object, result, models[m]);
+    put_model(ctx, result, models[m], object);
     if (m > 0) {
       json_array_append_new(more, object);
     }

@@ -1,6 +1,7 @@
 #include "result/columns.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define COLUMN_ROW(member, si, display, factor, header, meaning)                                   \
@@ -27,8 +28,219 @@ int dea_point_column_find(const char *key)
   return -1;
 }
 
+// Columns of a context ----------------------------------------------------------------------------
+
+/* Columns that are no members. */
+struct registry {
+  struct dea_context *ctx;
+  struct dea_column **columns;
+  size_t count, room;
+};
+
+static void release(void *object)
+{
+  struct registry *registry = object;
+  for (size_t i = 0; i < registry->count; i++) {
+    dea_free(registry->ctx, registry->columns[i]);
+  }
+  dea_free(registry->ctx, registry->columns);
+  dea_free(registry->ctx, registry);
+}
+
+int dea_column_count(const struct dea_context *ctx)
+{
+  const struct registry *registry = ctx != NULL ? dea_context_kept(ctx, release) : NULL;
+  return DEA_LOAD_POINT_COLUMNS + (registry != NULL ? (int)registry->count : 0);
+}
+
+const struct dea_column *dea_column_at(const struct dea_context *ctx, int column)
+{
+  if (column < DEA_LOAD_POINT_COLUMNS) {
+    return &dea_point_columns[column];
+  }
+  const struct registry *registry = dea_context_kept(ctx, release);
+  return registry->columns[column - DEA_LOAD_POINT_COLUMNS];
+}
+
+void dea_key_part(const char *name, char out[DEA_KEY_PART_SIZE])
+{
+  size_t n = 0;
+  for (; *name != '\0' && n + 1 < DEA_KEY_PART_SIZE; name++) {
+    const unsigned char c = (unsigned char)*name;
+    const bool kept =
+        c >= 0x80 || (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    if (kept || n == 0 || out[n - 1] != '_') {
+      out[n++] = kept ? (char)c : '_';
+    }
+  }
+  while ((*name & 0xc0) == 0x80 && n > 0 && (out[n - 1] & 0x80) != 0) { // not a part of a letter
+    n--;
+  }
+  out[n] = '\0';
+}
+
+enum { KEY_UNIT_SIZE = 32 };
+
+/* Ending of a key by its unit: "_V_per_m", "" for a number without one. Returns its length. */
+static size_t key_unit(const char *si_unit, char out[KEY_UNIT_SIZE])
+{
+  size_t n = 0;
+  out[0] = '\0';
+  for (const char *u = strcmp(si_unit, "1") != 0 ? si_unit : "";
+       *u != '\0' && n + 8 < KEY_UNIT_SIZE; u++) {
+    const char letter[] = {u == si_unit ? '_' : *u, u == si_unit ? *u : '\0', '\0'};
+    const char *text = *u == ' ' ? "_" : *u == '/' ? "_per_" : letter;
+    n += (size_t)snprintf(out + n, KEY_UNIT_SIZE - n, "%s", text);
+  }
+  return n;
+}
+
+/* Whether that is the key of a column, or the key without its unit. */
+static bool is_key(const struct dea_column *column, const char *text)
+{
+  char unit[KEY_UNIT_SIZE];
+  const size_t length = strlen(column->key), ending = key_unit(column->si_unit, unit);
+  const size_t without = length > ending ? length - ending : 0;
+  return strcmp(column->key, text) == 0 ||
+         (strcmp(column->key + without, unit) == 0 && strlen(text) == without &&
+          memcmp(column->key, text, without) == 0);
+}
+
+int dea_column_find(const struct dea_context *ctx, const char *key)
+{
+  char part[DEA_KEY_PART_SIZE + 32];
+  const int count = dea_column_count(ctx);
+  const char *dot = strrchr(key, '.');
+  int found = -1;
+  for (int c = 0; c < count; c++) {
+    if (strcmp(dea_column_at(ctx, c)->key, key) == 0) {
+      return c;
+    }
+    if (found < 0 && c >= DEA_LOAD_POINT_COLUMNS && is_key(dea_column_at(ctx, c), key)) {
+      found = c;
+    }
+  }
+  if (found >= 0 || dot == NULL || strlen(key) >= sizeof part) {
+    return found;
+  }
+  snprintf(part, sizeof part, "%s", key); // "fibre tip.z_m", as older versions write it
+  part[dot - key] = '\0';
+  char name[DEA_KEY_PART_SIZE];
+  dea_key_part(part, name);
+  snprintf(part, sizeof part, "%s_%.31s", name, dot + 1);
+  return dea_column_find(ctx, part);
+}
+
+const char **dea_column_keys(struct dea_context *ctx)
+{
+  const int count = dea_column_count(ctx);
+  const char **keys = dea_alloc(ctx, (size_t)count, sizeof *keys);
+  for (int c = 0; keys != NULL && c < count; c++) {
+    keys[c] = dea_column_at(ctx, c)->key;
+  }
+  return keys;
+}
+
+/* Room for one more column; NULL on failure. */
+static struct registry *get_registry(struct dea_context *ctx)
+{
+  struct registry *registry = dea_context_kept(ctx, release);
+  if (registry == NULL) {
+    registry = dea_alloc(ctx, 1, sizeof *registry);
+    if (registry == NULL) {
+      return NULL;
+    }
+    registry->ctx = ctx;
+    if (dea_context_keep(ctx, registry, release) != DEA_OK) {
+      return NULL;
+    }
+  }
+  if (registry->count == registry->room) {
+    const size_t room = registry->room > 0 ? 2 * registry->room : 32;
+    void *columns = dea_resize(ctx, registry->columns, room, sizeof(struct dea_column *));
+    if (columns == NULL) {
+      return NULL;
+    }
+    registry->columns = columns;
+    registry->room = room;
+  }
+  return registry;
+}
+
+dea_status dea_column_add(struct dea_context *ctx, const struct dea_column *column, int *out)
+{
+  *out = 0;
+  for (const int count = dea_column_count(ctx); *out < count; ++*out) {
+    if (strcmp(dea_column_at(ctx, *out)->key, column->key) == 0) {
+      return DEA_OK;
+    }
+  }
+  struct registry *registry = get_registry(ctx);
+  struct dea_column *kept = registry != NULL ? dea_alloc(ctx, 1, sizeof *kept) : NULL;
+  if (kept == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *kept = (struct dea_column){
+      .key = dea_intern(ctx, column->key),
+      .si_unit = dea_intern(ctx, column->si_unit),
+      .display_unit = dea_intern(ctx, column->display_unit),
+      .factor = column->factor,
+      .header = dea_intern(ctx, column->header),
+      .meaning = dea_intern(ctx, column->meaning),
+  };
+  if (kept->key == NULL || kept->si_unit == NULL || kept->display_unit == NULL ||
+      kept->header == NULL || kept->meaning == NULL) {
+    dea_free(ctx, kept);
+    return DEA_E_MEMORY;
+  }
+  registry->columns[registry->count++] = kept;
+  return DEA_OK;
+}
+
+// Values -----------------------------------------------------------------------------------------
+
+struct dea_monitor_values *dea_monitor_values_create(struct dea_arena *memory, const int *columns,
+                                                     size_t count)
+{
+  struct dea_monitor_values *values =
+      dea_arena_alloc(memory, 1, sizeof *values + count * sizeof values->at[0]);
+  for (size_t i = 0; values != NULL && i < count; i++) {
+    values->at[i] = (struct dea_monitor_value){columns[i], NAN};
+  }
+  if (values != NULL) {
+    values->count = count;
+  }
+  return values;
+}
+
+struct dea_monitor_values *dea_monitor_values_copy(struct dea_arena *memory,
+                                                   const struct dea_monitor_values *values)
+{
+  const size_t size = values != NULL ? sizeof *values + values->count * sizeof values->at[0] : 0;
+  struct dea_monitor_values *copy = values != NULL ? dea_arena_alloc(memory, 1, size) : NULL;
+  if (copy != NULL) {
+    memcpy(copy, values, size);
+  }
+  return copy;
+}
+
+/* Place of a column that is no member; NULL: the point has none. */
+static struct dea_monitor_value *find_value(const struct dea_load_point *point, int column)
+{
+  for (size_t i = 0; point->monitors != NULL && i < point->monitors->count; i++) {
+    if (point->monitors->at[i].column == column) {
+      return &point->monitors->at[i];
+    }
+  }
+  return NULL;
+}
+
 double dea_point_get(const struct dea_load_point *point, int column)
 {
+  if (column >= DEA_LOAD_POINT_COLUMNS) {
+    const struct dea_monitor_value *at = find_value(point, column);
+    return at != NULL ? at->value : NAN;
+  }
   double value;
   memcpy(&value, (const char *)point + offsets[column], sizeof value);
   return value;
@@ -36,6 +248,13 @@ double dea_point_get(const struct dea_load_point *point, int column)
 
 void dea_point_set(struct dea_load_point *point, int column, double value_si)
 {
+  if (column >= DEA_LOAD_POINT_COLUMNS) {
+    struct dea_monitor_value *at = find_value(point, column);
+    if (at != NULL) {
+      at->value = value_si;
+    }
+    return;
+  }
   memcpy((char *)point + offsets[column], &value_si, sizeof value_si);
 }
 
@@ -49,21 +268,28 @@ bool dea_points_have(const struct dea_load_point *points, size_t count, int colu
   return false;
 }
 
-int dea_point_error_column(int column)
+void dea_column_error_key(const struct dea_column *column, char out[DEA_ERROR_KEY_SIZE])
 {
-  static const char unit[] = "_m", ending[] = "_error_m";
-  char key[64];
-  size_t length = strlen(dea_point_columns[column].key);
-  if (strcmp(dea_point_columns[column].key, "force_N") == 0) { // the mesh's is not estimated
+  char unit[KEY_UNIT_SIZE];
+  const size_t length = strlen(column->key), ending = key_unit(column->si_unit, unit);
+  snprintf(out, DEA_ERROR_KEY_SIZE, "%.*s_error%s", (int)(length > ending ? length - ending : 0),
+           column->key, unit);
+}
+
+int dea_point_error_column(const struct dea_context *ctx, int column)
+{
+  const struct dea_column *of = dea_column_at(ctx, column);
+  char key[DEA_ERROR_KEY_SIZE];
+  if (strcmp(of->key, "force_N") == 0) { // the mesh's is not estimated
     return dea_point_column_find("force_interpolation_error_N");
   }
-  if (length < sizeof unit || length + sizeof ending > sizeof key) {
-    return -1;
+  dea_column_error_key(of, key);
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    if (strcmp(dea_column_at(ctx, c)->key, key) == 0) {
+      return c;
+    }
   }
-  length -= strlen(unit);
-  memcpy(key, dea_point_columns[column].key, length);
-  memcpy(key + length, ending, sizeof ending);
-  return dea_point_column_find(key);
+  return -1;
 }
 
 bool dea_point_is_bound(const struct dea_load_point *point, int column)
@@ -71,7 +297,8 @@ bool dea_point_is_bound(const struct dea_load_point *point, int column)
   static const char *const bounded[] = {"centre_z_m", "fibre_tip_z_m", "force_N"};
   bool found = false;
   for (size_t k = 0; k < sizeof bounded / sizeof bounded[0]; k++) {
-    found = found || strcmp(dea_point_columns[column].key, bounded[k]) == 0;
+    found = found || (column < DEA_LOAD_POINT_COLUMNS &&
+                      strcmp(dea_point_columns[column].key, bounded[k]) == 0);
   }
   return found && dea_load_point_bounds(point);
 }

@@ -1,5 +1,7 @@
 #include "result/compare.h"
 
+#include "result/observation.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -135,7 +137,7 @@ static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
 dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room, struct dea_misfit *out)
 {
   *out = (struct dea_misfit){
-      .column = column, .quantity = &dea_point_columns[column], .memory = {.ctx = ctx}};
+      .column = column, .quantity = dea_column_at(ctx, column), .memory = {.ctx = ctx}};
   out->at = dea_arena_alloc(&out->memory, room, sizeof *out->at);
   out->a = dea_arena_alloc(&out->memory, room, sizeof *out->a);
   out->b = dea_arena_alloc(&out->memory, room, sizeof *out->b);
@@ -312,7 +314,7 @@ static dea_status nothing_common(struct dea_context *ctx, const struct dea_curve
                                  const struct dea_curve *b, int column)
 {
   if (column >= 0) {
-    const char *key = dea_point_columns[column].key;
+    const char *key = dea_column_at(ctx, column)->key;
     bool in_a = dea_points_have(a->points, a->count, column);
     bool in_b = dea_points_have(b->points, b->count, column);
     if (!in_a || !in_b) {
@@ -328,20 +330,54 @@ static dea_status nothing_common(struct dea_context *ctx, const struct dea_curve
                   b->model);
 }
 
+/* The largest size of a column in both curves. */
+static double largest_of(const struct dea_curve *a, const struct dea_curve *b, int column)
+{
+  double size = 0;
+  for (size_t i = 0; i < a->count + b->count; i++) {
+    const struct dea_load_point *p = i < a->count ? &a->points[i] : &b->points[i - a->count];
+    size = fmax(size, fabs(dea_point_get(p, column))); // not of NAN
+  }
+  return size;
+}
+
+/* Whether a column of monitors says nothing that was not asked for: an estimated error, or a motion
+ * or force that is rounding beside those of its unit, as of a centre that a mirror holds. Of
+ * numbers around 1 none is. */
+static bool says_nothing(const struct dea_context *ctx, const struct dea_curve *a,
+                         const struct dea_curve *b, int column)
+{
+  static const double share = 1e-6, least_si = 1e-12;
+  const struct dea_column *of = dea_column_at(ctx, column);
+  double all = 0;
+  if (column < DEA_LOAD_POINT_COLUMNS) {
+    return false;
+  }
+  for (int c = DEA_LOAD_POINT_COLUMNS; c < dea_column_count(ctx); c++) {
+    if (strcmp(dea_column_at(ctx, c)->si_unit, of->si_unit) == 0) {
+      all = fmax(all, largest_of(a, b, c));
+    }
+  }
+  return !dea_observed_is(of, NULL) ||
+         (strcmp(of->si_unit, "1") != 0 && largest_of(a, b, column) <= fmax(least_si, share * all));
+}
+
 dea_status dea_compare_curves(struct dea_context *ctx, const struct dea_curve *a,
                               const struct dea_curve *b, const struct dea_load_point *b_std,
                               int column, struct dea_comparison **out)
 {
+  const int count = dea_column_count(ctx);
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
+  (*out)->misfits = dea_alloc(ctx, (size_t)count, sizeof *(*out)->misfits);
   struct pairing p = pair(a, b, b_std);
   (*out)->part_only = !p.point_by_point && p.leg < (p.at_b ? a : b)->count;
-  dea_status status = DEA_OK;
+  dea_status status = (*out)->misfits != NULL ? DEA_OK : DEA_E_MEMORY;
   int voltage = dea_point_column_find("voltage_V");
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS && status == DEA_OK; c++) {
-    if (c != voltage && (column < 0 || column == c)) {
+  for (int c = 0; c < count && status == DEA_OK; c++) {
+    if (c != voltage && (column < 0 ? !says_nothing(ctx, a, b, c) : column == c)) {
       status = compare_column(ctx, &p, c, *out);
     }
   }
@@ -363,6 +399,7 @@ void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comp
   for (size_t i = 0; i < comparison->misfit_count; i++) {
     dea_misfit_free(&comparison->misfits[i]);
   }
+  dea_free(ctx, comparison->misfits);
   dea_free(ctx, comparison);
 }
 

@@ -9,8 +9,8 @@
 /* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these places (the
  * largest |b| when all are equal); relative values are over it. Arrays [count] in its memory. */
 struct dea_misfit {
-  int column;                        // of dea_point_columns
-  const struct dea_column *quantity; // that, or what a monitor shows in its place; lent
+  int column;                        // of the context
+  const struct dea_column *quantity; // that; lent
   size_t count;
   double *at; // voltage [V]; time [s] of a history, place [m] of a profile
   double *a, *b;
@@ -26,7 +26,7 @@ struct dea_misfit {
 };
 
 struct dea_comparison {
-  struct dea_misfit misfits[DEA_LOAD_POINT_COLUMNS];
+  struct dea_misfit *misfits; // owned
   size_t misfit_count;
   bool
       part_only; // the interpolated curve turns back in voltage: only its part before that was used

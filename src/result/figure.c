@@ -112,7 +112,7 @@ static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
                             const struct dea_curve *curve, int column, double factor, double shift,
                             bool right)
 {
-  int error = dea_point_error_column(column);
+  int error = dea_point_error_column(ctx, column);
   size_t n = curve->count;
   struct dea_series *band;
   if (error < 0 || !dea_points_have(curve->points, n, error)) {
@@ -343,28 +343,29 @@ dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *pane
   return add_events_of(ctx, panel, result, DEA_EVENT_BREAKDOWN, &q, whole_path);
 }
 
-/* Display unit with its proper signs: "um" -> "µm". */
-static void typeset_unit(const char *unit, char *out, size_t size)
+void dea_figure_unit(const char *unit, char out[DEA_COLUMN_UNIT_SIZE])
 {
   const char *u = strcmp(unit, "V/um") == 0 ? unit + 2 : unit[0] == 'u' ? unit : NULL;
   if (u != NULL) {
-    snprintf(out, size, "%.*s\302\265%s", (int)(u - unit), unit, u + 1);
+    snprintf(out, DEA_COLUMN_UNIT_SIZE, "%.*s\302\265%s", (int)(u - unit), unit, u + 1);
   } else {
-    snprintf(out, size, "%s", unit);
+    snprintf(out, DEA_COLUMN_UNIT_SIZE, "%s", unit);
   }
 }
 
 void dea_figure_label(const struct dea_column *column, char *out, size_t size)
 {
-  char unit[32], header[64];
+  char unit[DEA_COLUMN_UNIT_SIZE], header[DEA_LABEL_SIZE];
   snprintf(header, sizeof header, "%s", column->header);
   if (header[0] >= 'a' && header[0] <= 'z' && header[1] != ' ') {
     header[0] = (char)(header[0] - 'a' + 'A');
   }
-  typeset_unit(column->display_unit, unit, sizeof unit);
+  dea_figure_unit(column->display_unit, unit);
+  char escaped[DEA_LABEL_SIZE];
+  dea_label_escape(header, escaped, sizeof escaped); // names of monitors are any text
   if (strcmp(unit, "1") == 0) {
-    snprintf(out, size, "%s", header);
+    snprintf(out, size, "%s", escaped);
   } else {
-    snprintf(out, size, "%s (%s)", header, unit);
+    snprintf(out, size, "%s (%s)", escaped, unit);
   }
 }

@@ -61,6 +61,9 @@ dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel
 dea_status dea_figure_add_events(struct dea_context *ctx, struct dea_panel *panel,
                                  const struct dea_result *result, int column, double factor,
                                  double shift, bool whole_path);
+/* Display unit with its proper signs: "um" -> "\302\265m". */
+enum { DEA_COLUMN_UNIT_SIZE = 32 };
+void dea_figure_unit(const char *unit, char out[DEA_COLUMN_UNIT_SIZE]);
 /* "true field (V/\302\265m)": header and unit of a column as a label. */
 void dea_figure_label(const struct dea_column *column, char *out, size_t size);
 

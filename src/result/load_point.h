@@ -112,6 +112,8 @@ enum dea_flag_kind { DEA_FLAG_DOUBT, DEA_FLAG_DANGER, DEA_FLAG_LIMIT, DEA_FLAG_S
 enum dea_flag { DEA_FLAG_LIST(DEA_FLAG_NUMBER) DEA_FLAG_COUNT };
 #undef DEA_FLAG_NUMBER
 
+struct dea_monitor_values; // result/columns.h
+
 struct dea_load_point {
 #define DEA_LOAD_POINT_MEMBER(member, si, display, factor, header, meaning) double member;
   DEA_LOAD_POINT_LIST(DEA_LOAD_POINT_MEMBER)
@@ -119,6 +121,8 @@ struct dea_load_point {
   bool stable;        // under voltage control, within the motions the model knows
   int unstable_modes; // number of negative modes of the tangent
   unsigned told;      // flags that the numbers do not say, 1u << enum dea_flag: STATES, ...
+  /* What monitors and channels show (result/columns.h); of a curve's points its own, NULL: none. */
+  struct dea_monitor_values *monitors;
 };
 
 /* Point with every number NAN, stable, no unstable mode. */

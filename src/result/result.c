@@ -1,5 +1,7 @@
 #include "result/result.h"
 
+#include "result/columns.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -25,6 +27,7 @@ static void clear_curve(struct dea_context *ctx, struct dea_curve *curve)
   dea_free(ctx, curve->points);
   dea_free(ctx, curve->std);
   dea_free(ctx, curve->events);
+  dea_arena_free(&curve->memory);
 }
 
 void dea_result_destroy(struct dea_context *ctx, struct dea_result *result)
@@ -186,7 +189,11 @@ dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
   void *points = curve->points;
   DEA_TRY(ctx, make_room(ctx, &points, curve->count, &curve->room, sizeof *curve->points));
   curve->points = points;
-  curve->points[curve->count++] = *point;
+  curve->memory.ctx = ctx;
+  struct dea_monitor_values *monitors = dea_monitor_values_copy(&curve->memory, point->monitors);
+  DEA_TRY(ctx, dea_arena_status(&curve->memory));
+  curve->points[curve->count] = *point;
+  curve->points[curve->count++].monitors = monitors;
   return DEA_OK;
 }
 
@@ -197,7 +204,12 @@ dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,
   DEA_TRY(ctx,
           make_room(ctx, &events, curve->event_count, &curve->event_room, sizeof *curve->events));
   curve->events = events;
-  curve->events[curve->event_count++] = *event;
+  curve->memory.ctx = ctx;
+  struct dea_monitor_values *monitors =
+      dea_monitor_values_copy(&curve->memory, event->point.monitors);
+  DEA_TRY(ctx, dea_arena_status(&curve->memory));
+  curve->events[curve->event_count] = *event;
+  curve->events[curve->event_count++].point.monitors = monitors;
   return DEA_OK;
 }
 

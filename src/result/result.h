@@ -2,6 +2,7 @@
 #ifndef DEA_RESULT_RESULT_H
 #define DEA_RESULT_RESULT_H
 
+#include "base/arena.h"
 #include "design/design.h"
 #include "device/device.h"
 #include "result/field_mesh.h"
@@ -15,6 +16,7 @@ struct dea_curve {
   char model[DEA_NAME_SIZE]; // "lumped"
   char kind[DEA_NAME_SIZE];  // "sweep", "path"
   struct dea_load_point *points;
+  struct dea_arena memory; // of what monitors show at them
   size_t count, room;
   struct dea_load_point *std; // [count] standard uncertainties by those of the design and its
                               // material, NAN: not known; owned, NULL: none are known
@@ -96,6 +98,7 @@ void dea_result_destroy(struct dea_context *ctx, struct dea_result *result);
 /* A new empty curve; *out lent until the next call of this function. */
 dea_status dea_result_add_curve(struct dea_context *ctx, struct dea_result *result,
                                 const char *model, const char *kind, struct dea_curve **out);
+/* Copies the point with what its monitors show. */
 dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_load_point *point);
 dea_status dea_curve_add_event(struct dea_context *ctx, struct dea_curve *curve,

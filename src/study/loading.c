@@ -290,14 +290,6 @@ static const struct dea_result_column line_columns[] = {
     {.key = "stopped", .kind = DEA_CELL_TEXT, .title = "stopped", .meaning = "why it did not"},
 };
 
-static const struct dea_result_column monitor_columns[] = {
-    VOLTAGE,
-    POINT("of table points"),
-    {.key = "monitor", .kind = DEA_CELL_TEXT, .title = "monitor", .meaning = "name in the design"},
-    DEA_OBSERVED_COLUMNS,
-};
-_Static_assert(COUNT(monitor_columns) == 3 + DEA_OBSERVED_COUNT, "a column a quantity");
-
 static const struct dea_result_table_type tables[] = {
     {.study = study_name,
      .name = "points",
@@ -311,14 +303,8 @@ static const struct dea_result_table_type tables[] = {
      .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
      .columns = line_columns,
      .column_count = COUNT(line_columns)},
-    {.study = study_name,
-     .name = "monitors",
-     .title = "Monitors on the way",
-     .where = DEA_IN_JSON | DEA_IN_CSV,
-     .columns = monitor_columns,
-     .column_count = COUNT(monitor_columns)},
 };
-enum { POINTS, LINES, MONITORS, TABLES };
+enum { POINTS, LINES, TABLES };
 
 // Study ------------------------------------------------------------------------------------------
 
@@ -400,21 +386,6 @@ static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, d
                            "and %.4g mN: it snaps through, or the steps are too long",
                            1e-3 * l->voltage_V, 1e3 * l->x[1], 1e3 * l->x[0], 1e3 * l->f[1],
                            1e3 * l->f[0]);
-  }
-  return DEA_OK;
-}
-
-static dea_status add_monitors(struct dea_context *ctx, struct loading *l,
-                               const struct dea_observation *seen)
-{
-  const struct dea_layout *layout = l->result->device->layout;
-  for (size_t i = 0; i < seen->monitor_count; i++) {
-    struct dea_result_table_value row[COUNT(monitor_columns)] = {
-        {.number = l->voltage_V}, {.number = (double)l->point}, {.text = layout->monitors[i].name}};
-    for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
-      row[3 + k].number = seen->monitor[i][k];
-    }
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, &l->result->tables[l->table[MONITORS]], row));
   }
   return DEA_OK;
 }
@@ -512,8 +483,8 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
       {.text = dea_flags_text(dea_load_point_flags(&at), flags)}};
   _Static_assert(COUNT(row) == COUNT(point_columns), "a value a column");
   DEA_TRY(ctx, dea_result_table_add_row(ctx, &l->result->tables[l->table[POINTS]], row));
-  DEA_TRY(ctx, add_monitors(ctx, l, &seen));
-  DEA_TRY(ctx, dea_curve_add_point(ctx, &l->result->curves[l->curve], &at));
+  DEA_TRY(ctx, dea_study_add_point(ctx, l->type, l->model, l->result->device, &at,
+                                   &l->result->curves[l->curve]));
   DEA_TRY(ctx, watch(ctx, l, back, v[AT_SHIFT], v[OF_FORCE]));
   snprintf(what, sizeof what, "%s %s", l->type->name, study_name);
   dea_progress(ctx, what, ++l->done, l->total);
@@ -666,9 +637,6 @@ static dea_status add_tables(struct dea_context *ctx, struct loading *l)
   struct dea_curve *curve;
   for (int k = 0; k < TABLES; k++) {
     struct dea_result_table *table;
-    if (k == MONITORS && l->result->device->layout->monitor_count == 0) {
-      continue;
-    }
     DEA_TRY(ctx, dea_result_add_table(ctx, l->result, &tables[k], l->type->name, 0, &table));
     l->table[k] = (size_t)(table - l->result->tables);
   }

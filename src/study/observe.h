@@ -1,62 +1,42 @@
-/* Monitors and channels of a device in the tables of a result. */
+/* What the monitors and channels of a device show, as columns of a study's curves. */
 #ifndef DEA_STUDY_OBSERVE_H
 #define DEA_STUDY_OBSERVE_H
 
 #include "model/model.h"
+#include "result/columns.h"
 #include "result/figure.h"
 #include "result/result.h"
 
-/* Columns of a table, one for each of enum dea_observed. */
-#define DEA_OBSERVED_COLUMNS                                                                       \
-  DEA_NUMBER_COLUMN("x_m", "m", "um", 1e6, "x", "displacement along x"),                           \
-      DEA_NUMBER_COLUMN("y_m", "m", "um", 1e6, "y", "displacement along y"),                       \
-      DEA_NUMBER_COLUMN("z_m", "m", "um", 1e6, "z", "displacement out of the plane"),              \
-      DEA_NUMBER_COLUMN("turn_x_rad", "rad", "deg", 57.29577951308232, "turn x",                   \
-                        "turn of a body about x"),                                                 \
-      DEA_NUMBER_COLUMN("turn_y_rad", "rad", "deg", 57.29577951308232, "turn y",                   \
-                        "turn of a body about y"),                                                 \
-      DEA_NUMBER_COLUMN("turn_z_rad", "rad", "deg", 57.29577951308232, "turn z",                   \
-                        "turn of a body about z"),                                                 \
-      DEA_NUMBER_COLUMN("stretch", "1", "1", 1, "stretch", "length of a line over its flat one"),  \
-      DEA_NUMBER_COLUMN("stretch_x", "1", "1", 1, "stretch x",                                     \
-                        "mean stretch of a region along x"),                                       \
-      DEA_NUMBER_COLUMN("stretch_y", "1", "1", 1, "stretch y",                                     \
-                        "mean stretch of a region along y"),                                       \
-      DEA_NUMBER_COLUMN("area_stretch", "1", "1", 1, "area stretch",                               \
-                        "area of a region over its flat one"),                                     \
-      DEA_NUMBER_COLUMN("force_x_N", "N", "mN", 1e3, "force x",                                    \
-                        "on a body, of what holds or moves it"),                                   \
-      DEA_NUMBER_COLUMN("force_y_N", "N", "mN", 1e3, "force y",                                    \
-                        "on a body, of what holds or moves it"),                                   \
-      DEA_NUMBER_COLUMN("force_z_N", "N", "mN", 1e3, "force z",                                    \
-                        "on a body, of what holds or moves it"),                                   \
-      DEA_NUMBER_COLUMN("moment_x_N_m", "N m", "uN m", 1e6, "moment x",                            \
-                        "on a body about its centre"),                                             \
-      DEA_NUMBER_COLUMN("moment_y_N_m", "N m", "uN m", 1e6, "moment y",                            \
-                        "on a body about its centre"),                                             \
-      DEA_NUMBER_COLUMN("moment_z_N_m", "N m", "uN m", 1e6, "moment z",                            \
-                        "on a body about its centre")
+/* The columns of a device and their values at one point; freed with dea_monitor_set_free. */
+struct dea_monitor_set {
+  struct dea_arena memory;
+  const struct dea_monitor_column *columns; // [count]; 0: the model observes none
+  size_t count;
+  double *errors; // [monitor_count]
+  struct dea_monitor_values *values;
+};
 
-/* Adds a row for each monitor and channel at the last point solved to the model's tables "monitors"
- * and "channels", which are made by the first. Nothing for a device that has none, and for a model
- * that knows none. */
-dea_status dea_study_observe(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, double voltage_V, struct dea_result *result);
+dea_status dea_monitor_set_init(struct dea_context *ctx, const struct dea_model_type *type,
+                                const struct dea_device *device, struct dea_monitor_set *out);
+/* Those at the last point solved, or of a history at the last step, into the point, which borrows
+ * `values` of the set. errors: with those that the model estimates. */
+dea_status dea_monitor_set_read(struct dea_context *ctx, struct dea_monitor_set *set,
+                                const struct dea_model_type *type, struct dea_model *model,
+                                bool errors, struct dea_load_point *point);
+void dea_monitor_set_free(struct dea_monitor_set *set);
+
+/* Adds the last point solved to a curve, with what monitors and channels of the device show. */
+dea_status dea_study_add_point(struct dea_context *ctx, const struct dea_model_type *type,
+                               struct dea_model *model, const struct dea_device *device,
+                               const struct dea_load_point *point, struct dea_curve *curve);
 /* The meshes of an adaptive refinement as the model's table "adaptation", once; nothing without. */
 dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_model_type *type,
                                     const struct dea_model *model, struct dea_result *result);
+/* Extremes of what the channels of a history saw, as its model's table "sources". */
+dea_status dea_study_sources(struct dea_context *ctx, const struct dea_monitor_set *set,
+                             const struct dea_curve *curve, struct dea_result *result);
 
-/* How many numbers monitors and channels have at a point; 0 where nothing is observed. */
-size_t dea_observe_width(const struct dea_model_type *type, const struct dea_result *result);
-/* Those at the last point solved, or of a history at the last step: values [width]. */
-dea_status dea_observe_take(struct dea_context *ctx, const struct dea_model_type *type,
-                            struct dea_model *model, double *values);
-/* Tables "monitors" and "channels" of the study transient. values: [curve->count][width]. */
-dea_status dea_observe_history(struct dea_context *ctx, const struct dea_model_type *type,
-                               const struct dea_curve *curve, const double *values,
-                               struct dea_result *result);
-
-/* Figures of these tables, for the study sweep; and what builds those of histories. */
+/* Figures of these columns, for the study sweep; and what builds those of histories. */
 enum { DEA_OBSERVE_FIGURES = 4 };
 extern const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES];
 dea_status dea_observe_displacement_in_time(struct dea_context *ctx,

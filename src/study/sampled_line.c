@@ -32,7 +32,7 @@ static void treat(enum treatment out[DEA_LOAD_POINT_COLUMNS])
     out[c] = c == own[0] || c == own[1] || c == own[2] ? LEFT : CUBIC;
   }
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    int error = dea_point_error_column(c);
+    int error = dea_point_error_column(NULL, c);
     if (error >= 0 && out[error] == CUBIC) {
       out[error] = LARGER;
     }

@@ -186,7 +186,7 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
 static const struct dea_result_column part_slope_columns[] = {
     VOLTAGE,
     DEA_NUMBER_IN_ROW,
-    DEA_TEXT_COLUMN("quantity", "quantity", "of load points, or of a monitor: middle.z_m"),
+    DEA_TEXT_COLUMN("quantity", "quantity", "of load points, or of a monitor: middle_z_m"),
     {.key = "value", .title = "quantity's value", .meaning = "there, in SI"},
     SLOPE,
     {.key = "elasticity",
@@ -234,9 +234,6 @@ static const struct dea_result_table_type part_matter_table = {.study = study_na
 
 // Study ------------------------------------------------------------------------------------------
 
-/* Keys of motions, in the order of enum dea_observed. */
-static const struct dea_result_column motions[] = {DEA_OBSERVED_COLUMNS};
-
 /* One voltage. */
 struct stop {
   struct dea_arena memory; // of the arrays
@@ -244,11 +241,12 @@ struct stop {
   struct dea_load_point point;
   const struct dea_layout *layout; // of the general form; NULL: a disc
   int columns[QUANTITIES];
-  size_t width;              // quantities: QUANTITIES, monitors, then higher modes
-  size_t seen;               // of these without the modes
-  size_t *monitors;          // [seen - QUANTITIES]
-  enum dea_observed *motion; // [seen - QUANTITIES] main ones
-  double *motion_value;      // [seen - QUANTITIES]
+  size_t width;                    // quantities: QUANTITIES, monitors, then higher modes
+  size_t seen;                     // of these without the modes
+  size_t *monitors;                // [seen - QUANTITIES]
+  enum dea_observed *motion;       // [seen - QUANTITIES] main ones
+  const struct dea_column **shown; // [seen - QUANTITIES] their columns
+  double *motion_value;            // [seen - QUANTITIES]
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
   bool is_pressed;
@@ -336,7 +334,7 @@ static const char *flags_of(const struct stop *stop, char out[DEA_FLAGS_SIZE])
 static struct dea_tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
 {
   const char *unit = quantity < QUANTITIES ? dea_point_columns[stop->columns[quantity]].si_unit
-                                           : motions[stop->motion[quantity - QUANTITIES]].si_unit;
+                                           : stop->shown[quantity - QUANTITIES]->si_unit;
   return dea_number_tolerated(&stop->numbers[i], slope_of(stop, i, quantity), unit);
 }
 
@@ -387,17 +385,12 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
   return DEA_OK;
 }
 
-/* "middle.z_m", or the key of a column. */
+/* The key of a column. */
 static void name_of(const struct stop *stop, size_t quantity, char *out, size_t size)
 {
   const int column = column_of(stop, quantity);
-  if (column >= 0) {
-    snprintf(out, size, "%s", dea_point_columns[column].key);
-  } else {
-    const size_t i = quantity - QUANTITIES;
-    snprintf(out, size, "%.40s.%s", stop->layout->monitors[stop->monitors[i]].name,
-             motions[stop->motion[i]].key);
-  }
+  snprintf(out, size, "%s",
+           column >= 0 ? dea_point_columns[column].key : stop->shown[quantity - QUANTITIES]->key);
 }
 
 /* All slopes; the table of the general form has one column less: none of held stretches. */
@@ -480,6 +473,8 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
                                 struct stop *stop)
 {
   struct dea_observation seen;
+  struct dea_monitor_column *columns;
+  size_t column_count;
   stop->seen = QUANTITIES;
   if (!device->general) {
     return DEA_OK;
@@ -489,6 +484,8 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   stop->monitors = dea_arena_alloc(&stop->memory, count, sizeof *stop->monitors);
   stop->motion = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion);
   stop->motion_value = dea_arena_alloc(&stop->memory, count, sizeof *stop->motion_value);
+  stop->shown = dea_arena_alloc(&stop->memory, count, sizeof *stop->shown);
+  DEA_TRY(ctx, dea_layout_columns(&stop->memory, stop->layout, &columns, &column_count));
   DEA_TRY(ctx, dea_arena_status(&stop->memory));
   DEA_TRY(ctx, dea_model_observe(ctx, type, model, &seen));
   stop->seen += count;
@@ -496,6 +493,12 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
     stop->monitors[i] = i;
     stop->motion[i] = motion_of(stop, i, seen.monitor[i]);
     stop->motion_value[i] = seen.monitor[i][stop->motion[i]];
+  }
+  for (size_t k = 0; k < column_count; k++) {
+    const struct dea_monitor_column *c = &columns[k];
+    if (c->source == DEA_OF_MONITOR && c->number == stop->motion[c->index]) {
+      stop->shown[c->index] = dea_column_at(ctx, c->column);
+    }
   }
   return DEA_OK;
 }

@@ -153,9 +153,8 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
   DEA_TRY(ctx, add_passed(ctx, type, model, curve));
   point.pull_in_distance_V =
       distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
-  DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
+  DEA_TRY(ctx, dea_study_add_point(ctx, type, model, result->device, &point, curve));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
-  DEA_TRY(ctx, dea_study_observe(ctx, type, model, voltage_V, result));
   DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
   return result->checkpoint != NULL ? keep_point(ctx, type, model, result, curve) : DEA_OK;
 }

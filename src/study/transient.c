@@ -186,11 +186,11 @@ struct player {
   struct dea_load_point pending; // the last one, if it is not kept yet
   bool has_pending;
   double largest[4]; // voltage, motion, current, z so far
-  /* Monitors and channels (study/observe.h): of the last step, of the pending point, the largest so
-   * far, and of each point of the curve. All owned. */
-  size_t width; // numbers a point
-  double *seen, *seen_pending, *seen_largest, *kept;
-  size_t kept_room; // points that there is room for
+  /* Monitors and channels (study/observe.h) of the last step, room for those of the pending point,
+   * and the largest so far. */
+  struct dea_monitor_set seen;
+  struct dea_monitor_values *spare;
+  double *seen_largest; // [seen.count]
   bool inertia;
   size_t told; // thousandths of the time that progress was told of
   char what[DEA_NAME_SIZE + 16];
@@ -204,43 +204,14 @@ static void thin(struct player *p)
   for (size_t i = 1; 2 * i < count; i++) {
     curve->points[i] = curve->points[2 * i];
   }
-  for (size_t i = 1; 2 * i < count && p->width > 0; i++) {
-    memcpy(p->kept + i * p->width, p->kept + 2 * i * p->width, p->width * sizeof *p->kept);
-  }
-  if (p->width > 0) {
-    memcpy(p->kept + count / 2 * p->width, p->kept + (count - 1) * p->width,
-           p->width * sizeof *p->kept);
-  }
   curve->points[count / 2] = curve->points[count - 1];
   curve->count = count / 2 + 1;
   p->interval_s = fmax(2 * p->interval_s, 2 * p->time_s / POINTS_MAX);
 }
 
-/* Keeps what was observed at a point that is added to the curve next. */
-static dea_status keep_seen(struct dea_context *ctx, struct player *p, const double *seen)
-{
-  size_t at = p->curve->count;
-  if (p->width == 0) {
-    return DEA_OK;
-  }
-  if (at >= p->kept_room) {
-    size_t room = p->kept_room > 0 ? 2 * p->kept_room : 64;
-    double *kept = dea_resize(ctx, p->kept, room * p->width, sizeof *kept);
-    if (kept == NULL) {
-      return DEA_E_MEMORY;
-    }
-    p->kept = kept;
-    p->kept_room = room;
-  }
-  memcpy(p->kept + at * p->width, seen, p->width * sizeof *seen);
-  return DEA_OK;
-}
-
-static dea_status add(struct dea_context *ctx, struct player *p, const struct dea_load_point *point,
-                      const double *seen)
+static dea_status add(struct dea_context *ctx, struct player *p, const struct dea_load_point *point)
 {
   p->has_pending = false;
-  DEA_TRY(ctx, keep_seen(ctx, p, seen));
   DEA_TRY(ctx, dea_curve_add_point(ctx, p->curve, point));
   if (p->curve->count >= POINTS_MAX) {
     thin(p);
@@ -271,11 +242,11 @@ static bool would_be_missed(struct player *p, const struct dea_load_point *point
       off_line(share, a->centre_z_m, b->centre_z_m, point->centre_z_m, &p->largest[3]), // or NAN
   };
   double most = fmax(fmax(off[0], off[1]), fmax(off[2], off[3]));
-  size_t last = (p->curve->count - 1) * p->width; // of p->kept, which is NULL without a width
-  for (size_t i = 0; i < p->width; i++) {
-    double first = p->kept[i];
-    most = fmax(most, off_line(share, p->kept[last + i] - first, p->seen_pending[i] - first,
-                               p->seen[i] - first, &p->seen_largest[i]));
+  for (size_t i = 0; i < p->seen.count && p->has_pending; i++) {
+    double first = p->curve->points[0].monitors->at[i].value;
+    most = fmax(most,
+                off_line(share, a->monitors->at[i].value - first, b->monitors->at[i].value - first,
+                         point->monitors->at[i].value - first, &p->seen_largest[i]));
   }
   return p->has_pending && most > visible;
 }
@@ -287,22 +258,20 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
   struct dea_curve *curve = p->curve;
   point->time_s = p->time_s; // without the rounding of many small steps
   p->last_V = point->voltage_V;
-  if (p->width > 0) {
-    DEA_TRY(ctx, dea_observe_take(ctx, p->type, p->model, p->seen));
-  }
+  DEA_TRY(ctx, dea_monitor_set_read(ctx, &p->seen, p->type, p->model, false, point));
   if (curve->count == 0) {
-    return add(ctx, p, point, p->seen);
+    return add(ctx, p, point);
   }
   if (p->interval_s == 0 && would_be_missed(p, point)) {
-    DEA_TRY(ctx, add(ctx, p, &p->pending, p->seen_pending));
+    DEA_TRY(ctx, add(ctx, p, &p->pending));
   }
   double waited_s = p->time_s - curve->points[curve->count - 1].time_s;
   if (corner || waited_s >= (p->interval_s > 0 ? p->interval_s : p->longest_s) * (1 - 1e-9)) {
-    return add(ctx, p, point, p->seen);
+    return add(ctx, p, point);
   }
-  double *seen = p->seen_pending;
-  p->seen_pending = p->seen;
-  p->seen = seen;
+  struct dea_monitor_values *seen = p->seen.values; // stays with the point
+  p->seen.values = p->spare;
+  p->spare = seen;
   p->pending = *point;
   p->has_pending = true;
   return DEA_OK;
@@ -311,7 +280,7 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
 /* The last point stays however it ends. */
 static dea_status flush(struct dea_context *ctx, struct player *p)
 {
-  return p->has_pending ? add(ctx, p, &p->pending, p->seen_pending) : DEA_OK;
+  return p->has_pending ? add(ctx, p, &p->pending) : DEA_OK;
 }
 
 /* Why there is no going on, with the event where it ended. */
@@ -590,20 +559,10 @@ static dea_status begin(struct dea_context *ctx, const struct dea_design *design
 static dea_status make_room(struct dea_context *ctx, const struct dea_result *result,
                             struct player *p)
 {
-  p->width = dea_observe_width(p->type, result);
-  p->seen = dea_alloc(ctx, p->width + 1, sizeof *p->seen);
-  p->seen_pending = dea_alloc(ctx, p->width + 1, sizeof *p->seen_pending);
-  p->seen_largest = dea_alloc(ctx, p->width + 1, sizeof *p->seen_largest);
-  return p->seen != NULL && p->seen_pending != NULL && p->seen_largest != NULL ? DEA_OK
-                                                                               : DEA_E_MEMORY;
-}
-
-static void free_room(struct dea_context *ctx, struct player *p)
-{
-  dea_free(ctx, p->seen);
-  dea_free(ctx, p->seen_pending);
-  dea_free(ctx, p->seen_largest);
-  dea_free(ctx, p->kept);
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, p->type, result->device, &p->seen));
+  p->spare = dea_monitor_values_copy(&p->seen.memory, p->seen.values);
+  p->seen_largest = dea_arena_alloc(&p->seen.memory, p->seen.count, sizeof *p->seen_largest);
+  return dea_arena_status(&p->seen.memory);
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
@@ -622,9 +581,9 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   status = status == DEA_OK ? play(ctx, &p) : status;
   dea_status flushed = flush(ctx, &p);
   status = status == DEA_OK ? flushed : status;
-  flushed = dea_observe_history(ctx, type, p.curve, p.kept, result);
+  flushed = dea_study_sources(ctx, &p.seen, p.curve, result);
   status = status == DEA_OK ? flushed : status;
-  free_room(ctx, &p);
+  dea_monitor_set_free(&p.seen);
   if (p.model != NULL) {
     type->destroy(ctx, p.model);
   }

@@ -197,6 +197,21 @@ class Fields(unittest.TestCase):
         middle = np.argmin(np.linalg.norm(np.asarray(whole.points)[:, :2], axis=1))
         self.assertAlmostEqual(z[middle], centre, delta=1e-12)
 
+    def test_monitors(self):
+        design = dea.Design(ROOT / "examples" / "devices" / "cone-mass.yaml")
+        design["compute.voltage"] = {"to": "2 kV", "step": "2 kV"}
+        result = dea.run(design, "3d", "sweep")
+        z = result["3d/sweep/hub_z"]
+        self.assertEqual((z.unit, len(z)), ("m", 2))
+        np.testing.assert_array_equal(z, result["3d/sweep/hub_z_m"])
+        np.testing.assert_allclose(z, result["3d/sweep/lowest_z_m"], rtol=1e-9)  # the hub hangs lowest
+        with tempfile.TemporaryDirectory() as folder:
+            result.save(folder + "/a.h5")
+            np.testing.assert_array_equal(dea.load(folder + "/a.h5")["3d/sweep/hub_z"], z)
+        actuator = dea.Actuator(design, "3d")
+        actuator.solve(2e3)
+        self.assertAlmostEqual(actuator["hub_z"] / z[-1], 1, delta=1e-6)
+
 
 def cone(along, around):
     """A quarter of an annular film with a rigid hub, as in docs/python.md, and its nodes."""

@@ -192,13 +192,13 @@ static dea_status add_figures(struct dea_report *report, const char *folder)
   dea_text_add(&report->text, "<div class=\"plots\">");
   DEA_TRY(report->ctx, add_figure(report, folder, "fit", "measurements and fit"));
   DEA_TRY(report->ctx, add_figure(report, folder, "fit_time", "measurements and fit over time"));
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+  for (int c = 0; c < dea_column_count(report->ctx); c++) {
     char name[80], what[128];
-    snprintf(name, sizeof name, "fit_%.60s", dea_point_columns[c].key);
+    snprintf(name, sizeof name, "fit_%.60s", dea_column_at(report->ctx, c)->key);
     snprintf(what, sizeof what, "%.60s: measured, as fitted, as designed",
-             dea_point_columns[c].header);
+             dea_column_at(report->ctx, c)->header);
     DEA_TRY(report->ctx, add_figure(report, folder, name, what));
-    snprintf(name, sizeof name, "fit_time_%.60s", dea_point_columns[c].key);
+    snprintf(name, sizeof name, "fit_time_%.60s", dea_column_at(report->ctx, c)->key);
     DEA_TRY(report->ctx, add_figure(report, folder, name, what));
   }
   dea_text_add(&report->text, "</div>");

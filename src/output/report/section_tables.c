@@ -1,6 +1,8 @@
 /* Numbers of a run: what matters at a glance, limits, all points. */
 #include "output/csv.h"
 #include "output/report/section.h"
+#include "result/figure.h"
+#include "result/observation.h"
 #include "result/trust.h"
 
 #include <math.h>
@@ -9,6 +11,7 @@
 
 /* What a number at a glance is known by: its digits, or the error that says how many there are. */
 enum { DIGITS_FIRM = 3, DIGITS_DOUBTED = 2 };
+enum { HEADLINES_MAX = 8 };
 
 /* error: estimated one, NAN: none is. */
 static void add_card_with(struct dea_text *out, const char *what, double value, double error,
@@ -34,15 +37,37 @@ static void add_event(struct dea_text *out, const struct dea_curve *path, enum d
   add_card(out, what, event != NULL ? 1e-3 * event->point.voltage_V : NAN, "kV", DIGITS_FIRM);
 }
 
-/* Cards of one point. heading: what it is. */
-static void add_cards(struct dea_report *report, const struct dea_load_point *p,
-                      const char *heading)
+/* What the monitors of a device show. */
+static void add_headlines(struct dea_report *report, const struct dea_curve *sweep,
+                          const struct dea_load_point *p, int digits)
+{
+  int columns[HEADLINES_MAX];
+  const size_t count = dea_curve_headlines(report->ctx, sweep, columns, HEADLINES_MAX);
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_column *c = dea_column_at(report->ctx, columns[i]);
+    const int error = dea_point_error_column(report->ctx, columns[i]);
+    struct dea_text what = {.ctx = report->ctx};
+    char unit[DEA_COLUMN_UNIT_SIZE];
+    dea_html_text(&what, c->header);
+    dea_figure_unit(c->display_unit, unit);
+    add_card_with(&report->text, dea_text_get(&what), c->factor * dea_point_get(p, columns[i]),
+                  error >= 0 ? c->factor * dea_point_get(p, error) : NAN,
+                  strcmp(unit, "1") == 0 ? "" : unit, digits);
+    report->text.failed = report->text.failed || what.failed;
+    dea_text_free(&what);
+  }
+}
+
+/* Cards of one point of a sweep. heading: what it is. */
+static void add_cards(struct dea_report *report, const struct dea_curve *sweep,
+                      const struct dea_load_point *p, const char *heading)
 {
   struct dea_text *out = &report->text;
   bool bound = dea_load_point_bounds(p);
   int digits = dea_load_point_trusted(p) ? DIGITS_FIRM : DIGITS_DOUBTED;
   dea_section_heading(report, heading);
   dea_text_add(out, "<dl class=\"cards\">");
+  add_headlines(report, sweep, p, digits);
   add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", digits);
   add_card_with(out, bound ? "centre, at most" : "centre", 1e6 * p->centre_z_m,
                 1e6 * p->centre_z_error_m, "\302\265m", digits);
@@ -68,7 +93,7 @@ static void add_cards_at(struct dea_report *report, const struct dea_curve *swee
     char heading[3 * DEA_NAME_SIZE], words[DEA_FLAGS_SIZE];
     snprintf(heading, sizeof heading, "Model %s at %.4g kV%s%s", sweep->model, 1e-3 * p->voltage_V,
              what, dea_flags_text(flags, words));
-    add_cards(report, p, heading);
+    add_cards(report, sweep, p, heading);
   }
 }
 
@@ -310,18 +335,32 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
   return DEA_OK;
 }
 
-static void add_curve_points(struct dea_report *report, const struct dea_curve *curve)
+/* Columns of a table of all points, with their titles in `header`: those that have a number.
+ * Owned by the caller, NULL on failure. */
+static bool *find_shown(struct dea_report *report, const struct dea_curve *curve,
+                        struct dea_text *header)
+{
+  const int count = dea_column_count(report->ctx);
+  bool *shown = dea_alloc(report->ctx, (size_t)count, sizeof *shown);
+  for (int c = 0; shown != NULL && c < count; c++) {
+    char title[DEA_COLUMN_TITLE_SIZE];
+    shown[c] = dea_points_have(curve->points, curve->count, c);
+    dea_column_title(dea_column_at(report->ctx, c), title, sizeof title);
+    if (shown[c]) {
+      dea_html_element(header, "th scope=\"col\" class=\"n\"", title);
+    }
+  }
+  return shown;
+}
+
+static dea_status add_curve_points(struct dea_report *report, const struct dea_curve *curve)
 {
   struct dea_text *out = &report->text, header = {.ctx = report->ctx};
   char caption[3 * DEA_NAME_SIZE];
-  bool shown[DEA_LOAD_POINT_COLUMNS];
-  for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-    char title[96];
-    shown[c] = dea_points_have(curve->points, curve->count, c);
-    dea_column_title(&dea_point_columns[c], title, sizeof title);
-    if (shown[c]) {
-      dea_html_element(&header, "th scope=\"col\" class=\"n\"", title);
-    }
+  bool *shown = find_shown(report, curve, &header);
+  if (shown == NULL) {
+    dea_text_free(&header);
+    return DEA_E_MEMORY;
   }
   dea_html_element(&header, "th scope=\"col\"", "stable");
   dea_html_element(&header, "th scope=\"col\"", "trusted");
@@ -334,9 +373,10 @@ static void add_curve_points(struct dea_report *report, const struct dea_curve *
   dea_table_begin(report, caption, dea_text_get(&header));
   for (size_t i = 0; i < curve->count; i++) {
     dea_text_add(out, "<tr>");
-    for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
+    for (int c = 0; c < dea_column_count(report->ctx); c++) {
       if (shown[c]) {
-        dea_html_cell(out, dea_point_columns[c].factor * dea_point_get(&curve->points[i], c), 5);
+        dea_html_cell(
+            out, dea_column_at(report->ctx, c)->factor * dea_point_get(&curve->points[i], c), 5);
       }
     }
     const struct dea_load_point *p = &curve->points[i];
@@ -349,6 +389,8 @@ static void add_curve_points(struct dea_report *report, const struct dea_curve *
   dea_table_end(report);
   dea_text_add(out, "</details>");
   dea_text_free(&header);
+  dea_free(report->ctx, shown);
+  return DEA_OK;
 }
 
 dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run)
@@ -364,7 +406,7 @@ dea_status dea_section_points(struct dea_report *report, const struct dea_report
       dea_section_begin(report, "points", run->number, "Points");
       any = true;
     }
-    add_curve_points(report, curve);
+    DEA_TRY(report->ctx, add_curve_points(report, curve));
   }
   if (any) {
     dea_section_end(report);
