@@ -2,6 +2,7 @@
 #include "output/figure.h"
 #include "output/report/plot_svg.h"
 #include "output/report/section.h"
+#include "result/observation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,14 +34,14 @@ static const struct compared {
     {"force_N", "Force (mN)", "out-of-plane force", 1e3, 0},
     {"true_field_V_per_m", "True field {/:Italic E} (V/\302\265m)", "largest true field", 1e-6, 0},
 };
-enum { COMPARED = sizeof compared / sizeof compared[0] };
+enum { COMPARED = sizeof compared / sizeof compared[0], HEADLINES_MAX = 8 };
 
 /* Measured points with their standard uncertainty. */
 static dea_status add_measured(struct dea_report *report, const struct compared *what,
                                struct dea_panel *panel)
 {
   const struct dea_measurement *m = report->measurement;
-  int column = dea_point_column_find(what->key);
+  int column = dea_column_find(report->ctx, what->key);
   if (m == NULL || !dea_points_have(m->curve.points, m->curve.count, column)) {
     return DEA_OK;
   }
@@ -77,7 +78,8 @@ static dea_status fill(struct dea_report *report, const struct compared *what,
       size_t before = panel->series_count;
       DEA_TRY(report->ctx,
               dea_figure_add(report->ctx, panel, dea_figure_curve(result, models[m], false),
-                             dea_point_column_find(what->key), what->factor, what->shift, &look));
+                             dea_column_find(report->ctx, what->key), what->factor, what->shift,
+                             &look));
       looks += panel->series_count > before;
     }
   }
@@ -123,6 +125,41 @@ static void add_last_points(struct dea_report *report)
   dea_table_end(report);
 }
 
+static dea_status add_compared(struct dea_report *report, const struct compared *what)
+{
+  struct dea_plot *plot;
+  DEA_TRY(report->ctx, dea_plot_create(report->ctx, what->key, what->caption, &plot));
+  dea_status status = fill(report, what, plot);
+  if (status == DEA_OK && dea_plot_shows(plot)) {
+    dea_plot_add_svg(&report->text, plot, ++report->figures);
+  }
+  dea_plot_destroy(report->ctx, plot);
+  return status;
+}
+
+/* What the monitors of the first sweep that has some show. */
+static dea_status add_monitors(struct dea_report *report)
+{
+  int columns[HEADLINES_MAX];
+  size_t count = 0;
+  for (size_t r = 0; r < report->count && count == 0; r++) {
+    const struct dea_result *result = report->runs[r].run->result;
+    for (size_t c = 0; c < result->curve_count && count == 0; c++) {
+      if (strcmp(result->curves[c].kind, "sweep") == 0) {
+        count = dea_curve_headlines(report->ctx, &result->curves[c], columns, HEADLINES_MAX);
+      }
+    }
+  }
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_column *column = dea_column_at(report->ctx, columns[i]);
+    char label[DEA_LABEL_SIZE];
+    dea_figure_label(column, label, sizeof label);
+    const struct compared what = {column->key, label, column->header, column->factor, 0};
+    DEA_TRY(report->ctx, add_compared(report, &what));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_section_compare(struct dea_report *report)
 {
   if (report->count < 2 && report->measurement == NULL) {
@@ -134,15 +171,9 @@ dea_status dea_section_compare(struct dea_report *report)
                                                 : "The runs and a measurement beside each other");
   dea_text_add(&report->text, "<div class=\"plots\">");
   for (size_t i = 0; i < COMPARED; i++) {
-    struct dea_plot *plot;
-    DEA_TRY(report->ctx, dea_plot_create(report->ctx, compared[i].key, compared[i].caption, &plot));
-    dea_status status = fill(report, &compared[i], plot);
-    if (status == DEA_OK && dea_plot_shows(plot)) {
-      dea_plot_add_svg(&report->text, plot, ++report->figures);
-    }
-    dea_plot_destroy(report->ctx, plot);
-    DEA_TRY(report->ctx, status);
+    DEA_TRY(report->ctx, add_compared(report, &compared[i]));
   }
+  DEA_TRY(report->ctx, add_monitors(report));
   dea_text_add(&report->text, "</div>");
   add_last_points(report);
   dea_section_end(report);
