@@ -253,7 +253,7 @@ const dea_array *dea_result_array_at(const dea_result *result, size_t index);
 dea_status dea_result_array(dea_context *ctx, const dea_result *result, const char *name,
                             const dea_array **out);
 /* Texts: title, file, design (the text), set ("key=value" a line), program, libraries, started,
- * sha256, summary (JSON, docs/results.md), MODEL/STUDY/status and MODEL/STUDY/stopped (why it ended
+ * sha256, summary (JSON, docs/formats.md), MODEL/STUDY/status and MODEL/STUDY/stopped (why it ended
  * early, ""), MODEL/STUDY/NNNN/name. DEA_E_ARGUMENT when there is none of that name. */
 dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *name,
                            const char **out);

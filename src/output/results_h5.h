@@ -1,4 +1,4 @@
-/* results.h5: everything of a run in one file, written and read. Schema in docs/results.md. */
+/* results.h5: everything of a run in one file, written and read. Schema in docs/formats.md. */
 #ifndef DEA_OUTPUT_RESULTS_H5_H
 #define DEA_OUTPUT_RESULTS_H5_H
 

@@ -1,4 +1,4 @@
-/* summary.json: the result of a run for scripts. Schema in docs/results.md. */
+/* summary.json: the result of a run for scripts. Schema in docs/formats.md. */
 #ifndef DEA_OUTPUT_SUMMARY_H
 #define DEA_OUTPUT_SUMMARY_H
 
