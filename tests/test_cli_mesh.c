@@ -100,6 +100,7 @@ static void read_file(const char *name)
   size_t count, number;
   int dimension, group, type, tags, used = 0;
   assert_non_null(file);
+  memset(names, 0, sizeof names);
   memset(counts, 0, sizeof counts);
   memset(volume, 0, sizeof volume);
   memset(area, 0, sizeof area);

@@ -42,7 +42,7 @@ static struct dea_observation solve(const struct example *example, double voltag
   struct dea_load_point point;
   struct dea_observation seen;
   assert_int_equal(dea_model_find("3d")->solve(ctx, example->model, voltage_V, &point), DEA_OK);
-  assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, example->model, &seen), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->observe(ctx, example->model, &seen), DEA_OK);
   return seen;
 }
 

@@ -65,7 +65,7 @@ static double height(const char *name, const char *key, const char *value)
   struct dea_load_point point;
   struct dea_observation seen;
   assert_int_equal(read_and_build(ctx, example(name), &set, 1, &changed_design, &changed), DEA_OK);
-  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), changed);
+  const struct dea_model_type *type = dea_model_find("3d");
   assert_int_equal(dea_model_create(ctx, type, changed_design, changed, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, dea_design_highest_V(changed_design), &point), DEA_OK);
   assert_int_equal(dea_model_observe(ctx, type, model, &seen), DEA_OK);

@@ -17,7 +17,7 @@ struct found {
 static struct found adapt(const struct dea_device *device, size_t monitor, double tolerance,
                           double voltage_V, int passes, double refinement)
 {
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   const char *name = tolerance > 0 ? device->layout->monitors[monitor].name : NULL;
   const struct dea_model_settings settings = {
       .film = DEA_FILM_MEMBRANE,
@@ -124,7 +124,7 @@ static void test_clamped_edge(void **state)
       dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/diaphragm.yaml", NULL, 0, &design),
       DEA_OK);
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   for (int i = 0; i < 2; i++) {
     const struct dea_model_settings settings = {
         .film = DEA_FILM_SOLID, .domain = DEA_DOMAIN_SECTOR, .refinement = refinement[i]};
@@ -165,17 +165,17 @@ static void test_blocks_and_free(void **state)
   (void)state;
   struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
   struct dea_device *device = disc_new(blocks.frame_radius_m, 3.75e-3, 1.5);
-  const struct dea_model_type *of_disc = dea_model_find("3d"), *type = of_disc->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   struct dea_model *both[2];
   struct dea_observation seen;
   struct dea_load_point point;
   double error;
-  assert_int_equal(of_disc->create(ctx, &blocks, NULL, &both[0]), DEA_OK);
+  assert_int_equal(type->create(ctx, &blocks, NULL, &both[0]), DEA_OK);
   assert_int_equal(type->create(ctx, device, NULL, &both[1]), DEA_OK);
   assert_int_equal(type->solve(ctx, both[1], 4e3, &point), DEA_OK);
   assert_int_equal(type->observe(ctx, both[1], &seen), DEA_OK);
   assert_int_equal(type->errors(ctx, both[1], &error), DEA_OK);
-  assert_int_equal(of_disc->solve(ctx, both[0], 4e3, &point), DEA_OK);
+  assert_int_equal(type->solve(ctx, both[0], 4e3, &point), DEA_OK);
   double edge = seen.monitor[0][DEA_OBSERVED_X];
   assert_close(edge, point.electrode_edge_u_m, 0, error + point.electrode_edge_u_error_m);
   assert_true(error + point.electrode_edge_u_error_m < 0.02 * edge); // which says something
@@ -190,7 +190,7 @@ static void test_refused(void **state)
 {
   (void)state;
   struct dea_device *device = cone_new();
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   struct found found = adapt(device, 0, 1e-3, 0, 5, 1);
   assert_int_equal(found.passes, 1);
   assert_true(isnan(found.error));
@@ -207,7 +207,7 @@ static void test_order(void **state)
 {
   (void)state;
   struct dea_device *device = rectangle_new();
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   for (int order = 2; order <= 3; order++) {
     const struct dea_model_settings settings = {.order = order};
     struct dea_model *model;

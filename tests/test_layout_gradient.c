@@ -86,7 +86,7 @@ static size_t key_count(const struct at *at)
  * another one on its mesh, moved with the shapes. */
 static void solve(struct at *at, const struct dea_device *device, double voltage_V, double *out)
 {
-  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), device);
+  const struct dea_model_type *type = dea_model_find("3d");
   struct dea_model *model = NULL;
   struct dea_load_point point;
   struct dea_observation seen;
@@ -194,7 +194,7 @@ static bool is_checked(const struct at *at, const struct dea_design_number *numb
 static void end(struct at *at)
 {
   if (at->model != NULL) {
-    dea_model_of_device(dea_model_find("3d"), at->device)->destroy(ctx, at->model);
+    dea_model_find("3d")->destroy(ctx, at->model);
   }
   dea_device_destroy(ctx, at->device);
   dea_design_destroy(ctx, at->design);
@@ -224,8 +224,7 @@ static size_t check(struct at *at)
     columns[k] = dea_point_column_find(keys[k]);
   }
   solve(at, at->device, at->voltage_V, base);
-  const struct dea_design_gradient ask = {.type =
-                                              dea_model_of_device(dea_model_find("3d"), at->device),
+  const struct dea_design_gradient ask = {.type = dea_model_find("3d"),
                                           .model = at->model,
                                           .design = at->design,
                                           .device = at->device,
@@ -556,7 +555,7 @@ static void test_tension_of_a_bender(void **state)
   double base[WIDTH], moved[WIDTH], slope, left[3];
   assert_int_equal(read_and_build(ctx, bender, NULL, 0, &at.design, &at.device), DEA_OK);
   solve(&at, at.device, at.voltage_V, base);
-  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
+  const struct dea_model_type *type = dea_model_find("3d");
   const int column = dea_point_column_find(keys[TENSION]);
   const struct dea_design_change change = {{at.device, at.device},
                                            {at.voltage_V * (1 - 1e-5), at.voltage_V * (1 + 1e-5)},
@@ -593,8 +592,7 @@ static void test_all_lengths(void **state)
   for (int k = 0; k < FREQUENCY; k++) {
     columns[k] = dea_point_column_find(keys[k]);
   }
-  const struct dea_design_gradient ask = {.type =
-                                              dea_model_of_device(dea_model_find("3d"), at.device),
+  const struct dea_design_gradient ask = {.type = dea_model_find("3d"),
                                           .model = at.model,
                                           .design = at.design,
                                           .device = at.device,
@@ -631,7 +629,7 @@ static void test_what_cannot_follow(void **state)
   assert_int_equal(read_and_build(ctx, cone, NULL, 0, &at.design, &at.device), DEA_OK);
   at.monitor_count = at.device->layout->monitor_count;
   solve(&at, at.device, at.voltage_V, base);
-  const struct dea_model_type *type = dea_model_of_device(dea_model_find("3d"), at.device);
+  const struct dea_model_type *type = dea_model_find("3d");
   const struct {
     struct dea_override change;
     bool follows;
@@ -710,8 +708,7 @@ static double find_critical(struct at *at, const struct dea_device *device,
   struct dea_model_settings *settings = &at->settings;
   *settings = dea_model_settings_of(at->design);
   settings->mesh_from = at->model;
-  const struct dea_critical_ask ask = {
-      dea_model_of_device(dea_model_find("3d"), device), device, settings, kind, first_V, 2e3};
+  const struct dea_critical_ask ask = {dea_model_find("3d"), device, settings, kind, first_V, 2e3};
   if (dea_critical_find(ctx, &ask, out) != DEA_OK || isnan(out->voltage_V)) {
     fail_msg("%s: %s %s", dea_event_name(kind), dea_context_message(ctx), out->why);
   }

@@ -83,7 +83,7 @@ static void test_cone(void **state)
 /* Place, force and charge with the hub at a shift and a voltage. */
 static void look(struct dea_model *model, double shift_m, double voltage_V, double out[2])
 {
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   const struct dea_control hub = {DEA_CONTROL_PLACE, 0, 2};
   struct dea_load_point at;
   struct dea_observation seen;
@@ -146,7 +146,7 @@ static void test_hung(void **state)
     struct dea_load_point at;
     struct dea_observation seen;
     assert_int_equal(dea_model_find("3d")->solve(ctx, model, 1e3 * hung[i].kV, &at), DEA_OK);
-    assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, model, &seen), DEA_OK);
+    assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
     assert_close(1e3 * seen.body[0][DEA_OBSERVED_Z], hung[i].shift_mm, 1e-4, rounded);
   }
   dea_model_find("3d")->destroy(ctx, model);

@@ -21,7 +21,7 @@ static struct dea_observation solve(struct dea_model *model, double voltage_V,
 {
   struct dea_observation seen;
   assert_int_equal(dea_model_find("3d")->solve(ctx, model, voltage_V, point), DEA_OK);
-  assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, model, &seen), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
   return seen;
 }
 
@@ -319,7 +319,7 @@ static void test_disc_of_both_models(void **state)
   struct dea_device *device = disc_new(plain.frame_radius_m, 3.75e-3, 1.5);
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
   struct dea_model *blocks, *free_mesh = model_of(device, DEA_FILM_MEMBRANE, 1);
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   assert_int_equal(type->create(ctx, &plain, &settings, &blocks), DEA_OK);
   for (int kV = 2; kV <= 6; kV += 2) {
     struct dea_load_point of_blocks, of_free;
@@ -358,7 +358,7 @@ static void test_pull_in_is_told(void **state)
   l->supports[l->support_count++] = (struct dea_layout_support){
       .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
   const struct dea_model_type *exact_type = dea_model_find("axisymmetric");
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   struct dea_model *exact, *model = model_of(device, DEA_FILM_MEMBRANE, 1);
   struct dea_load_point point;
   assert_int_equal(exact_type->create(ctx, &plain, NULL, &exact), DEA_OK);
@@ -395,7 +395,7 @@ static void test_leaps_are_located(void **state)
     double kV, passed_kV; // 0: none
   } steps[] = {{3, 0}, {4, 0}, {4.5, 4.30488}, {3, 0}, {2, 0}, {1, 0}, {0, 0.69665}};
   (void)state;
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   struct dea_device *device = cone_new();
   struct dea_layout *l = device->layout;
   l->bodies[0].free = 4;
@@ -437,7 +437,7 @@ static const struct dea_state_mark *mark_of(const struct dea_state *state, const
 static void test_saved_state(void **state)
 {
   (void)state;
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   struct dea_load_point a, b;
   struct dea_state saved, other;
   struct dea_device *device = cone_new();

@@ -126,8 +126,8 @@ static struct dea_observation solve(struct dea_model *model, double voltage_V,
                                     struct dea_load_point *point)
 {
   struct dea_observation seen;
-  assert_int_equal(dea_model_find("3d")->of_layouts->solve(ctx, model, voltage_V, point), DEA_OK);
-  assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, model, &seen), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->solve(ctx, model, voltage_V, point), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
   return seen;
 }
 
@@ -181,8 +181,7 @@ static void check_release(size_t corners, int fold)
   assert_close(seen.channel[1].capacitance_F, DEA_EPSILON_0 * 2.8 * area_m2 / 100e-6, 1e-6, 0);
   assert_close(point.capacitance_F, seen.channel[1].capacitance_F, 1e-5, 0);
   struct dea_field_mesh *fields;
-  assert_int_equal(
-      dea_model_find("3d")->of_layouts->fields(ctx, model, DEA_FIELDS_SURFACE, &fields), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->fields(ctx, model, DEA_FIELDS_SURFACE, &fields), DEA_OK);
   double low = INFINITY, high = -INFINITY, low_all = INFINITY, high_all = -INFINITY;
   double box[4];
   dea_region_box_m(&l->regions[0].region, box);
@@ -198,7 +197,7 @@ static void check_release(size_t corners, int fold)
   assert_close(high, box[2], 0, 1e-8);
   assert_close(high_all, box[3], 0, 1e-8);
   dea_field_mesh_destroy(ctx, fields);
-  dea_model_find("3d")->of_layouts->destroy(ctx, model);
+  dea_model_find("3d")->destroy(ctx, model);
   dea_device_destroy(ctx, device);
 }
 
@@ -250,8 +249,8 @@ static void test_loaded_cone(void **state)
   struct dea_model *sector = model_of(device, DEA_FILM_MEMBRANE, DEA_DOMAIN_SECTOR);
   struct dea_model *whole = model_of(device, DEA_FILM_MEMBRANE, DEA_DOMAIN_DISC);
   struct dea_model_size small, large;
-  dea_model_find("3d")->of_layouts->size(sector, &small);
-  dea_model_find("3d")->of_layouts->size(whole, &large);
+  dea_model_find("3d")->size(sector, &small);
+  dea_model_find("3d")->size(whole, &large);
   assert_true(large.unknowns > 6 * small.unknowns);
   struct dea_observation b = solve(whole, 3e3, &all), a = solve(sector, 3e3, &part);
   assert_true(b.monitor[0][DEA_OBSERVED_Z] > 8e-4);
@@ -270,7 +269,7 @@ static void test_loaded_cone(void **state)
   assert_close(a.channel[1].capacitance_F, b.channel[1].capacitance_F, 1e-3, 0);
   // a force that the hub is held by, and one that breaks the symmetry
   const struct dea_control up = {DEA_CONTROL_PLACE, 0, 2}, aside = {DEA_CONTROL_PLACE, 0, 0};
-  const struct dea_model_type *type = dea_model_find("3d")->of_layouts;
+  const struct dea_model_type *type = dea_model_find("3d");
   assert_int_equal(type->move(ctx, sector, &up, 2e-3, &part), DEA_OK);
   assert_int_equal(type->move(ctx, whole, &up, 2e-3, &all), DEA_OK);
   assert_int_equal(type->observe(ctx, sector, &a), DEA_OK);

@@ -68,7 +68,7 @@ static struct history begin(struct dea_model *model, bool inertia, const struct 
 static struct dea_observation observe(struct dea_model *model)
 {
   struct dea_observation seen;
-  assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, model, &seen), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
   return seen;
 }
 

@@ -42,7 +42,7 @@ static void step(struct dea_model *model, double step_s, double voltage_V,
 static const double *first_monitor(struct dea_model *model)
 {
   struct dea_observation seen;
-  assert_int_equal(dea_model_find("3d")->of_layouts->observe(ctx, model, &seen), DEA_OK);
+  assert_int_equal(dea_model_find("3d")->observe(ctx, model, &seen), DEA_OK);
   return seen.monitor[0];
 }
 

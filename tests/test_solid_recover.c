@@ -3,7 +3,6 @@
 #include "devices.h"
 #include "failing_allocator.h"
 #include "material/plane.h"
-#include "model/solid/actuator/actuator.h"
 #include "model/solid/recovery/recover.h"
 #include "model/solid/recovery/recover_points.h"
 #include "model/solid/recovery/recover_second.h"
@@ -456,74 +455,6 @@ static void test_each_allocation(void **state)
   strip_destroy(memory_strip);
 }
 
-/* Share of the film's area that maps show under fibres of a device at rest. */
-static double covered(double poisson_ratio)
-{
-  struct dea_device device = test_star(4);
-  struct dea_actuator actuator;
-  struct dea_grid *grid;
-  struct dea_element_set elements;
-  struct dea_field_mesh *mesh;
-  device.fibre.poisson_ratio = poisson_ratio;
-  assert_int_equal(dea_actuator_create(ctx, &device, &(struct dea_model_settings){0}, &actuator),
-                   DEA_OK);
-  assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
-  assert_int_equal(dea_element_set_create(ctx, grid->order, grid->order_z, &elements), DEA_OK);
-  int *layer = calloc(grid->element_count, sizeof *layer);
-  bool *active = calloc(grid->element_count, sizeof *active);
-  double *u = calloc(3 * grid->node_count, sizeof *u);
-  double *across_V = calloc(grid->element_count, sizeof *across_V);
-  double *multiplier = calloc(grid->element_count * DEA_HEX_PRESSURES_MAX, sizeof *multiplier);
-  assert_true(layer != NULL && active != NULL && u != NULL && across_V != NULL &&
-              multiplier != NULL);
-  for (size_t e = 0; e < grid->element_count; e++) {
-    layer[e] = dea_actuator_constituent(&actuator, grid->region[e], grid->ply[e]);
-  }
-  const struct dea_recover_input in = {.grid = grid,
-                                       .elements = &elements,
-                                       .kind = grid->kind,
-                                       .constituents = actuator.constituents,
-                                       .bulk_factor = 1,
-                                       .constituent = layer,
-                                       .active = active,
-                                       .u = u,
-                                       .multiplier = multiplier,
-                                       .across_V = across_V};
-  assert_int_equal(dea_recover_surface(ctx, &in, DEA_FIBRE_DISC_FILM, &mesh), DEA_OK);
-  const double *under = values(mesh, "under_fibre");
-  double sum = 0, all = 0;
-  int corners = (grid->order + 1) * (grid->order + 1);
-  for (size_t c = 0; c < mesh->cell_count; c++) { // by the corners of the cells
-    const int *nodes = mesh->blocks[0].nodes + c * (size_t)corners;
-    const double *a = mesh->X + 3 * nodes[0], *b = mesh->X + 3 * nodes[grid->order];
-    const double *d = mesh->X + 3 * nodes[corners - 1 - grid->order];
-    const double *e = mesh->X + 3 * nodes[corners - 1];
-    double area =
-        0.5 * fabs((e[0] - a[0]) * (d[1] - b[1]) - (d[0] - b[0]) * (e[1] - a[1])); // diagonals
-    all += area;
-    sum += under[c] * area;
-  }
-  dea_field_mesh_destroy(ctx, mesh);
-  dea_element_set_release(ctx, &elements);
-  dea_grid_destroy(ctx, grid);
-  free(layer);
-  free(active);
-  free(u);
-  free(across_V);
-  free(multiplier);
-  return sum / all;
-}
-
-/* Four strips 2 mm wide from 3.75 mm to the frame at 15 mm, over pi 15^2 mm^2; whatever law their
- * Poisson's ratio asks for. */
-static void test_film_under_fibres(void **state)
-{
-  (void)state;
-  double exact = 4 * 2 * 11.25 / (acos(-1) * 15 * 15);
-  assert_close(covered(0.38), exact, 1e-2, 0); // arcs at both ends
-  assert_close(covered(0.495), covered(0.38), 0, 0);
-}
-
 /* ---- second derivatives from neighbours ---- */
 
 static void map_square(const void *self, double s, double t, double x[2])
@@ -618,7 +549,6 @@ int main(void)
       cmocka_unit_test(test_bending),
       cmocka_unit_test(test_parts_do_not_share_points),
       cmocka_unit_test(test_inverted_element),
-      cmocka_unit_test(test_film_under_fibres),
       cmocka_unit_test(test_second_derivatives),
       cmocka_unit_test(test_each_allocation),
   };

@@ -1,7 +1,10 @@
 /* Inertia of a solid: forces of rigid motions, and the weight of the same body. */
 // ctest: solid
+#include "design_text.h"
 #include "devices.h"
-#include "model/model.h"
+#include "grid_moments.h"
+#include "model/solid/actuator/disc_mesh.h"
+#include "model/solid/adapter/plies.h"
 #include "model/solid/load/loads.h"
 #include "solid_block.h"
 
@@ -111,11 +114,109 @@ static void test_sag_of_a_disc(void **state)
   }
 }
 
+// Of a device -------------------------------------------------------------------------------------
+
+static const double pi = 3.14159265358979323846;
+static const double rho_film = 970, rho_pet = 1375, rho_electrode = 1900;
+
+static struct dea_device star(bool electrodes)
+{
+  struct dea_device d = test_star(4);
+  d.film.density_kg_per_m3 = rho_film;
+  d.fibre.density_kg_per_m3 = rho_pet;
+  if (electrodes) {
+    d.electrode = test_yeoh();
+    d.electrode.density_kg_per_m3 = rho_electrode;
+    d.electrode_thickness_m = 10e-6;
+  }
+  return d;
+}
+
+/* int dA and int r^2 dA of a strip of half width w along a radius, inside the circle r. */
+static double strip(double w, double r)
+{
+  return w * sqrt(r * r - w * w) + r * r * asin(w / r);
+}
+
+static double strip_about_axis(double w, double r)
+{
+  // int (r^2 - y^2)^(3/2)/3 + y^2 (r^2 - y^2)^(1/2) dy from -w to w by Simpson
+  enum { STEPS = 1000 };
+  double sum = 0;
+  for (int i = 0; i <= STEPS; i++) {
+    double y = w * (2. * i / STEPS - 1), x = sqrt(r * r - y * y);
+    sum += (i == 0 || i == STEPS ? 1 : i % 2 == 1 ? 4 : 2) * (x * x * x / 3 + y * y * x);
+  }
+  return sum * 2 * w / STEPS / 3;
+}
+
+/* A star of film, fibres and electrodes as a solid and with a membrane: mass and moment of inertia
+ * about the axis against the sums over its parts. */
+static void test_mass_of_an_actuator(void **state)
+{
+  (void)state;
+  for (int kind = 0; kind < 4; kind++) {
+    struct dea_device d = star(kind / 2);
+    const struct dea_model_settings settings = {
+        .film = kind % 2 == 1 ? DEA_FILM_MEMBRANE : DEA_FILM_SOLID,
+        .refinement = 2, // arcs are parabolas: 2e-5 of the area at 1, a sixteenth of it at 2
+    };
+    struct dea_layout_mesh mesh;
+    struct dea_plies plies;
+    struct dea_arena memory = {.ctx = ctx};
+    double sum[MOMENTS] = {0};
+    assert_int_equal(dea_device_mesh_create(ctx, &d, &settings, &mesh), DEA_OK);
+    assert_int_equal(dea_plies_create(ctx, &mesh, &memory, &plies), DEA_OK);
+    assert_int_equal(dea_hex_shape_create(mesh.grid->order, mesh.plate.order_z, &shape), DEA_OK);
+    assert_int_equal(dea_flat_shape_create(mesh.grid->order, &flat), DEA_OK);
+    grid_moments(mesh.grid, plies.constituents, dea_plies_constituent, &mesh, sum);
+    double copies = (double)dea_layout_sector_copies(&mesh.sector), R = d.frame_radius_m;
+    double a = d.electrode_radius_m;
+    double t = d.electrode_thickness_m / (d.pre_stretch * d.pre_stretch);
+    double film = rho_film * d.film_thickness_m * pi, electrodes = 2 * rho_electrode * t * pi;
+    double fibres = 4 * rho_pet * d.fibre_thickness_m, w = 0.5 * d.fibre_width_m;
+    assert_close(copies * sum[0],
+                 film * R * R + electrodes * a * a + fibres * (strip(w, R) - strip(w, a)), 3e-6, 0);
+    assert_close(copies * (sum[1] + sum[2]),
+                 0.5 * film * R * R * R * R + 0.5 * electrodes * a * a * a * a +
+                     fibres * (strip_about_axis(w, R) - strip_about_axis(w, a)),
+                 3e-6, 0);
+    dea_layout_mesh_free(ctx, &mesh);
+    dea_arena_free(&memory);
+  }
+}
+
+static dea_status make_heavy(struct dea_device *d)
+{
+  const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
+  struct dea_model *model;
+  d->gravity = DEA_GRAVITY_FIBRES_UP;
+  dea_status status = dea_solid_module.create(ctx, d, &settings, &model);
+  dea_solid_module.destroy(ctx, model);
+  return status;
+}
+
+static void test_unknown_densities_are_said(void **state)
+{
+  static const char note[] = "the density of the electrodes is unknown";
+  (void)state;
+  struct dea_device d = star(true);
+  assert_int_equal(make_heavy(&d), DEA_OK);
+  assert_null(find_finding(ctx, DEA_NOTE, note));
+  d.electrode.density_kg_per_m3 = 0;
+  assert_int_equal(make_heavy(&d), DEA_OK);
+  assert_non_null(find_finding(ctx, DEA_NOTE, note));
+  d.fibre.density_kg_per_m3 = 0;
+  assert_int_equal(make_heavy(&d), DEA_E_DESIGN);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_inertia_of_rigid_motions),
       cmocka_unit_test(test_sag_of_a_disc),
+      cmocka_unit_test(test_mass_of_an_actuator),
+      cmocka_unit_test(test_unknown_densities_are_said),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

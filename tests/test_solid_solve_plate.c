@@ -1,8 +1,8 @@
 /* The actuator on its sector, on two sectors and as a whole disc: one answer. */
 // ctest: solid
+#include "disc_grid.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
-#include "model/solid/mesh/fibre_disc.h"
 #include "solid_node.h"
 #include "testing.h"
 
@@ -16,23 +16,55 @@ static int layer_of(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
-  return ply == DEA_FIBRE_DISC_FILM ? 0 : 1;
+  return ply == DISC_FILM ? 0 : 1;
 }
 
 static bool active(const void *self, int region, int ply)
 {
   (void)self;
-  return (region & DEA_FIBRE_DISC_ELECTRODE) != 0 && ply == DEA_FIBRE_DISC_FILM;
+  return (region & DEA_FIBRE_DISC_ELECTRODE) != 0 && ply == DISC_FILM;
 }
 
+static const double same = 1e-9; // of the frame's radius
+
+/* A plane x = 0 or y = 0 needs no axes of its own. */
+static bool is_global(double beta)
+{
+  double quarters = beta / (0.5 * acos(-1));
+  return fabs(quarters - floor(quarters + 0.5)) < same;
+}
+
+/* Components that frame and mirror planes hold. */
 static int held(const void *self, const double X[3])
 {
-  return dea_fibre_disc_held(self, X);
+  const struct dea_fibre_disc *p = self;
+  bool frame = hypot(X[0], X[1]) > p->frame_radius * (1 - same);
+  double top = 0.5 * p->film_thickness * (1 + 1e-6); // of the film, which the frame holds always
+  if (frame && (p->end == DEA_FIBRE_DISC_CLAMPED || X[2] < top)) {
+    return 1 | 2 | 4;
+  }
+  double beta = dea_fibre_disc_angle(p);
+  bool even = fmod(floor(beta / (0.5 * acos(-1)) + 0.5), 2) == 0; // the last plane is y = 0 as well
+  int edges = dea_fibre_disc_edges(p, X), last = !is_global(beta) ? 1 : even ? 2 : 1;
+  if (edges == 3) { // the centre
+    return is_global(beta) && even ? 2 : 1 | 2;
+  }
+  return (edges & 1 ? 2 : 0) | (edges & 2 ? last : 0);
 }
 
+/* Local axes as rows: normal of its mirror plane, along it, z. */
 static bool frame(const void *self, const double X[3], double Q[9])
 {
-  return dea_fibre_disc_frame(self, X, Q);
+  const struct dea_fibre_disc *p = self;
+  double beta = dea_fibre_disc_angle(p), c = cos(beta), s = sin(beta);
+  if (dea_fibre_disc_edges(p, X) != 2 || is_global(beta)) {
+    return false;
+  }
+  const double axes[9] = {-s, c, 0, -c, -s, 0, 0, 0, 1};
+  for (int i = 0; i < 9; i++) {
+    Q[i] = axes[i];
+  }
+  return true;
 }
 
 struct answer {
@@ -74,11 +106,12 @@ static struct answer run(int fibres, int sectors)
                                             .held = held,
                                             .frame = frame,
                                             .self = &plate};
-  struct dea_grid *grid;
+  struct dea_layout_mesh mesh;
   struct dea_solid *solid;
   struct dea_solid_report rest, report;
   assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
-  assert_int_equal(dea_fibre_disc_create(ctx, &plate, &grid), DEA_OK);
+  assert_int_equal(disc_mesh(ctx, &plate, NULL, &mesh), DEA_OK);
+  const struct dea_grid *grid = mesh.grid;
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &rest), DEA_OK);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 3e3, &report), DEA_OK);
@@ -92,7 +125,7 @@ static struct answer run(int fibres, int sectors)
       (report.energy_J - rest.energy_J) * 2 * fibres / sectors, grid->node_count};
   assert_close(u[between + 1] * cos(half) - u[between] * sin(half), 0, 0, 1e-12);
   dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  dea_layout_mesh_free(ctx, &mesh);
   return answer;
 }
 

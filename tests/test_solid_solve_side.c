@@ -4,9 +4,9 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/actuator/actuator.h"
+#include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/solid_of_actuator.h"
+#include "model/solid/adapter/standing.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "testing.h"
@@ -118,25 +118,28 @@ static void test_free_fibres_rise_with_the_film(void **state)
 /* ---- paths ---- */
 
 static struct dea_device device;
-static struct dea_actuator actuator;
-static struct dea_grid *grid;
+static struct dea_model *made;
+static struct dea_layout_mesh mesh;
+static const struct dea_grid *grid;
 static struct dea_solid *solid;
 static size_t centre;
 
 static void create(int fibres, enum dea_outer_end end)
 {
   device = slack(fibres, end);
-  assert_int_equal(dea_actuator_create(ctx, &device, &(struct dea_model_settings){0}, &actuator),
+  assert_int_equal(dea_solid_module.create(ctx, &device, &(struct dea_model_settings){0}, &made),
                    DEA_OK);
-  assert_int_equal(dea_fibre_disc_create(ctx, &actuator.plate, &grid), DEA_OK);
-  assert_int_equal(dea_solid_of_actuator(ctx, &actuator, grid, &solid), DEA_OK);
+  solid = ((const struct dea_standing *)made)->ending.owner.solid;
+  assert_int_equal(dea_device_mesh_create(ctx, &device, &(struct dea_model_settings){0}, &mesh),
+                   DEA_OK);
+  grid = mesh.grid; // as the model has it
   centre = dea_grid_nearest(grid, (const double[3]){0});
 }
 
 static void destroy(void)
 {
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  dea_solid_module.destroy(ctx, made);
+  dea_layout_mesh_free(ctx, &mesh);
 }
 
 static double centre_z(void)
@@ -177,10 +180,10 @@ static void test_path_from_rest_goes_down(void **state)
 
 static bool take_front(struct dea_solid_report *report)
 {
+  const struct dea_film_band film = {0, device.film_thickness_m};
   bool moved;
-  assert_int_equal(dea_buckling_branch_take(ctx, solid, grid, &actuator.plate, DEA_BRANCH_FIBRES,
-                                            report, &moved),
-                   DEA_OK);
+  assert_int_equal(
+      dea_buckling_branch_take(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved), DEA_OK);
   return moved;
 }
 
@@ -254,7 +257,7 @@ static void test_dimple_is_not_the_other_arm(void **state)
   assert_close(centre_z(), hanging, 1e-4, 0);
   assert_int_equal(dea_solid_push(ctx, solid, push, centre_above, NULL, &report, &found), DEA_OK);
   assert_true(found && centre_z() < 1e-4 && report.energy_J > front);
-  size_t tip = dea_grid_nearest(grid, (const double[3]){actuator.plate.tip_radius, 0, 0});
+  size_t tip = dea_grid_nearest(grid, (const double[3]){device.fibre_tip_radius_m, 0, 0});
   assert_true(dea_solid_displacement(solid)[3 * tip + 2] < -3e-4);
   dea_free(ctx, push);
   destroy();

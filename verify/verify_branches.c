@@ -7,9 +7,9 @@
 
 #include "design/design.h"
 #include "model/model.h"
-#include "model/solid/actuator/actuator.h"
+#include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/solid_of_actuator.h"
+#include "model/solid/adapter/standing.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "study/design_file.h"
@@ -86,8 +86,9 @@ static void arms(const char *refinement, int count)
 
 /* ---- paths ---- */
 
-static struct dea_actuator actuator;
-static struct dea_grid *grid;
+static struct dea_model *made;
+static struct dea_layout_mesh mesh;
+static const struct dea_grid *grid;
 static struct dea_solid *solid;
 static size_t centre;
 
@@ -95,16 +96,17 @@ static void solid_create(const char *refinement, const char *fibres, const char 
 {
   device_create(refinement, "any", fibres, end);
   const struct dea_model_settings settings = dea_model_settings_of(design);
-  verify_ok(ctx, dea_actuator_create(ctx, device, &settings, &actuator));
-  verify_ok(ctx, dea_fibre_disc_create(ctx, &actuator.plate, &grid));
-  verify_ok(ctx, dea_solid_of_actuator(ctx, &actuator, grid, &solid));
+  verify_ok(ctx, dea_solid_module.create(ctx, device, &settings, &made));
+  solid = ((const struct dea_standing *)made)->ending.owner.solid;
+  verify_ok(ctx, dea_device_mesh_create(ctx, device, &settings, &mesh));
+  grid = mesh.grid; // as the model has it
   centre = dea_grid_nearest(grid, (const double[3]){0});
 }
 
 static void solid_destroy(void)
 {
-  dea_solid_destroy(ctx, solid);
-  dea_grid_destroy(ctx, grid);
+  dea_solid_module.destroy(ctx, made);
+  dea_layout_mesh_free(ctx, &mesh);
   device_destroy();
 }
 
@@ -150,9 +152,10 @@ static void path_from_rest(const char *refinement)
 /* From the arm that follows from 0 V to the one towards the fibres. */
 static void push_over(struct dea_solid_report *report)
 {
+  const struct dea_film_band film = {0, device->film_thickness_m};
   bool moved;
-  verify_ok(ctx, dea_buckling_branch_take(ctx, solid, grid, &actuator.plate, DEA_BRANCH_FIBRES,
-                                          report, &moved));
+  verify_ok(ctx,
+            dea_buckling_branch_take(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved));
   verify_absolute("second state for the path", moved, 1, 0);
 }
 
@@ -206,7 +209,7 @@ struct arm {
 static struct arm solve_arm(double kV)
 {
   struct dea_solid_report report;
-  const double tip[] = {actuator.plate.tip_radius, 0, 0.5 * actuator.plate.film_thickness};
+  const double tip[] = {device->fibre_tip_radius_m, 0, 0.5 * device->film_thickness_m};
   verify_ok(ctx, dea_load_steps_solve(ctx, solid, 1e3 * kV, &report));
   verify_absolute("unstable modes of an arm", report.unstable_modes, 0, 0);
   const double *u = dea_solid_displacement(solid);

@@ -32,7 +32,7 @@ const dea_model_info *dea_model_at(dea_context *ctx, size_t index)
       .title = type->long_name,
       .abilities = abilities_of(type),
       .available = strcmp(type->name, "3d") != 0 || dea_solid_module_find(path, sizeof path),
-      .layout_abilities = type->of_layouts != NULL ? abilities_of(type->of_layouts) : 0};
+      .layout_abilities = type->any_layout ? abilities_of(type) & ~(unsigned)DEA_CAN_PROFILE : 0};
   return &ctx->model;
 }
 
@@ -89,7 +89,7 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
   actuator->point = dea_load_point_empty();
   dea_status status = door_design_build(inner, design, &actuator->design, &actuator->device);
   if (status == DEA_OK) {
-    actuator->type = dea_model_of_device(type, actuator->device);
+    actuator->type = type;
     status = dea_model_create(inner, actuator->type, actuator->design, actuator->device,
                               &actuator->model);
   }

@@ -1,6 +1,6 @@
 #include "cli/cli.h"
 
-#include "model/solid/actuator/actuator.h"
+#include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/actuator/mesh_file.h"
 
 #include <math.h>
@@ -52,81 +52,58 @@ static void print_quality(const struct request *request, const struct dea_grid *
   }
 }
 
-static void print_layout(const struct request *request, const struct dea_layout_mesh *mesh)
+/* Which part of the device it is of. */
+static void print_domain(const struct dea_layout_mesh *mesh)
 {
-  const struct dea_grid *grid = mesh->grid;
-  if (request->json) {
-    cli_print_json(json_pack(
-        "{s:I, s:I, s:I, s:I, s:f}", "elements", (json_int_t)grid->element_count, "flat_elements",
-        (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
-        (json_int_t)count_unknowns(grid), "smallest_jacobian", dea_grid_smallest_jacobian(grid)));
-    return;
-  }
   size_t copies = dea_layout_sector_copies(&mesh->sector);
-  if (copies > 1) {
+  if (mesh->plate.order > 0) {
+    printf("%-20s %g degrees\n", "domain", dea_fibre_disc_angle(&mesh->plate) * 180 / acos(-1));
+  } else if (copies > 1) {
     printf("%-20s one of %zu mirrored sectors, a free mesh\n", "domain", copies);
   } else {
     printf("%-20s the whole device, a free mesh\n", "domain");
   }
-  print_size(grid);
-  print_quality(request, grid);
 }
 
-static void print_summary(const struct request *request, const struct dea_fibre_disc *plate,
-                          const struct dea_grid *grid)
+static void print_mesh(const struct request *request, const struct dea_layout_mesh *mesh)
 {
-  double degrees = dea_fibre_disc_angle(plate) * 180 / acos(-1);
-  double jacobian = dea_grid_smallest_jacobian(grid);
-  size_t flat = count_flat(grid);
+  const struct dea_grid *grid = mesh->grid;
+  const struct dea_fibre_disc *plate = &mesh->plate;
+  const bool disc = plate->order > 0;
   if (request->json) {
     json_t *json = json_pack(
-        "{s:I, s:I, s:I, s:I, s:f, s:f, s:f, s:f}", "elements", (json_int_t)grid->element_count,
-        "flat_elements", (json_int_t)flat, "nodes", (json_int_t)grid->node_count, "unknowns",
-        (json_int_t)count_unknowns(grid), "smallest_jacobian", jacobian, "angle_deg", degrees,
-        "size_m", plate->size, "edge_size_m", plate->edge);
+        "{s:I, s:I, s:I, s:I, s:f}", "elements", (json_int_t)grid->element_count, "flat_elements",
+        (json_int_t)count_flat(grid), "nodes", (json_int_t)grid->node_count, "unknowns",
+        (json_int_t)count_unknowns(grid), "smallest_jacobian", dea_grid_smallest_jacobian(grid));
+    if (disc) {
+      json_object_set_new(json, "angle_deg",
+                          json_real(dea_fibre_disc_angle(plate) * 180 / acos(-1)));
+      json_object_set_new(json, "size_m", json_real(plate->size));
+      json_object_set_new(json, "edge_size_m", json_real(plate->edge));
+    }
     cli_print_json(json);
     return;
   }
-  printf("%-20s %g degrees\n", "domain", degrees);
+  print_domain(mesh);
   print_size(grid);
-  printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
-         1e3 * plate->size, 1e3 * plate->edge);
+  if (disc) {
+    printf("%-20s %.3g mm, %.3g mm at the electrode edge and the ends of fibres\n", "size",
+           1e3 * plate->size, 1e3 * plate->edge);
+  }
   print_quality(request, grid);
 }
 
-/* The disc's mesh of blocks. */
-static dea_status mesh_disc(struct dea_cli *cli, const struct request *request,
+static dea_status make_mesh(struct dea_cli *cli, const struct request *request,
                             const struct dea_device *device,
                             const struct dea_model_settings *settings)
 {
-  struct dea_grid *grid = NULL;
-  struct dea_fibre_disc plate;
-  dea_status status = dea_fibre_disc_of_device(cli->ctx, device, settings, &plate);
-  if (status == DEA_OK) {
-    status = dea_fibre_disc_create(cli->ctx, &plate, &grid);
-  }
-  if (status == DEA_OK && request->output != NULL) {
-    status = dea_fibre_disc_write(cli->ctx, &plate, grid, request->output);
-  }
-  if (status == DEA_OK) {
-    print_summary(request, &plate, grid);
-  }
-  dea_grid_destroy(cli->ctx, grid);
-  return status;
-}
-
-/* The free mesh of any other device. */
-static dea_status mesh_layout(struct dea_cli *cli, const struct request *request,
-                              const struct dea_device *device,
-                              const struct dea_model_settings *settings)
-{
   struct dea_layout_mesh mesh;
-  dea_status status = dea_layout_mesh_create(cli->ctx, device->layout, settings, &mesh);
+  dea_status status = dea_device_mesh_create(cli->ctx, device, settings, &mesh);
   if (status == DEA_OK && request->output != NULL) {
     status = dea_layout_mesh_write(cli->ctx, &mesh, request->output);
   }
   if (status == DEA_OK) {
-    print_layout(request, &mesh);
+    print_mesh(request, &mesh);
   }
   dea_layout_mesh_free(cli->ctx, &mesh);
   return status;
@@ -159,7 +136,7 @@ static int run(struct dea_cli *cli, void *user)
   }
   if (status == DEA_OK) {
     const struct dea_model_settings settings = dea_model_settings_of(design);
-    status = (device->general ? mesh_layout : mesh_disc)(cli, request, device, &settings);
+    status = make_mesh(cli, request, device, &settings);
     fflush(stdout);
   }
   int code = cli_report(cli, status);

@@ -5,7 +5,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { REGIONS = 3, PLIES = 5 };
+enum { FILM, ELECTRODE, FIBRES, FILLER, SEAT, REGIONS }; // seat: of fibres on electrodes
+enum { PLIES = 7 };
 
 static struct dea_region *add_region(struct dea_layout *l, const char *name)
 {
@@ -14,22 +15,64 @@ static struct dea_region *add_region(struct dea_layout *l, const char *name)
   return &region->region;
 }
 
-/* All fibres, which end at their tips and at the frame, or before it. A corner at the frame lies on
- * it, so that a fibre is not wider than the film there. */
-static void add_fibres(const struct dea_device *d, struct dea_region *out)
+/* Whether fibres lie on electrodes, from their tips on. */
+static bool on_electrodes(const struct dea_device *d)
 {
-  double half = 0.5 * d->fibre_width_m, tip = 0.5 * d->fibre_tip_width_m;
-  double r = d->frame_radius_m - d->fibre_outer_gap_m;
-  double end = sqrt(r * r - half * half), bulge = tan(0.5 * asin(half / r));
+  static const double same = 1e-9; // of the frame's radius
+  return d->fibre_count > 0 && d->electrode_thickness_m > 0 &&
+         d->fibre_tip_radius_m < d->electrode_radius_m - same * d->frame_radius_m;
+}
+
+/* A fibre along x: corners, and bulges of the sides that begin there. */
+struct outline {
+  double corner[4][2], bulge[4];
+};
+
+/* Where a fibre's long side, y > 0, comes to a circle about the centre. */
+static void cross(const struct outline *fibre, double radius_m, double out[2])
+{
+  const double *from = fibre->corner[3], *to = fibre->corner[2];
+  double dx = to[0] - from[0], dy = to[1] - from[1], a = dx * dx + dy * dy;
+  double b = from[0] * dx + from[1] * dy;
+  double c = from[0] * from[0] + from[1] * from[1] - radius_m * radius_m;
+  double t = (sqrt(b * b - a * c) - b) / a;
+  out[0] = from[0] + t * dx;
+  out[1] = from[1] + t * dy;
+}
+
+/* A fibre ends at its tip and at the frame, or before it. A corner at the frame lies on it, so that
+ * a fibre is not wider than the film there. Of it all, or the part that is beyond the electrode, or
+ * not beyond it. */
+static struct outline outline_of(const struct dea_device *d, int region)
+{
+  double half = 0.5 * d->fibre_width_m, at[2];
+  double tip = d->fibre_tip_width_m > 0 ? 0.5 * d->fibre_tip_width_m : half;
+  double r = d->frame_radius_m - d->fibre_outer_gap_m, end = sqrt(r * r - half * half);
+  double inner = d->fibre_tip_radius_m;
+  struct outline out = {{{inner, -tip}, {end, -half}, {end, half}, {inner, tip}},
+                        {[1] = tan(0.5 * asin(half / r))}};
+  if (region != FIBRES) {
+    bool beyond = region == FILLER;
+    cross(&out, d->electrode_radius_m, at);
+    double *low = out.corner[beyond ? 0 : 1], *high = out.corner[beyond ? 3 : 2];
+    low[0] = high[0] = at[0];
+    low[1] = -at[1];
+    high[1] = at[1];
+    out.bulge[beyond ? 3 : 1] = (beyond ? -1 : 1) * tan(0.5 * atan2(at[1], at[0]));
+  }
+  return out;
+}
+
+static void add_fibres(const struct dea_device *d, int region, struct dea_region *out)
+{
+  const struct outline fibre = outline_of(d, region);
   for (int i = 0; i < d->fibre_count; i++) {
     double angle = 2 * pi * i / d->fibre_count, c = cos(angle), s = sin(angle);
-    const double corner[4][2] = {
-        {d->fibre_tip_radius_m, -tip}, {end, -half}, {end, half}, {d->fibre_tip_radius_m, tip}};
     struct dea_vertex v[4] = {0};
     for (int k = 0; k < 4; k++) {
-      v[k].x_m = c * corner[k][0] - s * corner[k][1];
-      v[k].y_m = s * corner[k][0] + c * corner[k][1];
-      v[k].bulge = k == 1 ? bulge : 0;
+      v[k].x_m = c * fibre.corner[k][0] - s * fibre.corner[k][1];
+      v[k].y_m = s * fibre.corner[k][0] + c * fibre.corner[k][1];
+      v[k].bulge = fibre.bulge[k];
     }
     dea_region_add(out, v, 4);
   }
@@ -44,7 +87,8 @@ static struct dea_layout_ply *add_ply(struct dea_layout *l, const char *name, si
                                  .region = region,
                                  .thickness_m = thickness_m,
                                  .thickness_unstretched_m = thickness_m,
-                                 .pre_stretch = {1, 1}};
+                                 .pre_stretch = {1, 1},
+                                 .elements = 1};
   if (material != NULL) {
     ply->material = *material;
   } else {
@@ -53,37 +97,109 @@ static struct dea_layout_ply *add_ply(struct dea_layout *l, const char *name, si
   return ply;
 }
 
-static void add_plies(const struct dea_device *d, struct dea_layout *l)
+/* Electrodes are stretched with the film; of an unknown density they are as heavy as it. */
+static void add_electrode(const struct dea_device *d, struct dea_layout *l, const char *name,
+                          int sheets)
+{
+  double area = d->pre_stretch * d->pre_stretch, thickness_m = sheets * d->electrode_thickness_m;
+  struct dea_layout_ply *ply = add_ply(l, name, ELECTRODE, thickness_m / area, &d->electrode);
+  ply->thickness_unstretched_m = thickness_m;
+  ply->pre_stretch[0] = ply->pre_stretch[1] = d->pre_stretch;
+  ply->kind = DEA_PLY_ELECTRODE;
+  if (!(ply->material.density_kg_per_m3 > 0)) {
+    ply->material.density_kg_per_m3 = d->film.density_kg_per_m3;
+  }
+}
+
+static void add_film(const struct dea_device *d, struct dea_layout *l)
+{
+  struct dea_layout_ply *ply = add_ply(l, "film", FILM, d->film_thickness_m, &d->film);
+  ply->thickness_unstretched_m = d->film_thickness_unstretched_m;
+  ply->pre_stretch[0] = ply->pre_stretch[1] = d->pre_stretch;
+  ply->elements = 0;
+}
+
+/* A bond of no mass: all of that is in the surface. */
+static void add_bond(struct dea_layout *l, const char *name, size_t region, double thickness_m,
+                     size_t joins)
+{
+  struct dea_layout_ply *ply = add_ply(l, name, region, thickness_m, NULL);
+  ply->kind = DEA_PLY_JOINT;
+  ply->joins = joins;
+}
+
+/* A glue is taken as incompressible and as heavy as the film: a design says no more of it. */
+static void add_glue(const struct dea_device *d, struct dea_layout *l, const char *name,
+                     size_t region, double thickness_m)
+{
+  struct dea_layout_ply *ply = add_ply(l, name, region, thickness_m, NULL);
+  ply->kind = DEA_PLY_GLUE;
+  ply->material.young_modulus_Pa = d->bond_modulus_Pa;
+  ply->material.poisson_ratio = 0.5;
+  ply->material.density_kg_per_m3 = d->film.density_kg_per_m3;
+}
+
+/* Fibres are linear, whatever else is known of their material. */
+static void add_fibre_ply(const struct dea_device *d, struct dea_layout *l, const char *name,
+                          size_t region, double thickness_m)
+{
+  struct dea_layout_ply *ply = add_ply(l, name, region, thickness_m, &d->fibre);
+  ply->material.law = NULL;
+  ply->material.branch_count = 0;
+}
+
+/* From the film or its electrodes up. */
+static void add_fibre_plies(const struct dea_device *d, bool membrane, struct dea_layout *l)
+{
+  double electrode_m = d->electrode_thickness_m / (d->pre_stretch * d->pre_stretch);
+  if (on_electrodes(d)) {
+    if (membrane) {
+      add_bond(l, "bond of electrodes", SEAT, electrode_m, 0);
+    }
+    (d->bond_thickness_m > 0 ? add_glue : add_fibre_ply)(d, l, "filler", FILLER, electrode_m);
+  }
+  if (d->bond_thickness_m > 0) {
+    add_glue(d, l, "bond", FIBRES, d->bond_thickness_m);
+  }
+  add_fibre_ply(d, l, "fibres", FIBRES, d->fibre_thickness_m);
+}
+
+static void add_plies(const struct dea_device *d, bool membrane, struct dea_layout *l)
 {
   bool stiff = d->electrode_thickness_m > 0;
   if (stiff) {
-    add_ply(l, "lower electrode", 1, d->electrode_thickness_m, &d->electrode);
+    add_electrode(d, l, membrane ? "electrodes" : "lower electrode", membrane ? 2 : 1);
   }
   size_t film = l->ply_count;
-  struct dea_layout_ply *ply = add_ply(l, "film", 0, d->film_thickness_m, &d->film);
-  ply->thickness_unstretched_m = d->film_thickness_unstretched_m;
-  ply->pre_stretch[0] = ply->pre_stretch[1] = d->pre_stretch;
-  if (stiff) {
-    add_ply(l, "upper electrode", 1, d->electrode_thickness_m, &d->electrode);
+  add_film(d, l);
+  if (membrane && d->fibre_count > 0) {
+    add_bond(l, "bond of the film", FIBRES, 0.5 * d->film_thickness_m, film);
   }
-  if (d->fibre_count > 0 && d->bond_thickness_m > 0) {
-    ply = add_ply(l, "bond", 2, d->bond_thickness_m, NULL);
-    ply->material.young_modulus_Pa = d->bond_modulus_Pa;
+  size_t held = l->ply_count;
+  if (stiff && !membrane) {
+    add_electrode(d, l, "upper electrode", 1);
   }
   if (d->fibre_count > 0) {
-    add_ply(l, "fibres", 2, d->fibre_thickness_m, &d->fibre);
+    add_fibre_plies(d, membrane, l);
   }
-  l->electrodes[0] =
-      (struct dea_layout_electrode){.name = "ground", .region = 1, .ply = film, .channel = 0};
+  l->electrodes[0] = (struct dea_layout_electrode){
+      .name = "ground", .region = ELECTRODE, .ply = film, .channel = 0};
   l->electrodes[1] = (struct dea_layout_electrode){
-      .name = "drive", .region = 1, .ply = film, .top = true, .channel = 1};
+      .name = "drive", .region = ELECTRODE, .ply = film, .top = true, .channel = 1};
   l->electrode_count = 2;
+  l->supports[0] = (struct dea_layout_support){.region = FILM,
+                                               .edge = true,
+                                               .within = DEA_LAYOUT_NONE,
+                                               .components = 7,
+                                               .plies = d->outer_end == DEA_END_HINGED ? held : 0};
+  l->support_count = 1;
 }
 
-dea_status dea_disc_layout_make(struct dea_context *ctx, struct dea_device *d)
+static dea_status fill(struct dea_context *ctx, const struct dea_device *d, bool membrane,
+                       struct dea_layout *l)
 {
-  DEA_TRY(ctx, dea_layout_create(ctx, &d->layout));
-  struct dea_layout *l = d->layout;
+  static const char *const fibre_regions[REGIONS] = {
+      [FIBRES] = "fibres", [FILLER] = "filler", [SEAT] = "seat"};
   l->regions = dea_arena_alloc(&l->memory, REGIONS, sizeof *l->regions);
   l->plies = dea_arena_alloc(&l->memory, PLIES, sizeof *l->plies);
   l->electrodes = dea_arena_alloc(&l->memory, 2, sizeof *l->electrodes);
@@ -97,15 +213,30 @@ dea_status dea_disc_layout_make(struct dea_context *ctx, struct dea_device *d)
   const struct dea_location nowhere = {.file = ""};
   dea_region_add_circle(add_region(l, "film"), 0, 0, d->frame_radius_m, false, nowhere);
   dea_region_add_circle(add_region(l, "electrode"), 0, 0, d->electrode_radius_m, false, nowhere);
-  if (d->fibre_count > 0) {
-    add_fibres(d, add_region(l, "fibres"));
+  int last = on_electrodes(d) ? membrane ? SEAT : FILLER : d->fibre_count > 0 ? FIBRES : ELECTRODE;
+  for (int i = FIBRES; i <= last; i++) {
+    add_fibres(d, i, add_region(l, fibre_regions[i]));
   }
   for (size_t i = 0; i < l->region_count; i++) {
     DEA_TRY(ctx, dea_region_status(&l->regions[i].region));
   }
-  add_plies(d, l);
-  l->supports[0] = (struct dea_layout_support){
-      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
-  l->support_count = 1;
-  return dea_layout_find_symmetry(ctx, l);
+  add_plies(d, membrane, l);
+  if (d->gravity != DEA_GRAVITY_OFF) {
+    l->gravity_m_per_s2[2] =
+        (d->gravity == DEA_GRAVITY_FIBRES_UP ? -1 : 1) * DEA_STANDARD_GRAVITY_M_PER_S2;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_disc_layout_create(struct dea_context *ctx, const struct dea_device *d,
+                                  bool membrane, struct dea_layout **out)
+{
+  DEA_TRY(ctx, dea_layout_create(ctx, out));
+  dea_status status = fill(ctx, d, membrane, *out);
+  if (status != DEA_OK) {
+    dea_layout_destroy(ctx, *out);
+    *out = NULL;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
 }

@@ -4,8 +4,12 @@
 
 #include "device/device.h"
 
-/* Makes the layout of a device whose other members are filled: regions "film", "electrode",
- * "fibres"; plies of film, electrodes with stiffness, glue, and fibres; the frame as a support. */
-dea_status dea_disc_layout_make(struct dea_context *ctx, struct dea_device *device);
+/* The layout of a disc of these numbers: regions "film", "electrode", "fibres"; plies of film,
+ * electrodes with stiffness, glue, and fibres; the frame as a support. Under fibres that lie on
+ * electrodes of a thickness, "filler" continues these. membrane: as a film is that is a surface,
+ * with both electrodes in one and bonds under the fibres (docs/theory/membrane.md). Symmetry is not
+ * looked for. out: owned by the caller (dea_layout_destroy), NULL on failure. */
+dea_status dea_disc_layout_create(struct dea_context *ctx, const struct dea_device *device,
+                                  bool membrane, struct dea_layout **out);
 
 #endif

@@ -90,7 +90,11 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
     }
   }
   DEA_TRY(ctx, dea_geometry_check(ctx, design, device));
-  return dea_finding_count(ctx, DEA_ERROR) == errors ? dea_disc_layout_make(ctx, device) : DEA_OK;
+  if (dea_finding_count(ctx, DEA_ERROR) > errors) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_disc_layout_create(ctx, device, false, &device->layout));
+  return dea_layout_find_symmetry(ctx, device->layout);
 }
 
 static bool takes(const struct dea_design *design)

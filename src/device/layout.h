@@ -24,6 +24,14 @@ struct dea_layout_region {
   struct dea_location location;
 };
 
+/* What a template knows of a ply beside its material. */
+enum dea_ply_kind {
+  DEA_PLY_SHEET,
+  DEA_PLY_ELECTRODE, // it wrinkles with the film that it lies on
+  DEA_PLY_GLUE,
+  DEA_PLY_JOINT, // between a film that is a surface and what lies on it (docs/theory/membrane.md)
+};
+
 /* A sheet of one material in a region. In the list from bottom to top; where the one below it in
  * the list is not there, it lies on what is there. */
 struct dea_layout_ply {
@@ -35,6 +43,8 @@ struct dea_layout_ply {
   double pre_stretch[2];          // from free of stress to the flat state, along its own two axes
   double angle_rad;               // of the first of them from the x axis
   size_t elements;                // through the thickness; 0: what the model takes
+  enum dea_ply_kind kind;
+  size_t joins; // of a bond: the ply that is a surface
   struct dea_location location;
 };
 
@@ -63,6 +73,7 @@ struct dea_layout_support {
   size_t within;  // only what is in this region too; DEA_LAYOUT_NONE: no such limit
   int components; // bits 1, 2, 4: along x, y, z
   bool hinged;    // only the nodes at the bottom: the edge may turn
+  size_t plies;   // only up to the top of the ply before this one in the list; 0: all plies
   double move_m[3];
   struct dea_location location;
 };

@@ -289,9 +289,6 @@ static dea_status read_design(struct dea_question *question)
   DEA_TRY(ctx, dea_design_read_memory(ctx, question->path, question->bytes, question->length, NULL,
                                       0, &question->design));
   DEA_TRY(ctx, dea_device_build(ctx, question->design, &question->device));
-  if (question->model.type != NULL) {
-    question->model.type = dea_model_of_device(question->model.type, question->device);
-  }
   return DEA_OK;
 }
 

@@ -316,9 +316,7 @@ dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea
                                        const struct dea_device *device,
                                        struct dea_layout_sensitivity *out)
 {
-  struct standing s = {.type = dea_model_of_device(dea_model_find("3d"), device),
-                       .design = design,
-                       .device = device};
+  struct standing s = {.type = dea_model_find("3d"), .design = design, .device = device};
   *out = (struct dea_layout_sensitivity){.seen = 0};
   const size_t errors = dea_finding_trial_begin(ctx);
   const dea_status status = find_layout(ctx, &s, out);

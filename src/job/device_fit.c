@@ -90,7 +90,6 @@ static dea_status read_design(struct work *w)
   DEA_TRY(w->ctx, dea_device_build(w->ctx, w->design, &w->device));
   DEA_TRY(w->ctx, dea_device_columns_add(w->ctx, w->device));
   w->model.observed = w->device->general;
-  w->model.type = dea_model_of_device(w->model.type, w->device);
   w->model.ctx = w->ctx;
   w->model.name = w->path;
   w->model.bytes = w->bytes;

@@ -49,7 +49,7 @@ static struct dea_location place_of(const struct dea_design *design, const char 
 static dea_status check_model(struct dea_context *ctx, const struct dea_model_type *type,
                               const struct dea_result *result)
 {
-  if (result->device->general && type->of_layouts == NULL) {
+  if (result->device->general && !type->any_layout) {
     char why[400];
     dea_device_check(ctx, result->device);
     snprintf(why, sizeof why, "model %s: %.300s", type->name, dea_context_message(ctx));

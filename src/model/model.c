@@ -6,13 +6,6 @@
 
 #include <math.h>
 
-const struct dea_model_type *dea_model_of_device(const struct dea_model_type *type,
-                                                 const struct dea_device *device)
-{
-  bool general = device != NULL && device->general;
-  return general && type->of_layouts != NULL ? type->of_layouts : type;
-}
-
 static double last_voltage_V(const struct dea_design *design)
 {
   size_t count = design->compute.voltage_count;
@@ -45,13 +38,12 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
                            const struct dea_design *design, const struct dea_device *device)
 {
-  const struct dea_model_type *own = dea_model_of_device(type, device);
   if (device != NULL && !device->general) {
     struct dea_film film;
     DEA_TRY(ctx, dea_film_create(ctx, device, &film));
   }
-  if (own->check != NULL) {
-    DEA_TRY(ctx, own->check(ctx, design, device));
+  if (type->check != NULL) {
+    DEA_TRY(ctx, type->check(ctx, design, device));
   }
   return DEA_OK;
 }

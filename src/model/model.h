@@ -159,9 +159,7 @@ static inline size_t dea_gradient_width(const struct dea_gradient_ask *ask)
 struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
-  /* The same model of devices of the general form, with what it can there; NULL: it knows only a
-   * disc in a round frame. */
-  const struct dea_model_type *of_layouts;
+  bool any_layout;       // false: it knows only a disc in a round frame
   /* Several processes that mpirun has started compute one such model together, all by the same
    * calls: this one has bytes of the first of them become those of all. NULL: each computes alone.
    */
@@ -215,7 +213,7 @@ struct dea_model_type {
   dea_status (*errors)(struct dea_context *ctx, struct dea_model *model, double *error);
   /* The meshes that were made for it, lent; NULL when the model does not adapt. */
   const struct dea_adapt_pass *(*passes)(const struct dea_model *model, size_t *count);
-  /* Profile at the last point solved; NULL when the model has none. */
+  /* Profile at the last point solved, empty of what is no disc; NULL when the model has none. */
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
   /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage
    * solved, in steps of its own; later solves keep it there and their points have its force. The
@@ -299,9 +297,6 @@ struct dea_model_type {
   void (*size)(const struct dea_model *model, struct dea_model_size *out);
 };
 
-/* The type that speaks for a model of this device (NULL: a disc): what is NULL there it cannot. */
-const struct dea_model_type *dea_model_of_device(const struct dea_model_type *type,
-                                                 const struct dea_device *device);
 /* What a design says of how to compute (compute.solid). */
 struct dea_model_settings dea_model_settings_of(const struct dea_design *design);
 /* What a model does not take of a design, as `check` above. */

@@ -36,8 +36,8 @@ dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout 
   return DEA_OK;
 }
 
-dea_status dea_solid_check_disc(struct dea_context *ctx, const struct dea_design *design,
-                                const struct dea_device *device)
+static dea_status check_disc(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device)
 {
   const struct dea_material *film = &device->film;
   bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
@@ -105,8 +105,8 @@ static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_
 
 /* Of devices of any layout: no key of a disc, and the monitor that a mesh is refined for is there.
  */
-dea_status dea_solid_check_layout(struct dea_context *ctx, const struct dea_design *design,
-                                  const struct dea_device *device)
+static dea_status check_layout(struct dea_context *ctx, const struct dea_design *design,
+                               const struct dea_device *device)
 {
   const struct dea_layout *l = device->layout;
   DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
@@ -126,5 +126,12 @@ dea_status dea_solid_check_layout(struct dea_context *ctx, const struct dea_desi
              "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name)", name);
     DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.adapt.monitor.location, message));
   }
+  return DEA_OK;
+}
+
+dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_design *design,
+                                  const struct dea_device *device)
+{
+  DEA_TRY(ctx, (device->general ? check_layout : check_disc)(ctx, design, device));
   return DEA_OK;
 }

@@ -5,11 +5,8 @@
 
 #include "device/device.h"
 
-/* Findings at their places, and DEA_E_DESIGN, as `check` of a model: of a disc, and of any layout.
- */
-dea_status dea_solid_check_disc(struct dea_context *ctx, const struct dea_design *design,
-                                const struct dea_device *device);
-dea_status dea_solid_check_layout(struct dea_context *ctx, const struct dea_design *design,
+/* Findings at their places, and DEA_E_DESIGN, as `check` of a model. */
+dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_design *design,
                                   const struct dea_device *device);
 /* The same of the material of one ply. */
 dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout *layout,

@@ -59,14 +59,12 @@ bool dea_solid_module_find(char *out, size_t size)
   return dea_module_find(module_file, out, size);
 }
 
-/* The module's model of discs, or of any layout. It cannot be unloaded: MPI. */
-static dea_status open_module(struct dea_context *ctx, bool general,
-                              const struct dea_model_type **out)
+/* It cannot be unloaded: MPI. */
+static dea_status open_module(struct dea_context *ctx, const struct dea_model_type **out)
 {
   const void *type = NULL;
-  const char *name = general ? "dea_solid_layout_module" : "dea_solid_module";
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_module_open(ctx, module_file, name, "the 3D engine", advice, &type)));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_module_open(ctx, module_file, "dea_solid_module",
+                                                 "the 3D engine", advice, &type)));
   *out = type;
   return DEA_OK;
 }
@@ -95,7 +93,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 {
   *out = NULL;
   const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, device->general, &type));
+  DEA_TRY(ctx, open_module(ctx, &type));
   struct dea_model *model = dea_alloc(ctx, 1, sizeof *model);
   if (model == NULL) {
     return DEA_E_MEMORY;
@@ -116,7 +114,7 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 static dea_status tell(struct dea_context *ctx, void *bytes, size_t length)
 {
   const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, false, &type));
+  DEA_TRY(ctx, open_module(ctx, &type));
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
   DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->tell(ctx, bytes, length)));
   return DEA_OK;
@@ -125,19 +123,19 @@ static dea_status tell(struct dea_context *ctx, void *bytes, size_t length)
 static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
   const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, false, &type));
+  DEA_TRY(ctx, open_module(ctx, &type));
   DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->libraries(ctx, out, size)));
   return DEA_OK;
 }
 
 static const struct dea_event *limit(const struct dea_model *model)
 {
-  return model->type->limit != NULL ? model->type->limit(model->inner) : NULL;
+  return model->type->limit(model->inner);
 }
 
 static const struct dea_event *passed(const struct dea_model *model)
 {
-  return model->type->passed != NULL ? model->type->passed(model->inner) : NULL;
+  return model->type->passed(model->inner);
 }
 
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
@@ -198,10 +196,8 @@ static dea_status carry(struct dea_context *ctx, struct dea_model *model,
 static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
                            const struct dea_gradient_ask *ask, double *out)
 {
-  return model->type->gradient != NULL
-             ? DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out))
-             : dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' knows no gradients of this device",
-                        model->type->name);
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(model->type->gradient(ctx, model->inner, ask, out)));
+  return DEA_OK;
 }
 
 static dea_status observe(struct dea_context *ctx, struct dea_model *model,
@@ -249,7 +245,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
 
 static const double *answers(const struct dea_model *model)
 {
-  return model->type->answers != NULL ? model->type->answers(model->inner) : NULL;
+  return model->type->answers(model->inner);
 }
 
 static dea_status fields(struct dea_context *ctx, struct dea_model *model,
@@ -300,14 +296,15 @@ static void size(const struct dea_model *model, struct dea_model_size *out)
   model->type->size(model->inner, out);
 }
 
-/* What the module's model of layouts has. */
-static const struct dea_model_type of_layouts = {
+const struct dea_model_type dea_model_3d = {
     .name = "3d",
+    .any_layout = true,
     .long_name = "3D solid",
-    .check = dea_solid_check_layout,
     .tell = tell,
+    .libraries = libraries,
     .create = create,
     .destroy = destroy,
+    .check = dea_solid_check_design,
     .limit = limit,
     .passed = passed,
     .solve = solve,
@@ -315,41 +312,15 @@ static const struct dea_model_type of_layouts = {
     .observe = observe,
     .errors = errors,
     .passes = passes,
-    .move = move,
-    .soften = soften,
-    .push = push,
-    .modes = modes,
-    .respond = respond,
-    .answers = answers,
-    .fields = fields,
-    .save = save,
-    .load = load,
-    .begin = begin,
-    .advance = advance,
-    .accept = accept,
-    .size = size,
-};
-
-const struct dea_model_type dea_model_3d = {
-    .name = "3d",
-    .of_layouts = &of_layouts,
-    .long_name = "3D solid",
-    .tell = tell,
-    .libraries = libraries,
-    .create = create,
-    .destroy = destroy,
-    .check = dea_solid_check_disc,
-    .limit = limit,
-    .passed = passed,
-    .solve = solve,
-    .gradient = gradient,
     .indent = indent,
+    .move = move,
     .long_path = long_path,
     .soften = soften,
     .push = push,
     .carry = carry,
     .modes = modes,
     .respond = respond,
+    .answers = answers,
     .profile = profile,
     .fields = fields,
     .save = save,

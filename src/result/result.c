@@ -285,6 +285,9 @@ dea_status dea_result_add_profile(struct dea_context *ctx, struct dea_result *re
                                   const struct dea_profile *profile)
 {
   void *profiles = result->profiles;
+  if (profile->count == 0) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx, make_room(ctx, &profiles, result->profile_count, &result->profile_room,
                          sizeof *result->profiles));
   result->profiles = profiles;
@@ -318,6 +321,9 @@ dea_status dea_variant_set_profile(struct dea_context *ctx, struct dea_variant *
                                    double voltage_V, const struct dea_profile *profile)
 {
   struct dea_profile_record record;
+  if (profile->count == 0) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx, copy_profile(ctx, variant->curve.model, voltage_V, profile, &record));
   dea_free(ctx, variant->profile.columns);
   variant->profile = record;

@@ -364,7 +364,7 @@ dea_status dea_design_gradient_at(struct dea_context *ctx, const struct dea_mode
 {
   struct dea_design_number all[DEA_NUMBERS_MAX], chosen[DEA_NUMBERS_MAX];
   size_t count;
-  struct dea_design_gradient ask = {.type = dea_model_of_device(type, device),
+  struct dea_design_gradient ask = {.type = type,
                                     .design = design,
                                     .device = device,
                                     .voltage_V = voltage_V,

@@ -132,7 +132,7 @@ static dea_status check_sections(struct dea_context *ctx, const struct dea_desig
 static bool is_known_to(const struct dea_study *study, const struct dea_model_type *type,
                         const struct dea_result *result)
 {
-  return study->able == NULL || study->able(dea_model_of_device(type, result->device), result);
+  return study->able == NULL || study->able(type, result);
 }
 
 /* A note, but not of a study that all designs ask for. */
@@ -311,7 +311,6 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
                          const char *const names[], size_t name_count, struct dea_result *result)
 {
   struct dea_model *model = NULL; // made for the first study that wants it
-  type = dea_model_of_device(type, result->device);
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   struct ending first = {.status = DEA_OK};
   for (size_t i = 0; i < STUDIES; i++) {

@@ -1,6 +1,7 @@
 #include "model/solid/actuator/layout_mesh.h"
 
 #include "geometry/boolean.h"
+#include "model/solid/mesh/cuts.h"
 #include "model/solid/mesh/gmsh.h"
 
 #include <math.h>
@@ -354,20 +355,40 @@ static size_t ply_below(const struct dea_layout_mesh *mesh, size_t plane_region,
   return DEA_LAYOUT_NONE;
 }
 
+/* Whether a ply has been laid beside another one below it in the list: as thick, on what that lies
+ * on, and nowhere on it. */
+static bool is_beside(const struct dea_layout_mesh *mesh, const size_t *skips, size_t p, size_t q)
+{
+  const struct dea_layout *l = mesh->layout;
+  const struct dea_layout_ply *a = &l->plies[p], *b = &l->plies[q];
+  bool beside = a->thickness_m == b->thickness_m && a->elements == b->elements &&
+                p - skips[p] == q - skips[q];
+  for (size_t r = 0; r < mesh->plane->region_count; r++) {
+    const bool *present = mesh->present + r * l->ply_count;
+    beside = beside && !(present[p] && present[q]);
+  }
+  return beside;
+}
+
 /* How many plies of the list each one passes over. It may span what is open below it, as a film
- * does in its frame, but not lie on two. */
+ * does in its frame, and lie on two only where one fills the place beside the other. */
 static dea_status find_skips(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                             size_t *skips)
+                             size_t *skips, size_t *beside)
 {
   const struct dea_layout *l = mesh->layout;
   for (size_t p = 0; p < l->ply_count; p++) {
     size_t on = DEA_LAYOUT_NONE;
+    beside[p] = DEA_LAYOUT_NONE;
     for (size_t r = 0; r < mesh->plane->region_count; r++) {
       size_t here = ply_below(mesh, r, p);
       if (!mesh->present[r * l->ply_count + p] || here == DEA_LAYOUT_NONE || here == on) {
         continue;
       }
-      if (on != DEA_LAYOUT_NONE) {
+      size_t upper = on != DEA_LAYOUT_NONE && on > here ? on : here;
+      size_t lower = on != DEA_LAYOUT_NONE && on > here ? here : on;
+      if (on != DEA_LAYOUT_NONE && is_beside(mesh, skips, upper, lower)) {
+        beside[upper] = beside[lower] != DEA_LAYOUT_NONE ? beside[lower] : lower;
+      } else if (on != DEA_LAYOUT_NONE) {
         DEA_TRY(ctx, dea_finding_add(
                          ctx, DEA_ERROR, l->plies[p].location,
                          "the ply '%s' lies partly on '%s' and partly on '%s': it has to be flat; "
@@ -388,28 +409,64 @@ static bool is_present(const void *self, int region, int ply)
   return mesh->present[(size_t)region * mesh->layout->ply_count + (size_t)ply];
 }
 
+/* A ply whose number of elements is left to the settings; of blocks they are finer at its faces. */
+static size_t elements_through(const struct dea_model_settings *settings,
+                               const struct dea_layout_mesh *mesh, size_t p)
+{
+  const size_t own = mesh->layout->plies[p].elements;
+  return mesh->surface[p]           ? 1
+         : own > 0                  ? own
+         : settings->elements_z > 0 ? (size_t)settings->elements_z
+                                    : 1;
+}
+
+static void find_faces(struct dea_layout_mesh *mesh)
+{
+  const struct dea_grid *grid = mesh->grid;
+  for (size_t p = 0; p < mesh->layout->ply_count; p++) {
+    mesh->face_m[p][0] = mesh->face_m[p][1] = NAN;
+  }
+  for (size_t e = 0; e < grid->element_count; e++) {
+    const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
+    double *face_m = mesh->face_m[grid->ply[e]]; // of NAN and a number: the number
+    face_m[0] = fmin(face_m[0], grid->X[3 * nodes[0] + 2]);
+    face_m[1] = fmax(face_m[1], grid->X[3 * nodes[dea_grid_nodes_of(grid, e) - 1] + 2]);
+  }
+}
+
 static dea_status extrude(struct dea_context *ctx, const struct dea_model_settings *settings,
                           struct dea_layout_mesh *mesh)
 {
   const struct dea_layout *l = mesh->layout;
   struct dea_ply *plies = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *plies);
   size_t *skips = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *skips);
+  size_t *beside = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *beside);
+  const double **cuts = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *cuts);
+  double through[DEA_FIBRE_DISC_THROUGH_MAX + 1];
+  mesh->face_m = dea_arena_alloc(&mesh->memory, l->ply_count, sizeof *mesh->face_m);
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
-  DEA_TRY(ctx, find_skips(ctx, mesh, skips));
+  DEA_TRY(ctx, find_skips(ctx, mesh, skips, beside));
   for (size_t p = 0; p < l->ply_count; p++) {
-    bool surface = mesh->membrane && mesh->dielectric[p];
     plies[p] = (struct dea_ply){
-        .thickness_m = surface ? 0 : l->plies[p].thickness_m,
-        .count = surface                    ? 1
-                 : l->plies[p].elements > 0 ? l->plies[p].elements
-                 : settings->elements_z > 0 ? (size_t)settings->elements_z
-                                            : 1,
+        .thickness_m = mesh->surface[p] ? 0 : l->plies[p].thickness_m,
+        .count = elements_through(settings, mesh, p),
         .order_z = settings->order_z > 0 ? settings->order_z : 2,
     };
+    if (mesh->plate.order > 0 && l->plies[p].elements == 0) {
+      dea_cuts_through(plies[p].count, through);
+      cuts[p] = through;
+    }
   }
-  const struct dea_stack stack = {
-      .plies = plies, .count = l->ply_count, .skips = skips, .present = is_present, .self = mesh};
+  const struct dea_stack stack = {.plies = plies,
+                                  .count = l->ply_count,
+                                  .skips = skips,
+                                  .beside = beside,
+                                  .cuts = cuts,
+                                  .present = is_present,
+                                  .self = mesh,
+                                  .bottom_m = mesh->bottom_m};
   DEA_TRY(ctx, dea_grid_extrude(ctx, mesh->plane, &stack, &mesh->grid));
+  find_faces(mesh);
   return mesh->grid->element_count > 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_DESIGN, "no ply of the device has an element");
@@ -459,21 +516,54 @@ static void find_fields(struct dea_layout_mesh *mesh)
   }
 }
 
-/* All but the plane. */
 static dea_status fill(struct dea_context *ctx, const struct dea_model_settings *settings,
                        struct dea_layout_mesh *mesh)
 {
-  size_t plies = mesh->layout->ply_count;
-  size_t count = mesh->plane->region_count * plies;
+  const struct dea_layout *l = mesh->layout;
+  size_t plies = l->ply_count, count = mesh->plane->region_count * plies;
+  double box[4];
   mesh->present = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->present);
   mesh->field = dea_arena_alloc(&mesh->memory, count, sizeof *mesh->field);
   mesh->dielectric = dea_arena_alloc(&mesh->memory, plies, sizeof *mesh->dielectric);
+  mesh->surface = dea_arena_alloc(&mesh->memory, plies, sizeof *mesh->surface);
   DEA_TRY(ctx, dea_arena_status(&mesh->memory));
+  dea_layout_box_m(l, box);
+  mesh->near_m = near_share * hypot(box[2] - box[0], box[3] - box[1]);
   for (size_t i = 0; i < count; i++) {
-    mesh->present[i] = is_within(mesh, i / plies, mesh->layout->plies[i % plies].region);
+    mesh->present[i] = is_within(mesh, i / plies, l->plies[i % plies].region);
   }
   find_fields(mesh);
+  for (size_t i = 0; i < plies; i++) {
+    mesh->surface[i] =
+        mesh->membrane && (mesh->dielectric[i] || l->plies[i].kind == DEA_PLY_ELECTRODE);
+  }
   DEA_TRY(ctx, extrude(ctx, settings, mesh));
+  return DEA_OK;
+}
+
+dea_status dea_layout_mesh_fill(struct dea_context *ctx, const struct dea_model_settings *settings,
+                                struct dea_layout_mesh *mesh)
+{
+  const dea_status status = fill(ctx, settings, mesh);
+  if (status != DEA_OK) {
+    dea_layout_mesh_free(ctx, mesh);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_layout_mesh_fill_like(struct dea_context *ctx,
+                                     const struct dea_model_settings *settings,
+                                     const struct dea_layout_mesh *like,
+                                     struct dea_layout_mesh *mesh)
+{
+  DEA_TRY(ctx, dea_layout_mesh_fill(ctx, settings, mesh));
+  const struct dea_grid *a = mesh->grid, *b = like->grid;
+  if (a->element_count != b->element_count ||
+      memcmp(a->nodes, b->nodes, a->element_count * DEA_HEX_NODES_MAX * sizeof *a->nodes) != 0) {
+    dea_layout_mesh_free(ctx, mesh);
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow the change");
+  }
   return DEA_OK;
 }
 
@@ -488,13 +578,11 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
     out->sector = dea_layout_sector_of(layout);
   }
   dea_status status = make_plane(ctx, settings, out);
-  if (status == DEA_OK) {
-    status = fill(ctx, settings, out);
-  }
   if (status != DEA_OK) {
     dea_layout_mesh_free(ctx, out);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
+  DEA_TRY(ctx, dea_layout_mesh_fill(ctx, settings, out));
   return DEA_OK;
 }
 
@@ -512,17 +600,7 @@ dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea
                                   .like = true,
                                   .group = like->group};
   *memory = (struct dea_arena){.ctx = ctx};
-  dea_status status = fill(ctx, settings, out);
-  const size_t used = like->grid->element_count * DEA_HEX_NODES_MAX;
-  if (status == DEA_OK &&
-      (out->grid->element_count != like->grid->element_count ||
-       memcmp(out->grid->nodes, like->grid->nodes, used * sizeof *like->grid->nodes) != 0)) {
-    status = dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow the change");
-  }
-  if (status != DEA_OK) {
-    dea_layout_mesh_free(ctx, out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY(ctx, dea_layout_mesh_fill_like(ctx, settings, like, out));
   return DEA_OK;
 }
 
@@ -532,6 +610,7 @@ void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh)
   if (!mesh->like) {
     dea_plane_mesh_destroy(ctx, mesh->plane);
   }
+  dea_layout_destroy(ctx, mesh->own);
   dea_arena_free(&mesh->memory);
   *mesh = (struct dea_layout_mesh){0};
 }
@@ -543,18 +622,11 @@ bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, 
   return is_within(mesh, (size_t)mesh->grid->region[element], region);
 }
 
-double dea_layout_mesh_near_m(const struct dea_layout_mesh *mesh)
-{
-  double box[4];
-  dea_layout_box_m(mesh->layout, box);
-  return near_share * hypot(box[2] - box[0], box[3] - box[1]);
-}
-
 bool dea_layout_mesh_marks_copy(const struct dea_layout_mesh *mesh, size_t region, bool edge,
                                 size_t within)
 {
   const struct dea_layout_region *regions = mesh->layout->regions;
-  double near_m = dea_layout_mesh_near_m(mesh);
+  double near_m = mesh->near_m;
   bool any = false;
   for (size_t i = 0; i < mesh->plane->node_count * dea_layout_sector_copies(&mesh->sector); i++) {
     struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, i / mesh->plane->node_count);
@@ -578,7 +650,7 @@ size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, b
   const struct dea_plane_mesh *plane = mesh->plane;
   const struct dea_layout_region *regions = mesh->layout->regions;
   size_t per = (size_t)((plane->order + 1) * (plane->order + 1)), count = 0;
-  double near_m = dea_layout_mesh_near_m(mesh);
+  double near_m = mesh->near_m;
   memset(marked, 0, plane->node_count * sizeof *marked);
   for (size_t q = 0; q < plane->quad_count; q++) {
     for (size_t n = 0; n < per && (edge || is_within(mesh, (size_t)plane->region[q], region));

@@ -1,10 +1,11 @@
-/* The mesh of a layout (docs/theory/devices.md): its regions go to gmsh, their plane mesh is
- * extruded through the plies. */
+/* The mesh of a device (docs/theory/devices.md): a plane mesh, of gmsh or of the blocks of a disc,
+ * extruded through the plies of its layout. */
 #ifndef DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
 #define DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
 
 #include "device/layout_sector.h"
 #include "model/model.h"
+#include "model/solid/mesh/fibre_disc.h"
 #include "model/solid/mesh/grid.h"
 
 /* Channels of an element at its top and bottom; top -1: it is not between electrodes. */
@@ -14,7 +15,11 @@ struct dea_layout_field {
 
 struct dea_layout_mesh {
   struct dea_arena memory;
-  const struct dea_layout *layout; // lent
+  const struct dea_layout *layout; // lent, or `own`
+  struct dea_layout *own;          // NULL: the device's own
+  struct dea_fibre_disc plate;     // of a mesh of blocks; its order is 0: a free mesh
+  struct dea_fibre_disc cuts;      // whose elements those are
+  double bottom_m;                 // z of the lowest ply
   bool membrane;                   // dielectric plies are surfaces
   struct dea_layout_sector sector; // what is meshed of the layout; its fold is 0: the whole
   struct dea_plane_mesh *plane;    // its groups are regions of the layout; owned
@@ -23,6 +28,9 @@ struct dea_layout_mesh {
                  // also what lies in other copies of the sector only
   bool *present; // [region_count of the plane][ply_count]
   struct dea_layout_field *field; // [region_count of the plane][ply_count]
+  bool *surface;                  // [ply_count] plies that are surfaces
+  double (*face_m)[2];   // [ply_count] z of the lower and the upper face; NAN: it is nowhere
+  double near_m;         // what is near enough to a line to lie on it
   bool *dielectric;      // [ply_count] plies that are between electrodes of two channels somewhere
   struct dea_grid *grid; // its regions are those of the plane mesh; owned
 };
@@ -33,6 +41,14 @@ struct dea_layout_mesh {
 dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layout *layout,
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out);
+/* All but layout, plane, groups and sector, which are there. On failure the mesh is freed.
+ * dea_layout_mesh_fill_like: with the elements of another one, else DEA_E_ARGUMENT. */
+dea_status dea_layout_mesh_fill(struct dea_context *ctx, const struct dea_model_settings *settings,
+                                struct dea_layout_mesh *mesh);
+dea_status dea_layout_mesh_fill_like(struct dea_context *ctx,
+                                     const struct dea_model_settings *settings,
+                                     const struct dea_layout_mesh *like,
+                                     struct dea_layout_mesh *mesh);
 /* What mesh_follow.h makes: the mesh of another layout with as many regions and plies as that of
  * `like`, which outlives it, on a plane mesh with the elements of that one. memory: of the plane
  * mesh; it becomes the mesh's. DEA_E_ARGUMENT where other elements come of it. */
@@ -56,7 +72,5 @@ size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, b
 /* Whether that marks a node of any copy of the sector. */
 bool dea_layout_mesh_marks_copy(const struct dea_layout_mesh *mesh, size_t region, bool edge,
                                 size_t within);
-/* What is near enough to a line to lie on it [m]. */
-double dea_layout_mesh_near_m(const struct dea_layout_mesh *mesh);
 
 #endif

@@ -564,10 +564,8 @@ static dea_status move_plane(struct dea_context *ctx, const struct dea_layout_me
                              const struct dea_layout *layout, struct dea_arena *memory,
                              struct dea_plane_mesh **out)
 {
-  struct work w = {.like = like,
-                   .plane = like->plane,
-                   .memory = {.ctx = ctx},
-                   .near_m = dea_layout_mesh_near_m(like)};
+  struct work w = {
+      .like = like, .plane = like->plane, .memory = {.ctx = ctx}, .near_m = like->near_m};
   struct dea_plane_mesh *moved = dea_arena_alloc(memory, 1, sizeof *moved);
   double *x = dea_arena_alloc(memory, 2 * like->plane->node_count, sizeof *x);
   *out = moved;

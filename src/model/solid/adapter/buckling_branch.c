@@ -6,9 +6,14 @@
 
 static const double there = 1e-3; // of the film's thickness: on a side, and not flat
 
+bool dea_film_band_has(const struct dea_film_band *film, double z_m)
+{
+  return fabs(z_m - film->middle_m) <= 0.5 * film->thickness_m * (1 + 1e-9);
+}
+
 struct wanted {
   const struct dea_grid *grid;
-  const struct dea_fibre_disc *plate;
+  const struct dea_film_band *film;
   double sign, least_m;
 };
 
@@ -33,10 +38,10 @@ static void find_middle(const struct wanted *wanted, const double *u, size_t n, 
 {
   const struct dea_grid *grid = wanted->grid;
   size_t low = n, high = n;
-  double half_m = 0.5 * wanted->plate->film_thickness, lowest = INFINITY, highest = -INFINITY;
+  double lowest = INFINITY, highest = -INFINITY;
   for (*end = n; *end < grid->node_count && grid->column[*end] == grid->column[n]; ++*end) {
     double z = grid->X[3 * *end + 2];
-    if (fabs(z) <= half_m * (1 + 1e-9)) {
+    if (dea_film_band_has(wanted->film, z)) {
       low = z < lowest ? *end : low;
       high = z > highest ? *end : high;
       lowest = fmin(lowest, z);
@@ -65,14 +70,14 @@ static void set_push(const struct wanted *wanted, const double *u, double *push)
 }
 
 dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *solid,
-                                    const struct dea_grid *grid, const struct dea_fibre_disc *plate,
+                                    const struct dea_grid *grid, const struct dea_film_band *film,
                                     enum dea_buckling_branch side, struct dea_solid_report *report,
                                     bool *moved)
 {
   struct wanted wanted = {.grid = grid,
-                          .plate = plate,
+                          .film = film,
                           .sign = side == DEA_BRANCH_FIBRES ? 1 : -1,
-                          .least_m = there * plate->film_thickness};
+                          .least_m = there * film->thickness_m};
   *moved = false;
   if (side == DEA_BRANCH_ANY || on_side(&wanted, dea_solid_displacement(solid))) {
     return DEA_OK;
@@ -88,11 +93,11 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
 }
 
 void dea_buckling_branch_fold(const struct dea_solid *solid, const struct dea_grid *grid,
-                              const struct dea_fibre_disc *plate, int sign, double *out)
+                              const struct dea_film_band *film, int sign, double *out)
 {
-  const struct wanted wanted = {.grid = grid, .plate = plate, .sign = sign};
+  const struct wanted wanted = {.grid = grid, .film = film, .sign = sign};
   const double *u = solid->state.u;
-  double h = plate->film_thickness;
+  double h = film->thickness_m;
   for (size_t n = 0, end; n < grid->node_count; n = end) {
     double middle[3];
     find_middle(&wanted, u, n, &end, middle);

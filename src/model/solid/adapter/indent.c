@@ -12,43 +12,61 @@
 static const double stiffness_Pa_per_m = 1e10;
 static const double first_step_m = 20e-6, largest_step_m = 200e-6, growth = 1.6;
 
-/* Faces that the probe may touch: the film's and, from above, those of electrodes and fibres. Of
- * several elements through the film the outermost one's. */
+/* Faces that the probe may touch: those that are uppermost or, from below, lowest in their
+ * regions, surfaces too. Of several elements through a ply the outermost one's. */
 struct choice {
-  const struct dea_actuator *actuator;
+  const struct dea_layout_mesh *mesh;
   bool from_above;
 };
 
 static bool select_face(const void *self, int region, int ply, const double middle[3])
 {
   const struct choice *choice = self;
-  const struct dea_fibre_disc *p = &choice->actuator->plate;
-  bool inside = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  bool layers = p->electrode_thickness > 0 && !p->membrane;
-  int covered = inside && layers ? DEA_FIBRE_DISC_TOP : DEA_FIBRE_DISC_FILM;
-  bool outermost = p->membrane || fabs(middle[2]) > 0.5 * p->film_thickness * (1 - 1e-6);
-  if (!outermost) {
-    return false;
+  const struct dea_layout_mesh *mesh = choice->mesh;
+  const size_t count = mesh->layout->ply_count;
+  const bool *present = mesh->present + (size_t)region * count;
+  const double face_m = mesh->face_m[ply][choice->from_above ? 1 : 0];
+  bool outermost = fabs(middle[2] - face_m) <= 1e-6 * mesh->layout->plies[ply].thickness_m;
+  for (size_t p = 0; p < count; p++) {
+    // surfaces of one place: the film alone is touched
+    bool beyond = choice->from_above ? p > (size_t)ply : p < (size_t)ply;
+    bool shadow = mesh->surface[p] && !mesh->dielectric[p];
+    outermost = outermost && !(present[p] && beyond && !shadow);
   }
-  if (choice->from_above) {
-    return ply == (fibre ? DEA_FIBRE_DISC_FIBRE_PLY : covered);
+  return outermost && !(mesh->surface[ply] && !mesh->dielectric[ply]);
+}
+
+/* The middle of the layout, and the face of what is there. */
+static void find_middle(const struct dea_layout_mesh *mesh, bool above, double out[3])
+{
+  const struct dea_grid *grid = mesh->grid;
+  double box[4];
+  dea_layout_box_m(mesh->layout, box);
+  for (int i = 0; i < 2; i++) {
+    double size_m = box[2 + i] - box[i], middle_m = 0.5 * (box[i] + box[2 + i]);
+    out[i] = fabs(middle_m) <= 1e-12 * size_m ? 0 : middle_m;
   }
-  return ply == (covered == DEA_FIBRE_DISC_TOP ? DEA_FIBRE_DISC_BOTTOM : DEA_FIBRE_DISC_FILM);
+  out[2] = 0;
+  int column = grid->column[dea_grid_nearest(grid, out)];
+  double face_m = above ? -INFINITY : INFINITY;
+  for (size_t n = 0; n < grid->node_count; n++) {
+    if (grid->column[n] == column) {
+      face_m = above ? fmax(face_m, grid->X[3 * n + 2]) : fmin(face_m, grid->X[3 * n + 2]);
+    }
+  }
+  out[2] = face_m;
 }
 
 /* The contact with a probe at a depth. */
-static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *actuator,
-                          const struct dea_grid *grid, const struct dea_pressed *pressed,
-                          struct dea_indent *indent)
+static dea_status prepare(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                          const struct dea_pressed *pressed, struct dea_indent *indent)
 {
   static const enum dea_indenter_shape shapes[] = {[DEA_PROBE_SPHERE] = DEA_INDENTER_SPHERE,
                                                    [DEA_PROBE_FLAT] = DEA_INDENTER_FLAT,
                                                    [DEA_PROBE_CYLINDER] = DEA_INDENTER_CYLINDER};
-  const struct dea_fibre_disc *p = &actuator->plate;
   const struct dea_probe *probe = &pressed->tip;
-  const struct choice choice = {actuator, probe->from_fibre_side};
+  const struct choice choice = {mesh, probe->from_fibre_side};
   double sign = probe->from_fibre_side ? 1 : -1;
-  double face = p->membrane ? 0 : 0.5 * p->film_thickness + p->electrode_thickness;
   bool round = probe->shape != DEA_PROBE_FLAT;
   struct dea_contact_options options = {
       .tip = {.shape = shapes[probe->shape],
@@ -63,27 +81,29 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_actuator *ac
     options.tip.axis[2] = 0;
   }
   indent->probe = *probe;
-  indent->touch_z_m = sign * (face + (round ? probe->radius_m : 0));
+  find_middle(mesh, probe->from_fibre_side, indent->touch_m);
+  indent->touch_m[2] += round ? sign * probe->radius_m : 0;
   indent->depth_m = pressed->depth_m;
-  indent->copies = dea_actuator_copies(actuator);
-  options.place_m[2] = indent->touch_z_m - sign * indent->depth_m;
-  DEA_TRY(ctx,
-          dea_surface_create(ctx, grid, probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
-                             select_face, &choice, &indent->surface));
+  indent->copies = (double)dea_layout_sector_copies(&mesh->sector);
+  memcpy(options.place_m, indent->touch_m, sizeof indent->touch_m);
+  options.place_m[2] -= sign * indent->depth_m;
+  DEA_TRY(ctx, dea_surface_create(ctx, mesh->grid,
+                                  probe->from_fibre_side ? DEA_FACE_TOP : DEA_FACE_BOTTOM,
+                                  select_face, &choice, &indent->surface));
   DEA_TRY(ctx, dea_contact_create(ctx, indent->surface, &options, &indent->contact));
   return DEA_OK;
 }
 
-dea_status dea_indent_create(struct dea_context *ctx, const struct dea_actuator *actuator,
-                             const struct dea_grid *grid, struct dea_solid *solid,
-                             const struct dea_probe *probe, struct dea_indent **out)
+dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                             struct dea_solid *solid, const struct dea_probe *probe,
+                             struct dea_indent **out)
 {
   const struct dea_pressed pressed = {*probe, -1e-3 * probe->radius_m};
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = prepare(ctx, actuator, grid, &pressed, *out);
+  dea_status status = prepare(ctx, mesh, &pressed, *out);
   if (status == DEA_OK) {
     const struct dea_solid_load load = dea_contact_load((*out)->contact);
     status = dea_solid_add_load(ctx, solid, &load);
@@ -116,16 +136,15 @@ static void replace(struct dea_solid *s, const struct dea_contact *old, struct d
   }
 }
 
-dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_actuator *actuator,
-                                     const struct dea_grid *grid, struct dea_solid *solid,
-                                     const struct dea_pressed *pressed,
+dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                                     struct dea_solid *solid, const struct dea_pressed *pressed,
                                      const struct dea_indent *other, struct dea_indent **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
-  dea_status status = prepare(ctx, actuator, grid, pressed, *out);
+  dea_status status = prepare(ctx, mesh, pressed, *out);
   if (status != DEA_OK) {
     dea_indent_destroy(ctx, *out);
     *out = NULL;
@@ -186,9 +205,10 @@ static dea_status move_on(struct dea_context *ctx, struct dea_indent *indent, st
                           double voltage_V, double depth_m, struct way *way,
                           struct dea_solid_report *report)
 {
-  double z_m = indent->touch_z_m - (indent->probe.from_fibre_side ? depth_m : -depth_m);
+  const double *touch_m = indent->touch_m;
+  double z_m = touch_m[2] - (indent->probe.from_fibre_side ? depth_m : -depth_m);
   DEA_TRY(ctx, keep_last(ctx, s, indent->depth_m, way));
-  dea_contact_move(indent->contact, (const double[3]){0, 0, z_m});
+  dea_contact_move(indent->contact, (const double[3]){touch_m[0], touch_m[1], z_m});
   go_straight_on(s, way, depth_m);
   dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
   if (dea_solid_may_shorten(status) && way->before.state != NULL) {

@@ -1,9 +1,9 @@
-/* A rigid probe against the middle of the actuator, as study "force" presses it. */
+/* A rigid probe against the middle of the device, as study "force" presses it. */
 #ifndef DEA_MODEL_SOLID_ADAPTER_INDENT_H
 #define DEA_MODEL_SOLID_ADAPTER_INDENT_H
 
 #include "model/model.h"
-#include "model/solid/actuator/actuator.h"
+#include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/load/loads.h"
 
@@ -11,15 +11,15 @@ struct dea_indent {
   struct dea_probe probe;
   struct dea_surface *surface;
   struct dea_contact *contact;
-  double touch_z_m; // of the tip's place when it touches the flat film
-  double depth_m;   // where it is
-  double copies;    // of the domain in the actuator
+  double touch_m[3]; // its place when it touches the flat film
+  double depth_m;    // where it is
+  double copies;     // of the domain in the actuator
 };
 
 /* Puts the probe just out of touch and adds it to the solid. The solid must be destroyed first. */
-dea_status dea_indent_create(struct dea_context *ctx, const struct dea_actuator *actuator,
-                             const struct dea_grid *grid, struct dea_solid *solid,
-                             const struct dea_probe *probe, struct dea_indent **out);
+dea_status dea_indent_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                             struct dea_solid *solid, const struct dea_probe *probe,
+                             struct dea_indent **out);
 void dea_indent_destroy(struct dea_context *ctx, struct dea_indent *indent);
 
 /* Brings it to a depth in steps, at the voltage given. It stays where it came to when a step fails.
@@ -38,9 +38,8 @@ void dea_indent_force_slope(const struct dea_indent *indent, const double *u, do
  * are those of the other, by a probe at a depth: for gradients, without a penalty of its own
  * (docs/theory/gradients.md). Takes the place of the other among the solid's loads until
  * dea_indent_end_variant, which destroys it. */
-dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_actuator *actuator,
-                                     const struct dea_grid *grid, struct dea_solid *solid,
-                                     const struct dea_pressed *pressed,
+dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                                     struct dea_solid *solid, const struct dea_pressed *pressed,
                                      const struct dea_indent *other, struct dea_indent **out);
 void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,
                             const struct dea_indent *other, struct dea_indent *variant);

@@ -501,7 +501,7 @@ static void gradient_of_probes(struct dea_observer *o, struct dea_solid *solid, 
   static const double little = 1e-5; // of the size of the mesh
   const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
   double *u = dea_solid_displacement(solid), value[2][DEA_OBSERVED_COUNT];
-  double step = little * dea_layout_mesh_near_m(o->mesh) / 1e-6;
+  double step = little * o->mesh->near_m / 1e-6;
   int probes = m->kind == DEA_MONITOR_LINE ? 2 : 1;
   for (int p = 0; p < probes; p++) {
     const struct probe *probe = &o->probes[monitor][p];

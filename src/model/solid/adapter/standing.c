@@ -87,6 +87,9 @@ static double beyond(const struct dea_standing *standing, const struct dea_stand
 {
   const struct dea_solid *solid = standing->ending.owner.solid;
   double sum = -end->value;
+  if (end->weight == NULL) {
+    return -1;
+  }
   for (size_t i = 0; i < solid->problem.dofs; i++) {
     sum += end->weight[i] * solid->state.u[i];
   }

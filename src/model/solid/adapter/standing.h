@@ -41,7 +41,8 @@ dea_status dea_standing_load(struct dea_context *ctx, struct dea_model *model,
 
 // For functions of a model's type ----------------------------------------------------------------
 
-/* Where a path ends but for its options: weight [dofs] . u comes to `value` from below. */
+/* Where a path ends but for its options: weight [dofs] . u comes to `value` from below; NULL:
+ * nowhere else. */
 struct dea_standing_end {
   const double *weight;
   double value;

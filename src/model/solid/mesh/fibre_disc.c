@@ -433,82 +433,9 @@ static dea_status add_inside(struct dea_context *ctx, struct builder *b)
   return DEA_OK;
 }
 
-/* ---- plies ---- */
-
-/* Which regions have which plies: fibres beside the electrodes or without electrode layers, ... */
-static bool present_beside(const void *self, int region, int ply)
-{
-  (void)self;
-  bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  return ply == DEA_FIBRE_DISC_FILM || (ply <= DEA_FIBRE_DISC_TOP ? electrode : fibre);
-}
-
-/* ... or on an electrode layer, which a filler then continues. */
-static bool present_on_top(const void *self, int region, int ply)
-{
-  (void)self;
-  bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode
-                                        : ply == DEA_FIBRE_DISC_TOP  ? electrode || fibre
-                                                                     : fibre);
-}
-
-/* With a membrane: all but film and electrodes is under fibres. */
-static bool present_membrane(const void *self, int region, int ply)
-{
-  (void)self;
-  bool electrode = region & DEA_FIBRE_DISC_ELECTRODE, fibre = region & DEA_FIBRE_DISC_FIBRE;
-  return ply == DEA_FIBRE_DISC_FILM || (ply == DEA_FIBRE_DISC_BOTTOM ? electrode : fibre);
-}
-
-static size_t film_elements(const struct dea_fibre_disc *p)
-{
-  return p->through > 1 && !p->membrane ? (size_t)p->through : 1;
-}
-
-/* Plies of a thickness have one element through it, but for the film. */
-static struct dea_ply sheet_of(const struct dea_fibre_disc *p, double thickness)
-{
-  return (struct dea_ply){thickness, thickness > 0 ? 1 : 0, p->order_z};
-}
-
-static dea_status extrude(struct dea_context *ctx, const struct dea_fibre_disc *p,
-                          const struct dea_plane_mesh *mesh, struct dea_grid **out)
-{
-  bool fibres = p->fibres > 0;
-  bool on_top = fibres && p->tip_radius < p->electrode_radius - same * p->frame_radius;
-  struct dea_ply plies[DEA_FIBRE_DISC_PLIES] = {
-      [DEA_FIBRE_DISC_BOTTOM] = sheet_of(p, p->electrode_thickness),
-      [DEA_FIBRE_DISC_FILM] = sheet_of(p, p->film_thickness),
-      [DEA_FIBRE_DISC_BOND] = sheet_of(p, p->membrane && fibres ? 0.5 * p->film_thickness : 0),
-      [DEA_FIBRE_DISC_TOP] = sheet_of(p, p->electrode_thickness),
-      [DEA_FIBRE_DISC_GLUE] = sheet_of(p, fibres ? p->glue_thickness : 0),
-      [DEA_FIBRE_DISC_FIBRE_PLY] = sheet_of(p, fibres ? p->fibre_thickness : 0),
-  };
-  double film_cuts[DEA_FIBRE_DISC_THROUGH_MAX + 1];
-  const double *cuts[DEA_FIBRE_DISC_PLIES] = {[DEA_FIBRE_DISC_FILM] = film_cuts};
-  plies[DEA_FIBRE_DISC_FILM].count = film_elements(p);
-  dea_cuts_through(film_elements(p), film_cuts);
-  const size_t skips[DEA_FIBRE_DISC_PLIES] = {[DEA_FIBRE_DISC_GLUE] = on_top ? 0 : 1};
-  double bottom = -0.5 * p->film_thickness - p->electrode_thickness;
-  if (p->membrane) {
-    plies[DEA_FIBRE_DISC_BOTTOM].thickness_m = plies[DEA_FIBRE_DISC_FILM].thickness_m = bottom = 0;
-    plies[DEA_FIBRE_DISC_TOP] = sheet_of(p, on_top ? p->electrode_thickness : 0);
-  }
-  const struct dea_stack stack = {.plies = plies,
-                                  .count = DEA_FIBRE_DISC_PLIES,
-                                  .skips = skips,
-                                  .cuts = cuts,
-                                  .present = p->membrane ? present_membrane
-                                             : on_top    ? present_on_top
-                                                         : present_beside,
-                                  .bottom_m = bottom};
-  DEA_TRY(ctx, dea_grid_extrude(ctx, mesh, &stack, out));
-  return DEA_OK;
-}
-
 /* Copies the blocks of the first sector into all of the domain. */
-static dea_status spread(struct dea_context *ctx, const struct builder *b, struct dea_grid **out)
+static dea_status spread(struct dea_context *ctx, const struct builder *b,
+                         struct dea_plane_mesh **out)
 {
   const struct dea_fibre_disc *p = b->lines.plate;
   size_t count = b->block_count * (size_t)p->sectors;
@@ -522,14 +449,9 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b, struc
                               b->lines.alpha * (double)(sector + mirrored), mirrored};
     blocks[i] = copied(copies[i].block, &copies[i]);
   }
-  struct dea_plane_mesh *mesh = NULL;
   if (status == DEA_OK) {
-    status = dea_blocks_mesh(ctx, p->order, blocks, count, p->frame_radius, &mesh);
+    status = dea_blocks_mesh(ctx, p->order, blocks, count, p->frame_radius, out);
   }
-  if (status == DEA_OK) {
-    status = extrude(ctx, p, mesh, out);
-  }
-  dea_plane_mesh_destroy(ctx, mesh);
   dea_free(ctx, blocks);
   dea_free(ctx, copies);
   return status;
@@ -547,13 +469,13 @@ static bool alike(const struct lines *a, const struct lines *b)
 {
   const struct dea_fibre_disc *p = a->plate, *q = b->plate;
   return p->order == q->order && p->order_z == q->order_z && p->fibres == q->fibres &&
-         film_elements(p) == film_elements(q) && p->membrane == q->membrane &&
-         p->sectors == q->sectors && p->end == q->end && inside(p) == inside(q) &&
-         a->circle_count == b->circle_count;
+         p->through == q->through && p->membrane == q->membrane && p->sectors == q->sectors &&
+         p->end == q->end && inside(p) == inside(q) && a->circle_count == b->circle_count;
 }
 
 static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                        const struct dea_fibre_disc *like, struct builder *b, struct dea_grid **out)
+                        const struct dea_fibre_disc *like, struct builder *b,
+                        struct dea_plane_mesh **out)
 {
   DEA_TRY(ctx, lines_create(ctx, plate, &b->lines));
   DEA_TRY(ctx, lines_create(ctx, like, &b->cuts));
@@ -572,8 +494,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_fibre_disc *pl
   return DEA_OK;
 }
 
-dea_status dea_fibre_disc_create_like(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                                      const struct dea_fibre_disc *like, struct dea_grid **out)
+dea_status dea_fibre_disc_plane(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                const struct dea_fibre_disc *like, struct dea_plane_mesh **out)
 {
   *out = NULL;
   struct builder *b = dea_alloc(ctx, 1, sizeof *b);
@@ -583,13 +505,6 @@ dea_status dea_fibre_disc_create_like(struct dea_context *ctx, const struct dea_
   dea_status status = build(ctx, plate, like, b, out);
   dea_free(ctx, b);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-}
-
-dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                                 struct dea_grid **out)
-{
-  DEA_TRY(ctx, dea_fibre_disc_create_like(ctx, plate, plate, out));
-  return DEA_OK;
 }
 
 /* ---- supports ---- */
@@ -605,40 +520,4 @@ int dea_fibre_disc_edges(const struct dea_fibre_disc *p, const double X[3])
   double across = -sin(beta) * X[0] + cos(beta) * X[1], along = cos(beta) * X[0] + sin(beta) * X[1];
   bool last = centre || (fabs(across) < close && along > 0);
   return (first ? 1 : 0) | (last ? 2 : 0);
-}
-
-/* A plane x = 0 or y = 0 needs no axes of its own. */
-static bool is_global(double beta)
-{
-  double quarters = beta / (0.5 * pi);
-  return fabs(quarters - floor(quarters + 0.5)) < same;
-}
-
-int dea_fibre_disc_held(const struct dea_fibre_disc *p, const double X[3])
-{
-  bool frame = hypot(X[0], X[1]) > p->frame_radius * (1 - same);
-  double top = 0.5 * p->film_thickness * (1 + 1e-6); // of the film, which the frame holds always
-  if (frame && (p->end == DEA_FIBRE_DISC_CLAMPED || X[2] < top)) {
-    return 1 | 2 | 4;
-  }
-  double beta = dea_fibre_disc_angle(p);
-  bool even = fmod(floor(beta / (0.5 * pi) + 0.5), 2) == 0; // the last plane is y = 0 as well
-  int edges = dea_fibre_disc_edges(p, X), last = !is_global(beta) ? 1 : even ? 2 : 1;
-  if (edges == 3) { // the centre
-    return is_global(beta) && even ? 2 : 1 | 2;
-  }
-  return (edges & 1 ? 2 : 0) | (edges & 2 ? last : 0);
-}
-
-bool dea_fibre_disc_frame(const struct dea_fibre_disc *p, const double X[3], double Q[9])
-{
-  double beta = dea_fibre_disc_angle(p), c = cos(beta), s = sin(beta);
-  if (dea_fibre_disc_edges(p, X) != 2 || is_global(beta)) {
-    return false;
-  }
-  const double axes[9] = {-s, c, 0, -c, -s, 0, 0, 0, 1};
-  for (int i = 0; i < 9; i++) {
-    Q[i] = axes[i];
-  }
-  return true;
 }

@@ -5,7 +5,7 @@
 #define DEA_MODEL_SOLID_MESH_FIBRE_DISC_H
 
 #include "device/device.h"
-#include "model/solid/mesh/grid.h"
+#include "model/solid/mesh/plane_mesh.h"
 
 /* How the frame holds the outer ends of fibres that reach it. */
 enum dea_fibre_disc_end { DEA_FIBRE_DISC_CLAMPED, DEA_FIBRE_DISC_HINGED };
@@ -38,45 +38,22 @@ struct dea_fibre_disc {
 /* Bits of an element's region: inside the electrode circle, under a fibre. */
 enum { DEA_FIBRE_DISC_ELECTRODE = 1, DEA_FIBRE_DISC_FIBRE = 2 };
 
-/* Plies from bottom to top. Where fibres reach over electrodes of a thickness, they lie on them;
- * DEA_FIBRE_DISC_TOP then goes on under the rest of the fibre as a filler of glue or fibre, so that
- * the fibre is flat.
- *
- * With a membrane, film and DEA_FIBRE_DISC_BOTTOM (both electrodes then) are surfaces of one place;
- * DEA_FIBRE_DISC_BOND and DEA_FIBRE_DISC_TOP are there under fibres only. */
-enum {
-  DEA_FIBRE_DISC_BOTTOM, // electrode below
-  DEA_FIBRE_DISC_FILM,
-  DEA_FIBRE_DISC_BOND, // the upper half of a membrane's film
-  DEA_FIBRE_DISC_TOP,  // electrode above
-  DEA_FIBRE_DISC_GLUE,
-  DEA_FIBRE_DISC_FIBRE_PLY,
-  DEA_FIBRE_DISC_PLIES
-};
-
 /* Angle of the domain, from 0 to 2 pi. */
 double dea_fibre_disc_angle(const struct dea_fibre_disc *plate);
 /* Sectors of the whole disc. */
 int dea_fibre_disc_sectors(const struct dea_fibre_disc *plate);
 
-/* DEA_E_ARGUMENT for parts that do not fit together, or more than DEA_FIBRE_DISC_LINE_MAX elements
- * in a row. out: owned by the caller (dea_grid_destroy), NULL on failure. */
-dea_status dea_fibre_disc_create(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                                 struct dea_grid **out);
-/* The mesh of `like` with its nodes moved to the lengths of `plate`: the same elements, cut at the
- * same shares of every line, so that it changes smoothly with those lengths. DEA_E_ARGUMENT also
- * where the parts of the two do not lie in the same order. */
-dea_status dea_fibre_disc_create_like(struct dea_context *ctx, const struct dea_fibre_disc *plate,
-                                      const struct dea_fibre_disc *like, struct dea_grid **out);
+/* In the plane: the mesh of `like`, which may be the plate itself, with its nodes moved to the
+ * lengths of `plate`: the same elements, cut at the same shares of every line, so that it changes
+ * smoothly with those lengths. DEA_E_ARGUMENT for parts that do not fit together or do not lie in
+ * the same order, or more than DEA_FIBRE_DISC_LINE_MAX elements in a row. out: owned by the caller,
+ * NULL on failure. */
+dea_status dea_fibre_disc_plane(struct dea_context *ctx, const struct dea_fibre_disc *plate,
+                                const struct dea_fibre_disc *like, struct dea_plane_mesh **out);
 enum { DEA_FIBRE_DISC_LINE_MAX = 256, DEA_FIBRE_DISC_THROUGH_MAX = 16 };
 
 /* Which of the two straight edges of the domain a node is on: bit 1 at the angle 0, bit 2 at
  * dea_fibre_disc_angle. 0 in the whole disc. */
 int dea_fibre_disc_edges(const struct dea_fibre_disc *plate, const double X[3]);
-/* Components of a node that frame and mirror planes hold, as bits 1, 2, 4 of its local axes. */
-int dea_fibre_disc_held(const struct dea_fibre_disc *plate, const double X[3]);
-/* Local axes of a node as the rows of Q: normal of its mirror plane, along it, z. false where the
- * global axes do; Q is not touched then. */
-bool dea_fibre_disc_frame(const struct dea_fibre_disc *plate, const double X[3], double Q[9]);
 
 #endif

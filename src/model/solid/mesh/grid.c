@@ -3,6 +3,7 @@
 #include "base/quadrature.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 /* Levels that a ply has above its bottom: none without thickness. */
@@ -18,11 +19,17 @@ struct ply_place {
   double z;
 };
 
+static bool is_beside(const struct dea_stack *stack, size_t s)
+{
+  return stack->beside != NULL && stack->beside[s] != SIZE_MAX;
+}
+
 static struct ply_place ply_place(const struct dea_stack *stack, size_t s)
 {
   struct ply_place at = {0, 1, stack->bottom_m};
+  s = is_beside(stack, s) ? stack->beside[s] : s;
   for (size_t k = 0; k < s; k++) {
-    at.own += ply_levels(&stack->plies[k]);
+    at.own += is_beside(stack, k) ? 0 : ply_levels(&stack->plies[k]);
   }
   size_t passed = stack->skips != NULL ? stack->skips[s] : 0;
   if (s > passed) { // on the top of another one
@@ -192,7 +199,7 @@ dea_status dea_grid_extrude(struct dea_context *ctx, const struct dea_plane_mesh
   *out = NULL;
   for (size_t s = 0; s < stack->count; s++) {
     through += stack->plies[s].count;
-    levels += ply_levels(&stack->plies[s]);
+    levels += is_beside(stack, s) ? 0 : ply_levels(&stack->plies[s]);
   }
   struct dea_grid *grid; // with room for all plies in all regions
   DEA_TRY(ctx, dea_grid_allocate(ctx, mesh->order, stack->plies[0].order_z,

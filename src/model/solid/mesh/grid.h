@@ -21,6 +21,9 @@ struct dea_stack {
   /* A ply need not lie on the one before it in the list: how many it passes over, [count]; NULL:
    * none. */
   const size_t *skips;
+  /* The ply that one fills the place beside, as thick as it and at its height: they have nodes in
+   * common where they meet, [count]; SIZE_MAX: none; NULL: none of all. */
+  const size_t *beside;
   /* Where a ply is cut into its elements, [count][its count + 1] from 0 to 1; NULL, or NULL of a
    * ply: into equal ones. */
   const double *const *cuts;

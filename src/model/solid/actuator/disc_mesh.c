@@ -1,0 +1,153 @@
+#include "model/solid/actuator/disc_mesh.h"
+
+#include "device/disc_layout.h"
+#include "model/solid/actuator/mesh_follow.h"
+#include "model/solid/mesh/cuts.h"
+
+#include <math.h>
+
+/* Sizes of elements over the electrode radius at refinement 1, which each refinement more halves
+ * (docs/theory/mesh.md has the study that they come from). The fine edge is for the ends of fibres:
+ * without them it is four times as large. */
+static const double size_share = 0.26, beside_share = 0.13, edge_share = 0.0125;
+
+dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *d,
+                                    const struct dea_model_settings *settings,
+                                    struct dea_fibre_disc *out)
+{
+  double finer = exp2(1 - fmax(1, settings->refinement)), a = d->electrode_radius_m;
+  double l = d->pre_stretch;
+  *out = (struct dea_fibre_disc){
+      .order = settings->order > 0 ? settings->order : 2,
+      .order_z = settings->order_z > 0 ? settings->order_z : 2,
+      .through = settings->elements_z > 0 ? settings->elements_z : 1,
+      .membrane = settings->film == DEA_FILM_MEMBRANE,
+      .fibres = d->fibre_count,
+      .sectors = 1,
+      .electrode_radius = a,
+      .frame_radius = d->frame_radius_m,
+      .tip_radius = d->fibre_tip_radius_m,
+      .outer_radius = d->frame_radius_m - d->fibre_outer_gap_m,
+      .tip_width = d->fibre_tip_width_m > 0 ? d->fibre_tip_width_m : d->fibre_width_m,
+      .outer_width = d->fibre_width_m,
+      .film_thickness = d->film_thickness_m,
+      .electrode_thickness = d->electrode_thickness_m / (l * l), // they are stretched with the film
+      .glue_thickness = d->bond_thickness_m,
+      .fibre_thickness = d->fibre_thickness_m,
+      .end = d->outer_end == DEA_END_HINGED ? DEA_FIBRE_DISC_HINGED : DEA_FIBRE_DISC_CLAMPED,
+      .size = size_share * a * finer,
+      .edge = (d->fibre_count > 0 ? 1 : 4) * edge_share * a * finer,
+      .beside = beside_share * a * finer,
+      .finer_at_tips = exp2(settings->tip_refinement - fmax(1, settings->refinement)),
+  };
+  if (settings->field == DEA_FIELD_COUPLED && out->through > 1 &&
+      out->through <= DEA_FIBRE_DISC_THROUGH_MAX) { // elements at the edge as wide as thick
+    double cuts[DEA_FIBRE_DISC_THROUGH_MAX + 1];
+    dea_cuts_through((size_t)out->through, cuts);
+    out->fringe = d->film_thickness_m * cuts[1] * finer;
+  }
+  if (d->film.law->anisotropic) { // its direction turns with the angle around the centre
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "model 3d does not know films with a direction of their own (law '%s') yet",
+                    d->film.law->name);
+  }
+  if (settings->domain == DEA_DOMAIN_DISC) {
+    out->sectors = dea_fibre_disc_sectors(out);
+  }
+  return DEA_OK;
+}
+
+/* Regions of the layout as groups: what of them lies where, by the bits of the blocks' regions. */
+static dea_status name_groups(struct dea_context *ctx, struct dea_layout_mesh *mesh)
+{
+  enum { GROUPS = 5, BITS = 4 }; // film, electrode, fibres, filler, seat
+  const struct dea_layout *l = mesh->layout;
+  mesh->group = dea_arena_alloc(&mesh->memory, l->region_count, sizeof *mesh->group);
+  DEA_TRY(ctx, dea_arena_status(&mesh->memory));
+  for (size_t i = 0; i < l->region_count; i++) {
+    mesh->group[i] = i;
+    DEA_TRY(ctx, dea_plane_mesh_add_group(ctx, mesh->plane, l->regions[i].name));
+  }
+  for (int bits = 0; bits < BITS; bits++) {
+    const bool electrode = bits & DEA_FIBRE_DISC_ELECTRODE, fibre = bits & DEA_FIBRE_DISC_FIBRE;
+    bool any = false;
+    for (size_t q = 0; q < mesh->plane->quad_count; q++) {
+      any = any || mesh->plane->region[q] == bits;
+    }
+    const unsigned char within[GROUPS] = {any, any && electrode, any && fibre,
+                                          any && fibre && !electrode, any && fibre && electrode};
+    int region;
+    DEA_TRY(ctx, dea_plane_mesh_region(ctx, mesh->plane, within, &region)); // 0, 1, ...
+  }
+  return DEA_OK;
+}
+
+static dea_status make_plane(struct dea_context *ctx, const struct dea_device *device,
+                             struct dea_layout_mesh *mesh)
+{
+  const struct dea_fibre_disc *p = &mesh->plate;
+  DEA_TRY(ctx, dea_disc_layout_create(ctx, device, mesh->membrane, &mesh->own));
+  mesh->layout = mesh->own;
+  DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
+  DEA_TRY(ctx, name_groups(ctx, mesh));
+  return DEA_OK;
+}
+
+dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device *device,
+                                const struct dea_model_settings *settings,
+                                const struct dea_fibre_disc *plate,
+                                const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
+{
+  const bool whole = plate->sectors == dea_fibre_disc_sectors(plate);
+  *out = (struct dea_layout_mesh){
+      .memory = {.ctx = ctx},
+      .plate = *plate,
+      .cuts = like != NULL ? like->cuts : *plate,
+      .membrane = plate->membrane,
+      .sector = {.fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
+      .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
+  dea_status status = DEA_OK;
+  if (like == NULL && settings->mesh_of != NULL) {
+    status = dea_fibre_disc_of_device(ctx, settings->mesh_of, settings, &out->cuts);
+  }
+  if (status == DEA_OK) {
+    status = make_plane(ctx, device, out);
+  }
+  if (status != DEA_OK) {
+    dea_layout_mesh_free(ctx, out);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  DEA_TRY(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
+                            : dea_layout_mesh_fill(ctx, settings, out));
+  return DEA_OK;
+}
+
+dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_layout_mesh *out)
+{
+  struct dea_fibre_disc plate;
+  *out = (struct dea_layout_mesh){0};
+  if (device->general) {
+    DEA_TRY(ctx, dea_layout_mesh_create(ctx, device->layout, settings, out));
+  } else {
+    DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
+    DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, NULL, out));
+  }
+  return DEA_OK;
+}
+
+dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
+{
+  struct dea_fibre_disc plate;
+  *out = (struct dea_layout_mesh){0};
+  if (device->general) {
+    DEA_TRY(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
+  } else {
+    DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
+    DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, like, out));
+  }
+  return DEA_OK;
+}

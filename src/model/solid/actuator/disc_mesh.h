@@ -1,0 +1,31 @@
+/* The mesh of a device: that of blocks which a disc brings along, or a free one. */
+#ifndef DEA_MODEL_SOLID_ACTUATOR_DISC_MESH_H
+#define DEA_MODEL_SOLID_ACTUATOR_DISC_MESH_H
+
+#include "model/solid/actuator/layout_mesh.h"
+
+/* The plate of a disc, on the domain and with the mesh that the settings name. DEA_E_UNSUPPORTED
+ * for a film with a direction of its own. */
+dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *device,
+                                    const struct dea_model_settings *settings,
+                                    struct dea_fibre_disc *out);
+
+/* Blocks of a plate, which is a disc's, extruded through a layout of its own. like: with the
+ * elements of that mesh, moved (DEA_E_ARGUMENT where other elements come of it); NULL: those of the
+ * plate, or of settings->mesh_of. device: need not have a layout. On failure out is empty. */
+dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device *device,
+                                const struct dea_model_settings *settings,
+                                const struct dea_fibre_disc *plate,
+                                const struct dea_layout_mesh *like, struct dea_layout_mesh *out);
+
+/* Of any device; its layout is lent to what is not a disc. On failure out is empty. */
+dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_layout_mesh *out);
+/* The same with the elements of `like`, which outlives it, of a device that differs in numbers
+ * only; as dea_mesh_follow. */
+dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  const struct dea_layout_mesh *like, struct dea_layout_mesh *out);
+
+#endif

@@ -1,0 +1,168 @@
+#include "model/solid/adapter/plies.h"
+
+#include "model/solid/actuator/constituent_of_material.h"
+#include "model/solid/adapter/circuit_step.h"
+#include "model/solid/point/membrane_point.h"
+#include "model/solid_check.h"
+
+#include <math.h>
+#include <string.h>
+
+// Materials --------------------------------------------------------------------------------------
+
+static enum dea_part part_of(const struct dea_layout_mesh *mesh, size_t i)
+{
+  static const enum dea_part parts[] = {[DEA_PLY_SHEET] = DEA_PART_FIBRE,
+                                        [DEA_PLY_ELECTRODE] = DEA_PART_ELECTRODE,
+                                        [DEA_PLY_GLUE] = DEA_PART_GLUE};
+  return mesh->dielectric[i] ? DEA_PART_FILM : parts[mesh->layout->plies[i].kind];
+}
+
+/* Between a surface and what lies on it. The load of an electrode comes in below it, and not over
+ * its depth as a film's own does. */
+static dea_status fill_bond(struct dea_context *ctx, const struct dea_layout_mesh *mesh, size_t i,
+                            struct dea_constituent *constituents)
+{
+  const size_t joins = mesh->layout->plies[i].joins;
+  dea_status status = dea_membrane_bond(&constituents[joins], &constituents[i]);
+  if (!mesh->dielectric[joins]) {
+    constituents[i].param[0] /= 1.5;
+  }
+  return status == DEA_OK ? DEA_OK
+                          : dea_fail(ctx, status,
+                                     "compute.solid.film: membrane takes isotropic laws of film "
+                                     "and electrodes only; take compute.solid.film: solid");
+}
+
+static dea_status fill_constituent(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                                   size_t i, bool alone, struct dea_constituent *out)
+{
+  const struct dea_layout_ply *ply = &mesh->layout->plies[i];
+  const struct dea_material *material = &ply->material;
+  const double *l = ply->pre_stretch;
+  DEA_TRY(ctx, dea_solid_check_ply(ctx, mesh->layout, i));
+  *out = material->law != NULL
+             ? dea_constituent_stretched(part_of(mesh, i), material, l, ply->angle_rad)
+             : dea_constituent_free(part_of(mesh, i), material->young_modulus_Pa,
+                                    material->poisson_ratio);
+  if (mesh->dielectric[i]) {
+    dea_constituent_set_permittivity(out, &material->permittivity, ply->thickness_m);
+    out->relaxed = mesh->membrane && alone;
+  }
+  out->thickness_m = ply->thickness_m;
+  out->density_kg_per_m3 = material->density_kg_per_m3;
+  if (dea_constituent_relax(out) != DEA_OK) {
+    return dea_fail(ctx, DEA_E_DOMAIN, "ply '%s': the law '%s' ends before the pre-stretch %.4g",
+                    ply->name, out->law->name, fmax(l[0], l[1]));
+  }
+  return DEA_OK;
+}
+
+static void find_thinnest(const struct dea_layout_mesh *mesh, struct dea_plies *out)
+{
+  const struct dea_layout *l = mesh->layout;
+  double ratio = 1e-3;
+  out->thinnest_m = out->flat_m = INFINITY;
+  for (size_t i = l->ply_count; i-- > 0;) {
+    if (mesh->dielectric[i]) {
+      out->film = i;
+      out->thinnest_m = fmin(out->thinnest_m, l->plies[i].thickness_unstretched_m);
+      out->flat_m = fmin(out->flat_m, l->plies[i].thickness_m);
+    }
+  }
+  for (size_t k = 1; k < l->channel_count; k++) {
+    ratio = fmax(ratio, fabs(l->channels[k].ratio));
+  }
+  out->thinnest_m /= ratio;
+  out->flat_m /= ratio;
+}
+
+dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                            struct dea_arena *memory, struct dea_plies *out)
+{
+  const struct dea_layout *l = mesh->layout;
+  bool alone = true; // bonded plies wrinkle together, not each by itself
+  *out = (struct dea_plies){
+      .constituents = dea_arena_alloc(memory, l->ply_count, sizeof *out->constituents),
+      .films = dea_arena_alloc(memory, l->ply_count, sizeof *out->films),
+      .branches = dea_arena_alloc(memory, l->ply_count, sizeof *out->branches),
+      .leakage_per_s = dea_arena_alloc(memory, l->ply_count, sizeof *out->leakage_per_s)};
+  DEA_TRY(ctx, dea_arena_status(memory));
+  for (size_t i = 0; i < l->ply_count; i++) {
+    alone = alone && l->plies[i].kind != DEA_PLY_ELECTRODE;
+  }
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_layout_ply *ply = &l->plies[i];
+    const struct dea_material *material = &ply->material;
+    const bool film = material->law != NULL && ply->kind == DEA_PLY_SHEET;
+    DEA_TRY(ctx, ply->kind == DEA_PLY_JOINT
+                     ? fill_bond(ctx, mesh, i, out->constituents)
+                     : fill_constituent(ctx, mesh, i, alone, &out->constituents[i]));
+    out->films[i] = (struct dea_solid_film_data){film ? material : NULL,
+                                                 sqrt(ply->pre_stretch[0] * ply->pre_stretch[1])};
+    out->leakage_per_s[i] =
+        mesh->dielectric[i] ? dea_leakage_per_s(material, &out->constituents[i]) : 0;
+    out->branches[i].count = material->branch_count;
+    memcpy(out->branches[i].branch, material->branches,
+           material->branch_count * sizeof *material->branches);
+  }
+  find_thinnest(mesh, out);
+  return DEA_OK;
+}
+
+// Places -----------------------------------------------------------------------------------------
+
+int dea_plies_constituent(const void *self, int region, int ply)
+{
+  (void)self;
+  (void)region;
+  return ply;
+}
+
+static const struct dea_layout_field *field_of(const void *self, int region, int ply)
+{
+  const struct dea_layout_mesh *mesh = self;
+  return &mesh->field[(size_t)region * mesh->layout->ply_count + (size_t)ply];
+}
+
+bool dea_plies_active(const void *self, int region, int ply)
+{
+  return field_of(self, region, ply)->top >= 0;
+}
+
+void dea_plies_channels(const void *self, int region, int ply, int *top, int *bottom)
+{
+  *top = field_of(self, region, ply)->top;
+  *bottom = field_of(self, region, ply)->bottom;
+}
+
+int dea_plies_held(const void *self, const double X[3])
+{
+  const struct dea_layout_mesh *mesh = self;
+  double Q[9];
+  return dea_layout_sector_holds(&mesh->sector, X, mesh->near_m, Q);
+}
+
+bool dea_plies_frame(const void *self, const double X[3], double Q[9])
+{
+  const struct dea_layout_mesh *mesh = self;
+  return dea_layout_sector_holds(&mesh->sector, X, mesh->near_m, Q) != 0 && Q[1] != 0;
+}
+
+bool dea_plies_electrode(const void *self, const double X[3], double *share)
+{
+  const struct dea_layout_mesh *mesh = self;
+  const struct dea_layout *l = mesh->layout;
+  const double near_m = mesh->near_m;
+  for (size_t i = 0; i < l->electrode_count; i++) {
+    const struct dea_layout_electrode *e = &l->electrodes[i];
+    const struct dea_region *region = &l->regions[e->region].region;
+    const double away_m = X[2] - mesh->face_m[e->ply][e->top ? 1 : 0];
+    if (fabs(away_m) < 1e-6 * l->plies[e->ply].thickness_m &&
+        (dea_region_inside(region, X[0], X[1]) || dea_region_distance_m(region, X) <= near_m)) {
+      *share = e->channel == 0 ? 0 : l->channels[e->channel].ratio;
+      return true;
+    }
+  }
+  return false;
+}
