@@ -285,6 +285,32 @@ static void test_columns_of_monitors(void **state)
   assert_contains(bytes, "<dt>hub z</dt>");
 }
 
+/* A slow ripple moves the hub as the voltage does: by the slope of its z. */
+static void test_columns_by_frequency(void **state)
+{
+  static const char still[] = "--set 'plies[0].viscosity=none' -q -o";
+  (void)state;
+  char command[300];
+  command_write("cone.yaml", cone);
+  snprintf(command, sizeof command,
+           "run cone.yaml --study frequency --set 'compute.frequency={bias: [3 kV], from: 0.01 Hz, "
+           "to: 0.02 Hz, points: 2, excitation: 2 V}' %s slow.run",
+           still);
+  run_solid(command);
+  double z_m[2];
+  for (int i = 0; i < 2; i++) {
+    snprintf(command, sizeof command,
+             "run cone.yaml --study sweep --set 'compute.voltage={values: [%s kV]}' %s %d.run",
+             i == 0 ? "2.99" : "3.01", still, i);
+    run_solid(command);
+    snprintf(command, sizeof command, "%d.run/summary.json", i);
+    z_m[i] = last_of(command, "hub_z_m");
+  }
+  assert_close(last_of("slow.run/summary.json", "hub_z_amplitude_m"), 2 * (z_m[1] - z_m[0]) / 20,
+               1e-3, 0);
+  assert_close(last_of("slow.run/summary.json", "hub_z_phase_rad"), 0, 0, 1e-3);
+}
+
 /* A number of a ply beside what its tolerance does to a monitor; angles and places have none. */
 static void test_tolerances_of_plies(void **state)
 {
@@ -408,6 +434,7 @@ int main(void)
       cmocka_unit_test(test_force),
       cmocka_unit_test(test_monitors),
       cmocka_unit_test(test_columns_of_monitors),
+      cmocka_unit_test(test_columns_by_frequency),
       cmocka_unit_test(test_tolerances_of_plies),
       cmocka_unit_test(test_end_of_a_line),
       cmocka_unit_test(test_frequency),

@@ -226,6 +226,59 @@ dea_status dea_layout_columns(struct dea_arena *memory, const struct dea_layout 
   return DEA_OK;
 }
 
+/* Amplitude and phase of a quantity of a monitor. */
+static dea_status add_answer(struct listing *list, const char *name, const char *part,
+                             struct dea_monitor_column column)
+{
+  const struct dea_column *of = &dea_observed_columns[column.number];
+  const char *unit = strcmp(of->si_unit, "1") == 0 ? "" : of->si_unit; // "m", "rad"
+  const size_t ending = unit[0] != '\0' ? strlen(unit) + 1 : 0;
+  char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE];
+  for (int phase = 0; phase < 2; phase++) {
+    const bool length = strcmp(of->si_unit, "m") == 0;
+    const struct dea_column shown =
+        phase ? (struct dea_column){key,    "rad",
+                                    "deg",  57.29577951308232,
+                                    header, "of a motion against the excitation"}
+              : (struct dea_column){key,
+                                    of->si_unit,
+                                    length ? "nm" : of->display_unit,
+                                    length ? 1e9 : of->factor,
+                                    header,
+                                    "of the motion that the excitation makes"};
+    snprintf(key, sizeof key, "%s_%.*s_%s%s%s", part, (int)(strlen(of->key) - ending), of->key,
+             phase ? "phase_rad" : "amplitude", phase || ending == 0 ? "" : "_", phase ? "" : unit);
+    snprintf(header, sizeof header, "%s %.63s %s", phase ? "phase" : "amplitude", name, of->header);
+    column.source = phase ? DEA_OF_PHASE : DEA_OF_AMPLITUDE;
+    DEA_TRY(list->ctx, dea_column_add(list->ctx, &shown, &column.column));
+    list->columns[list->count++] = column;
+  }
+  return DEA_OK;
+}
+
+dea_status dea_layout_answer_columns(struct dea_arena *memory, const struct dea_layout *layout,
+                                     struct dea_monitor_column **out, size_t *count)
+{
+  const size_t monitors = layout->monitor_count, room = monitors * 2 * DEA_OBSERVED_MOTIONS;
+  struct listing list = {memory->ctx, dea_arena_alloc(memory, room, sizeof *list.columns), 0};
+  const char **names = dea_arena_alloc(memory, monitors, sizeof *names);
+  DEA_TRY(memory->ctx, dea_arena_status(memory));
+  for (size_t i = 0; i < monitors; i++) {
+    char part[DEA_KEY_PART_SIZE];
+    names[i] = layout->monitors[i].name;
+    part_of(names, i, part);
+    for (size_t k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
+      const struct dea_monitor_column column = {.index = i, .number = k};
+      if (dea_observed_has(layout->monitors[i].kind, (enum dea_observed)k)) {
+        DEA_TRY(memory->ctx, add_answer(&list, names[i], part, column));
+      }
+    }
+  }
+  *out = list.columns;
+  *count = list.count;
+  return DEA_OK;
+}
+
 dea_status dea_device_columns_add(struct dea_context *ctx, const struct dea_device *device)
 {
   struct dea_monitor_column none;

@@ -61,7 +61,9 @@ size_t dea_observed_name_length(const struct dea_column *column);
 enum dea_monitor_source {
   DEA_OF_MONITOR,
   DEA_OF_MONITOR_ERROR, // the estimated error of that quantity of a monitor
-  DEA_OF_CHANNEL
+  DEA_OF_CHANNEL,
+  DEA_OF_AMPLITUDE,
+  DEA_OF_PHASE
 };
 enum {
   DEA_OBSERVED_VOLTAGE,
@@ -85,6 +87,10 @@ struct dea_monitor_column {
  * added to it. */
 dea_status dea_layout_columns(struct dea_arena *memory, const struct dea_layout *layout,
                               struct dea_monitor_column **out, size_t *count);
+/* The same of what the motions of monitors do by an excitation: "hub_z_amplitude_m"
+ * (DEA_OF_AMPLITUDE) and, against the excitation, "hub_z_phase_rad" (DEA_OF_PHASE). */
+dea_status dea_layout_answer_columns(struct dea_arena *memory, const struct dea_layout *layout,
+                                     struct dea_monitor_column **out, size_t *count);
 /* Adds the columns of a device to the context. */
 dea_status dea_device_columns_add(struct dea_context *ctx, const struct dea_device *device);
 /* What a column of a layout is of; false: it is none of the layout's. */

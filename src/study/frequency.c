@@ -1,6 +1,7 @@
 /* Study "frequency": amplitude and phase of the displacements that a small AC excitation of the
  * voltage makes about a bias. */
 #include "base/schema.h"
+#include "result/observation.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -130,75 +131,37 @@ static const struct settings *settings_of(const struct dea_design *design)
   return given != NULL ? given->values : NULL;
 }
 
-// Tables -----------------------------------------------------------------------------------------
-
-/* Amplitude and phase of a motion of monitors. */
-#define MOTION(key, unit_suffix, si, display, scale, head)                                         \
-  DEA_NUMBER_COLUMN(key "_amplitude" unit_suffix, si, display, scale, "amplitude " head,           \
-                    "of the motion that the excitation makes"),                                    \
-      DEA_NUMBER_COLUMN(key "_phase_rad", "rad", "deg", 57.29577951308232, "phase " head,          \
-                        "against the excitation")
-
-enum { MONITOR = 2, BEFORE }; // columns before the motions
-enum { X = BEFORE + 2 * DEA_OBSERVED_X, Z = BEFORE + 2 * DEA_OBSERVED_Z };
-
-/* In the order of enum dea_observed. */
-static const struct dea_result_column monitor_columns[] = {
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "bias"),
-    DEA_NUMBER_COLUMN("frequency_Hz", "Hz", "Hz", 1, "frequency", "of the excitation"),
-    {.key = "monitor", .kind = DEA_CELL_TEXT, .title = "monitor", .meaning = "name in the design"},
-    MOTION("x", "_m", "m", "nm", 1e9, "x"),
-    MOTION("y", "_m", "m", "nm", 1e9, "y"),
-    MOTION("z", "_m", "m", "nm", 1e9, "z"),
-    MOTION("turn_x", "_rad", "rad", "deg", 57.29577951308232, "turn x"),
-    MOTION("turn_y", "_rad", "rad", "deg", 57.29577951308232, "turn y"),
-    MOTION("turn_z", "_rad", "rad", "deg", 57.29577951308232, "turn z"),
-    MOTION("stretch", "", "1", "1", 1, "stretch"),
-    MOTION("stretch_x", "", "1", "1", 1, "stretch x"),
-    MOTION("stretch_y", "", "1", "1", 1, "stretch y"),
-    MOTION("area_stretch", "", "1", "1", 1, "area stretch"),
-};
-enum { MONITOR_COLUMNS = sizeof monitor_columns / sizeof monitor_columns[0] };
-_Static_assert(MONITOR_COLUMNS == BEFORE + 2 * DEA_OBSERVED_MOTIONS, "two columns a motion");
-
-static const struct dea_result_table_type monitors = {.study = study_name,
-                                                      .name = "monitors",
-                                                      .title = "Monitors by frequency",
-                                                      .where = DEA_IN_CSV,
-                                                      .columns = monitor_columns,
-                                                      .column_count = MONITOR_COLUMNS};
-
-/* Rows of what monitors did at the frequencies of one bias. */
-static dea_status add_monitors(struct dea_context *ctx, const char *model,
-                               const struct dea_load_point *points, size_t count,
-                               const double *answers, struct dea_result *result)
-{
-  const struct dea_layout *layout = result->device->layout;
-  const struct dea_result_table *there =
-      dea_result_find_table(result, model, study_name, monitors.name);
-  struct dea_result_table *table = NULL;
-  if (there == NULL) {
-    DEA_TRY(ctx, dea_result_add_table(ctx, result, &monitors, model, 0, &table));
-  } else {
-    table = &result->tables[there - result->tables];
-  }
-  for (size_t i = 0; i < count * layout->monitor_count; i++) {
-    const struct dea_load_point *p = &points[i / layout->monitor_count];
-    struct dea_result_table_value row[MONITOR_COLUMNS] = {
-        {.number = p->voltage_V},
-        {.number = p->frequency_Hz},
-        {.text = layout->monitors[i % layout->monitor_count].name}};
-    for (size_t k = 0; k < DEA_OBSERVED_MOTIONS; k++) {
-      const double *part = answers + 2 * (i * DEA_OBSERVED_MOTIONS + k);
-      row[BEFORE + 2 * k].number = hypot(part[0], part[1]);
-      row[BEFORE + 2 * k + 1].number = atan2(part[1], part[0]);
-    }
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
-  }
-  return DEA_OK;
-}
-
 // Study ------------------------------------------------------------------------------------------
+
+/* Adds the points of one bias with what monitors did there. answers: of the model, NULL: none. */
+static dea_status add_points(struct dea_context *ctx, const struct dea_layout *layout,
+                             struct dea_load_point *points, size_t count, const double *answers,
+                             struct dea_curve *curve)
+{
+  struct dea_arena memory = {.ctx = ctx};
+  struct dea_monitor_column *columns = NULL;
+  size_t width = 0;
+  dea_status status =
+      answers != NULL ? dea_layout_answer_columns(&memory, layout, &columns, &width) : DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    int *numbers = dea_arena_alloc(&memory, width, sizeof *numbers);
+    for (size_t k = 0; numbers != NULL && k < width; k++) {
+      numbers[k] = columns[k].column;
+    }
+    points[i].monitors = dea_monitor_values_create(&memory, numbers, width);
+    status = dea_arena_status(&memory);
+    for (size_t k = 0; status == DEA_OK && k < width; k++) {
+      const struct dea_monitor_column *c = &columns[k];
+      const double *part =
+          answers + 2 * ((i * layout->monitor_count + c->index) * DEA_OBSERVED_MOTIONS + c->number);
+      points[i].monitors->at[k].value =
+          c->source == DEA_OF_PHASE ? atan2(part[1], part[0]) : hypot(part[0], part[1]);
+    }
+    status = status == DEA_OK ? dea_curve_add_point(ctx, curve, &points[i]) : status;
+  }
+  dea_arena_free(&memory);
+  return status;
+}
 
 /* All frequencies at one bias. */
 static dea_status take(struct dea_context *ctx, const struct dea_model_type *type,
@@ -223,12 +186,10 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   if (status == DEA_OK) {
     status = dea_model_respond(ctx, type, model, at, &excitation, frequency_Hz, count, points);
   }
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    status = dea_curve_add_point(ctx, curve, &points[i]);
-  }
-  const double *answers = type->answers != NULL ? type->answers(model) : NULL;
-  if (status == DEA_OK && answers != NULL) {
-    status = add_monitors(ctx, type->name, points, count, answers, result);
+  const double *answers = status == DEA_OK && type->answers != NULL ? type->answers(model) : NULL;
+  if (status == DEA_OK) {
+    status = add_points(ctx, answers != NULL ? result->device->layout : NULL, points, count,
+                        answers, curve);
   }
   dea_free(ctx, frequency_Hz);
   dea_free(ctx, points);
@@ -407,83 +368,145 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 }
 
 static const double least_share = 1e-4; // of the largest amplitude: less is not drawn
+static const char along_x[] = "_x_amplitude_m";
 
-/* Column of the amplitude that is largest anywhere, of x, y and z; *largest: it, at least 0. */
-static size_t main_column(const struct dea_result_table *table, double *largest)
+/* Column of the same monitor as one of an amplitude along x: of its amplitude or phase along an
+ * axis; -1: none. */
+static int column_along(const struct dea_context *ctx, int x_column, size_t axis, const char *what)
 {
-  size_t column = Z;
-  *largest = 0;
-  for (size_t c = X; c <= Z; c += 2) {
-    for (size_t i = 0; i < table->row_count; i++) {
-      double amplitude = dea_result_table_cell(table, i, c)->number;
-      if (amplitude > *largest) { // not NAN
-        *largest = amplitude;
-        column = c;
-      }
-    }
-  }
-  return column;
+  const char *key = dea_column_at(ctx, x_column)->key;
+  char text[128];
+  snprintf(text, sizeof text, "%.*s%c_%s", (int)(strlen(key) - strlen(along_x) + 1), key,
+           "xyz"[axis], what);
+  return dea_column_find(ctx, text);
 }
 
-/* A motion of the monitor in a row, in all rows of its name and bias; nothing for one that has none
- * of at least that much. */
-static dea_status add_monitor(struct dea_context *ctx, struct dea_plot *plot,
-                              const struct dea_result_table *table, size_t row, size_t column,
-                              double least, enum dea_colour colour, enum dea_series_style style)
+/* Whether a column is the amplitude along x of a monitor that a curve has. */
+static bool is_monitor(const struct dea_context *ctx, const struct dea_curve *curve, int column)
 {
-  double bias_V = dea_result_table_cell(table, row, 0)->number;
-  const char *name = dea_result_table_cell(table, row, MONITOR)->text;
-  struct dea_series look = {.style = style, .colour = colour};
-  char title[DEA_LABEL_SIZE];
-  struct line line;
-  snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * bias_V, name);
-  dea_label_escape(title, look.title, sizeof look.title);
-  DEA_TRY(ctx, line_create(ctx, table->row_count, &line));
-  line.count = 0;
+  const char *key = dea_column_at(ctx, column)->key;
+  const size_t length = strlen(key), ending = strlen(along_x);
+  return column >= DEA_LOAD_POINT_COLUMNS && length > ending &&
+         strcmp(key + length - ending, along_x) == 0 &&
+         dea_points_have(curve->points, curve->count, column);
+}
+
+/* Largest amplitude of a monitor along an axis over some points, at least 0. */
+static double largest_along(const struct dea_context *ctx, const struct dea_load_point *points,
+                            size_t count, int x_column, size_t axis)
+{
+  const int column = column_along(ctx, x_column, axis, "amplitude_m");
   double most = 0;
-  for (size_t i = row; i < table->row_count; i++) {
-    if (dea_result_table_cell(table, i, 0)->number == bias_V &&
-        strcmp(dea_result_table_cell(table, i, MONITOR)->text, name) == 0) {
-      line.frequency_Hz[line.count] = dea_result_table_cell(table, i, 1)->number;
-      most = fmax(most, dea_result_table_cell(table, i, column)->number); // not of NAN
-      line.amplitude_m[line.count] = dea_result_table_cell(table, i, column)->number;
-      line.phase_rad[line.count++] = dea_result_table_cell(table, i, column + 1)->number;
+  for (size_t i = 0; i < count && column >= 0; i++) {
+    most = fmax(most, dea_point_get(&points[i], column)); // not of NAN
+  }
+  return most;
+}
+
+/* Axis along which a monitor moves most, z where it does not; *largest: how much. */
+static size_t main_axis(const struct dea_context *ctx, const struct dea_load_point *points,
+                        size_t count, int x_column, double *largest)
+{
+  size_t axis = 2;
+  *largest = 0;
+  for (size_t k = 0; k < 3; k++) {
+    const double most = largest_along(ctx, points, count, x_column, k);
+    axis = most > *largest ? k : axis;
+    *largest = fmax(*largest, most);
+  }
+  return axis;
+}
+
+/* The same of all monitors of a curve. */
+static size_t common_axis(const struct dea_context *ctx, const struct dea_curve *curve,
+                          double *largest)
+{
+  size_t axis = 2;
+  *largest = 0;
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    double most;
+    const size_t own =
+        is_monitor(ctx, curve, c) ? main_axis(ctx, curve->points, curve->count, c, &most) : 3;
+    if (own < 3 && most > *largest) {
+      *largest = most;
+      axis = own;
     }
   }
-  dea_status status = most > least ? add_line(ctx, plot, &line, &look) : DEA_OK;
-  dea_free(ctx, line.frequency_Hz);
-  return status;
+  return axis;
+}
+
+/* Fills a line with a monitor's motion along an axis at some points. */
+static void fill_line(const struct dea_context *ctx, const struct dea_load_point *points,
+                      int x_column, size_t axis, struct line *line)
+{
+  const int amplitude = column_along(ctx, x_column, axis, "amplitude_m");
+  const int phase = column_along(ctx, x_column, axis, "phase_rad");
+  for (size_t i = 0; i < line->count; i++) {
+    line->frequency_Hz[i] = points[i].frequency_Hz;
+    line->amplitude_m[i] = amplitude >= 0 ? dea_point_get(&points[i], amplitude) : NAN;
+    line->phase_rad[i] = phase >= 0 ? dea_point_get(&points[i], phase) : NAN;
+  }
+}
+
+/* Name of a monitor: its title is "amplitude NAME x". */
+static void name_of(const struct dea_context *ctx, int x_column, char out[DEA_NAME_SIZE])
+{
+  const char *title = dea_column_at(ctx, x_column)->header;
+  const size_t before = strlen("amplitude "), length = strlen(title);
+  snprintf(out, DEA_NAME_SIZE, "%.*s", length > before + 2 ? (int)(length - before - 2) : 0,
+           title + before);
+}
+
+/* Monitors at one bias, a style each, of at least that much; from: its first point. */
+static dea_status add_monitors(struct dea_context *ctx, struct dea_plot *plot,
+                               const struct dea_curve *curve, size_t from, size_t axis,
+                               double least, enum dea_colour colour)
+{
+  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_THIN};
+  const struct dea_load_point *points = curve->points + from;
+  size_t monitor = 0;
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    const size_t count = count_bias(curve, from);
+    if (!is_monitor(ctx, curve, c)) {
+      continue;
+    }
+    struct dea_series look = {.style = styles[monitor++ % (sizeof styles / sizeof styles[0])],
+                              .colour = colour};
+    char name[DEA_NAME_SIZE], title[DEA_LABEL_SIZE];
+    struct line line;
+    name_of(ctx, c, name);
+    snprintf(title, sizeof title, "%.4g kV, %.60s", 1e-3 * points[0].voltage_V, name);
+    dea_label_escape(title, look.title, sizeof look.title);
+    DEA_TRY(ctx, line_create(ctx, count, &line));
+    fill_line(ctx, points, c, axis, &line);
+    dea_status status = largest_along(ctx, points, count, c, axis) > least
+                            ? add_line(ctx, plot, &line, &look)
+                            : DEA_OK;
+    dea_free(ctx, line.frequency_Hz);
+    DEA_TRY(ctx, status);
+  }
+  return DEA_OK;
 }
 
 /* A colour a bias, a style a monitor. */
 static dea_status build_monitors(struct dea_context *ctx, const struct dea_result *result,
                                  struct dea_plot *plot)
 {
-  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_THIN};
-  size_t column = Z;
-  for (size_t t = 0; t < result->table_count; t++) {
-    const struct dea_result_table *table = &result->tables[t];
-    size_t bias = 0, monitor = 0;
+  size_t axis = 2;
+  for (size_t k = 0; k < result->curve_count; k++) {
+    const struct dea_curve *curve = &result->curves[k];
     double largest;
-    if (strcmp(table->type.study, study_name) != 0 ||
-        strcmp(table->type.name, monitors.name) != 0) {
+    size_t bias = 0;
+    if (strcmp(curve->kind, study_name) != 0) {
       continue;
     }
-    column = main_column(table, &largest);
-    for (size_t i = 0; i < table->row_count; i++) {
-      double V = dea_result_table_cell(table, i, 0)->number;
-      bool first = i == 0 || dea_result_table_cell(table, i - 1, 0)->number != V;
-      bias += first && i > 0 ? 1 : 0;
-      monitor = first ? 0 : monitor + 1;
-      double lowest_Hz = dea_result_table_cell(table, i - monitor, 1)->number;
-      if (dea_result_table_cell(table, i, 1)->number == lowest_Hz) {
-        DEA_TRY(ctx, add_monitor(ctx, plot, table, i, column, least_share * largest,
-                                 (enum dea_colour)(bias % COLOURS),
-                                 styles[monitor % (sizeof styles / sizeof styles[0])]));
-      }
+    axis = common_axis(ctx, curve, &largest);
+    for (size_t from = 0; from < curve->count; from += count_bias(curve, from)) {
+      DEA_TRY(ctx, add_monitors(ctx, plot, curve, from, axis, least_share * largest,
+                                (enum dea_colour)(bias++ % COLOURS)));
     }
   }
-  finish(plot, ripple_of(result), "xyz"[(column - X) / 2]);
+  finish(plot, ripple_of(result), "xyz"[axis]);
   return DEA_OK;
 }
 
@@ -569,42 +592,9 @@ static dea_status add_peaks(struct dea_context *ctx, const struct line *line, co
   return DEA_OK;
 }
 
-/* Of a monitor, which stands `offset` rows after the first of each frequency, along its main axis;
- * nothing of one that moves less than `least`. points: of the bias. */
-static dea_status add_monitor_peaks(struct dea_context *ctx, const struct dea_result_table *told,
-                                    size_t first, size_t monitors_there, size_t offset,
-                                    double least, const struct dea_load_point *points,
-                                    struct line *line, struct dea_result_table *table)
-{
-  size_t column = Z;
-  double most = 0;
-  char moves[DEA_NAME_SIZE + 8];
-  for (size_t c = X; c <= Z; c += 2) {
-    for (size_t i = 0; i < line->count; i++) {
-      double a = dea_result_table_cell(told, first + i * monitors_there + offset, c)->number;
-      column = a > most ? c : column; // not NAN
-      most = fmax(most, a);
-    }
-  }
-  if (!(most > least)) {
-    return DEA_OK;
-  }
-  for (size_t i = 0; i < line->count; i++) {
-    size_t row = first + i * monitors_there + offset;
-    line->frequency_Hz[i] = points[i].frequency_Hz;
-    line->amplitude_m[i] = dea_result_table_cell(told, row, column)->number;
-    line->phase_rad[i] = dea_result_table_cell(told, row, column + 1)->number;
-  }
-  snprintf(moves, sizeof moves, "%.60s, %c",
-           dea_result_table_cell(told, first + offset, MONITOR)->text, "xyz"[(column - X) / 2]);
-  DEA_TRY(ctx, add_peaks(ctx, line, moves, points, table));
-  return DEA_OK;
-}
-
 /* All that moves about one bias; `from`: its first point in the curve. */
 static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curve, size_t from,
-                           const struct dea_result_table *told, struct line *line,
-                           struct dea_result_table *table)
+                           struct line *line, struct dea_result_table *table)
 {
   const struct dea_load_point *points = curve->points + from;
   for (int tip = 0; tip < 2; tip++) {
@@ -617,14 +607,18 @@ static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curv
       DEA_TRY(ctx, add_peaks(ctx, line, tip ? "fibre tip" : "centre", points, table));
     }
   }
-  double largest = 0;
-  size_t there = told != NULL ? told->row_count / curve->count : 0;
-  if (there > 0) {
-    main_column(told, &largest);
-  }
-  for (size_t k = 0; k < there; k++) {
-    DEA_TRY(ctx, add_monitor_peaks(ctx, told, from * there, there, k, least_share * largest, points,
-                                   line, table));
+  double largest, most;
+  common_axis(ctx, curve, &largest);
+  for (int c = 0; c < dea_column_count(ctx); c++) { // along the axis of each
+    const size_t axis =
+        is_monitor(ctx, curve, c) ? main_axis(ctx, points, line->count, c, &most) : 3;
+    char name[DEA_NAME_SIZE], moves[DEA_NAME_SIZE + 8];
+    if (axis < 3 && most > least_share * largest) {
+      name_of(ctx, c, name);
+      snprintf(moves, sizeof moves, "%.60s, %c", name, "xyz"[axis]);
+      fill_line(ctx, points, c, axis, line);
+      DEA_TRY(ctx, add_peaks(ctx, line, moves, points, table));
+    }
   }
   return DEA_OK;
 }
@@ -638,13 +632,11 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &peak_table, model, 0, &table));
-  const struct dea_result_table *told =
-      dea_result_find_table(result, model, study_name, monitors.name);
   for (size_t from = 0, count; from < curve->count && status == DEA_OK; from += count) {
     struct line line;
     count = count_bias(curve, from);
     DEA_TRY(ctx, line_create(ctx, count, &line));
-    status = add_bias(ctx, curve, from, told, &line, table);
+    status = add_bias(ctx, curve, from, &line, table);
     dea_free(ctx, line.frequency_Hz);
   }
   return status;

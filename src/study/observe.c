@@ -111,6 +111,9 @@ dea_status dea_monitor_set_read(struct dea_context *ctx, struct dea_monitor_set 
     case DEA_OF_CHANNEL:
       value = channel_value(&seen.channel[c->index], c->number);
       break;
+    case DEA_OF_AMPLITUDE: // of study frequency
+    case DEA_OF_PHASE:
+      break;
     }
     if (c->column >= DEA_LOAD_POINT_COLUMNS) {
       set->values->at[i].value = value;
