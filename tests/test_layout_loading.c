@@ -274,29 +274,64 @@ static void test_diaphragm(void **state)
   check_diaphragm(2);
 }
 
-/* Of a branch of modulus 1 that is relaxed at the stretch `start` and pulled from there at a rate,
- * in pure shear: nominal stress l A_1 - l^-3 A_3 with dA/dt = (C^-1 - A)/tau (docs/theory/time.md),
- * by the midpoint rule. */
-static double branch_stress(double start, double rate, double time_s, double turn_s, double end_s)
+/* A film with a branch at a point, its axes along x and y, unstretched at rest. */
+struct pulled {
+  const double *c; // of Yeoh's law
+  double G, time_s, maxwell_Pa;
+  double A[3]; // of the branch, along x, along y and across
+};
+
+/* Nominal stress along axis i at stretches of the film itself. */
+static double pulled_stress(const struct pulled *p, const double l[2], int i)
 {
-  enum { STEPS = 20000 };
-  double A1 = 1 / (start * start), A3 = start * start, h = end_s / STEPS, l = start;
-  for (int i = 0; i < STEPS; i++) {
-    const double t = (i + 0.5) * h;
-    l = start + rate * (t < turn_s ? t : 2 * turn_s - t);
-    A1 += (1 / (l * l) - A1) * -expm1(-h / time_s);
-    A3 += (l * l - A3) * -expm1(-h / time_s);
-  }
-  l = start + rate * (end_s < turn_s ? end_s : 2 * turn_s - end_s);
-  return l * A1 - A3 / (l * l * l);
+  const double *c = p->c, x = l[0] * l[0], y = l[1] * l[1], across = 1 / (l[i] * x * y);
+  const double first = x + y + 1 / (x * y) - 3;
+  return 2 * (c[0] + 2 * c[1] * first + 3 * c[2] * first * first) * (l[i] - across) +
+         p->G * (l[i] * p->A[i] - p->A[2] * across) - p->maxwell_Pa * x * y / l[i];
 }
 
-/* A strip of 16 mm whose width is held, pulled from the stretch 1.25 to 2 in 3 s and back, with a
- * branch and a voltage, against the homogeneous solution. */
+/* The stretches of the film itself in a place of these: larger where it would be compressed. */
+static void own_stretches(const struct pulled *p, const double place[2], double l[2])
+{
+  memcpy(l, place, 2 * sizeof *l);
+  for (int k = 0; k < 24; k++) { // each axis in turn
+    double low = place[k % 2], high = 3;
+    l[k % 2] = low;
+    for (int i = 0; i < 40 && (i > 0 || pulled_stress(p, l, k % 2) < 0); i++) {
+      l[k % 2] = 0.5 * (low + high);
+      *(pulled_stress(p, l, k % 2) < 0 ? &low : &high) = l[k % 2];
+    }
+  }
+}
+
+/* Stress along x at the end of a time in which the place is stretched along x from 1 at a rate and
+ * back, its width held, with dA/dt = (C*^-1 - A)/tau of the film itself (docs/theory/time.md), by
+ * the midpoint rule. */
+static double stress_after(struct pulled p, double rate, double turn_s, double end_s)
+{
+  enum { STEPS = 1000 };
+  const double h = end_s / STEPS, share = -expm1(-h / p.time_s);
+  double place[2] = {1, 1}, l[2];
+  own_stretches(&(struct pulled){.c = p.c, .maxwell_Pa = p.maxwell_Pa}, place, l);
+  for (int i = 0; i <= STEPS; i++) { // the first is what it was held at for long, the last the end
+    const double t = i < STEPS ? (i + 0.5) * h : end_s;
+    const double x = l[0] * l[0], y = l[1] * l[1], inverse[3] = {1 / x, 1 / y, x * y};
+    for (int a = 0; a < 3; a++) {
+      p.A[a] = i > 0 ? p.A[a] + (inverse[a] - p.A[a]) * share : inverse[a];
+    }
+    place[0] = 1 + rate * (t < turn_s ? t : 2 * turn_s - t);
+    own_stretches(&p, place, l);
+  }
+  return l[0] > place[0] ? 0 : pulled_stress(&p, l, 0);
+}
+
+/* A strip of 16 mm whose width is held, pulled to the stretch 2 in 4 s and back, with a branch and
+ * a voltage, against the homogeneous solution: on the way back it goes slack, and carries nothing.
+ */
 static void test_at_a_rate(void **state)
 {
   enum { STEPS = 8 };
-  static const double thickness_m = 100e-6, width_m = 10e-3, length_m = 16e-3, duration_s = 3;
+  static const double thickness_m = 100e-6, width_m = 10e-3, length_m = 16e-3, duration_s = 4;
   (void)state;
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
@@ -313,27 +348,24 @@ static void test_at_a_rate(void **state)
       (struct dea_layout_support){.region = between, .within = DEA_LAYOUT_NONE, .components = 6};
   l->bodies[l->body_count++] = (struct dea_layout_body){.name = "bar", .region = 1, .free = 1};
   struct dea_material *film = &l->plies[0].material;
-  const double G = 300e3, tau_s = 0.7, voltage_V = 1e3;
-  film->branches[0] = (struct dea_branch){.modulus_Pa = G, .time_s = tau_s};
+  film->branches[0] = (struct dea_branch){.modulus_Pa = 300e3, .time_s = 0.7};
   film->branch_count = 1;
+  const double E = 1e3 / thickness_m, maxwell_Pa = DEA_EPSILON_0 * 2.8 * E * E;
   struct ran r = run(device,
-                     "{body: bar, direction: x, from: 4 mm, to: 16 mm, steps: 8, duration: 3 s,"
+                     "{body: bar, direction: x, from: 0 mm, to: 16 mm, steps: 8, duration: 4 s,"
                      " back: yes, voltage: [0 kV, 1 kV]}",
                      DEA_OK);
-  const double c[3] = {film->param[0], film->param[1], film->param[2]};
-  const double field = voltage_V / thickness_m;
+  size_t slack = 0;
   assert_int_equal(r.points->row_count, 2 * (2 * STEPS + 1));
   for (size_t row = 0; row < r.points->row_count; row++) {
-    const size_t i = row % (2 * STEPS + 1);
-    const double time_s = duration_s * (double)i / STEPS;
-    const double s = 1 + point(&r, row, "shift_m") / length_m, first = s * s + 1 / (s * s) - 2;
-    double stress =
-        2 * (c[0] + 2 * c[1] * first + 3 * c[2] * first * first) * (s - 1 / (s * s * s));
-    stress += G * branch_stress(1.25, 0.75 / duration_s, tau_s, duration_s, time_s);
-    stress -= row > 2 * STEPS ? DEA_EPSILON_0 * 2.8 * field * field * s : 0;
+    const struct pulled strip = {film->param, 300e3, 0.7, row > 2 * STEPS ? maxwell_Pa : 0, {0}};
+    const double time_s = duration_s * (double)(row % (2 * STEPS + 1)) / STEPS;
+    const double stress = stress_after(strip, 1 / duration_s, duration_s, time_s);
+    slack += stress == 0 && time_s > duration_s;
     assert_close(point(&r, row, "force_N"), stress * thickness_m * width_m, 0,
                  8e-4); // 0.1 % of the peak
   }
+  assert_true(slack >= 2);
   end(&r, device);
 }
 

@@ -4,6 +4,7 @@
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
+#include "model/solid/equilibrium/newton.h"
 
 #include <math.h>
 #include <string.h>
@@ -407,7 +408,7 @@ static double find_error(struct dea_circuit_step *d, double error_m, double lost
   d->lost_next_J = d->lost_J;
   if (has_leapt(d, lost_J, report)) {
     d->lost_next_J += lost_J;
-  } else if (energy_J > 0) {
+  } else if (energy_J > 0 && dea_solid_resolved(d->driven.solid, lost_J / d->driven.copies)) {
     error = fmax(error, fabs(lost_J) / energy_J);
   }
   if (!d->leap.tried || d->step_s < 0.35 * d->leap.step_s) {

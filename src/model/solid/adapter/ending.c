@@ -31,10 +31,12 @@ static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
     return dea_fail(ctx, status, "the film cannot be evaluated on the way");
   }
   e->area = area_of(e, &film);
-  e->tension[0] = e->tension[1];
-  e->tension_V[0] = e->tension_V[1];
-  e->tension[1] = film.min_tension_N_per_m;
-  e->tension_V[1] = V;
+  for (int i = 0; i < 2 && V != e->tension_V[2]; i++) {
+    e->tension[i] = e->tension[i + 1];
+    e->tension_V[i] = e->tension_V[i + 1];
+  }
+  e->tension[2] = film.min_tension_N_per_m;
+  e->tension_V[2] = V;
   return DEA_OK;
 }
 
@@ -42,7 +44,7 @@ static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
  * has none to rounding. */
 static bool is_taut(const struct dea_ending *e)
 {
-  return e->tension[1] > 1e-6 * e->owner.tension_scale_N_per_m;
+  return e->tension[2] > 1e-6 * e->owner.tension_scale_N_per_m;
 }
 
 /* The point where the solid is, as the event at which a solve ends. */
@@ -67,25 +69,30 @@ void dea_ending_free(struct dea_ending *e)
   drop_limit(e);
 }
 
+/* The voltage at which two points that were looked at after each other have the tension 0 on the
+ * line by the square of the voltage. NAN: none. */
+static double slack_V(const struct dea_ending *e, int first)
+{
+  const double *T = e->tension + first, *at_V = e->tension_V + first, square = at_V[1] * at_V[1];
+  return T[0] != T[1] ? sqrt(square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1])) : NAN;
+}
+
 /* Whether the tension of the film, which no step leads on from, is 0 closely beyond by its last two
  * points: the voltage of that as an event. */
 static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e, bool *slack)
 {
-  const double *T = e->tension, *at_V = e->tension_V, V = dea_solid_voltage(e->owner.solid);
-  const double square = V * V;
-  const double beyond = square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1]);
+  const double V = dea_solid_voltage(e->owner.solid), beyond = slack_V(e, 1);
   const double near = 1 + e->owner.solid->settings.leap_way;
-  *slack = at_V[1] == V && (T[0] - T[1]) * (square - at_V[0] * at_V[0]) > 0 && beyond >= square &&
-           beyond <= square * near * near;
+  *slack = e->tension_V[2] == V && e->tension_V[1] != V && beyond >= V && beyond <= near * V;
   if (*slack) {
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
-    e->limit.point.voltage_V = sqrt(beyond);
+    e->limit.point.voltage_V = beyond;
   }
   return DEA_OK;
 }
 
 /* A point of the path on the way to where a solve ends. Where the film goes slack between two of
- * them: the voltage from their tensions and the squares of their voltages. */
+ * them: the voltage from their tensions, or those of the two before. */
 static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
 {
   struct dea_ending *e = user;
@@ -115,10 +122,11 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   }
   DEA_TRY(ctx, look_at_tension(ctx, e));
   if (before && !is_taut(e)) {
-    const double *T = e->tension, *at_V = e->tension_V;
-    double share = T[0] > T[1] ? T[0] / (T[0] - T[1]) : 0;
+    const double first_V = e->tension_V[1], last_V = e->tension_V[2];
+    const bool compressed = e->tension[2] < -1e-6 * e->owner.tension_scale_N_per_m;
+    const double at_V = slack_V(e, compressed ? 1 : 0); // a membrane has none from there on
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
-    e->limit.point.voltage_V = sqrt((1 - share) * at_V[0] * at_V[0] + share * at_V[1] * at_V[1]);
+    e->limit.point.voltage_V = fmin(fmax(at_V, fmin(first_V, last_V)), fmax(first_V, last_V));
   }
   return DEA_OK;
 }
@@ -244,8 +252,8 @@ static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
   const struct dea_ending kept = *e; // what the points of the path change
   e->limited = false;
   e->leapt = leapt;
-  e->tension[1] = e->tension[0]; // as the path begins
-  e->tension_V[1] = e->tension_V[0];
+  e->tension[2] = e->tension[1]; // as the path begins
+  e->tension_V[2] = e->tension_V[1];
   dea_status status =
       dea_solid_look_back(ctx, e->owner.solid, from, leapt, &watch, report, &stop, flat);
   const bool looked = status == DEA_OK;

@@ -37,7 +37,7 @@ struct dea_ending {
   bool leapt;                      // on the last step the film may have gone past one
   double rate[2]; // motion of the last step over its way, of the voltage and of another control; 0:
                   // none
-  double tension[2], tension_V[2]; // smallest of the film [N/m], at the last two points looked at
+  double tension[3], tension_V[3]; // smallest of the film [N/m], at the last points looked at
   double area;                     // largest area stretch at the last of them
 };
 

@@ -1,5 +1,6 @@
 #include "model/solid/assembly/internal_variables.h"
 
+#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/problem.h"
 
 #include <stdint.h>
@@ -12,10 +13,9 @@ enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
 static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_element_strains *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_element_input in = {.constituent = dea_solid_constituent(s, e), .X = X, .u = u};
-  dea_solid_gather(s, e, s->problem.grid->X, X);
-  dea_solid_gather(s, e, s->state.u, u);
+  struct dea_solid_element_place place;
+  struct dea_element_input in;
+  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
   return element->type->strains(element, &in, out);
 }
 

@@ -120,6 +120,20 @@ static void add_tangent(int nodes, double weight, const double A[36],
   }
 }
 
+/* Where the film has no tension its place has no stiffness across: the tangent gets a little of it,
+ * so that what moves there moves evenly. It belongs to no force. */
+static dea_status point_at(const struct dea_constituent *constituent, int q, const double F[6],
+                           double field_V_per_m, struct dea_membrane_point *out)
+{
+  static const double little = 1e-6; // of the modulus
+  const double *B = constituent->viscous != NULL ? constituent->viscous + 6 * q : NULL;
+  dea_status status = dea_membrane_point_in_time(constituent, B, F, field_V_per_m, out);
+  for (int a = 0; a < 6 && status == DEA_OK && out->state != DEA_TAUT; a++) {
+    out->A[7 * a] += little * dea_constituent_modulus(constituent);
+  }
+  return status;
+}
+
 static dea_status evaluate(const struct dea_element *element, const struct dea_element_input *in,
                            enum dea_eval_order order, struct dea_element_result *out)
 {
@@ -139,7 +153,7 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
       return DEA_E_DOMAIN;
     }
     in_plane_columns(shape->nodes, in->u, gradient, F);
-    dea_status status = dea_viscous_membrane_point(constituent, q, F, field, &point);
+    dea_status status = point_at(constituent, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
@@ -172,7 +186,7 @@ static dea_status membrane_state(const struct dea_element *element,
     if (!(columns_at(shape, q, in->X, in->u, F) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = dea_viscous_membrane_point(constituent, q, F, field, &point);
+    dea_status status = point_at(constituent, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
@@ -290,7 +304,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
       }
     }
     dea_element_at(shape->nodes, shape->value[q], motion->v, here);
-    dea_status status = dea_viscous_membrane_point(constituent, q, F, field, &point);
+    dea_status status = point_at(constituent, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
@@ -303,16 +317,26 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
   return DEA_OK;
 }
 
+/* Of the film itself, which is larger than its place where it wrinkles; beyond its law of the
+ * place.
+ */
 static dea_status strains(const struct dea_element *element, const struct dea_element_input *in,
                           struct dea_element_strains *out)
 {
+  const double field = in->voltage_V != 0 ? in->voltage_V / in->constituent->thickness_m : 0;
   for (int q = 0; q < element->points; q++) {
     double F[6], area = columns_at(element->basis, q, in->X, in->u, F);
+    struct dea_membrane_point point;
     if (!(area > 0)) {
       return DEA_E_DOMAIN;
     }
+    const double c[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4],
+                         F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
+                         F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
+    const bool own =
+        in->constituent->relaxed && point_at(in->constituent, q, F, field, &point) == DEA_OK;
     out->volume_m3[q] = in->constituent->thickness_m * area;
-    dea_viscous_strain_flat(F, out->C[q], out->inverse[q]);
+    dea_viscous_strain_flat(own ? point.own : c, out->C[q], out->inverse[q]);
   }
   return DEA_OK;
 }

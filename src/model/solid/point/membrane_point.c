@@ -30,124 +30,6 @@ dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_cons
   return status;
 }
 
-/* Principal stresses S_a = f_a/l_a, their derivatives D_ab = 2 dS_a/dx_b, and shear modulus m;
- * stretches of the film itself. */
-struct principal {
-  double W, S[2], D[2][2], m, natural[2];
-  double S12, D12[2]; // of what has axes of its own: S_12, D_1112 and D_2212
-};
-
-static void referential(const struct dea_plane *f, double l1, double l2, struct principal *out)
-{
-  out->W = f->W;
-  out->S[0] = f->s1 / l1;
-  out->S[1] = f->s2 / l2;
-  out->D[0][0] = (f->k11 - out->S[0]) / (l1 * l1);
-  out->D[1][1] = (f->k22 - out->S[1]) / (l2 * l2);
-  out->D[0][1] = out->D[1][0] = f->k12 / (l1 * l2);
-}
-
-/* m = (S_2 - S_1)/(x_2 - x_1) of the taut film. Where the difference would lose digits it is the
- * mean of (D_11 - 2 D_12 + D_22)/4 between the two, by three Gauss points on [-d, d]; two of them
- * are the same state. */
-static dea_status taut_shear(const struct dea_tension *film, double mean, double d,
-                             struct principal *out)
-{
-  static const double near = 0.01, node[2] = {0, 0.7745966692414834}, weight[2] = {4. / 9, 5. / 9};
-  if (d > near * mean) {
-    out->m = 0.5 * (out->S[0] - out->S[1]) / d;
-    return DEA_OK;
-  }
-  out->m = 0;
-  for (int i = 0; i < 2; i++) {
-    struct dea_plane f;
-    struct principal at;
-    double l1 = sqrt(mean + node[i] * d), l2 = sqrt(mean - node[i] * d);
-    dea_status status = dea_tension_taut(film, l1, l2, &f);
-    if (status != DEA_OK) {
-      return status;
-    }
-    referential(&f, l1, l2, &at);
-    out->m += weight[i] * 0.25 * (at.D[0][0] - 2 * at.D[0][1] + at.D[1][1]);
-  }
-  return DEA_OK;
-}
-
-/* What turns against B, whose axes are not those of C: with e = x1 - x2, e* the same of the natural
- * width, which follows, and phi the energy by x1 and the angle of N_1, phi_angle = B_12 e*. B: 11
- * 22 12 on the axes of C. */
-static dea_status add_turn(const struct dea_tension *film, const double B[3], double e,
-                           struct principal *out)
-{
-  struct dea_plane f;
-  const double *l = out->natural, wide = l[0] * l[0] - l[1] * l[1];
-  dea_status status = dea_tension_taut(film, l[0], l[1], &f);
-  if (status == DEA_OK && e > 1e-6 * l[0] * l[0]) {
-    const double stiffness = f.k22 / (4 * l[1] * l[1]), share = f.k12 * l[1] / (f.k22 * l[0]);
-    const double by_angle = B[2] * wide, mixed = B[2] * (1 + share);
-    const double twice = (B[1] - B[0]) * wide - B[2] * B[2] / stiffness;
-    out->S12 = by_angle / e;
-    out->D12[0] = 2 * (mixed - by_angle / e) / e;
-    out->D12[1] = 2 * by_angle / (e * e);
-    out->m += twice / (e * e);
-  }
-  return status;
-}
-
-/* Response to stretches whose squares are mean + d and mean - d. */
-static dea_status respond(const struct dea_tension *film, bool relaxed, double mean, double d,
-                          const double B[3], struct principal *out, enum dea_tension_state *state)
-{
-  const struct dea_tension elastic = {film->material, film->nominal_field_V_per_m, NULL};
-  struct dea_plane f;
-  double l1 = sqrt(mean + d), l2 = mean - d > 0 ? sqrt(mean - d) : 0;
-  *out = (struct principal){.natural = {l1, l2}};
-  *state = DEA_TAUT;
-  dea_status status = relaxed ? dea_tension_relaxed(film, l1, l2, &f, out->natural, state) : DEA_OK;
-  if (status == DEA_OK && *state == DEA_TAUT) {
-    status = dea_tension_taut(&elastic, l1, l2, &f);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
-  if (*state == DEA_TAUT) {
-    referential(&f, l1, l2, out);
-    return taut_shear(&elastic, mean, d, out);
-  }
-  out->W = f.W;
-  out->S[0] = f.s1 / l1;
-  out->D[0][0] = (f.k11 - out->S[0]) / (l1 * l1);
-  out->m = d > 0 ? 0.5 * out->S[0] / d : 0;
-  return film->viscous_Pa != NULL && *state == DEA_WRINKLED ? add_turn(film, B, 2 * d, out)
-                                                            : DEA_OK;
-}
-
-/* Tensors of the plane in the order 11 22 12. */
-struct plane_tensors {
-  double C[3], S[3], D[3][3];
-};
-
-/* S and D from principal values: N_1 N_1 = (1 + T)/2 and N_2 N_2 = (1 - T)/2 with T_11 = -T_22 =
- * cos and T_12 = sin of twice the angle of N_1. */
-static void assemble_tensors(const struct principal *p, double cosine, double sine,
-                             struct plane_tensors *t)
-{
-  const double N[2][3] = {{0.5 * (1 + cosine), 0.5 * (1 - cosine), 0.5 * sine},
-                          {0.5 * (1 - cosine), 0.5 * (1 + cosine), -0.5 * sine}};
-  const double G[3] = {-0.5 * sine, 0.5 * sine, 0.5 * cosine};
-  for (int a = 0; a < 3; a++) {
-    t->S[a] = p->S[0] * N[0][a] + p->S[1] * N[1][a] + 2 * p->S12 * G[a];
-    for (int b = 0; b < 3; b++) {
-      t->D[a][b] = 4 * p->m * G[a] * G[b] + p->D[0][0] * N[0][a] * N[0][b] +
-                   p->D[1][1] * N[1][a] * N[1][b] +
-                   p->D[0][1] * (N[0][a] * N[1][b] + N[1][a] * N[0][b]);
-      for (int i = 0; i < 2; i++) {
-        t->D[a][b] += 2 * p->D12[i] * (N[i][a] * G[b] + G[a] * N[i][b]);
-      }
-    }
-  }
-}
-
 /* eps = permittivity + slope (sqrt(a) - 1) of the constituent by s = sqrt(a G1 G2), as a material
  * has it.
  */
@@ -162,17 +44,14 @@ static void set_permittivity(const struct dea_constituent *constituent, double G
 }
 
 /* S = G S(C) G, and so twice for D. */
-static void pull_back_tensors(const struct dea_constituent *constituent, struct plane_tensors *t)
+static void pull_back_tensors(const struct dea_constituent *constituent,
+                              struct dea_tension_point *t)
 {
-  const double *G = constituent->pre_stretch, scale[3] = {G[0] * G[0], G[1] * G[1], G[0] * G[1]};
   dea_constituent_pull_back(constituent, t->S, t->S);
-  for (int a = 0; a < 9 && constituent->pre_shear == 0; a++) {
-    t->D[a / 3][a % 3] *= scale[a / 3] * scale[a % 3];
-  }
-  for (int a = 0; a < 3 && constituent->pre_shear != 0; a++) {
+  for (int a = 0; a < 3; a++) {
     dea_constituent_pull_back(constituent, t->D[a], t->D[a]);
   }
-  for (int b = 0; b < 3 && constituent->pre_shear != 0; b++) {
+  for (int b = 0; b < 3; b++) {
     double column[3] = {t->D[0][b], t->D[1][b], t->D[2][b]};
     dea_constituent_pull_back(constituent, column, column);
     for (int a = 0; a < 3; a++) {
@@ -181,62 +60,58 @@ static void pull_back_tensors(const struct dea_constituent *constituent, struct 
   }
 }
 
-/* G^-1 B G^-1 on the axes of C, 11 22 12, and across the film, from B that counts like c. */
-static void turn_viscous(const struct dea_constituent *constituent, const double B[6],
-                         const double axes[2], double plane[3], double principal[3])
+/* B and C* of the flat film count like c; those of the unstretched one are G^-1 B G^-1 and G C* G.
+ */
+static struct dea_constituent inverse_of(const struct dea_constituent *constituent, double det)
 {
   const double *G = constituent->pre_stretch, s = constituent->pre_shear;
-  const double det = G[0] * G[1] - s * s;
-  const struct dea_constituent inverse = {.pre_stretch = {G[1] / det, G[0] / det, det},
-                                          .pre_shear = -s / det};
-  double b[3] = {B[0], B[1], B[5]};
-  dea_constituent_pull_back(&inverse, b, b);
-  const double mean = 0.5 * (b[0] + b[1]), half = 0.5 * (b[0] - b[1]);
-  const double along = half * axes[0] + b[2] * axes[1];
-  plane[0] = principal[0] = mean + along;
-  plane[1] = principal[1] = mean - along;
-  plane[2] = b[2] * axes[0] - half * axes[1];
-  principal[2] = B[2] * det * det;
+  return (struct dea_constituent){.pre_stretch = {G[1] / det, G[0] / det, det},
+                                  .pre_shear = -s / det};
+}
+
+/* Larger and smaller eigenvalue of S C*, over the area. */
+static void set_tensions(const struct dea_tension_point *t, struct dea_membrane_point *out)
+{
+  const double *S = t->S, *C = t->own;
+  const double first = S[0] * C[0] + S[2] * C[2], second = S[2] * C[2] + S[1] * C[1];
+  const double mixed = (S[0] * C[2] + S[2] * C[1]) * (S[2] * C[0] + S[1] * C[2]);
+  const double half = 0.5 * (first - second), apart = sqrt(fmax(half * half + mixed, 0));
+  out->tension_Pa[0] = (0.5 * (first + second) + apart) / out->area;
+  out->tension_Pa[1] = t->state == DEA_TAUT ? (0.5 * (first + second) - apart) / out->area : 0;
 }
 
 /* Everything by C of the pre-stretched film, then S and D by that of the flat one. */
 static dea_status evaluate_point(const struct dea_constituent *constituent, const double *viscous,
-                                 const double F[6], double field, struct plane_tensors *t,
+                                 const double F[6], double field, struct dea_tension_point *t,
                                  struct dea_membrane_point *out)
 {
   const double *G = constituent->pre_stretch, s = constituent->pre_shear;
-  double flat_area = G[0] * G[1] - s * s; // over the unstretched one
-  double c[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4], F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
+  const double flat_area = G[0] * G[1] - s * s; // over the unstretched one
+  const struct dea_constituent inverse = inverse_of(constituent, flat_area);
+  double C[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4], F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
                  F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
   struct dea_material material = {.law = constituent->law};
+  struct dea_tension film = {.material = &material, .nominal_field_V_per_m = field / flat_area};
   memcpy(material.param, constituent->param, constituent->law->param_count * sizeof(double));
-  double B[3] = {0}, principal[3];
-  const bool in_time = viscous != NULL && constituent->relaxed;
-  const struct dea_tension film = {&material, field / flat_area, in_time ? principal : NULL};
   set_permittivity(constituent, flat_area, &material.permittivity);
-  dea_constituent_pull_back(constituent, c, t->C);
-  double mean = 0.5 * (t->C[0] + t->C[1]), half = 0.5 * (t->C[0] - t->C[1]);
-  double d = hypot(half, t->C[2]);
-  const double axes[2] = {d > 0 ? half / d : 1, d > 0 ? t->C[2] / d : 0};
-  struct principal p;
-  if (in_time) {
-    turn_viscous(constituent, viscous, axes, B, principal);
+  dea_constituent_pull_back(constituent, C, C);
+  if (viscous != NULL) {
+    dea_constituent_pull_back(&inverse, (const double[]){viscous[0], viscous[1], viscous[5]},
+                              film.B);
+    film.B_across = viscous[2] * flat_area * flat_area;
   }
-  dea_status status = respond(&film, constituent->relaxed, mean, d, B, &p, &out->state);
+  dea_status status =
+      constituent->relaxed ? dea_tension_relaxed(&film, C, t) : dea_tension_taut(&film, C, t);
   if (status != DEA_OK) {
     return status;
   }
-  assemble_tensors(&p, axes[0], axes[1], t);
+  out->W = t->W; // of branches 1/2 B : (c - 1)
+  out->W -= viscous != NULL ? 0.5 * (viscous[0] + viscous[1] + viscous[2]) : 0;
+  out->state = t->state;
+  out->area = sqrt(t->own[0] * t->own[1] - t->own[2] * t->own[2]) / flat_area;
+  set_tensions(t, out);
+  dea_constituent_pull_back(&inverse, t->own, out->own);
   pull_back_tensors(constituent, t);
-  out->W = p.W;
-  if (in_time && out->state != DEA_TAUT) { // as B : (c - 1) counts, not B : (C - 1)
-    out->W +=
-        0.5 * (principal[0] + principal[1] + principal[2] - viscous[0] - viscous[1] - viscous[2]);
-  }
-  out->area = p.natural[0] * p.natural[1] / flat_area;
-  double first = p.S[0] * (mean + d) / out->area, second = p.S[1] * (mean - d) / out->area;
-  out->tension_Pa[0] = fmax(first, second);
-  out->tension_Pa[1] = fmin(first, second);
   return DEA_OK;
 }
 
@@ -252,7 +127,7 @@ dea_status dea_membrane_point_in_time(const struct dea_constituent *constituent,
                                       const double *viscous, const double F[6],
                                       double field_V_per_m, struct dea_membrane_point *out)
 {
-  struct plane_tensors t;
+  struct dea_tension_point t;
   dea_status status = evaluate_point(constituent, viscous, F, field_V_per_m, &t, out);
   if (status != DEA_OK) {
     return status;

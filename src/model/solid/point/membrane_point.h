@@ -3,8 +3,7 @@
  * Symbol   meaning                                                                     unit
  * F        dx/dX, its in-plane columns F_1, F_2; F[2 i + J] here                       1
  * G        pre-stretch, symmetric; C = G c G with c_JL = F_J . F_L                     1
- * x1, x2   eigenvalues of C, x1 >= x2: squares of the stretches l1, l2                 1
- * f        energy per volume of film, with field; S = 2 df/dC                          Pa */
+ * W        energy per volume of film, with field (tension.h)                           Pa */
 #ifndef DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
 #define DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
 
@@ -25,6 +24,7 @@ dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_cons
 struct dea_membrane_point {
   double W, P[6], A[36];
   double area;          // current over reference area of the film itself: |F_1 x F_2| if taut
+  double own[3];        // metric c* of the film itself, 11 22 12: F^T F if taut
   double tension_Pa[2]; // per current length of the film itself
   enum dea_tension_state state; // DEA_TAUT when the constituent is not relaxed
 };
@@ -33,9 +33,8 @@ struct dea_membrane_point {
 dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
                               double field_V_per_m, struct dea_membrane_point *out);
 
-/* The same of a step in time, viscous: B of a point (viscous.h), NULL: none. It is in energy,
- * stress and tangent of a film that wrinkles only, as dea_viscous_add_flat adds it to a taut one.
- */
+/* The same of a step in time, viscous: B of a point (viscous.h), of which 23 and 13 are not used;
+ * NULL: none. */
 dea_status dea_membrane_point_in_time(const struct dea_constituent *constituent,
                                       const double *viscous, const double F[6],
                                       double field_V_per_m, struct dea_membrane_point *out);

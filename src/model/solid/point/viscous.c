@@ -3,6 +3,7 @@
 #include "base/quadrature.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Components of a symmetric tensor as a matrix. */
 static const int place[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
@@ -33,85 +34,13 @@ void dea_viscous_add(const struct dea_constituent *constituent, int q, const dou
   point->W += energy;
 }
 
-/* Symmetric tensors of the plane as 11 22 12, and back from two indices. */
-static const int plane_place[4] = {0, 2, 2, 1};
-
-static double plane_inverse(const double F[6], double C[3], double inverse[3])
+void dea_viscous_strain_flat(const double c[3], double C[6], double inverse[6])
 {
-  C[0] = F[0] * F[0] + F[2] * F[2] + F[4] * F[4];
-  C[1] = F[1] * F[1] + F[3] * F[3] + F[5] * F[5];
-  C[2] = F[0] * F[1] + F[2] * F[3] + F[4] * F[5];
-  double det = C[0] * C[1] - C[2] * C[2];
-  inverse[0] = C[1] / det;
-  inverse[1] = C[0] / det;
-  inverse[2] = -C[2] / det;
-  return det;
-}
-
-void dea_viscous_strain_flat(const double F[6], double C[6], double inverse[6])
-{
-  double plane[3], turned[3], det = plane_inverse(F, plane, turned);
-  for (int a = 0; a < 3; a++) {
-    static const int place_of[3] = {0, 1, 5};
-    C[place_of[a]] = plane[a];
-    inverse[place_of[a]] = turned[a];
-  }
-  C[2] = 1 / det;
-  inverse[2] = det;
-  C[3] = C[4] = inverse[3] = inverse[4] = 0;
-}
-
-/* Larger and smaller principal value of (P F^T)/area in the plane of the film. */
-static void find_tensions(const double P[6], const double F[6], double area, double tension[2])
-{
-  double trace = 0, square = 0;
-  for (int a = 0; a < 9; a++) {
-    int i = a / 3, j = a % 3;
-    double T = (P[2 * i] * F[2 * j] + P[2 * i + 1] * F[2 * j + 1]) / area;
-    trace += i == j ? T : 0;
-    square += T * T;
-  }
-  double apart = sqrt(fmax(2 * square - trace * trace, 0));
-  tension[0] = 0.5 * (trace + apart);
-  tension[1] = 0.5 * (trace - apart);
-}
-
-void dea_viscous_add_flat(const struct dea_constituent *constituent, int q, const double F[6],
-                          struct dea_membrane_point *point)
-{
-  if (constituent->viscous == NULL) {
-    return;
-  }
-  const double *full = constituent->viscous + 6 * q, B[3] = {full[0], full[1], full[5]};
-  double C[3], inverse[3], S[3], f[6], det = plane_inverse(F, C, inverse), k = full[2] / det;
-  point->W += 0.5 * (B[0] * (C[0] - 1) + B[1] * (C[1] - 1) + full[2] * (1 / det - 1)) + B[2] * C[2];
-  for (int a = 0; a < 3; a++) {
-    S[a] = B[a] - k * inverse[a];
-  }
-  for (int a = 0; a < 6; a++) { // F C^-1
-    int i = a / 2, J = a % 2;
-    f[a] = F[2 * i] * inverse[plane_place[J]] + F[2 * i + 1] * inverse[plane_place[2 + J]];
-    point->P[a] += F[2 * i] * S[plane_place[J]] + F[2 * i + 1] * S[plane_place[2 + J]];
-  }
-  for (int a = 0; a < 36; a++) {
-    int i = a / 12, J = a / 6 % 2, m = a % 6 / 2, L = a % 2, JL = plane_place[2 * J + L];
-    double across = F[2 * i] * f[2 * m] + F[2 * i + 1] * f[2 * m + 1]; // F C^-1 F^T
-    point->A[a] += (i == m ? S[JL] : 0) + 2 * k * f[2 * i + J] * f[2 * m + L] +
-                   k * (f[2 * i + L] * f[2 * m + J] + across * inverse[JL]);
-  }
-  find_tensions(point->P, F, point->area, point->tension_Pa);
-}
-
-dea_status dea_viscous_membrane_point(const struct dea_constituent *constituent, int q,
-                                      const double F[6], double field_V_per_m,
-                                      struct dea_membrane_point *out)
-{
-  const double *B = constituent->viscous != NULL ? constituent->viscous + 6 * q : NULL;
-  dea_status status = dea_membrane_point_in_time(constituent, B, F, field_V_per_m, out);
-  if (status == DEA_OK && out->state == DEA_TAUT) {
-    dea_viscous_add_flat(constituent, q, F, out);
-  }
-  return status;
+  const double det = c[0] * c[1] - c[2] * c[2];
+  const double strain[6] = {c[0], c[1], 1 / det, 0, 0, c[2]};
+  const double opposite[6] = {c[1] / det, c[0] / det, det, 0, 0, -c[2] / det};
+  memcpy(C, strain, sizeof strain);
+  memcpy(inverse, opposite, sizeof opposite);
 }
 
 void dea_viscous_strain(const double F[9], const double cof[9], double J, double C[6],

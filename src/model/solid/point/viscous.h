@@ -15,26 +15,15 @@
 #define DEA_MODEL_SOLID_POINT_VISCOUS_H
 
 #include "material/branch.h"
-#include "model/solid/point/membrane_point.h"
+#include "model/solid/point/constituent.h"
 
 /* Adds the step of a point q of an element to energy and stress and, if asked for, to the tangent.
  * Nothing to do for a constituent without one. */
 void dea_viscous_add(const struct dea_constituent *constituent, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point);
 
-/* dea_membrane_point with the step of a point q of an element, which takes part in where the film
- * wrinkles. */
-dea_status dea_viscous_membrane_point(const struct dea_constituent *constituent, int q,
-                                      const double F[6], double field_V_per_m,
-                                      struct dea_membrane_point *out);
-
-/* The same of a membrane that is taut, of which B 23 and B 13 are not used: with C_33 = 1/det C of
- * the plane, 1/2 B : (C - 1). */
-void dea_viscous_add_flat(const struct dea_constituent *constituent, int q, const double F[6],
-                          struct dea_membrane_point *point);
-
-/* C and C^-1 from the in-plane columns F[2 i + J] of a membrane; J = 1. */
-void dea_viscous_strain_flat(const double F[6], double C[6], double inverse[6]);
+/* C and C^-1 of a film with the metric c of its plane, 11 22 12; J = 1. */
+void dea_viscous_strain_flat(const double c[3], double C[6], double inverse[6]);
 
 /* C and C^-1 from F with cofactors cof and determinant J. */
 void dea_viscous_strain(const double F[9], const double cof[9], double J, double C[6],
