@@ -1,6 +1,5 @@
 #include "model/solid/assembly/internal_variables.h"
 
-#include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/problem.h"
 
 #include <stdint.h>
@@ -13,9 +12,15 @@ enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
 static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_element_strains *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  struct dea_solid_element_place place;
-  struct dea_element_input in;
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  const struct dea_constituent constituent = dea_solid_constituent_at(s, e);
+  double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
+  const struct dea_element_input in = {.constituent = &constituent,
+                                       .X = X,
+                                       .u = u,
+                                       .voltage_V =
+                                           dea_solid_voltage_across(s, e, s->state.voltage_V)};
+  dea_solid_gather(s, e, s->problem.grid->X, X);
+  dea_solid_gather(s, e, s->state.u, u);
   return element->type->strains(element, &in, out);
 }
 
