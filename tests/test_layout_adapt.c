@@ -185,6 +185,30 @@ static void test_blocks_and_free(void **state)
   dea_device_destroy(ctx, device);
 }
 
+/* A tip that is pressed 2 mm into the middle takes the same force of both. */
+static void test_tip_on_blocks_and_free(void **state)
+{
+  (void)state;
+  static const struct dea_probe tip = {.radius_m = 3e-3, .from_fibre_side = true};
+  const struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
+  struct dea_device *device = disc_new(blocks.frame_radius_m, 3.75e-3, 1.5);
+  const struct dea_device *const both[2] = {&blocks, device};
+  const struct dea_model_type *type = dea_model_find("3d");
+  struct dea_load_point point;
+  double force_N[2];
+  for (int i = 0; i < 2; i++) {
+    struct dea_model *model;
+    assert_int_equal(type->create(ctx, both[i], NULL, &model), DEA_OK);
+    assert_int_equal(type->solve(ctx, model, 2e3, &point), DEA_OK);
+    assert_int_equal(type->indent(ctx, model, &tip, 2e-3, &point), DEA_OK);
+    assert_close(point.lowest_z_m, -2e-3, 0.01, 0);
+    force_N[i] = point.force_N;
+    type->destroy(ctx, model);
+  }
+  assert_close(force_N[1], force_N[0], 0.01, 0);
+  dea_device_destroy(ctx, device);
+}
+
 /* A body that is held has no error, a device without a monitor of that name no mesh. */
 static void test_refused(void **state)
 {
@@ -226,6 +250,7 @@ int main(void)
       cmocka_unit_test(test_corner),
       cmocka_unit_test(test_cone),
       cmocka_unit_test(test_blocks_and_free),
+      cmocka_unit_test(test_tip_on_blocks_and_free),
       cmocka_unit_test(test_refused),
       cmocka_unit_test(test_order),
   };

@@ -74,7 +74,6 @@ static dea_status check_disc(struct dea_context *ctx, const struct dea_design *d
 /* Keys that a design with `plies` may have and that only a disc in a frame has a use for. */
 static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_design *design)
 {
-  const struct dea_choice *path = &design->compute.solid.path;
   const struct dea_choice *side = &design->compute.solid.buckling_branch;
   const struct dea_choice *field = &design->compute.solid.field;
   const struct dea_quantity *tips = &design->compute.solid.tip_refinement;
@@ -84,7 +83,6 @@ static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_
     const struct dea_location *where;
     const char *key;
   } keys[] = {
-      {path->value != 0, &path->location, "solid.path"},
       {side->value != DEA_BRANCH_ANY, &side->location, "solid.buckling_branch"},
       {field->value == DEA_FIELD_COUPLED, &field->location, "solid.field: coupled"},
       {tips->origin == DEA_GIVEN || tips->origin == DEA_OVERRIDE, &tips->location,

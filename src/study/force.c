@@ -120,12 +120,7 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
   if (force->depth_count + force->preload_count == 0) {
     return DEA_OK;
   }
-  if (device->general) {
-    return dea_finding_add(ctx, DEA_ERROR, force->radius_m.location,
-                           "a tip is pressed against a disc only; compute.loading moves a body of "
-                           "this device");
-  }
-  if (force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
+  if (device->general || force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
     return DEA_OK;
   }
   return dea_finding_add(ctx, DEA_ERROR, force->radius_m.location,
@@ -667,6 +662,7 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
 }
 
 const struct dea_study dea_study_force = {
+    .any_layout = true,
     .name = study_name,
     .keys = &section,
     .asked = asked,

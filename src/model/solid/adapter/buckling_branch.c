@@ -24,7 +24,7 @@ static bool on_side(const void *self, const double *u)
 {
   const struct wanted *wanted = self;
   double to_m = 0, from_m = 0;
-  for (size_t n = 0; n < wanted->grid->node_count; n++) {
+  for (size_t n = 0; n < wanted->grid->node_count && wanted->grid->column[n] >= 0; n++) {
     double z = wanted->sign * u[3 * n + 2];
     to_m = fmax(to_m, z);
     from_m = fmax(from_m, -z);
@@ -57,7 +57,8 @@ static void find_middle(const struct wanted *wanted, const double *u, size_t n, 
  * image, and the column leans to the other side with it. */
 static void set_push(const struct wanted *wanted, const double *u, double *push)
 {
-  for (size_t n = 0, end; n < wanted->grid->node_count; n = end) {
+  // nodes of bodies are the last
+  for (size_t n = 0, end; n < wanted->grid->node_count && wanted->grid->column[n] >= 0; n = end) {
     double middle[3];
     find_middle(wanted, u, n, &end, middle);
     double part = wanted->sign * middle[2] < 0 ? 2 : 0;
@@ -98,7 +99,7 @@ void dea_buckling_branch_fold(const struct dea_solid *solid, const struct dea_gr
   const struct wanted wanted = {.grid = grid, .film = film, .sign = sign};
   const double *u = solid->state.u;
   double h = film->thickness_m;
-  for (size_t n = 0, end; n < grid->node_count; n = end) {
+  for (size_t n = 0, end; n < grid->node_count && grid->column[n] >= 0; n = end) {
     double middle[3];
     find_middle(&wanted, u, n, &end, middle);
     double far = hypot(middle[2], h), slope = sign * middle[2] / far;
