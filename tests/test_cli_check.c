@@ -178,7 +178,8 @@ static void test_ranks_are_for_run_alone(void **state)
 static void test_check_lists_values_and_what_follows(void **state)
 {
   (void)state;
-  assert_int_equal(command_run("check @/examples/frdea-4.yaml --set film.thickness=200um"), 0);
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml --all --set film.thickness=200um"),
+                   0);
   assert_contains(command_out,
                   "film.thickness                     200um                     --set");
   assert_contains(command_out,
@@ -208,14 +209,38 @@ static void test_errors_in_the_order_of_the_file(void **state)
   assert_contains(command_err, "3d; did you mean 'lumped'?");
 }
 
-static void test_only_what_was_changed(void **state)
+/* What is given and what follows, of either kind of device, on about a page. */
+static void test_check_is_brief(void **state)
 {
   (void)state;
-  assert_int_equal(command_run("check @/examples/frdea-4.yaml --changed --set pre_stretch=2"), 0);
-  assert_contains(command_out, "--set\n");
-  assert_contains(command_out, "film.thickness ");
-  assert_null(strstr(command_out, "  default\n"));
-  assert_null(strstr(command_out, "  not given\n"));
+  static const char *const designs[] = {"frdea-4.yaml", "plain-disc.yaml", "devices/cone-mass.yaml",
+                                        "devices/two-electrodes.yaml"};
+  for (size_t i = 0; i < sizeof designs / sizeof designs[0]; i++) {
+    char arguments[200];
+    snprintf(arguments, sizeof arguments, "check @/examples/%s --set film.thickness=200um",
+             designs[i]);
+    if (strchr(designs[i], '/') != NULL) {
+      *strstr(arguments, " --set") = '\0';
+    }
+    assert_int_equal(command_run(arguments), 0);
+    size_t lines = 0;
+    for (const char *at = command_out; (at = strchr(at, '\n')) != NULL; at++) {
+      lines++;
+    }
+    assert_in_range(lines, 15, 30);
+    assert_contains(command_out, "\n  symmetry ");
+    assert_contains(command_out, " um, elastosil-2030, ");
+    assert_null(strstr(command_out, "fabrication"));
+    assert_null(strstr(command_out, "  default\n"));
+  }
+  assert_int_equal(command_run("check @/examples/frdea-4.yaml --set pre_stretch=2"), 0);
+  assert_contains(command_out, "\n  pre_stretch     2 (--set)\n");
+  assert_contains(command_out, "\n  film            material elastosil-2030, law yeoh-178, perm");
+  assert_contains(command_out,
+                  "\n  compute         models lumped, axisymmetric, voltage.from 0 kV,");
+  assert_int_equal(command_run("check @/examples/devices/array-3x3.yaml"), 0);
+  assert_contains(command_out, "\n  shapes[3]       grid, difference, of film, holes\n");
+  assert_contains(command_out, "\n  channels        middle 1 x voltage, others 0 x voltage\n");
 }
 
 static void test_quiet_keeps_the_result(void **state)
@@ -233,7 +258,7 @@ static void test_check_shows_the_band_of_the_breakdown_field(void **state)
 {
   (void)state;
   assert_int_equal(command_run("check @/examples/frdea-4.yaml"), 0);
-  assert_contains(command_out, "E_b 80 V/um (80 to 100 by source)");
+  assert_contains(command_out, "E_b 80 V/um (80 to 100\n                  by source)");
 }
 
 static json_t *run_json(const char *arguments, int code)
@@ -256,6 +281,7 @@ static void test_check_as_json(void **state)
   assert_close(json_number_value(json_object_get(derived, "coverage")), 0.2, 1e-12, 0);
   assert_close(json_number_value(json_object_get(derived, "fibre_length_m")), 0.01, 1e-12, 0);
   assert_true(json_array_size(json_object_get(json, "values")) > 20);
+  assert_true(json_array_size(json_object_get(derived, "plies")) == 2);
   json_decref(json);
   json = run_json("check @/examples/paper/fig02.yaml --json --set film.thickness=1", 3);
   assert_true(json_is_false(json_object_get(json, "good")));
@@ -465,7 +491,7 @@ int main(void)
       cmocka_unit_test(test_ranks_are_for_run_alone),
       cmocka_unit_test(test_check_lists_values_and_what_follows),
       cmocka_unit_test(test_errors_in_the_order_of_the_file),
-      cmocka_unit_test(test_only_what_was_changed),
+      cmocka_unit_test(test_check_is_brief),
       cmocka_unit_test(test_quiet_keeps_the_result),
       cmocka_unit_test(test_check_shows_the_band_of_the_breakdown_field),
       cmocka_unit_test(test_check_as_json),

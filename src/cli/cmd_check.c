@@ -16,7 +16,7 @@
 struct request {
   const char *design, *svg;
   struct cli_overrides overrides;
-  bool json, changed;
+  bool json, all;
 };
 
 enum { DERIVED_MAX = 16 };
@@ -51,13 +51,7 @@ static size_t derive(const struct dea_device *device, struct derived rows[DERIVE
   return n;
 }
 
-/* Whether a value is listed: with `changed` only one that the file or --set gives. */
-static bool is_listed(const struct dea_listed *value, bool changed)
-{
-  return !changed || value->origin == DEA_GIVEN || value->origin == DEA_OVERRIDE;
-}
-
-static void print_values(const struct dea_design *design, bool changed)
+static void print_values(const struct dea_design *design)
 {
   int width = 0;
   for (size_t i = 0; i < design->values.count; i++) {
@@ -66,9 +60,6 @@ static void print_values(const struct dea_design *design, bool changed)
   }
   for (size_t i = 0; i < design->values.count; i++) {
     const struct dea_listed *value = &design->values.items[i];
-    if (!is_listed(value, changed)) {
-      continue;
-    }
     printf("  %-*s  %-24s  ", width, value->path, value->text);
     if (value->origin == DEA_GIVEN) {
       printf("line %zu\n", value->location.line);
@@ -80,89 +71,71 @@ static void print_values(const struct dea_design *design, bool changed)
   }
 }
 
-static void print_material(const char *what, const struct dea_material *material)
+/* "width 38 mm" of "shapes[0].width"; names, kinds, and further elements of a list by their value
+ * alone. */
+static void add_given(struct dea_text *row, const struct dea_listed *value, size_t part)
 {
-  if (material->name[0] == '\0') {
-    return;
-  }
-  printf("  %-32s  %s", what, material->name);
-  if (material->law != NULL) {
-    printf(", %s (%s)", material->law->name, material->law_id);
-  }
-  if (material->permittivity.at_rest > 0) {
-    printf(", eps_r %g", material->permittivity.at_rest);
-  }
-  if (material->permittivity.slope != 0) {
-    printf(" %+g (s - 1)", material->permittivity.slope);
-  }
-  if (material->breakdown.known) {
-    const struct dea_breakdown *b = &material->breakdown;
-    printf(", E_b %.4g V/um", 1e-6 * b->at_rest_V_per_m);
-    if (b->exponent != 0) {
-      printf(" s^%g", b->exponent);
-    }
-    if (b->law.high > b->law.low) {
-      printf(" (%.4g to %.4g by source)", 1e-6 * b->law.low * b->at_rest_V_per_m,
-             1e-6 * b->law.high * b->at_rest_V_per_m);
-    }
-    if (b->law.shape > 0) {
-      printf(", Weibull shape %g", b->law.shape);
-    }
-  }
-  if (material->young_modulus_Pa > 0) {
-    printf(", E %g MPa", 1e-6 * material->young_modulus_Pa);
-  }
-  putchar('\n');
+  const char *key = value->path[part] == '.' ? value->path + part + 1 : "",
+             *list = strchr(key, '[');
+  const bool alone = strcmp(key, "name") == 0 || strcmp(key, "kind") == 0;
+  const bool more = list != NULL && strstr(list, "[0]") == NULL;
+  const int shown = alone || more ? 0 : (int)strcspn(key, "[");
+  dea_text_add(row, "%s%.*s%s%s%s", row->length > 0 ? ", " : "", shown, key, shown > 0 ? " " : "",
+               value->text, value->origin == DEA_OVERRIDE ? " (--set)" : "");
 }
 
-static void print_voltages(const struct dea_design *design)
+/* What the file and --set give, a row for each part. */
+static dea_status print_given(struct dea_context *ctx, const struct dea_design *design)
 {
-  size_t last = design->compute.voltage_count - 1;
-  printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
-         1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
+  struct dea_text row = {.ctx = ctx};
+  const char *name = "";
+  size_t length = 0;
+  for (size_t i = 0; i < design->values.count; i++) {
+    const struct dea_listed *value = &design->values.items[i];
+    const size_t part = strcspn(value->path, ".");
+    if ((value->origin != DEA_GIVEN && value->origin != DEA_OVERRIDE) ||
+        strcmp(value->path, "dea") == 0 || strcmp(value->path, "title") == 0) {
+      continue;
+    }
+    if (part != length || strncmp(value->path, name, part) != 0) {
+      DEA_TRY(ctx, cli_row_print(name, length, &row));
+      name = value->path;
+      length = part;
+    }
+    add_given(&row, value, part);
+  }
+  return cli_row_print(name, length, &row);
 }
 
-static void print_disc(const struct dea_design *design, const struct dea_device *device)
+static dea_status print_text(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device, bool all)
 {
+  printf("%s%s%s\n\n%s\n", design->file, design->title.text[0] != '\0' ? ": " : "",
+         design->title.text, all ? "Values" : "Given (--all lists the defaults too)");
+  if (all) {
+    print_values(design);
+  } else {
+    DEA_TRY(ctx, print_given(ctx, design));
+  }
+  puts("\nDerived");
   struct derived rows[DERIVED_MAX];
-  size_t count = derive(device, rows);
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a design without errors has its device
+  const size_t count = device->general ? 0 : derive(device, rows);
   for (size_t i = 0; i < count; i++) {
     printf("  %-32s  %.6g%s%s\n", rows[i].meaning, rows[i].factor * rows[i].si,
            rows[i].unit[0] != '\0' ? " " : "", rows[i].unit);
   }
-  print_voltages(design);
-  printf("  %-32s  %g%s\n", "end of the path (total stretch)", design->compute.path_max_stretch.si,
-         design->compute.path_max_stretch.origin == DEA_DEFAULT
-             ? ", or that of the highest voltage if larger"
-             : "");
-  print_material("film", &device->film);
-  print_material("electrodes", &device->electrode);
-  print_material("fibres", &device->fibre);
+  const size_t last = design->compute.voltage_count - 1;
+  printf("  %-32s  %zu, from %g kV to %g kV\n", "voltages", design->compute.voltage_count,
+         1e-3 * design->compute.voltages_V[0], 1e-3 * design->compute.voltages_V[last]);
+  return cli_layout_print(ctx, device->layout);
 }
 
-static void print_text(const struct dea_design *design, const struct dea_device *device,
-                       bool changed)
-{
-  printf("%s\n\nValues\n", design->file);
-  print_values(design, changed);
-  puts("\nDerived");
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a design without errors has its device
-  if (device->general) {
-    print_voltages(design);
-    cli_layout_print(device->layout);
-  } else {
-    print_disc(design, device);
-  }
-}
-
-static json_t *values_json(const struct dea_design *design, bool changed)
+static json_t *values_json(const struct dea_design *design)
 {
   json_t *array = json_array();
   for (size_t i = 0; i < design->values.count; i++) {
     const struct dea_listed *value = &design->values.items[i];
-    if (!is_listed(value, changed)) {
-      continue;
-    }
     json_t *row =
         json_pack("{s:s, s:s, s:s, s:I, s:I}", "key", value->path, "text", value->text, "origin",
                   origin_names[value->origin], "line", (json_int_t)value->location.line, "column",
@@ -184,14 +157,12 @@ static void print_json(const struct dea_cli *cli, const struct request *request,
                            dea_finding_count(cli->ctx, DEA_ERROR) == 0 && device != NULL,
                            "findings", cli_findings_json(cli->ctx));
   if (design != NULL) {
-    json_object_set_new(json, "values", values_json(design, request->changed));
+    json_object_set_new(json, "values", values_json(design));
   }
-  if (device != NULL && device->general) {
-    json_object_set_new(json, "derived", cli_layout_json(device->layout));
-  } else if (device != NULL) {
+  if (device != NULL) {
     struct derived rows[DERIVED_MAX];
-    size_t count = derive(device, rows);
-    json_t *derived = json_object();
+    size_t count = device->general ? 0 : derive(device, rows);
+    json_t *derived = cli_layout_json(device->layout);
     for (size_t i = 0; i < count; i++) {
       json_object_set_new(derived, rows[i].key, json_real(rows[i].si));
     }
@@ -243,7 +214,7 @@ static int run(struct dea_cli *cli, void *user)
   if (request->json) {
     print_json(cli, request, design, device);
   } else if (status == DEA_OK) {
-    print_text(design, device, request->changed);
+    status = print_text(cli->ctx, design, device, request->all);
     fflush(stdout);
   }
   int code = cli_report(cli, status);
@@ -255,15 +226,14 @@ static int run(struct dea_cli *cli, void *user)
 static const struct cli_option options[] = {
     CLI_DESIGN_ROW,
     CLI_SET_ROW(0, CLI_KEY, "film.thickness=200um; 'null' takes a key away"),
-    {"changed", 0, CLI_FLAG, NULL, "only the values that the file or --set gives, no defaults",
-     CLI_AT(changed)},
+    {"all", 0, CLI_FLAG, NULL, "every value with its line, defaults too", CLI_AT(all)},
     {"svg", 0, CLI_NEW_FILE, "FILE", "a drawing of the device", CLI_AT(svg)},
     CLI_JSON_ROW("values, derived numbers and findings as JSON"),
     {0}};
 
 const struct dea_command cmd_check = {
     .name = "check",
-    .summary = "Check a design file and list every value with its origin",
+    .summary = "Check a design file; say what it gives and what follows from it",
     .options = options,
     .request_size = sizeof(struct request),
     .run = run,
