@@ -5,6 +5,7 @@
 
 #include <jansson.h>
 #include <signal.h>
+#include <stdbool.h>
 
 static json_t *summary(const char *arguments)
 {
@@ -125,9 +126,64 @@ static void test_run_folder(void **state)
   assert_contains(command_err, "model axisymmetric: to be trusted and safe up to 3.2 kV");
   assert_contains(command_err, "those of the film without its fibres");
   assert_contains(command_out, "<5017.0"); // the tip's z of model lumped is a bound
-  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures"), 5);
-  assert_contains(command_err, "--force");
-  assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --force"), 0);
+}
+
+static bool is_there(const char *name)
+{
+  char path[600];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  return access(path, F_OK) == 0;
+}
+
+/* A run of the same design takes the place of the one before, with --keep a folder of its own; one
+ * of another design asks for --force. What is not ours stays. */
+static void test_folder_is_renewed(void **state)
+{
+  (void)state;
+  const char again[] = "run @/examples/plain-disc.yaml -m lumped --no-figures -o renewed ";
+  char arguments[400];
+  assert_int_equal(command_run("run @/examples/plain-disc.yaml --no-figures -o renewed"), 0);
+  command_write("renewed/notes.txt", "mine\n");
+  assert_true(is_there("renewed/axisymmetric_sweep.csv"));
+  assert_int_equal(command_run(again), 0);
+  assert_contains(command_out, "results: renewed (");
+  assert_true(is_there("renewed/lumped_sweep.csv") && is_there("renewed/notes.txt"));
+  assert_false(is_there("renewed/axisymmetric_sweep.csv"));
+  assert_false(is_there("renewed.part"));
+  for (int i = 2; i < 4; i++) {
+    snprintf(arguments, sizeof arguments, "%s--keep", again);
+    assert_int_equal(command_run(arguments), 0);
+    snprintf(arguments, sizeof arguments, "results: renewed-%d (", i);
+    assert_contains(command_out, arguments);
+  }
+  command_expect("run @/examples/frdea-4.yaml -m lumped --no-figures -o renewed", 5, "--force");
+  command_expect("run @/examples/frdea-4.yaml -m lumped --no-figures -o renewed --force", 0, "");
+  snprintf(arguments, sizeof arguments, "%s--keep --force", again);
+  command_expect(arguments, 2, "--keep takes a new folder");
+}
+
+/* A run that fails leaves no folder, and the results of before as they were: here files are longer
+ * than the user's limit, an error of writing, not the end by a signal. */
+static void test_failed_run_leaves_nothing(void **state)
+{
+  (void)state;
+  for (int i = 0; i < 2; i++) {
+    char text[2048];
+    if (i > 0) {
+      assert_int_equal(command_run("run @/examples/plain-disc.yaml --no-figures -o short"), 0);
+    }
+    snprintf(text, sizeof text,
+             "cd '%s' && ulimit -f 1 && '%s' run '%s/examples/plain-disc.yaml' -m lumped "
+             "--no-figures -o short >/dev/null 2>err.txt",
+             command_folder, DEA_COMMAND, DEA_SOURCE_DIR);
+    int status = system(text);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 5);
+    assert_false(is_there("short.part"));
+    assert_int_equal(is_there("short"), i > 0);
+    assert_int_equal(is_there("short/axisymmetric_sweep.csv"), i > 0);
+    assert_int_equal(is_there("short/results.h5"), i > 0);
+  }
 }
 
 /* The electrode's stretch triples, far beyond 1.5: events up there are reported all the same. */
@@ -550,20 +606,6 @@ static void test_linked_figures(void **state)
   assert_string_equal(command_out, "mine\n");
 }
 
-/* A file that is longer than the user's limit is an error of writing, not the end by a signal. */
-static void test_file_too_long(void **state)
-{
-  (void)state;
-  char text[2048];
-  snprintf(text, sizeof text,
-           "cd '%s' && ulimit -f 8 && '%s' run '%s/examples/plain-disc.yaml' -m lumped "
-           "--no-figures -o short >/dev/null 2>err.txt",
-           command_folder, DEA_COMMAND, DEA_SOURCE_DIR);
-  int status = system(text);
-  assert_true(WIFEXITED(status));
-  assert_int_equal(WEXITSTATUS(status), 5);
-}
-
 /* Little memory ends model 3d with a message: not in OpenBLAS, which asks for its work space
  * without end where there is no room for it (10 s of processor time end that). */
 static void test_little_memory(void **state)
@@ -572,7 +614,7 @@ static void test_little_memory(void **state)
   if (SANITIZED) {
     skip(); // the address space is taken
   }
-  int told = 0;
+  int told = 0, done = 0;
   for (int mebibytes = 240; mebibytes <= 400; mebibytes += 40) {
     char text[2048];
     snprintf(text, sizeof text,
@@ -585,6 +627,8 @@ static void test_little_memory(void **state)
     assert_true(WIFEXITED(status));
     assert_true(WEXITSTATUS(status) < 128); // not ended by the limit of time
     told += WEXITSTATUS(status) == 5 && strstr(command_err, "memory") != NULL;
+    done += WEXITSTATUS(status) == 0;
+    assert_int_equal(is_there("little"), done > 0);
   }
   assert_true(told > 0);
 }
@@ -610,6 +654,8 @@ int main(void)
       cmocka_unit_test(test_in_time),
       cmocka_unit_test(test_set_overrides_the_design),
       cmocka_unit_test(test_run_folder),
+      cmocka_unit_test(test_folder_is_renewed),
+      cmocka_unit_test(test_failed_run_leaves_nothing),
       cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),
       cmocka_unit_test(test_pull_in_keeps_what_was_computed),
       cmocka_unit_test(test_what_matters_has_flags),
@@ -629,7 +675,6 @@ int main(void)
       cmocka_unit_test(test_lost_output),
       cmocka_unit_test(test_closed_output),
       cmocka_unit_test(test_linked_figures),
-      cmocka_unit_test(test_file_too_long),
       cmocka_unit_test(test_little_memory),
       cmocka_unit_test(test_interrupt_keeps_points),
   };

@@ -27,7 +27,7 @@ struct request {
   const char *output;       // NULL: not given
   struct cli_words models, studies;
   struct cli_overrides overrides;
-  bool json, force, resume, no_figures, sensitivity;
+  bool json, force, keep, resume, no_figures, sensitivity;
   double processes; // 0: not given
 };
 
@@ -125,13 +125,13 @@ static dea_status prepare(struct dea_cli *cli, const struct request *request, st
 
 static void release(struct dea_cli *cli, struct run *run)
 {
+  dea_job_end(cli->ctx, &run->job);
   if (run->directory.ctx != NULL) {
     dea_text_free(&run->directory);
   }
   if (run->others.ctx != NULL) {
     dea_text_free(&run->others);
   }
-  dea_job_end(cli->ctx, &run->job);
   dea_result_destroy(cli->ctx, run->result);
   dea_device_destroy(cli->ctx, run->device);
   dea_design_destroy(cli->ctx, run->design);
@@ -329,10 +329,17 @@ static void print_model(const struct dea_context *ctx, const struct dea_result *
 /* Names what the folder has got. */
 static void print_folder(struct dea_cli *cli, const struct run *run)
 {
-  char *figures = dea_path_join(cli->ctx, run->job.folder, DEA_FIGURE_FOLDER);
+  const char *folder = dea_job_folder(&run->job, run->result);
+  if (folder == NULL) {
+    return;
+  }
+  char *figures = dea_path_join(cli->ctx, folder, DEA_FIGURE_FOLDER);
   bool drawn = !run->job.no_figures && figures != NULL && dea_path_is_folder(figures);
-  printf("\nresults: %s (summary.json, results.h5%s%s)\n", run->job.folder,
+  printf("\nresults: %s (summary.json, results.h5%s%s)\n", folder,
          dea_csv_has(run->result) ? ", CSV" : "", drawn ? ", " DEA_FIGURE_FOLDER "/" : "");
+  if (strcmp(folder, run->job.folder) != 0) {
+    printf("%s still has the results of before; --resume goes on\n", run->job.folder);
+  }
   dea_free(cli->ctx, figures);
 }
 
@@ -361,6 +368,25 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
   return status;
 }
 
+/* The folder of a run; with --keep "out-2", "out-3", ... where "out" exists. */
+static dea_status name_folder(const struct request *request, struct dea_text *out)
+{
+  struct dea_text made = {.ctx = out->ctx};
+  const char *name = cli_output_name(request->output, request->designs.at[0], "run", &made);
+  dea_text_add(out, "%s", name != NULL ? name : "");
+  size_t length = out->length;
+  while (length > 1 && out->data[length - 1] == '/') {
+    length--;
+  }
+  for (size_t n = 2; request->keep && !out->failed && dea_path_exists(out->data); n++) {
+    out->length = 0;
+    dea_text_add(out, "%.*s-%zu", (int)length, name, n);
+  }
+  const bool failed = out->failed || name == NULL;
+  dea_text_free(&made);
+  return failed ? DEA_E_MEMORY : DEA_OK;
+}
+
 static dea_status run_all(struct dea_cli *cli, const struct request *request, struct run *run)
 {
   struct dea_context *ctx = cli->ctx;
@@ -370,13 +396,15 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   run->directory.ctx = ctx;
   const char *folder = NULL; // the summary goes to stdout alone
   if (request->output != NULL || !request->json) {
-    folder = cli_output_name(request->output, request->designs.at[0], "run", &run->directory);
-    DEA_TRY(ctx, folder != NULL ? DEA_OK : DEA_E_MEMORY);
+    DEA_TRY(ctx, name_folder(request, &run->directory));
+    folder = dea_text_get(&run->directory);
   }
+  const bool renewed = folder != NULL && !request->resume && !request->keep &&
+                       dea_run_folder_is_of(ctx, folder, run->design);
   run->job = (struct dea_job){.studies = given ? request->studies.at : NULL,
                               .study_count = request->studies.count,
                               .folder = folder,
-                              .force = request->force,
+                              .force = request->force || renewed,
                               .resume = request->resume,
                               .no_figures = request->no_figures,
                               .processes = (size_t)request->processes};
@@ -401,6 +429,9 @@ static int run(struct dea_cli *cli, void *user)
   }
   if (request->resume && request->force) {
     return cli_usage_error(cli, &cmd_run, "--resume goes on, --force starts anew: choose one");
+  }
+  if (request->keep && (request->resume || request->force)) {
+    return cli_usage_error(cli, &cmd_run, "--keep takes a new folder, --resume and --force do not");
   }
   if (cli->follower) { // no folder; its standard output leads nowhere
     request->json = true;
@@ -436,7 +467,10 @@ static const struct cli_option options[] = {
      CLI_AT(sensitivity)},
     CLI_SET_ROW('s', CLI_KEY, "film.thickness=200um"),
     CLI_OUTPUT_ROW(CLI_FOLDER, "DIR", "run folder (default: DESIGN.run here)"),
-    CLI_FORCE_ROW('f', "replace the results in an existing run folder"),
+    CLI_FORCE_ROW('f', "replace whatever results are in the folder; without it those of another "
+                       "design file stay"),
+    {"keep", 'k', CLI_FLAG, NULL, "keep earlier results: take DIR-2, DIR-3, ... where DIR exists",
+     CLI_AT(keep)},
     {"resume", 0, CLI_FLAG, NULL, "go on where the run in the folder stopped (model 3d)",
      CLI_AT(resume)},
     {"jobs", 'j', CLI_TEXT, "N", "processes for the load lines of study force (default: 1)",

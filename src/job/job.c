@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "job/job.h"
 
+#include "base/write_file.h"
 #include "output/run_folder.h"
 #include "result/provenance.h"
 #include "study/rerun.h"
@@ -9,10 +10,45 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
+
+static const char results_file[] = "results.h5";
 
 static bool has_folder(const struct dea_job *job)
 {
   return job->folder != NULL && job->folder[0] != '\0';
+}
+
+static const char *working_folder(const struct dea_job *job)
+{
+  return job->part != NULL ? job->part : job->folder;
+}
+
+static bool has_file(struct dea_context *ctx, const char *folder, const char *name)
+{
+  char *path = dea_path_join(ctx, folder, name);
+  const bool there = path != NULL && dea_path_exists(path);
+  dea_free(ctx, path);
+  return there;
+}
+
+/* FOLDER.part where results are replaced, or where a run that did so is resumed. */
+static dea_status choose_part(struct dea_context *ctx, struct dea_job *job)
+{
+  size_t length = strlen(job->folder);
+  while (length > 1 && job->folder[length - 1] == '/') {
+    length--;
+  }
+  struct dea_text part = {.ctx = ctx};
+  dea_text_add(&part, "%.*s.part", (int)length, job->folder);
+  const bool failed = part.failed;
+  if (!failed && ((job->force && has_file(ctx, job->folder, results_file)) ||
+                  (job->resume && dea_path_is_folder(part.data)))) {
+    job->part = part.data;
+  } else {
+    dea_text_free(&part);
+  }
+  return failed ? DEA_E_MEMORY : DEA_OK;
 }
 
 /* Makes the folder ready, and what is to be kept in it while the run goes. */
@@ -22,15 +58,20 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
   if (!has_folder(job)) {
     return DEA_OK;
   }
+  DEA_TRY(ctx, choose_part(ctx, job));
   if (job->resume) {
-    DEA_TRY(ctx, dea_checkpoint_restore(ctx, job->folder, result));
+    DEA_TRY(ctx, dea_checkpoint_restore(ctx, working_folder(job), result));
   }
+  job->made = !dea_path_exists(job->folder);
   DEA_TRY(ctx, dea_run_folder_prepare(ctx, job->folder, job->force || job->resume));
   DEA_TRY(ctx, dea_folder_lock(ctx, job->folder, &job->lock));
-  if (job->force) {
-    dea_run_folder_clear(ctx, job->folder);
+  if (job->part != NULL) {
+    DEA_TRY(ctx, dea_run_folder_prepare(ctx, job->part, true));
   }
-  DEA_TRY(ctx, dea_checkpoint_create(ctx, job->folder, &job->keep));
+  if (job->force) {
+    dea_run_folder_clear(ctx, working_folder(job));
+  }
+  DEA_TRY(ctx, dea_checkpoint_create(ctx, working_folder(job), &job->keep));
   result->checkpoint = dea_checkpoint_get_sink(job->keep);
   return DEA_OK;
 }
@@ -160,7 +201,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   char message[1024] = "";
   *began = false;
   DEA_TRY(ctx, dea_job_check(ctx, job, false, result));
-  DEA_TRY(ctx, open_folder(ctx, job, result));
+  DEA_TRY(ctx, job->status = open_folder(ctx, job, result));
   *began = true;
   result->rerun = &dea_rerun_designs;
   result->processes = job->processes;
@@ -178,18 +219,60 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   clock_gettime(CLOCK_MONOTONIC, &end);
   result->provenance.wall_s =
       (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  job->status = first;
   return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
 }
 
-dea_status dea_job_write(struct dea_context *ctx, const struct dea_job *job,
+static bool has_results(const struct dea_result *result)
+{
+  size_t points = 0;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    points += result->curves[i].count;
+  }
+  return points + result->variant_count + result->table_count > 0;
+}
+
+const char *dea_job_folder(const struct dea_job *job, const struct dea_result *result)
+{
+  if (!has_folder(job) || (job->status != DEA_OK && !has_results(result))) {
+    return NULL;
+  }
+  return job->status == DEA_E_INTERRUPTED ? working_folder(job) : job->folder;
+}
+
+/* Removes what a failed run has left, but neither a folder that was there nor files of others. */
+static void discard(struct dea_context *ctx, const struct dea_job *job)
+{
+  if (job->part != NULL || job->made) {
+    dea_run_folder_clear(ctx, working_folder(job));
+    rmdir(working_folder(job)); // that of the lock goes in dea_job_end
+  }
+}
+
+dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
                          const struct dea_result *result)
 {
   if (!has_folder(job) || dea_checkpoint_refused(job->keep)) {
     return DEA_OK;
   }
+  if (dea_job_folder(job, result) == NULL) {
+    discard(ctx, job);
+    return DEA_OK;
+  }
   const struct dea_run_folder_options options = {.started = true, .no_figures = job->no_figures};
-  DEA_TRY(ctx, dea_run_folder_write(ctx, result, job->folder, &options));
-  return DEA_OK;
+  const dea_status status = dea_run_folder_write(ctx, result, working_folder(job), &options);
+  if (status != DEA_OK && status != DEA_E_TOOL) { // without gnuplot the data are there
+    job->status = job->status == DEA_OK ? status : job->status;
+    if (!has_file(ctx, working_folder(job), results_file)) {
+      char message[1024];
+      snprintf(message, sizeof message, "%s", dea_context_message(ctx));
+      discard(ctx, job);
+      return dea_fail(ctx, status, "%s", message);
+    }
+  } else if (job->part != NULL && job->status != DEA_E_INTERRUPTED) {
+    DEA_TRY(ctx, dea_run_folder_replace(ctx, job->folder, job->part));
+  }
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 void dea_job_end(struct dea_context *ctx, struct dea_job *job)
@@ -198,4 +281,9 @@ void dea_job_end(struct dea_context *ctx, struct dea_job *job)
   job->keep = NULL;
   dea_folder_unlock(ctx, job->lock);
   job->lock = NULL;
+  if (job->made && job->status != DEA_OK) {
+    rmdir(job->folder); // of a failed run: one with files in it stays
+  }
+  dea_free(ctx, job->part);
+  job->part = NULL;
 }

@@ -13,10 +13,14 @@ struct dea_job {
   const char *const *studies; // [study_count]; NULL: those that the design asks for
   size_t study_count;
   const char *folder; // run folder; NULL or "": none
-  bool force;         // replace the results in it
+  bool force;         // replace the results in it, once this job has its own
   bool resume;        // go on from them
   bool no_figures;
-  size_t processes;             // that a study may take at the same time; 0 or 1: this one
+  size_t processes;  // that a study may take at the same time; 0 or 1: this one
+  char *part;        // of a job that has begun: folder beside that of the results that it replaces;
+                     // NULL: none; owned
+  bool made;         // the folder was not there before
+  dea_status status; // what dea_job_run gave
   struct dea_keep *keep;        // of a job that has begun
   struct dea_folder_lock *lock; // of the folder, until the job ends
 };
@@ -35,9 +39,14 @@ dea_status dea_job_check(struct dea_context *ctx, const struct dea_job *job, boo
  * message; the result has what was computed. *began: false when nothing could run. */
 dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,
                        bool *began);
-/* Writes the folder, if there is one, after dea_job_run has begun. */
-dea_status dea_job_write(struct dea_context *ctx, const struct dea_job *job,
+/* Writes the folder, if there is one, after dea_job_run has begun. Results that were there are
+ * replaced when all is written; they stay where the run was interrupted, which leaves what it has
+ * in FOLDER.part, to be resumed. A failed run that has computed nothing leaves
+ * no folder. */
+dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
                          const struct dea_result *result);
+/* The folder that has the results after dea_job_write; NULL: none. Lent. */
+const char *dea_job_folder(const struct dea_job *job, const struct dea_result *result);
 /* Frees what the job has made. */
 void dea_job_end(struct dea_context *ctx, struct dea_job *job);
 

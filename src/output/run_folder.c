@@ -1,4 +1,4 @@
-#define _POSIX_C_SOURCE 200809L // lstat
+#define _XOPEN_SOURCE 700 // lstat, realpath
 #include "output/run_folder.h"
 
 #include "base/write_file.h"
@@ -8,8 +8,11 @@
 #include "output/figure.h"
 #include "output/results_h5.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -55,6 +58,58 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
   if (access(directory, W_OK) != 0) {
     return dea_fail(ctx, DEA_E_IO, "the folder %s cannot be written to", directory);
   }
+  return DEA_OK;
+}
+
+bool dea_run_folder_is_of(struct dea_context *ctx, const char *directory,
+                          const struct dea_design *design)
+{
+  struct dea_run *old = NULL;
+  bool same = dea_run_read(ctx, directory, &old) == DEA_OK;
+  if (same) {
+    char *was = realpath(old->design_file, NULL), *is = realpath(design->file, NULL);
+    same = was != NULL && is != NULL && strcmp(was, is) == 0 &&
+           strcmp(old->title, design->title.text) == 0;
+    free(was);
+    free(is);
+  }
+  dea_run_destroy(ctx, old);
+  dea_context_clear(ctx);
+  return same;
+}
+
+/* All that is in a folder into another one, and folders that are in both likewise. */
+static dea_status move_all(struct dea_context *ctx, const char *from, const char *to)
+{
+  dea_status status = DEA_OK;
+  DIR *folder = opendir(from);
+  for (const struct dirent *e;
+       folder != NULL && status == DEA_OK && (e = readdir(folder)) != NULL;) {
+    if (strcmp(e->d_name, ".") == 0 || strcmp(e->d_name, "..") == 0) {
+      continue;
+    }
+    char *old = dea_path_join(ctx, from, e->d_name), *new = dea_path_join(ctx, to, e->d_name);
+    if (old == NULL || new == NULL) {
+      status = DEA_E_MEMORY;
+    } else if (rename(old, new) != 0) {
+      status = dea_path_is_folder(old) && dea_path_is_folder(new)
+                   ? move_all(ctx, old, new)
+                   : dea_fail(ctx, DEA_E_IO, "cannot move %s to %s: %s", old, new, strerror(errno));
+    }
+    dea_free(ctx, old);
+    dea_free(ctx, new);
+  }
+  if (folder != NULL) {
+    closedir(folder);
+  }
+  rmdir(from);
+  return status;
+}
+
+dea_status dea_run_folder_replace(struct dea_context *ctx, const char *directory, const char *by)
+{
+  dea_run_folder_clear(ctx, directory);
+  DEA_TRY(ctx, move_all(ctx, by, directory));
   return DEA_OK;
 }
 

@@ -19,6 +19,14 @@ dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory
  */
 void dea_run_folder_clear(struct dea_context *ctx, const char *directory);
 
+/* Whether the folder holds a run of the same design file, of the same title. */
+bool dea_run_folder_is_of(struct dea_context *ctx, const char *directory,
+                          const struct dea_design *design);
+
+/* Clears a folder, as above, and moves all that is in the folder `by` into it; `by` goes. Both lie
+ * in one file system. DEA_E_IO. */
+dea_status dea_run_folder_replace(struct dea_context *ctx, const char *directory, const char *by);
+
 /* Writes everything of a result, each file as a whole; with force the files of the run that was
  * there go first (other files stay). options: NULL for none. The tables are written before the
  * figures, so that a missing gnuplot (DEA_E_TOOL) costs the pictures only. Pictures are drawn in
