@@ -90,6 +90,70 @@ static void test_materials_of_the_file(void **state)
   assert_close(device->fibre.young_modulus_Pa, 2950e6, 1e-14, 0);
 }
 
+/* A material in one line is the one of the list `materials` with the same numbers. */
+static void test_material_in_one_line(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *line, *law;
+    double param[4];
+  } lines[] = {
+      {"yeoh: [120 kPa, 5 kPa, 1 kPa]", "yeoh", {120e3, 5e3, 1e3}},
+      {"neo-hookean: 60 kPa", "neo-hookean", {60e3}},
+      {"mooney-rivlin: [16 kPa, 0.9 kPa]", "mooney-rivlin", {16e3, 0.9e3}},
+      {"gent: [60 kPa, 120]", "gent", {60e3, 120}},
+      {"ogden: [60 kPa, 1.8]", "ogden", {60e3, 1.8}},
+      {"ogden: [60 kPa, 1.8, 2 kPa, -1]", "ogden", {60e3, 1.8, 2e3, -1}},
+      {"arruda-boyce: [15 kPa, 20]", "arruda-boyce", {15e3, 20}},
+  };
+  for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+    char text[300];
+    snprintf(text, sizeof text,
+             "{%s, permittivity: 2.9, breakdown: 70 V/um, density: 1.1 g/cm^3, "
+             "resistivity: 1e12 ohm m}",
+             lines[i].line);
+    const struct dea_override sets[] = {
+        {"film.material", text}, {"fibres.material", "{young_modulus: 3 GPa, poisson_ratio: 0.3}"}};
+    read_good(GOOD_DESIGN, sets, 2);
+    const struct dea_material *film = &device->film;
+    assert_string_equal(film->name, "film.material");
+    assert_string_equal(film->law->name, lines[i].law);
+    for (int k = 0; k < 4; k++) {
+      assert_close(film->param[k], lines[i].param[k], 1e-14, 0);
+    }
+    assert_close(film->permittivity.at_rest, 2.9, 1e-14, 0);
+    assert_close(film->breakdown.at_rest_V_per_m, 70e6, 1e-14, 0);
+    assert_close(film->density_kg_per_m3, 1100, 1e-14, 0);
+    assert_close(film->resistivity_ohm_m, 1e12, 1e-14, 0);
+    assert_close(device->fibre.young_modulus_Pa, 3e9, 1e-14, 0);
+  }
+}
+
+/* The same in a ply, twice, beside materials of the list. */
+static void test_plies_with_materials_in_one_line(void **state)
+{
+  (void)state;
+  read_good("dea: 1\n"
+            "shapes: [{name: a, kind: circle, radius: 9 mm}]\n"
+            "plies:\n"
+            "  - {name: one, shape: a, material: {neo-hookean: 50 kPa, permittivity: 3}, "
+            "thickness: 50 um}\n"
+            "  - {name: two, shape: a, material: {gent: [60 kPa, 120], permittivity: 4}, "
+            "thickness: 50 um}\n"
+            "  - {name: base, shape: a, material: listed, thickness: 50 um}\n"
+            "electrodes: [{ply: one, side: bottom, shape: a, channel: ground}, "
+            "{ply: two, side: bottom, shape: a, channel: d}]\n"
+            "supports: [{edge: a}]\n"
+            "materials: [{name: listed, kind: plastic, "
+            "elastic: {young_modulus: 1 GPa, poisson_ratio: 0.3, source: s}}]\n",
+            NULL, 0);
+  const struct dea_layout *l = device->layout;
+  assert_close(l->plies[0].material.param[0], 50e3, 1e-14, 0);
+  assert_close(l->plies[1].material.param[1], 120, 1e-14, 0);
+  assert_string_equal(l->plies[1].material.name, "plies.two.material");
+  assert_close(l->plies[2].material.young_modulus_Pa, 1e9, 1e-14, 0);
+}
+
 static bool has_note(const char *part)
 {
   size_t count;
@@ -490,6 +554,8 @@ int main(void)
       TEST(test_lengths_are_those_of_the_stretched_film),
       TEST(test_files_of_other_editors),
       TEST(test_materials_of_the_file),
+      TEST(test_material_in_one_line),
+      TEST(test_plies_with_materials_in_one_line),
       TEST(test_breakdown_without_a_known_exponent_is_noted),
       TEST(test_breakdown_fits_the_film),
       TEST(test_first_set_is_the_default),

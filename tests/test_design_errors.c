@@ -353,6 +353,18 @@ static void test_materials(void **state)
        {22, 47, "'9 kPa' is a pressure, but a density is due"}},
       {WITH("film", "", "stiff") "  - {name: x, kind: plastic, density: {value: 9 kg/m^3}}\n",
        {22, 30, "section 'materials[2].density' lacks 'source'"}},
+      {WITH("{yeho: 1 kPa}", "", "stiff"),
+       {2, 38, "a material in one line has no 'yeho'; did you mean 'yeoh'?"}},
+      {WITH("{yeoh: [1 kPa, 2 kPa], permittivity: 3}", "", "stiff"),
+       {2, 44, "the law 'yeoh' has the parameters [c1, c2, c3], each with its unit; here 2 of"}},
+      {WITH("{yeoh: [1 kPa, 2 kPa, 3], permittivity: 3}", "", "stiff"),
+       {2, 59, "c3: '3' has no unit"}},
+      {WITH("{neo-hookean: 9 kPa, permittivity: 3, density: 9 kPa}", "", "stiff"),
+       {2, 84, "value: '9 kPa' is a pressure, but a density is due"}},
+      {WITH("{neo-hookean: 9 kPa}", "", "stiff"),
+       {2, 37, "material 'film.material' has no permittivity and cannot be the film"}},
+      {WITH("{gent: [9 kPa, 80], neo-hookean: 9 kPa}", "", "stiff"),
+       {2, 57, "a material in one line has one law, and 'gent' stands there already"}},
   };
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     check_errors(bad[i].text, &bad[i].wanted, 1);

@@ -56,8 +56,9 @@ struct dea_field {
   /* A list: `list_max` > 0 elements of `element_size` bytes at offset; their number (size_t) at
    * count_offset. */
   size_t list_min, list_max, element_size, count_offset;
-  bool lone;     // a single value stands for a list of one
-  bool one_line; // of a label that is shown: line ends in it become blanks
+  bool lone;       // a single value stands for a list of one
+  bool one_line;   // of a label that is shown: line ends in it become blanks
+  bool or_section; // of a label: a section may stand for it, which was replaced before the reading
 
   /* Of a DEA_FIELD_SECTION: the tables of which one holds, for printing; ended by NULL, NULL: none.
    */

@@ -211,8 +211,10 @@ static json_t *value_json(struct maker *maker, const struct dea_field *field)
   case DEA_FIELD_ROWS:
     return json_pack("{s:s, s:{s:s}}", "type", "array", "items", "type", "array");
   case DEA_FIELD_LABEL: // a number is read as text
-    return json_pack("{s:[sss], s:i}", "type", "string", "number", "boolean", "maxLength",
-                     DEA_TITLE_SIZE - 1);
+    return field->or_section ? json_pack("{s:[ssss], s:i}", "type", "string", "number", "boolean",
+                                         "object", "maxLength", DEA_TITLE_SIZE - 1)
+                             : json_pack("{s:[sss], s:i}", "type", "string", "number", "boolean",
+                                         "maxLength", DEA_TITLE_SIZE - 1);
   case DEA_FIELD_TEXT:
     return json_pack("{s:[sss]}", "type", "string", "number", "boolean");
   case DEA_FIELD_NUMBER:

@@ -453,3 +453,57 @@ dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
   DEA_TRY(ctx, merge_below(ctx, yaml, "", changes));
   return DEA_OK;
 }
+
+/* Puts the next of the values in the place of each "$". */
+static void fill_in(struct dea_node *node, bool overridden, const struct dea_node *const **values)
+{
+  node->overridden = overridden;
+  for (struct dea_node *child = node->child; child != NULL; child = child->next) {
+    if (child->kind == DEA_NODE_VALUE && strcmp(child->text, "$") == 0) {
+      const struct dea_node before = *child;
+      *child = **(*values)++;
+      child->key = before.key;
+      child->key_place = before.key_place;
+      child->next = before.next;
+    } else {
+      fill_in(child, overridden, values);
+    }
+  }
+}
+
+dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
+                           const struct dea_node *used, const char *list, const char *name,
+                           const char *text, const struct dea_node *const values[])
+{
+  struct dea_node *item = NULL, **link = link_of(yaml->root, list, strlen(list));
+  struct dea_node *user = (struct dea_node *)used; // the document's own, and that is not const
+  const struct dea_location place = used->location;
+  if (text != NULL) {
+    DEA_TRY(ctx, parse_into(ctx, yaml, text, strlen(text), &place, &item));
+    fill_in(item, used->overridden, &values);
+  }
+  if (item != NULL && *link == NULL) {
+    struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
+    char *key = keep_text(ctx, yaml, list, strlen(list));
+    if (made == NULL || key == NULL) {
+      return DEA_E_MEMORY;
+    }
+    *made = (struct dea_node){.kind = DEA_NODE_LIST, .text = "", .key = key};
+    made->location = made->key_place = place;
+    *link = made;
+    yaml->root->child_count++;
+  }
+  if (item != NULL && (*link)->kind == DEA_NODE_LIST) { // else the reader of the schema says so
+    struct dea_node **end = &(*link)->child;
+    while (*end != NULL) {
+      end = &(*end)->next;
+    }
+    *end = item;
+    (*link)->child_count++;
+  }
+  user->kind = DEA_NODE_VALUE;
+  user->text = keep_text(ctx, yaml, name, strlen(name));
+  user->child = NULL;
+  user->child_count = 0;
+  return user->text != NULL ? DEA_OK : DEA_E_MEMORY;
+}

@@ -61,6 +61,12 @@ dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
 dea_status dea_yaml_fragment(struct dea_context *ctx, struct dea_yaml *yaml,
                              struct dea_location location, const char *text,
                              const struct dea_node **out);
+/* Appends YAML text, in which each value "$" stands for the next of `values`, to the list `list` of
+ * the outermost section, which is made where there is none, and puts the value `name` in the place
+ * of the node `used` of the document. text: NULL for nothing to append. */
+dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
+                           const struct dea_node *used, const char *list, const char *name,
+                           const char *text, const struct dea_node *const values[]);
 /* Member of a section with that key, or NULL. */
 const struct dea_node *dea_node_find(const struct dea_node *section, const char *key);
 

@@ -77,8 +77,10 @@ static void add_given(struct dea_text *row, const struct dea_listed *value, size
 {
   const char *key = value->path[part] == '.' ? value->path + part + 1 : "",
              *list = strchr(key, '[');
+  const char *inner = list != NULL ? strrchr(list, '.') : NULL;
   const bool alone = strcmp(key, "name") == 0 || strcmp(key, "kind") == 0;
-  const bool more = list != NULL && strstr(list, "[0]") == NULL;
+  const bool more = list != NULL && inner == NULL && strstr(list, "[0]") == NULL;
+  key = inner != NULL ? inner + 1 : key;
   const int shown = alone || more ? 0 : (int)strcspn(key, "[");
   dea_text_add(row, "%s%.*s%s%s%s", row->length > 0 ? ", " : "", shown, key, shown > 0 ? " " : "",
                value->text, value->origin == DEA_OVERRIDE ? " (--set)" : "");

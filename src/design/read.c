@@ -268,6 +268,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
   DEA_TRY(ctx, parse(ctx, source, changes, &design->document));
   struct dea_reader reader = {ctx, design->document, &design->values};
   DEA_TRY(ctx, dea_file_kind_check(ctx, design->document, "dea"));
+  DEA_TRY(ctx, dea_material_lines_expand(ctx, design->document));
   struct dea_design_schema schema;
   dea_design_schema_fill(source->sections, &schema);
   const struct dea_node *root = dea_yaml_root(design->document);

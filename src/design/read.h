@@ -18,4 +18,9 @@ struct dea_design_source {
 dea_status dea_design_read_source(struct dea_context *ctx, const struct dea_design_source *source,
                                   const struct dea_node *changes, struct dea_design **out);
 
+/* Moves the materials that stand in one line at `material` of film, electrodes, fibres and plies to
+ * the list `materials`, under the name "film.material" or "plies.NAME.material". Findings for what
+ * is wrong in them; DEA_E_MEMORY. */
+dea_status dea_material_lines_expand(struct dea_context *ctx, struct dea_yaml *yaml);
+
 #endif

@@ -104,6 +104,7 @@ static const struct dea_field fibre_fields[] = {
     {.key = "material",
      .kind = DEA_FIELD_LABEL,
      .offset = AT(fibres.material),
+     .or_section = true,
      .default_text = "pet",
      .doc = "material of the fibres",
      .example = "pet"},
