@@ -575,6 +575,41 @@ static void test_page(void **state)
   command_page("explore.md", "schema --explore --markdown", page);
 }
 
+/* A variable sets two numbers, and an optimum at the end of its range says so. */
+static void test_tied_variable_ends_at_a_bound(void **state)
+{
+  (void)state;
+  static char text[COMMAND_TEXT_MAX];
+  static const char head[] = "dea_explore: 1\nname: tied\ndesign: " DEA_SOURCE_DIR
+                             "/examples/frdea-4.yaml\nmodel: axisymmetric\nvoltages: [3 kV]\n"
+                             "quantities: [electrode_edge_u_m]\nstarts: 1\nvariables:\n"
+                             "  - {name: film.thickness, low: 80 um, high: 120 um, also: [%s]}\n"
+                             "objectives: [{quantity: electrode_edge_u_m, goal: most}]\n";
+  char file[1000];
+  snprintf(file, sizeof file, head, "fibres.thickness, fibres.bond.thickness");
+  command_write("tied.yaml", file);
+  assert_int_equal(command_run("optimise tied.yaml -o tied"), 0);
+  assert_contains(command_out, "film.thickness               80 um, at its lower bound\n");
+  assert_contains(command_out, "fibres.thickness             80 um\n");
+  command_read("tied/best.yaml", text);
+  assert_contains(text, "#   film.thickness is at its lower bound\n");
+  size_t found = 0;
+  for (const char *at = text; (at = strstr(at, "thickness: 8e-05 m")) != NULL; at++) {
+    found++;
+  }
+  assert_int_equal(found, 3);
+  static const char *const bad[][2] = {
+      {"pre_stretch", "pre_stretch (1) cannot take the values of film.thickness (m)"},
+      {"electrodes.diameter", "cannot take the values of film.thickness (m)"},
+      {"film.thickness", "film.thickness: this is the variable itself"},
+      {"fibres.thicknes", "fibres.thickness"}};
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    snprintf(file, sizeof file, head, bad[i][0]);
+    command_write("tied.yaml", file);
+    command_expect("optimise tied.yaml -o wrong", 3, bad[i][1]);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors),
@@ -593,6 +628,7 @@ int main(void)
                                      cmocka_unit_test(test_page),
                                      cmocka_unit_test(test_parts),
                                      cmocka_unit_test(test_monitors),
-                                     cmocka_unit_test(test_values_without_the_start)};
+                                     cmocka_unit_test(test_values_without_the_start),
+                                     cmocka_unit_test(test_tied_variable_ends_at_a_bound)};
   return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
 }

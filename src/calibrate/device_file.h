@@ -6,6 +6,7 @@
 
 enum {
   DEA_DEVICE_PARAMS_MAX = 12,
+  DEA_DEVICE_TIES_MAX = 8, // other keys that a variable of dea sweep sets too
   DEA_DEVICE_FILES_MAX = 16,
   DEA_DEVICE_QUANTITIES_MAX = 8,
 };

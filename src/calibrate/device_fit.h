@@ -20,13 +20,15 @@ enum dea_device_param_kind {
 struct dea_device_param {
   struct dea_fit_param param; // its name is the key; numbers in SI, as the key has them
   enum dea_device_param_kind kind;
-  const char *state;       // " stretched", " unstretched" or ""; static storage
-  bool list;               // the key is a list of one number
-  bool whole;              // the key is a whole number
-  size_t index;            // of branch b 2 b: modulus, 2 b + 1: time
-  size_t material, offset; // of a number of a material: which one, and where in it
-  double designed;         // the design's value; NAN: it has none
-  char prior_of[64];       // material of the catalogue that the prior is from; "": none
+  const char *state;                   // " stretched", " unstretched" or ""; static storage
+  bool list;                           // the key is a list of one number
+  bool whole;                          // the key is a whole number
+  size_t index;                        // of branch b 2 b: modulus, 2 b + 1: time
+  size_t material, offset;             // of a number of a material: which one, and where in it
+  double designed;                     // the design's value; NAN: it has none
+  char prior_of[64];                   // material of the catalogue that the prior is from; "": none
+  const struct dea_device_param *ties; // [tie_count] that take the same value; lent
+  size_t tie_count;
 };
 
 /* One quantity of one file; arrays [rows]. */

@@ -18,8 +18,14 @@ static void print_optimum(const struct dea_question *question, const struct dea_
 {
   for (size_t j = 0; j < question->variable_count; j++) {
     char text[80];
+    const char *bound = dea_optimum_bound(question, best, j);
     dea_device_param_show(&question->params[j], best->p[j], text);
-    printf("  %-28s %s\n", question->params[j].param.name, text);
+    printf("  %-28s %s%s%s%s\n", question->params[j].param.name, text,
+           bound != NULL ? ", at its " : "", bound != NULL ? bound : "",
+           bound != NULL ? " bound" : "");
+    for (size_t k = 0; k < question->params[j].tie_count; k++) {
+      printf("  %-28s %s\n", question->params[j].ties[k].param.name, text);
+    }
   }
   for (size_t k = 0; k < question->file->objective_count; k++) {
     const struct dea_column *column = &question->quantities[question->objectives[k]].shown;

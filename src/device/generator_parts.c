@@ -512,7 +512,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   }
   fit_breakdown(&m);
   DEA_TRY(ctx, check_dielectrics(&m));
-  DEA_TRY(ctx, dea_layout_check(ctx, m.out));
+  DEA_TRY(ctx, dea_layout_check(ctx, m.out, dea_design_highest_V(design)));
   DEA_TRY(ctx, dea_geometry_fit_studies(ctx, design, device));
   return dea_layout_find_symmetry(ctx, m.out);
 }

@@ -160,6 +160,10 @@ static bool on_some_ply(const struct dea_layout *l, size_t region)
   return false;
 }
 
+/* Field at which dry air of 1 bar breaks down between electrodes some mm apart (Paschen's law);
+ * along a surface, with dust or moisture, less. */
+static const double air_V_per_m = 3e6;
+
 // Electrodes -------------------------------------------------------------------------------------
 
 /* Number of the face that an electrode lies on, counted from below: a top is the next one's bottom.
@@ -186,9 +190,66 @@ static dea_status check_electrode(struct dea_context *ctx, const struct dea_layo
   return DEA_OK;
 }
 
+/* Boundaries of two regions, for the smallest distance of the samples of one from the other. */
+struct nearest {
+  const struct dea_region *to;
+  double distance_m, at_m[2];
+};
+
+static bool is_nearest(void *self, const double at[2])
+{
+  struct nearest *n = self;
+  const double distance_m = dea_region_distance_m(n->to, at);
+  if (distance_m < n->distance_m) {
+    n->distance_m = distance_m;
+    n->at_m[0] = at[0];
+    n->at_m[1] = at[1];
+  }
+  return false;
+}
+
+/* Largest voltage between two channels while the voltage of the sweep goes up to `highest_V`. */
+static double voltage_between(const struct dea_layout_channel *a,
+                              const struct dea_layout_channel *b, double highest_V)
+{
+  const double own_V = a->own_V - b->own_V;
+  return fmax(fabs(own_V), fabs(own_V + (a->ratio - b->ratio) * highest_V));
+}
+
+/* Electrodes beside each other: they may not touch, and air between them may not break down. */
+static dea_status check_gap(struct dea_context *ctx, const struct dea_layout *l,
+                            const struct dea_layout_electrode *a,
+                            const struct dea_layout_electrode *b, double highest_V)
+{
+  const struct dea_layout_channel *first = &l->channels[a->channel];
+  const struct dea_layout_channel *second = &l->channels[b->channel];
+  const double voltage_V = voltage_between(first, second, highest_V);
+  struct nearest n = {.to = region_of(l, b->region), .distance_m = INFINITY};
+  any_sample(region_of(l, a->region), is_nearest, &n);
+  n.to = region_of(l, a->region);
+  any_sample(region_of(l, b->region), is_nearest, &n);
+  const double x_mm = dea_rounded(1e3 * n.at_m[0]), y_mm = dea_rounded(1e3 * n.at_m[1]);
+  if (n.distance_m <= 10 * DEA_GEOMETRY_SNAP * dea_region_size_m(n.to)) {
+    return dea_finding_add(ctx, DEA_ERROR, b->location,
+                           "electrodes of the channels '%s' and '%s' touch on one face of '%s', "
+                           "about (%.4g, %.4g) mm: leave a gap (the other one is in line %zu)",
+                           first->name, second->name, l->plies[b->ply].name, x_mm, y_mm,
+                           a->location.line);
+  }
+  return !(voltage_V > air_V_per_m * n.distance_m)
+             ? DEA_OK
+             : dea_finding_add(
+                   ctx, DEA_WARNING, b->location,
+                   "electrodes of the channels '%s' and '%s' on one face of '%s' are %.3g mm apart "
+                   "about (%.4g, %.4g) mm, with up to %.4g kV between them: air breaks down at "
+                   "about 3 kV/mm, along a surface earlier; leave more than %.3g mm",
+                   first->name, second->name, l->plies[b->ply].name, 1e3 * n.distance_m, x_mm, y_mm,
+                   1e-3 * voltage_V, 1e3 * voltage_V / air_V_per_m);
+}
+
 static dea_status check_pair(struct dea_context *ctx, const struct dea_layout *l,
                              const struct dea_layout_electrode *a,
-                             const struct dea_layout_electrode *b)
+                             const struct dea_layout_electrode *b, double highest_V)
 {
   struct dea_region common;
   dea_status status = DEA_OK;
@@ -208,17 +269,20 @@ static dea_status check_pair(struct dea_context *ctx, const struct dea_layout *l
         l->channels[a->channel].name, l->channels[b->channel].name, l->plies[b->ply].name,
         dea_rounded(1e3 * at[0]), dea_rounded(1e3 * at[1]), 1e6 * dea_region_area_m2(&common),
         a->location.line);
+  } else {
+    status = check_gap(ctx, l, a, b, highest_V);
   }
   dea_region_free(&common);
   return status;
 }
 
-static dea_status check_electrodes(struct dea_context *ctx, const struct dea_layout *l)
+static dea_status check_electrodes(struct dea_context *ctx, const struct dea_layout *l,
+                                   double highest_V)
 {
   for (size_t i = 0; i < l->electrode_count; i++) {
     DEA_TRY(ctx, check_electrode(ctx, l, &l->electrodes[i]));
     for (size_t j = 0; j < i; j++) {
-      DEA_TRY(ctx, check_pair(ctx, l, &l->electrodes[j], &l->electrodes[i]));
+      DEA_TRY(ctx, check_pair(ctx, l, &l->electrodes[j], &l->electrodes[i], highest_V));
     }
   }
   return DEA_OK;
@@ -522,12 +586,14 @@ static dea_status check_monitors(struct dea_context *ctx, const struct dea_layou
   return DEA_OK;
 }
 
-dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout)
+dea_status dea_layout_check(struct dea_context *ctx, const struct dea_layout *layout,
+                            double highest_V)
 {
   typedef dea_status (*check_fn)(struct dea_context *, const struct dea_layout *);
-  static const check_fn checks[] = {check_electrodes, check_plies,     check_overhang,
-                                    check_supports,   check_bodies,    check_directions,
-                                    check_held,       check_pressures, check_monitors};
+  static const check_fn checks[] = {check_plies,     check_overhang,   check_supports,
+                                    check_bodies,    check_directions, check_held,
+                                    check_pressures, check_monitors};
+  DEA_TRY(ctx, check_electrodes(ctx, layout, highest_V));
   for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
     DEA_TRY(ctx, checks[i](ctx, layout));
   }

@@ -237,6 +237,9 @@ static dea_status write_cases(const struct work *w)
   return status;
 }
 
+/* A variable this near to a bound, as a share of its range, is at it. */
+static const double bound_share = 1e-4;
+
 static const char written_by[] = "# Written by dea ";
 static const char front_table[] = "front.csv", front_figure[] = "front";
 enum { BEST_SIZE = 40 };
@@ -249,6 +252,17 @@ static void name_best(size_t number, char name[BEST_SIZE])
   } else {
     snprintf(name, BEST_SIZE, "best.yaml");
   }
+}
+
+const char *dea_optimum_bound(const struct dea_question *question, const struct dea_optimum *best,
+                              size_t variable)
+{
+  const struct dea_variable *of = &question->variables[variable];
+  const double near = bound_share * (of->high - of->low);
+  return of->value_count > 0                    ? NULL
+         : best->p[variable] <= of->low + near  ? "lower"
+         : best->p[variable] >= of->high - near ? "upper"
+                                                : NULL;
 }
 
 /* The design of an optimum, of that number. */
@@ -274,6 +288,12 @@ static dea_status write_design(const struct work *w, const struct dea_optimum *b
     dea_text_add(&text, "#   %s = %.8g %s at %.6g V, model %s\n", column->key,
                  sign_of(question, k) * best->f[k], column->si_unit,
                  question->voltages_V[question->voltage_count - 1], question->model.type->name);
+  }
+  for (size_t j = 0; j < question->variable_count; j++) {
+    const char *bound = dea_optimum_bound(question, best, j);
+    if (bound != NULL) {
+      dea_text_add(&text, "#   %s is at its %s bound\n", question->params[j].param.name, bound);
+    }
   }
   for (unsigned f = 0; f < DEA_FLAG_COUNT; f++) {
     char line[DEA_FLAG_LINE_SIZE];

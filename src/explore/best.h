@@ -22,6 +22,11 @@ struct dea_optimise_report {
   size_t replaced[DEA_CASE_PARAMS_MAX]; // in their place, by each variable
 };
 
+/* Whether a variable of an optimum is at a bound of its range: "lower", "upper", or NULL. Not of
+ * one that takes values alone. */
+const char *dea_optimum_bound(const struct dea_question *question, const struct dea_optimum *best,
+                              size_t variable);
+
 /* Searches and writes cases.csv and cases.h5 of all evaluations, the figure progress, best.yaml (of
  * a front best-1.yaml, ...), and of a front front.csv and its figure. Tables and figures are there
  * after an interruption too. Findings and DEA_E_DESIGN where the file asks for nothing. */

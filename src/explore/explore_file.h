@@ -38,6 +38,8 @@ struct dea_explore_variable {
   struct dea_label values[DEA_EXPLORE_VALUES_MAX];
   size_t value_count;
   struct dea_quantity steps;
+  struct dea_label also[DEA_DEVICE_TIES_MAX]; // other numbers that take the same value
+  size_t also_count;
   struct dea_choice distribution; // enum dea_distribution
   struct dea_label scatter;       // of a search: what the workshop misses it by
 };

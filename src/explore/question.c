@@ -54,8 +54,11 @@ static dea_status take_hash(struct dea_question *question)
   struct dea_text text = {.ctx = question->ctx};
   resolve(question, question->design, question->device, &text);
   for (size_t j = 0; j < question->variable_count; j++) {
-    dea_text_add(&text, "variable %s%s\n", question->params[j].param.name,
-                 question->params[j].state);
+    dea_text_add(&text, "variable %s%s", question->params[j].param.name, question->params[j].state);
+    for (size_t k = 0; k < question->params[j].tie_count; k++) {
+      dea_text_add(&text, " %s", question->params[j].ties[k].param.name);
+    }
+    dea_text_add(&text, "\n");
   }
   for (size_t i = 0; i < question->quantity_count; i++) {
     dea_text_add(&text, "quantity %s\n", question->quantities[i].key);
@@ -381,6 +384,40 @@ static dea_status take_scatter(struct dea_question *question, struct dea_variabl
   return DEA_OK;
 }
 
+/* Other numbers of the design that take the value of a variable: of the same unit, and of the same
+ * film, stretched or not. */
+static dea_status take_ties(struct dea_question *question, struct dea_variable *variable)
+{
+  struct dea_context *ctx = question->ctx;
+  const struct dea_explore_variable *text = variable->text;
+  const struct dea_device_param_source source = {question->design, question->device, .whole = true};
+  struct dea_device_param *param = &variable->param;
+  for (size_t i = 0; i < text->also_count; i++) {
+    const struct dea_label *name = &text->also[i];
+    struct dea_device_param *tie = &variable->ties[param->tie_count];
+    bool good = false;
+    *tie = (struct dea_device_param){.state = ""};
+    snprintf(tie->param.name, sizeof tie->param.name, "%s", name->text);
+    DEA_TRY(ctx, dea_device_param_find(ctx, &source, name, tie, &good));
+    if (!good) {
+      continue;
+    }
+    if (strcmp(tie->param.unit, param->param.unit) != 0 || strcmp(tie->state, param->state) != 0 ||
+        tie->whole != param->whole) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
+                                   "%s (%s%s) cannot take the values of %s (%s%s)", name->text,
+                                   tie->param.unit, tie->state, text->text.name.text,
+                                   param->param.unit, param->state));
+    } else if (strcmp(name->text, text->text.name.text) == 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, name->location,
+                                   "%s: this is the variable itself", name->text));
+    } else {
+      param->tie_count++;
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status take_variable(struct dea_question *question,
                                 const struct dea_explore_variable *text,
                                 struct dea_variable *variable)
@@ -403,6 +440,7 @@ static dea_status take_variable(struct dea_question *question,
   if (dea_finding_count(ctx, DEA_ERROR) > errors) {
     return DEA_OK;
   }
+  DEA_TRY(ctx, take_ties(question, variable));
   variable->low = text->text.low.text[0] != '\0' ? variable->param.param.low : NAN;
   variable->high = text->text.high.text[0] != '\0' ? variable->param.param.high : NAN;
   for (size_t i = 0; i < text->value_count; i++) {
@@ -433,6 +471,7 @@ static dea_status take_variables(struct dea_question *question)
   for (size_t j = 0; j < file->variable_count; j++) {
     DEA_TRY(question->ctx, take_variable(question, &file->variables[j], &question->variables[j]));
     question->params[j] = question->variables[j].param;
+    question->params[j].ties = question->variables[j].ties;
   }
   question->variable_count = file->variable_count;
   return DEA_OK;

@@ -16,8 +16,9 @@ struct dea_variable {
   struct dea_device_param param;           // SI; low and high are those of the file and of the key
   double values[DEA_EXPLORE_VALUES_MAX];   // SI
   size_t value_count;
-  double low, high; // of the file; NAN: not given
-  double scatter;   // SI; half a width or a standard deviation; 0: none
+  double low, high;                                  // of the file; NAN: not given
+  struct dea_device_param ties[DEA_DEVICE_TIES_MAX]; // that take the same value, of param
+  double scatter; // SI; half a width or a standard deviation; 0: none
 };
 
 struct dea_limit {

@@ -248,15 +248,17 @@ static dea_status put_values(struct dea_context *ctx, const struct dea_device *d
 {
   char text[DEA_TITLE_SIZE + 8];
   for (size_t j = 0; j < with->count; j++) {
-    const struct dea_device_param *param = &with->params[j];
+    const struct dea_device_param *param;
     // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): as many values as parameters
     const double value = with->values[j];
-    if (param->kind == DEA_DEVICE_KEY) {
-      dea_device_param_text(param, value, with->digits, text);
-      DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
-    } else {
-      struct changed *changed = find_changed(device, with, param->material, all, count);
-      dea_device_param_put(param, value, &changed->with);
+    for (size_t k = 0; (param = dea_device_param_tie(&with->params[j], k)) != NULL; k++) {
+      if (param->kind == DEA_DEVICE_KEY) {
+        dea_device_param_text(param, value, with->digits, text);
+        DEA_TRY(ctx, dea_yaml_override(ctx, document, param->param.name, text));
+      } else {
+        struct changed *changed = find_changed(device, with, param->material, all, count);
+        dea_device_param_put(param, value, &changed->with);
+      }
     }
   }
   for (size_t i = 0; i < *count; i++) {
@@ -286,7 +288,8 @@ dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_desi
   struct dea_text design = {.ctx = ctx}, material = {.ctx = ctx};
   struct dea_yaml *document;
   size_t count = 0;
-  struct changed *changed = dea_alloc(ctx, with->count + 1, sizeof *changed);
+  struct changed *changed =
+      dea_alloc(ctx, with->count * (1 + DEA_DEVICE_TIES_MAX) + 1, sizeof *changed);
   if (changed == NULL) {
     return DEA_E_MEMORY;
   }

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { KEYS_MAX = DEA_DEVICE_PARAMS_MAX * (1 + DEA_DEVICE_TIES_MAX) };
+
 static const char branch_prefix[] = "film.branch.";
 
 static const struct dea_listed *find_value(const struct dea_design *design, const char *key)
@@ -336,28 +338,39 @@ void dea_device_param_put(const struct dea_device_param *param, double value,
   }
 }
 
+const struct dea_device_param *dea_device_param_tie(const struct dea_device_param *param, size_t k)
+{
+  return k == 0 ? param : k <= param->tie_count ? &param->ties[k - 1] : NULL;
+}
+
 dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_design_bytes *file,
                                    const struct dea_device_param *params, size_t count,
                                    const double *p, struct dea_design **design,
                                    struct dea_device **device)
 {
-  struct dea_override overrides[DEA_DEVICE_PARAMS_MAX];
-  char texts[DEA_DEVICE_PARAMS_MAX][80];
+  struct dea_override overrides[KEYS_MAX];
+  char texts[KEYS_MAX][80];
+  const struct dea_device_param *one;
   size_t keys = 0;
   *design = NULL;
   *device = NULL;
-  for (size_t j = 0; j < count && keys < DEA_DEVICE_PARAMS_MAX; j++) {
-    if (params[j].kind == DEA_DEVICE_KEY) {
-      dea_device_param_text(&params[j], p[j], 17, texts[keys]);
-      overrides[keys] = (struct dea_override){params[j].param.name, texts[keys]};
-      keys++;
+  for (size_t j = 0; j < count; j++) {
+    for (size_t k = 0; (one = dea_device_param_tie(&params[j], k)) != NULL && keys < KEYS_MAX;
+         k++) {
+      if (one->kind == DEA_DEVICE_KEY) {
+        dea_device_param_text(one, p[j], 17, texts[keys]);
+        overrides[keys] = (struct dea_override){one->param.name, texts[keys]};
+        keys++;
+      }
     }
   }
   DEA_TRY(ctx, dea_design_read_memory(ctx, file->name, file->bytes, file->length, overrides, keys,
                                       design));
   DEA_TRY(ctx, dea_device_build(ctx, *design, device));
   for (size_t j = 0; j < count; j++) {
-    dea_device_param_put(&params[j], p[j], dea_material_at(*device, params[j].material));
+    for (size_t k = 0; (one = dea_device_param_tie(&params[j], k)) != NULL; k++) {
+      dea_device_param_put(one, p[j], dea_material_at(*device, one->material));
+    }
   }
   return DEA_OK;
 }

@@ -54,6 +54,8 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
                                    const double *p, struct dea_design **design,
                                    struct dea_device **device);
 
+/* The parameter itself for k = 0, then those that take the same value; NULL: there is no more. */
+const struct dea_device_param *dea_device_param_tie(const struct dea_device_param *param, size_t k);
 /* A value of a parameter into its material (param->material); nothing of a key of the design. */
 void dea_device_param_put(const struct dea_device_param *param, double value,
                           struct dea_material *material);
