@@ -359,6 +359,42 @@ static void test_parts_that_nothing_holds(void **state)
   assert_non_null(find_error(ctx, "nothing holds the part of the device at (92, 0) mm"));
 }
 
+/* Electrodes of two channels beside each other: at 0.5 mm dry air breaks down at
+ * 24.36 0.05 + 6.72 sqrt(0.05) = 2.72 kV. */
+static void test_gap_between_channels(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *width, *voltage, *finding;
+  } gaps[] = {{"10 mm", "1 kV", "electrodes of the channels 'one' and 'two' touch on one face of"},
+              {"9.5 mm", "2.6 kV", NULL},
+              {"9.5 mm", "2.8 kV", "are 0.5 mm apart about ("}};
+  for (size_t i = 0; i < sizeof gaps / sizeof gaps[0]; i++) {
+    char shapes[600];
+    snprintf(shapes, sizeof shapes,
+             THREE_SHAPES ", {name: left, kind: rectangle, x: -5 mm, width: %s, height: 8 mm}, "
+                          "{name: right, kind: rectangle, x: 5 mm, width: %s, height: 8 mm}]",
+             gaps[i].width, gaps[i].width);
+    const struct dea_override sets[] = {
+        {"electrodes", "[{ply: lower, side: bottom, shape: active, channel: ground}, "
+                       "{ply: lower, side: top, shape: left, channel: one}, "
+                       "{ply: upper, side: bottom, shape: right, channel: two}]"},
+        {"channels", "[{name: one}, {name: two, ratio: 0}]"},
+        {"compute.voltage.to", gaps[i].voltage}};
+    dea_finding_clear(ctx);
+    const dea_status status =
+        read_and_build(ctx, write_design(SHAPES, shapes), sets, 3, &design, &device);
+    drop();
+    assert_int_equal(status, i == 0 ? DEA_E_DESIGN : DEA_OK);
+    assert_int_equal(find_finding(ctx, i == 0 ? DEA_ERROR : DEA_WARNING, " on one face of ") !=
+                         NULL,
+                     gaps[i].finding != NULL);
+    if (gaps[i].finding != NULL) {
+      assert_non_null(find_finding(ctx, i == 0 ? DEA_ERROR : DEA_WARNING, gaps[i].finding));
+    }
+  }
+}
+
 /* A weight on a film that nothing else holds falls, but on a spring. */
 static void test_direction_that_nothing_holds(void **state)
 {
@@ -491,19 +527,13 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test(name)
   const struct CMUnitTest tests[] = {
-      TEST(test_units_of_drawings),
-      TEST(test_plies_and_electrodes),
-      TEST(test_bodies_springs_monitors),
-      TEST(test_shapes_of_shapes),
-      TEST(test_one_error_each),
-      TEST(test_electrodes_beyond_their_film),
-      TEST(test_parts_that_nothing_holds),
-      TEST(test_direction_that_nothing_holds),
-      TEST(test_short_form_says_where_parts_belong),
-      TEST(test_override_by_name),
-      TEST(test_failing_memory),
-      TEST(test_no_dielectric_is_a_note),
-      TEST(test_overhang_is_a_note),
+      TEST(test_units_of_drawings),        TEST(test_plies_and_electrodes),
+      TEST(test_bodies_springs_monitors),  TEST(test_shapes_of_shapes),
+      TEST(test_one_error_each),           TEST(test_electrodes_beyond_their_film),
+      TEST(test_parts_that_nothing_holds), TEST(test_direction_that_nothing_holds),
+      TEST(test_gap_between_channels),     TEST(test_short_form_says_where_parts_belong),
+      TEST(test_override_by_name),         TEST(test_failing_memory),
+      TEST(test_no_dielectric_is_a_note),  TEST(test_overhang_is_a_note),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -160,9 +160,15 @@ static bool on_some_ply(const struct dea_layout *l, size_t region)
   return false;
 }
 
-/* Field at which dry air of 1 bar breaks down between electrodes some mm apart (Paschen's law);
- * along a surface, with dust or moisture, less. */
-static const double air_V_per_m = 3e6;
+/* Width [m] of a gap in dry air of 1 bar that breaks down at a voltage: of V = 24.36 d + 6.72
+ * sqrt(d), kV and cm (E. Kuffel, W. S. Zaengl, J. Kuffel, High Voltage Engineering, 2nd ed.,
+ * section 5.5). Along a surface, with dust or moisture, it breaks down earlier. */
+static double air_gap_m(double voltage_V)
+{
+  const double linear = 24.36, by_root = 6.72, kV = 1e-3 * voltage_V;
+  const double root = (sqrt(by_root * by_root + 4 * linear * kV) - by_root) / (2 * linear);
+  return 1e-2 * root * root;
+}
 
 // Electrodes -------------------------------------------------------------------------------------
 
@@ -236,15 +242,15 @@ static dea_status check_gap(struct dea_context *ctx, const struct dea_layout *l,
                            first->name, second->name, l->plies[b->ply].name, x_mm, y_mm,
                            a->location.line);
   }
-  return !(voltage_V > air_V_per_m * n.distance_m)
+  return !(air_gap_m(voltage_V) > n.distance_m)
              ? DEA_OK
              : dea_finding_add(
                    ctx, DEA_WARNING, b->location,
                    "electrodes of the channels '%s' and '%s' on one face of '%s' are %.3g mm apart "
-                   "about (%.4g, %.4g) mm, with up to %.4g kV between them: air breaks down at "
-                   "about 3 kV/mm, along a surface earlier; leave more than %.3g mm",
+                   "about (%.4g, %.4g) mm, with up to %.4g kV between them, at which even dry air "
+                   "breaks down below %.3g mm, and along a surface earlier: widen the gap",
                    first->name, second->name, l->plies[b->ply].name, 1e3 * n.distance_m, x_mm, y_mm,
-                   1e-3 * voltage_V, 1e3 * voltage_V / air_V_per_m);
+                   1e-3 * voltage_V, 1e3 * air_gap_m(voltage_V));
 }
 
 static dea_status check_pair(struct dea_context *ctx, const struct dea_layout *l,

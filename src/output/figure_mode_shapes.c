@@ -120,7 +120,8 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space, cons
 {
   size_t rows = (maps->count + ACROSS - 1) / ACROSS;
   double width_mm = 1e3 * format->width_m, cell_mm = width_mm / ACROSS;
-  double edge_mm = 1.03e3 * space->radius_m;
+  double range[4];
+  dea_view3d_ranges(space, 1, 1, range);
   char words[160];
   snprintf(words, sizeof words, "%s, about %.4g kV; yellow, light: up; blue, dark: down", caption,
            1e-3 * maps->voltage_V);
@@ -130,7 +131,7 @@ static void add_script(struct dea_text *gp, const struct dea_view3d *space, cons
                "set view map\nset pm3d corners2color mean\nset surface explicit\n"
                "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\n"
                "unset border\nunset xtics\nunset ytics\nunset colorbox\n\n",
-               -edge_mm, edge_mm, -edge_mm, edge_mm);
+               range[0], range[1], range[2], range[3]);
   dea_script_terminals(gp);
   dea_text_add(gp, "  eval \"set pm3d \".facets\n  set multiplot\n");
   for (size_t k = 0; k < maps->count; k++) {

@@ -19,6 +19,7 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
   dea_status status = dea_panel_add(ctx, panel, count, &series);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     series->values[i] = 1e3 * found[i];
+    panel->x_max = fmax(panel->x_max, fabs(series->values[i]));
     double z_um = 1e6 * found[count + i];
     series->values[count + i] = fabs(z_um) > rounding_um ? z_um : 0;
   }
@@ -54,7 +55,6 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
     look.title[0] = '\0';
     status = add_diameter(ctx, panel, &drawing, acos(-1) / record->mesh->fibres, &look);
   }
-  panel->x_max = 1e3 * drawing.radius_m;
   panel->x_min = -panel->x_max;
   dea_surface_lattice_free(ctx, &drawing);
   return status;

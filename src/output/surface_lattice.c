@@ -135,10 +135,8 @@ static void fill_patch(const struct element *element, struct dea_patch *patch,
     double *at = patch->at[k];
     const int line = k / row;
     evaluate(element, 2.0 * (k % row) / patch->n - 1, 2.0 * line / patch->m - 1, at);
-    out->radius_m = fmax(out->radius_m, hypot(at[DEA_LATTICE_X], at[DEA_LATTICE_Y]));
     const double x_m[2] = {at[DEA_LATTICE_X], at[DEA_LATTICE_Y]};
     for (int i = 0; i < 2; i++) {
-      out->reach_m[i] = fmax(out->reach_m[i], fabs(x_m[i]));
       out->low_m[i] = fmin(out->low_m[i], x_m[i]);
       out->high_m[i] = fmax(out->high_m[i], x_m[i]);
     }
@@ -146,6 +144,22 @@ static void fill_patch(const struct element *element, struct dea_patch *patch,
     out->z_max_m = fmax(out->z_max_m, at[DEA_LATTICE_UZ]);
   }
   out->piece_count += (size_t)(patch->n * patch->m);
+}
+
+/* The middle of the box and what lies farthest from it. */
+static void find_centre(struct dea_surface_lattice *out)
+{
+  for (int i = 0; i < 2; i++) {
+    const double middle_m = 0.5 * (out->low_m[i] + out->high_m[i]);
+    out->centre_m[i] = fabs(middle_m) > 1e-6 * (out->high_m[i] - out->low_m[i]) ? middle_m : 0;
+  }
+  for (size_t p = 0; p < out->patch_count; p++) {
+    const struct dea_patch *patch = &out->patches[p];
+    for (int k = 0; k < (patch->n + 1) * (patch->m + 1); k++) {
+      out->radius_m = fmax(out->radius_m, hypot(patch->at[k][DEA_LATTICE_X] - out->centre_m[0],
+                                                patch->at[k][DEA_LATTICE_Y] - out->centre_m[1]));
+    }
+  }
 }
 
 dea_status dea_surface_lattice_create(struct dea_context *ctx, const struct dea_field_mesh *mesh,
@@ -180,6 +194,7 @@ dea_status dea_surface_lattice_create(struct dea_context *ctx, const struct dea_
       }
     }
   }
+  find_centre(out);
   return DEA_OK;
 }
 
@@ -244,8 +259,8 @@ static bool is_outline(const struct dea_field_mesh *mesh, const struct edge *edg
                        const struct edge *twin, enum dea_outline_kind *kind)
 {
   *kind = DEA_OUTLINE_FRAME;
-  if (twin == NULL) {
-    return edge->outermost;
+  if (twin == NULL) { // of a sector the sides are none
+    return edge->outermost || dea_copy_count(mesh) == 1;
   }
   *kind = DEA_OUTLINE_ELECTRODE;
   if (cell_has(mesh, "between_electrodes", edge->cell) !=
@@ -321,18 +336,19 @@ static int by_s(const void *a, const void *b)
 
 /* Where the line from p to q of a lattice meets the diameter; false when it does not. A point on
  * the diameter counts for the line that ends there. */
-static bool cross(const double *p, const double *q, const double direction[2], double close,
-                  struct crossing *out)
+static bool cross(const double *p, const double *q, const double centre_m[2],
+                  const double direction[2], double close, struct crossing *out)
 {
-  double dp = direction[0] * p[DEA_LATTICE_Y] - direction[1] * p[DEA_LATTICE_X];
-  double dq = direction[0] * q[DEA_LATTICE_Y] - direction[1] * q[DEA_LATTICE_X];
+  const double px = p[DEA_LATTICE_X] - centre_m[0], py = p[DEA_LATTICE_Y] - centre_m[1];
+  const double qx = q[DEA_LATTICE_X] - centre_m[0], qy = q[DEA_LATTICE_Y] - centre_m[1];
+  double dp = direction[0] * py - direction[1] * px;
+  double dq = direction[0] * qy - direction[1] * qx;
   bool on = fabs(dq) <= close;
   if (!on && (fabs(dp) <= close || dp * dq > 0)) {
     return false;
   }
   double share = on ? 1 : dp / (dp - dq);
-  double x = p[DEA_LATTICE_X] + share * (q[DEA_LATTICE_X] - p[DEA_LATTICE_X]);
-  double y = p[DEA_LATTICE_Y] + share * (q[DEA_LATTICE_Y] - p[DEA_LATTICE_Y]);
+  double x = px + share * (qx - px), y = py + share * (qy - py);
   out->s = x * direction[0] + y * direction[1];
   out->z = p[DEA_LATTICE_UZ] + share * (q[DEA_LATTICE_UZ] - p[DEA_LATTICE_UZ]);
   return true;
@@ -353,7 +369,7 @@ static size_t find_crossings(const struct dea_surface_lattice *drawing, const do
       const int from[2] = {k % row > 0 ? k - 1 : k + 1, k >= row ? k - row : k + row};
       for (int way = 0; way < 2; way++) {
         struct crossing here;
-        if (cross(patch->at[from[way]], patch->at[k], direction, close, &here)) {
+        if (cross(patch->at[from[way]], patch->at[k], drawing->centre_m, direction, close, &here)) {
           count++;
           if (found != NULL) {
             found[count - 1] = here;

@@ -25,9 +25,9 @@ struct dea_surface_lattice {
   size_t patch_count, piece_count;   // pieces: of all patches
   struct dea_patch *patches;         // [patch_count], owned
   double (*at)[DEA_LATTICE_COLUMNS]; // of all patches, owned
-  double radius_m;                   // of the outermost point
-  double reach_m[2];                 // largest |x| and |y|
   double low_m[2], high_m[2];        // least and largest x and y
+  double centre_m[2];                // middle of that box; 0, 0 of what is around the origin
+  double radius_m;                   // of the outermost point, from there
   double z_min_m, z_max_m;           // of the displacement
 };
 
@@ -50,8 +50,9 @@ struct dea_outline {
 dea_status dea_surface_lattice_outlines(struct dea_context *ctx, const struct dea_field_mesh *mesh,
                                         struct dea_outline **out, size_t *count);
 
-/* Displacement along the diameter at an angle: s from -radius to radius, rising; [count], owned by
- * the caller (one array: s, then uz). Exact at the lines of the patches' lattice that are crossed.
+/* Displacement along the line through the centre at an angle: s from the centre, rising; [count],
+ * owned by the caller (one array: s, then uz). Exact at the lines of the patches' lattice that are
+ * crossed.
  */
 dea_status dea_surface_lattice_section(struct dea_context *ctx,
                                        const struct dea_surface_lattice *drawing, double angle,

@@ -48,6 +48,8 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count, str
   for (size_t i = 0; i < count; i++) {
     const struct dea_surface_lattice *drawing = &pictures[i].drawing;
     out->radius_m = fmax(out->radius_m, drawing->radius_m);
+    out->centre_m[0] = drawing->centre_m[0];
+    out->centre_m[1] = drawing->centre_m[1];
     out->low_m = fmin(out->low_m, drawing->z_min_m);
     out->high_m = fmax(out->high_m, drawing->z_max_m);
   }
@@ -72,15 +74,30 @@ const char *dea_view3d_colour_words(const struct dea_view3d *space)
 const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS])
 {
   const struct dea_surface_lattice *drawing = &space->pictures[0].drawing;
-  const double *reach_m = drawing->reach_m;
-  if (fmin(reach_m[0], reach_m[1]) > 0.99 * space->radius_m) {
+  const double wide_m = drawing->high_m[0] - drawing->low_m[0];
+  const double high_m = drawing->high_m[1] - drawing->low_m[1];
+  if (fmin(wide_m, high_m) > 1.98 * space->radius_m) {
     snprintf(out, DEA_VIEW3D_WORDS, "frame \342\214\200 %.4g mm", 2e3 * space->radius_m);
   } else {
-    snprintf(out, DEA_VIEW3D_WORDS, "%.4g mm \303\227 %.4g mm",
-             1e3 * (drawing->high_m[0] - drawing->low_m[0]),
-             1e3 * (drawing->high_m[1] - drawing->low_m[1]));
+    snprintf(out, DEA_VIEW3D_WORDS, "%.4g mm \303\227 %.4g mm", 1e3 * wide_m, 1e3 * high_m);
   }
   return out;
+}
+
+double dea_view3d_ranges(const struct dea_view3d *space, double least, double most, double out[4])
+{
+  const struct dea_surface_lattice *drawing = &space->pictures[0].drawing;
+  double half[2];
+  for (int i = 0; i < 2; i++) {
+    half[i] = 1.03e3 *
+              fmax(drawing->high_m[i] - space->centre_m[i], space->centre_m[i] - drawing->low_m[i]);
+  }
+  half[0] = fmax(half[0], half[1] / most);
+  half[1] = fmax(half[1], half[0] * least);
+  for (int i = 0; i < 4; i++) {
+    out[i] = 1e3 * space->centre_m[i / 2] + (i % 2 == 0 ? -1 : 1) * half[i / 2];
+  }
+  return half[1] / half[0];
 }
 
 /* Lowest and highest place in the picture [mm] and half its width. */
@@ -168,9 +185,9 @@ static void view_direction(bool flat, double out[3])
 static void place_mm(const struct dea_view3d *space, const double at[DEA_LATTICE_COLUMNS],
                      double out[3])
 {
-  double share = space->moved ? 1e3 : 0;
-  out[0] = 1e3 * at[DEA_LATTICE_X] + share * at[DEA_LATTICE_UX];
-  out[1] = 1e3 * at[DEA_LATTICE_Y] + share * at[DEA_LATTICE_UY];
+  const double share = space->moved ? 1e3 : 0, from = space->flat ? 0 : 1e3; // from the middle
+  out[0] = 1e3 * at[DEA_LATTICE_X] + share * at[DEA_LATTICE_UX] - from * space->centre_m[0];
+  out[1] = 1e3 * at[DEA_LATTICE_Y] + share * at[DEA_LATTICE_UY] - from * space->centre_m[1];
   out[2] = space->flat ? 0 : 1e3 * space->times * at[DEA_LATTICE_UZ];
 }
 

@@ -12,8 +12,9 @@ struct dea_view3d {
   bool flat;                      // seen from above, without heights
   bool in_plane;                  // colours are displacements in the plane, since none is out of it
   double times;                   // dea_view3d_measure sets the rest
-  double radius_m, low_m, high_m; // low, high: of the colours
-  size_t frame_lines, lines;      // lines of frame and electrode, all lines
+  double radius_m, low_m, high_m; // radius: from the centre; low, high: of the colours
+  double centre_m[2];
+  size_t frame_lines, lines; // lines of frame and electrode, all lines
 };
 /* pictures: of one mesh, at least one; lent. */
 void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count,
@@ -22,6 +23,9 @@ void dea_view3d_measure(const struct dea_colour_map *pictures, size_t count,
  * middle. Returns out. */
 enum { DEA_VIEW3D_WORDS = 64 };
 const char *dea_view3d_size_words(const struct dea_view3d *space, char out[DEA_VIEW3D_WORDS]);
+/* Ranges of x and y [mm] that hold what is drawn with a margin: {x low, x high, y low, y high}.
+ * least, most: of height over width, which is filled up. Returns height over width. */
+double dea_view3d_ranges(const struct dea_view3d *space, double least, double most, double out[4]);
 /* What the colours show: symbol and unit, "{/:Italic z} (um)" with the sign for micro. */
 const char *dea_view3d_colour_words(const struct dea_view3d *space);
 /* Height of a drawing in space over its width. */
