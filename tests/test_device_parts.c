@@ -181,6 +181,8 @@ static const struct {
     {MORE, "bodies: [{name: hub, shape: film}, {name: hub, shape: film}]",
      "the name 'hub' is taken by the body in line 6", "hub, shape: film}]"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: oval}]", "there is no shape 'oval'", "oval"},
+    {SHAPES, THREE_SHAPES ", {name: a, kind: balloon, radius: 9 mm}]",
+     "a device is made of flat plies, and a balloon is no shape of the plane", "balloon"},
     {SHAPES, THREE_SHAPES ", {name: a, kind: circle, radius: 2 mm, diameter: 4 mm}]",
      "unknown key 'diameter'", "diameter"},
     // materials

@@ -42,6 +42,27 @@ static dea_status take_rows(const struct dea_reader *reader, struct dea_parts *p
   return dea_arena_status(&parts->memory);
 }
 
+/* A shape that is none of the plane, which no name nearby would help with. */
+static dea_status refuse_curved(const struct dea_reader *reader, const struct dea_node *node,
+                                bool *refused)
+{
+  static const char *const curved[] = {"tube",   "cylinder", "roll", "balloon",
+                                       "sphere", "dome",     "cone"};
+  const struct dea_node *kind = dea_node_find(node, "kind");
+  for (size_t i = 0; kind != NULL && i < sizeof curved / sizeof curved[0]; i++) {
+    if (strcmp(kind->text, curved[i]) == 0) {
+      *refused = true;
+      return dea_schema_error(
+          reader, kind->location,
+          "a device is made of flat plies, and a %s is no shape of the plane; a "
+          "film that is flat at first may be inflated (pressures) or pulled out "
+          "(bodies, springs): docs/limits.md",
+          curved[i]);
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status read_shape(const struct dea_reader *reader, const struct dea_shape_schema *schema,
                              const struct dea_node *node, size_t number, struct dea_parts *parts)
 {
@@ -52,6 +73,11 @@ static dea_status read_shape(const struct dea_reader *reader, const struct dea_s
   size_t kind, errors = dea_finding_count(reader->ctx, DEA_ERROR);
   for (size_t i = 0; i < schema->count; i++) {
     names[i] = schema->record[i].name;
+  }
+  bool refused = false;
+  DEA_TRY(reader->ctx, refuse_curved(reader, node, &refused));
+  if (refused) {
+    return DEA_OK;
   }
   DEA_TRY(reader->ctx, dea_schema_kind(reader, node, "a shape", names, schema->count, &kind));
   if (kind == schema->count) {

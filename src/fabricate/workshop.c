@@ -162,6 +162,11 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
   }
   if (dea_finding_count(ctx, DEA_ERROR) == errors) { // else parts have no form
     DEA_TRY(ctx, device->general ? dea_layout_parts_make(ctx, w) : build_parts(ctx, w));
+    if (device->general && device->layout->electrode_count > 0) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, design->parts->place,
+                                   "leads and pads are made for discs only: draw them as part of "
+                                   "the shapes of these electrodes"));
+    }
     DEA_TRY(ctx, check_parts(ctx, w));
     DEA_TRY(ctx, lay_out(ctx, w));
   }
