@@ -76,6 +76,47 @@ static void test_patches(void **state)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
+/* A rectangle away from the origin: its own middle, box, boundary, and section. */
+static void test_off_centre(void **state)
+{
+  (void)state;
+  static const struct dea_mesh_field displacement = {.name = "displacement_m",
+                                                     .unit = "m",
+                                                     .meaning = "displacement",
+                                                     .kind = DEA_MESH_VECTOR,
+                                                     .components = 3};
+  struct dea_field_mesh *mesh;
+  struct dea_surface_lattice drawing;
+  struct dea_outline *lines;
+  double *u = NULL, *found;
+  size_t count;
+  int *nodes = NULL;
+  assert_int_equal(dea_field_mesh_create(ctx, 9, &mesh), DEA_OK);
+  assert_int_equal(dea_field_mesh_add_block(ctx, mesh, 2, 0, 1, &nodes), DEA_OK);
+  assert_int_equal(dea_field_mesh_add(ctx, mesh, &displacement, &u), DEA_OK);
+  for (int p = 0; p < 9; p++) {
+    nodes[p] = p;
+    mesh->X[3 * p] = 0.02 + 0.02 * (p % 3);
+    mesh->X[3 * p + 1] = 0.01 * (p / 3);
+    u[3 * p + 2] = p == 4 ? 1e-3 : 0;
+  }
+  assert_int_equal(dea_surface_lattice_create(ctx, mesh, 100, &drawing), DEA_OK);
+  assert_close(drawing.centre_m[0], 0.04, 1e-12, 0);
+  assert_close(drawing.centre_m[1], 0.01, 1e-12, 0);
+  assert_close(drawing.radius_m, hypot(0.02, 0.01), 1e-12, 0);
+  assert_int_equal(dea_surface_lattice_section(ctx, &drawing, 0, &found, &count), DEA_OK);
+  assert_in_range(count, 3, 20);
+  assert_close(found[0], -0.02, 1e-9, 0);
+  assert_close(found[count - 1], 0.02, 1e-9, 0);
+  assert_close(found[count + count / 2], 1e-3, 1e-9, 0); // the bubble's top is in the middle
+  dea_free(ctx, found);
+  dea_surface_lattice_free(ctx, &drawing);
+  assert_int_equal(dea_surface_lattice_outlines(ctx, mesh, &lines, &count), DEA_OK);
+  assert_int_equal(count, 4);
+  dea_free(ctx, lines);
+  dea_field_mesh_destroy(ctx, mesh);
+}
+
 static void test_section(void **state)
 {
   (void)state;
@@ -342,6 +383,7 @@ int main(void)
       cmocka_unit_test(test_outlines),
       cmocka_unit_test(test_patches),
       cmocka_unit_test(test_section),
+      cmocka_unit_test(test_off_centre),
       cmocka_unit_test(test_what_cannot_be_drawn),
       cmocka_unit_test(test_store),
       cmocka_unit_test(test_figures),
