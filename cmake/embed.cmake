@@ -21,6 +21,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${bytes}")
   string(REPEAT "'[^']*'," 16 sixteen)
   string(REGEX REPLACE "(${sixteen})" "\\1\n" bytes "${bytes}")
-  file(WRITE ${OUT} "#include \"base/assets.h\"\n\nconst char dea_asset_${NAME}[] = {\n${bytes}'\\0'};\n\
+  file(WRITE ${OUT} "#include <stddef.h>\n\nextern const char dea_asset_${NAME}[];\nextern const size_t dea_asset_${NAME}_length;\n\
+const char dea_asset_${NAME}[] = {\n${bytes}'\\0'};\n\
 const size_t dea_asset_${NAME}_length = ${length};\n")
 endif()

@@ -8,10 +8,16 @@ cd "$2"
 list=$(mktemp)
 trap 'rm -f "$list"' EXIT
 # one object of each source, the newest, also where it is compiled into several targets
-find src -name '*.c.o' -path '*.dir/*' -printf '%T@ %p\n' | sort -rn | cut -d ' ' -f 2- | awk '
+find src lab -name '*.c.o' -path '*.dir/*' -printf '%T@ %p\n' | sort -rn | cut -d ' ' -f 2- | awk '
   { source = $0; sub(/.*\.dir\//, "", source); sub(/\.o$/, "", source) }
   !(source in seen) { seen[source] = 1; print source, $0 }' | while read -r name object; do
-  if [ -e "$source/src/$name" ]; then echo "$object"; fi # not those of sources that are gone
+  # not those of sources that are gone
+  case $object in
+    lab/*) name=lab/src/$name ;;
+    */__/*) name=${name#__/} ;;
+    *) name=src/$name ;;
+  esac
+  if [ -e "$source/$name" ]; then echo "$object"; fi
 done >"$list"
 [ -s "$list" ] || { echo "no object files under $2/src: the check is broken"; exit 1; }
 xargs nm -A -g <"$list" | awk '

@@ -5,7 +5,7 @@ cd "$1"
 list=$(
   for page in *.md docs/*.md docs/*/*.md; do
     [ "$page" = CHANGELOG.md ] && continue # it tells the past
-    grep -oE '(src|tests|verify|scripts|examples|cmake|web|matlab)/[A-Za-z0-9_./-]*[*<]?' "$page" |
+    grep -oE '(lab/src|lab/tests|src|tests|benchmarks|verify|scripts|examples|cmake|web|matlab)/[A-Za-z0-9_./-]*[*<]?' "$page" |
       grep -v '[*<]$' | sed "s|[.-]*\$||; s|^|$page .|; s| \\.| |" || true
     grep -oE '\]\([^)#: ]+[)#]' "$page" | sed "s/^](//; s/[)#]\$//; s|^|$page $(dirname "$page")/|" || true
   done | sort -u
@@ -31,7 +31,7 @@ awk '/^\|.*`test_/ {
   count=0
   while read -r file name; do
     count=$((count + 1))
-    grep -Eq "(unit_test[a-z_]*|TEST)\\(${name}[,)]" "tests/$file" || { echo "docs/safety.md: $file has no test $name"; exit 1; }
+    grep -Eq "(unit_test[a-z_]*|TEST)\\(${name}[,)]" "tests/$file" "lab/tests/$file" 2>/dev/null || { echo "docs/safety.md: $file has no test $name"; exit 1; }
   done
   [ "$count" -gt 20 ] || { echo "hardly any test found in docs/safety.md: the check is broken"; exit 1; }
 }

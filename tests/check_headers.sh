@@ -4,7 +4,7 @@
 set -eu
 source=$1 build=$2
 flags="-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wstrict-prototypes -Wvla -Werror"
-includes="-I$source/src -I$build/src"
+includes="-I$source/src -I$build/src -I$source/lab/src"
 for folder in $DEA_INCLUDES; do
   includes="$includes -isystem $folder"
 done
@@ -12,19 +12,19 @@ bad=0
 # None has changed since all were good: that takes ten seconds.
 good=$build/check_headers.good headers=.
 [ -e "$good" ] &&
-  [ -z "$(find "$0" "$source/src" "$build/src" -newer "$good" \( -name '*.h' -o -name '*.sh' \))" ] &&
+  [ -z "$(find "$0" "$source/src" "$source/lab/src" "$build/src" -newer "$good" \( -name '*.h' -o -name '*.sh' \))" ] &&
   headers=
 touch "$good.new"
-for header in $([ -z "$headers" ] || { cd "$source/src" && find . -name '*.h' | sed 's|^\./||'; }); do
+for header in $([ -z "$headers" ] || { cd "$source" && find src lab/src -name '*.h' | sed 's|.*src/||'; }); do
   # shellcheck disable=SC2086 # one argument a flag
   printf '#include "%s"\nextern int not_empty;\n' "$header" |
     "$CC" -std=c17 -x c $flags $includes -fsyntax-only - || {
-    echo "src/$header does not compile alone"
+    echo "$header does not compile alone"
     bad=1
   }
 done
 # One name, one struct; the public header is a world of its own.
-twice=$(cd "$source/src" && find . -name '*.h' ! -path ./api/dea.h -exec grep -hoE '^(struct|enum|union) [a-z_0-9]+ \{' {} + | sort | uniq -d)
+twice=$(cd "$source" && find src lab/src -name '*.h' ! -path src/api/dea.h -exec grep -hoE '^(struct|enum|union) [a-z_0-9]+ \{' {} + | sort | uniq -d)
 if [ -n "$twice" ]; then
   echo "defined in two headers: $twice"
   bad=1

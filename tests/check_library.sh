@@ -12,7 +12,7 @@ report() { # TEXT SYMBOLS
     bad=1
   fi
 }
-symbols=$(nm --format=posix "$library" "$lab" 2>/dev/null)
+symbols=$(nm --format=posix "$library" ${lab:+"$lab"} 2>/dev/null)
 [ "$(printf '%s\n' "$symbols" | grep -c '^dea_')" -gt 10 ] || {
   echo "hardly any symbol found in $library: the check is broken"
   exit 1
@@ -25,6 +25,6 @@ report "calls that print or end the program" "$(printf '%s\n' "$symbols" | awk '
 # Tables of pointers lie in .data.rel.ro, which is read-only once the program runs. A *_lock is a
 # mutex around a packaged library that has global state of its own.
 report "variables that can change (global or static)" \
-  "$(objdump -t "$library" "$lab" | grep -E ' \.(data|bss|tdata|tbss)(\.[^[:space:]]*)?[[:space:]]' |
+  "$(objdump -t "$library" ${lab:+"$lab"} | grep -E ' \.(data|bss|tdata|tbss)(\.[^[:space:]]*)?[[:space:]]' |
     grep -vE ' \.data\.rel\.ro|completed\.0$|__dso_handle$|_lock$' | awk '$(NF - 1) !~ /^0+$/ { print $NF }')"
 exit $bad

@@ -4,7 +4,7 @@
 set -eu
 cd "$1"
 # shellcheck disable=SC2016 # awk's own
-find src bench tests verify matlab -name '*.[ch]' -exec awk '
+find src lab benchmarks tests verify matlab -name '*.[ch]' -exec awk '
   FNR == 1 { open = 0 }
   /^{/ { open = FNR; name = before }
   /^}/ && open { length_ = FNR - open - 1; functions++

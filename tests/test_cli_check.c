@@ -93,7 +93,6 @@ static void test_every_bad_file_has_its_exit_code(void **state)
       {"fit @/examples/frdea-4.yaml", 3, "this is a design, not a fit: it is for 'dea run'"},
       {"fit @/examples/explore/spread.yaml", 3, "it is for 'dea sweep' or 'dea optimise'"},
       {"sweep @/examples/fit/device.yaml", 3, "this is a fit, not a file of many designs"},
-      {"drive @/examples/fit/silicone.yaml", 3, "this is a fit, not a protocol"},
   };
   write_bad_files();
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

@@ -82,11 +82,13 @@ offers fish dea completion f
 offers axisymmetric dea run a.yaml --model a
 offers convergence dea run a.yaml --study c
 offers film.thickness dea run a.yaml --set film
-offers rate dea drive a.yaml --set r
 offers mode_shapes dea plot a.run --figure mode
 offers fibre_tip_z_m dea compare a b --quantity fibre
 offers pdf dea plot a.run --format p
-offers tdms dea import a.dat --format t
+if ! dea import --help | grep -q 'Not in this build'; then
+  offers rate dea drive a.yaml --set r
+  offers tdms dea import a.dat --format t
+fi
 offers vhb-4910 dea materials v
 cd "$folder" || exit 1
 offers new dea examples --copy ne

@@ -7,7 +7,9 @@ python=/usr/bin/python3
 "$python" -c 'import jsonschema, yaml' 2>/dev/null || exit 77
 folder=$(mktemp -d "${TMPDIR:-/tmp}/dea-schema.XXXXXX")
 trap 'rm -rf "$folder"' EXIT
-for kind in design material protocol mapping fit fit-device fit-breakdown fit-life explore; do
+bench="protocol mapping"
+"$DEA_COMMAND" drive --help | grep -q 'Not in this build' && bench=
+for kind in design material $bench fit fit-device fit-breakdown fit-life explore; do
   option=--$kind
   [ "$kind" != design ] || option=
   # shellcheck disable=SC2086 # none, or one

@@ -26,7 +26,7 @@ NOT_SET = "-Wno-analyzer-use-of-uninitialized-value"
 
 # False findings of gcc 12: (file, warning, part of the source line, why it is none).
 FALSE = [
-    ("src/lab/import/mat.c", "-Wanalyzer-null-dereference", "type->", "open_module sets it or fails"),
+    ("lab/src/import/mat.c", "-Wanalyzer-null-dereference", "type->", "open_module sets it or fails"),
     ("src/table/text_file.c", "-Wanalyzer-malloc-leak", "converter == (iconv_t)-1",
      "on that way none was opened"),
     ("src/geometry/dxf_text.c", "-Wanalyzer-malloc-leak", "return before + 4", "the same"),
@@ -110,7 +110,7 @@ def main():
     p.add_argument("--build", default=os.path.join(ROOT, "build"))
     a = p.parse_args()
     known = commands(a.build)
-    wanted = [os.path.relpath(os.path.abspath(f), ROOT) for f in a.files] or ["src"]
+    wanted = [os.path.relpath(os.path.abspath(f), ROOT) for f in a.files] or ["src", "lab/src"]
     names = [n for n in sorted(known)
              if any(n == w or n.startswith(w + "/") for w in wanted)]
     if a.changed:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Lines and branches of src/ that were reached, by folder, from what gcov counted.
+"""Lines and branches of src/ and lab/src/ that were reached, by folder, from what gcov counted.
 
     coverage.py --build FOLDER [--write] [--selection TEXT] [--files N]
 
-Reads every .gcno below FOLDER/src by `gcov --json-format`; a source that several targets compile
+Reads every .gcno below FOLDER/src and FOLDER/lab by `gcov --json-format`; a source that several targets compile
 counts where any of them reached it, and one that no program ran counts as not reached. Prints a table, and the N files (10) with most lines that were not.
 --write puts it into docs/verification/coverage.md; TEXT is the selection of tests it names.
 """
@@ -15,14 +15,15 @@ import subprocess
 import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-ROOMS = ("src/lab", "src/model/solid")  # told room by room
+ROOMS = ("src/model/solid",)  # told room by room
 
 
 def counted(build):
     """One gcov file of JSON after the other."""
     found = []
-    for folder, _, names in os.walk(os.path.join(build, "src")):
-        found += [os.path.join(folder, n) for n in names if n.endswith(".gcno")]
+    for part in ("src", "lab"):
+        for folder, _, names in os.walk(os.path.join(build, part)):
+            found += [os.path.join(folder, n) for n in names if n.endswith(".gcno")]
     for i in range(0, len(found), 50):
         text = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities"] +
                               found[i:i + 50], cwd=build, check=True, capture_output=True,
@@ -54,13 +55,15 @@ def sources(build):
         for file in one["files"]:
             path = os.path.realpath(os.path.join(one["current_working_directory"], file["file"]))
             path = os.path.relpath(path, ROOT)
-            if path.startswith("src/"):
+            if path.startswith(("src/", "lab/src/")):
                 out[path].add(file["lines"])
     return out
 
 
 def folder_of(path):
     parts = path.split("/")
+    if parts[0] == "lab":
+        return "lab/" + parts[2]
     for room in ROOMS:
         if path.startswith(room + "/"):
             depth = room.count("/") + 2
@@ -112,7 +115,7 @@ def main():
     print(text)
     if a.write:
         with open(os.path.join(ROOT, "docs/verification/coverage.md"), "w") as file:
-            file.write("# What the tests reach\n\nLines and branches of `src/` that `ctest %s` reaches, "
+            file.write("# What the tests reach\n\nLines and branches of `src/` and `lab/src/` that `ctest %s` reaches, "
                        "by folder; written by\n`verify/coverage.py --write` (of `scripts/coverage`, or "
                        "of `build/nested/gcc`, which CI builds with sanitizers\nand with little "
                        "optimisation, so that its branches are some more). Programs that a test kills count nothing, so that\n`lab/drive` "

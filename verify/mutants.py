@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Changes one place of the source at a time and looks whether a test notices.
 
-    mutants.py [--known] [--sample 20 --seed 1] [--in src/lab/reduce]... [--build FOLDER] [--jobs 2]
+    mutants.py [--known] [--sample 20 --seed 1] [--in lab/src/reduce]... [--build FOLDER] [--jobs 2]
                [--cmake OPTION]...
 
 --known    every change of each line of KNOWN, lines that changes once survived in
@@ -23,8 +23,8 @@ import tempfile
 
 # Tests that are to notice a change of these files; targets are test_NAME.
 OWN_TESTS = [
-    ("src/lab/reduce/figures.c", "cli_reduce"),
-    ("src/lab/reduce/", "lab_reduce_parts lab_reduce_little lab_reduce"),
+    ("lab/src/reduce/figures.c", "cli_reduce"),
+    ("lab/src/reduce/", "lab_reduce_parts lab_reduce_little lab_reduce"),
     ("src/model/solid/point/tension.c", "solid_tension"),
     ("src/model/solid/mesh/cuts.c", "solid_plate"),
     ("src/model/solid/element/", "solid_recover solid_element"),
@@ -34,21 +34,21 @@ OWN_TESTS = [
     ("src/material/catalogue", "catalogue"),
     ("src/material/", "material_point material_plane material_law"),
     ("src/geometry/", "geometry_region geometry_boolean geometry_symmetry geometry_drawing"),
-    ("src/lab/drive/arc_watch.c", "lab_drive_output"),
-    ("src/lab/drive/leak_watch.c", "lab_leak"),
-    ("src/lab/instrument/timed_output.c", "lab_scpi"),
-    ("src/lab/instrument/scpi_parse.c", "lab_scpi"),
-    ("src/lab/drive/drive_watch.c", "lab_drive_output lab_leak lab_drive"),
-    ("src/lab/drive/drive_output.c", "lab_drive_output"),
-    ("src/lab/protocol/export.c", "lab_export"),
-    ("src/lab/protocol/step.c", "lab_leak lab_checks"),
-    ("src/lab/protocol/", "lab_checks lab_protocol"),
-    ("src/lab/import/import_mat.c", "lab_mat"),
-    ("src/lab/import/", "lab_import lab_import_odd lab_import_frames lab_import_mapping "
+    ("lab/src/drive/arc_watch.c", "lab_drive_output"),
+    ("lab/src/drive/leak_watch.c", "lab_leak"),
+    ("lab/src/instrument/timed_output.c", "lab_scpi"),
+    ("lab/src/instrument/scpi_parse.c", "lab_scpi"),
+    ("lab/src/drive/drive_watch.c", "lab_drive_output lab_leak lab_drive"),
+    ("lab/src/drive/drive_output.c", "lab_drive_output"),
+    ("lab/src/protocol/export.c", "lab_export"),
+    ("lab/src/protocol/step.c", "lab_leak lab_checks"),
+    ("lab/src/protocol/", "lab_checks lab_protocol"),
+    ("lab/src/import/import_mat.c", "lab_mat"),
+    ("lab/src/import/", "lab_import lab_import_odd lab_import_frames lab_import_mapping "
                         "lab_import_lvm lab_import_tdms"),
     ("src/base/dense.c", "dense"),
     ("src/base/h5.c", "output_h5 lab_recording"),
-    ("src/lab/recording/", "lab_recording lab_damaged"),
+    ("lab/src/recording/", "lab_recording lab_damaged"),
     ("src/design/", "design design_errors"),
     ("src/calibrate/weibull.c", "calibrate_weibull"),
     ("src/calibrate/", "calibrate calibrate_fit calibrate_weibull device_fit cli_fit cli_fit_breakdown"),
@@ -71,25 +71,25 @@ MODULES = {"lab_mat": ["dea_matio_module"], "cli_reduce": ["dea"], "cli_fit": ["
 
 # (file, what its line holds): found by its text, since lines move.
 KNOWN = [
-    ("src/lab/reduce/filter.c", "return cutoff_Hz > 0.0 ? 15.0 * time_constant(cutoff_Hz)"),
-    ("src/lab/reduce/noise.c", "bt[p][i] = (i >= column ? b[p][i - column] : 0.0) +"),
-    ("src/lab/reduce/profiles.c", "levelling->offset_std_m = n > 1.0 ?"),
+    ("lab/src/reduce/filter.c", "return cutoff_Hz > 0.0 ? 15.0 * time_constant(cutoff_Hz)"),
+    ("lab/src/reduce/noise.c", "bt[p][i] = (i >= column ? b[p][i - column] : 0.0) +"),
+    ("lab/src/reduce/profiles.c", "levelling->offset_std_m = n > 1.0 ?"),
     ("src/model/solid/element/hex.c", "if (status == DEA_OK && E == NULL && thin_V_per_m != 0) {"),
     ("src/model/solid/mesh/cuts.c", "if (!(length / widest < (double)max && first > 0 && last > 0))"),
-    ("src/lab/reduce/order.c", "size_t more = *room > 0 ? 2 * *room : 32;"),
+    ("lab/src/reduce/order.c", "size_t more = *room > 0 ? 2 * *room : 32;"),
     ("src/model/solid/point/tension.c", "double low = l > 1 ? l : 1, high = low, stress = 0, slope;"),
-    ("src/lab/reduce/discharges.c", "if (s->plateau_count == 0 && n > 0) {"),
-    ("src/lab/reduce/level.c", "if (supports(l, x[i]) && fabs(off) <= limit) {"),
-    ("src/lab/reduce/figures.c", "panel->x_min = table->rows > 0 ? table->time_s[0] : 0.0;"),
-    ("src/lab/reduce/discharges.c", "return k < channel->count ? channel->values[k] : NAN;"),
+    ("lab/src/reduce/discharges.c", "if (s->plateau_count == 0 && n > 0) {"),
+    ("lab/src/reduce/level.c", "if (supports(l, x[i]) && fabs(off) <= limit) {"),
+    ("lab/src/reduce/figures.c", "panel->x_min = table->rows > 0 ? table->time_s[0] : 0.0;"),
+    ("lab/src/reduce/discharges.c", "return k < channel->count ? channel->values[k] : NAN;"),
     ("src/base/h5.c", "if (h->status == DEA_OK && H5Lcreate_hard(from, name, to, name,"),
-    ("src/lab/import/import_mat.c", 'return (marked && memcmp(head, "MATLAB ", 7) == 0) ||'),
-    ("src/lab/import/import_mat.c", "if (fseek(stream, 0, SEEK_END) == 0) {"),
+    ("lab/src/import/import_mat.c", 'return (marked && memcmp(head, "MATLAB ", 7) == 0) ||'),
+    ("lab/src/import/import_mat.c", "if (fseek(stream, 0, SEEK_END) == 0) {"),
     ("src/base/write_file.c", "if (path == NULL) {"),
     ("src/base/schema_print.c", "bool listed = field->kinds != NULL && !field->kinds_elsewhere;"),
-    ("src/lab/protocol/export.c", "bool good = strchr(\"'\\\\\", *c) == NULL"),
+    ("lab/src/protocol/export.c", "bool good = strchr(\"'\\\\\", *c) == NULL"),
     ("src/geometry/svg_read.c", "r->drawing->unit_is_known |= known && view[2 + k] > 0;"),
-    ("src/lab/import/import_tdms.c", "if (n < NAME_SIZE - 1) {"),
+    ("lab/src/import/import_tdms.c", "if (n < NAME_SIZE - 1) {"),
 ]
 
 # Changes that change nothing: (part of the line, what it becomes, why).

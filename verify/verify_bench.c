@@ -2,11 +2,11 @@
  * reduced; what comes out is laid beside what the film does by study "transient" of model lumped,
  * which knows nothing of the bench. */
 #include "base/file.h"
-#include "job/film_of_design.h"
-#include "lab/drive/drive.h"
-#include "lab/protocol/protocol.h"
-#include "lab/reduce/output.h"
+#include "drive/drive.h"
+#include "film/film_of_design.h"
 #include "output/compare_set.h"
+#include "protocol/protocol.h"
+#include "reduce/output.h"
 #include "result/result.h"
 #include "study/design_file.h"
 #include "study/study.h"

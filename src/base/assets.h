@@ -1,5 +1,4 @@
-/* Files that are embedded by CMake (cmake/embed.cmake): those of web/ that go into a page, and what
- * the scripts of `dea drive --export` end with. */
+/* Files of web/ that go into a page, embedded by CMake (cmake/embed.cmake). */
 #ifndef DEA_BASE_ASSETS_H
 #define DEA_BASE_ASSETS_H
 
@@ -11,9 +10,5 @@ extern const char dea_asset_script[]; // the scripts, one after the other
 extern const size_t dea_asset_script_length;
 extern const char dea_asset_core[]; // web/explorer.c as WebAssembly; length 0: not built
 extern const size_t dea_asset_core_length;
-extern const char dea_asset_play_python[]; // lab/protocol/play_nidaqmx.py
-extern const size_t dea_asset_play_python_length;
-extern const char dea_asset_play_matlab[]; // lab/protocol/play_matlab.m
-extern const size_t dea_asset_play_matlab_length;
 
 #endif

@@ -2,12 +2,12 @@
 #include "base/assets.h"
 #include "base/text.h"
 #include "base/version.h"
+#include "cli/bench.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "explore/optimise.h"
 #include "fabricate/canvas.h"
 #include "geometry/boolean.h"
-#include "lab/import/mat.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "result/provenance.h"
@@ -197,7 +197,7 @@ static void check_nlopt(struct report *report)
 static void check_matio(struct report *report)
 {
   char path[4096];
-  bool ok = dea_mat_find(path, sizeof path);
+  bool ok = cli_bench_find_matio(path, sizeof path);
   say_module(report, ".mat files", ok ? path : NULL, "dea_matio_module", "libmatio-dev",
              "files are exchanged as CSV");
 }

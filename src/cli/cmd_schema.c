@@ -1,11 +1,10 @@
+#include "cli/bench.h"
 #include "cli/cli.h"
 
 #include "calibrate/breakdown_file.h"
 #include "calibrate/device_file.h"
 #include "calibrate/life_file.h"
 #include "explore/explore_file.h"
-#include "lab/import/import.h"
-#include "lab/instrument/instrument.h"
 #include "study/design_file.h"
 
 struct request {
@@ -17,12 +16,16 @@ static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
   struct dea_design_schema design;
-  struct dea_protocol_schema protocol;
+  struct dea_record *bench = NULL; // owned
   dea_design_file_schema(&design);
-  dea_instrument_protocol_schema(&protocol);
+  if (request->protocol || request->mapping) {
+    dea_status status = cli_bench_schema(cli->ctx, request->protocol, &bench);
+    if (status != DEA_OK) {
+      return cli_report(cli, status);
+    }
+  }
   const struct dea_record *record = request->material        ? &dea_material_file_record
-                                    : request->protocol      ? &protocol.record
-                                    : request->mapping       ? &dea_mapping_record
+                                    : bench != NULL          ? bench
                                     : request->fit           ? &dea_fit_record
                                     : request->fit_device    ? &dea_device_file_record
                                     : request->fit_breakdown ? &dea_breakdown_file_record
@@ -42,7 +45,9 @@ static int run(struct dea_cli *cli, void *user)
   } else {
     dea_schema_print_text(record, &out);
   }
-  return cli_report(cli, cli_print_text(status, &out));
+  status = cli_print_text(status, &out);
+  dea_free(cli->ctx, bench);
+  return cli_report(cli, status);
 }
 
 static const struct cli_option options[] = {

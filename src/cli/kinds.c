@@ -1,9 +1,8 @@
 /* What the values of options are, and the words that are known for them. */
 #include "base/schema.h"
+#include "cli/bench.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
-#include "lab/import/import.h"
-#include "lab/instrument/instrument.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "output/figure.h"
@@ -22,7 +21,6 @@
     }                                                                                              \
     return DEA_OK;                                                                                 \
   }
-NAMES_OF(list_importers, dea_importer_all)
 NAMES_OF(list_models, dea_model_all)
 NAMES_OF(list_studies, dea_study_all)
 
@@ -86,15 +84,6 @@ static dea_status list_keys(struct dea_cli *cli, struct dea_text *out)
   return DEA_OK;
 }
 
-static dea_status list_protocol_keys(struct dea_cli *cli, struct dea_text *out)
-{
-  (void)cli;
-  struct dea_protocol_schema schema;
-  dea_instrument_protocol_schema(&schema);
-  dea_schema_print_keys(&schema.record, out);
-  return DEA_OK;
-}
-
 static dea_status list_formats(struct dea_cli *cli, struct dea_text *out)
 {
   (void)cli;
@@ -119,11 +108,11 @@ const struct cli_kind_info cli_kinds[CLI_KINDS] = {
     [CLI_EXAMPLE] = {"examples", .list = list_examples},
     [CLI_FIGURE] = {"figures", .list = list_figures},
     [CLI_FORMAT] = {"formats", .few = true, .list = list_formats},
-    [CLI_IMPORTER] = {"importers", .few = true, .list = list_importers},
+    [CLI_IMPORTER] = {"importers", .few = true, .list = cli_bench_importers},
     [CLI_KEY] = {"keys", .list = list_keys},
     [CLI_MATERIAL] = {"materials", .list = list_materials},
     [CLI_MODEL] = {"models", .few = true, .list = list_models},
-    [CLI_PROTOCOL_KEY] = {"protocol-keys", .list = list_protocol_keys},
+    [CLI_PROTOCOL_KEY] = {"protocol-keys", .list = cli_bench_protocol_keys},
     [CLI_QUANTITY] = {"quantities", .list = list_quantities},
     [CLI_SHELL] = {"shells", .few = true, .list = list_shells},
     [CLI_STUDY] = {"studies", .few = true, .list = list_studies},

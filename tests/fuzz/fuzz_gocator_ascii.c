@@ -1,5 +1,5 @@
 /* Fuzz target: a Gocator's lines of text, whole and in pieces. */
-#include "lab/instrument/gocator_parse.h"
+#include "instrument/gocator_parse.h"
 #include "lines.h"
 
 #include <math.h>

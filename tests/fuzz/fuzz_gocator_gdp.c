@@ -1,5 +1,5 @@
 /* Fuzz target: a Gocator's data stream, whole and in pieces, onto the grid of its first profile. */
-#include "lab/instrument/gocator_frames.h"
+#include "instrument/gocator_frames.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef DEA_TESTS_FUZZ_IMPORT_H
 #define DEA_TESTS_FUZZ_IMPORT_H
 
-#include "lab/import/import.h"
+#include "import/import.h"
 
 #include <stdint.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #define _GNU_SOURCE // memfd_create
 #include "fuzz_import.h"
 
-#include "lab/import/mat.h"
+#include "import/mat.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Fuzz target: reading a protocol and its instruments' sections, and checking what it would play,
  * without playing it. Its paths count from examples/bench, where a design is. */
-#include "job/film_of_design.h"
-#include "lab/instrument/instrument.h"
+#include "film/film_of_design.h"
+#include "instrument/instrument.h"
 
 #include <stdint.h>
 

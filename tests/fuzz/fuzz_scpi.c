@@ -1,5 +1,5 @@
 /* Fuzz target: answers of SCPI instruments, whole and in pieces. */
-#include "lab/instrument/scpi_parse.h"
+#include "instrument/scpi_parse.h"
 #include "lines.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef DEA_TESTS_FUZZ_LINES_H
 #define DEA_TESTS_FUZZ_LINES_H
 
-#include "lab/instrument/line_reader.h"
+#include "instrument/line_reader.h"
 
 #include <stdint.h>
 #include <string.h>

@@ -1,0 +1,45 @@
+#include "cli/bench.h"
+
+#include "import/import.h"
+#include "import/mat.h"
+#include "instrument/instrument.h"
+
+dea_status cli_bench_importers(struct dea_cli *cli, struct dea_text *out)
+{
+  size_t count;
+  const struct dea_importer *const *all = dea_importer_all(&count);
+  (void)cli;
+  for (size_t i = 0; i < count; i++) {
+    dea_text_add(out, "%s\n", all[i]->name);
+  }
+  return DEA_OK;
+}
+
+dea_status cli_bench_protocol_keys(struct dea_cli *cli, struct dea_text *out)
+{
+  struct dea_protocol_schema schema;
+  (void)cli;
+  dea_instrument_protocol_schema(&schema);
+  dea_schema_print_keys(&schema.record, out);
+  return DEA_OK;
+}
+
+dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_record **out)
+{
+  struct dea_protocol_schema *schema = dea_alloc(ctx, 1, sizeof *schema);
+  if (schema == NULL) {
+    return DEA_E_MEMORY;
+  }
+  if (protocol) {
+    dea_instrument_protocol_schema(schema);
+  } else {
+    schema->record = dea_mapping_record;
+  }
+  *out = &schema->record; // its first member
+  return DEA_OK;
+}
+
+bool cli_bench_find_matio(char *out, size_t size)
+{
+  return dea_mat_find(out, size);
+}

@@ -1,0 +1,236 @@
+#include "film/film_of_design.h"
+
+#include "material/plane.h"
+#include "model/model.h"
+#include "study/design_file.h"
+
+#include <math.h>
+
+enum { PATH_POINTS_MAX = 4000 };
+
+struct film {
+  struct dea_bench_film base;
+  struct dea_design *design; // owned
+};
+
+struct film_model {
+  struct dea_bench_model base;
+  const struct dea_design *design; // lent
+  struct dea_device *device;       // owned
+  const struct dea_model_type *type;
+  struct dea_model *model; // owned
+};
+
+static void destroy(struct dea_context *ctx, struct dea_bench_film *film)
+{
+  if (film != NULL) {
+    dea_design_destroy(ctx, ((struct film *)film)->design);
+    dea_free(ctx, film);
+  }
+}
+
+static dea_status read(struct dea_context *ctx, const char *file, const char *text, size_t length,
+                       struct dea_bench_film **out)
+{
+  *out = NULL;
+  struct film *film = dea_alloc(ctx, 1, sizeof *film);
+  if (film == NULL) {
+    return DEA_E_MEMORY;
+  }
+  film->base.type = &dea_film_of_design;
+  dea_status status = dea_design_read_memory(ctx, file, text, length, NULL, 0, &film->design);
+  if (status != DEA_OK) {
+    destroy(ctx, &film->base);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = &film->base;
+  return DEA_OK;
+}
+
+static const char *model_name(size_t index, bool *moves)
+{
+  size_t count;
+  const struct dea_model_type *const *types = dea_model_all(&count);
+  *moves = index < count && types[index]->advance != NULL;
+  return index < count ? types[index]->name : NULL;
+}
+
+// One model --------------------------------------------------------------------------------------
+
+static void close_model(struct dea_context *ctx, struct dea_bench_model *model)
+{
+  struct film_model *m = (struct film_model *)model;
+  if (m == NULL) {
+    return;
+  }
+  if (m->model != NULL) {
+    m->type->destroy(ctx, m->model);
+  }
+  dea_device_destroy(ctx, m->device);
+  dea_free(ctx, m);
+}
+
+static dea_status build(struct dea_context *ctx, bool moves, struct film_model *m)
+{
+  DEA_TRY(ctx, dea_device_build(ctx, m->design, &m->device));
+  DEA_TRY(ctx, dea_device_check(ctx, m->device)); // the bench is that of a disc
+  struct dea_device *device = m->device;
+  if (!moves) { // in a check the film knows neither, and need not say so
+    device->fibre_count = 0;
+    device->gravity = DEA_GRAVITY_OFF;
+  }
+  m->base.material = device->film.name;
+  m->base.frame_radius_m = device->frame_radius_m;
+  m->base.fibre_tip_radius_m =
+      device->fibre_count > 0 ? device->fibre_tip_radius_m : device->electrode_radius_m;
+  return moves ? dea_model_create(ctx, m->type, m->design, device, &m->model)
+               : m->type->create(ctx, device, NULL, &m->model);
+}
+
+static dea_status open_model(struct dea_context *ctx, const struct dea_bench_film *film,
+                             const char *name, struct dea_bench_model **out)
+{
+  const struct dea_model_type *type = dea_model_find(name != NULL ? name : "lumped");
+  *out = NULL;
+  if (type == NULL || type->advance == NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the simulated bench cannot use model '%s': it %s",
+                    name, type == NULL ? "is not there" : "knows no time");
+  }
+  struct film_model *m = dea_alloc(ctx, 1, sizeof *m);
+  if (m == NULL) {
+    return DEA_E_MEMORY;
+  }
+  *m = (struct film_model){.base = {.type = &dea_film_of_design, .name = type->name},
+                           .design = ((const struct film *)film)->design,
+                           .type = type};
+  dea_status status = build(ctx, name != NULL, m);
+  if (status != DEA_OK) {
+    close_model(ctx, &m->base);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = &m->base;
+  return DEA_OK;
+}
+
+/* What the material makes of a point. */
+static struct dea_bench_point complete(const struct film_model *m,
+                                       const struct dea_load_point *point)
+{
+  const struct dea_material *film = &m->device->film;
+  double stretch = point->electrode_stretch * m->device->pre_stretch;
+  double permittivity =
+      DEA_EPSILON_0 * (film->permittivity.at_rest + film->permittivity.slope * (stretch - 1));
+  const double low = film->breakdown.law.low; // of the values that sources give; 0: by hand
+  double band[2];
+  dea_breakdown_probability_band(&film->breakdown, point->breakdown_margin, band);
+  return (struct dea_bench_point){
+      .point = *point,
+      .breakdown_probability_band = {band[0], band[1]},
+      .breakdown_V_per_m = (low > 0 ? low : 1) * dea_breakdown_field(film, stretch),
+      .leakage_s =
+          film->resistivity_ohm_m > 0 ? film->resistivity_ohm_m * permittivity : (double)INFINITY,
+  };
+}
+
+// At rest ----------------------------------------------------------------------------------------
+
+static dea_status first_pull_in(void *user, const struct dea_event *event)
+{
+  double *pull_in_V = user;
+  if (event->kind == DEA_EVENT_PULL_IN && isnan(*pull_in_V)) {
+    *pull_in_V = event->point.voltage_V;
+  }
+  return DEA_OK;
+}
+
+static dea_status no_point(void *user, const struct dea_load_point *point)
+{
+  (void)user;
+  (void)point;
+  return DEA_OK;
+}
+
+static dea_status pull_in(struct dea_context *ctx, struct dea_bench_model *model, double *voltage_V)
+{
+  struct film_model *m = (struct film_model *)model;
+  const struct dea_path_options options = {
+      .max_stretch = m->design->compute.path_max_stretch.si,
+      .max_voltage_V = INFINITY,
+      .max_points = PATH_POINTS_MAX,
+  };
+  *voltage_V = NAN;
+  return dea_model_path(ctx, m->type, m->model, &options, no_point, first_pull_in, voltage_V);
+}
+
+static dea_status solve(struct dea_context *ctx, struct dea_bench_model *model, double voltage_V,
+                        struct dea_bench_point *out)
+{
+  const struct film_model *m = (struct film_model *)model;
+  struct dea_load_point point;
+  struct dea_model *fresh = NULL;
+  DEA_TRY(ctx, m->type->create(ctx, m->device, NULL, &fresh));
+  dea_status status = m->type->solve(ctx, fresh, voltage_V, &point);
+  m->type->destroy(ctx, fresh);
+  if (status == DEA_OK) {
+    *out = complete(m, &point);
+  }
+  return status;
+}
+
+// In time ----------------------------------------------------------------------------------------
+
+static dea_status begin(struct dea_context *ctx, struct dea_bench_model *model,
+                        const struct dea_bench_circuit *circuit, struct dea_bench_point *out)
+{
+  struct film_model *m = (struct film_model *)model;
+  struct dea_load_point point;
+  const struct dea_time_options options = {
+      .circuit = {circuit->series_resistance_ohm, circuit->current_limit_A},
+      .rho_inf = 0.8,
+  };
+  DEA_TRY(ctx, m->type->solve(ctx, m->model, 0, &point));
+  DEA_TRY(ctx, dea_model_begin(ctx, m->type, m->model, &options, &point));
+  *out = complete(m, &point);
+  return DEA_OK;
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model, double length_s,
+                          double source_V, struct dea_bench_point *out, double *error)
+{
+  struct film_model *m = (struct film_model *)model;
+  const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
+  struct dea_load_point point;
+  dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
+  if (status == DEA_OK) {
+    *out = complete(m, &point);
+  }
+  return status;
+}
+
+static void accept(struct dea_bench_model *model)
+{
+  struct film_model *m = (struct film_model *)model;
+  m->type->accept(m->model);
+}
+
+static dea_status profile(struct dea_context *ctx, struct dea_bench_model *model,
+                          struct dea_profile *out)
+{
+  struct film_model *m = (struct film_model *)model;
+  *out = (struct dea_profile){.count = 0};
+  return m->type->profile != NULL ? dea_model_profile(ctx, m->type, m->model, out) : DEA_OK;
+}
+
+const struct dea_bench_film_type dea_film_of_design = {
+    .read = read,
+    .destroy = destroy,
+    .model = model_name,
+    .open = open_model,
+    .close = close_model,
+    .pull_in = pull_in,
+    .solve = solve,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
+    .profile = profile,
+};

@@ -1,0 +1,13 @@
+/* What a column may be, by its name and unit; the words of names are table/word_list.h. */
+#ifndef DEA_LAB_IMPORT_GUESS_H
+#define DEA_LAB_IMPORT_GUESS_H
+
+#include "import/import.h"
+
+// Beside enum dea_channel_kind; UNCERTAINTY: of another column, "z std".
+enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2, DEA_GUESS_UNCERTAINTY = -3 };
+
+int dea_guess_by_name(const char *name);
+/* si: SI unit of the column's unit. */
+int dea_guess_by_unit(const char *name, const char *si);
+#endif

@@ -1,0 +1,362 @@
+/* Instrument "nidaqmx": a DAQ of National Instruments by the library NI-DAQmx, which is loaded when
+ * it is opened. The output is played from a queue without repetition; the inputs start with it, by
+ * its start trigger, and both have the device's clock. The few prototypes and numbers below are
+ * those of the "NI-DAQmx C Reference". Not tried with a device. */
+#include "base/clock.h"
+#include "instrument/daq.h"
+#include "instrument/instrument_make.h"
+#include "instrument/library.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { // DAQmx_Val_...
+  DEFAULT = -1,
+  REFERENCED = 10083,
+  NON_REFERENCED = 10078,
+  DIFFERENTIAL = 10106,
+  PSEUDODIFFERENTIAL = 12529,
+  VOLTS = 10348,
+  RISING = 10280,
+  CONTINUOUS = 10123,
+  NO_REGENERATION = 10158,
+  BY_CHANNEL = 0,
+  BY_SCAN = 1,
+};
+enum { // DAQmxError...
+  NOT_YET_AVAILABLE = -200284,
+  NO_REPETITION_OF_OLD = -200290,
+  NO_REPETITION_OF_OLD_2 = -200291,
+  MEMORY_UNDERFLOW = -200621,
+};
+
+#define FUNCTIONS(X)                                                                               \
+  X(CreateTask, (const char *name, void **task))                                                   \
+  X(CreateAOVoltageChan, (void *task, const char *channel, const char *name, double min,           \
+                          double max, int32_t units, const char *scale))                           \
+  X(CreateAIVoltageChan, (void *task, const char *channel, const char *name, int32_t wiring,       \
+                          double min, double max, int32_t units, const char *scale))               \
+  X(CfgSampClkTiming,                                                                              \
+    (void *task, const char *source, double rate, int32_t edge, int32_t mode, uint64_t samples))   \
+  X(GetSampClkRate, (void *task, double *rate))                                                    \
+  X(CfgDigEdgeStartTrig, (void *task, const char *source, int32_t edge))                           \
+  X(CfgOutputBuffer, (void *task, uint32_t samples))                                               \
+  X(SetWriteRegenMode, (void *task, int32_t mode))                                                 \
+  X(StartTask, (void *task))                                                                       \
+  X(StopTask, (void *task))                                                                        \
+  X(ClearTask, (void *task))                                                                       \
+  X(IsTaskDone, (void *task, uint32_t *done))                                                      \
+  X(WriteAnalogF64, (void *task, int32_t samples, uint32_t start, double timeout_s,                \
+                     uint32_t layout, const double *volts, int32_t *written, uint32_t *reserved))  \
+  X(GetReadAvailSampPerChan, (void *task, uint32_t *samples))                                      \
+  X(ReadAnalogF64, (void *task, int32_t samples, double timeout_s, uint32_t layout, double *volts, \
+                    uint32_t room, int32_t *read, uint32_t *reserved))                             \
+  X(GetExtendedErrorInfo, (char *text, uint32_t size))
+
+struct driver {
+#define MEMBER(name, arguments) int32_t(*name) arguments;
+  FUNCTIONS(MEMBER)
+#undef MEMBER
+};
+static const struct dea_library_symbol symbols[] = {
+#define SYMBOL(name, arguments) {"DAQmx" #name, offsetof(struct driver, name)},
+    FUNCTIONS(SYMBOL)
+#undef SYMBOL
+};
+
+#define USUAL_LIBRARY "libnidaqmx.so.1"
+static const char *const wirings[] = {"default",      "referenced",         "non_referenced",
+                                      "differential", "pseudodifferential", NULL};
+static const int32_t wiring_values[] = {DEFAULT, REFERENCED, NON_REFERENCED, DIFFERENTIAL,
+                                        PSEUDODIFFERENTIAL};
+
+static const struct dea_field fields[] = {
+    DEA_DAQ_FIELDS("nidaqmx", "its name in NI MAX or `nilsdev`", "Dev1", wirings, "default",
+                   USUAL_LIBRARY),
+};
+const struct dea_record dea_instrument_nidaqmx_record = {
+    "nidaqmx", "plays and measures with a DAQ of National Instruments", fields,
+    DEA_INSTRUMENT_COUNT(fields)};
+
+struct nidaqmx {
+  struct dea_instrument base;
+  struct driver driver;
+  struct dea_daq daq;
+  char device[DEA_TITLE_SIZE];
+  const struct dea_protocol *protocol;
+  void *output, *input; // tasks; NULL: none
+  bool found;           // its output is there, at whatever voltage
+};
+
+static dea_status check(const struct dea_reader *reader, const void *data,
+                        const struct dea_protocol *protocol)
+{
+  const struct dea_daq_raw *raw = data;
+  (void)protocol;
+  return dea_library_check(reader, &raw->library, USUAL_LIBRARY);
+}
+
+/* Passes a negative code on with the library's own sentence; positive ones are warnings. */
+static dea_status judge(struct dea_context *ctx, const struct nidaqmx *n, int32_t code,
+                        const char *what)
+{
+  if (code >= 0) {
+    return DEA_OK;
+  }
+  char text[2048] = "";
+  n->driver.GetExtendedErrorInfo(text, sizeof text);
+  text[sizeof text - 1] = '\0';
+  for (char *c = text; *c != '\0'; c++) {
+    *c = *c == '\n' || *c == '\r' ? ' ' : *c;
+  }
+  return dea_fail(ctx, DEA_E_INSTRUMENT, "%s cannot %s (NI-DAQmx %d): %.600s", n->device, what,
+                  (int)code, text[0] != '\0' ? text : "no explanation");
+}
+
+#define TRY(n, what, function, ...)                                                                \
+  DEA_TRY(ctx, judge(ctx, n, (n)->driver.function(__VA_ARGS__), what))
+
+/* "Dev1/ao0" of "ao0"; a terminal that names its device stays. */
+static void channel_of(const struct nidaqmx *n, const char *terminal, char out[2 * DEA_TITLE_SIZE])
+{
+  snprintf(out, 2 * DEA_TITLE_SIZE, "%s%s%s", strchr(terminal, '/') != NULL ? "" : n->device,
+           strchr(terminal, '/') != NULL ? "" : "/", terminal);
+}
+
+/* A task of the output alone, which is not on a clock yet. */
+static dea_status make_output(struct dea_context *ctx, struct nidaqmx *n)
+{
+  char channel[2 * DEA_TITLE_SIZE];
+  double most_V = n->protocol->amplifier.control_V.si;
+  channel_of(n, n->protocol->amplifier.terminal.text, channel);
+  TRY(n, "make its output", CreateTask, "", &n->output);
+  TRY(n, "play on that output", CreateAOVoltageChan, n->output, channel, "", -most_V, most_V, VOLTS,
+      NULL);
+  return DEA_OK;
+}
+
+static void clear(const struct nidaqmx *n, void **task)
+{
+  if (*task != NULL) {
+    n->driver.StopTask(*task);
+    n->driver.ClearTask(*task);
+    *task = NULL;
+  }
+}
+
+/* Puts 0 V out at once, by a task of its own. */
+static dea_status set_zero(struct dea_context *ctx, struct nidaqmx *n)
+{
+  const double zero = 0;
+  clear(n, &n->output);
+  dea_status status = make_output(ctx, n);
+  if (status == DEA_OK) {
+    n->found = true;
+    int32_t code = n->driver.WriteAnalogF64(n->output, 1, 1, DEA_DAQ_PATIENCE_S, BY_CHANNEL, &zero,
+                                            NULL, NULL);
+    status = judge(ctx, n, code, "put 0 V out");
+  }
+  clear(n, &n->output);
+  return status;
+}
+
+static dea_status set_clock(struct dea_context *ctx, struct nidaqmx *n, void *task, size_t samples)
+{
+  double actual_Hz = 0, rate_Hz = n->protocol->rate_Hz.si;
+  TRY(n, "take that rate", CfgSampClkTiming, task, "", rate_Hz, RISING, CONTINUOUS, samples);
+  TRY(n, "tell its rate", GetSampClkRate, task, &actual_Hz);
+  return dea_daq_check_rate(ctx, n->device, rate_Hz, actual_Hz);
+}
+
+static dea_status make_input(struct dea_context *ctx, struct nidaqmx *n, int32_t wiring)
+{
+  char channel[2 * DEA_TITLE_SIZE], trigger[DEA_TITLE_SIZE + 32];
+  if (n->protocol->input_count == 0) {
+    return DEA_OK;
+  }
+  TRY(n, "make its inputs", CreateTask, "", &n->input);
+  for (size_t i = 0; i < n->protocol->input_count; i++) {
+    const struct dea_protocol_input *input = &n->protocol->inputs[i];
+    channel_of(n, input->terminal.text, channel);
+    TRY(n, "measure on that input", CreateAIVoltageChan, n->input, channel, "", wiring,
+        -input->range_V.si, input->range_V.si, VOLTS, NULL);
+  }
+  DEA_TRY(ctx, set_clock(ctx, n, n->input, n->daq.input_room));
+  snprintf(trigger, sizeof trigger, "/%s/ao/StartTrigger", n->device);
+  TRY(n, "start its inputs with its output", CfgDigEdgeStartTrig, n->input, trigger, RISING);
+  return DEA_OK;
+}
+
+static dea_status set_up(struct dea_context *ctx, struct nidaqmx *n, int32_t wiring)
+{
+  DEA_TRY(ctx, set_zero(ctx, n));
+  DEA_TRY(ctx, make_output(ctx, n));
+  DEA_TRY(ctx, set_clock(ctx, n, n->output, n->daq.room));
+  TRY(n, "play without repetition", SetWriteRegenMode, n->output, NO_REGENERATION);
+  TRY(n, "take a queue of that length", CfgOutputBuffer, n->output, (uint32_t)n->daq.room);
+  return make_input(ctx, n, wiring);
+}
+
+static struct dea_zero stop(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  struct nidaqmx *n = (struct nidaqmx *)instrument;
+  clear(n, &n->output);
+  clear(n, &n->input);
+  bool zero = set_zero(ctx, n) == DEA_OK;
+  return (struct dea_zero){zero ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN, NULL};
+}
+
+static void close_it(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  struct nidaqmx *n = (struct nidaqmx *)instrument;
+  clear(n, &n->output);
+  clear(n, &n->input);
+  dea_daq_free(ctx, &n->daq);
+  dea_free(ctx, n);
+}
+
+static dea_status load(struct dea_context *ctx, const struct dea_daq_raw *raw, struct nidaqmx *n)
+{
+  snprintf(n->device, sizeof n->device, "%s", raw->device.text);
+  return dea_library_open(ctx, raw->library.text, "NI-DAQmx",
+                          "it is installed from ni.com for PCIe and PXI devices; Linux has no "
+                          "driver for USB devices, so play on Windows with the scripts of 'dea "
+                          "drive --export'",
+                          symbols, DEA_INSTRUMENT_COUNT(symbols), &n->driver);
+}
+
+static struct dea_zero zero(struct dea_context *ctx, const void *data,
+                            const struct dea_protocol *protocol,
+                            const struct dea_instrument_past *past)
+{
+  (void)past; // its name is of the device, and stays with it
+  struct nidaqmx n = {.protocol = protocol};
+  bool good = load(ctx, data, &n) == DEA_OK && set_zero(ctx, &n) == DEA_OK;
+  return (struct dea_zero){good ? DEA_ZERO_COMMANDED : DEA_ZERO_UNKNOWN, NAN, NULL};
+}
+
+static dea_status open_it(struct dea_context *ctx, const void *data,
+                          const struct dea_protocol *protocol, struct dea_instrument **out)
+{
+  const struct dea_daq_raw *raw = data;
+  struct nidaqmx *n = dea_alloc(ctx, 1, sizeof *n);
+  if (n == NULL) {
+    return DEA_E_MEMORY;
+  }
+  n->base.type = &dea_instrument_nidaqmx;
+  n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
+  n->protocol = protocol;
+  dea_status status = dea_daq_begin(ctx, protocol, raw->queue_s.si, &n->daq);
+  if (status == DEA_OK) {
+    status = load(ctx, raw, n);
+  }
+  if (status == DEA_OK) {
+    status = set_up(ctx, n, wiring_values[raw->wiring.value]);
+  }
+  if (status != DEA_OK) {
+    status = n->found ? dea_instrument_give_up(ctx, &n->base, status) : status;
+    close_it(ctx, &n->base);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = &n->base;
+  return DEA_OK;
+}
+
+/* Inputs first: they wait for the output's trigger. */
+static dea_status start_tasks(struct dea_context *ctx, struct nidaqmx *n)
+{
+  n->daq.running = true;
+  if (n->input != NULL) {
+    TRY(n, "start its inputs", StartTask, n->input);
+  }
+  TRY(n, "start its output", StartTask, n->output);
+  return DEA_OK;
+}
+
+static dea_status start_nidaqmx(struct dea_context *ctx, struct dea_instrument *instrument)
+{
+  struct nidaqmx *n = (struct nidaqmx *)instrument;
+  n->daq.asked_to_start = true;
+  return n->daq.queued > 0 ? start_tasks(ctx, n) : DEA_OK; // else with the first sample
+}
+
+static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument,
+                      const double *volts, size_t count)
+{
+  struct nidaqmx *n = (struct nidaqmx *)instrument;
+  DEA_TRY(ctx, dea_protocol_guard(ctx, n->protocol, volts, count));
+  while (count > 0) {
+    int32_t written = 0;
+    size_t part;
+    DEA_TRY(ctx, dea_daq_part(ctx, &n->daq, n->device, count, &part));
+    double timeout_s = DEA_DAQ_PATIENCE_S + (double)n->daq.room / n->protocol->rate_Hz.si;
+    TRY(n, "play on", WriteAnalogF64, n->output, (int32_t)part, 0, timeout_s, BY_CHANNEL, volts,
+        &written, NULL);
+    if (written <= 0 || (size_t)written > part) {
+      return dea_fail(ctx, DEA_E_INSTRUMENT, "%s takes no more samples", n->device);
+    }
+    n->daq.queued += (size_t)written;
+    volts += written;
+    count -= (size_t)written;
+    if (n->daq.asked_to_start && !n->daq.running) {
+      DEA_TRY(ctx, start_tasks(ctx, n));
+    }
+  }
+  return DEA_OK;
+}
+
+/* Whether the output still plays. One that has nothing left to play is no failure until it is given
+ * more: so ends every sequence. */
+static dea_status look_at_output(struct dea_context *ctx, struct nidaqmx *n)
+{
+  uint32_t done = 0;
+  int32_t code = n->driver.IsTaskDone(n->output, &done);
+  if (code == NO_REPETITION_OF_OLD || code == NO_REPETITION_OF_OLD_2 || code == MEMORY_UNDERFLOW) {
+    n->daq.ran_dry = true;
+    return DEA_OK;
+  }
+  return judge(ctx, n, code, "play on");
+}
+
+static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument, double timeout_s,
+                      const struct dea_sink *sink)
+{
+  struct nidaqmx *n = (struct nidaqmx *)instrument;
+  uint32_t ready = 0;
+  int32_t got = 0;
+  if (!n->daq.running || n->input == NULL) {
+    dea_clock_wait(timeout_s);
+    return n->daq.running ? look_at_output(ctx, n) : DEA_OK;
+  }
+  DEA_TRY(ctx, look_at_output(ctx, n));
+  TRY(n, "measure on", GetReadAvailSampPerChan, n->input, &ready);
+  size_t most = n->daq.scans_room, wanted = ready < 1 ? 1 : ready < most ? ready : most;
+  if (ready == 0 && timeout_s <= 0) {
+    return DEA_OK;
+  }
+  int32_t code =
+      n->driver.ReadAnalogF64(n->input, (int32_t)wanted, timeout_s, BY_SCAN, n->daq.scans,
+                              (uint32_t)(most * n->protocol->input_count), &got, NULL);
+  if (code != NOT_YET_AVAILABLE) {
+    DEA_TRY(ctx, judge(ctx, n, code, "measure on"));
+  }
+  return got > 0 && (size_t)got <= wanted ? sink->samples(sink->user, n->daq.scans, (size_t)got)
+                                          : DEA_OK;
+}
+
+const struct dea_instrument_type dea_instrument_nidaqmx = {
+    .name = "nidaqmx",
+    .record = &dea_instrument_nidaqmx_record,
+    .raw_size = sizeof(struct dea_daq_raw),
+    .roles = DEA_PLAYS_OUTPUT | DEA_READS_INPUTS,
+    .check = check,
+    .open = open_it,
+    .start = start_nidaqmx,
+    .put = put,
+    .get = get,
+    .stop = stop,
+    .address = dea_daq_address,
+    .zero = zero,
+    .close = close_it,
+};

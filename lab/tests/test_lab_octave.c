@@ -1,0 +1,193 @@
+/* Files that Octave wrote, read to the last bit; and version 7.3 of .mat, which Octave cannot
+ * write: it comes from our own writer, which is libmatio's, and from HDF5 itself for what MATLAB
+ * adds. */
+#define _GNU_SOURCE
+#include "base/h5.h"
+#include "import/mat.h"
+#include "import_text.h"
+#include "octave.h"
+
+enum { COUNT = 501 };
+
+static double time_s[COUNT], voltage[COUNT], laser[COUNT];
+
+/* The numbers that all files of these tests hold. */
+#define NUMBERS                                                                                    \
+  "t = (0:500)' / 1000; v = 1e3 * sin(7 * t) .^ 3 / 3; z = cos(t) * 1e-5 / 7; v(8) = NaN;"         \
+  "f = fopen('raw', 'w'); fwrite(f, [t; v; z], 'double'); fclose(f);"
+
+static void numbers_back(void)
+{
+  static double all[3 * COUNT];
+  assert_int_equal(read_raw("raw", all, 3 * COUNT), 3 * COUNT);
+  memcpy(time_s, all, sizeof time_s);
+  memcpy(voltage, all + COUNT, sizeof voltage);
+  memcpy(laser, all + 2 * COUNT, sizeof laser);
+}
+
+static struct dea_table *read_file(const char *name)
+{
+  struct dea_table *table;
+  dea_finding_clear(ctx);
+  if (dea_table_read(ctx, in_folder(name), NULL, &table) != DEA_OK) {
+    fail_msg("%s: %s", name, dea_context_message(ctx));
+  }
+  return table;
+}
+
+static void check(const char *name, const char *v, const char *z)
+{
+  struct dea_table *table = read_file(name);
+  assert_column(table, "t", "", time_s, COUNT);
+  assert_column(table, v, "", voltage, COUNT);
+  assert_column(table, z, "", laser, COUNT);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_mat(void **state)
+{
+  (void)state;
+  octave(NUMBERS "data.v = v'; data.deep.z = z; save('-v6', 'six.mat', 't', 'data');"
+                 "save('-v7', 'seven.mat', 't', 'data'); save('-v4', 'four.mat', 't', 'v', 'z')");
+  numbers_back();
+  check("six.mat", "data.v", "data.deep.z");
+  check("seven.mat", "data.v", "data.deep.z");
+  check("four.mat", "v", "z");
+}
+
+/* MATLAB's variables carry units in their names only. */
+static void test_mat_units(void **state)
+{
+  (void)state;
+  octave(NUMBERS
+         "data.voltage_kV = v; z_um = [z z]; save('-v6', 'units.mat', 't', 'data', 'z_um')");
+  numbers_back();
+  struct dea_table *table = read_file("units.mat");
+  assert_column(table, "t", "", time_s, COUNT);
+  assert_column(table, "data.voltage_kV", "kV", voltage, COUNT);
+  assert_column(table, "z_um(2)", "um", laser, COUNT);
+  dea_table_destroy(ctx, table);
+}
+
+static void test_mat_classes(void **state)
+{
+  (void)state;
+  static const double i8[] = {-128, 127}, u16[] = {0, 65535}, b[] = {1, 0}, m1[] = {1, 3, 5},
+                      m2[] = {2, 4, 6}, s[] = {0.5, -0.25}, i64[] = {-4503599627370497.0, 5};
+  octave("a = int8([-128 127]); b = uint16([0; 65535]); c = [true false]; d = single([0.5 -0.25]);"
+         "e = int64([-4503599627370497 5]); m = [1 2; 3 4; 5 6]; x = 1 + 2i; n = []; k = {1, 2};"
+         "w = ones(2, 2, 2); fs = 1000; s = 'some words'; r(2).q = 3;"
+         "save('-v7', 'classes.mat', 'a', 'b', 'c', 'd', 'e', 'm', 'x', 'n', 'k', 'w', 'fs', 's', "
+         "'r')");
+  struct dea_table *table = read_file("classes.mat");
+  assert_column(table, "a", "", i8, 2);
+  assert_column(table, "b", "", u16, 2);
+  assert_column(table, "c", "", b, 2);
+  assert_column(table, "d", "", s, 2);
+  assert_column(table, "e", "", i64, 2);
+  assert_column(table, "m(1)", "", m1, 3);
+  assert_column(table, "m(2)", "", m2, 3);
+  assert_int_equal(table->column_count, 8);
+  assert_string_equal(table->note, "s: some words");
+  assert_true(is_said(DEA_NOTE, "'x' is complex"));
+  assert_true(is_said(DEA_NOTE, "'k' is a cell array"));
+  assert_true(is_said(DEA_NOTE, "'w' has more than two dimensions"));
+  assert_true(is_said(DEA_NOTE, "'r' is an array of structs"));
+  dea_table_destroy(ctx, table);
+}
+
+/* HDF5 is in our library and once more below libmatio: both are used one after the other. */
+static void test_mat_73(void **state)
+{
+  (void)state;
+  const struct dea_mat_variable variables[] = {
+      {.name = "t", .values = time_s, .count = COUNT},
+      {.name = "v", .values = voltage, .count = COUNT},
+      {.name = "z", .values = laser, .count = COUNT},
+      {.name = "words", .text = "some words"},
+  };
+  octave(NUMBERS);
+  numbers_back();
+  assert_int_equal(dea_mat_write(ctx, in_folder("new.mat"), variables, 4, DEA_MAT_73), DEA_OK);
+  check("new.mat", "v", "z");
+  // Octave reads the HDF5 of it, transposed as MATLAB stores it
+  octave(NUMBERS "l = load('-hdf5', 'new.mat'); n = isnan(v);"
+                 "assert(l.v(~n)(:) == v(~n)); assert(l.t(:) == t)");
+  // a timetable, as MATLAB marks it
+  struct h5 h;
+  dea_h5_begin(&h, ctx, in_folder("new.mat"));
+  hid_t file = H5Fopen(in_folder("new.mat"), H5F_ACC_RDWR, H5P_DEFAULT);
+  assert_true(file >= 0);
+  uint32_t numbers[6] = {3707764736u, 2, 1, 1, 1, 1};
+  hsize_t dims[2] = {6, 1};
+  hid_t space = H5Screate_simple(2, dims, NULL);
+  hid_t set = H5Dcreate2(file, "log", H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  assert_true(H5Dwrite(set, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
+  hid_t type = H5Tcopy(H5T_C_S1), scalar = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, 9);
+  hid_t attribute = H5Acreate2(set, "MATLAB_class", type, scalar, H5P_DEFAULT, H5P_DEFAULT);
+  assert_true(H5Awrite(attribute, type, "timetable") >= 0);
+  H5Aclose(attribute);
+  H5Sclose(scalar);
+  H5Tclose(type);
+  H5Dclose(set);
+  H5Sclose(space);
+  H5Fclose(file);
+  dea_h5_end(&h);
+  check("new.mat", "v", "z");
+  assert_true(is_said(DEA_NOTE, "'log' is an object"));
+}
+
+static void test_damaged_mat(void **state)
+{
+  (void)state;
+  static unsigned char bytes[1 << 16];
+  octave(NUMBERS "save('-v6', 'whole.mat', 't', 'v')");
+  FILE *file = fopen(in_folder("whole.mat"), "rb");
+  size_t n = fread(bytes, 1, sizeof bytes, file);
+  fclose(file);
+  struct dea_table *table;
+  write_bytes("short.mat", bytes, n / 2);
+  assert_int_equal(dea_table_read(ctx, in_folder("short.mat"), NULL, &table), DEA_E_IO);
+  assert_non_null(strstr(dea_context_message(ctx), "longer than the file"));
+  assert_refused("no.mat", "not a .mat file at all", 22, 0, "the variable at byte 0 is none");
+  // a length that the file cannot have: the number of rows of the first variable
+  bytes[128 + 32 + 3] = 0x7f;
+  write_bytes("claims.mat", bytes, n);
+  assert_int_equal(dea_table_read(ctx, in_folder("claims.mat"), NULL, &table), DEA_E_IO);
+}
+
+/* All digits of a double: 17 of them come back as they were. */
+static void test_csv(void **state)
+{
+  (void)state;
+  octave(NUMBERS "dlmwrite('semicolon.csv', [t v z], 'delimiter', ';', 'precision', '%.17g');"
+                 "dlmwrite('tab.txt', [t v z], 'delimiter', '\\t', 'precision', '%.17g');"
+                 "csvwrite('comma.csv', [t v z], 'precision', '%.17g');"
+                 "f = fopen('head.csv', 'w'); fprintf(f, '# measured\\nt,v,z\\n');"
+                 "fprintf(f, '%.17g,%.17g,%.17g\\n', [t v z]'); fclose(f);"
+                 "save('-text', 'octave.txt', 't')");
+  numbers_back();
+  check("head.csv", "v", "z");
+  static const char *const bare[] = {"semicolon.csv", "tab.txt", "comma.csv"};
+  for (size_t i = 0; i < 3; i++) {
+    struct dea_table *table = read_file(bare[i]);
+    assert_column(table, "column 1", "", time_s, COUNT);
+    assert_column(table, "column 2", "", voltage, COUNT);
+    assert_column(table, "column 3", "", laser, COUNT);
+    dea_table_destroy(ctx, table);
+  }
+  struct dea_table *table = read_file("octave.txt"); // "# name: t" and the like are comments
+  assert_int_equal(table->columns[0].count, COUNT);
+  dea_table_destroy(ctx, table);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_mat),         cmocka_unit_test(test_mat_units),
+      cmocka_unit_test(test_mat_classes), cmocka_unit_test(test_mat_73),
+      cmocka_unit_test(test_damaged_mat), cmocka_unit_test(test_csv),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}

@@ -1,0 +1,17 @@
+/* What the command asks of the bench, a component of its own (lab/): lab/src/cli/bench.c, or
+ * no_bench.c in a build without it, as are cmd_drive, cmd_reduce, cmd_recording and cmd_import. */
+#ifndef DEA_CLI_BENCH_H
+#define DEA_CLI_BENCH_H
+
+#include "base/schema.h"
+#include "cli/cli.h"
+
+/* Names, a line each. */
+dea_status cli_bench_importers(struct dea_cli *cli, struct dea_text *out);
+dea_status cli_bench_protocol_keys(struct dea_cli *cli, struct dea_text *out);
+/* The keys of a protocol, or of a mapping of imported columns; freed by dea_free. */
+dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_record **out);
+/* Path of the module for .mat files into out[size]; false when it is not here. */
+bool cli_bench_find_matio(char *out, size_t size);
+
+#endif
