@@ -2,8 +2,7 @@
 # ctest: long, waits
 # dea sweep --slurm against a real munged, slurmctld and slurmd on this computer, with all processes
 # of the node killed in the middle. Skipped where Slurm is not installed, or not by root. Many designs
-# of the membrane, as docs/verification/sweep.md has them: DEA_SLURM_MODEL=3d DEA_SLURM_SAMPLES=2000;
-# with two ranks at each: DEA_SLURM_RANKS=2.
+# of the membrane, as docs/verification/sweep.md has them: DEA_SLURM_MODEL=3d DEA_SLURM_SAMPLES=2000.
 set -eu
 export PATH="$PATH:/usr/sbin:/sbin"
 for program in munged slurmctld slurmd sbatch scontrol; do
@@ -87,7 +86,7 @@ variables:
   - {name: pre_stretch, low: 1.45, high: 1.55}
 EOF
 # shellcheck disable=SC2086 # several words, or none
-"$DEA_COMMAND" sweep many.yaml -o out --slurm 4 ${DEA_SLURM_RANKS:+--ranks $DEA_SLURM_RANKS}
+"$DEA_COMMAND" sweep many.yaml -o out --slurm 4
 for _ in $(seq $((60 + samples))); do # until some of it is done
   [ "$(cat out/part-* 2>/dev/null | wc -l)" -lt $((samples / 20)) ] || break
   sleep 0.2

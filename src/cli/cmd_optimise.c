@@ -1,8 +1,7 @@
 /* dea optimise: the best of many designs. */
-#include "cli/ranks.h"
+#include "cli/cli.h"
 
 #include "explore/best.h"
-#include "explore/slopes.h"
 #include "result/columns.h"
 
 #include <stdio.h>
@@ -10,7 +9,6 @@
 struct request {
   const char *file;
   double processes; // 0: not given
-  struct cli_ranks ranks;
   struct dea_optimise_options options;
 };
 
@@ -110,16 +108,8 @@ static dea_status search(struct dea_cli *cli, const struct request *request,
 static dea_status optimise(struct dea_cli *cli, const struct request *request)
 {
   struct dea_question *question;
-  struct dea_ranks ranks;
   DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
-  dea_status status =
-      cli_ranks_take(cli, &request->ranks, cmd_optimise.name, request->file, question, &ranks);
-  if (status == DEA_OK && request->ranks.serve) {
-    const struct dea_evaluator evaluator = dea_question_with_slopes(question);
-    status = cli_ranks_serve(cli, question, &evaluator);
-  } else if (status == DEA_OK) {
-    status = search(cli, request, question);
-  }
+  dea_status status = search(cli, request, question);
   dea_question_destroy(question);
   return status;
 }
@@ -128,18 +118,13 @@ static int run(struct dea_cli *cli, void *user)
 {
   struct request *request = user;
   struct dea_text folder = {.ctx = cli->ctx};
-  request->options.processes = cli_ranks_processes(&request->ranks, request->processes);
+  request->options.processes = cli_processes(request->processes);
   request->options.folder =
       cli_output_name(request->options.folder, request->file, "optimise", &folder);
   int code =
       cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : optimise(cli, request));
   dea_text_free(&folder);
   return code;
-}
-
-static bool on_ranks(const void *request)
-{
-  return ((const struct request *)request)->ranks.serve;
 }
 
 static const struct request defaults = {.options = {.format = {.svg = true, .width_m = 85e-3}}};
@@ -150,7 +135,6 @@ static const struct cli_option options[] = {
      CLI_AT(options.folder)},
     {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
      cli_take_processes},
-    CLI_RANKS_ROWS,
     {"force", 'f', CLI_FLAG, NULL, "throw away the designs that are there", CLI_AT(options.force)},
     {"format", 0, CLI_FORMAT, "LIST",
      "formats of the figures with commas between, svg if not given", CLI_AT(options.format),
@@ -167,6 +151,5 @@ const struct dea_command cmd_optimise = {
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .on_ranks = on_ranks,
     .run = run,
 };

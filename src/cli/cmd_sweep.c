@@ -1,5 +1,6 @@
 /* dea sweep: many designs that differ in some values. */
-#include "cli/ranks.h"
+#define _DEFAULT_SOURCE // readlink
+#include "cli/cli.h"
 
 #include "explore/slurm.h"
 #include "explore/sweep.h"
@@ -7,12 +8,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct request {
   const char *file;
   double processes; // 0: not given
   double slurm;     // parts of an array of jobs; 0: none
-  struct cli_ranks ranks;
   struct dea_sweep_options options;
   struct dea_plot_format format; // of the figures
 };
@@ -75,14 +76,15 @@ static void print_report(const struct dea_sweep_report *report, const struct req
 static dea_status submit(struct dea_cli *cli, const struct request *request,
                          const struct dea_question *question)
 {
-  char array[32], merge[32];
+  char array[32], merge[32], program[4096]; // the path that other computers have too
+  const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+  program[length > 0 ? length : 0] = '\0';
   const struct dea_slurm_options options = {
-      .program = cli_own_program(),
+      .program = length > 0 ? program : "dea",
       .file = request->file,
       .folder = request->options.folder,
       .parts = (size_t)request->slurm,
       .processes = request->processes > 0 ? (size_t)request->processes : 1,
-      .ranks = request->ranks.count > 1 ? (size_t)request->ranks.count : 1,
   };
   DEA_TRY(cli->ctx, dea_plan_check(question));
   DEA_TRY(cli->ctx, dea_slurm_submit(cli->ctx, &options, array, merge));
@@ -96,16 +98,9 @@ static dea_status sweep(struct dea_cli *cli, const struct request *request)
 {
   struct dea_question *question;
   struct dea_sweep_report report = {0};
-  struct dea_ranks ranks;
   DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
-  dea_status status =
-      cli_ranks_take(cli, &request->ranks, cmd_sweep.name, request->file, question, &ranks);
-  if (status == DEA_OK && request->ranks.serve) {
-    status = cli_ranks_serve(cli, question, &question->evaluator);
-  } else if (status == DEA_OK) {
-    status = request->slurm > 0 ? submit(cli, request, question)
-                                : dea_sweep_run(question, &request->options, &report);
-  }
+  dea_status status = request->slurm > 0 ? submit(cli, request, question)
+                                         : dea_sweep_run(question, &request->options, &report);
   if (report.planned > 0) {
     print_report(&report, request);
   }
@@ -127,17 +122,12 @@ static int run(struct dea_cli *cli, void *user)
                                                   : "--shard");
   }
   request->options.format = request->format;
-  request->options.processes = cli_ranks_processes(&request->ranks, request->processes);
+  request->options.processes = cli_processes(request->processes);
   request->options.folder =
       cli_output_name(request->options.folder, request->file, "sweep", &folder);
   int code = cli_report(cli, request->options.folder == NULL ? DEA_E_MEMORY : sweep(cli, request));
   dea_text_free(&folder);
   return code;
-}
-
-static bool on_ranks(const void *request)
-{
-  return ((const struct request *)request)->ranks.serve;
 }
 
 static const struct request defaults = {.options = {.shard = {1, 1}},
@@ -149,7 +139,6 @@ static const struct cli_option options[] = {
      CLI_AT(options.folder)},
     {"jobs", 'j', CLI_TEXT, "N", "designs at once (default: one a core)", CLI_AT(processes),
      cli_take_processes},
-    CLI_RANKS_ROWS,
     {"shard", 0, CLI_TEXT, "I/N", "only part I of N; each part may run on another computer",
      CLI_AT(options.shard), take_shard},
     {"slurm", 0, CLI_TEXT, "N",
@@ -172,6 +161,5 @@ const struct dea_command cmd_sweep = {
     .options = options,
     .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .on_ranks = on_ranks,
     .run = run,
 };

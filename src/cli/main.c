@@ -77,9 +77,8 @@ static int check_ranks(const struct dea_cli *cli, const struct dea_command *comm
     return 0;
   }
   fprintf(stderr,
-          "dea: error: dea %s runs in one process, and mpirun has started %d; of all commands "
-          "only dea run takes several ranks, and dea sweep and dea optimise start them "
-          "themselves (--ranks)\n",
+          "dea: error: dea %s runs in one process, and mpirun has started %d; use mpirun for "
+          "one large case of dea run, -j for many cases of dea sweep and dea optimise\n",
           command->name, cli->ranks);
   return dea_status_exit_code(DEA_E_USAGE);
 }

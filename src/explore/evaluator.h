@@ -13,8 +13,6 @@ enum {
   DEA_CASE_WHY_SIZE = 160,
 };
 
-struct dea_ranks; // ranks.h
-
 /* One evaluation. */
 struct dea_case {
   size_t number;             // in the plan
@@ -38,7 +36,6 @@ struct dea_evaluator {
   /* Fills q, NAN for what there is not, with marks, id and why, from p. Another status than DEA_OK
    * ends the whole work. Called in a process of its own, which it may leave in any state. */
   dea_status (*evaluate)(void *user, struct dea_context *ctx, struct dea_case *io);
-  const struct dea_ranks *ranks; // that evaluate each case together; NULL: a process alone
 };
 
 /* Values of a case, gradients included. */

@@ -2,7 +2,7 @@
 #include "explore/pool.h"
 
 #include "base/aside.h"
-#include "explore/ranks.h"
+#include "base/clock.h"
 
 #include <errno.h>
 #include <math.h>
@@ -17,11 +17,17 @@
 enum { PROCESSES_MAX = 256, ASK_MS = 100 };
 
 struct worker {
-  pid_t process; // 0: none; of ranks mpirun
+  pid_t process; // 0: none
   int socket;
   bool busy;
   struct dea_case now; // what it is at
-  struct dea_ranks_running ranks;
+};
+
+/* What comes of a case. */
+struct reply {
+  struct dea_case done;
+  dea_status status;
+  char message[256];
 };
 
 struct dea_pool {
@@ -30,12 +36,6 @@ struct dea_pool {
   size_t count;
   struct worker *workers; // [count]
 };
-
-/* Whether each of its processes is several ranks. */
-static bool of_ranks(const struct dea_pool *pool)
-{
-  return pool->evaluator->ranks != NULL;
-}
 
 static bool take_all(int socket, void *bytes, size_t length)
 {
@@ -52,13 +52,26 @@ static bool take_all(int socket, void *bytes, size_t length)
 
 // The process -------------------------------------------------------------------------------------
 
+/* Evaluates the case that is in it; q of it: NAN where there is no value. */
+static void evaluate(struct dea_context *ctx, const struct dea_evaluator *evaluator,
+                     struct reply *reply)
+{
+  const double began_s = dea_clock_s();
+  for (size_t i = 0; i < DEA_CASE_VALUES_MAX; i++) {
+    reply->done.q[i] = NAN;
+  }
+  reply->status = evaluator->evaluate(evaluator->user, ctx, &reply->done);
+  snprintf(reply->message, sizeof reply->message, "%.255s", dea_context_message(ctx));
+  reply->done.wall_s = dea_clock_s() - began_s;
+}
+
 /* Evaluates what it is sent until nobody sends any more. */
 static void work(struct dea_context *ctx, const struct dea_evaluator *evaluator, int socket)
 {
-  struct dea_reply reply;
+  struct reply reply;
   memset(&reply, 0, sizeof reply); // all bytes of it are sent
   while (take_all(socket, &reply.done, sizeof reply.done)) {
-    dea_reply_find(ctx, evaluator, &reply);
+    evaluate(ctx, evaluator, &reply);
     if (!dea_send_all(socket, &reply, sizeof reply)) {
       return;
     }
@@ -70,12 +83,6 @@ static dea_status start(struct dea_pool *pool, struct worker *worker)
 {
   pid_t process = -1;
   int socket = -1;
-  if (of_ranks(pool)) {
-    DEA_TRY(pool->ctx, dea_ranks_start(pool->ctx, pool->evaluator->ranks, &worker->ranks));
-    worker->process = worker->ranks.process;
-    worker->socket = worker->ranks.socket;
-    return DEA_OK;
-  }
   DEA_TRY(pool->ctx, dea_fork_beside(pool->ctx, &process, &socket));
   if (process == 0) {
     dea_context_set_progress(pool->ctx, NULL, NULL);
@@ -94,12 +101,10 @@ static dea_status start(struct dea_pool *pool, struct worker *worker)
 }
 
 /* Ends a process. why: how it had ended, NULL: not wanted. */
-static void end(const struct dea_pool *pool, struct worker *worker, char why[DEA_CASE_WHY_SIZE])
+static void end(struct worker *worker, char why[DEA_CASE_WHY_SIZE])
 {
   int how = 0;
-  if (worker->process > 0 && of_ranks(pool)) {
-    dea_ranks_end(&worker->ranks, why);
-  } else if (worker->process > 0) {
+  if (worker->process > 0) {
     kill(worker->process, SIGKILL);
     while (waitpid(worker->process, &how, 0) < 0 && errno == EINTR) {
     }
@@ -140,7 +145,7 @@ void dea_pool_destroy(struct dea_pool *pool)
 {
   if (pool != NULL) {
     for (size_t k = 0; k < pool->count; k++) {
-      end(pool, &pool->workers[k], NULL);
+      end(&pool->workers[k], NULL);
     }
     dea_free(pool->ctx, pool->workers);
     dea_free(pool->ctx, pool);
@@ -154,42 +159,24 @@ static dea_status give(struct dea_pool *pool, struct worker *worker)
     DEA_TRY(pool->ctx, start(pool, worker));
   }
   worker->busy = true;
-  if (of_ranks(pool)) { // those that are gone are seen later
-    dea_ranks_give(&worker->ranks, &worker->now);
-  } else {
-    dea_send_all(worker->socket, &worker->now, sizeof worker->now);
-  }
+  dea_send_all(worker->socket, &worker->now, sizeof worker->now); // one that is gone is seen later
   return DEA_OK;
 }
 
 /* What a process that died leaves of its case. */
-static void bury(struct dea_pool *pool, struct worker *worker, struct dea_reply *reply)
+static void bury(struct dea_pool *pool, struct worker *worker, struct reply *reply)
 {
-  *reply = (struct dea_reply){.done = worker->now};
+  *reply = (struct reply){.done = worker->now};
   for (size_t i = 0; i < dea_evaluator_values(pool->evaluator); i++) {
     reply->done.q[i] = NAN;
   }
-  end(pool, worker, reply->done.why);
-}
-
-/* Waits for some of a reply. */
-static enum dea_ranks_heard listen_to(struct dea_pool *pool, struct worker *worker,
-                                      struct dea_reply *reply)
-{
-  if (of_ranks(pool)) {
-    return dea_ranks_hear(&worker->ranks, reply);
-  }
-  return take_all(worker->socket, reply, sizeof *reply) ? DEA_RANKS_REPLY : DEA_RANKS_GONE;
+  end(worker, reply->done.why);
 }
 
 static dea_status hear(struct dea_pool *pool, struct worker *worker, dea_case_sink sink, void *user)
 {
-  struct dea_reply reply;
-  const enum dea_ranks_heard heard = listen_to(pool, worker, &reply);
-  if (heard == DEA_RANKS_NOTHING) {
-    return DEA_OK;
-  }
-  if (heard == DEA_RANKS_REPLY) {
+  struct reply reply;
+  if (take_all(worker->socket, &reply, sizeof reply)) {
     worker->busy = false;
   } else {
     bury(pool, worker, &reply);
@@ -233,7 +220,7 @@ dea_status dea_pool_run(struct dea_pool *pool, dea_case_source source, dea_case_
   }
   for (size_t k = 0; k < pool->count && status != DEA_OK;
        k++) { // no answer to what was asked before
-    end(pool, &pool->workers[k], NULL);
+    end(&pool->workers[k], NULL);
   }
   return status;
 }

@@ -71,21 +71,14 @@ static dea_status submit(struct dea_context *ctx, const char *folder, const char
 dea_status dea_slurm_submit(struct dea_context *ctx, const struct dea_slurm_options *options,
                             char array[32], char merge[32])
 {
-  char head[256], tail[112], room[64], ranks[32] = "";
+  char head[256], tail[112];
   DEA_TRY(ctx, dea_folder_make(ctx, options->folder));
-  if (options->ranks > 1) { // mpirun has as many ranks as a job has tasks
-    snprintf(room, sizeof room, "nodes=1\n#SBATCH --ntasks=%zu",
-             options->processes * options->ranks);
-    snprintf(ranks, sizeof ranks, "--ranks %zu ", options->ranks);
-  } else {
-    snprintf(room, sizeof room, "cpus-per-task=%zu", options->processes);
-  }
   snprintf(head, sizeof head,
-           "#SBATCH --job-name=dea-sweep\n#SBATCH --array=1-%zu\n#SBATCH --%s\n"
+           "#SBATCH --job-name=dea-sweep\n#SBATCH --array=1-%zu\n#SBATCH --cpus-per-task=%zu\n"
            "#SBATCH --requeue\n#SBATCH --output=/dev/null\n",
-           options->parts, room);
-  snprintf(tail, sizeof tail, "-j %zu %s--shard \"$SLURM_ARRAY_TASK_ID/%zu\"", options->processes,
-           ranks, options->parts);
+           options->parts, options->processes);
+  snprintf(tail, sizeof tail, "-j %zu --shard \"$SLURM_ARRAY_TASK_ID/%zu\"", options->processes,
+           options->parts);
   DEA_TRY(ctx, write_script(ctx, options, "array.sh", head, tail));
   DEA_TRY(ctx, write_script(ctx, options, "merge.sh",
                             "#SBATCH --job-name=dea-merge\n#SBATCH --requeue\n"

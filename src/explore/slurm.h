@@ -10,7 +10,6 @@ struct dea_slurm_options {
   const char *folder;  // which every node sees
   size_t parts;        // jobs of the array
   size_t processes;    // designs at once in each job
-  size_t ranks;        // of each design
 };
 
 /* Writes FOLDER/array.sh and FOLDER/merge.sh and submits both, the second to begin after all jobs

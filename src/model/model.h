@@ -160,10 +160,6 @@ struct dea_model_type {
   const char *name;      // "lumped"
   const char *long_name; // for figures
   bool any_layout;       // false: it knows only a disc in a round frame
-  /* Several processes that mpirun has started compute one such model together, all by the same
-   * calls: this one has bytes of the first of them become those of all. NULL: each computes alone.
-   */
-  dea_status (*tell)(struct dea_context *ctx, void *bytes, size_t length);
   /* Names and versions of the libraries that compute it and that the program itself has not, "PETSc
    * 3.18.5", into out [size], once a model was made. NULL: there are none. */
   dea_status (*libraries)(struct dea_context *ctx, char *out, size_t size);

@@ -111,15 +111,6 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
   return DEA_OK;
 }
 
-static dea_status tell(struct dea_context *ctx, void *bytes, size_t length)
-{
-  const struct dea_model_type *type = NULL;
-  DEA_TRY(ctx, open_module(ctx, &type));
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(type->tell(ctx, bytes, length)));
-  return DEA_OK;
-}
-
 static dea_status libraries(struct dea_context *ctx, char *out, size_t size)
 {
   const struct dea_model_type *type = NULL;
@@ -300,7 +291,6 @@ const struct dea_model_type dea_model_3d = {
     .name = "3d",
     .any_layout = true,
     .long_name = "3D solid",
-    .tell = tell,
     .libraries = libraries,
     .create = create,
     .destroy = destroy,

@@ -2048,7 +2048,6 @@ const struct dea_model_type dea_solid_module = {
     .name = "3d",
     .long_name = "3D solid",
     .any_layout = true,
-    .tell = dea_solid_tell,
     .libraries = dea_solid_libraries,
     .create = create,
     .destroy = destroy,

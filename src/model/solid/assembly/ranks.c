@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <time.h>
 
 static int rank_count(void)
 {
@@ -177,21 +176,6 @@ dea_status dea_solid_agree(struct dea_context *ctx, dea_status status)
     return dea_fail(ctx, (dea_status)failure.status, "%s", failure.text);
   }
   return (dea_status)failure.status;
-}
-
-dea_status dea_solid_tell(struct dea_context *ctx, void *bytes, size_t length)
-{
-  static const struct timespec nap = {.tv_nsec = 1000000};
-  MPI_Request request;
-  int there = 0;
-  DEA_TRY(ctx, dea_solid_start(ctx));
-  MPI_Ibcast(bytes, (int)length, MPI_BYTE, 0, PETSC_COMM_WORLD, &request);
-  for (MPI_Test(&request, &there, MPI_STATUS_IGNORE); !there;
-       MPI_Test(&request, &there, MPI_STATUS_IGNORE)) { // MPI_Bcast would keep a core busy
-    nanosleep(&nap, NULL);
-  }
-  MPI_Wait(&request, MPI_STATUS_IGNORE); // it is there
-  return DEA_OK;
 }
 
 void dea_solid_sum(double *values, size_t count)

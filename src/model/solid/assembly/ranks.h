@@ -24,9 +24,6 @@ bool dea_solid_any(bool here);
 void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size);
 /* The status and message of the first rank with a failure. ctx: NULL where no message is wanted. */
 dea_status dea_solid_agree(struct dea_context *ctx, dea_status status);
-/* Rank 0's bytes on all ranks, which may be long in coming: the others sleep meanwhile. Starts
- * PETSc where it does not run. */
-dea_status dea_solid_tell(struct dea_context *ctx, void *bytes, size_t length);
 /* values[count] become their sums over the ranks, the same bits on each. */
 void dea_solid_sum(double *values, size_t count);
 /* Largest value of all ranks. */
