@@ -25,6 +25,7 @@ from ._door import (
     version,
 )
 from ._design import Design, Model, Study, Value, models, studies
+from ._recording import write_recording
 from ._result import Actuator, Array, Field, Mesh, Result, Svg, load, run
 from ._solid import Body, Fill, Law, Part, Setting, Solid, laws
 
@@ -33,5 +34,5 @@ __all__ = [
     "Actuator", "ArgumentError", "Array", "Body", "DeaError", "Design", "DesignError", "Field",
     "FileError", "Fill", "Finding", "Law", "Mesh", "Model", "Part", "Result", "Setting", "Solid",
     "SolverError", "Study", "Svg", "UnsupportedError", "Value", "laws", "load", "models", "run",
-    "studies", "version",
+    "studies", "version", "write_recording",
 ]
