@@ -2,6 +2,8 @@
 // ctest: quick, heavy
 #include "design_text.h"
 #include "failing_allocator.h"
+#include "model/model.h"
+#include "result/columns.h"
 
 #include <math.h>
 
@@ -31,16 +33,21 @@ static const char *const usual[LINES] = {
 
 #define DRAWINGS DEA_SOURCE_DIR "/tests/cases/drawings/"
 
-static const char *write_design(enum line which, const char *text)
+static const char *write_lines(const char *const lines[LINES], enum line which, const char *text)
 {
   static char all[8192];
   size_t used = (size_t)snprintf(all, sizeof all, "dea: 1\n");
   for (int i = SHAPES; i < LINES; i++) {
     used +=
-        (size_t)snprintf(all + used, sizeof all - used, "%s\n", i == (int)which ? text : usual[i]);
+        (size_t)snprintf(all + used, sizeof all - used, "%s\n", i == (int)which ? text : lines[i]);
   }
   snprintf(all + used, sizeof all - used, "%s", FILM_MATERIAL LOCKS);
   return all;
+}
+
+static const char *write_design(enum line which, const char *text)
+{
+  return write_lines(usual, which, text);
 }
 
 static struct dea_design *design;
@@ -525,6 +532,175 @@ static void test_units_of_drawings(void **state)
   drop();
 }
 
+// The disc that a layout is
+// ------------------------------------------------------------------------
+
+#define FILM_OF "plies: [{name: film, shape: film, material: film, thickness: 100 um, pre_stretch: "
+#define ROUND "{name: film, kind: circle, radius: 15 mm}"
+
+static const char *const disc_lines[LINES] = {
+    [SHAPES] = "shapes: [" ROUND ", {name: active, kind: circle, radius: 4 mm}]",
+    [PLIES] = FILM_OF "1.2}]",
+    [ELECTRODES] = "electrodes: [{ply: film, side: bottom, shape: active, channel: ground}, "
+                   "{ply: film, side: top, shape: active, channel: drive}]",
+    [SUPPORTS] = "supports: [{edge: film}]",
+    [MORE] = "title: disc",
+};
+
+/* A disc in both forms. */
+struct disc {
+  double stretch, film_um, frame_mm, active_mm, x_mm, electrode_um;
+  const char *gravity[2];
+};
+
+static void write_short(const struct disc *d, char *out, size_t size)
+{
+  snprintf(out, size,
+           "dea: 1\nfilm: {material: film, thickness: %g um}\npre_stretch: %g\n"
+           "frame: {inner_radius: %g mm}\n"
+           "electrodes: {radius: %g mm stretched, material: film, thickness: %g um}\n"
+           "gravity: %s\n%s",
+           d->film_um, d->stretch, d->frame_mm, d->active_mm, d->electrode_um, d->gravity[0],
+           FILM_MATERIAL);
+}
+
+static void write_parts(const struct disc *d, char *out, size_t size)
+{
+  char skin[2][200] = {"", ""};
+  for (int i = 0; i < 2 && d->electrode_um > 0; i++) {
+    snprintf(skin[i], sizeof skin[i],
+             "  - {name: skin %d, shape: active, material: film, thickness: %g um, pre_stretch: "
+             "%g}\n",
+             i, d->electrode_um, d->stretch);
+  }
+  snprintf(out, size,
+           "dea: 1\nshapes:\n  - {name: film, kind: circle, x: %g mm, radius: %g mm}\n"
+           "  - {name: active, kind: circle, x: %g mm, radius: %g mm}\nplies:\n%s"
+           "  - {name: film, shape: film, material: film, thickness: %g um, pre_stretch: %g}\n%s"
+           "electrodes:\n  - {ply: film, side: top, shape: active, channel: ground}\n"
+           "  - {ply: film, side: bottom, shape: active, channel: drive}\n"
+           "supports: [{edge: film}]\ngravity: %s\n%s",
+           d->x_mm, d->frame_mm, d->x_mm, d->active_mm, skin[0], d->film_um, d->stretch, skin[1],
+           d->gravity[1], FILM_MATERIAL);
+}
+
+enum { STEPS = 4 }; // of 1 kV, from 0 on
+
+/* Points of a model, and the end of its path; returns how many notes it makes. */
+static size_t solve_form(const char *text, const char *name, struct dea_load_point *out,
+                         double *path_end)
+{
+  const struct dea_model_type *type = dea_model_find(name);
+  struct dea_model *model;
+  dea_finding_clear(ctx);
+  if (read_and_build(ctx, text, NULL, 0, &design, &device) != DEA_OK) {
+    print_findings(ctx);
+    fail_msg("%s", dea_context_message(ctx));
+  }
+  dea_finding_clear(ctx);
+  assert_int_equal(dea_model_create(ctx, type, design, device, &model), DEA_OK);
+  for (int i = 0; i < STEPS; i++) {
+    assert_int_equal(type->solve(ctx, model, 1e3 * i, &out[i]), DEA_OK);
+  }
+  *path_end = dea_device_path_end(device, design);
+  type->destroy(ctx, model);
+  drop();
+  return dea_finding_count(ctx, DEA_NOTE);
+}
+
+/* A disc is the same one however it is written: every column of the models of discs. */
+static void test_disc_of_both_forms(void **state)
+{
+  (void)state;
+  static const char *const models[] = {"lumped", "axisymmetric"};
+  static const struct disc discs[] = {{1.5, 100, 15, 3.75, 0, 0, {"off", "off"}},
+                                      {1.2, 60, 20, 9, 0, 5, {"fibres_up", "top_up"}},
+                                      {1.1, 100, 10, 8, 3, 2, {"fibres_down", "top_down"}}};
+  for (size_t i = 0; i < 2 * sizeof discs / sizeof discs[0]; i++) {
+    const struct disc *disc = &discs[i / 2];
+    struct dea_load_point points[2][STEPS];
+    char text[2][4000];
+    double path_end[2];
+    size_t notes[2];
+    write_short(disc, text[0], sizeof text[0]);
+    write_parts(disc, text[1], sizeof text[1]);
+    for (int k = 0; k < 2; k++) {
+      notes[k] = solve_form(text[k], models[i % 2], points[k], &path_end[k]);
+    }
+    assert_int_equal(notes[0], i < 2 ? 0 : 1); // of the weight
+    assert_int_equal(notes[1], notes[0]);
+    assert_close(path_end[1], path_end[0], 1e-12, 0);
+    assert_true(points[1][STEPS - 1].electrode_stretch > 1.003);
+    for (size_t k = 0; k < STEPS * DEA_LOAD_POINT_COLUMNS; k++) {
+      const int column = (int)(k / STEPS);
+      const double wanted = dea_point_get(&points[0][k % STEPS], column);
+      const double value = dea_point_get(&points[1][k % STEPS], column);
+      assert_true(isnan(value) == isnan(wanted));
+      if (!isnan(wanted)) {
+        assert_close(value, wanted, 1e-9, 1e-20);
+      }
+    }
+  }
+}
+
+static void test_what_is_no_disc(void **state)
+{
+  (void)state;
+  static const struct {
+    enum line which;
+    const char *text, *message; // NULL: it is one
+  } cases[] = {
+      {MORE, "monitors: [{name: edge, at: [4 mm, 0 mm]}]", NULL},
+      {MORE, "bodies: [{name: hub, shape: active}]", "body 'hub' is no part of one"},
+      {MORE, "pressures: [{ply: film, side: top, shape: film, pressure: 1 kPa}]",
+       "the pressure on ply 'film' is no load of one"},
+      {MORE, "channels: [{name: drive, ratio: 0.5}]", "channel 'drive' has a voltage of its own"},
+      {SHAPES, "shapes: [" ROUND ", {name: active, kind: circle, x: 1 mm, radius: 4 mm}]",
+       "electrode 'ground' is not in the middle of the film"},
+      {SHAPES, "shapes: [" ROUND ", {name: active, kind: rectangle, width: 4 mm, height: 4 mm}]",
+       "electrode 'ground' is not round"},
+      {SHAPES,
+       "shapes: [{name: film, kind: rectangle, width: 30 mm, height: 30 mm}, "
+       "{name: active, kind: circle, radius: 4 mm}]",
+       "ply 'film' is not round"},
+      {ELECTRODES,
+       "electrodes: [{ply: film, side: bottom, shape: active, channel: ground}, "
+       "{ply: film, side: top, shape: film, channel: drive}]",
+       "electrode 'drive' is not as the other one"},
+      {ELECTRODES,
+       "electrodes: [{ply: film, side: bottom, shape: film, channel: ground}, "
+       "{ply: film, side: top, shape: film, channel: drive}]",
+       "electrode 'ground' does not end before the edge of the film"},
+      {PLIES, FILM_OF "[1.2, 1.3]}]", "ply 'film' has two pre-stretches"},
+      {PLIES,
+       FILM_OF "1.2}, {name: skin, shape: active, material: film, thickness: 9 um, pre_stretch: "
+               "1.2}]",
+       "ply 'skin' is not one of two electrodes"},
+      {PLIES, FILM_OF "1.2}, {name: cap, shape: film, material: film, thickness: 9 um}]",
+       "ply 'cap' is neither the film nor of its electrodes' shape"},
+      {SUPPORTS, "supports: [{edge: film, hold: [hinged]}]",
+       "the support of 'film' does not clamp the edge of the film"},
+      {SUPPORTS, "supports: [{edge: film, move_x: 1 mm}]",
+       "the support of 'film' does not clamp the edge of the film"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct dea_device disc;
+    dea_finding_clear(ctx);
+    dea_context_clear(ctx);
+    const char *text = write_lines(disc_lines, cases[i].which, cases[i].text);
+    if (read_and_build(ctx, text, NULL, 0, &design, &device) != DEA_OK) {
+      print_findings(ctx);
+      fail_msg("%s", dea_context_message(ctx));
+    }
+    assert_int_equal(dea_device_disc(ctx, device, &disc),
+                     cases[i].message != NULL ? DEA_E_DESIGN : DEA_OK);
+    if (cases[i].message != NULL && strstr(dea_context_message(ctx), cases[i].message) == NULL) {
+      fail_msg("'%s' instead of '%s'", dea_context_message(ctx), cases[i].message);
+    }
+    drop();
+  }
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test(name)
@@ -536,6 +712,7 @@ int main(void)
       TEST(test_gap_between_channels),     TEST(test_short_form_says_where_parts_belong),
       TEST(test_override_by_name),         TEST(test_failing_memory),
       TEST(test_no_dielectric_is_a_note),  TEST(test_overhang_is_a_note),
+      TEST(test_disc_of_both_forms),       TEST(test_what_is_no_disc),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

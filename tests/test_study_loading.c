@@ -96,6 +96,7 @@ static dea_status observe(struct dea_context *context, struct dea_model *m,
 
 static const struct dea_model_type spring = {.name = "spring",
                                              .long_name = "one spring",
+                                             .any_layout = true,
                                              .create = create,
                                              .destroy = destroy,
                                              .solve = solve,

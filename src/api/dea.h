@@ -199,7 +199,7 @@ typedef struct {
   const char *title;         // for figures
   unsigned abilities;        // sum of dea_ability, of a disc in a round frame
   int available;             // 0: its module is not installed
-  unsigned layout_abilities; // the same of devices made of `plies`; 0: does not know them
+  unsigned layout_abilities; // the same of devices made of `plies`; 0: knows only discs
 } dea_model_info;
 
 const dea_model_info *dea_model_at(dea_context *ctx, size_t index);

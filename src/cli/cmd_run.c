@@ -281,10 +281,11 @@ static void print_shown(const struct dea_context *ctx, const struct shown *shown
 }
 
 /* A few rows of the sweep, the last one among them. */
-static void print_sweep(const struct dea_context *ctx, const struct dea_curve *sweep, bool general)
+static void print_sweep(const struct dea_context *ctx, const struct dea_curve *sweep,
+                        bool any_layout)
 {
   const struct shown shown = find_shown(ctx, sweep);
-  if (general) {
+  if (any_layout) {
     print_shown(ctx, &shown);
   } else {
     printf("%9s%10s%12s%12s%12s%10s%10s\n", "V", "stretch", "u edge", "z tip", "field", "margin",
@@ -293,9 +294,9 @@ static void print_sweep(const struct dea_context *ctx, const struct dea_curve *s
   }
   size_t step = row_step(sweep->count);
   for (size_t i = 0; i + 1 < sweep->count; i += step) {
-    print_row(ctx, &sweep->points[i], general ? &shown : NULL);
+    print_row(ctx, &sweep->points[i], any_layout ? &shown : NULL);
   }
-  print_row(ctx, &sweep->points[sweep->count - 1], general ? &shown : NULL);
+  print_row(ctx, &sweep->points[sweep->count - 1], any_layout ? &shown : NULL);
 }
 
 /* The sweep, or how long the path is where that was asked for alone, and the path's events. */
@@ -307,9 +308,11 @@ static void print_model(const struct dea_context *ctx, const struct dea_result *
   if (sweep == NULL && path == NULL) {
     return;
   }
+  const bool any_layout = result->device->general && dea_model_find(model)->any_layout;
+  const struct dea_layout_ply *film = any_layout ? NULL : dea_layout_film(result->device->layout);
   printf("\n%s\n", model);
   if (sweep != NULL && sweep->count > 0) {
-    print_sweep(ctx, sweep, result->device->general);
+    print_sweep(ctx, sweep, any_layout);
   } else if (sweep == NULL && path->count > 0) {
     double highest_V = 0;
     for (size_t i = 0; i < path->count; i++) {
@@ -319,7 +322,9 @@ static void print_model(const struct dea_context *ctx, const struct dea_result *
   }
   const struct dea_curve *limits = path != NULL ? path : sweep;
   for (size_t i = 0; i < limits->event_count; i++) {
-    print_event(&limits->events[i], &result->device->film.breakdown, dea_curve_is_slack(limits));
+    print_event(&limits->events[i],
+                film != NULL ? &film->material.breakdown : &result->device->film.breakdown,
+                dea_curve_is_slack(limits));
   }
   if (sweep != NULL && dea_verdict_of(sweep->status)[0] != '\0') {
     printf("  stopped, %s: %s\n", dea_verdict_of(sweep->status), sweep->stopped);

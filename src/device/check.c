@@ -12,11 +12,6 @@ struct range {
 
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *d)
 {
-  if (d->general) {
-    return dea_fail(ctx, DEA_E_DESIGN,
-                    "this needs a disc in a round frame, a design of the short form; a design with "
-                    "'plies' is computed by the model 3d");
-  }
   bool fibres = d->fibre_count > 0;
   const struct range ranges[] = {
       {"film thickness [m]", d->film_thickness_unstretched_m, 0, INFINITY},

@@ -13,7 +13,8 @@
 
 struct dea_device {
   struct dea_layout *layout; // owned; NULL of a device that was filled by hand
-  bool general; // its parts are those of the layout; all that follows but gravity is 0 then
+  bool general; // its parts are those of the layout; all that follows but gravity is 0 then, also
+                // of a disc (dea_device_disc)
 
   struct dea_material film;
   struct dea_material electrode;       // name "" when the design names none
@@ -45,10 +46,21 @@ struct dea_device {
  * caller. */
 dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
                             struct dea_device **out);
-/* Whether it is a disc in a round frame, which models of one ask: DEA_E_DESIGN for a general
- * device, and with the number that none can have for one that was filled by hand, such as a
- * coverage that is not between 0 and 1. */
+/* The disc in a round frame that a device is, for what knows no other: itself, or, of the general
+ * form, one with the numbers that its layout has; DEA_E_DESIGN with what first is not as in a disc.
+ * out: lends the layout; may be the device, which then is of the short form, but that no keys are
+ * there. */
+dea_status dea_device_disc(struct dea_context *ctx, const struct dea_device *device,
+                           struct dea_device *out);
+/* DEA_E_DESIGN with the number that no disc can have, such as a coverage that is not between 0 and
+ * 1, of a device that was filled by hand. */
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
+/* Total stretch of the electrodes at which a path ends: what the design says, or 1.5 times the
+ * pre-stretch. */
+double dea_device_path_end(const struct dea_device *device, const struct dea_design *design);
+/* Of the film; of the general form that of the first ply between electrodes, along its first axis;
+ * 1 without one. */
+double dea_device_pre_stretch(const struct dea_device *device);
 /* Whether all that has weight and inertia has a density: film, fibres, plies. DEA_E_DESIGN. */
 dea_status dea_device_check_densities(struct dea_context *ctx, const struct dea_device *device);
 /* The same with a finding at what asks for weight or inertia. */

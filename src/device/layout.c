@@ -91,6 +91,15 @@ bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply)
   return dea_layout_next_pair(layout, ply, &(size_t){0}, pair);
 }
 
+const struct dea_layout_ply *dea_layout_film(const struct dea_layout *layout)
+{
+  size_t i = 0;
+  while (i < layout->ply_count && !dea_layout_is_dielectric(layout, i)) {
+    i++;
+  }
+  return i < layout->ply_count ? &layout->plies[i] : NULL;
+}
+
 bool dea_support_is_frame(const struct dea_layout_support *support)
 {
   return support->edge && support->within == DEA_LAYOUT_NONE && support->components == 7;

@@ -147,6 +147,8 @@ struct dea_layout {
 
 /* Whether a ply is between electrodes of two channels somewhere. */
 bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply);
+/* The first ply of which that holds; NULL: there is none. */
+const struct dea_layout_ply *dea_layout_film(const struct dea_layout *layout);
 /* The next pair of electrodes of different channels on the upper and on the lower face of a ply,
  * from *at on, which starts at 0; false: there is no more. */
 bool dea_layout_next_pair(const struct dea_layout *layout, size_t ply, size_t *at,

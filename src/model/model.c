@@ -38,9 +38,11 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
                            const struct dea_design *design, const struct dea_device *device)
 {
-  if (device != NULL && !device->general) {
+  if (device != NULL && !(device->general && type->any_layout)) {
+    struct dea_device disc;
     struct dea_film film;
-    DEA_TRY(ctx, dea_film_create(ctx, device, &film));
+    DEA_TRY(ctx, dea_device_disc(ctx, device, &disc));
+    DEA_TRY(ctx, dea_film_create(ctx, &disc, &film));
   }
   if (type->check != NULL) {
     DEA_TRY(ctx, type->check(ctx, design, device));
@@ -109,7 +111,7 @@ dea_status dea_model_stretch(struct dea_context *ctx, const struct dea_model_typ
 {
   static const double close = 1e-9;
   const struct dea_path_options options = {
-      .max_stretch = device->pre_stretch * stretch,
+      .max_stretch = dea_device_pre_stretch(device) * stretch,
       .max_voltage_V = INFINITY,
       .max_points = type->path != NULL ? DEA_PATH_POINTS_MAX : DEA_LONG_PATH_POINTS_MAX,
       .stays = true};

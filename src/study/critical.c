@@ -256,7 +256,8 @@ static dea_status pass_point(void *user, const struct dea_load_point *point)
 /* By the whole path, of a model that has it. */
 static dea_status find_on_path(struct search *s)
 {
-  const struct dea_path_options options = {.max_stretch = 10 * s->ask->device->pre_stretch,
+  const struct dea_path_options options = {.max_stretch =
+                                               10 * dea_device_pre_stretch(s->ask->device),
                                            .max_voltage_V = s->ask->highest_V,
                                            .max_points = DEA_PATH_POINTS_MAX};
   const dea_status status =

@@ -45,7 +45,7 @@ static dea_status choose_end(struct dea_context *ctx, const struct dea_model_typ
   const struct dea_design *design = result->design;
   struct dea_load_point point;
   struct dea_model *model;
-  *out = design->compute.path_max_stretch.si;
+  *out = dea_device_path_end(result->device, design);
   if (design->compute.path_max_stretch.origin != DEA_DEFAULT) {
     return DEA_OK;
   }
@@ -55,7 +55,7 @@ static dea_status choose_end(struct dea_context *ctx, const struct dea_model_typ
   dea_finding_trial_end(ctx, errors);
   type->destroy(ctx, model);
   if (status == DEA_OK) {
-    *out = fmax(*out, design->pre_stretch.si * point.electrode_stretch);
+    *out = fmax(*out, dea_device_pre_stretch(result->device) * point.electrode_stretch);
   }
   return status == DEA_E_MEMORY ? status : DEA_OK; // without equilibrium: the sweep will say so
 }

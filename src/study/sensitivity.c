@@ -476,7 +476,7 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   struct dea_monitor_column *columns;
   size_t column_count;
   stop->seen = QUANTITIES;
-  if (!device->general) {
+  if (!device->general || type->observe == NULL) {
     return DEA_OK;
   }
   stop->layout = device->layout;

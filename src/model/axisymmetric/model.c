@@ -17,7 +17,7 @@ enum {
 };
 
 struct dea_model {
-  const struct dea_device *device;
+  struct dea_device device; // the disc, also of a layout that is one
   struct dea_disc disc;
   double rest_energy; // in the disc's unit
   double max_stretch; // total; where a search for a snapped state gives up
@@ -112,14 +112,14 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
   if (status != DEA_OK) {
     return status;
   }
-  out->told = (unsigned)(model->device->fibre_count > 0) << DEA_FLAG_PLAIN;
+  out->told = (unsigned)(model->device.fibre_count > 0) << DEA_FLAG_PLAIN;
   out->voltage_V = voltage_V;
   out->electrode_stretch = 1 + edge_u_m / a;
   out->passive_stretch = 1 - edge_u_m / (b - a); // mean of the radial one
   out->electrode_edge_u_m = edge_u_m;
   out->nominal_field_V_per_m = voltage_V / disc->film.thickness_m;
   out->energy_J =
-      (energy - model->rest_energy) * energy_unit_J(disc, model->device->film_thickness_m);
+      (energy - model->rest_energy) * energy_unit_J(disc, model->device.film_thickness_m);
   return DEA_OK;
 }
 
@@ -127,7 +127,7 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
 static void ease(void *self, double share)
 {
   struct dea_model *model = self;
-  model->disc.film.electrode_ratio = share * dea_film_electrode_ratio(model->device);
+  model->disc.film.electrode_ratio = share * dea_film_electrode_ratio(&model->device);
 }
 
 static void destroy(struct dea_context *ctx, struct dea_model *model)
@@ -138,11 +138,12 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   }
 }
 
-static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
+  const struct dea_device *device = &model->device;
   (void)settings; // of a mesh, which this model has not
-  model->device = device;
+  DEA_TRY(ctx, dea_device_disc(ctx, of, &model->device));
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
   DEA_TRY(ctx, dea_film_say_weight(ctx, device, "axisymmetric"));

@@ -9,7 +9,7 @@
 static const double pi = 3.14159265358979323846;
 
 struct dea_model {
-  const struct dea_device *device;
+  struct dea_device device; // the disc, also of a layout that is one
   struct dea_lumped lumped;
   struct dea_lift lift;
   double modulus_Pa, rest_energy_Pa;
@@ -20,8 +20,8 @@ struct dea_model {
 
 static double disc_volume_m3(const struct dea_model *model)
 {
-  double r_a = model->device->electrode_radius_m;
-  return pi * r_a * r_a * model->device->film_thickness_m;
+  double r_a = model->device.electrode_radius_m;
+  return pi * r_a * r_a * model->device.film_thickness_m;
 }
 
 /* Pi/(mu times the electrode disc's volume): g = 2 l_pre (s_A - s_P)/mu. */
@@ -77,7 +77,7 @@ static dea_status fill_point(const struct dea_model *model, const struct dea_lum
   out->voltage_V = voltage_V;
   out->electrode_stretch = l_a;
   out->passive_stretch = balance.passive_stretch;
-  out->electrode_edge_u_m = (l_a - 1) * model->device->electrode_radius_m; // paper eq 18
+  out->electrode_edge_u_m = (l_a - 1) * model->device.electrode_radius_m; // paper eq 18
   out->nominal_field_V_per_m = field;
   out->true_field_V_per_m = field * l_A * l_A; // paper eq 4
   out->breakdown_margin = dea_film_breakdown_margin(film, field, l_A, l_A);
@@ -91,7 +91,7 @@ static dea_status fill_point(const struct dea_model *model, const struct dea_lum
   out->range_share = reach.range_share;
   out->energy_J = (balance.energy_Pa - model->rest_energy_Pa) * disc_volume_m3(model);
   out->capacitance_F = dea_film_capacitance(film, disc_volume_m3(model), l_A, l_A);
-  return model->device->fibre_count > 0 ? add_lift(model, lumped, field, out) : DEA_OK;
+  return model->device.fibre_count > 0 ? add_lift(model, lumped, field, out) : DEA_OK;
 }
 
 static dea_status point(void *self, const double *u, double voltage_V, struct dea_load_point *out)
@@ -104,7 +104,7 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
 static void ease(void *self, double share)
 {
   struct dea_model *model = self;
-  model->lumped.film.electrode_ratio = share * dea_film_electrode_ratio(model->device);
+  model->lumped.film.electrode_ratio = share * dea_film_electrode_ratio(&model->device);
 }
 
 static void destroy(struct dea_context *ctx, struct dea_model *model)
@@ -115,11 +115,12 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
   }
 }
 
-static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
+  const struct dea_device *device = &model->device;
   (void)settings; // of a mesh, which this model has not
-  model->device = device;
+  DEA_TRY(ctx, dea_device_disc(ctx, of, &model->device));
   DEA_TRY(ctx, dea_film_create(ctx, device, &model->lumped.film));
   model->lumped.pre_stretch = device->pre_stretch;
   model->lumped.coverage = device->coverage;
@@ -191,7 +192,7 @@ static dea_status path(struct dea_context *ctx, struct dea_model *model,
 static dea_status hold(struct dea_context *ctx, const struct dea_model *model, double voltage_V,
                        double height_m, double *force_N)
 {
-  if (model->device->fibre_count == 0) {
+  if (model->device.fibre_count == 0) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "there are no fibres to hold");
   }
   double field = voltage_V / model->lumped.film.thickness_m;
@@ -235,11 +236,11 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
       .lumped = model->lumped,
       .options = *options,
       .volume_m3 = disc_volume_m3(model),
-      .mass_kg_m2 = dea_lumped_mass(model->device),
+      .mass_kg_m2 = dea_lumped_mass(&model->device),
   };
-  if (options->inertia && !(model->device->film.density_kg_per_m3 > 0)) {
+  if (options->inertia && !(model->device.film.density_kg_per_m3 > 0)) {
     return dea_fail(ctx, DEA_E_DESIGN, "inertia needs the density of '%s', which is unknown",
-                    model->device->film.name);
+                    model->device.film.name);
   }
   dea_status status = dea_lumped_begin(motion, last.electrode_stretch, last.voltage_V);
   status = status == DEA_OK ? moment_point(model, &motion->now, out) : status;
