@@ -16,7 +16,7 @@ assert(~isempty(regexp(dea.version(), '^\d+\.\d+\.\d+$')));
 models = dea.models();
 of_3d = models(strcmp({models.name}, '3d'));
 assert(of_3d.available && any(strcmp(of_3d.abilities, 'indent')));
-assert(any(strcmp(of_3d.layout_abilities, 'time')) && ~any(strcmp(of_3d.layout_abilities, 'indent')));
+assert(all(ismember({'time', 'indent'}, of_3d.layout_abilities)));
 assert(~any(strcmp(models(strcmp({models.name}, 'lumped')).abilities, 'indent')));
 studies = dea.studies();
 assert(any(strcmp({studies.name}, 'sweep')));

@@ -50,6 +50,7 @@ static pid_t arm(void)
 {
   static const char *const arguments[] = {"drive", "p.yaml", "--arm", "--checked",
                                           "-f",    "-o",     "o.h5",  NULL};
+  supply_end_guards(0);
   return supply_begin(arguments);
 }
 
