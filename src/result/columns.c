@@ -95,30 +95,34 @@ static size_t key_unit(const char *si_unit, char out[KEY_UNIT_SIZE])
   return n;
 }
 
-/* Whether that is the key of a column, or the key without its unit. */
-static bool is_key(const struct dea_column *column, const char *text)
+/* Whether that is the key of a column without its unit. */
+static bool is_key_without_unit(const struct dea_column *column, const char *text)
 {
   char unit[KEY_UNIT_SIZE];
   const size_t length = strlen(column->key), ending = key_unit(column->si_unit, unit);
   const size_t without = length > ending ? length - ending : 0;
-  return strcmp(column->key, text) == 0 ||
-         (strcmp(column->key + without, unit) == 0 && strlen(text) == without &&
-          memcmp(column->key, text, without) == 0);
+  return strcmp(column->key + without, unit) == 0 && strlen(text) == without &&
+         memcmp(column->key, text, without) == 0;
+}
+
+/* The column that has that very key, or -1. */
+static int find_exactly(const struct dea_context *ctx, const char *key)
+{
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    if (strcmp(dea_column_at(ctx, c)->key, key) == 0) {
+      return c;
+    }
+  }
+  return -1;
 }
 
 int dea_column_find(const struct dea_context *ctx, const char *key)
 {
   char part[DEA_KEY_PART_SIZE + 32];
-  const int count = dea_column_count(ctx);
   const char *dot = strrchr(key, '.');
-  int found = -1;
-  for (int c = 0; c < count; c++) {
-    if (strcmp(dea_column_at(ctx, c)->key, key) == 0) {
-      return c;
-    }
-    if (found < 0 && c >= DEA_LOAD_POINT_COLUMNS && is_key(dea_column_at(ctx, c), key)) {
-      found = c;
-    }
+  int found = find_exactly(ctx, key);
+  for (int c = DEA_LOAD_POINT_COLUMNS; found < 0 && c < dea_column_count(ctx); c++) {
+    found = is_key_without_unit(dea_column_at(ctx, c), key) ? c : -1;
   }
   if (found >= 0 || dot == NULL || strlen(key) >= sizeof part) {
     return found;
@@ -169,12 +173,11 @@ static struct registry *get_registry(struct dea_context *ctx)
 
 dea_status dea_column_add(struct dea_context *ctx, const struct dea_column *column, int *out)
 {
-  *out = 0;
-  for (const int count = dea_column_count(ctx); *out < count; ++*out) {
-    if (strcmp(dea_column_at(ctx, *out)->key, column->key) == 0) {
-      return DEA_OK;
-    }
+  *out = find_exactly(ctx, column->key);
+  if (*out >= 0) {
+    return DEA_OK;
   }
+  *out = dea_column_count(ctx);
   struct registry *registry = get_registry(ctx);
   struct dea_column *kept = registry != NULL ? dea_alloc(ctx, 1, sizeof *kept) : NULL;
   if (kept == NULL) {
@@ -284,12 +287,7 @@ int dea_point_error_column(const struct dea_context *ctx, int column)
     return dea_point_column_find("force_interpolation_error_N");
   }
   dea_column_error_key(of, key);
-  for (int c = 0; c < dea_column_count(ctx); c++) {
-    if (strcmp(dea_column_at(ctx, c)->key, key) == 0) {
-      return c;
-    }
-  }
-  return -1;
+  return find_exactly(ctx, key);
 }
 
 bool dea_point_is_bound(const struct dea_load_point *point, int column)

@@ -196,8 +196,7 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
   bool unsettled = stop->kind == DEA_STOP_UNSTABLE || status == DEA_E_NOT_CONVERGED;
   if (status == DEA_E_NOT_CONVERGED && !e->limited) {
     bool slack;
-    dea_status seen =
-        e->tension_V[1] != dea_solid_voltage(e->owner.solid) ? look_at_tension(ctx, e) : DEA_OK;
+    dea_status seen = look_at_tension(ctx, e);
     seen = seen == DEA_OK ? see_slack_beyond(ctx, e, &slack) : seen;
     if (seen != DEA_OK && !dea_solid_may_shorten(seen)) {
       return dea_fail_chain(ctx, seen, __func__, __FILE__, __LINE__);
