@@ -20,6 +20,15 @@ char *dea_path_join(struct dea_context *ctx, const char *directory, const char *
   return text.data;
 }
 
+size_t dea_path_length(const char *path)
+{
+  size_t length = strlen(path);
+  while (length > 1 && path[length - 1] == '/') {
+    length--;
+  }
+  return length;
+}
+
 bool dea_path_exists(const char *path)
 {
   struct stat info;

@@ -13,6 +13,8 @@ dea_status dea_folder_make(struct dea_context *ctx, const char *directory);
 void dea_folder_sync(const char *path);
 /* True when something of that name exists. */
 bool dea_path_exists(const char *path);
+/* Length of a path without the slashes at its end; "/" keeps its own. */
+size_t dea_path_length(const char *path);
 bool dea_path_is_folder(const char *path);
 /* DEA_E_IO, which says how to go on, where something of that name is in the folder. */
 dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name);

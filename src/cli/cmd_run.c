@@ -379,10 +379,7 @@ static dea_status name_folder(const struct request *request, struct dea_text *ou
   struct dea_text made = {.ctx = out->ctx};
   const char *name = cli_output_name(request->output, request->designs.at[0], "run", &made);
   dea_text_add(out, "%s", name != NULL ? name : "");
-  size_t length = out->length;
-  while (length > 1 && out->data[length - 1] == '/') {
-    length--;
-  }
+  const size_t length = out->failed ? 0 : dea_path_length(out->data);
   for (size_t n = 2; request->keep && !out->failed && dea_path_exists(out->data); n++) {
     out->length = 0;
     dea_text_add(out, "%.*s-%zu", (int)length, name, n);

@@ -35,12 +35,8 @@ static bool has_file(struct dea_context *ctx, const char *folder, const char *na
 /* FOLDER.part where results are replaced, or where a run that did so is resumed. */
 static dea_status choose_part(struct dea_context *ctx, struct dea_job *job)
 {
-  size_t length = strlen(job->folder);
-  while (length > 1 && job->folder[length - 1] == '/') {
-    length--;
-  }
   struct dea_text part = {.ctx = ctx};
-  dea_text_add(&part, "%.*s.part", (int)length, job->folder);
+  dea_text_add(&part, "%.*s.part", (int)dea_path_length(job->folder), job->folder);
   const bool failed = part.failed;
   if (!failed && ((job->force && has_file(ctx, job->folder, results_file)) ||
                   (job->resume && dea_path_is_folder(part.data)))) {
