@@ -68,15 +68,9 @@ static const struct dea_field ply_fields[] = {
     NUMBER(dea_parts_ply, angle_rad, "angle", "radian",
            "direction of the first axis of the pre-stretch, counter-clockwise from x", "30 degree",
            .default_text = "0 degree"),
-    {.key = "elements",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = offsetof(struct dea_parts_ply, elements),
-     .unit = "1",
-     .min = 1,
-     .max = 32,
-     .absent_text = "as many as the model takes",
-     .doc = "elements through its thickness",
-     .example = "2"},
+    DEA_INTEGER_ROW("elements", offsetof(struct dea_parts_ply, elements), "2",
+                    "elements through its thickness", .min = 1, .max = 32,
+                    .absent_text = "as many as the model takes"),
 };
 
 static const char *const sides[] = {"bottom", "top", NULL}; // enum dea_parts_side

@@ -76,18 +76,10 @@ const char *const dea_parts_units[] = {"um", "mm", "cm", "m", "mil", "in", "ft",
 const double dea_parts_unit_m[] = {1e-6, 1e-3, 1e-2, 1, 25.4e-6, 25.4e-3, 0.3048};
 
 static const struct dea_field drawing_fields[] = {
-    {.key = "file",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(file),
-     .required = true,
-     .doc = "DXF or SVG file; its path counts from the folder of the design file",
-     .example = "stripes.dxf"},
-    {.key = "layer",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(layer),
-     .required = true,
-     .doc = "layer whose closed contours it is",
-     .example = "CUT"},
+    DEA_LABEL_ROW("file", AT(file), "stripes.dxf",
+                  "DXF or SVG file; its path counts from the folder of the design file",
+                  .required = true),
+    DEA_LABEL_ROW("layer", AT(layer), "CUT", "layer whose closed contours it is", .required = true),
     DEA_CHOICE_ROW("unit", AT(unit), dea_parts_units, "mm", "unit of a file that does not say it",
                    .absent_text = "as the file says"),
 };

@@ -12,33 +12,16 @@ static const char *const begins[] = {"nearest", "rest", NULL};
 static const char *const plans[] = {"grid", "latin-hypercube", "sobol", "random", "indices", NULL};
 
 static const struct dea_field variable_fields[] = {
-    {.key = "name",
-     .kind = DEA_FIELD_LABEL,
-     .offset = VARIABLE_AT(text.name),
-     .required = true,
-     .doc = DEA_DEVICE_PARAM_DOC,
-     .example = "film.thickness"},
-    {.key = "also",
-     .kind = DEA_FIELD_LABEL,
-     .offset = VARIABLE_AT(also),
-     .list_min = 1,
-     .list_max = DEA_DEVICE_TIES_MAX,
-     .element_size = sizeof(struct dea_label),
-     .count_offset = VARIABLE_AT(also_count),
-     .lone = true,
-     .absent_text = "none",
-     .doc = "other numbers of the design that take the same value",
-     .example = "[plies.upper.thickness]"},
-    {.key = "values",
-     .kind = DEA_FIELD_LABEL,
-     .offset = VARIABLE_AT(values),
-     .list_min = 1,
-     .list_max = DEA_EXPLORE_VALUES_MAX,
-     .element_size = sizeof(struct dea_label),
-     .count_offset = VARIABLE_AT(value_count),
-     .absent_text = "from low to high",
-     .doc = "the values that it takes",
-     .example = "[80 um, 100 um]"},
+    DEA_LABEL_ROW("name", VARIABLE_AT(text.name), "film.thickness", DEA_DEVICE_PARAM_DOC,
+                  .required = true),
+    DEA_LABEL_ROW("also", VARIABLE_AT(also), "[plies.upper.thickness]",
+                  "other numbers of the design that take the same value", .list_min = 1,
+                  .list_max = DEA_DEVICE_TIES_MAX, .element_size = sizeof(struct dea_label),
+                  .count_offset = VARIABLE_AT(also_count), .lone = true, .absent_text = "none"),
+    DEA_LABEL_ROW("values", VARIABLE_AT(values), "[80 um, 100 um]", "the values that it takes",
+                  .list_min = 1, .list_max = DEA_EXPLORE_VALUES_MAX,
+                  .element_size = sizeof(struct dea_label),
+                  .count_offset = VARIABLE_AT(value_count), .absent_text = "from low to high"),
     DEA_LABEL_ROW("low", VARIABLE_AT(text.low), "80 um", "smallest value", .absent_text = "none"),
     DEA_LABEL_ROW("high", VARIABLE_AT(text.high), "120 um", "largest value", .absent_text = "none"),
     DEA_INTEGER_ROW("steps", VARIABLE_AT(steps), "5", "of a grid: values from low to high",
@@ -108,15 +91,8 @@ static const struct dea_record robust_record = {
     COUNT(robust_fields)};
 
 static const struct dea_field file_fields[] = {
-    {.key = "dea_explore",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = DEA_FIT_HEAD_AT(version),
-     .unit = "1",
-     .min = DEA_EXPLORE_VERSION,
-     .max = DEA_EXPLORE_VERSION,
-     .required = true,
-     .doc = "version of the format",
-     .example = "1"},
+    DEA_INTEGER_ROW("dea_explore", DEA_FIT_HEAD_AT(version), "1", "version of the format",
+                    .min = DEA_EXPLORE_VERSION, .max = DEA_EXPLORE_VERSION, .required = true),
     DEA_LABEL_ROW("name", DEA_FIT_HEAD_AT(name), "thickness", "name of what is asked",
                   .required = true),
     DEA_LABEL_ROW("title", DEA_FIT_HEAD_AT(title), "how thick a film", "the same in words",
@@ -132,21 +108,15 @@ static const struct dea_field file_fields[] = {
                    .list_max = DEA_EXPLORE_VOLTAGES_MAX,
                    .element_size = sizeof(struct dea_quantity), .count_offset = AT(voltage_count),
                    .lone = true, .absent_text = "the highest of the design"),
-    {.key = "quantities",
-     .kind = DEA_FIELD_LABEL,
-     .offset = AT(quantities),
-     .list_min = 1,
-     .list_max = DEA_EXPLORE_QUANTITIES_MAX,
-     .element_size = sizeof(struct dea_label),
-     .count_offset = AT(quantity_count),
-     .required = true,
-     .doc = "keys of the quantities that are kept, as dea compare --quantity has them, "
-            "those of monitors and channels (plate_turn_y_rad); force_N: "
-            "with the tip of compute.force held at its first depth; frequency_Hz: of the lowest "
-            "mode (model 3d); slack_voltage_V, "
-            "breakdown_voltage_V, pull_in_voltage_V, buckling_voltage_V: where the film comes to "
-            "its end",
-     .example = "[centre_z_m, breakdown_margin]"},
+    DEA_LABEL_ROW("quantities", AT(quantities), "[centre_z_m, breakdown_margin]",
+                  "keys of the quantities that are kept, as dea compare --quantity has them, those "
+                  "of monitors and channels (plate_turn_y_rad); force_N: with the tip of "
+                  "compute.force held at its first depth; frequency_Hz: of the lowest mode (model "
+                  "3d); slack_voltage_V, breakdown_voltage_V, pull_in_voltage_V, "
+                  "buckling_voltage_V: where the film comes to its end",
+                  .list_min = 1, .list_max = DEA_EXPLORE_QUANTITIES_MAX,
+                  .element_size = sizeof(struct dea_label), .count_offset = AT(quantity_count),
+                  .required = true),
     {.key = "variables",
      .kind = DEA_FIELD_RECORD,
      .offset = AT(variables),

@@ -34,15 +34,9 @@ static const struct dea_field fields[] = {
     DEA_STUDY_STOPS_FIELD("quarters of the highest",
                           "voltages at which the meshes are compared, in the order to be computed",
                           "[2 kV, 4 kV, 6 kV]"),
-    {.key = "tolerance",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(tolerance),
-     .unit = "1",
-     .above_min = true,
-     .max = 1,
-     .default_text = "0.02",
-     .doc = "relative error that is small enough for a displacement",
-     .example = "0.02"},
+    DEA_NUMBER_ROW("tolerance", AT(tolerance), "1", "0.02",
+                   "relative error that is small enough for a displacement", .above_min = true,
+                   .max = 1, .default_text = "0.02"),
 };
 
 static const struct dea_record record = {

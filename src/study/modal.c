@@ -21,15 +21,8 @@ struct settings {
 #define AT(member) offsetof(struct settings, member)
 
 static const struct dea_field fields[] = {
-    {.key = "count",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = AT(count),
-     .unit = "1",
-     .min = 1,
-     .max = DEA_DESIGN_MODES_MAX,
-     .default_text = "6",
-     .doc = "how many modes, from the lowest on",
-     .example = "6"},
+    DEA_INTEGER_ROW("count", AT(count), "6", "how many modes, from the lowest on", .min = 1,
+                    .max = DEA_DESIGN_MODES_MAX, .default_text = "6"),
     DEA_STUDY_STOPS_FIELD("0 V and the quarters of the highest",
                           "voltages that the actuator vibrates about, in the order to be computed",
                           "[0 kV, 4 kV, 8 kV]"),

@@ -36,29 +36,16 @@ struct settings {
 static const struct dea_field fields[] = {
     DEA_STUDY_STOPS_FIELD("the highest that the run has reached",
                           "voltages at which it is asked what matters", "[4 kV, 6 kV]"),
-    {.key = "stretch",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(stretches),
-     .unit = "1",
-     .min = 1,
-     .above_min = true,
-     .max = 20,
-     .list_min = 1,
-     .list_max = DEA_DESIGN_STOPS_MAX,
-     .element_size = sizeof(struct dea_quantity),
-     .count_offset = AT(stretch_count),
-     .doc = "stretches of the electrode's edge (1 at rest) that the path is followed to, through "
-            "limit points: what matters to the voltage and the rest at such a stretch",
-     .example = "[1.2, 1.5]"},
-    {.key = "modes",
-     .kind = DEA_FIELD_INTEGER,
-     .offset = AT(modes),
-     .unit = "1",
-     .min = 1,
-     .max = DEA_DESIGN_MODES_MAX,
-     .default_text = "1",
-     .doc = "with study modal: of how many frequencies, from the lowest on, slopes are wanted",
-     .example = "3"},
+    DEA_NUMBER_ROW(
+        "stretch", AT(stretches), "1", "[1.2, 1.5]",
+        "stretches of the electrode's edge (1 at rest) that the path is followed to, through limit "
+        "points: what matters to the voltage and the rest at such a stretch",
+        .min = 1, .above_min = true, .max = 20, .list_min = 1, .list_max = DEA_DESIGN_STOPS_MAX,
+        .element_size = sizeof(struct dea_quantity), .count_offset = AT(stretch_count)),
+    DEA_INTEGER_ROW(
+        "modes", AT(modes), "3",
+        "with study modal: of how many frequencies, from the lowest on, slopes are wanted",
+        .min = 1, .max = DEA_DESIGN_MODES_MAX, .default_text = "1"),
 };
 
 static const struct dea_record record = {

@@ -54,18 +54,10 @@ struct settings {
 #define AT(member) offsetof(struct settings, member)
 
 static const struct dea_field given_fields[] = {
-    {.key = "name",
-     .kind = DEA_FIELD_LABEL,
-     .offset = offsetof(struct given, name),
-     .required = true,
-     .doc = DEA_DEVICE_PARAM_DOC,
-     .example = "film.thickness"},
-    {.key = "std",
-     .kind = DEA_FIELD_LABEL,
-     .offset = offsetof(struct given, std),
-     .required = true,
-     .doc = "its standard uncertainty",
-     .example = "2 um"},
+    DEA_LABEL_ROW("name", offsetof(struct given, name), "film.thickness", DEA_DEVICE_PARAM_DOC,
+                  .required = true),
+    DEA_LABEL_ROW("std", offsetof(struct given, std), "2 um", "its standard uncertainty",
+                  .required = true),
 };
 static const struct dea_record given_record = {"parameter", "a number that is uncertain",
                                                given_fields,
@@ -84,19 +76,11 @@ static const struct dea_field fields[] = {
      .doc = "what is uncertain, beside the parameters of the film's law whose uncertainty its "
             "material gives",
      .example = "[{name: film.thickness, std: 2 um}]"},
-    {.key = "correlations",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = AT(correlations),
-     .unit = "1",
-     .min = -1,
-     .max = 1,
-     .list_min = 1,
-     .list_max = PAIRS_MAX,
-     .element_size = sizeof(struct dea_quantity),
-     .count_offset = AT(correlation_count),
-     .absent_text = "none",
-     .doc = "correlations of these parameters: 2 with 1, 3 with 1, 3 with 2, ...",
-     .example = "[-0.3]"},
+    DEA_NUMBER_ROW("correlations", AT(correlations), "1", "[-0.3]",
+                   "correlations of these parameters: 2 with 1, 3 with 1, 3 with 2, ...", .min = -1,
+                   .max = 1, .list_min = 1, .list_max = PAIRS_MAX,
+                   .element_size = sizeof(struct dea_quantity),
+                   .count_offset = AT(correlation_count), .absent_text = "none"),
 };
 
 static const struct dea_record record = {

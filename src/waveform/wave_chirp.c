@@ -25,13 +25,9 @@ static const struct dea_field fields[] = {
     DEA_WAVE_FREQUENCY(struct raw, to_Hz, "to", "frequency at the end"),
     DEA_WAVE_TIME(struct raw, duration_s, "duration", "how long it takes", .above_min = true,
                   .required = true),
-    {.key = "spacing",
-     .kind = DEA_FIELD_CHOICE,
-     .offset = offsetof(struct raw, spacing),
-     .choices = spacings,
-     .default_text = "logarithmic",
-     .doc = "how the frequency goes with time: evenly, or by equal factors",
-     .example = "linear"},
+    DEA_CHOICE_ROW("spacing", offsetof(struct raw, spacing), spacings, "linear",
+                   "how the frequency goes with time: evenly, or by equal factors",
+                   .default_text = "logarithmic"),
 };
 
 const struct dea_record dea_wave_chirp_record = {"chirp", "a sine of changing frequency", fields,

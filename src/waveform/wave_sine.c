@@ -16,15 +16,9 @@ static const struct dea_field fields[] = {
     DEA_WAVE_VOLTAGE(struct raw, amplitude_V, "amplitude", "half of peak to peak",
                      .required = true),
     DEA_WAVE_FREQUENCY(struct raw, frequency_Hz, "frequency", "cycles a second"),
-    {.key = "phase",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = offsetof(struct raw, phase_rad),
-     .unit = "radian",
-     .min = -7,
-     .max = 7,
-     .default_text = "0 degree",
-     .doc = "phase at the start; -90 degree: it starts at the lowest voltage",
-     .example = "-90 degree"},
+    DEA_NUMBER_ROW("phase", offsetof(struct raw, phase_rad), "radian", "-90 degree",
+                   "phase at the start; -90 degree: it starts at the lowest voltage", .min = -7,
+                   .max = 7, .default_text = "0 degree"),
     DEA_WAVE_CYCLES(struct raw, cycles, "cycles", "number of cycles", "10"),
 };
 

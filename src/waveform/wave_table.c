@@ -15,13 +15,11 @@ struct raw {
 
 static const struct dea_field fields[] = {
     DEA_WAVE_KIND(struct raw),
-    {.key = "file",
-     .kind = DEA_FIELD_LABEL,
-     .offset = offsetof(struct raw, file),
-     .required = true,
-     .doc = "CSV file with a header such as 'time (s),voltage (kV)', times rising from 0; two rows "
-            "of one time are a jump; its path counts from the folder of the design file",
-     .example = "drive.csv"},
+    DEA_LABEL_ROW(
+        "file", offsetof(struct raw, file), "drive.csv",
+        "CSV file with a header such as 'time (s),voltage (kV)', times rising from 0; two rows of "
+        "one time are a jump; its path counts from the folder of the design file",
+        .required = true),
     DEA_WAVE_CYCLES(struct raw, repeat, "repeat", "how often the table is played", "1"),
 };
 
