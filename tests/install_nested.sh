@@ -4,7 +4,7 @@
 #   install_nested.sh SOURCE BUILD - CMAKE_OPTION...
 set -eu
 source=$1 build=$2
-shift 3
+shift 4
 prefix=$build/prefix
 rm -rf "$prefix"
 cmake -G Ninja -S "$source" -B "$build" -DDEA_LONG_TESTS=OFF -DDEA_BUILD_BENCH=OFF \

@@ -63,6 +63,7 @@ static void run_solid(const char *arguments)
 /* The same as from rest, and to the bit the same whoever computes it after whom. */
 static void test_neighbours(void **state)
 {
+  only_nightly();
   (void)state;
   static char near[DESIGNS][200], rest[DESIGNS][200], parts[DESIGNS][200];
   static double a[DESIGNS][NUMBERS], b[DESIGNS][NUMBERS];
@@ -377,6 +378,7 @@ static void test_end_of_a_line(void **state)
  * the film. */
 static void test_frequency(void **state)
 {
+  only_nightly();
   (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   command_write("cone.yaml", cone);

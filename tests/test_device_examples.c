@@ -1,5 +1,5 @@
 /* The designs of examples/devices, computed, against numbers from elsewhere. */
-// ctest: solid
+// ctest: solid, nightly
 #include "device/device.h"
 #include "model/model.h"
 #include "result/result.h"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# ctest: docs
+# ctest: docs, nightly
 # scripts/docs makes the site; each link in it has its target, and nothing is asked of other hosts.
 set -eu
 source=$1

@@ -188,6 +188,7 @@ static void test_blocks_and_free(void **state)
 /* A tip that is pressed 2 mm into the middle takes the same force of both. */
 static void test_tip_on_blocks_and_free(void **state)
 {
+  only_nightly();
   (void)state;
   static const struct dea_probe tip = {.radius_m = 3e-3, .from_fibre_side = true};
   const struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);

@@ -410,6 +410,7 @@ static void test_region(void **state)
  * every kind. */
 static void test_plate_askew(void **state)
 {
+  only_nightly();
   (void)state;
   static const char device[] =
       "dea: 1\n"
@@ -831,6 +832,7 @@ static const char strut[] =
  * size, or s times the modulus, buckles at a voltage that all of its slopes know. */
 static void test_buckling_of_a_strip(void **state)
 {
+  only_nightly();
   (void)state;
   enum { VOLTAGE, THICKNESS, STRETCH, MU, PERMITTIVITY, OF_SHAPES, SHAPES = 8 };
   static const double of_shapes[SHAPES] = {8e-3, 2e-3, -4e-3, 0.2e-3, 3e-3, 4e-3, 0.2e-3, 3e-3};
@@ -899,6 +901,7 @@ static double slab_voltage(const struct slab *at)
 
 static void test_buckling_of_a_slab(void **state)
 {
+  only_nightly();
   (void)state;
   enum { VOLTAGE, THICKNESS, STRETCH, MU, PERMITTIVITY, NUMBERS };
   static const double share = 1e-6;

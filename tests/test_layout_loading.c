@@ -330,6 +330,7 @@ static double stress_after(struct pulled p, double rate, double turn_s, double e
  */
 static void test_at_a_rate(void **state)
 {
+  only_nightly();
   enum { STEPS = 8 };
   static const double thickness_m = 100e-6, width_m = 10e-3, length_m = 16e-3, duration_s = 4;
   (void)state;

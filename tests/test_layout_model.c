@@ -482,6 +482,7 @@ static const char *why_none(struct dea_device *device, const struct dea_model_se
  */
 static void test_limit_of_the_pressure(void **state)
 {
+  only_nightly();
   (void)state;
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 0.5};
   struct dea_device *device = disc_new(10e-3, 5e-3, 1.1);

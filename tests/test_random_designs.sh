@@ -1,5 +1,5 @@
 #!/bin/sh
-# ctest: solid
+# ctest: solid, nightly
 # Twenty random designs on a coarse mesh: what cannot be computed is said to be what it is. The share
 # of "ours" is that of the day on which the test was written, and may only fall. And one on its own
 # (29: a coupled field on a film without pre-stretch, which wrinkles; 1289: a membrane that no step

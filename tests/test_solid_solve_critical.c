@@ -82,6 +82,7 @@ static void check_critical(const struct state *at, const struct dea_model_settin
  * one of the two, over four decades. */
 static void test_critical_voltages(void **state)
 {
+  only_nightly();
   (void)state;
   static const int slack[] = {THICKNESS, STIFFENING,      PRE_STRETCH, FRAME,
                               WIDTH,     FIBRE_THICKNESS, GLUE},

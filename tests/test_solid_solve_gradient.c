@@ -248,6 +248,7 @@ static void test_four_decades(void **state)
 
 static void test_four_decades_of_a_membrane(void **state)
 {
+  only_nightly();
   (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {VOLTAGE, THICKNESS, ELECTRODE};
@@ -274,6 +275,7 @@ static void test_electrodes_of_a_thickness(void **state)
  * the frame, electrodes of a thickness; and what vibrates. */
 static void test_more_numbers(void **state)
 {
+  only_nightly();
   (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {PERMITTIVITY_SLOPE,  POISSON_RATIO,     OUTER_GAP,
@@ -420,6 +422,7 @@ static const struct dea_model_settings coupled[] = { // one element through the 
 
 static void test_coupled_field(void **state)
 {
+  only_nightly();
   (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   const struct state at = heavy_star();
@@ -517,6 +520,7 @@ static void test_force_of_a_tip(void **state)
  * points in touch the same. */
 static void test_force_of_a_flat_tip(void **state)
 {
+  only_nightly();
   (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6}, smaller[] = {1e-3, 1e-5, 1e-7};
   static const int numbers[] = {VOLTAGE,         THICKNESS,     MODULUS, STIFFENING,   PERMITTIVITY,
@@ -532,6 +536,7 @@ static void test_force_of_a_flat_tip(void **state)
 /* The frequency of what vibrates on the tip, which it stays on. */
 static void test_frequency_on_a_tip(void **state)
 {
+  only_nightly();
   (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {DEPTH, TIP_SIZE, VOLTAGE, THICKNESS};
@@ -562,6 +567,7 @@ static void check_laws_of_the_force(const struct state *at,
 
 static void test_laws_of_the_force(void **state)
 {
+  only_nightly();
   (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {ELECTRODE, DEPTH, TIP_SIZE};

@@ -50,6 +50,7 @@ static bool is_slack(const json_t *at)
  * they carry is compression, with electrodes at 0 V as without. */
 static void test_films_without_electrodes(void **state)
 {
+  only_nightly();
   static const char *const motions[] = {"twist", "shift", "shear"};
   (void)state;
   for (size_t i = 0; i < sizeof motions / sizeof motions[0]; i++) {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# ctest: long, waits
+# ctest: long, waits, nightly
 # dea sweep --slurm against a real munged, slurmctld and slurmd on this computer, with all processes
 # of the node killed in the middle. Skipped where Slurm is not installed, or not by root. Many designs
 # of the membrane, as docs/verification/sweep.md has them: DEA_SLURM_MODEL=3d DEA_SLURM_SAMPLES=2000.

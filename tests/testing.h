@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -27,6 +28,14 @@
 static inline void skip_sanitized(void)
 {
   if (SANITIZED) {
+    skip();
+  }
+}
+
+/* For a long case that others stand beside: `scripts/test --nightly` runs it. */
+static inline void only_nightly(void)
+{
+  if (getenv("DEA_NIGHTLY") == NULL) {
     skip();
   }
 }
