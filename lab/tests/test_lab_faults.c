@@ -666,7 +666,7 @@ int main(int count, char **arguments)
   run_count = count > 1 ? (size_t)strtoul(arguments[1], NULL, 10) : 12;
   meter_count = only_meters ? run_count : METERS_TOGETHER;
   first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
-  table = meter_table = count > 3 ? arguments[3] : NULL;
+  *(only_meters ? &meter_table : &table) = count > 3 ? arguments[3] : NULL;
   return only_meters ? cmocka_run_group_tests(lies, command_set_up, supply_tear_down)
                      : cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
 }
