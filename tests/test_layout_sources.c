@@ -187,6 +187,7 @@ static struct dea_device *pair_new(double middle_V, double top_V)
  * have the same energy; the account of a step is of second order. */
 static void test_each_moment(void **state)
 {
+  only_nightly();
   (void)state;
   static const struct play plays[2] = {{900, 600, 0}, {-500, 700, 0.4}};
   double missing[2], largest_A = 0;
@@ -227,6 +228,7 @@ static void test_each_moment(void **state)
 /* Sources that all play the same are one supply, with inertia too. */
 static void test_as_one_supply(void **state)
 {
+  only_nightly();
   (void)state;
   static const struct play plays[1] = {{600, 0, 0}};
   const struct dea_model_type *type = dea_model_find("3d");

@@ -394,6 +394,7 @@ static void test_fringe(void **state)
  * that is told, and of fibres that begin elsewhere it is not. */
 static void test_coupled_tips(void **state)
 {
+  only_nightly();
   static const double overlaps[] = {0, 1e-3};
   (void)state;
   for (int i = 0; i < 2; i++) {

@@ -114,6 +114,7 @@ static struct state stretched_disc(void)
 /* A solid has pressures. With fibres it was run once (docs/theory/gradients.md). */
 static void test_beyond_pull_in(void **state)
 {
+  only_nightly();
   (void)state;
   static const int numbers[] = {FRAME, PRE_STRETCH};
   const struct state at = stretched_disc();

@@ -167,6 +167,7 @@ static void check_beside_solid(const struct dea_device *device, double of_edge)
 
 static void test_fibres_of_all_kinds(void **state)
 {
+  only_nightly();
   (void)state;
   static const int fibres[] = {1, 4, 6};
   for (size_t i = 0; i < 3; i++) {
