@@ -93,14 +93,6 @@ static inline void command_expect(const char *arguments, int code, const char *m
   }
 }
 
-/* The page docs/NAME into out; what the command prints stands in it. */
-static inline void command_page(const char *name, const char *arguments, char *out)
-{
-  command_read_in(DEA_SOURCE_DIR "/docs", name, out);
-  assert_int_equal(command_run(arguments), 0);
-  assert_contains(out, command_out);
-}
-
 /* Writes a file into command_folder. */
 static inline void command_write(const char *name, const char *text)
 {

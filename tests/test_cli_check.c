@@ -304,20 +304,6 @@ static void test_schema(void **state)
   json_decref(json);
 }
 
-static void test_reference_is_that_of_the_table(void **state)
-{
-  (void)state;
-  static char page[COMMAND_TEXT_MAX];
-  command_page("design-file.md", "schema --markdown", page);
-  // rows from `drive` on are those of the short form
-  command_read_in(DEA_SOURCE_DIR "/docs", "devices.md", page);
-  assert_int_equal(command_run("schema --markdown --general"), 0);
-  char *rest = strstr(command_out, "| `drive` | section");
-  assert_non_null(rest);
-  *rest = '\0';
-  assert_contains(page, command_out);
-}
-
 /* What is told and drawn of a design of the general form. */
 static void test_layout(void **state)
 {
@@ -462,8 +448,6 @@ static void test_materials(void **state)
   assert_contains(command_out, "elastosil-2030");
   assert_int_equal(command_run("materials elastosil-2030"), 0);
   assert_contains(command_out, "c1             178.4 kPa");
-  static char document[COMMAND_TEXT_MAX];
-  command_page("materials.md", "materials --markdown", document);
   json_t *json = run_json("materials --json", 0);
   assert_true(json_array_size(json) >= 5);
   json_decref(json);
@@ -495,7 +479,6 @@ int main(void)
       cmocka_unit_test(test_check_shows_the_band_of_the_breakdown_field),
       cmocka_unit_test(test_check_as_json),
       cmocka_unit_test(test_schema),
-      cmocka_unit_test(test_reference_is_that_of_the_table),
       cmocka_unit_test(test_layout),
       cmocka_unit_test(test_what_run_refuses),
       cmocka_unit_test(test_keys_of_a_disc),

@@ -159,7 +159,7 @@ static void test_example(void **state)
   (void)state;
   skip_sanitized();
   static char page[COMMAND_TEXT_MAX];
-  command_page("fit.md", "schema --fit-device --markdown", page);
+  command_read_in(DEA_SOURCE_DIR "/docs", "fit.md", page);
   assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device"), 0);
   static const char line[] = "pre_stretch                           1.5 ->     1.4209 +- 0.0032";
   assert_contains(command_out, line);

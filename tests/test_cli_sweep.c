@@ -567,14 +567,6 @@ static void test_critical_voltages(void **state)
   assert_contains(text, "pull_in_voltage_V: the path has none up to 32 kV");
 }
 
-/* The keys of docs/explore.md. */
-static void test_page(void **state)
-{
-  (void)state;
-  static char page[COMMAND_TEXT_MAX];
-  command_page("explore.md", "schema --explore --markdown", page);
-}
-
 /* A variable sets two numbers, and an optimum at the end of its range says so. */
 static void test_tied_variable_ends_at_a_bound(void **state)
 {
@@ -625,7 +617,6 @@ int main(void)
                                      cmocka_unit_test(test_nothing_found_after_a_best),
                                      cmocka_unit_test(test_none_with_values),
                                      cmocka_unit_test(test_critical_voltages),
-                                     cmocka_unit_test(test_page),
                                      cmocka_unit_test(test_parts),
                                      cmocka_unit_test(test_monitors),
                                      cmocka_unit_test(test_values_without_the_start),

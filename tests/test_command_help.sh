@@ -64,6 +64,15 @@ for page in README.md docs/devices.md; do
   rm "$folder"/page-*.yaml
 done
 
+# the tables that scripts/docs puts into the pages
+grep -h '^<!-- dea ' "$source"/docs/*.md >"$folder/tables"
+while read -r _ _ arguments; do
+  # shellcheck disable=SC2086 # one argument a word
+  expect 0 "table of $arguments" dea ${arguments% -->}
+  has out "|---|---|"
+done <"$folder/tables"
+[ "$(grep -c . "$folder/tables")" -gt 6 ] || { echo "hardly any table in docs/"; failed=1; }
+
 # doctor
 expect 0 "doctor" dea doctor
 has out "HDF5"

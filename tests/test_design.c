@@ -493,22 +493,20 @@ static void check_limit(const char *path, const char *form, const char *sign)
   }
 }
 
-/* The page of keys says what the reader does: every key is known and takes its example, limits are
- * where they are said to be, one of a choice is taken and nothing else; and no value that is read
- * lacks its row. */
+/* The table of keys says what the reader does: every key is known and takes its example, limits
+ * are where they are said to be, one of a choice is taken and nothing else; and no value that is
+ * read lacks its row. */
 static void test_reference_says_what_is_read(void **state)
 {
   (void)state;
-  static char page[1 << 18];
+  struct dea_design_schema schema;
+  struct dea_text page = {.ctx = ctx};
   char path[120], form[200], line[1000];
   size_t rows = 0;
-  FILE *file = fopen(DEA_SOURCE_DIR "/docs/design-file.md", "rb");
-  assert_non_null(file);
-  page[fread(page, 1, sizeof page - 1, file)] = '\0';
-  fclose(file);
-  char *keys = strstr(page, "## Keys"), *end = strstr(keys + 1, "\n## ");
-  assert_non_null(end);
-  *end = '\0';
+  dea_design_file_schema(&schema);
+  dea_schema_print_markdown(&schema.disc.record, &page);
+  assert_false(page.failed);
+  const char *keys = dea_text_get(&page);
   for (const char *row = keys; (row = strstr(row, "\n| `")) != NULL; row++) {
     snprintf(line, sizeof line, "%.*s", (int)strcspn(row + 1, "\n"), row + 1);
     char *tail = line + strlen(line) - strlen("` |");
@@ -545,6 +543,7 @@ static void test_reference_says_what_is_read(void **state)
       fail_msg("the reference lacks '%s'", value);
     }
   }
+  dea_text_free(&page);
 }
 
 int main(void)
