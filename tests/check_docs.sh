@@ -3,7 +3,7 @@
 set -eu
 cd "$1"
 list=$(
-  for page in *.md docs/*.md docs/*/*.md; do
+  for page in *.md docs/*.md docs/*/*.md lab/docs/*.md; do
     [ "$page" = CHANGELOG.md ] && continue # it tells the past
     grep -oE '(lab/src|lab/tests|src|tests|benchmarks|verify|scripts|examples|cmake|web|matlab)/[A-Za-z0-9_./-]*[*<]?' "$page" |
       grep -v '[*<]$' | sed "s|[.-]*\$||; s|^|$page .|; s| \\.| |" || true
@@ -27,13 +27,13 @@ awk '/^\|.*`test_/ {
     if (split(part[i], at, ": ") == 2) { file = at[1]; name = at[2] } else { name = part[i] }
     if (name ~ /^test_[a-z0-9_]*$/) { print file, name }
   }
-}' docs/safety.md | {
+}' lab/docs/safety.md | {
   count=0
   while read -r file name; do
     count=$((count + 1))
-    grep -Eq "(unit_test[a-z_]*|TEST)\\(${name}[,)]" "tests/$file" "lab/tests/$file" 2>/dev/null || { echo "docs/safety.md: $file has no test $name"; exit 1; }
+    grep -Eq "(unit_test[a-z_]*|TEST)\\(${name}[,)]" "tests/$file" "lab/tests/$file" 2>/dev/null || { echo "lab/docs/safety.md: $file has no test $name"; exit 1; }
   done
-  [ "$count" -gt 20 ] || { echo "hardly any test found in docs/safety.md: the check is broken"; exit 1; }
+  [ "$count" -gt 20 ] || { echo "hardly any test found in lab/docs/safety.md: the check is broken"; exit 1; }
 }
 printf '%s\n' "$list" | {
   bad=0

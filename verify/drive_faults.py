@@ -227,7 +227,7 @@ hung, lying, stuck, noise, errors, begun anew, pulled out; answers in pieces of 
 "at 0 V" was said in {sum(said == "at 0 V" for said, _ in line)}, wrongly in **{lies}**. Of 179 runs of an
 earlier version three were wrong, by a reading that stood at 0 V from the start, and of 183 of the next
 one two, where a neighbour had got the name of the line that was pulled out; what tells one supply from
-another is looked at since then ([safety.md](../safety.md)).
+another is looked at since then ([safety.md](../../lab/docs/safety.md)).
 """)
     meters, meters_good = lying(max(3 * COUNT // 10, 8))
     meters_good = meters_text(meters) and meters_good

@@ -5,7 +5,7 @@ author = "libdea developers"
 extensions = ["myst_parser"]
 myst_heading_anchors = 4
 include_patterns = ["index.md", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "ARCHITECTURE.md",
-                    "docs/*.md", "docs/*/*.md", "site/*.md"]
+                    "docs/*.md", "docs/*/*.md", "lab/docs/*.md", "site/*.md"]
 root_doc = "index"
 html_theme = "furo"
 html_static_path = ["static"]

@@ -196,7 +196,7 @@ struct foreign {
   const char *unit, *left_out;    // attribute of the channels
 };
 
-/* The recording of the table in docs/bench.md, without what it may lack. */
+/* The recording of the table in lab/docs/bench.md, without what it may lack. */
 static void make_foreign(const char *name, const struct foreign *f)
 {
   static double values[FOREIGN];

@@ -172,7 +172,7 @@ static void get_shape(struct h5 *h, hid_t set, const char *name, size_t width, s
   shape->chunked =
       good && has_plain_chunks(set, shape->rank, shape->chunk) && shape->chunk[1] == width;
   if (!good || shape->size[1] != width || shape->row_size == 0) {
-    damaged(h, name, "is no list of numbers of the shape that docs/bench.md says");
+    damaged(h, name, "is no list of numbers of the shape that lab/docs/bench.md says");
   } else if (shape->size[0] / (shape->chunked ? 1 : DEFLATE_MAX) >
              shape->file_size / shape->row_size) {
     damaged(h, name, "claims more values than the file can hold");
