@@ -288,10 +288,49 @@ static void test_bad_files(void **state)
   }
 }
 
+/* Sets by the temperature of the device: the nearest, said where it is far; not over a chosen
+ * one. */
+static void test_temperature(void **state)
+{
+  (void)state;
+  struct dea_catalogue_entry *entry;
+  struct dea_material film;
+  struct dea_quantity at = {.si = 296.15, .origin = DEA_GIVEN};
+  struct dea_material_choice choice = {.temperature = &at, .breakdown = "huang-2012"};
+  size_t count;
+  assert_int_equal(dea_catalogue_read(ctx, "vhb-4905", nowhere, &entry), DEA_OK);
+  assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
+  assert_string_equal(film.law_id, "cycles-20C");
+  assert_string_equal(film.viscosity_id, "cycles-20C");
+  assert_close(film.permittivity.at_rest, 4.73, 0, 1e-12);
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  assert_int_equal(count, 1); // breakdown: at which temperature is unknown
+  assert_int_equal(findings[0].severity, DEA_NOTE);
+  assert_non_null(strstr(findings[0].text, "unknown: breakdown field"));
+  at.si = 373.15;
+  choice.law = "cycles-0C";
+  assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
+  assert_string_equal(film.law_id, "cycles-0C");
+  assert_string_equal(film.viscosity_id, "cycles-80C");
+  findings = dea_finding_get(ctx, &count);
+  assert_int_equal(count, 4); // the note of before is not said again
+  assert_int_equal(findings[1].severity, DEA_WARNING);
+  assert_non_null(strstr(findings[1].text, "'cycles-0C' of 'vhb-4905' was measured at 0 degC, not "
+                                           "at 100 degC"));
+  at.origin = DEA_ABSENT;
+  choice.law = NULL;
+  assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
+  assert_string_equal(film.law_id, "arruda-boyce-2016");
+  (void)dea_finding_get(ctx, &count);
+  assert_int_equal(count, 4);
+  dea_catalogue_destroy(ctx, entry);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
   const struct CMUnitTest tests[] = {
+      TEST(test_temperature),
       TEST(test_all_have_units_and_sources),
       TEST(test_all_ranges_hold_their_values),
       TEST(test_all_laws_are_stable),

@@ -99,6 +99,8 @@ static const struct dea_field fit_fields[] = {
     DEA_LABEL_ROW("material", AT(material), "elastosil-2030",
                   "material of the catalogue whose permittivity, breakdown and density are kept",
                   .absent_text = "none"),
+    DEA_NUMBER_ROW("temperature", AT(temperature_K), "K", "23 degC", "temperature of the tests",
+                   .min = 100, .max = 600, .absent_text = "unknown"),
     DEA_LABEL_ROW("laws", AT(laws), "[neo-hookean, yeoh, ogden-2]",
                   "laws to fit; of several the one that foretells held-out tests best is taken; "
                   "NAME-N: its first N terms",

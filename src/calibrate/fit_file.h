@@ -50,6 +50,7 @@ struct dea_fit_test {
 struct dea_fit_file {
   struct dea_fit_head head;
   struct dea_label material, branches;
+  struct dea_quantity temperature_K; // of the tests; absent: unknown
   struct dea_label laws[DEA_FIT_LAWS_MAX];
   size_t law_count;
   struct dea_quantity branch_s[DEA_BRANCHES_MAX];

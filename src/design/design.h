@@ -116,6 +116,7 @@ struct dea_design {
   } fibres;
 
   struct dea_choice gravity;          // enum dea_gravity
+  struct dea_quantity temperature_K;  // absent: unknown
   struct dea_fabrication fabrication; // what the workshop needs
 
   struct {                          // drive: what the electrodes are connected to

@@ -225,6 +225,10 @@ static const struct dea_field design_fields[] = {
     DEA_CHOICE_ROW("gravity", AT(gravity), gravities, "fibres_up",
                    "weight, and which way the side of the fibres faces (3d); without fibres: +z",
                    .default_text = "off"),
+    DEA_NUMBER_ROW("temperature", AT(temperature_K), "K", "23 degC",
+                   "temperature of the device: chooses among sets of a material that were measured "
+                   "at different ones",
+                   .min = 100, .max = 600, .absent_text = "unknown"),
     {.key = "drive",
      .kind = DEA_FIELD_RECORD,
      .record = &dea_drive_record,

@@ -10,14 +10,16 @@ dea_status dea_generator_material(struct dea_context *ctx, const struct dea_desi
                                   const struct dea_material_choice *choice,
                                   struct dea_material *out)
 {
+  struct dea_material_choice here = *choice;
+  here.temperature = &design->temperature_K;
   for (size_t i = 0; i < design->material_count; i++) {
     if (strcmp(design->materials[i].name.text, name->text) == 0) {
-      return dea_material_select(ctx, &design->materials[i], choice, out);
+      return dea_material_select(ctx, &design->materials[i], &here, out);
     }
   }
   struct dea_catalogue_entry *entry;
   DEA_TRY(ctx, dea_catalogue_read(ctx, name->text, name->location, &entry));
-  dea_status status = dea_material_select(ctx, &entry->data, choice, out);
+  dea_status status = dea_material_select(ctx, &entry->data, &here, out);
   dea_catalogue_destroy(ctx, entry);
   return status;
 }

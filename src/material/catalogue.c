@@ -213,30 +213,92 @@ void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *
   dea_free(ctx, entry);
 }
 
-/* Index of the set with that id (the first for ""); -1 after adding a finding. ids: a label every
- * `stride` bytes. */
-static int find_set(struct dea_context *ctx, const char *what, const struct dea_material_data *data,
-                    const char *wanted, struct dea_location location, const struct dea_label *ids,
-                    size_t count, size_t stride)
+/* Sets of one kind: a label and the notes every `stride` bytes. */
+struct sets {
+  const char *what; // "law set"
+  const struct dea_label *ids;
+  const struct dea_data_notes *notes;
+  size_t count, stride;
+};
+
+static const char *id_of(const struct sets *sets, size_t i)
 {
-  const char *names[DEA_MATERIAL_SETS_MAX] = {NULL};
+  const char *label = (const char *)sets->ids + i * sets->stride;
+  return ((const struct dea_label *)(const void *)label)->text;
+}
+
+static double temperature_of(const struct sets *sets, size_t i)
+{
+  const char *notes = (const char *)sets->notes + i * sets->stride;
+  return ((const struct dea_data_notes *)(const void *)notes)->temperature_K.si;
+}
+
+static bool is_given(const struct dea_quantity *temperature)
+{
+  return temperature != NULL && temperature->origin != DEA_ABSENT;
+}
+
+/* The set measured nearest to a temperature; the first where none is known or asked for. */
+static int find_nearest(const struct sets *sets, const struct dea_quantity *temperature)
+{
+  int nearest = 0;
+  double least_K = INFINITY;
+  for (size_t i = 0; i < sets->count && is_given(temperature); i++) {
+    const double off_K = fabs(temperature_of(sets, i) - temperature->si);
+    if (off_K < least_K) {
+      nearest = (int)i;
+      least_K = off_K;
+    }
+  }
+  return nearest;
+}
+
+/* What a set says of the temperature of the device; unknown gets the kinds that say nothing. */
+static dea_status check_temperature(struct dea_context *ctx, const char *material,
+                                    const struct sets *sets, int set,
+                                    const struct dea_quantity *temperature,
+                                    struct dea_text *unknown)
+{
+  static const double near_K = 5, freezing_K = 273.15;
+  if (!is_given(temperature) || sets->count == 0) {
+    return DEA_OK;
+  }
+  const double at_K = temperature_of(sets, (size_t)set);
+  if (isnan(at_K)) {
+    dea_text_add(unknown, "%s%s", dea_text_get(unknown)[0] != '\0' ? ", " : "", sets->what);
+    return DEA_OK;
+  }
+  return fabs(at_K - temperature->si) <= near_K
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_WARNING, temperature->location,
+                               "the %s '%s' of '%s' was measured at %.4g degC, not at %.4g degC",
+                               sets->what, id_of(sets, (size_t)set), material, at_K - freezing_K,
+                               temperature->si - freezing_K);
+}
+
+/* Index of the set with that id (see dea_material_choice for ""); -1 after adding a finding. */
+static int find_set(struct dea_context *ctx, const struct dea_material_data *data,
+                    const struct sets *sets, const char *wanted, struct dea_location location,
+                    const struct dea_quantity *temperature)
+{
+  const char *names[DEA_MATERIAL_SETS_MAX] = {NULL}, *what = sets->what;
   char list[DEA_MATERIAL_SETS_MAX * (DEA_NAME_SIZE + 2)] = "";
   if (wanted == NULL || wanted[0] == '\0') {
-    return 0;
+    return find_nearest(sets, temperature);
   }
-  for (size_t i = 0; i < count; i++) {
-    names[i] = ((const struct dea_label *)(const void *)((const char *)ids + i * stride))->text;
+  for (size_t i = 0; i < sets->count; i++) {
+    names[i] = id_of(sets, i);
     if (strcmp(names[i], wanted) == 0) {
       return (int)i;
     }
     size_t used = strlen(list);
     snprintf(list + used, sizeof list - used, "%s%.63s", i > 0 ? ", " : "", names[i]);
   }
-  const char *nearest = dea_nearest_name(wanted, names, count);
+  const char *nearest = dea_nearest_name(wanted, names, sets->count);
   dea_status status = dea_finding_add(
       ctx, DEA_ERROR, location, "material '%s' has no %s '%.60s'%s%s%s: %s", data->name.text, what,
       wanted, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'? All" : "; there are", count > 0 ? list : "none");
+      nearest != NULL ? "'? All" : "; there are", sets->count > 0 ? list : "none");
   if (status == DEA_OK) {
     dea_fail(ctx, DEA_E_DESIGN, "material '%s' has no %s '%.60s'", data->name.text, what, wanted);
   }
@@ -324,23 +386,43 @@ static dea_status take_viscosity(struct dea_context *ctx, const struct dea_visco
 dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
                                const struct dea_material_choice *choice, struct dea_material *out)
 {
+#define SETS(what, member, counter)                                                                \
+  {                                                                                                \
+    what, &data->member[0].id, &data->member[0].notes, data->counter, sizeof data->member[0]       \
+  }
+  const struct sets laws = SETS("law set", laws, law_count);
+  const struct sets permittivities = SETS("permittivity", permittivity, permittivity_count);
+  const struct sets breakdowns = SETS("breakdown field", breakdown, breakdown_count);
+  const struct sets viscosities = SETS("viscosity", viscosity, viscosity_count);
+#undef SETS
+  const struct dea_quantity *temperature = choice->temperature;
   *out = (struct dea_material){0};
   snprintf(out->name, sizeof out->name, "%.63s", data->name.text);
-  int law = find_set(ctx, "law set", data, choice->law, choice->law_place, &data->laws[0].id,
-                     data->law_count, sizeof data->laws[0]);
-  int permittivity =
-      find_set(ctx, "permittivity", data, choice->permittivity, choice->permittivity_place,
-               &data->permittivity[0].id, data->permittivity_count, sizeof data->permittivity[0]);
+  int law = find_set(ctx, data, &laws, choice->law, choice->law_place, temperature);
+  int permittivity = find_set(ctx, data, &permittivities, choice->permittivity,
+                              choice->permittivity_place, temperature);
   int breakdown =
-      find_set(ctx, "breakdown field", data, choice->breakdown, choice->breakdown_place,
-               &data->breakdown[0].id, data->breakdown_count, sizeof data->breakdown[0]);
+      find_set(ctx, data, &breakdowns, choice->breakdown, choice->breakdown_place, temperature);
   bool viscous = choice->viscosity == NULL || strcmp(choice->viscosity, "none") != 0;
-  int viscosity =
-      find_set(ctx, "viscosity", data, viscous ? choice->viscosity : NULL, choice->viscosity_place,
-               &data->viscosity[0].id, data->viscosity_count, sizeof data->viscosity[0]);
+  int viscosity = find_set(ctx, data, &viscosities, viscous ? choice->viscosity : NULL,
+                           choice->viscosity_place, temperature);
   if (law < 0 || permittivity < 0 || breakdown < 0 || viscosity < 0) {
     return dea_context_status(ctx);
   }
+  const struct sets *const all[] = {&laws, &permittivities, &breakdowns, &viscosities};
+  const int chosen[] = {law, permittivity, breakdown, viscosity};
+  struct dea_text unknown = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < sizeof all / sizeof all[0] - !viscous && status == DEA_OK; i++) {
+    status = check_temperature(ctx, out->name, all[i], chosen[i], temperature, &unknown);
+  }
+  if (status == DEA_OK && dea_text_get(&unknown)[0] != '\0') {
+    status = dea_finding_add(ctx, DEA_NOTE, temperature->location,
+                             "the temperature at which '%s' was measured is unknown: %s", out->name,
+                             dea_text_get(&unknown));
+  }
+  dea_text_free(&unknown);
+  DEA_TRY(ctx, status);
   if (data->law_count > 0) {
     take_law(&data->laws[law], out);
   }

@@ -14,6 +14,7 @@ enum { DEA_MATERIAL_VERSION = 1, DEA_MATERIAL_SETS_MAX = 8 };
 /* What every set of numbers says about itself; NULL where nothing is said. */
 struct dea_data_notes {
   const char *uncertainty, *range, *source, *note;
+  struct dea_quantity temperature_K; // that it was measured at; NAN: unknown
 };
 
 /* Range of stretch that the data cover, or of values that the sources give. count is 0 when it is
@@ -132,15 +133,18 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
 /* NULL is fine. */
 void dea_catalogue_destroy(struct dea_context *ctx, struct dea_catalogue_entry *entry);
 
-/* Which sets of a material are wanted; "" or NULL for the first, and "none" for no viscosity.
- * place: of what named it. */
+/* Which sets of a material are wanted; "" or NULL for the one that was measured nearest to the
+ * temperature, or the first where none is known, and "none" for no viscosity. place: of what named
+ * it. */
 struct dea_material_choice {
   const char *law, *permittivity, *breakdown, *viscosity;
   struct dea_location law_place, permittivity_place, breakdown_place, viscosity_place;
+  const struct dea_quantity *temperature; // of the device; NULL or absent: not given
 };
 
 /* The material as the models use it. A set that does not exist gives DEA_E_DESIGN after a finding
- * that names those that do. */
+ * that names those that do. With a temperature, sets that were measured elsewhere are a warning,
+ * and those of an unknown temperature a note. */
 dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
                                const struct dea_material_choice *choice, struct dea_material *out);
 

@@ -9,7 +9,8 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-/* Fields that every set of numbers has: uncertainty, range in words, source (required), note. */
+/* Fields that every set of numbers has: uncertainty, range in words, temperature, source
+ * (required), note. */
 #define NOTE_FIELDS(type, member)                                                                  \
   {.key = "source",                                                                                \
    .kind = DEA_FIELD_TEXT,                                                                         \
@@ -27,6 +28,14 @@
        .offset = offsetof(type, member.range),                                                     \
        .doc = "range in which the numbers hold, in words",                                         \
        .example = "\"23 degC, below 1 Hz\""},                                                      \
+      {.key = "temperature",                                                                       \
+       .kind = DEA_FIELD_NUMBER,                                                                   \
+       .offset = offsetof(type, member.temperature_K),                                             \
+       .unit = "K",                                                                                \
+       .min = 100,                                                                                 \
+       .max = 600,                                                                                 \
+       .doc = "temperature that they were measured at",                                            \
+       .example = "23 degC"},                                                                      \
   {                                                                                                \
     .key = "note", .kind = DEA_FIELD_TEXT, .offset = offsetof(type, member.note),                  \
     .doc = "anything else a user should know", .example = "\"as bought, before curing\""           \

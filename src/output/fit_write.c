@@ -31,11 +31,20 @@ static void add_key(struct dea_text *out, const char *indent, const char *key, c
   }
 }
 
+static void add_temperature(struct dea_text *out, const char *indent,
+                            const struct dea_quantity *temperature)
+{
+  if (!isnan(temperature->si)) {
+    dea_text_add(out, "%stemperature: %.10g K\n", indent, temperature->si);
+  }
+}
+
 static void add_notes(struct dea_text *out, const char *indent, const struct dea_data_notes *notes)
 {
   add_key(out, indent, "source", notes->source);
   add_key(out, indent, "uncertainty", notes->uncertainty);
   add_key(out, indent, "range", notes->range);
+  add_temperature(out, indent, &notes->temperature_K);
   add_key(out, indent, "note", notes->note);
 }
 
@@ -57,6 +66,7 @@ static void add_source(struct dea_text *out, const char *indent, const struct de
     }
   }
   add_key(out, indent, "source", dea_text_get(&source));
+  add_temperature(out, indent, &fit->file->temperature_K);
   out->failed = out->failed || source.failed;
   dea_text_free(&source);
 }
@@ -150,14 +160,20 @@ static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
   }
 }
 
-/* The range of what sources give, where it is known. unit: with a space in front. */
+/* A range, where it is known. unit: with a space in front. */
+static void add_range(struct dea_text *out, const char *indent, const char *key,
+                      const struct dea_data_range *range, const char *unit)
+{
+  if (range->count == 2) {
+    dea_text_add(out, "%s%s: [%.10g%s, %.10g%s]\n", indent, key, range->limits[0].si, unit,
+                 range->limits[1].si, unit);
+  }
+}
+
 static void add_values(struct dea_text *out, const char *indent,
                        const struct dea_data_range *values, const char *unit)
 {
-  if (values->count == 2) {
-    dea_text_add(out, "%svalue_range: [%.10g%s, %.10g%s]\n", indent, values->limits[0].si, unit,
-                 values->limits[1].si, unit);
-  }
+  add_range(out, indent, "value_range", values, unit);
 }
 
 static void add_given(struct dea_text *out, const char *key, const struct dea_quantity *value,
@@ -184,6 +200,7 @@ static void add_breakdown(struct dea_text *out, const struct dea_material_data *
     if (set->electrode_factor.origin != DEA_DEFAULT) {
       add_given(out, "electrode_factor", &set->electrode_factor, "");
     }
+    add_range(out, "    ", "stretch_range", &set->range, "");
     add_notes(out, "    ", &set->notes);
   }
 }
@@ -202,6 +219,7 @@ static void add_rest(struct dea_text *out, const struct dea_material_data *data)
     dea_text_add(out, "  - id: %s\n    at_rest: %.10g\n    slope: %.10g\n", set->id.text,
                  set->at_rest.si, set->slope.si);
     add_values(out, "    ", &set->values, "");
+    add_range(out, "    ", "stretch_range", &set->range, "");
     add_notes(out, "    ", &set->notes);
   }
   add_breakdown(out, data);
