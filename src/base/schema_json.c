@@ -93,11 +93,11 @@ static bool has_upper(const struct dea_field *field)
   return field->max > field->min || (field->max == field->min && field->max != 0);
 }
 
-/* Pattern of what a limit at 0 says of a number's first signs, "" for nothing. */
+/* Pattern of what a limit at 0 says of a number's first signs, "" for nothing: 0 degC is above. */
 static const char *sign_pattern(const struct dea_field *field)
 {
   bool limited = field->min != 0 || field->max != 0 || field->above_min;
-  if (!limited || field->min < 0) {
+  if (!limited || field->min < 0 || (field->unit != NULL && strcmp(field->unit, "K") == 0)) {
     return "";
   }
   return field->min > 0 || field->above_min ? "^\\+?(?=[0-9.]*[1-9])[0-9.]" : "^\\+?[0-9.]";
