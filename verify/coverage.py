@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """Lines and branches of src/ and lab/src/ that were reached, by folder, from what gcov counted.
 
-    coverage.py --build FOLDER [--write] [--selection TEXT] [--files N]
+    coverage.py --build FOLDER [--files N]
 
 Reads every .gcno below FOLDER/src and FOLDER/lab by `gcov --json-format`; a source that several targets compile
 counts where any of them reached it, and one that no program ran counts as not reached. Prints a table, and the N files (10) with most lines that were not.
---write puts it into docs/verification/coverage.md; TEXT is the selection of tests it names.
 """
 import argparse
 import collections
@@ -101,8 +100,6 @@ def main():
     p = argparse.ArgumentParser(description=__doc__,
                                 formatter_class=argparse.RawDescriptionHelpFormatter)
     p.add_argument("--build", required=True)
-    p.add_argument("--write", action="store_true")
-    p.add_argument("--selection", default="-L 'quick|slow'")
     p.add_argument("--files", type=int, default=10)
     a = p.parse_args()
     found = sources(os.path.abspath(a.build))
@@ -113,16 +110,6 @@ def main():
         text += "\nMost lines that no test of the selection reaches:\n\n" + \
             least(found, a.files) + "\n"
     print(text)
-    if a.write:
-        with open(os.path.join(ROOT, "docs/verification/coverage.md"), "w") as file:
-            file.write("# What the tests reach\n\nLines and branches of `src/` and `lab/src/` that `ctest %s` reaches, "
-                       "by folder; written by\n`verify/coverage.py --write` (of `scripts/coverage`, or "
-                       "of `build/nested/gcc`, which CI builds with sanitizers\nand with little "
-                       "optimisation, so that its branches are some more). Programs that a test kills count nothing, so that\n`lab/drive` "
-                       "is reached more than it says. The tests of supplies (`-L supply`) and of the 3D "
-                       "solver\n(`-L solid`) are in this only where the selection has them. A line that "
-                       "is reached is not one whose\nresult is checked: that is what "
-                       "`verify/mutants.py` asks.\n\n%s" % (a.selection, text))
 
 
 if __name__ == "__main__":

@@ -9,9 +9,8 @@ breaks it is KEPT/TARGET-crash-* (timeout-*, oom-*), and ends it unless the same
 second time (one that took long because others had the machine). Prints a line a target and adds it to
 KEPT/record.csv; the exit code is 1 if anything was found.
 
---write moves those rows to docs/verification/fuzzing.csv, writes docs/verification/fuzzing.md from all
-that stand there, and puts into tests/fuzz/corpus SMALL of at most LARGEST bytes, of all sizes, among
-those inputs that reach all that is reached (-set_cover_merge). With --hours 0 it does only that.
+--write puts into tests/fuzz/corpus SMALL inputs of at most LARGEST bytes, of all sizes, among those that
+reach all that is reached (-set_cover_merge). With --hours 0 it does only that.
 """
 import argparse
 import concurrent.futures
@@ -26,13 +25,10 @@ import tempfile
 import threading
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-PAGES = os.path.join(ROOT, "docs", "verification")
-RECORD = os.path.join(PAGES, "fuzzing.csv")
 COLUMNS = ["date", "commit", "target", "processor_s", "inputs", "edges", "found"]
 ROUND_S = 300  # by the clock
 PATIENCE = 20  # a target that waits more than it works ends after this many times its share, by the clock
 SMALL, LARGEST = 48, 4096
-WANTED_H = 24
 writing = threading.Lock()
 
 
@@ -125,35 +121,6 @@ def add(path, rows):
         table.writerows(rows)
 
 
-def read(path):
-    if not os.path.exists(path):
-        return []
-    with open(path, newline="", encoding="utf-8") as record:
-        return list(csv.DictReader(record))
-
-
-def write_page():
-    rows = read(RECORD)
-    lines = ["# Fuzzing", "",
-             "Processor time that fuzz targets have had, under the sanitizers of addresses and of undefined",
-             "behaviour, by `scripts/fuzz HOURS FOLDER --write`, which adds to",
-             "[fuzzing.csv](fuzzing.csv) and to `tests/fuzz/corpus/`; what was done before that file began is not",
-             "in it. An edge is one way from a place of the program to the next, that some input went.", "",
-             "| target | processor hours | inputs | edges, first and last | found |", "|---|---|---|---|---|"]
-    total_s = total_inputs = 0
-    for name in sorted({r["target"] for r in rows}):
-        own = [r for r in rows if r["target"] == name]
-        seconds = sum(float(r["processor_s"]) for r in own)
-        inputs = sum(int(r["inputs"]) for r in own)
-        total_s, total_inputs = total_s + seconds, total_inputs + inputs
-        lines.append(f"| {name} | {seconds / 3600:.2f} | {inputs} | {own[0]['edges']}, {own[-1]['edges']} | "
-                     f"{sum(int(r['found']) for r in own)} |")
-    lines.append(f"| all | {total_s / 3600:.1f} of {WANTED_H} wanted | {total_inputs} | | "
-                 f"{sum(int(r['found']) for r in rows)} |")
-    with open(os.path.join(PAGES, "fuzzing.md"), "w", encoding="utf-8") as page:
-        page.write("\n".join(lines) + "\n")
-
-
 def keep_small(args, name):
     """Some inputs of a cover, of all sizes, go into the repository."""
     home = os.path.join(ROOT, "tests", "fuzz", "corpus", name)
@@ -192,13 +159,8 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
             rows = list(pool.map(lambda name: fuzz(args, name, share_s), args.targets))
     if args.write:
-        own = os.path.join(args.kept, "record.csv")
-        add(RECORD, read(own))
-        if os.path.exists(own):
-            os.remove(own)
         for name in args.targets:
             keep_small(args, name)
-        write_page()
     sys.exit(any(row["found"] for row in rows))
 
 

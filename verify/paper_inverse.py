@@ -168,13 +168,11 @@ far = [(n, max(abs(r["highest z (um)"]), abs(r["lowest z (um)"]))) for n, r in s
 print(f"""# The paper's measurements read backwards
 
 Made by `scripts/verify paper-inverse`; not to be edited. [paper.md](paper.md) computes what the paper's
-design gives. This page asks the other way round: which values of what the paper does not give, or of
-what may not have been as it says, would give what was measured. Nothing here is a prediction, and a
-value that would do is not thereby the value that was there.
+design gives; this page, which values of what the paper does not give would give what was measured. Nothing here is a prediction.
 
 ## What there is to go by
 
-The paper's curves exist as pictures only; these are the numbers of its text, and all that is used.
+The numbers of the paper's text (its curves exist as pictures only):
 
 | place | number |
 |---|---|
@@ -184,11 +182,8 @@ The paper's curves exist as pictures only; these are the numbers of its text, an
 | 4.2.2, 5.1 (Fig 12) | 0.18 N at 6 kV, linear in the voltage from 1 to 6 kV, four and eight fibres 0.13 % apart |
 | 3.2, 4.2.1 | no breakdown is reported at 8 kV on 100 um and 16 kV on 200 um, 15 cycles at each voltage |
 
-No uncertainty, no number of samples and no value at a second voltage go with any of them. Two do not go
-together: 50 to 65 % of 1.5 mm is 0.75 to 0.98 mm, where 0.5 mm is the largest that was measured. They
-would if the 1.5 mm were of another place of the film than the ratio. Fig 8's conical and flat profiles
-and Fig 11 give a shape and a sign, no number: a value of overlap or hold cannot be had from them, and
-none is given here.
+No uncertainty and no number of samples go with any of them. Two do not go together: 50 to 65 % of 1.5 mm is 0.75 to 0.98 mm, where
+0.5 mm is the largest that was measured. Figs 8 and 11 give a shape and a sign, no number.
 
 ## The film that survived 8 kV
 
@@ -217,20 +212,16 @@ field to that of the data sheet only far from what the paper says of them. What 
   the total stretch {nominal[2]:.2f} is at least {nominal[0]:.0f} V/um. As a power of the stretch, from 80 V/um at rest, that is an
   exponent of at least {exponent(80):.2f}; from 100 V/um at least {exponent(100):.2f}. No source for this film is
   known here that gives one; it is a lower bound from one survivor, not a value;
-* **the film was not at 8 kV all over**, or lost less thickness than the model says: stiffer electrodes,
-  less than nominal pre-stretch, fibres and glue that hold the electrode. Each lowers the field, and each
-  lowers the strain with it;
-* both, and a pre-stretch between.
+* **the film was not at 8 kV all over**, or lost less thickness than the model says: stiffer electrodes, less than nominal
+  pre-stretch, fibres and glue that hold the electrode; each lowers the strain too.
 
-One sample that did not break says nothing of the distribution: breakdown is a matter of chance and of
-area, and how many broke the paper does not say.
+One survivor says nothing of the distribution.
 
 ## 500 um at 8 kV
 
 Four fibres, film and law of Table 1; one thing changed at a time from `examples/frdea-4.yaml`, then the
-favourable ones together. Through the membrane film, which is a preview (10 to 20 % off at the fibre tip), and
-at 8 kV has lost its tension in front of the fibre tips: it has no wrinkles, so that the column "anywhere" is that of the
-fibres' bending only. Pre-stretch: the electrode stays 3.75 mm in radius.
+favourable ones together. Through the membrane film, a preview, which has no wrinkles: the column "anywhere" is that of the fibres' bending
+only. Pre-stretch: the electrode stays 3.75 mm in radius.
 
 | changed | fibre tip (um) | anywhere (um) | 500 um over tip | true field (V/um) |
 |---|---|---|---|---|""")
@@ -257,9 +248,7 @@ way. So there are three readings of the 500 um, and the text does not decide bet
 3. compliant glue, overlap and thin fibres together, in many combinations that one number cannot tell
    apart: the fibre tip itself, downwards, growing smoothly from the first kilovolt.
 
-"The displacement at the top edge of the fibers" (4.2.1) speaks for the third, "maximal" (caption of
-Fig 10, 4.2.1) for the others. They differ below 6 kV: the paper's Fig 10 has that curve, its text has
-not.
+They differ below 6 kV: the paper's Fig 10 has that curve, its text has not.
 
 ## 0.18 N at 6 kV
 
@@ -277,30 +266,21 @@ The largest gain of force by 6 kV in this table is {gain:.1f} mN, 180 mN in the 
 `lumped` (rigid fibres, nothing in their way, eqs 18 to 20) is {lumped[-1]["force (mN)"]:.0f} mN at 6 kV, and goes with V to the power
 {math.log(lumped[-1]["force (mN)"] / lumped[1]["force (mN)"]) / math.log(2):.1f} from 3 to 6 kV, not 1.
 
-A tip that is pressed in feels less with the voltage, from either side: the field takes tension off the
-film. Only a tip that just touches from the back, where the film goes, feels more. A force that falls
-cannot be fitted to one that rises, and one that just touches is a hundred times too small. **None of the depths and sides
-computed gives the paper's force.** Its size with other pre-stretch, overlap, thickness and glue was not computed
-here. Its form does not depend on them: the field's stress goes with V^2, and as long as the film is taut so
-does, to first order, all that follows; a force that is linear in the voltage from 1 to 6 kV is in none of them.
-How the cell was zeroed, where the tip stood and from which side the paper does not say.
+A tip that is pressed in feels less with the voltage, from either side: the field takes tension off the film. Only a tip that just touches
+from the back feels more, a hundred times too little. **None of the depths and sides computed gives the paper's force**, and its form does
+not depend on the design: as long as the film is taut all that follows from the field's stress goes with V^2.
 
-**A hypothesis that fits the three numbers.** The force is linear in the voltage, the same for four and eight fibres to
-0.13 %, and 0.18 N is 73 % of the range of the cell (25 g, 0.245 N). What the film does has none of these: it goes with
-V^2, falls where the tip is pressed in, and differs by a fifth between four and eight fibres (72 and 88 mN at 2 mm,
-[paper.md](paper.md)); an electrostatic attraction of the tip goes with V^2 too. A signal that is proportional to the
-supply's command, coupled into the cell or its amplifier, is linear and knows nothing of the fibres. The test: the same
-commands with the film cut, or with the leads off the film and the tip in place. If the signal stays, it is not the film's.
-No such test is reported, so this remains a hypothesis.
+**A hypothesis that fits.** The paper's force is linear in the voltage, the same for four and eight fibres to 0.13 %, and 73 % of the range of
+the cell (25 g, 0.245 N); the film's goes with V^2 and differs by a fifth between four and eight fibres (72 and 88 mN at 2 mm,
+[paper.md](paper.md)). A signal proportional to the supply's command, coupled into the cell, would fit. Test: the same commands with the leads
+off the film.
 
 ## What to measure next
 
 In the order of what it decides for what it costs:
 
-1. **The electrode's diameter at 0 V**, through the frame, by a camera: 7.5 mm says that the pre-stretch
-   of 1.5 is there; reading 2 needs 5.3 to 5.5 mm. To 1 %, it is the pre-stretch to 1 %.
-2. **The capacitance at 0 V**, to 1 %: with the printed electrode it goes with l_pre^4/H, 24.6 pF as nominal. Together with 1 it is the film's
-   thickness (to 4 %), which sets the field of the first table.
+1. **The electrode's diameter at 0 V**, through the frame, by a camera: the pre-stretch to 1 %. 7.5 mm is 1.5; reading 2 needs 5.3 to 5.5 mm.
+2. **The capacitance at 0 V**, to 1 %: it goes with l_pre^4/H, 24.6 pF as nominal; with 1 the film's thickness to 4 %.
 3. **The height of tip and centre between 1 and 6 kV**, in steps of 0.5 kV: taut film, one state, no wrinkles. Reading 3
    gives a fibre tip that moves by {abs(together[-1]["z fibre tip (um)"]):.0f} um at 5 kV (overlap 1 mm, glue 100 um, fibres 50 um), reading 1 {abs(taut[-1]["z fibre tip (um)"]):.0f} um, reading 2 no more than that.
 4. **Force at 0 V against the tip's depth**, then with the voltage: its slope is the film's tension, and its zero
