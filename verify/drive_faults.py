@@ -215,19 +215,14 @@ end of its sequence.
     print()
     table(rows, faults)
     print("""
-The alarm is the end of the program with its exit code; that of a program that was killed is its
-death. A hung supply keeps its voltage: nothing but its own switch helps, which the message says.
-Where a supply came back after its fault, its voltage went to 0 V by what waited in its queue, or
-by the guard; these times stand in the last rows.
+The alarm is the end of the program with its exit code; that of a program that was killed is its death. A hung supply keeps its
+voltage: only its own switch helps, and the message says so.
 """)
     line, line_good = serial(max(COUNT // 5, 8))
     lies = sum(said == "at 0 V" and int(volts) > 20 for said, volts in line)
     print(f"""The same on a serial line: {len(line)} runs with an imitated SHVPS on a pseudo-terminal (slow,
 hung, lying, stuck, noise, errors, begun anew, pulled out; answers in pieces of 1 to 3 bytes too):
-"at 0 V" was said in {sum(said == "at 0 V" for said, _ in line)}, wrongly in **{lies}**. Of 179 runs of an
-earlier version three were wrong, by a reading that stood at 0 V from the start, and of 183 of the next
-one two, where a neighbour had got the name of the line that was pulled out; what tells one supply from
-another is looked at since then ([safety.md](../../lab/docs/safety.md)).
+"at 0 V" was said in {sum(said == "at 0 V" for said, _ in line)}, wrongly in **{lies}**.
 """)
     meters, meters_good = lying(max(3 * COUNT // 10, 8))
     meters_good = meters_text(meters) and meters_good
