@@ -359,11 +359,9 @@ def main():
     print("# Devices that others measured\n")
     print(f"""Made by `scripts/verify devices`; not to be edited. Each test has a design of `verify/devices`, run at the nominal values of
 its inputs and at all corners of their ranges; the band goes from the least to the largest of these values (what lies
-higher or lower between corners was not looked for). Nothing is fitted to
-the measured values below. One range was changed after a first run: the length of the strip, up to a strip of free width,
-since its size is unknown; no value moved into its band by that. Inputs are given in the source, or those of the catalogue with
-its spread, or assumed: a band over an assumed input is wide, and a measured value in it says little. So bands whose ends are
-within a factor of two are counted by themselves.
+higher or lower between corners was not searched). Nothing is fitted to the measured values; one range was changed after a first run, the length of the
+strip, and no value moved into its band by that. Inputs are given in the source, or those of the catalogue with its spread, or assumed; bands whose ends
+are within a factor of two are counted by themselves.
 
 **In the band: {sum(p['inside'] for p in found)} of {len(found)} values, of {len(DEVICES)} tests from four sources. Of the bands within a factor of two: {sum(p['inside'] for p in telling)} of {len(telling)}.**
 Two of the measured values, the frequency ratios, are known as intervals only; both intervals are in their bands.
@@ -411,17 +409,14 @@ READING = """## What these say
 * **The field's stress on a taut film** agrees where a film is compared with itself, the frequency of a square film under 5 kV over that at
   0 V: ours is 1 % above the article's formula (it has the stress of a permittivity that falls with stretch), the
   measurement is within 2.3 % of that formula.
-* **The expanding circle is out**, by a factor of two at the largest pre-stretch of the range and of five at the nominal one. The ratio of the two
-  values, 2.2, is that of the nominal film (2.1); their size is not. Electrodes that are at least as stiff in the plane as the film of
-  20 um could do that, or a field over another thickness; the abstract has neither.
-* **The strip's capacitance grows less than its stretch**, by 3 to 7 %; a film of constant permittivity cannot do that, whatever its
-  grips. The catalogue has no number for how the permittivity of this tape changes with stretch. Its value at rest would need a
-  permittivity of 6.7 at the size assumed, or another size.
-* **Acrylic discs wrinkle within the band**, at 5.4 kV and 2.3 times the area, 4.6 kV and 2.9 nominally; the pre-stretch is assumed, so this is a
-  check of the order. With carbon black the disc agrees up to 3 kV and grows ever more slowly above, where a film without
-  electrode stiffness grows ever faster: stiffness, resistance, or another film, which the notes do not say.
+* **The expanding circle is out**, by a factor of two at the largest pre-stretch of the range and of five at the nominal one; the ratio of the two values,
+  2.2, is that of the nominal film (2.1). Electrodes as stiff in the plane as the film of 20 um could do that, or a field over another thickness.
+* **The strip's capacitance grows less than its stretch**, by 3 to 7 %, which a film of constant permittivity cannot do. The catalogue does not know how the
+  permittivity of this tape changes with stretch. Its value at rest would need a permittivity of 6.7 at the size assumed.
+* **Acrylic discs wrinkle within the band**, at 5.4 kV and 2.3 times the area (nominal 4.6 kV and 2.9), with an assumed pre-stretch. With carbon black the disc
+  agrees up to 3 kV and grows ever more slowly above: stiffness, resistance, or another film.
 
-What would make more of this page is the pre-stretch of each film and the stiffness of each electrode: they make the wide bands.
+The pre-stretch of each film and the stiffness of each electrode make the wide bands.
 
 """
 main()

@@ -62,18 +62,15 @@ for stretch in 2 3 5; do
 done
 awk -F, '$2 == "fit" && (x = 100 * $10 / $6) ^ 2 > most ^ 2 { most = x } END { printf "\nThe largest is %+.1f %%.\n", most }' "$rows"
 cat <<'END'
-The residuals are not noise: at the stretch 3 the law is too stiff in the first ten seconds, at 5 too
-soft at the peak. Branches of neo-Hookean springs, whose stress goes with the stretch as their spring
-does, cannot have both; a branch whose time or spring depends on the stretch could.
+The residuals are not noise: at the stretch 3 the law is too stiff in the first ten seconds, at 5 too soft at the peak. A branch whose time or
+spring depends on the stretch could have both.
 
 ## What it foretells
 
 [vhb-predictions.csv](vhb-predictions.csv) has the stretches 1.5, 2.5, 3.5, 4 and 6, with two bands:
-the standard uncertainty of the parameters, which is that of this law and these three strips; and the
-one to be taken, +- 10 % of the stress (15 % below the stretch 2 and above 5, outside of what was
-fitted) and two standard uncertainties together. It holds what the law misses of its own data, and
-what laboratories differ by in the same test: 2 to 7 % at the peak, 15 to 23 % at the stretch 1.25. No
-prediction for "VHB 4910" deserves a narrower one.
+the standard uncertainty of the parameters; and the one to be taken, +- 10 % of the stress (15 % below the stretch 2 and above 5, outside of what was
+fitted) and two standard uncertainties together. It holds what the law misses of its own data, and what laboratories differ by in the same test: 2 to
+7 % at the peak, 15 to 23 % at the stretch 1.25.
 
 | stretch | peak | 1 s | 3 s | 10 s | 30 s | 100 s | 300 s | 1000 s |
 |---|---|---|---|---|---|---|---|---|
@@ -101,9 +98,7 @@ for rate in 0.01 0.05; do
 done
 cat <<'END'
 
-At 0.05 1/s the law is within 3 % but for the last value of unloading; at the slower rate it is 4 to
-7 % too soft as long as the strip is loaded. It was fitted to none of them: holds at one rate foretell
-cycles at others. Where the strip is nearly slack, the difference of two large numbers is left.
+At 0.05 1/s the law is within 3 % but for the last value of unloading; at the slower rate it is 4 to 7 % too soft as long as the strip is loaded.
 
 ## Equilibrium, not fitted
 
@@ -116,9 +111,8 @@ table check equilibrium | awk -F, '{ printf "| %g | %.1f | %.1f |\n", $5, $6, $8
 cat <<'END'
 
 These do not go together with the relaxations above, by no law: at the stretch 3 the strip held for
-1000 s carries 33.2 kPa and still relaxes, where the equilibrium curve has about 50 kPa. Beyond the
-stretch 5 the slow law is an extrapolation of a law without a limit of its chains, which the measured
-curve shows from about 7 on.
+1000 s carries 33.2 kPa and still relaxes, where the equilibrium curve has about 50 kPa. Beyond the stretch 5 the slow law is an extrapolation without a
+limit of its chains, which the measured curve shows from about 7 on.
 
 ## What it lacks
 
@@ -126,6 +120,4 @@ curve shows from about 7 on.
   modulus and time are known to a third only.
 * The limit of the chains: nothing above the stretch 5 was fitted.
 * Small stretches (1.25 and below), temperature, humidity, batches: not in these data.
-* Three branches are what AICc takes for 24 values. `branches: 4` follows them a little better, and
-  says itself that the constants of its fast branches are open.
 END
