@@ -122,25 +122,38 @@ static void test_other_files(void **state)
   tear_down_result();
 }
 
-/* A design with plies, beside a disc. */
+/* The same disc made of plies, beside itself. */
 static void test_other_form(void **state)
 {
   (void)state;
   char text[4000];
   FILE *file = fopen(in_folder("layers.yaml"), "w");
   assert_non_null(file);
-  fputs("dea: 1\nshapes: [{name: film, kind: circle, radius: 9 mm}]\n"
-        "plies: [{name: film, shape: film, material: film, thickness: 50 um}]\n"
-        "supports: [{edge: film}]\n" FILM_MATERIAL,
+  fputs("dea: 1\nshapes: [{name: film, kind: circle, radius: 15 mm},"
+        " {name: active, kind: circle, radius: 3.75 mm}]\n"
+        "plies: [{name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.5}]\n"
+        "electrodes: [{ply: film, side: bottom, shape: active, channel: ground},"
+        " {ply: film, side: top, shape: active, channel: drive}]\n"
+        "supports: [{edge: film}]\n" FILM_MATERIAL VOLTAGES,
         file);
   fclose(file);
   snprintf(text, sizeof text, "%s",
-           GOOD_DESIGN VOLTAGES "  compare: [{name: itself}, {name: layers, file: layers.yaml}]\n");
+           GOOD_DESIGN VOLTAGES "  compare: [{name: itself, set: {fibres: null}},"
+                                " {name: layers, file: layers.yaml}]\n");
   assert_int_equal(
       dea_design_read_memory(ctx, in_folder("first.yaml"), text, strlen(text), NULL, 0, &design),
-      DEA_E_DESIGN);
-  assert_non_null(find_error(ctx, "a design with 'plies' is set beside no other in one run"));
-  dea_finding_clear(ctx);
+      DEA_OK);
+  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("axisymmetric"), only, 1, result), DEA_OK);
+  assert_int_equal(result->variant_count, 3);
+  const struct dea_curve *itself = &result->variants[1].curve, *layers = &result->variants[2].curve;
+  assert_true(itself->count > 1 && layers->count == itself->count);
+  for (size_t i = 0; i < itself->count; i++) {
+    assert_close(layers->points[i].electrode_stretch, itself->points[i].electrode_stretch, 1e-12,
+                 0);
+  }
+  tear_down_result();
 }
 
 static void test_errors_have_their_places(void **state)

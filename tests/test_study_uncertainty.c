@@ -119,16 +119,17 @@ static void test_correlations_count(void **state)
   const struct dea_result_table *table =
       dea_result_find_table(result, "lumped", "uncertainty", "effects");
   assert_non_null(table);
-  assert_int_equal(table->row_count, 4);
+  assert_true(table->row_count >= 4 && table->row_count % 4 == 0); // four of each quantity
+  assert_string_equal(dea_result_table_quantity(table, 3)->key, "electrode_stretch");
   double sum = 0;
   for (size_t j = 0; j < 3; j++) {
-    sum += dea_result_table_number(table, j, "electrode_stretch", 0) * (j == 1 ? -1 : 1);
+    sum += dea_result_table_number(table, j, "change", 0) * (j == 1 ? -1 : 1);
   }
   assert_close(fabs(sum), together, 1e-9, 0);
-  assert_close(dea_result_table_number(table, 3, "electrode_stretch", 0), together, 1e-12, 0);
+  assert_close(dea_result_table_number(table, 3, "change", 0), together, 1e-12, 0);
   double squares = 0;
   for (size_t j = 0; j < 3; j++) {
-    squares += pow(dea_result_table_number(table, j, "electrode_stretch", 0), 2);
+    squares += pow(dea_result_table_number(table, j, "change", 0), 2);
   }
   tear_down_result();
   set_up_result(law_design("[0, 0, 0]"));

@@ -68,22 +68,6 @@ static dea_status check_name(struct dea_context *ctx, const struct dea_design *d
   return DEA_OK;
 }
 
-/* Only discs are set beside each other. */
-static dea_status check_form(struct dea_context *ctx, const struct dea_design *design, size_t i)
-{
-  const struct dea_design_variant *variant = &design->compute.compare[i];
-  const bool other = variant->design != NULL && variant->design->parts != NULL;
-  if (design->parts == NULL ? !other : i > 0) {
-    return DEA_OK;
-  }
-  const struct dea_location *own =
-      variant->file.origin != DEA_ABSENT ? &variant->file.location : &variant->name.location;
-  const struct dea_design *general = other ? variant->design : design;
-  return dea_finding_add(ctx, DEA_ERROR, own->line > 0 ? *own : general->parts->place,
-                         "a design with 'plies' is set beside no other in one run; run each, and "
-                         "compare their folders: dea compare RUN RUN");
-}
-
 dea_status dea_design_read_variants(struct dea_context *ctx, const struct dea_design_source *source,
                                     struct dea_design *design)
 {
@@ -100,7 +84,6 @@ dea_status dea_design_read_variants(struct dea_context *ctx, const struct dea_de
     if (status != DEA_OK && status != DEA_E_DESIGN) {
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
     }
-    DEA_TRY(ctx, check_form(ctx, design, i));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {

@@ -59,6 +59,27 @@ static void put_numbers(struct h5 *h, hid_t group, const struct dea_result_table
   dea_free(h->ctx, values);
 }
 
+enum { COLUMN_NAME_SIZE = 32 };
+
+/* Name of the attribute with the key of a column of monitors, whose number is of this context. */
+static void name_column(double number, char out[COLUMN_NAME_SIZE])
+{
+  snprintf(out, COLUMN_NAME_SIZE, "column_%.0f", number);
+}
+
+/* Keys of the columns of monitors that rows are of. */
+static void put_keys(struct h5 *h, hid_t set, const struct dea_result_table *table, size_t column)
+{
+  char name[COLUMN_NAME_SIZE];
+  for (size_t row = 0; row < table->row_count; row++) {
+    const double number = dea_result_table_cell(table, row, column)->number;
+    name_column(number, name);
+    if (number >= DEA_LOAD_POINT_COLUMNS && H5Aexists(set, name) <= 0) {
+      dea_h5_put_text(h, set, name, dea_column_at(h->ctx, (int)number)->key);
+    }
+  }
+}
+
 static void put_column(struct h5 *h, hid_t group, const struct dea_result_table *table,
                        size_t column)
 {
@@ -77,6 +98,9 @@ static void put_column(struct h5 *h, hid_t group, const struct dea_result_table 
   dea_h5_put_text(h, set, "title", or_empty(c->title));
   dea_h5_put_text(h, set, "display_unit", c->display_unit != NULL ? c->display_unit : "1");
   dea_h5_put_real(h, set, "display_factor", c->factor > 0 ? c->factor : 1);
+  if (c->kind == DEA_CELL_QUANTITY) {
+    put_keys(h, set, table, column);
+  }
   dea_h5_close(set);
 }
 
@@ -185,6 +209,23 @@ static void get_values(struct h5 *h, hid_t group, const struct dea_result_table 
   dea_free(h->ctx, bytes);
 }
 
+/* Numbers of monitors' columns in this context, in place of those of who wrote them. */
+static void find_quantities(struct h5 *h, hid_t group, const struct dea_result_table *table,
+                            size_t column)
+{
+  hid_t set = dea_h5_array_open(h, group, table->type.columns[column].key);
+  for (size_t row = 0; row < table->row_count && h->status == DEA_OK; row++) {
+    struct dea_cell *cell = (struct dea_cell *)dea_result_table_cell(table, row, column);
+    char name[COLUMN_NAME_SIZE], key[DEA_ERROR_KEY_SIZE];
+    name_column(cell->number, name);
+    if (cell->number >= DEA_LOAD_POINT_COLUMNS) {
+      dea_h5_get_text(h, set, name, key, sizeof key);
+      cell->number = h->status == DEA_OK ? dea_column_find(h->ctx, key) : -1;
+    }
+  }
+  dea_h5_close(set);
+}
+
 /* A table of `count` rows without values. */
 static struct dea_result_table *add_table(struct h5 *h, hid_t group, const char *model,
                                           struct dea_result_column *columns, size_t column_count,
@@ -222,7 +263,7 @@ static void check_quantities(struct h5 *h, const struct dea_result *result,
     for (size_t c = 0; c < table->type.column_count && h->status == DEA_OK; c++) {
       enum dea_cell_kind kind = table->type.columns[c].kind;
       double value = dea_result_table_cell(table, row, c)->number;
-      double end = kind == DEA_CELL_QUANTITY ? DEA_LOAD_POINT_COLUMNS
+      double end = kind == DEA_CELL_QUANTITY ? dea_column_count(h->ctx)
                    : kind == DEA_CELL_POINTS ? (double)result->variant_count
                                              : INFINITY;
       bool index = kind == DEA_CELL_QUANTITY || kind == DEA_CELL_POINTS;
@@ -266,6 +307,9 @@ void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
   }
   for (size_t c = 0; c < column_count && h->status == DEA_OK; c++) {
     get_values(h, group, table, c);
+    if (columns[c].kind == DEA_CELL_QUANTITY) {
+      find_quantities(h, group, table, c);
+    }
   }
   check_quantities(h, result, table);
 }

@@ -1,5 +1,7 @@
 #include "result/convergence.h"
 
+#include "result/observation.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -7,6 +9,7 @@ static const double order_most = 2, order_least = 0.5; // that an estimate is ma
 static const double without = 3;    // factor on differences where no order was observed
 static const double none = 1e-6;    // of the value: a change that is none
 static const double nothing = 1e-6; // of the largest displacement: one that is none
+static const double aside = 1e-3;   // of the largest motion: one that a free mesh may make of none
 
 /* Solves (h0^p - h1^p) / (h1^p - h2^p) = ratio for p > 0 by bisection; h0 > h1 > h2. The left side
  * rises with p from its limit at 0, ln(h0/h1) / ln(h1/h2). NAN when ratio is not above that. */
@@ -74,11 +77,25 @@ enum dea_order_kind dea_richardson(const double *refinement, const double *value
 
 // Rows -------------------------------------------------------------------------------------------
 
-/* Quantities that are looked at: displacements at the probes first. */
+/* Quantities that are looked at beside monitors: displacements at the probes first. */
 static const char *const keys[] = {
     "centre_z_m",         "fibre_tip_z_m", "electrode_edge_u_m", "min_tension_N_per_m",
     "true_field_V_per_m", "energy_J",      "capacitance_F"};
-enum { PROBES = 3, KEYS = sizeof keys / sizeof keys[0] };
+enum { PROBES = 3, KEYS = sizeof keys / sizeof keys[0], HEADLINES_MAX = 32 };
+
+/* The columns of the rows: probes, monitors, and others that meshes are not judged by. */
+struct looked {
+  int columns[KEYS + HEADLINES_MAX];
+  size_t judged, count;
+};
+
+/* What a stretch of a monitor is without motion. */
+static double rest_of(const struct dea_column *column)
+{
+  const bool stretch =
+      dea_observed_is(column, "stretch") || dea_observed_is(column, "area_stretch");
+  return stretch ? 1 : 0;
+}
 
 /* The variant's point at a voltage, or NULL. */
 static const struct dea_load_point *point_at(const struct dea_variant *variant, double voltage_V)
@@ -97,42 +114,59 @@ static double value_at(const struct dea_variant *variant, double voltage_V, int 
   return point != NULL ? dea_point_get(point, column) : NAN;
 }
 
-/* Largest displacement of all meshes and probes at a voltage. */
-static double largest_displacement(const struct dea_convergence *c, double voltage_V)
+/* Largest size of a column's value beyond rest on all meshes at a voltage. */
+static double largest(const struct dea_convergence *c, double voltage_V, int column, double rest)
 {
-  double largest = 0;
+  double most = 0;
   for (size_t m = 0; m < c->mesh_count; m++) {
-    for (int k = 0; k < PROBES; k++) {
-      double value = value_at(c->meshes[m], voltage_V, dea_point_column_find(keys[k]));
-      largest = fmax(largest, fabs(value)); // NAN counts as nothing
+    most = fmax(most, fabs(value_at(c->meshes[m], voltage_V, column) - rest)); // not of NAN
+  }
+  return most;
+}
+
+/* What is only noise of a motion: a share of the largest of its unit. */
+static double noise(const struct dea_context *ctx, const struct dea_convergence *c,
+                    const struct looked *looked, double voltage_V,
+                    const struct dea_convergence_row *row)
+{
+  double most = 0;
+  for (size_t k = 0; k < looked->judged; k++) {
+    const struct dea_column *other = dea_column_at(ctx, looked->columns[k]);
+    if (strcmp(other->si_unit, row->shown->si_unit) == 0) {
+      most = fmax(most, largest(c, voltage_V, looked->columns[k], rest_of(other)));
     }
   }
-  return largest;
+  return (row->column < DEA_LOAD_POINT_COLUMNS ? nothing : aside) * most;
 }
 
 /* Fills a row; false when no mesh has a value, or none but noise. */
-static bool fill_row(const struct dea_convergence *c, double voltage_V, int k,
+static bool fill_row(const struct dea_context *ctx, const struct dea_convergence *c,
+                     const struct looked *looked, double voltage_V, size_t k,
                      struct dea_convergence_row *row)
 {
   double refinement[DEA_CONVERGENCE_MESHES_MAX], values[DEA_CONVERGENCE_MESHES_MAX];
-  double errors[DEA_CONVERGENCE_MESHES_MAX], largest = 0;
+  double errors[DEA_CONVERGENCE_MESHES_MAX];
   size_t where[DEA_CONVERGENCE_MESHES_MAX], count = 0;
-  *row = (struct dea_convergence_row){.column = dea_point_column_find(keys[k]),
+  *row = (struct dea_convergence_row){.column = looked->columns[k],
+                                      .shown = dea_column_at(ctx, looked->columns[k]),
+                                      .judged = k < looked->judged,
                                       .voltage_V = voltage_V};
+  const double rest = rest_of(row->shown);
   for (size_t m = 0; m < c->mesh_count; m++) {
     row->values[m] = value_at(c->meshes[m], voltage_V, row->column);
     row->errors[m] = NAN;
     if (!isnan(row->values[m])) {
-      largest = fmax(largest, fabs(row->values[m]));
       refinement[count] = c->meshes[m]->refinement;
-      values[count] = row->values[m];
+      values[count] = row->values[m] - rest;
       where[count++] = m;
     }
   }
-  if (!(largest > (k < PROBES ? nothing * largest_displacement(c, voltage_V) : 0))) {
+  if (!(largest(c, voltage_V, row->column, rest) >
+        (row->judged ? noise(ctx, c, looked, voltage_V, row) : 0))) {
     return false;
   }
   row->kind = dea_richardson(refinement, values, count, &row->order, &row->extrapolated, errors);
+  row->extrapolated += rest;
   for (size_t i = 0; i < count; i++) {
     row->errors[where[i]] = errors[i];
   }
@@ -147,6 +181,21 @@ static const struct dea_curve *longest(const struct dea_convergence *c)
     best = c->meshes[m]->curve.count > best->count ? &c->meshes[m]->curve : best;
   }
   return best;
+}
+
+static struct looked look(const struct dea_context *ctx, const struct dea_convergence *c)
+{
+  struct looked out = {.judged = 0};
+  const struct dea_curve *finest = &c->meshes[c->mesh_count - 1]->curve;
+  for (int k = 0; k < PROBES; k++) {
+    out.columns[k] = dea_point_column_find(keys[k]);
+  }
+  out.judged = PROBES + dea_curve_headlines(ctx, finest, out.columns + PROBES, HEADLINES_MAX);
+  out.count = out.judged;
+  for (int k = PROBES; k < KEYS; k++) {
+    out.columns[out.count++] = dea_point_column_find(keys[k]);
+  }
+  return out;
 }
 
 dea_status dea_convergence_create(struct dea_context *ctx, const struct dea_result *result,
@@ -167,17 +216,18 @@ dea_status dea_convergence_create(struct dea_context *ctx, const struct dea_resu
     return DEA_OK;
   }
   const struct dea_curve *curve = longest(&found);
+  const struct looked looked = look(ctx, &found);
   struct dea_convergence *made = dea_alloc(ctx, 1, sizeof *made);
-  found.rows = dea_alloc(ctx, KEYS * curve->count, sizeof *found.rows);
+  found.rows = dea_alloc(ctx, looked.count * curve->count, sizeof *found.rows);
   if (made == NULL || found.rows == NULL) {
     dea_free(ctx, made);
     dea_free(ctx, found.rows);
     return DEA_E_MEMORY;
   }
   for (size_t i = 0; i < curve->count; i++) {
-    for (int k = 0; k < KEYS; k++) {
-      found.row_count +=
-          fill_row(&found, curve->points[i].voltage_V, k, &found.rows[found.row_count]);
+    for (size_t k = 0; k < looked.count; k++) {
+      found.row_count += fill_row(ctx, &found, &looked, curve->points[i].voltage_V, k,
+                                  &found.rows[found.row_count]);
     }
   }
   *made = found;
@@ -195,22 +245,12 @@ void dea_convergence_destroy(struct dea_context *ctx, struct dea_convergence *co
 
 // What follows -----------------------------------------------------------------------------------
 
-bool dea_convergence_is_probe(const struct dea_convergence_row *row)
-{
-  for (int k = 0; k < PROBES; k++) {
-    if (row->column == dea_point_column_find(keys[k])) {
-      return true;
-    }
-  }
-  return false;
-}
-
 size_t dea_convergence_enough(const struct dea_convergence *convergence, double voltage_V)
 {
   size_t enough = 0, probes = 0;
   for (size_t i = 0; i < convergence->row_count; i++) {
     const struct dea_convergence_row *row = &convergence->rows[i];
-    if (row->voltage_V != voltage_V || !dea_convergence_is_probe(row)) {
+    if (row->voltage_V != voltage_V || !row->judged) {
       continue;
     }
     probes++;
@@ -240,10 +280,8 @@ static void add_doubts(const struct dea_convergence *c, double voltage_V, struct
   const char *before = "; ";
   for (size_t i = 0; i < c->row_count; i++) {
     const struct dea_convergence_row *row = &c->rows[i];
-    if (row->voltage_V == voltage_V && dea_convergence_is_probe(row) &&
-        dea_order_text(row->kind)[0] != '\0') {
-      dea_text_add(out, "%s%s: %s", before, dea_point_columns[row->column].header,
-                   dea_order_text(row->kind));
+    if (row->voltage_V == voltage_V && row->judged && dea_order_text(row->kind)[0] != '\0') {
+      dea_text_add(out, "%s%s: %s", before, row->shown->header, dea_order_text(row->kind));
       before = ", ";
     }
   }
@@ -254,7 +292,7 @@ static double worst_error(const struct dea_convergence *c, double voltage_V, siz
 {
   double worst = 0;
   for (size_t i = 0; i < c->row_count; i++) {
-    if (c->rows[i].voltage_V == voltage_V && dea_convergence_is_probe(&c->rows[i])) {
+    if (c->rows[i].voltage_V == voltage_V && c->rows[i].judged) {
       worst = fmax(worst, c->rows[i].errors[mesh]);
     }
   }
@@ -282,7 +320,7 @@ void dea_convergence_verdict(const struct dea_convergence *convergence, struct d
   double last = NAN;
   for (size_t i = 0; i < convergence->row_count; i++) {
     double voltage_V = convergence->rows[i].voltage_V;
-    if (voltage_V != last && dea_convergence_is_probe(&convergence->rows[i])) {
+    if (voltage_V != last && convergence->rows[i].judged) {
       add_sentence(convergence, voltage_V, out);
       last = voltage_V;
     }

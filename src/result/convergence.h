@@ -27,7 +27,9 @@ enum dea_order_kind dea_richardson(const double *refinement, const double *value
 /* One quantity at one voltage on all meshes; arrays in their order, NAN where a mesh has no value.
  */
 struct dea_convergence_row {
-  int column; // of dea_point_columns
+  int column;                     // of load points
+  const struct dea_column *shown; // the same; lent until the context dies
+  bool judged;                    // by such a motion a mesh is judged
   double voltage_V;
   double values[DEA_CONVERGENCE_MESHES_MAX], errors[DEA_CONVERGENCE_MESHES_MAX];
   enum dea_order_kind kind;
@@ -43,16 +45,16 @@ struct dea_convergence {
   struct dea_convergence_row *rows; // voltage by voltage; owned
 };
 
-/* Rows of all quantities that the model has. DEA_E_ARGUMENT for more meshes than there is room for.
- * *out: owned by the caller; NULL without failure when the result has no such study. */
+/* Rows of all quantities that the model has, of monitors of their headlines (dea_curve_headlines)
+ * on the finest mesh; an error of a stretch is over what it is beyond 1. DEA_E_ARGUMENT for more
+ * meshes than there is room for. *out: owned by the caller; NULL without failure when the result
+ * has no such study. */
 dea_status dea_convergence_create(struct dea_context *ctx, const struct dea_result *result,
                                   const char *model, struct dea_convergence **out);
 void dea_convergence_destroy(struct dea_context *ctx, struct dea_convergence *convergence);
 
-/* Whether the row is one of a displacement at a probe: by these a mesh is judged. */
-bool dea_convergence_is_probe(const struct dea_convergence_row *row);
-/* The coarsest mesh that is, with all finer ones, within the tolerance for all displacements at a
- * voltage; mesh_count when there is none. */
+/* The coarsest mesh that is, with all finer ones, within the tolerance for all that meshes are
+ * judged by at a voltage; mesh_count when there is none. */
 size_t dea_convergence_enough(const struct dea_convergence *convergence, double voltage_V);
 /* "not monotone: no order": what is wrong with a sequence, "" for an observed order. */
 const char *dea_order_text(enum dea_order_kind kind);

@@ -42,7 +42,7 @@ double dea_result_table_number(const struct dea_result_table *table, size_t row,
 dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_result_table_type *type,
                                  const char *model, size_t width, struct dea_result_table *out)
 {
-  *out = (struct dea_result_table){.type = *type, .quantity = -1, .width = width};
+  *out = (struct dea_result_table){.ctx = ctx, .type = *type, .quantity = -1, .width = width};
   if (type->column_count > DEA_RESULT_TABLE_COLUMNS_MAX || width > DEA_RESULT_TABLE_WIDTH_MAX) {
     return dea_fail(ctx, DEA_E_ARGUMENT,
                     "a table '%.60s' with more than %d columns or lists of "
@@ -116,7 +116,7 @@ const struct dea_column *dea_result_table_quantity(const struct dea_result_table
 {
   for (size_t c = 0; c < table->type.column_count; c++) {
     if (table->type.columns[c].kind == DEA_CELL_QUANTITY) {
-      return &dea_point_columns[(int)dea_result_table_cell(table, row, c)->number];
+      return dea_column_at(table->ctx, (int)dea_result_table_cell(table, row, c)->number);
     }
   }
   return table->quantity >= 0 ? &dea_point_columns[table->quantity] : NULL;

@@ -14,7 +14,7 @@ enum dea_cell_kind {
   DEA_CELL_COUNT,    // a whole number
   DEA_CELL_FLAG,     // 1: yes, 0: no
   DEA_CELL_TEXT,     //
-  DEA_CELL_QUANTITY, // quantity of load points that the row is of: index in dea_point_columns
+  DEA_CELL_QUANTITY, // quantity of load points that the row is of: number of its column
   DEA_CELL_VALUE,    // a number in the SI unit of the row's quantity; NAN: none
   DEA_CELL_POINTS,   // index of a variant of the result: JSON lists its points
 };
@@ -67,6 +67,7 @@ struct dea_cell {
 };
 
 struct dea_result_table {
+  const struct dea_context *ctx; // whose columns its quantities are
   char model[DEA_NAME_SIZE];
   struct dea_result_table_type type;     // its names are static, or interned in the context
   struct dea_result_column *own_columns; // owned: of a table that was read; else NULL

@@ -1,6 +1,7 @@
 /* Study "compare-design": the design, and others that it names, through the voltages of each. */
 #include "base/file.h"
 #include "device/device.h"
+#include "result/observation.h"
 #include "study/study.h"
 #include "study/variant.h"
 
@@ -163,6 +164,26 @@ static const struct dea_result_table_type design_table = {.study = study_name,
                                                           .columns = design_columns,
                                                           .column_count = COUNT(design_columns)};
 
+static const struct dea_result_column monitor_columns[] = {
+    {.key = "name", .kind = DEA_CELL_TEXT, .title = "design", .meaning = "name of the design"},
+    {.key = "quantity",
+     .kind = DEA_CELL_QUANTITY,
+     .title = "quantity",
+     .meaning = "that a monitor shows most"},
+    {.key = "value",
+     .kind = DEA_CELL_VALUE,
+     .title = "value",
+     .meaning = "at the design's last voltage"},
+};
+static const struct dea_result_table_type monitor_table = {.study = study_name,
+                                                           .name = "monitors",
+                                                           .title =
+                                                               "monitors at their last voltage",
+                                                           .where = DEA_IN_SCREEN, // else of points
+                                                           .columns = monitor_columns,
+                                                           .column_count = COUNT(monitor_columns)};
+enum { HEADLINES_MAX = 16 };
+
 /* What is only noise is 0. */
 static double shown_z(double z_m)
 {
@@ -197,6 +218,22 @@ static dea_status put_design(struct dea_context *ctx, const struct dea_variant *
   return dea_result_table_add_row(ctx, table, row);
 }
 
+static dea_status put_monitors(struct dea_context *ctx, const char *model,
+                               const struct dea_variant *v, struct dea_result *result)
+{
+  int columns[HEADLINES_MAX];
+  const size_t count = dea_curve_headlines(ctx, &v->curve, columns, HEADLINES_MAX);
+  struct dea_result_table *table;
+  for (size_t k = 0; k < count; k++) {
+    const double last = dea_point_get(&v->curve.points[v->curve.count - 1], columns[k]);
+    const struct dea_result_table_value row[] = {
+        {.text = v->name}, {.number = columns[k]}, {.number = last}};
+    DEA_TRY(ctx, dea_result_get_table(ctx, result, &monitor_table, model, &table));
+    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+  }
+  return DEA_OK;
+}
+
 static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
 {
   struct dea_result_table *table = NULL;
@@ -206,6 +243,11 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
         DEA_TRY(ctx, dea_result_add_table(ctx, result, &design_table, model, 0, &table));
       }
       DEA_TRY(ctx, put_design(ctx, &result->variants[i], i, table));
+    }
+  }
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (dea_variant_is(&result->variants[i], model, study_name)) {
+      DEA_TRY(ctx, put_monitors(ctx, model, &result->variants[i], result));
     }
   }
   return DEA_OK;
@@ -378,12 +420,38 @@ static bool moves(const struct shown list[], size_t count, int column)
   return false;
 }
 
+/* A panel a column, of what the monitors of a curve show most. */
+static dea_status show_monitors(struct dea_context *ctx, const struct shown list[], size_t count,
+                                const struct dea_curve *curve, struct dea_plot *plot)
+{
+  int columns[2];
+  plot->panel_count = dea_curve_headlines(ctx, curve, columns, 2);
+  for (size_t p = 0; p < plot->panel_count; p++) {
+    const struct dea_column *column = dea_column_at(ctx, columns[p]);
+    struct dea_panel *panel = &plot->panels[p];
+    DEA_TRY(ctx, add_shown(ctx, panel, list, count,
+                           &(struct quantity){columns[p], column->factor, 0}, false));
+    dea_figure_label(column, panel->y_label, DEA_LABEL_SIZE);
+    dea_panel_voltage_axis(panel);
+  }
+  plot->panel_count = plot->panel_count > 0 ? plot->panel_count : 1;
+  return plot->panels[0].series_count > 0 ? add_key(ctx, &plot->panels[0], list, count, false)
+                                          : DEA_OK;
+}
+
 static dea_status build_designs(struct dea_context *ctx, const struct dea_result *result,
                                 struct dea_plot *plot)
 {
   struct shown list[SHOWN_MAX];
   struct dea_panel *panels = plot->panels;
   size_t count = find_shown(result, false, list);
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_curve *curve = &list[i].variant->curve;
+    int column;
+    if (dea_curve_headlines(ctx, curve, &column, 1) > 0) {
+      return show_monitors(ctx, list, count, curve, plot);
+    }
+  }
   int z = dea_point_column_find("centre_z_m"), stretch = dea_point_column_find("electrode_stretch");
   plot->panel_count = moves(list, count, z) ? 2 : 1;
   struct dea_panel *last = &panels[plot->panel_count - 1];
@@ -526,6 +594,7 @@ static bool asked(const struct dea_design *design)
 const struct dea_study dea_study_compare_design = {
     .name = study_name,
     .asked = asked,
+    .any_layout = true,
     .needs = "more design files on the command line, or compute.compare",
     .run = run,
     .tables = tables,

@@ -299,7 +299,7 @@ static dea_status put_errors(struct dea_context *ctx, const struct dea_convergen
     const struct dea_variant *mesh = c->meshes[i % c->mesh_count];
     const struct dea_result_table_value row[] = {
         {.number = r->column},
-        {.text = dea_point_columns[r->column].display_unit},
+        {.text = r->shown->display_unit},
         {.number = r->voltage_V},
         {.number = mesh->refinement},
         {.number = (double)mesh->size.unknowns},
@@ -365,7 +365,7 @@ static dea_status add_errors(struct dea_context *ctx, struct dea_panel *panel,
 
 static bool is_probe_at(const struct dea_convergence *c, size_t i, double voltage_V)
 {
-  return c->rows[i].voltage_V == voltage_V && dea_convergence_is_probe(&c->rows[i]);
+  return c->rows[i].voltage_V == voltage_V && c->rows[i].judged;
 }
 
 /* Voltage of the upper panel: the last at which every displacement has an order, else the last. */
@@ -394,8 +394,8 @@ static dea_status fill_upper(struct dea_context *ctx, const struct dea_convergen
   for (size_t i = 0; i < c->row_count; i++) {
     const struct dea_convergence_row *row = &c->rows[i];
     if (is_probe_at(c, i, voltage_V)) {
-      char title[DEA_LABEL_SIZE];
-      const char *header = dea_point_columns[row->column].header;
+      char title[DEA_LABEL_SIZE], header[DEA_LABEL_SIZE / 2];
+      dea_label_escape(row->shown->header, header, sizeof header);
       if (row->kind == DEA_ORDER_OBSERVED) {
         snprintf(title, sizeof title, "%s, order %.1f", header, row->order);
       } else {
@@ -415,7 +415,7 @@ static dea_status fill_lower(struct dea_context *ctx, const struct dea_convergen
   double last = NAN;
   for (size_t i = 0; i < c->row_count; i++) {
     double voltage_V = c->rows[i].voltage_V, worst[DEA_CONVERGENCE_MESHES_MAX] = {0};
-    if (voltage_V == last || !dea_convergence_is_probe(&c->rows[i])) {
+    if (voltage_V == last || !c->rows[i].judged) {
       continue;
     }
     for (size_t k = i; k < c->row_count; k++) {
@@ -509,6 +509,7 @@ const struct dea_study dea_study_convergence = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
+    .any_layout = true,
     .ability = "mesh to refine",
     .able = able,
     .run = run,

@@ -216,8 +216,8 @@ dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_l
   way.line.voltages_V = asked->voltages_V;
   way.line.count = rising(asked->voltages_V, asked->count);
   if (asked->tolerance <= 0 || asked->pressed == NULL || way.line.count <= 2 * FIRST_GAPS) {
-    return dea_study_take_points(ctx, asked->type, asked->model, asked->voltages_V, asked->count,
-                                 curve);
+    return dea_study_take_points(ctx, asked->type, asked->model, NULL, asked->voltages_V,
+                                 asked->count, curve);
   }
   dea_status status = make_room(&way);
   if (status == DEA_OK) {

@@ -1,4 +1,5 @@
 /* What studies share: going through voltages with a model. */
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <stdio.h>
@@ -41,8 +42,8 @@ size_t dea_study_stops(const struct dea_design *design, const struct dea_quantit
 }
 
 dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
-                                 struct dea_model *model, const double *voltages_V, size_t count,
-                                 struct dea_curve *curve)
+                                 struct dea_model *model, const struct dea_device *device,
+                                 const double *voltages_V, size_t count, struct dea_curve *curve)
 {
   for (size_t i = 0; i < count; i++) {
     struct dea_load_point point;
@@ -51,7 +52,7 @@ dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model
                       1e-3 * voltages_V[i], curve->count);
     }
     DEA_TRY(ctx, type->solve(ctx, model, voltages_V[i], &point));
-    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
+    DEA_TRY(ctx, dea_study_add_point(ctx, type, model, device, &point, curve));
   }
   return DEA_OK;
 }

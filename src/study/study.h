@@ -60,11 +60,12 @@ dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *desi
 bool dea_study_asked(const struct dea_design *design, const char *name);
 /* Highest voltage that the result's curves have reached, or without any that of its design [V]. */
 double dea_study_highest_V(const struct dea_result *result);
-/* Solves at voltages [count] in their order and adds the points to a curve. DEA_E_INTERRUPTED when
+/* Solves at voltages [count] in their order and adds the points to a curve, with what the device's
+ * monitors show. DEA_E_INTERRUPTED when
  * the run is ended on the way. */
 dea_status dea_study_take_points(struct dea_context *ctx, const struct dea_model_type *type,
-                                 struct dea_model *model, const double *voltages_V, size_t count,
-                                 struct dea_curve *curve);
+                                 struct dea_model *model, const struct dea_device *device,
+                                 const double *voltages_V, size_t count, struct dea_curve *curve);
 /* The field of voltages that a study stops at, in members `voltages_V` and `voltage_count` of its
  * `struct settings`. */
 #define DEA_STUDY_STOPS_FIELD(absent, what, shown)                                                 \

@@ -16,6 +16,7 @@
 #include "base/schema.h"
 #include "base/yaml_write.h"
 #include "calibrate/fit_head.h"
+#include "result/observation.h"
 #include "study/material_numbers.h"
 #include "study/rerun.h"
 
@@ -35,7 +36,8 @@ enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 enum {
   GIVEN_MAX = DEA_DEVICE_PARAMS_MAX,
-  PARAMS_MAX = GIVEN_MAX + DEA_LAW_PARAM_MAX,
+  PARAMS_MAX = GIVEN_MAX + 4 * DEA_LAW_PARAM_MAX, // laws of several films
+  TIES_MAX = 2 * DEA_DEVICE_TIES_MAX,             // of other plies of the same material
   PAIRS_MAX = GIVEN_MAX * (GIVEN_MAX - 1) / 2,
 };
 
@@ -72,8 +74,8 @@ static const struct dea_field fields[] = {
      .list_max = GIVEN_MAX,
      .element_size = sizeof(struct given),
      .count_offset = AT(parameter_count),
-     .absent_text = "those of the film's law",
-     .doc = "what is uncertain, beside the parameters of the film's law whose uncertainty its "
+     .absent_text = "those of the films' laws",
+     .doc = "what is uncertain, beside the parameters of the films' laws whose uncertainty their "
             "material gives",
      .example = "[{name: film.thickness, std: 2 um}]"},
     DEA_NUMBER_ROW("correlations", AT(correlations), "1", "[-0.3]",
@@ -118,6 +120,7 @@ struct work {
   char std_text[PARAMS_MAX][40]; // as written, or in SI
   double correlation[PARAMS_MAX][PARAMS_MAX];
   size_t count;
+  struct dea_device_param ties[PARAMS_MAX][TIES_MAX];
   struct dea_result *plus[PARAMS_MAX], *minus[PARAMS_MAX]; // NULL: no answer there
   double step[PARAMS_MAX];
 };
@@ -147,48 +150,96 @@ static dea_status add_given(struct work *w, const struct given *given, bool *goo
   return DEA_OK;
 }
 
-/* Whether it is parameter i of the film's law. */
-static bool is_of_law(const struct dea_device_param *param, size_t i)
+/* Parameters of laws that the section does not name, while they are gathered. */
+struct laws {
+  struct work *w;
+  size_t first;          // of them in w
+  size_t of[PARAMS_MAX]; // number in the law, of each of them
+  bool full;
+};
+
+static bool is_number(const struct dea_device_param *param,
+                      const struct dea_material_number *number)
 {
-  return param->kind == DEA_DEVICE_MATERIAL && param->material == DEA_OF_FILM &&
-         param->offset == offsetof(struct dea_material, param) + i * sizeof(double);
+  return param->kind == DEA_DEVICE_MATERIAL && param->material == number->material &&
+         param->offset == number->offset;
 }
 
-/* The parameters of the film's law that the section does not name. */
-static void add_law(struct work *w)
+static const struct dea_material *material_of(const struct work *w, size_t j)
 {
-  const struct dea_material *film = &w->result->device->film;
-  size_t of[DEA_LAW_PARAM_MAX], first = w->count;
-  for (size_t i = 0; film->law != NULL && i < film->law->param_count; i++) {
-    bool named = false;
-    for (size_t j = 0; j < first; j++) {
-      named = named || is_of_law(&w->params[j], i);
-    }
-    if (named || !(film->param_std[i] > 0)) {
-      continue;
-    }
-    struct dea_device_param *param = &w->params[w->count];
-    *param = (struct dea_device_param){.kind = DEA_DEVICE_MATERIAL,
-                                       .state = "",
-                                       .material = DEA_OF_FILM,
-                                       .offset = offsetof(struct dea_material, param) +
-                                                 i * sizeof(double),
-                                       .designed = film->param[i]};
-    param->param.unit = film->law->params[i].unit;
-    snprintf(param->param.name, sizeof param->param.name, "film.law.%.30s",
-             film->law->params[i].key);
-    const bool bare = strcmp(param->param.unit, "1") == 0;
-    snprintf(w->std_text[w->count], sizeof w->std_text[0], "%.3g%s%.20s", film->param_std[i],
-             bare ? "" : " ", bare ? "" : param->param.unit);
-    of[w->count - first] = i;
-    w->value[w->count] = film->param[i];
-    w->std[w->count++] = film->param_std[i];
-  }
-  for (size_t a = first; a < w->count; a++) {
-    for (size_t b = first; b < w->count; b++) {
-      w->correlation[a][b] = film->correlation[of[a - first]][of[b - first]];
+  return dea_material_of(w->result->device, w->params[j].material);
+}
+
+/* Plies of the same material deviate alike. Returns whether there is such a one. */
+static bool tie(struct laws *laws, size_t i, const struct dea_device_param *param)
+{
+  struct work *w = laws->w;
+  const char *name = dea_material_of(w->result->device, param->material)->name;
+  for (size_t j = laws->first; j < w->count; j++) {
+    struct dea_device_param *other = &w->params[j];
+    if (laws->of[j] == i && other->designed == param->designed && name != NULL &&
+        strcmp(material_of(w, j)->name, name) == 0 && other->tie_count < TIES_MAX) {
+      w->ties[j][other->tie_count++] = *param;
+      other->ties = w->ties[j];
+      return true;
     }
   }
+  return false;
+}
+
+static void take_law(void *user, const struct dea_material_number *number)
+{
+  struct laws *laws = user;
+  struct work *w = laws->w;
+  const struct dea_material *material = dea_material_of(w->result->device, number->material);
+  const size_t at = offsetof(struct dea_material, param);
+  const size_t i = (number->offset - at) / sizeof(double); // of one before it: no parameter
+  bool wanted = material->law != NULL && number->offset >= at && i < material->law->param_count &&
+                material->param_std[i] > 0;
+  for (size_t j = 0; j < laws->first; j++) {
+    wanted = wanted && !is_number(&w->params[j], number);
+  }
+  struct dea_device_param param = {.kind = DEA_DEVICE_MATERIAL,
+                                   .state = "",
+                                   .material = number->material,
+                                   .offset = number->offset,
+                                   .designed = number->value};
+  param.param.unit = number->unit;
+  snprintf(param.param.name, sizeof param.param.name, "%s", number->key);
+  if (!wanted || tie(laws, i, &param)) {
+    return;
+  }
+  if (w->count == PARAMS_MAX) {
+    laws->full = true;
+    return;
+  }
+  const bool bare = strcmp(number->unit, "1") == 0;
+  snprintf(w->std_text[w->count], sizeof w->std_text[0], "%.3g%s%.20s", material->param_std[i],
+           bare ? "" : " ", bare ? "" : number->unit);
+  laws->of[w->count] = i;
+  w->params[w->count] = param;
+  w->value[w->count] = number->value;
+  w->std[w->count++] = material->param_std[i];
+}
+
+/* The parameters of laws that the section does not name. */
+static dea_status add_laws(struct work *w)
+{
+  struct laws laws = {.w = w, .first = w->count};
+  dea_material_numbers(w->result->device, take_law, &laws);
+  for (size_t a = laws.first; a < w->count; a++) {
+    for (size_t b = laws.first; b < w->count; b++) {
+      const struct dea_material *material = material_of(w, a);
+      w->correlation[a][b] = w->params[a].material == w->params[b].material
+                                 ? material->correlation[laws.of[a]][laws.of[b]]
+                                 : 0;
+    }
+  }
+  return laws.full ? dea_finding_add(w->ctx, DEA_WARNING, (struct dea_location){0},
+                                     "more than %d uncertain numbers: of the laws of the last "
+                                     "plies none counts",
+                                     PARAMS_MAX)
+                   : DEA_OK;
 }
 
 static dea_status find_params(struct work *w, const struct settings *settings)
@@ -207,7 +258,7 @@ static dea_status find_params(struct work *w, const struct settings *settings)
       w->correlation[a][b] = w->correlation[b][a] = settings->correlations[next++].si;
     }
   }
-  add_law(w);
+  DEA_TRY(w->ctx, add_laws(w));
   for (size_t a = 0; a < w->count; a++) {
     w->correlation[a][a] = 1;
   }
@@ -255,7 +306,7 @@ static dea_status vary(struct work *w)
 // The bands ---------------------------------------------------------------------------------------
 
 /* Places of a point, which do not change with the device, and what is no answer of it. */
-static bool is_answer(int column)
+static bool is_answer(const struct dea_context *ctx, int column)
 {
   static const char *const keys[] = {"voltage_V",
                                      "time_s",
@@ -270,8 +321,12 @@ static bool is_answer(int column)
                                      "electrode_edge_u_error_m",
                                      "compression_ratio",
                                      "pull_in_distance_V"};
+  const struct dea_column *c = dea_column_at(ctx, column);
+  if (column >= DEA_LOAD_POINT_COLUMNS) { // of monitors, without errors
+    return dea_observed_is(c, NULL) && !dea_observed_is(c, "voltage_V");
+  }
   for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
-    if (strcmp(dea_point_columns[column].key, keys[k]) == 0) {
+    if (strcmp(c->key, keys[k]) == 0) {
       return false;
     }
   }
@@ -339,15 +394,15 @@ static dea_status fill_curve(struct work *w, struct dea_curve *curve)
   }
   for (size_t i = 0; i < curve->count; i++) {
     std[i] = dea_load_point_empty();
-    for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
-      if (is_answer(c) && !is_one_of_several(&curve->points[i])) {
-        dea_point_set(&std[i], c, std_of(w, curve, i, c));
-      }
+    std[i].monitors = dea_monitor_values_copy(&curve->memory, curve->points[i].monitors);
+    for (int c = 0; c < dea_column_count(w->ctx); c++) {
+      const bool has = is_answer(w->ctx, c) && !is_one_of_several(&curve->points[i]);
+      dea_point_set(&std[i], c, has ? std_of(w, curve, i, c) : NAN);
     }
   }
   dea_free(w->ctx, curve->std);
   curve->std = std;
-  return DEA_OK;
+  return dea_arena_status(&curve->memory);
 }
 
 static dea_status fill_bands(struct work *w)
@@ -401,20 +456,20 @@ static dea_status tell_sides(struct work *w)
 
 /* What one standard uncertainty of each does, at the last point that has a band. */
 static const struct dea_result_column effect_columns[] = {
+    {.key = "quantity",
+     .kind = DEA_CELL_QUANTITY,
+     .title = "quantity",
+     .meaning = "that is changed: of the sweep; the force at the end of its study"},
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the change"),
     {.key = "parameter",
      .kind = DEA_CELL_TEXT,
      .title = "uncertain",
-     .meaning = "number of the design or of the film's law; all: of all together"},
+     .meaning = "number of the design or of a film's law; all: of all together"},
     {.key = "std", .kind = DEA_CELL_TEXT, .title = "std", .meaning = "its standard uncertainty"},
-    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the other columns"),
-    DEA_NUMBER_COLUMN("electrode_stretch", "1", "%", 100, "strain",
-                      "change of the electrode's stretch by one std"),
-    DEA_NUMBER_COLUMN("fibre_tip_z_m", "m", "um", 1e6, "z tip", "the same of the fibre tip's z"),
-    DEA_NUMBER_COLUMN("centre_z_m", "m", "um", 1e6, "z centre", "the same of the centre's z"),
-    DEA_NUMBER_COLUMN("true_field_V_per_m", "V/m", "V/um", 1e-6, "field",
-                      "the same of the true field"),
-    DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force",
-                      "the same of the force, at the end of that study"),
+    {.key = "change",
+     .kind = DEA_CELL_VALUE,
+     .title = "change",
+     .meaning = "of the quantity by one std"},
 };
 static const struct dea_result_table_type effect_table = {
     .study = study_name,
@@ -435,40 +490,52 @@ static size_t last_with_band(const struct dea_curve *curve, int column)
 }
 
 /* Change of a column by one std of parameter j, or with j = count the std of all. */
-static double effect(const struct work *w, const char *kind, const char *key, size_t j)
+static double effect(const struct work *w, const struct dea_curve *curve, size_t i, int column,
+                     size_t j)
 {
-  const struct dea_curve *curve = dea_result_find(w->result, w->type->name, kind);
-  const int column = dea_point_column_find(key);
-  const size_t i = last_with_band(curve, column);
-  if (i == SIZE_MAX) {
-    return NAN;
-  }
   return j < w->count ? slope(w, curve, i, column, j) * w->std[j]
                       : dea_point_get(&curve->std[i], column);
 }
 
-static dea_status add_table(struct work *w)
+/* Rows of a quantity where it has a band that is more than none. */
+static dea_status add_effects(struct work *w, const struct dea_curve *curve, int column,
+                              struct dea_result_table *table)
 {
-  const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
-  const size_t last = last_with_band(sweep, dea_point_column_find("electrode_stretch"));
-  const char *force =
-      dea_result_find(w->result, w->type->name, "force") != NULL ? "force" : "loading";
-  struct dea_result_table *table;
-  DEA_TRY(w->ctx, dea_result_add_table(w->ctx, w->result, &effect_table, w->type->name, 0, &table));
-  for (size_t j = 0; j <= w->count; j++) {
+  const size_t i = last_with_band(curve, column);
+  for (size_t j = 0; i < SIZE_MAX && j <= w->count; j++) {
     const bool all = j == w->count;
     const struct dea_result_table_value row[] = {
+        {.number = column},
+        {.number = curve->points[i].voltage_V},
         {.text = all ? "all" : w->params[j].param.name},
         {.text = all ? "" : w->std_text[j]},
-        {.number = last < SIZE_MAX ? sweep->points[last].voltage_V : NAN},
-        {.number = effect(w, "sweep", "electrode_stretch", j)},
-        {.number = effect(w, "sweep", "fibre_tip_z_m", j)},
-        {.number = effect(w, "sweep", "centre_z_m", j)},
-        {.number = effect(w, "sweep", "true_field_V_per_m", j)},
-        {.number = effect(w, force, "force_N", j)},
+        {.number = effect(w, curve, i, column, j)},
     };
     DEA_TRY(w->ctx, dea_result_table_add_row(w->ctx, table, row));
   }
+  return DEA_OK;
+}
+
+static dea_status add_table(struct work *w)
+{
+  static const char *const keys[] = {"electrode_stretch", "fibre_tip_z_m", "centre_z_m",
+                                     "true_field_V_per_m"};
+  enum { HEADLINES_MAX = 16 };
+  const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
+  const struct dea_curve *force = dea_result_find(w->result, w->type->name, "force");
+  struct dea_result_table *table;
+  int columns[HEADLINES_MAX];
+  DEA_TRY(w->ctx, dea_result_add_table(w->ctx, w->result, &effect_table, w->type->name, 0, &table));
+  for (size_t k = 0; k < sizeof keys / sizeof keys[0]; k++) {
+    DEA_TRY(w->ctx, add_effects(w, sweep, dea_point_column_find(keys[k]), table));
+  }
+  const size_t count =
+      sweep != NULL ? dea_curve_headlines(w->ctx, sweep, columns, HEADLINES_MAX) : 0;
+  for (size_t k = 0; k < count; k++) {
+    DEA_TRY(w->ctx, add_effects(w, sweep, columns[k], table));
+  }
+  force = force != NULL ? force : dea_result_find(w->result, w->type->name, "loading");
+  DEA_TRY(w->ctx, add_effects(w, force, dea_point_column_find("force_N"), table));
   return DEA_OK;
 }
 
@@ -487,10 +554,11 @@ static dea_status find_all(struct work *w, const struct dea_settings *given)
                           : DEA_OK;
   }
   if (w->type->load != NULL && !given->written) {
-    return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                           "the film's law has uncertainties: compute.uncertainty ({}) makes bands "
-                           "of model %s too, by two runs more for each of %zu",
-                           w->type->name, w->count);
+    return dea_finding_add(
+        ctx, DEA_NOTE, (struct dea_location){0},
+        "the films' laws have uncertainties: compute.uncertainty ({}) makes bands "
+        "of model %s too, by two runs more for each of %zu",
+        w->type->name, w->count);
   }
   dea_yaml_write(dea_yaml_root(w->result->design->document), &w->text);
   if (w->text.failed) {
@@ -508,7 +576,7 @@ dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_desig
                                  const struct dea_device *device, const struct dea_rerun *rerun)
 {
   const struct dea_settings *given = dea_design_settings(design, &section);
-  if (given == NULL || !given->written || device->general) {
+  if (given == NULL || !given->written) {
     return DEA_OK;
   }
   struct work *w = dea_alloc(ctx, 1, sizeof *w);
@@ -556,5 +624,9 @@ static bool asked(const struct dea_design *design)
   return true;
 }
 
-const struct dea_study dea_study_uncertainty = {
-    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run = run};
+const struct dea_study dea_study_uncertainty = {.name = study_name,
+                                                .keys = &section,
+                                                .asked = asked,
+                                                .own_models = true,
+                                                .any_layout = true,
+                                                .run = run};

@@ -30,8 +30,8 @@ static dea_status use_model(struct dea_context *ctx, const struct dea_model_type
 {
   struct dea_profile profile;
   take_size(type, model, run->settings.refinement, variant);
-  DEA_TRY(ctx, dea_study_take_points(ctx, type, model, run->voltages_V, run->voltage_count,
-                                     &variant->curve));
+  DEA_TRY(ctx, dea_study_take_points(ctx, type, model, run->device, run->voltages_V,
+                                     run->voltage_count, &variant->curve));
   if (type->profile != NULL && variant->curve.count > 0) {
     DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
     DEA_TRY(ctx, dea_variant_set_profile(ctx, variant,

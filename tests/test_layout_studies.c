@@ -1,0 +1,219 @@
+/* Studies of a device made of plies by its monitors: against the same computed by hand. */
+// ctest: quick, solid
+#include "design_text.h"
+#include "result/convergence.h"
+#include "study/rerun.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+#include <string.h>
+
+static const char cone[] =
+    "dea: 1\n"
+    "title: cone\n"
+    "shapes:\n"
+    "  - {name: film, kind: circle, radius: 20 mm}\n"
+    "  - {name: hub, kind: circle, radius: 5 mm}\n"
+    "  - {name: active, kind: difference, of: [film, hub]}\n"
+    "plies:\n"
+    "  - {name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.2}\n"
+    "electrodes:\n"
+    "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+    "  - {ply: film, side: top, shape: active, channel: drive}\n"
+    "supports:\n"
+    "  - {edge: film}\n"
+    "bodies:\n"
+    "  - {name: hub, shape: hub, free: [z], force_z: 100 mN}\n"
+    "monitors:\n"
+    "  - {name: hub, body: hub}\n"
+    "  - {name: gauge, from: [8 mm, 0 mm], to: [16 mm, 0 mm], ply: film}\n" FILM_MATERIAL
+    "compute:\n"
+    "  models: [3d]\n"
+    "  voltage: {values: [1 kV, 3 kV]}\n"
+    "  solid: {film: membrane, order: 1}\n";
+
+/* A run of studies of the cone, with keys of other values. */
+struct run {
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+};
+
+static struct run run_studies(const struct dea_override *overrides, size_t count,
+                              const char *const names[], size_t name_count)
+{
+  struct run run;
+  dea_status status = read_and_build(ctx, cone, overrides, count, &run.design, &run.device);
+  if (status != DEA_OK) {
+    print_findings(ctx);
+  }
+  assert_int_equal(status, DEA_OK);
+  assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
+  run.result->rerun = &dea_rerun_designs;
+  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, name_count, run.result), DEA_OK);
+  return run;
+}
+
+static void end(struct run *run)
+{
+  dea_result_destroy(ctx, run->result);
+  dea_device_destroy(ctx, run->device);
+  dea_design_destroy(ctx, run->design);
+}
+
+static double get(const struct dea_load_point *point, const char *key)
+{
+  const int column = dea_column_find(ctx, key);
+  assert_true(column >= 0);
+  return dea_point_get(point, column);
+}
+
+/* A number of the last point of a sweep of its own. */
+static double by_hand(const struct dea_override *overrides, size_t count, const char *key)
+{
+  static const char *const sweep[] = {"sweep"};
+  struct run run = run_studies(overrides, count, sweep, 1);
+  const struct dea_curve *curve = dea_result_find(run.result, "3d", "sweep");
+  const double value = get(&curve->points[curve->count - 1], key);
+  end(&run);
+  return value;
+}
+
+/* Every mesh is that of a sweep with its refinement, and meshes are judged by monitors. */
+static void test_convergence(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"convergence"};
+  const struct dea_override of[] = {{"compute.convergence.refinement", "[1, 1.5, 2]"},
+                                    {"compute.convergence.voltage", "[1 kV, 3 kV]"}};
+  struct run run = run_studies(of, 2, names, 1);
+  struct dea_convergence *c;
+  bool hub = false, gauge = false;
+  assert_int_equal(dea_convergence_create(ctx, run.result, "3d", &c), DEA_OK);
+  assert_int_equal(c->mesh_count, 3);
+  for (size_t i = 0; i < c->row_count; i++) {
+    const struct dea_convergence_row *row = &c->rows[i];
+    const bool last = row->voltage_V == 3e3;
+    assert_true(strcmp(row->shown->key, "hub_x_m") != 0); // by symmetry there is none
+    if (last && strcmp(row->shown->key, "hub_z_m") == 0) {
+      hub = row->judged;
+      assert_close(row->values[0], by_hand(NULL, 0, "hub_z_m"), 1e-9, 0);
+      const struct dea_override fine = {"compute.solid.refinement", "2"};
+      assert_close(row->values[2], by_hand(&fine, 1, "hub_z_m"), 1e-9, 0);
+    }
+    if (last && strcmp(row->shown->key, "gauge_stretch") == 0) {
+      gauge = row->judged; // errors are over the strain
+      assert_close(row->errors[2],
+                   fabs(row->values[2] - row->extrapolated) / (row->extrapolated - 1), 1e-9, 1e-12);
+    }
+  }
+  assert_true(hub && gauge);
+  dea_convergence_destroy(ctx, c);
+  end(&run);
+}
+
+/* A variant is the sweep of that design. */
+static void test_compare_design(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"sweep", "compare-design"};
+  const struct dea_override of = {"compute.compare",
+                                  "[{name: thin, set: {plies.film.thickness: 80 um}}]"};
+  const struct dea_override thin = {"plies.film.thickness", "80 um"};
+  struct run run = run_studies(&of, 1, names, 2);
+  assert_int_equal(run.result->variant_count, 2);
+  const struct dea_curve *own = &run.result->variants[0].curve;
+  const struct dea_curve *other = &run.result->variants[1].curve;
+  assert_int_equal(other->count, 2);
+  assert_close(get(&own->points[1], "hub_z_m"), by_hand(NULL, 0, "hub_z_m"), 1e-12, 0);
+  assert_close(get(&other->points[1], "hub_z_m"), by_hand(&thin, 1, "hub_z_m"), 1e-12, 0);
+  const struct dea_result_table *table =
+      dea_result_find_table(run.result, "3d", "compare-design", "monitors");
+  assert_non_null(table);
+  assert_int_equal(table->row_count, 4);
+  assert_string_equal(dea_result_table_quantity(table, 2)->key, "hub_z_m");
+  assert_close(dea_result_table_number(table, 2, "value", 0), get(&other->points[1], "hub_z_m"), 0,
+               0);
+  end(&run);
+}
+
+/* Bands of monitors by central differences over runs of their own. */
+static void test_uncertainty(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"sweep", "uncertainty"};
+  static const struct {
+    const char *key, *low, *high;
+  } sides[] = {{"plies.film.thickness", "98 um", "102 um"},
+               {"bodies.hub.force_z", "99 mN", "101 mN"}};
+  const struct dea_override of = {"compute.uncertainty.parameters",
+                                  "[{name: plies.film.thickness, std: 2 um}, "
+                                  "{name: bodies.hub.force_z, std: 1 mN}]"};
+  struct run run = run_studies(&of, 1, names, 2);
+  const struct dea_curve *curve = dea_result_find(run.result, "3d", "sweep");
+  double variance = 0;
+  for (size_t j = 0; j < 2; j++) {
+    const struct dea_override low = {sides[j].key, sides[j].low};
+    const struct dea_override high = {sides[j].key, sides[j].high};
+    variance += pow((by_hand(&high, 1, "hub_z_m") - by_hand(&low, 1, "hub_z_m")) / 2, 2);
+  }
+  assert_non_null(curve->std);
+  assert_close(get(&curve->std[1], "hub_z_m"), sqrt(variance), 1e-6, 0);
+  assert_true(isnan(get(&curve->std[1], "drive_voltage_V"))); // a place, no answer
+  end(&run);
+}
+
+/* Uncertainties of the law of two plies of one material: they deviate alike. */
+static void test_uncertain_laws(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"sweep", "uncertainty"};
+  struct run run = {0};
+  char text[6000];
+  const char *at = strstr(cone, "stretch_range"), *plies = strstr(cone, "electrodes:");
+  assert_true(at != NULL && plies != NULL && plies < at);
+  snprintf(
+      text, sizeof text,
+      "%.*s  - {name: second, shape: film, material: film, thickness: 50 um, pre_stretch: 1.2}\n"
+      "%.*sstandard_uncertainties: {c1: 3 kPa}, %s",
+      (int)(plies - cone), cone, (int)(at - plies), plies, at);
+  const struct dea_override written = {"compute.uncertainty", "{}"};
+  assert_int_equal(read_and_build(ctx, text, &written, 1, &run.design, &run.device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
+  run.result->rerun = &dea_rerun_designs;
+  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, 2, run.result), DEA_OK);
+  const struct dea_result_table *table =
+      dea_result_find_table(run.result, "3d", "uncertainty", "effects");
+  assert_non_null(table);
+  assert_string_equal(dea_result_table_cell(table, 0, 2)->text, "plies.film.law.c1");
+  assert_string_equal(dea_result_table_cell(table, 1, 2)->text, "all"); // one number for both
+  const double one = get(&dea_result_find(run.result, "3d", "sweep")->std[1], "hub_z_m");
+  double z[2];
+  for (int side = 0; side < 2; side++) { // of both at once
+    struct run other;
+    const char *c1 = strstr(text, "c1: 178.4");
+    memcpy((char *)(uintptr_t)c1, side == 0 ? "c1: 175.4" : "c1: 181.4", 9);
+    static const char *const sweep[] = {"sweep"};
+    assert_int_equal(read_and_build(ctx, text, NULL, 0, &other.design, &other.device), DEA_OK);
+    assert_int_equal(dea_result_create(ctx, other.design, other.device, &other.result), DEA_OK);
+    assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), sweep, 1, other.result), DEA_OK);
+    z[side] = get(&dea_result_find(other.result, "3d", "sweep")->points[1], "hub_z_m");
+    memcpy((char *)(uintptr_t)c1, "c1: 178.4", 9);
+    end(&other);
+  }
+  assert_close(one, fabs(z[1] - z[0]) / 2, 1e-6, 0);
+  end(&run);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_convergence),
+      cmocka_unit_test(test_compare_design),
+      cmocka_unit_test(test_uncertainty),
+      cmocka_unit_test(test_uncertain_laws),
+  };
+  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
+}
