@@ -207,6 +207,83 @@ static void test_uncertain_laws(void **state)
   end(&run);
 }
 
+/* Limits against a number of a part: those of a sweep of that design, levels between its points. */
+static void test_operating_map(void **state)
+{
+  (void)state;
+  static const char *const names[] = {"operating-map"};
+  const struct dea_override of[] = {
+      {"compute.operating_map",
+       "{parameters: [{name: plies.film.thickness, from: 80 um, to: 100 um}], "
+       "quantity: hub_z_m, rows: 2}"},
+      {"compute.voltage", "{values: [0 kV, 2 kV, 4 kV, 6 kV]}"}};
+  const struct dea_override thin[] = {{"plies.film.thickness", "80 um"}, of[1]};
+  static const char *const sweep[] = {"sweep"};
+  struct run run = run_studies(of, 2, names, 1), other = run_studies(thin, 2, sweep, 1);
+  const struct dea_curve *curve = dea_result_find(other.result, "3d", "sweep");
+  const struct dea_result_table *scale =
+      dea_result_find_table(run.result, "3d", "operating-map", "");
+  const struct dea_result_table *table =
+      dea_result_find_table(run.result, "3d", "operating-map", "plies_film_thickness");
+  assert_true(scale != NULL && table != NULL);
+  assert_int_equal(table->row_count, 2);
+  assert_close(dea_result_table_number(table, 0, "plies_film_thickness_m", 0), 80e-6, 1e-12, 0);
+  assert_close(dea_result_table_number(scale, 0, "own_plies_film_thickness_m", 0), 100e-6, 1e-12,
+               0);
+  assert_string_equal(dea_result_table_quantity(scale, 0)->key, "hub_z_m");
+  const double base = dea_result_table_number(scale, 0, "level_base", 0);
+  const double step = dea_result_table_number(scale, 0, "level_step", 0);
+  size_t levels = 0;
+  for (size_t k = 0; k < table->width; k++) {
+    const double level = base + step * (double)(k + 1);
+    for (size_t i = 1; i < curve->count; i++) {
+      const double a = get(&curve->points[i - 1], "hub_z_m"), b = get(&curve->points[i], "hub_z_m");
+      if (a < level && b >= level) {
+        const double V = curve->points[i - 1].voltage_V + 2e3 * (level - a) / (b - a);
+        assert_close(dea_result_table_number(table, 0, "level_V", k), V, 1e-6, 0);
+        levels++;
+      }
+    }
+  }
+  assert_true(levels > 1);
+  double breakdown_V = NAN;
+  for (size_t i = 1; i < curve->count; i++) {
+    const double a = curve->points[i - 1].breakdown_margin, b = curve->points[i].breakdown_margin;
+    breakdown_V =
+        a >= 0 && b < 0 ? curve->points[i - 1].voltage_V + 2e3 * a / (a - b) : breakdown_V;
+  }
+  assert_close(dea_result_table_number(table, 0, "breakdown_V", 0), breakdown_V, 1e-6, 0);
+  end(&other);
+  end(&run);
+}
+
+static void test_operating_map_of_what_is_not_there(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *section, *message;
+  } all[] = {
+      {"{parameters: [{name: plies.film.thicknes}]}", "did you mean 'plies.film.thickness'?"},
+      {"{parameters: [{name: plies.film.thickness, from: 2 kV}]}", "'2 kV' is a voltage"},
+      {"{quantity: hub_zz_m}", "did you mean 'hub_z_m'?"},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+    static const char *const names[] = {"operating-map"};
+    const struct dea_override of = {"compute.operating_map", all[i].section};
+    const struct dea_model_type *type = dea_model_find("3d");
+    struct run run;
+    assert_int_equal(read_and_build(ctx, cone, &of, 1, &run.design, &run.device), DEA_OK);
+    assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
+    assert_int_equal(dea_study_check_models(ctx, &type, 1, names, 1, run.result), DEA_E_DESIGN);
+    if (find_error(ctx, all[i].message) == NULL) {
+      print_findings(ctx);
+      fail();
+    }
+    dea_finding_clear(ctx);
+    end(&run);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -214,6 +291,8 @@ int main(void)
       cmocka_unit_test(test_compare_design),
       cmocka_unit_test(test_uncertainty),
       cmocka_unit_test(test_uncertain_laws),
+      cmocka_unit_test(test_operating_map),
+      cmocka_unit_test(test_operating_map_of_what_is_not_there),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

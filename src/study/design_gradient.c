@@ -190,25 +190,51 @@ struct changed {
   struct dea_design_change *changes; // [number_count]
 };
 
-/* The device with a value in place of the design's. DEA_E_DESIGN: there is none. */
-static dea_status change(struct dea_context *ctx, const struct dea_design_gradient *ask,
-                         const struct dea_design_number *number, double value, struct changed *all,
+/* The device with a value in place of the design's. DEA_E_DESIGN: there is none. scratch: the
+ * design of a disc, which the device does not need. */
+static dea_status change(struct dea_context *ctx, const struct dea_design *design,
+                         const struct dea_device *device, const struct dea_design_number *number,
+                         double value, struct dea_arena *memory, struct dea_design *scratch,
                          struct dea_device *out)
 {
   double kept = number->scale * value;
-  if (ask->device->general) {
-    DEA_TRY(ctx, dea_part_change(ctx, ask->design, number, value, &all->memory, out));
+  if (device->general) {
+    DEA_TRY(ctx, dea_part_change(ctx, design, number, value, memory, out));
     return DEA_OK;
   }
-  *out = *ask->device;
+  *out = *device;
   if (number->of == DEA_NUMBER_OF_DESIGN) {
-    *all->scratch = *ask->design;
-    memcpy((char *)all->scratch + number->offset, &kept, sizeof kept);
-    dea_geometry_fill(all->scratch, out);
+    *scratch = *design;
+    memcpy((char *)scratch + number->offset, &kept, sizeof kept);
+    dea_geometry_fill(scratch, out);
   } else {
     memcpy((char *)out + number->offset, &kept, sizeof kept);
   }
   return DEA_OK;
+}
+
+dea_status dea_device_change(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device,
+                             const struct dea_design_number *number, double value,
+                             struct dea_changed_device *out)
+{
+  *out = (struct dea_changed_device){.memory = {.ctx = ctx}};
+  struct dea_design *scratch = dea_arena_alloc(&out->memory, 1, sizeof *scratch);
+  DEA_TRY(ctx, dea_arena_status(&out->memory));
+  DEA_TRY(ctx, change(ctx, design, device, number, value, &out->memory, scratch, &out->device));
+  out->owns_layout = device->general;
+  if (number->of == DEA_NUMBER_OF_DESIGN) {
+    DEA_TRY(ctx, dea_geometry_check(ctx, scratch, &out->device));
+  }
+  return DEA_OK;
+}
+
+void dea_changed_device_free(struct dea_changed_device *changed)
+{
+  if (changed->owns_layout) {
+    dea_layout_destroy(changed->memory.ctx, changed->device.layout);
+  }
+  dea_arena_free(&changed->memory);
 }
 
 /* One side of a change of a number; false in *there where no device is like that. */
@@ -228,7 +254,8 @@ static dea_status make_side(struct dea_context *ctx, const struct dea_design_gra
   } else if (strcmp(number->key, "voltage") == 0) {
     out->voltage_V[side] = value;
   } else {
-    const dea_status status = change(ctx, ask, number, value, all, &all->devices[2 * i + side]);
+    const dea_status status = change(ctx, ask->design, ask->device, number, value, &all->memory,
+                                     all->scratch, &all->devices[2 * i + side]);
     *there = status == DEA_OK;
     DEA_TRY(ctx, status == DEA_E_DESIGN ? DEA_OK : status);
     out->device[side] = *there ? &all->devices[2 * i + side] : ask->device;

@@ -41,6 +41,21 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
                               const struct dea_device *device, double voltage_V,
                               struct dea_design_number *out, size_t *count);
 
+/* A device with another value of one of them. */
+struct dea_changed_device {
+  struct dea_device device;
+  struct dea_arena memory;
+  bool owns_layout;
+};
+
+/* DEA_E_DESIGN: there is no such device, or a finding says what of it does not fit together. Also
+ * after a failure to be freed; outlived by design and device. */
+dea_status dea_device_change(struct dea_context *ctx, const struct dea_design *design,
+                             const struct dea_device *device,
+                             const struct dea_design_number *number, double value,
+                             struct dea_changed_device *out);
+void dea_changed_device_free(struct dea_changed_device *changed);
+
 /* Takes those away that nothing but vibrations depends on: densities, where there is no weight. */
 void dea_numbers_at_rest(const struct dea_device *device, struct dea_design_number *numbers,
                          size_t *count);

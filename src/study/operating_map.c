@@ -1,30 +1,240 @@
-/* Study "operating-map": at which voltages the actuator works, against a parameter of the design.
- * Each row is the equilibrium path of one design, so that its limits are those of the path, to the
- * solver's accuracy. */
-#include "device/geometry.h"
+/* Study "operating-map": at which voltages the actuator works, against numbers of the design. Each
+ * row is the equilibrium path of one design, so that its limits are those of the path, to the
+ * solver's accuracy; of a model without such paths its sweep, with limits between its points. */
+#include "base/schema.h"
+#include "base/units.h"
+#include "result/observation.h"
+#include "study/design_gradient.h"
+#include "study/observe.h"
 #include "study/operating_map_figure.h"
 #include "study/study.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <string.h>
 
 enum { IN_ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_TERMINAL };
-enum { ROWS = 33, LEVELS = DEA_RESULT_TABLE_WIDTH_MAX, PATH_POINTS = 3000 };
+enum { ROWS = 33, SWEPT_ROWS = 5, LEVELS = DEA_RESULT_TABLE_WIDTH_MAX, PATH_POINTS = 3000 };
+enum { AXES_MAX = 4 };
+
+static const char study_name[] = "operating-map";
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+// Keys -------------------------------------------------------------------------------------------
+
+struct axis_keys {
+  struct dea_label name, from, to;
+};
+
+/* Settings of compute.operating_map. */
+struct settings {
+  struct axis_keys parameters[AXES_MAX];
+  size_t parameter_count;
+  struct dea_label quantity;
+  struct dea_quantity rows;
+};
+
+#define AT(member) offsetof(struct settings, member)
+
+static const struct dea_field axis_fields[] = {
+    DEA_LABEL_ROW("name", offsetof(struct axis_keys, name), "plies.film.thickness",
+                  "number of the design by its name in dea run --sensitivity", .required = true),
+    DEA_LABEL_ROW("from", offsetof(struct axis_keys, from), "50 um", "its first value",
+                  .absent_text = "half the design's"),
+    DEA_LABEL_ROW("to", offsetof(struct axis_keys, to), "200 um", "its last value",
+                  .absent_text = "one and a half times the design's"),
+};
+static const struct dea_record axis_record = {"parameter", "a number that a map is against",
+                                              axis_fields, COUNT(axis_fields)};
+static const struct dea_field fields[] = {
+    {.key = "parameters",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(parameters),
+     .record = &axis_record,
+     .list_min = 1,
+     .list_max = AXES_MAX,
+     .element_size = sizeof(struct axis_keys),
+     .count_offset = AT(parameter_count),
+     .absent_text = "pre-stretch and thickness of the film",
+     .doc = "numbers of the design, a map each",
+     .example = "[{name: plies.film.thickness, from: 50 um, to: 200 um}]"},
+    DEA_LABEL_ROW("quantity", AT(quantity), "hub_z_m",
+                  "whose levels are drawn, of load points or monitors",
+                  .absent_text = "z of the fibre tips, strain, or what a monitor shows most"),
+    DEA_INTEGER_ROW("rows", AT(rows), "9", "values of each number", .min = 2, .max = 101,
+                    .absent_text = "33, of model 3d 5"),
+};
+static const struct dea_record record = {
+    "operating_map",
+    "study of the voltages at which the actuator works against numbers of the design, made when "
+    "this section is there ({}) or with --study: of model 3d by sweeps, where this section is "
+    "there",
+    fields, COUNT(fields)};
+static const struct dea_design_section section = {
+    .key = "operating_map", .record = &record, .size = sizeof(struct settings)};
+
+// Numbers and quantity ---------------------------------------------------------------------------
+
+/* A number of the map, with its values. */
+struct axis {
+  struct dea_design_number number;
+  double low, high;
+  const char *title; // NULL: the key
+};
+
+/* Those of a disc, with values between shares of the design's own, within limits. */
+static const struct {
+  const char *key, *title;
+  double least, most, floor, ceiling;
+} usual[] = {{"pre_stretch", "pre-stretch", 0.5, 1.7, 1, 6},
+             {"film.thickness", "film thickness", 0.25, 3, 0, 1}};
+
+/* What a map is made of, of a design. */
+struct plan {
+  struct axis axes[AXES_MAX];
+  size_t count;
+  int column; // of the levels; -1: what a monitor shows most
+};
+
+struct numbers {
+  struct dea_design_number at[DEA_NUMBERS_MAX];
+  size_t count;
+};
+
+static const struct dea_design_number *find_number(const struct numbers *numbers, const char *key)
+{
+  for (size_t i = 0; i < numbers->count; i++) {
+    if (strcmp(numbers->at[i].key, key) == 0) {
+      return &numbers->at[i];
+    }
+  }
+  return NULL;
+}
+
+/* An end of an axis, which stays as it is where there is none. */
+static dea_status read_end(struct dea_context *ctx, const struct dea_label *label,
+                           const struct dea_design_number *number, double *end)
+{
+  char why[DEA_WHY_SIZE] = "", example[40];
+  const struct dea_measure due = {number->unit, example};
+  if (label->text[0] == '\0') {
+    return DEA_OK;
+  }
+  snprintf(example, sizeof example, "2 %.16s", number->unit);
+  if (dea_units_read(ctx, label->text, due, end, why)) {
+    return DEA_OK;
+  }
+  return why[0] == '\0' ? dea_context_status(ctx) : dea_refuse(ctx, label->location, why);
+}
+
+static dea_status add_given(struct dea_context *ctx, const struct numbers *numbers,
+                            const struct axis_keys *keys, struct plan *plan)
+{
+  const struct dea_design_number *number = find_number(numbers, keys->name.text);
+  struct axis *axis = &plan->axes[plan->count];
+  if (number == NULL || strcmp(number->key, "voltage") == 0) {
+    const char *known[DEA_NUMBERS_MAX];
+    char why[3 * DEA_NUMBER_KEY_SIZE];
+    for (size_t i = 1; i < numbers->count; i++) { // the voltage, the first, is the other axis
+      known[i - 1] = numbers->at[i].key;
+    }
+    const char *nearest =
+        dea_nearest_name(keys->name.text, known, numbers->count > 0 ? numbers->count - 1 : 0);
+    snprintf(why, sizeof why, "'%.60s' is no number of the design that can change%s%s%s",
+             keys->name.text, nearest != NULL ? "; did you mean '" : "",
+             nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
+    return dea_refuse(ctx, keys->name.location, why);
+  }
+  *axis = (struct axis){.number = *number, .low = 0.5 * number->value, .high = 1.5 * number->value};
+  DEA_TRY(ctx, read_end(ctx, &keys->from, number, &axis->low));
+  DEA_TRY(ctx, read_end(ctx, &keys->to, number, &axis->high));
+  plan->count++;
+  return DEA_OK;
+}
+
+/* Without a list: of a disc pre-stretch and thickness, else thicknesses of the plies between
+ * electrodes. */
+static void add_usual(const struct dea_device *device, const struct numbers *numbers,
+                      struct plan *plan)
+{
+  for (size_t i = 0; i < COUNT(usual); i++) {
+    const struct dea_design_number *number = find_number(numbers, usual[i].key);
+    if (number != NULL) {
+      plan->axes[plan->count++] =
+          (struct axis){*number, fmax(usual[i].floor, usual[i].least * number->value),
+                        fmin(usual[i].ceiling, usual[i].most * number->value), usual[i].title};
+    }
+  }
+  const struct dea_layout *layout = plan->count == 0 ? device->layout : NULL;
+  for (size_t i = 0; layout != NULL && i < layout->ply_count && plan->count < AXES_MAX; i++) {
+    char key[DEA_NUMBER_KEY_SIZE];
+    snprintf(key, sizeof key, "plies.%.80s.thickness", layout->plies[i].name);
+    const struct dea_design_number *number = find_number(numbers, key);
+    if (number != NULL && dea_layout_is_dielectric(layout, i)) {
+      plan->axes[plan->count++] =
+          (struct axis){*number, 0.5 * number->value, 1.5 * number->value, NULL};
+    }
+  }
+}
+
+static dea_status find_quantity(struct dea_context *ctx, const struct dea_device *device,
+                                const struct dea_label *label, int *column)
+{
+  DEA_TRY(ctx, dea_device_columns_add(ctx, device));
+  *column = label->text[0] != '\0' ? dea_column_find(ctx, label->text) : -1;
+  if (*column >= 0 || label->text[0] == '\0') {
+    return DEA_OK;
+  }
+  char why[200];
+  const char **keys = dea_column_keys(ctx);
+  if (keys == NULL) {
+    return DEA_E_MEMORY;
+  }
+  const char *nearest = dea_nearest_name(label->text, keys, (size_t)dea_column_count(ctx));
+  snprintf(why, sizeof why, "'%.60s' is no quantity%s%.60s%s", label->text,
+           nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
+           nearest != NULL ? "'?" : "");
+  dea_free(ctx, keys);
+  return dea_refuse(ctx, label->location, why);
+}
+
+static dea_status make_plan(struct dea_context *ctx, const struct dea_design *design,
+                            const struct dea_device *device, struct plan *out)
+{
+  const struct settings *settings = dea_design_settings(design, &section)->values;
+  struct numbers *numbers = dea_alloc(ctx, 1, sizeof *numbers);
+  *out = (struct plan){.column = -1};
+  if (numbers == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_design_numbers(ctx, design, device, dea_design_highest_V(design),
+                                         numbers->at, &numbers->count);
+  for (size_t i = 0; i < settings->parameter_count && status == DEA_OK; i++) {
+    status = add_given(ctx, numbers, &settings->parameters[i], out);
+  }
+  if (settings->parameter_count == 0 && status == DEA_OK) {
+    add_usual(device, numbers, out);
+  }
+  dea_free(ctx, numbers);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx, find_quantity(ctx, device, &settings->quantity, &out->column));
+  return DEA_OK;
+}
+
+static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
+                         const struct dea_device *device)
+{
+  struct plan plan;
+  DEA_TRY(ctx, make_plan(ctx, design, device, &plan));
+  return DEA_OK;
+}
 
 // Tables -----------------------------------------------------------------------------------------
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define VOLTAGE(its_key, its_title, its_meaning)                                                   \
   DEA_NUMBER_COLUMN(its_key, "V", "kV", 1e-3, its_title, its_meaning)
-#define LIMITS                                                                                     \
-  VOLTAGE("slack_V", "slack above", "voltage at which the film loses its tension"),                \
-      VOLTAGE("breakdown_V", "breakdown above", "voltage of breakdown"),                           \
-      VOLTAGE("pull_in_V", "pull-in", "voltage of pull-in"),                                       \
-  {                                                                                                \
-    .key = "level_V", .si_unit = "V", .display_unit = "kV", .factor = 1e-3, .list = true,          \
-    .hidden = DEA_IN_SCREEN, .title = "level",                                                     \
-    .meaning = "voltages at which displacement or strain reaches 1, 2, ... of its steps"           \
-  }
 
 static const struct dea_result_column scale_columns[] = {
     VOLTAGE("highest_voltage_V", "highest voltage", "of the design or the run's curves"),
@@ -35,58 +245,93 @@ static const struct dea_result_column scale_columns[] = {
                       "of the electrode's radius, from one level to the next; without fibres"),
     DEA_TEXT_COLUMN("displacements", "displacements",
                     "\"upper bounds\", or nothing where they are predictions"),
-    {.key = "own_pre_stretch", .title = "pre-stretch", .meaning = "of the design itself"},
-    DEA_NUMBER_COLUMN("own_film_thickness_m", "m", "um", 1e6, "film thickness",
-                      "of the design itself, unstretched"),
+    {.key = "quantity",
+     .kind = DEA_CELL_QUANTITY,
+     .hidden = DEA_IN_TERMINAL,
+     .title = "levels of",
+     .meaning = "what the levels are of"},
+    {.key = "level_base",
+     .kind = DEA_CELL_VALUE,
+     .hidden = DEA_IN_TERMINAL,
+     .title = "levels from",
+     .meaning = "what the levels are counted from"},
+    {.key = "level_step",
+     .kind = DEA_CELL_VALUE,
+     .hidden = DEA_IN_TERMINAL,
+     .title = "step of levels",
+     .meaning = "from one level to the next"},
 };
-static const struct dea_result_column pre_stretch_columns[] = {
-    {.key = "pre_stretch", .title = "pre-stretch", .meaning = "of the film"}, LIMITS};
-static const struct dea_result_column thickness_columns[] = {
-    DEA_NUMBER_COLUMN("film_thickness_m", "m", "um", 1e6, "film thickness", "unstretched"), LIMITS};
+static const struct dea_result_column limit_columns[] = {
+    {0}, // of the number
+    VOLTAGE("slack_V", "slack above", "voltage at which the film loses its tension"),
+    VOLTAGE("breakdown_V", "breakdown above", "voltage of breakdown"),
+    VOLTAGE("pull_in_V", "pull-in", "voltage of pull-in"),
+    {.key = "level_V",
+     .si_unit = "V",
+     .display_unit = "kV",
+     .factor = 1e-3,
+     .list = true,
+     .hidden = DEA_IN_SCREEN,
+     .title = "level",
+     .meaning = "voltages at which the levels are reached"}};
 
-static const char study_name[] = "operating-map";
-static const struct dea_result_table_type scale_table = {.study = study_name,
-                                                         .name = "",
-                                                         .title = "operating map",
-                                                         .where = DEA_IN_JSON | DEA_IN_TERMINAL,
-                                                         .one_row = true,
-                                                         .columns = scale_columns,
-                                                         .column_count = COUNT(scale_columns)};
+/* A table of columns of its own, [count], copied. */
+static dea_status add_table(struct dea_context *ctx, struct dea_result *result, const char *model,
+                            struct dea_result_table_type type, size_t width,
+                            struct dea_result_table **out)
+{
+  struct dea_result_column *columns = dea_alloc(ctx, type.column_count, sizeof *columns);
+  if (columns == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(columns, type.columns, type.column_count * sizeof *columns);
+  type.columns = columns;
+  dea_status status = dea_result_add_table(ctx, result, &type, model, width, out);
+  if (status != DEA_OK) {
+    dea_free(ctx, columns);
+    return status;
+  }
+  (*out)->own_columns = columns;
+  return DEA_OK;
+}
 
-/* A parameter of the map: a number of the design, values between shares of the design's own. */
-struct parameter {
-  struct dea_result_table_type table;
-  size_t offset;         // of the struct dea_quantity in the design
-  double least, most;    // shares of the design's value
-  double floor, ceiling; // limits of the values, SI
-};
+/* "film_thickness" of "film.thickness"; interned. NULL on failure. */
+static const char *name_axis(struct dea_context *ctx, const struct axis *axis)
+{
+  char name[DEA_KEY_PART_SIZE];
+  dea_key_part(axis->number.key, name);
+  return dea_intern(ctx, name);
+}
 
-static const struct parameter parameters[] = {
-    {{.study = study_name,
-      .name = "pre_stretch",
-      .title = "limits against the pre-stretch",
-      .where = IN_ALL, // the report draws it
-      .every = 4,
-      .columns = pre_stretch_columns,
-      .column_count = COUNT(pre_stretch_columns)},
-     offsetof(struct dea_design, pre_stretch),
-     0.5,
-     1.7,
-     1,
-     6},
-    {{.study = study_name,
-      .name = "film_thickness",
-      .title = "limits against the thickness of the unstretched film",
-      .where = IN_ALL, // the report draws it
-      .every = 4,
-      .columns = thickness_columns,
-      .column_count = COUNT(thickness_columns)},
-     offsetof(struct dea_design, film.thickness_m),
-     0.25,
-     3,
-     0,
-     1},
-};
+/* Column of a number's values, or of the design's own: "own_film_thickness_m". */
+static dea_status fill_column(struct dea_context *ctx, const struct axis *axis, bool own,
+                              struct dea_result_column *out)
+{
+  static const struct {
+    const char *si, *shown;
+    double factor, below; // of values that are shown so
+  } units[] = {{"m", "um", 1e6, 1e-3}, {"m", "mm", 1e3, INFINITY}, {"Pa", "kPa", 1e-3, INFINITY}};
+  const struct dea_design_number *number = &axis->number;
+  const bool bare = strcmp(number->unit, "1") == 0;
+  char key[2 * DEA_KEY_PART_SIZE + 8], name[DEA_KEY_PART_SIZE], unit[DEA_KEY_PART_SIZE];
+  dea_key_part(number->key, name);
+  dea_key_part(number->unit, unit);
+  snprintf(key, sizeof key, "%s%s%s%s", own ? "own_" : "", name, bare ? "" : "_", bare ? "" : unit);
+  *out = (struct dea_result_column){
+      .key = dea_intern(ctx, key),
+      .si_unit = number->unit,
+      .display_unit = number->unit,
+      .factor = 1,
+      .title = axis->title != NULL ? axis->title : dea_intern(ctx, number->key),
+      .meaning = own ? "of the design itself" : "number of the design"};
+  for (size_t i = COUNT(units); i > 0; i--) {
+    if (strcmp(units[i - 1].si, number->unit) == 0 && fabs(number->value) < units[i - 1].below) {
+      out->display_unit = units[i - 1].shown;
+      out->factor = units[i - 1].factor;
+    }
+  }
+  return out->key != NULL && out->title != NULL ? DEA_OK : DEA_E_MEMORY;
+}
 
 // Study ------------------------------------------------------------------------------------------
 
@@ -98,19 +343,16 @@ struct limits {
 
 struct map {
   const struct dea_model_type *type;
+  const struct dea_result *result;
+  struct plan plan;
   double highest_V, end_V;
-  bool lift;   // levels of the fibre tip's displacement [m]; else of the strain
-  bool bound;  // which is an upper bound
-  double step; // between levels; NAN: none
-  struct dea_design *varied;
+  bool lift, strain; // levels of the fibre tip's displacement [m], or of the strain, as ever
+  bool bound;        // which is an upper bound
+  double base, step; // of levels; NAN: none
   struct limits now; // being filled
   struct dea_load_point before;
+  double value_before;
 };
-
-static double level_value(const struct map *map, const struct dea_load_point *point)
-{
-  return map->lift ? point->fibre_tip_z_m : point->electrode_stretch - 1;
-}
 
 static double first_of(double before, double now)
 {
@@ -124,16 +366,18 @@ static dea_status take_point(void *user, const struct dea_load_point *point)
   if (isnan(map->before.voltage_V) && point->min_tension_N_per_m < 1e-6) {
     map->now.slack_V = 0; // a film without pre-stretch
   }
-  double from = level_value(map, &map->before), to = level_value(map, point);
+  const double from = map->value_before, to = dea_point_get(point, map->plan.column);
   for (size_t k = 0; k < LEVELS && point->stable; k++) {
-    double level = map->step * (double)(k + 1);
-    if (from < level && to >= level) {
+    const double level = map->base + map->step * (double)(k + 1);
+    if (map->step > 0 ? from < level && to >= level : from > level && to <= level) {
       double share = (level - from) / (to - from);
       double at = map->before.voltage_V + share * (point->voltage_V - map->before.voltage_V);
       map->now.level_V[k] = first_of(map->now.level_V[k], at);
     }
   }
   map->before = *point;
+  map->before.monitors = NULL; // lent
+  map->value_before = to;
   return DEA_OK;
 }
 
@@ -151,35 +395,76 @@ static dea_status take_event(void *user, const struct dea_event *event)
   return DEA_OK;
 }
 
-/* The path of the varied design. */
+/* Voltage at which a number that falls from one point to the next passes 0, or `before`. */
+static double passes(double found, const struct dea_load_point *from, double a,
+                     const struct dea_load_point *to, double b)
+{
+  const bool here = a >= 0 && b < 0;
+  return here ? first_of(found, from->voltage_V + a / (a - b) * (to->voltage_V - from->voltage_V))
+              : found;
+}
+
+/* The design's voltages one after the other, in place of a path. */
+static dea_status sweep(struct dea_context *ctx, const struct dea_device *device,
+                        struct dea_model *model, struct map *map)
+{
+  const struct dea_design *design = map->result->design;
+  struct dea_monitor_set set;
+  dea_status status = dea_monitor_set_init(ctx, map->type, device, &set);
+  for (size_t i = 0; i < design->compute.voltage_count && status == DEA_OK; i++) {
+    const struct dea_load_point before = map->before;
+    struct dea_load_point point;
+    status = map->type->solve(ctx, model, design->compute.voltages_V[i], &point);
+    const struct dea_event *limit =
+        status != DEA_OK && map->type->limit != NULL ? map->type->limit(model) : NULL;
+    if (limit != NULL) {
+      take_event(map, limit);
+    }
+    status = status == DEA_OK ? dea_monitor_set_read(ctx, &set, map->type, model, false, &point)
+                              : status;
+    if (status == DEA_OK) {
+      map->now.slack_V = passes(map->now.slack_V, &before, before.min_tension_N_per_m, &point,
+                                point.min_tension_N_per_m);
+      map->now.breakdown_V = passes(map->now.breakdown_V, &before, before.breakdown_margin, &point,
+                                    point.breakdown_margin);
+      status = take_point(map, &point);
+    }
+  }
+  dea_monitor_set_free(&set);
+  return status;
+}
+
+/* The path of a varied device. */
 static dea_status follow(struct dea_context *ctx, const struct dea_device *device, struct map *map)
 {
-  const struct dea_path_options options = {.max_stretch = 10 * device->pre_stretch,
+  const struct dea_path_options options = {.max_stretch = 10 * dea_device_pre_stretch(device),
                                            .max_voltage_V = map->end_V,
                                            .max_points = PATH_POINTS};
   struct dea_model *model;
-  DEA_TRY(ctx, dea_model_create(ctx, map->type, map->varied, device, &model));
+  DEA_TRY(ctx, dea_model_create(ctx, map->type, map->result->design, device, &model));
   map->before = dea_load_point_empty();
-  dea_status status = dea_model_path(ctx, map->type, model, &options, take_point, take_event, map);
+  map->value_before = NAN;
+  dea_status status = map->type->path != NULL ? dea_model_path(ctx, map->type, model, &options,
+                                                               take_point, take_event, map)
+                                              : sweep(ctx, device, model, map);
   map->type->destroy(ctx, model);
   return status;
 }
 
-/* The limits of the design with another value of a parameter; one that does not fit together, or
- * that the model cannot follow, has none. Materials stay. */
-static dea_status find_limits(struct dea_context *ctx, const struct dea_result *result,
-                              const struct parameter *parameter, double value, struct map *map)
+/* The limits of the design with another value of a number; one that does not fit together, or that
+ * the model cannot follow, has none. Materials stay. */
+static dea_status find_limits(struct dea_context *ctx, const struct dea_design_number *number,
+                              double value, struct map *map)
 {
-  struct dea_device device = *result->device;
+  struct dea_changed_device changed;
   map->now = (struct limits){NAN, NAN, NAN, {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN}};
-  *map->varied = *result->design;
-  ((struct dea_quantity *)(void *)((char *)map->varied + parameter->offset))->si = value;
-  dea_geometry_fill(map->varied, &device);
   size_t errors = dea_finding_trial_begin(ctx);
-  dea_status status = dea_geometry_check(ctx, map->varied, &device);
+  dea_status status =
+      dea_device_change(ctx, map->result->design, map->result->device, number, value, &changed);
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) == errors) {
-    status = follow(ctx, &device, map);
+    status = follow(ctx, &changed.device, map);
   }
+  dea_changed_device_free(&changed);
   dea_finding_trial_end(ctx, errors);
   if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
     return status;
@@ -188,50 +473,99 @@ static dea_status find_limits(struct dea_context *ctx, const struct dea_result *
   return DEA_OK;
 }
 
+/* Without a quantity: of a disc fibre tips or strain, else the motion that a monitor shows most. */
+static void choose_column(const struct dea_context *ctx, const struct dea_curve *curve,
+                          struct map *map)
+{
+  int column = dea_point_column_find("highest_z_m");
+  const int strain = dea_point_column_find("electrode_stretch");
+  if (map->plan.column >= 0) {
+    return;
+  }
+  map->lift = map->result->device->fibre_count > 0;
+  map->strain = !map->lift && dea_points_have(curve->points, curve->count, strain);
+  if (map->lift || map->strain) {
+    column = map->lift ? dea_point_column_find("fibre_tip_z_m") : strain;
+  } else {
+    dea_curve_headlines(ctx, curve, &column, 1);
+  }
+  map->plan.column = column;
+}
+
 /* Levels in steps of 1, 2 or 5: about five up to what the design itself reaches. */
-static dea_status choose_step(struct dea_context *ctx, const struct dea_result *result,
-                              struct map *map)
+static void choose_step(const struct dea_curve *curve, struct map *map)
 {
   static const double nice[] = {1, 2, 5, 10};
+  const int column = map->plan.column;
+  const double rest = map->strain ? 1 : map->lift ? 0 : dea_point_get(&curve->points[0], column);
+  const double reached = dea_point_get(&curve->points[curve->count - 1], column) - rest,
+               size = fabs(reached);
+  map->step = NAN;
+  double power = pow(10, floor(log10(size / 5)));
+  for (size_t i = 0; i < COUNT(nice) && size > 0 && isnan(map->step); i++) {
+    map->step = nice[i] * power >= 0.999 * size / 5 ? nice[i] * power : NAN;
+  }
+  map->step = (map->lift || map->strain) && reached < 0 ? NAN : copysign(map->step, reached);
+  map->base = map->lift || map->strain ? rest : map->step * floor(rest / map->step);
+}
+
+/* The design itself, at rest and at the highest voltage that it reaches. */
+static dea_status look(struct dea_context *ctx, struct map *map)
+{
+  const struct dea_device *device = map->result->device;
+  struct dea_curve curve = {0};
   struct dea_model *model;
-  struct dea_load_point point = dea_load_point_empty();
-  DEA_TRY(ctx, dea_model_create(ctx, map->type, result->design, result->device, &model));
-  double reached = NAN;
+  DEA_TRY(ctx, dea_model_create(ctx, map->type, map->result->design, device, &model));
   const size_t errors = dea_finding_trial_begin(ctx);
-  for (double share = 1; share > 0.1 && !(reached > 0); share -= 0.1) {
-    if (map->type->solve(ctx, model, share * map->highest_V, &point) == DEA_OK) {
-      reached = level_value(map, &point);
-      map->bound = map->lift && dea_load_point_bounds(&point);
-    }
+  dea_status status =
+      dea_study_take_points(ctx, map->type, model, device, (double[]){0}, 1, &curve);
+  for (double share = 1; share > 0.1 && curve.count == 1; share -= 0.1) {
+    const double V = share * map->highest_V;
+    status = dea_study_take_points(ctx, map->type, model, device, &V, 1, &curve);
   }
   dea_finding_trial_end(ctx, errors);
   map->type->destroy(ctx, model);
-  dea_context_clear(ctx);
-  map->step = NAN;
-  double power = pow(10, floor(log10(reached / 5)));
-  for (size_t i = 0; i < COUNT(nice) && reached > 0 && isnan(map->step); i++) {
-    map->step = nice[i] * power >= 0.999 * reached / 5 ? nice[i] * power : NAN;
+  if (status != DEA_E_MEMORY && curve.count > 0) {
+    choose_column(ctx, &curve, map);
+    choose_step(&curve, map);
+    map->bound = map->lift && dea_load_point_bounds(&curve.points[curve.count - 1]);
   }
+  dea_free(ctx, curve.points);
+  dea_arena_free(&curve.memory);
+  if (status == DEA_E_MEMORY) {
+    return status;
+  }
+  dea_context_clear(ctx);
   return DEA_OK;
 }
 
-static dea_status add_parameter(struct dea_context *ctx, const struct parameter *parameter,
-                                struct map *map, struct dea_result *result)
+static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, size_t rows,
+                           struct map *map, struct dea_result *result)
 {
-  const void *member = (const char *)result->design + parameter->offset;
-  double own = ((const struct dea_quantity *)member)->si;
-  double low = fmax(parameter->floor, parameter->least * own);
-  double high = fmin(parameter->ceiling, parameter->most * own);
+  struct dea_result_column columns[COUNT(limit_columns)];
   struct dea_result_table *table;
-  DEA_TRY(ctx,
-          dea_result_add_table(ctx, result, &parameter->table, map->type->name, LEVELS, &table));
-  for (size_t i = 0; i < ROWS; i++) {
-    double value = low + (high - low) * (double)i / (ROWS - 1);
+  char title[2 * DEA_NUMBER_KEY_SIZE];
+  memcpy(columns, limit_columns, sizeof columns);
+  DEA_TRY(ctx, fill_column(ctx, axis, false, &columns[0]));
+  snprintf(title, sizeof title, "limits against %s", columns[0].title);
+  const struct dea_result_table_type type = {.study = study_name,
+                                             .name = name_axis(ctx, axis),
+                                             .title = dea_intern(ctx, title),
+                                             .where = IN_ALL, // the report draws it
+                                             .every = rows > 9 ? 4 : 0,
+                                             .columns = columns,
+                                             .column_count = COUNT(columns)};
+  if (type.name == NULL || type.title == NULL) {
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, add_table(ctx, result, map->type->name, type, LEVELS, &table));
+  for (size_t i = 0; i < rows; i++) {
+    double value = axis->low + (axis->high - axis->low) * (double)i / (double)(rows - 1);
     if (dea_interrupted_anywhere(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted; %zu rows of the operating map are kept",
                       table->row_count);
     }
-    DEA_TRY(ctx, find_limits(ctx, result, parameter, value, map));
+    DEA_TRY(ctx, find_limits(ctx, &axis->number, value, map));
     const struct dea_result_table_value row[] = {{.number = value},
                                                  {.number = map->now.slack_V},
                                                  {.number = map->now.breakdown_V},
@@ -242,22 +576,34 @@ static dea_status add_parameter(struct dea_context *ctx, const struct parameter 
   return DEA_OK;
 }
 
-static dea_status add_map(struct dea_context *ctx, struct map *map, struct dea_result *result)
+static dea_status add_scale(struct dea_context *ctx, const struct map *map,
+                            struct dea_result *result)
 {
+  enum { OWN = COUNT(scale_columns) };
+  struct dea_result_column columns[OWN + AXES_MAX];
+  struct dea_result_table_value row[OWN + AXES_MAX] = {{.number = map->highest_V},
+                                                       {.number = map->end_V},
+                                                       {.number = map->lift ? map->step : NAN},
+                                                       {.number = map->strain ? map->step : NAN},
+                                                       {.text = map->bound ? "upper bounds" : ""},
+                                                       {.number = map->plan.column},
+                                                       {.number = map->base},
+                                                       {.number = map->step}};
   struct dea_result_table *scale;
-  DEA_TRY(ctx, choose_step(ctx, result, map));
-  const struct dea_result_table_value row[] = {{.number = map->highest_V},
-                                               {.number = map->end_V},
-                                               {.number = map->lift ? map->step : NAN},
-                                               {.number = map->lift ? NAN : map->step},
-                                               {.text = map->bound ? "upper bounds" : ""},
-                                               {.number = result->design->pre_stretch.si},
-                                               {.number = result->design->film.thickness_m.si}};
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, &scale_table, map->type->name, 0, &scale));
-  DEA_TRY(ctx, dea_result_table_add_row(ctx, scale, row));
-  for (size_t i = 0; i < COUNT(parameters); i++) {
-    DEA_TRY(ctx, add_parameter(ctx, &parameters[i], map, result));
+  memcpy(columns, scale_columns, sizeof scale_columns);
+  for (size_t i = 0; i < map->plan.count; i++) {
+    DEA_TRY(ctx, fill_column(ctx, &map->plan.axes[i], true, &columns[OWN + i]));
+    row[OWN + i].number = map->plan.axes[i].number.value;
   }
+  const struct dea_result_table_type type = {.study = study_name,
+                                             .name = "",
+                                             .title = "operating map",
+                                             .where = DEA_IN_JSON | DEA_IN_TERMINAL,
+                                             .one_row = true,
+                                             .columns = columns,
+                                             .column_count = OWN + map->plan.count};
+  DEA_TRY(ctx, add_table(ctx, result, map->type->name, type, 0, &scale));
+  DEA_TRY(ctx, dea_result_table_add_row(ctx, scale, row));
   return DEA_OK;
 }
 
@@ -265,34 +611,42 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: each design has its own
+  const struct settings *settings = dea_design_settings(result->design, &section)->values;
+  const bool given = settings->rows.origin != DEA_ABSENT && settings->rows.si >= 2;
+  const size_t rows = given ? (size_t)settings->rows.si : type->path != NULL ? ROWS : SWEPT_ROWS;
   double highest_V = dea_study_highest_V(result);
   struct map map = {.type = type,
+                    .result = result,
                     .highest_V = highest_V,
-                    .end_V = 1.5 * highest_V,
-                    .lift = result->device->fibre_count > 0};
+                    .end_V = type->path != NULL ? 1.5 * highest_V : highest_V};
   if (!(highest_V > 0)) {
     return DEA_OK;
   }
-  map.varied = dea_alloc(ctx, 1, sizeof *map.varied);
-  if (map.varied == NULL) {
-    return DEA_E_MEMORY;
+  DEA_TRY(ctx, make_plan(ctx, result->design, result->device, &map.plan));
+  DEA_TRY(ctx, look(ctx, &map));
+  if (map.plan.column < 0) { // it has no point
+    return DEA_OK;
   }
-  dea_status status = add_map(ctx, &map, result);
-  dea_free(ctx, map.varied); // what it points to is the design's
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  DEA_TRY(ctx, add_scale(ctx, &map, result));
+  for (size_t i = 0; i < map.plan.count; i++) {
+    DEA_TRY(ctx, add_axis(ctx, &map.plan.axes[i], rows, &map, result));
+  }
+  return DEA_OK;
 }
 
 static bool able(const struct dea_model_type *type, const struct dea_result *result)
 {
-  (void)result;
-  return type->path != NULL;
+  return type->path != NULL || dea_design_settings(result->design, &section)->written;
 }
 
-const struct dea_study dea_study_operating_map = {.name = study_name,
-                                                  .by_name_only = true,
-                                                  .own_models = true,
-                                                  .ability = "equilibrium path",
-                                                  .able = able,
-                                                  .run = run,
-                                                  .figures = dea_operating_map_figures,
-                                                  .figure_count = DEA_OPERATING_MAP_FIGURES};
+const struct dea_study dea_study_operating_map = {
+    .name = study_name,
+    .keys = &section,
+    .own_models = true,
+    .any_layout = true,
+    .ability = "equilibrium path without compute.operating_map",
+    .able = able,
+    .refuse = refuse,
+    .run = run,
+    .figures = dea_operating_map_figures,
+    .figure_count = DEA_OPERATING_MAP_FIGURES};

@@ -6,29 +6,28 @@
 
 static const char study[] = "operating-map";
 
-/* A parameter of the map: its table, the key of its values there, that of the design's own. */
-struct parameter {
-  const char *table, *key, *own, *label;
-  double factor; // display unit
+/* Tables with figures and labels of their own. */
+static const struct {
+  const char *table, *label;
+} usual[] = {
+    {"pre_stretch", "Pre-stretch"},
+    {"film_thickness", "Thickness of the unstretched film (\302\265m)"},
 };
-
-static const struct parameter parameters[] = {
-    {"pre_stretch", "pre_stretch", "own_pre_stretch", "Pre-stretch", 1},
-    {"film_thickness", "film_thickness_m", "own_film_thickness_m",
-     "Thickness of the unstretched film (\302\265m)", 1e6},
-};
+enum { USUAL = sizeof usual / sizeof usual[0] };
 
 struct map {
-  const struct parameter *parameter;
   const struct dea_result_table *table;
+  const struct dea_result_column *number; // its first column
   double highest_V, end_V;
-  double lift_step_m, strain_step; // between levels; one is NAN, or both: none
-  bool bound;                      // a displacement is an upper bound
+  double lift_step_m, strain_step;   // between levels; one is NAN, or both: none
+  const struct dea_column *quantity; // then of this, from base on
+  double base, step;
+  bool bound; // a displacement is an upper bound
 };
 
 static double value(const struct map *map, size_t row)
 {
-  return map->parameter->factor * dea_result_table_number(map->table, row, map->parameter->key, 0);
+  return map->number->factor * dea_result_table_number(map->table, row, map->number->key, 0);
 }
 
 /* A band from where a limit is up to the top, over the rows that have it. */
@@ -55,30 +54,56 @@ static dea_status add_region(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
+/* "hub z = 500 um", "strain 5 %". */
+static void name_level(const struct map *map, size_t k, char out[DEA_LABEL_SIZE])
+{
+  const bool lift = map->lift_step_m > 0, small = map->lift_step_m < 1e-3;
+  const double above = (double)(k + 1) * map->step;
+  if (lift || map->strain_step > 0) {
+    snprintf(out, DEA_LABEL_SIZE,
+             !lift        ? "strain %g %s"
+             : map->bound ? "{/:Italic z} \342\211\244 %g %s"
+                          : "{/:Italic z} = %g %s",
+             above * (lift ? (small ? 1e6 : 1e3) : 100), lift ? (small ? "\302\265m" : "mm") : "%");
+    return;
+  }
+  char name[DEA_LABEL_SIZE / 2], unit[DEA_COLUMN_UNIT_SIZE];
+  const bool bare = strcmp(map->quantity->display_unit, "1") == 0;
+  dea_label_escape(map->quantity->header, name, sizeof name);
+  dea_figure_unit(map->quantity->display_unit, unit);
+  snprintf(out, DEA_LABEL_SIZE, "%s = %.4g%s%s", name, map->quantity->factor * (map->base + above),
+           bare ? "" : " ", bare ? "" : unit);
+}
+
 static dea_status add_levels(struct dea_context *ctx, struct dea_panel *panel,
                              const struct map *map)
 {
-  bool lift = map->lift_step_m > 0, small = map->lift_step_m < 1e-3;
-  double step = lift ? map->lift_step_m : map->strain_step;
   size_t rows = map->table->row_count;
   static const enum dea_colour order[] = {DEA_GREEN, DEA_BLUE, DEA_ORANGE, DEA_BLACK};
-  for (size_t k = 0; k < map->table->width && step > 0; k++) {
+  for (size_t k = 0; k < map->table->width && !isnan(map->step); k++) {
     struct dea_series *series;
     DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &series));
     series->style = k < 4 ? DEA_LINE : DEA_DASHED;
     series->colour = order[k % 4];
-    double level = step * (double)(k + 1);
-    snprintf(series->title, sizeof series->title,
-             !lift        ? "strain %g %s"
-             : map->bound ? "{/:Italic z} \342\211\244 %g %s"
-                          : "{/:Italic z} = %g %s",
-             level * (lift ? (small ? 1e6 : 1e3) : 100), lift ? (small ? "\302\265m" : "mm") : "%");
+    name_level(map, k, series->title);
     for (size_t i = 0; i < rows; i++) {
       series->values[i] = value(map, i);
       series->values[rows + i] = 1e-3 * dea_result_table_number(map->table, i, "level_V", k);
     }
   }
   return DEA_OK;
+}
+
+static void label_axis(const struct map *map, char out[DEA_LABEL_SIZE])
+{
+  struct dea_column shown = {.header = map->number->title,
+                             .display_unit = map->number->display_unit};
+  dea_figure_label(&shown, out, DEA_LABEL_SIZE);
+  for (size_t k = 0; k < USUAL; k++) {
+    if (strcmp(usual[k].table, map->table->type.name) == 0) {
+      snprintf(out, DEA_LABEL_SIZE, "%s", usual[k].label);
+    }
+  }
 }
 
 static dea_status draw(struct dea_context *ctx, const struct map *map, double own,
@@ -94,9 +119,9 @@ static dea_status draw(struct dea_context *ctx, const struct map *map, double ow
   here->colour = DEA_BLACK;
   here->marker = 5;
   snprintf(here->title, sizeof here->title, "this design");
-  here->values[0] = map->parameter->factor * own;
+  here->values[0] = map->number->factor * own;
   here->values[1] = 1e-3 * map->highest_V;
-  snprintf(panel->x_label, sizeof panel->x_label, "%s", map->parameter->label);
+  label_axis(map, panel->x_label);
   snprintf(panel->y_label, sizeof panel->y_label, "Voltage {/:Italic V} (kV)");
   panel->x_min = value(map, 0);
   panel->x_max = value(map, map->table->row_count - 1);
@@ -115,23 +140,30 @@ static bool is_bound(const struct dea_result_table *scale)
   return found;
 }
 
-/* The map of a model; the panel stays without series where there is none. */
+/* A map of a model by its table, in a panel. */
 static dea_status add_map(struct dea_context *ctx, const struct dea_result *result,
-                          const char *model, const struct parameter *parameter,
-                          struct dea_panel *panel)
+                          const struct dea_result_table *table, struct dea_panel *panel)
 {
-  const struct dea_result_table *scale = dea_result_find_table(result, model, study, "");
-  struct map map = {.parameter = parameter,
-                    .table = dea_result_find_table(result, model, study, parameter->table),
-                    .bound = is_bound(scale)};
-  if (scale == NULL || map.table == NULL || map.table->row_count == 0) {
+  const struct dea_result_table *scale = dea_result_find_table(result, table->model, study, "");
+  struct map map = {.table = table, .number = &table->type.columns[0], .bound = is_bound(scale)};
+  char own[2 * DEA_KEY_PART_SIZE];
+  if (scale == NULL || table->row_count == 0) {
     return DEA_OK;
   }
   map.highest_V = dea_result_table_number(scale, 0, "highest_voltage_V", 0);
   map.end_V = dea_result_table_number(scale, 0, "end_voltage_V", 0);
   map.lift_step_m = dea_result_table_number(scale, 0, "displacement_step_m", 0);
   map.strain_step = dea_result_table_number(scale, 0, "strain_step", 0);
-  return draw(ctx, &map, dea_result_table_number(scale, 0, parameter->own, 0), panel);
+  map.quantity = dea_result_table_quantity(scale, 0);
+  map.base = dea_result_table_number(scale, 0, "level_base", 0);
+  map.step = dea_result_table_number(scale, 0, "level_step", 0);
+  if (map.quantity == NULL) { // of an older version
+    map.step = map.lift_step_m > 0 ? map.lift_step_m : map.strain_step;
+  }
+  snprintf(own, sizeof own, "own_%.80s", map.number->key);
+  DEA_TRY(ctx, draw(ctx, &map, dea_result_table_number(scale, 0, own, 0), panel));
+  panel->y_max = 1e-3 * map.end_V;
+  return DEA_OK;
 }
 
 /* The key of the first panel says what is in both: what only the second one shows gets a point
@@ -152,19 +184,32 @@ static void fill_key(struct dea_plot *plot)
   dea_panel_key_above(first, (titles + 1) / 2); // in two columns
 }
 
-/* Of the first models that have it, one above the other. */
-static dea_status build(struct dea_context *ctx, const struct dea_result *result,
-                        struct dea_plot *plot, const struct parameter *parameter)
+static bool is_usual(const struct dea_result_table *table)
 {
-  const char *models[DEA_DESIGN_MODELS_MAX];
-  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX), shown = 0;
-  for (size_t m = 0; m < count && shown < DEA_PLOT_PANELS_MAX; m++) {
+  bool found = false;
+  for (size_t k = 0; k < USUAL; k++) {
+    found = found || strcmp(usual[k].table, table->type.name) == 0;
+  }
+  return found;
+}
+
+/* Of the first models that have it, one above the other. name: NULL: the maps without a name here.
+ */
+static dea_status build(struct dea_context *ctx, const struct dea_result *result,
+                        struct dea_plot *plot, const char *name)
+{
+  size_t shown = 0;
+  for (size_t t = 0; t < result->table_count && shown < DEA_PLOT_PANELS_MAX; t++) {
+    const struct dea_result_table *table = &result->tables[t];
     struct dea_panel *panel = &plot->panels[shown];
-    DEA_TRY(ctx, add_map(ctx, result, models[m], parameter, panel));
+    if (strcmp(table->type.study, study) != 0 || table->type.name[0] == '\0' ||
+        (name != NULL ? strcmp(table->type.name, name) != 0 : is_usual(table))) {
+      continue;
+    }
+    DEA_TRY(ctx, add_map(ctx, result, table, panel));
     if (panel->series_count > 0) {
-      const struct dea_result_table *scale = dea_result_find_table(result, models[m], study, "");
-      panel->y_max = 1e-3 * dea_result_table_number(scale, 0, "end_voltage_V", 0);
-      snprintf(panel->y_label, sizeof panel->y_label, "{/:Italic V} (kV), model %.40s", models[m]);
+      snprintf(panel->y_label, sizeof panel->y_label, "{/:Italic V} (kV), model %.40s",
+               table->model);
       panel->key = "off"; // the first one's says all
       plot->panel_count = ++shown;
     }
@@ -177,13 +222,19 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 static dea_status build_pre_stretch(struct dea_context *ctx, const struct dea_result *result,
                                     struct dea_plot *plot)
 {
-  return build(ctx, result, plot, &parameters[0]);
+  return build(ctx, result, plot, usual[0].table);
 }
 
 static dea_status build_film_thickness(struct dea_context *ctx, const struct dea_result *result,
                                        struct dea_plot *plot)
 {
-  return build(ctx, result, plot, &parameters[1]);
+  return build(ctx, result, plot, usual[1].table);
+}
+
+static dea_status build_others(struct dea_context *ctx, const struct dea_result *result,
+                               struct dea_plot *plot)
+{
+  return build(ctx, result, plot, NULL);
 }
 
 const struct dea_figure dea_operating_map_figures[DEA_OPERATING_MAP_FIGURES] = {
@@ -198,5 +249,11 @@ const struct dea_figure dea_operating_map_figures[DEA_OPERATING_MAP_FIGURES] = {
         .study = study,
         .caption = "where the actuator can be used: voltage and film thickness",
         .build = build_film_thickness,
+    },
+    {
+        .name = "map",
+        .study = study,
+        .caption = "where the actuator can be used: voltage and numbers of its design",
+        .build = build_others,
     },
 };

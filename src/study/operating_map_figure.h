@@ -5,7 +5,7 @@
 
 #include "result/figure.h"
 
-enum { DEA_OPERATING_MAP_FIGURES = 2 };
+enum { DEA_OPERATING_MAP_FIGURES = 3 };
 extern const struct dea_figure dea_operating_map_figures[DEA_OPERATING_MAP_FIGURES];
 
 #endif

@@ -2,14 +2,17 @@
  * study operating-map found it. */
 #include "output/report/section.h"
 
-#include <stddef.h>
+#include <string.h>
 
 static const char study[] = "operating-map";
 
 dea_status dea_section_map(struct dea_report *report, const struct dea_report_run *run)
 {
   const struct dea_result *result = run->run->result;
-  const struct dea_result_table *scale = dea_result_find_table(result, "lumped", study, "");
+  const struct dea_result_table *scale = NULL;
+  for (size_t i = 0; i < result->table_count && scale == NULL; i++) {
+    scale = strcmp(result->tables[i].type.study, study) == 0 ? &result->tables[i] : NULL;
+  }
   if (run->device == NULL || scale == NULL) {
     return DEA_OK;
   }
