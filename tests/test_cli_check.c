@@ -327,11 +327,6 @@ static void test_layout(void **state)
   assert_int_equal(command_run("check @/examples/frdea-4.yaml --svg disc.svg"), 0);
   command_read("disc.svg", svg);
   assert_contains(svg, ">4 of 11.25 \303\227 2 mm<");
-  assert_int_equal(
-      command_run(
-          "check @/examples/devices/two-electrodes.yaml --set compute.convergence.tolerance=0.1"),
-      3);
-  assert_contains(command_err, "the study 'convergence' needs a disc in a round frame");
   assert_int_equal(command_run("run @/examples/devices/two-electrodes.yaml -o x -m lumped"), 3);
   assert_contains(command_err, "this needs a disc in a round frame");
 }

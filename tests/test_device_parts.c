@@ -256,8 +256,6 @@ static const struct {
     {MORE, "bodies: [{name: hub, shape: far}]", "nothing holds the body 'hub'", "hub"},
     {MORE, "bodies: [{name: a, shape: film}, {name: b, shape: active}]",
      "the bodies 'b' and 'a' lie on each other", "b, shape"},
-    {MORE, "compute: {compare: [{name: own}, {name: thin, set: {plies.lower.thickness: 9 um}}]}",
-     "a design with 'plies' is set beside no other in one run", "own"},
     {MORE, "monitors: [{name: tip, at: [0, 0 mm]}]", "write for example '0 mm'", "0, 0 mm"},
     {MORE, "monitors: [{name: tip, at: [0 mm]}]", "at must have 2 items, not 1", "[0 mm]"},
     {MORE, "monitors: [{name: tip, at: [50 mm, 0 mm]}]", "no ply lies where the monitor 'tip' is",

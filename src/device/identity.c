@@ -24,7 +24,7 @@ bool dea_identity_has(const char *path)
                                        "compute.compare", "compute.convergence",
                                        "compute.frequency", "compute.loading", "compute.modal",
                                        "compute.sensitivity", "compute.states", "compute.transient",
-                                       "compute.uncertainty", //
+                                       "compute.operating_map", "compute.uncertainty", //
                                        "report"};
   for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
     if (begins(path, others[i])) {

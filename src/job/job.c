@@ -72,7 +72,7 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
   return DEA_OK;
 }
 
-/* Where a design names a model; nowhere: who runs it has. */
+/* Where a design names a model; its file: who runs it has. */
 static struct dea_location place_of(const struct dea_design *design, const char *model)
 {
   for (size_t i = 0; i < design->compute.model_count; i++) {
@@ -80,7 +80,7 @@ static struct dea_location place_of(const struct dea_design *design, const char 
       return design->compute.models[i].location;
     }
   }
-  return (struct dea_location){0};
+  return (struct dea_location){design->file, 0, 0};
 }
 
 static dea_status check_model(struct dea_context *ctx, const struct dea_model_type *type,
@@ -120,14 +120,20 @@ static dea_status check_models(struct dea_context *ctx, const struct dea_job *jo
   return first;
 }
 
-/* Whether the devices of all designs that this one is compared with can be built. */
-static dea_status check_variants(struct dea_context *ctx, const struct dea_design *design)
+/* Whether the devices of all designs that this one is compared with can be built, and are taken by
+ * some model. */
+static dea_status check_variants(struct dea_context *ctx, const struct dea_job *job,
+                                 const struct dea_design *design)
 {
   dea_status first = DEA_OK;
   for (size_t i = 0; i < design->compute.compare_count; i++) {
     const struct dea_design *variant = design->compute.compare[i].design;
     struct dea_device *device = NULL;
     dea_status status = variant != NULL ? dea_device_build(ctx, variant, &device) : DEA_OK;
+    if (device != NULL) {
+      status =
+          check_models(ctx, job, false, &(struct dea_result){.design = variant, .device = device});
+    }
     dea_device_destroy(ctx, device);
     first = first == DEA_OK ? status : first;
   }
@@ -159,7 +165,7 @@ dea_status dea_job_check(struct dea_context *ctx, const struct dea_job *job, boo
   for (int step = 0; step < (built ? 5 : 2); step++) {
     dea_status status =
         step == 0   ? dea_study_check(ctx, job->studies, job->study_count, result->design)
-        : step == 1 ? check_variants(ctx, result->design)
+        : step == 1 ? check_variants(ctx, job, result->design)
         : step == 2 ? check_models(ctx, job, each, result)
         : step == 3
             ? dea_study_check_models(ctx, job->models, job->model_count, job->studies,

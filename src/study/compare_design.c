@@ -594,7 +594,6 @@ static bool asked(const struct dea_design *design)
 const struct dea_study dea_study_compare_design = {
     .name = study_name,
     .asked = asked,
-    .any_layout = true,
     .needs = "more design files on the command line, or compute.compare",
     .run = run,
     .tables = tables,

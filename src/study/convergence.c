@@ -509,7 +509,6 @@ const struct dea_study dea_study_convergence = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
-    .any_layout = true,
     .ability = "mesh to refine",
     .able = able,
     .run = run,

@@ -620,7 +620,6 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
 }
 
 const struct dea_study dea_study_force = {
-    .any_layout = true,
     .name = study_name,
     .keys = &section,
     .asked = asked,

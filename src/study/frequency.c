@@ -622,7 +622,6 @@ const struct dea_study dea_study_frequency = {
     .asked = asked,
     .needs = "compute.frequency.bias",
     .own_models = true,
-    .any_layout = true,
     .ability = "vibrations",
     .able = able,
     .refuse = refuse,

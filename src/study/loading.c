@@ -824,7 +824,6 @@ const struct dea_study dea_study_loading = {
     .asked = dea_loading_asked,
     .needs = "compute.loading.from and to, or turn_, force_, pressure_from and to",
     .own_models = true,
-    .any_layout = true,
     .ability = "bodies and pressures",
     .able = able,
     .run = run,

@@ -194,7 +194,6 @@ const struct dea_study dea_study_modal = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
-    .any_layout = true,
     .ability = "vibrations",
     .able = able,
     .refuse = refuse,

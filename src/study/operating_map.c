@@ -643,7 +643,6 @@ const struct dea_study dea_study_operating_map = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
-    .any_layout = true,
     .ability = "equilibrium path without compute.operating_map",
     .able = able,
     .refuse = refuse,

@@ -95,8 +95,5 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
          (type->long_path != NULL && result->design->compute.solid.path.value != 0);
 }
 
-const struct dea_study dea_study_path = {.name = "path",
-                                         .any_layout = true,
-                                         .ability = "path without compute.solid.path",
-                                         .able = able,
-                                         .run = run};
+const struct dea_study dea_study_path = {
+    .name = "path", .ability = "path without compute.solid.path", .able = able, .run = run};

@@ -762,6 +762,5 @@ const struct dea_study dea_study_sensitivity = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
-    .any_layout = true,
     .run = run,
 };

@@ -1301,7 +1301,6 @@ const struct dea_study dea_study_states = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
-    .any_layout = true,
     .ability = "other states at a voltage",
     .able = able,
     .run = run,

@@ -83,51 +83,6 @@ static dea_status unknown_name(struct dea_context *ctx, const char *name)
   return status;
 }
 
-/* Whether a study can do anything with the device of a design. */
-static bool is_able(const struct dea_study *study, const struct dea_design *design)
-{
-  return study->any_layout || design == NULL || design->parts == NULL;
-}
-
-static dea_status not_able(struct dea_context *ctx, const struct dea_study *study)
-{
-  struct dea_text able = {.ctx = ctx};
-  for (size_t k = 0; k < STUDIES; k++) {
-    if (studies[k]->any_layout) {
-      dea_text_add(&able, "%s%s", able.length > 0 ? ", " : "", studies[k]->name);
-    }
-  }
-  dea_status status = dea_fail(ctx, DEA_E_DESIGN,
-                               "the study '%s' needs a disc in a round frame; of a design with "
-                               "'plies' there are: %s",
-                               study->name, dea_text_get(&able));
-  dea_text_free(&able);
-  return status;
-}
-
-/* Sections of studies that a design of the general form cannot have. */
-static dea_status check_sections(struct dea_context *ctx, const struct dea_design *design)
-{
-  dea_status status = DEA_OK;
-  if (design == NULL || design->parts == NULL) {
-    return DEA_OK;
-  }
-  const struct dea_node *compute = dea_node_find(dea_yaml_root(design->document), "compute");
-  for (size_t k = 0; k < STUDIES; k++) {
-    const struct dea_settings *settings = dea_design_settings(design, studies[k]->keys);
-    if (settings == NULL || !settings->written || is_able(studies[k], design)) {
-      continue;
-    }
-    const struct dea_node *node = dea_node_find(compute, studies[k]->keys->key);
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, node->key_place,
-                                 "the study '%s' needs a disc in a round frame, a design of the "
-                                 "short form",
-                                 studies[k]->name));
-    status = not_able(ctx, studies[k]);
-  }
-  return status;
-}
-
 /* Whether a model knows what the study needs of it. */
 static bool is_known_to(const struct dea_study *study, const struct dea_model_type *type,
                         const struct dea_result *result)
@@ -234,7 +189,7 @@ dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *desi
   }
   for (size_t k = 0; k < STUDIES; k++) {
     const bool of_all = studies[k]->asked == NULL && studies[k]->keys == NULL;
-    if (!of_all && is_wanted(studies[k], NULL, 0, design) && is_able(studies[k], design) &&
+    if (!of_all && is_wanted(studies[k], NULL, 0, design) &&
         !is_known_to_some(studies[k], types, count, &result)) {
       struct dea_text text = {.ctx = ctx};
       add_known_to_none(studies[k], types, count, &result, &text);
@@ -250,10 +205,7 @@ dea_status dea_study_warn(struct dea_context *ctx, const struct dea_design *desi
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design)
 {
-  if (names == NULL) {
-    return check_sections(ctx, design);
-  }
-  for (size_t i = 0; i < name_count; i++) {
+  for (size_t i = 0; names != NULL && i < name_count; i++) {
     size_t k = 0;
     while (k < STUDIES && strcmp(studies[k]->name, names[i]) != 0) {
       k++;
@@ -264,9 +216,6 @@ dea_status dea_study_check(struct dea_context *ctx, const char *const names[], s
     if (studies[k]->needs != NULL && !is_asked(studies[k], design)) {
       return dea_fail(ctx, DEA_E_DESIGN, "the study '%s' needs %s in the design", names[i],
                       studies[k]->needs);
-    }
-    if (!is_able(studies[k], design)) {
-      return not_able(ctx, studies[k]);
     }
   }
   return DEA_OK;
@@ -314,8 +263,7 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   struct ending first = {.status = DEA_OK};
   for (size_t i = 0; i < STUDIES; i++) {
-    if (!is_wanted(studies[i], names, name_count, result->design) ||
-        !is_able(studies[i], result->design)) { // the path, that every design asks for
+    if (!is_wanted(studies[i], names, name_count, result->design)) {
       continue;
     }
     if (!is_known_to(studies[i], type, result)) {

@@ -16,7 +16,6 @@ struct dea_study {
   const char *needs; // keys of the design without which it cannot run; NULL: none
   bool by_name_only; // no design asks for it
   bool own_models;   // makes its own: `run` gets none
-  bool any_layout;   // takes devices of the general form; else only a disc in a round frame
   /* What a model has to know for it ("vibrations"), and whether one does of the result's device;
    * both NULL: all do. `run` is not called with one that does not. */
   const char *ability;
@@ -41,8 +40,7 @@ struct dea_study {
  * keys the design lacks. */
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          const char *const names[], size_t name_count, struct dea_result *result);
-/* Whether these names, or what the design asks for, can be run for a design, as above; of one of
- * the general form also for a study of a disc, after a finding at what asks for it. */
+/* Whether these names can be run for a design, as above; NULL: what it asks for, which can. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);
 /* DEA_E_ARGUMENT where none of the models knows what one of these studies needs, of the device of a

@@ -239,7 +239,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 }
 
 const struct dea_study dea_study_sweep = {.name = "sweep",
-                                          .any_layout = true,
                                           .run = run,
                                           .figures = dea_observe_figures,
                                           .figure_count = DEA_OBSERVE_FIGURES};

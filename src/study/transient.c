@@ -964,7 +964,6 @@ const struct dea_study dea_study_transient = {
     .asked = asked,
     .needs = "drive.waveform or channels[].waveform",
     .own_models = true,
-    .any_layout = true,
     .ability = "time",
     .able = able,
     .refuse = refuse,

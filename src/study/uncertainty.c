@@ -624,9 +624,5 @@ static bool asked(const struct dea_design *design)
   return true;
 }
 
-const struct dea_study dea_study_uncertainty = {.name = study_name,
-                                                .keys = &section,
-                                                .asked = asked,
-                                                .own_models = true,
-                                                .any_layout = true,
-                                                .run = run};
+const struct dea_study dea_study_uncertainty = {
+    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run = run};
