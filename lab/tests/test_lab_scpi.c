@@ -769,6 +769,26 @@ static void test_evidence_of_zero(void **state)
   }
 }
 
+/* Short pulses, whose readings of 0 V a late output would explain: a meter that shows 0 V from some
+ * moment on is not believed once it was looked at in a pulse, and an honest one is. */
+static void test_evidence_of_zero_in_pulses(void **state)
+{
+  (void)state;
+  for (int lies = 0; lies < 2; lies++) {
+    struct dea_evidence e = {.lag_s = 0.5, .error_V = 300, .share = 0.05, .zero_V = 20};
+    for (int i = 1; i < 1195; i++) {
+      const double time_s = 0.01 * i, volts = i % 50 >= 10 && i % 50 < 20 ? 2000 : 0;
+      dea_evidence_sent(&e, volts, time_s);
+      if (i % 43 == 0) { // in a pulse at every fifth time
+        const bool good = !lies || time_s < 9;
+        assert_int_equal(dea_evidence_measured(&e, good ? volts : 0, time_s, time_s),
+                         DEA_EVIDENCE_FOLLOWS);
+      }
+    }
+    assert_true(dea_evidence_doubt(&e) == (lies ? dea_zero_unseen : NULL));
+  }
+}
+
 /* When a supply that stays at past_V is found to be wrong, where now_V were sent at 10 s and
  * nothing since; it is measured every 0.1 s. */
 static double wrong_at(double past_V, double now_V)
@@ -931,6 +951,7 @@ int main(void)
       cmocka_unit_test(test_stays_where_it_was),
       cmocka_unit_test(test_wrong_outputs_of_fast_waveforms),
       cmocka_unit_test(test_evidence_of_zero),
+      cmocka_unit_test(test_evidence_of_zero_in_pulses),
       cmocka_unit_test(test_late_samples),
       cmocka_unit_test(test_plays),
       cmocka_unit_test(test_makes_no_sense),

@@ -242,7 +242,7 @@ enum dea_evidence_verdict dea_evidence_measured(struct dea_evidence *e, double v
 
 bool dea_evidence_wants(const struct dea_evidence *e)
 {
-  return !e->follows || e->unseen >= WRONG_MOST;
+  return !e->follows || e->unseen > 0;
 }
 
 const char *dea_evidence_doubt(const struct dea_evidence *e)
@@ -250,7 +250,8 @@ const char *dea_evidence_doubt(const struct dea_evidence *e)
   if (e->contradicted || e->wrong > 0) {
     return dea_zero_contradicted;
   }
-  return e->follows || e->largest_V <= 2 * e->zero_V ? NULL : dea_zero_unseen;
+  bool seen = e->follows && e->unseen == 0; // the last time that it should have been away, too
+  return seen || e->largest_V <= 2 * e->zero_V ? NULL : dea_zero_unseen;
 }
 
 void dea_evidence_text(const struct dea_evidence *e, double gain, char out[DEA_EVIDENCE_TEXT_SIZE])
