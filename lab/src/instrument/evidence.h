@@ -5,7 +5,8 @@
  * that no such time explains contradicts what was sent; so do a few of them whose peak, least,
  * mean or effective value none explains: what was sent at the same moments is compared, so that a
  * meter may be as slow as it likes. 0 V is believed of a meter that was seen away from it, as was
- * sent, the last time that it was looked at there, and that has contradicted nothing. Zero-initialised: of nothing sent. */
+ * sent, the last time that it was looked at there, and that has contradicted nothing.
+ * Zero-initialised: of nothing sent. */
 #ifndef DEA_LAB_INSTRUMENT_EVIDENCE_H
 #define DEA_LAB_INSTRUMENT_EVIDENCE_H
 
