@@ -311,6 +311,66 @@ static void test_stack(void **state)
   assert_close(charge[1], 2 * charge[0], 1e-8, 0);
 }
 
+/* A strip of `layers` on a passive ply, held at one end: each a ply of its own, or one of that many
+ * with elements for each of them. The field comes by turns, or not, to a ply on it. */
+static struct dea_device *bender_new(size_t layers, bool as_one, size_t elements)
+{
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  const size_t strip = add_rectangle(device, "strip", 0, 0, 8e-3, 4e-3);
+  l->plies = dea_arena_alloc(&l->memory, layers + 2, sizeof *l->plies);
+  l->electrodes = dea_arena_alloc(&l->memory, layers + 2, sizeof *l->electrodes);
+  add_film(device, strip, 1, 1);
+  for (size_t i = 0; i < (as_one ? 1 : layers); i++) {
+    add_film(device, strip, 1, 1);
+    l->plies[1 + i].elements = 1;
+    add_electrode(device, 1 + i, true, strip, as_one ? 1 : 1 - i % 2);
+  }
+  add_electrode(device, 1, false, strip, 0);
+  if (as_one) {
+    struct dea_layout_ply *stack = &l->plies[1];
+    stack->layers = layers;
+    stack->elements = elements;
+    stack->thickness_m *= (double)layers;
+    stack->thickness_unstretched_m *= (double)layers;
+  }
+  add_film(device, strip, 1, 1);
+  l->plies[l->ply_count - 1].thickness_m = 50e-6;
+  add_electrode(device, l->ply_count - 1, true, strip, 1);
+  const size_t end = add_rectangle(device, "end", -1e-3, -1e-3, 1e-3, 6e-3);
+  l->supports[l->support_count++] =
+      (struct dea_layout_support){.region = strip, .edge = true, .within = end, .components = 7};
+  l->monitors[l->monitor_count++] =
+      (struct dea_layout_monitor){.name = "tip", .kind = DEA_MONITOR_POINT, .at_m = {{8e-3, 2e-3}}};
+  return device;
+}
+
+/* A ply of several layers does what as many plies do. */
+static void test_layers(void **state)
+{
+  (void)state;
+  static const size_t counts[] = {2, 3, 10};
+  for (size_t k = 0; k < 3; k++) {
+    const size_t layers = counts[k];
+    double tip[3], charge[3];
+    for (int i = 0; i < 3; i++) {
+      struct dea_load_point point;
+      struct dea_device *device = bender_new(layers, i > 0, i == 1 ? layers : 1);
+      struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
+      const struct dea_observation seen = solve(model, 1e3, &point);
+      tip[i] = seen.monitor[0][DEA_OBSERVED_Z];
+      charge[i] = seen.channel[1].charge_C;
+      dea_model_find("3d")->destroy(ctx, model);
+      dea_device_destroy(ctx, device);
+    }
+    assert_true(fabs(tip[0]) > 5e-6);
+    assert_close(tip[1], tip[0], 1e-8, 0);
+    assert_close(charge[1], charge[0], 1e-8, 0);
+    assert_close(tip[2], tip[0], 2e-3, 0); // one element through the thickness
+    assert_close(charge[2], charge[0], 2e-5, 0);
+  }
+}
+
 /* The plain disc on a free mesh and on that of blocks: two models of one film. */
 static void test_disc_of_both_models(void **state)
 {
@@ -510,6 +570,7 @@ int main(void)
       cmocka_unit_test(test_pre_stretch_at_an_angle),
       cmocka_unit_test(test_release_at_an_angle),
       cmocka_unit_test(test_stack),
+      cmocka_unit_test(test_layers),
       cmocka_unit_test(test_disc_of_both_models),
       cmocka_unit_test(test_pull_in_is_told),
       cmocka_unit_test(test_leaps_are_located),

@@ -93,7 +93,11 @@ dea_status cli_layout_print(struct dea_context *ctx, const struct dea_layout *l)
     const struct dea_layout_ply *ply = &l->plies[i];
     char name[LABEL_SIZE];
     snprintf(name, sizeof name, "ply %zu, %s", i + 1, ply->name);
-    dea_text_add(&text, "%.6g um", 1e6 * ply->thickness_m);
+    const size_t layers = dea_ply_layers(ply);
+    if (layers > 1) {
+      dea_text_add(&text, "%zu layers of ", layers);
+    }
+    dea_text_add(&text, "%.6g um", 1e6 * ply->thickness_m / (double)layers);
     add_material(&ply->material, &text);
     dea_text_add(&text, "%s", dea_layout_is_dielectric(l, i) ? ", between electrodes" : "");
     DEA_TRY(ctx, cli_row_print(name, strlen(name), &text));
@@ -121,10 +125,11 @@ json_t *cli_layout_json(const struct dea_layout *l)
   }
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_layout_ply *ply = &l->plies[i];
-    json_array_append_new(plies, json_pack("{s:s, s:s, s:s, s:f, s:b}", "name", ply->name, "shape",
-                                           l->regions[ply->region].name, "material",
+    json_array_append_new(plies, json_pack("{s:s, s:s, s:s, s:f, s:I, s:b}", "name", ply->name,
+                                           "shape", l->regions[ply->region].name, "material",
                                            ply->material.name, "thickness_m", ply->thickness_m,
-                                           "dielectric", dea_layout_is_dielectric(l, i)));
+                                           "layers", (json_int_t)dea_ply_layers(ply), "dielectric",
+                                           dea_layout_is_dielectric(l, i)));
   }
   for (size_t i = 1; i < l->channel_count; i++) {
     const struct dea_layout_channel *c = &l->channels[i];

@@ -62,11 +62,12 @@ extern const double dea_parts_unit_m[];
 struct dea_parts_ply {
   struct dea_label name, shape, material;
   struct dea_label law, permittivity, breakdown, viscosity; // ids of sets, "" = the first
-  struct dea_quantity thickness_m;                          // free of stress
+  struct dea_quantity thickness_m;                          // free of stress, of each layer
   struct dea_quantity pre_stretch[2];
   size_t pre_stretch_count; // 1: the same along both axes
   struct dea_quantity angle_rad;
   struct dea_quantity elements; // absent: what the model takes
+  struct dea_quantity layers;
 };
 
 enum dea_parts_side { DEA_SIDE_BOTTOM, DEA_SIDE_TOP };

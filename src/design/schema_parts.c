@@ -59,8 +59,9 @@ static const struct dea_field ply_fields[] = {
          .absent_text = "the material's first"),
     NAME(dea_parts_ply, viscosity, "viscosity", "id of the material's viscosity; none: without",
          "none", .absent_text = "the material's first"),
-    NUMBER(dea_parts_ply, thickness_m, "thickness", "m", "its thickness before the pre-stretch",
-           "100 um", REQUIRED, .above_min = true, .max = 0.1),
+    NUMBER(dea_parts_ply, thickness_m, "thickness", "m",
+           "its thickness before the pre-stretch, of each of its `layers`", "100 um", REQUIRED,
+           .above_min = true, .max = 0.1),
     NUMBER(dea_parts_ply, pre_stretch, "pre_stretch", "1",
            "stretch at which it is bonded: of both axes, or one of each", "[1.2, 1.5]", .min = 0.1,
            .max = 10, .lone = true, .default_text = "[1]",
@@ -71,6 +72,10 @@ static const struct dea_field ply_fields[] = {
     DEA_INTEGER_ROW("elements", offsetof(struct dea_parts_ply, elements), "2",
                     "elements through its thickness", .min = 1, .max = 32,
                     .absent_text = "as many as the model takes"),
+    DEA_INTEGER_ROW("layers", offsetof(struct dea_parts_ply, layers), "100",
+                    "equal layers, computed as one: the electrodes of its two faces lie by turns "
+                    "between them",
+                    .min = 1, .max = 10000, .default_text = "1"),
 };
 
 static const char *const sides[] = {"bottom", "top", NULL}; // enum dea_parts_side

@@ -88,6 +88,7 @@ static dea_status take_film(struct dea_context *ctx, const struct dea_layout *l,
                    "is not in the middle of the film"));
   DEA_TRY(ctx, ask(ctx, electrode->radius_m < frame.radius_m * (1 - DEA_GEOMETRY_SNAP), "electrode",
                    l->electrodes[0].name, "does not end before the edge of the film"));
+  DEA_TRY(ctx, ask(ctx, dea_ply_layers(ply) == 1, "ply", ply->name, "has several layers"));
   DEA_TRY(ctx, ask(ctx, ply->pre_stretch[0] == ply->pre_stretch[1], "ply", ply->name,
                    "has two pre-stretches"));
   DEA_TRY(ctx, ask(ctx, ply->material.law == NULL || !ply->material.law->anisotropic, "ply",

@@ -101,8 +101,9 @@ static dea_status add_plies(struct maker *m)
     double l1 = from->pre_stretch[0].si,
            l2 = from->pre_stretch_count > 1 ? from->pre_stretch[1].si : l1;
     to->name = keep(m, from->name.text);
-    to->thickness_unstretched_m = from->thickness_m.si;
-    to->thickness_m = from->thickness_m.si / (l1 * l2);
+    to->layers = (size_t)from->layers.si;
+    to->thickness_unstretched_m = (double)to->layers * from->thickness_m.si;
+    to->thickness_m = to->thickness_unstretched_m / (l1 * l2);
     to->pre_stretch[0] = l1;
     to->pre_stretch[1] = l2;
     to->angle_rad = from->angle_rad.si;
@@ -115,18 +116,19 @@ static dea_status add_plies(struct maker *m)
   return DEA_OK;
 }
 
-/* Fits the breakdown fields to the plies' thicknesses and to the unstretched area between
+/* Fits the breakdown fields to the layers' thicknesses and to the unstretched area between
  * electrodes of all of them, any place of which may be the weakest (docs/theory/breakdown.md). */
 static void fit_breakdown(const struct maker *m)
 {
   double area_m2 = 0;
   for (size_t i = 0; i < m->out->ply_count; i++) {
     const double *l = m->out->plies[i].pre_stretch;
-    area_m2 += dea_layout_active_area_m2(m->out, i) / (l[0] * l[1]);
+    const double layers = (double)dea_ply_layers(&m->out->plies[i]);
+    area_m2 += layers * dea_layout_active_area_m2(m->out, i) / (l[0] * l[1]);
   }
   for (size_t i = 0; i < m->out->ply_count; i++) {
     struct dea_layout_ply *ply = &m->out->plies[i];
-    dea_breakdown_specialise(ply->thickness_unstretched_m, area_m2, &ply->material.breakdown);
+    dea_breakdown_specialise(dea_ply_layer_m(ply), area_m2, &ply->material.breakdown);
   }
 }
 

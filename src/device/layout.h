@@ -38,11 +38,12 @@ struct dea_layout_ply {
   const char *name;
   struct dea_material material;
   size_t region;
-  double thickness_m;             // in the flat state
+  double thickness_m;             // in the flat state, of all layers together
   double thickness_unstretched_m; // thickness_m times both pre-stretches
   double pre_stretch[2];          // from free of stress to the flat state, along its own two axes
   double angle_rad;               // of the first of them from the x axis
   size_t elements;                // through the thickness; 0: what the model takes
+  size_t layers; // equally thick, with electrodes of the two channels by turns between; 0: 1
   enum dea_ply_kind kind;
   size_t joins; // of a bond: the ply that is a surface
   struct dea_location location;
@@ -144,6 +145,16 @@ struct dea_layout {
   struct dea_symmetry symmetry; // of all of it
   bool symmetry_found;          // it was looked for
 };
+
+static inline size_t dea_ply_layers(const struct dea_layout_ply *ply)
+{
+  return ply->layers > 1 ? ply->layers : 1;
+}
+/* Thickness of one of them before the pre-stretch. */
+static inline double dea_ply_layer_m(const struct dea_layout_ply *ply)
+{
+  return ply->thickness_unstretched_m / (double)dea_ply_layers(ply);
+}
 
 /* Whether a ply is between electrodes of two channels somewhere. */
 bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply);

@@ -34,9 +34,9 @@ size_t dea_ply_like(const struct dea_layout *layout, size_t ply)
 {
   const struct dea_layout_ply *p = layout->plies, *own = &p[ply];
   size_t i = 0;
-  while (i < ply &&
-         !(p[i].region == own->region && p[i].thickness_m == own->thickness_m &&
-           same_stretch(&p[i], own) && strcmp(p[i].material.name, own->material.name) == 0)) {
+  while (i < ply && !(p[i].region == own->region && p[i].thickness_m == own->thickness_m &&
+                      dea_ply_layers(&p[i]) == dea_ply_layers(own) && same_stretch(&p[i], own) &&
+                      strcmp(p[i].material.name, own->material.name) == 0)) {
     i++;
   }
   return i;
@@ -46,7 +46,7 @@ size_t dea_ply_count_like(const struct dea_layout *layout, size_t ply)
 {
   size_t count = 0;
   for (size_t i = 0; i < layout->ply_count; i++) {
-    count += dea_ply_like(layout, i) == ply ? 1 : 0;
+    count += dea_ply_like(layout, i) == ply ? dea_ply_layers(&layout->plies[i]) : 0;
   }
   return count;
 }

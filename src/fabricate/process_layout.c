@@ -68,7 +68,8 @@ static void add_ply(const struct sheet *s, size_t i)
   double area = area_of(s, ply->region);
   double cut =
       film ? 4 * s->w->room.blank_m[0] * s->w->room.blank_m[1] / stretched_area(ply) : area;
-  double mass = area * ply->thickness_m * ply->material.density_kg_per_m3;
+  double mass =
+      area * ply->thickness_m / (double)dea_ply_layers(ply) * ply->material.density_kg_per_m3;
   char item[WORDS], note[WORDS], weight[64] = "mass unknown: the material has no density";
   if (mass > 0) {
     snprintf(weight, sizeof weight, "%.4g g of it in the device", 1e3 * mass * (double)count);
@@ -81,21 +82,23 @@ static void add_ply(const struct sheet *s, size_t i)
     size_t n = strlen(item);
     snprintf(item + n, sizeof item - n, ", %zu times", count);
   }
-  snprintf(note, sizeof note, "%.4g \xc2\xb5m thick%s; %s", 1e6 * ply->thickness_unstretched_m,
+  snprintf(note, sizeof note, "%.4g \xc2\xb5m thick%s; %s", 1e6 * dea_ply_layer_m(ply),
            film ? ", before stretching" : "", weight);
   dea_process_add_material(s->to, s->w->plan.copies, item, ply->material.name, cut * (double)count,
                            NAN, note);
 }
 
-/* Area of the electrodes on a face, as they are printed. */
+/* Area of the electrodes of a face, as they are printed, those between layers included. */
 static double printed_area(const struct sheet *s, size_t ply, bool top)
 {
+  const size_t layers = dea_ply_layers(&s->layout->plies[ply]);
+  const size_t times = top ? (layers + 1) / 2 : layers / 2 + 1; // by turns, from the bottom on
   double area = 0;
   for (size_t i = 0; i < s->layout->electrode_count; i++) {
     const struct dea_layout_electrode *e = &s->layout->electrodes[i];
     area += e->ply == ply && e->top == top ? area_of(s, e->region) : 0;
   }
-  return area / stretched_area(&s->layout->plies[ply]);
+  return (double)times * area / stretched_area(&s->layout->plies[ply]);
 }
 
 double dea_ink_area_m2(const struct dea_workshop *workshop)
@@ -167,7 +170,7 @@ static void add_cutting(const struct sheet *s)
                      "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
                      "crosses of the grid and the three alignment marks%s.",
                      count, count > 1 ? "s" : "", size, name, ply->material.name,
-                     1e6 * ply->thickness_unstretched_m, count > 1 ? " on each" : "");
+                     1e6 * dea_ply_layer_m(ply), count > 1 ? " on each" : "");
   }
 }
 
@@ -229,6 +232,21 @@ static void write_stretch(const struct dea_layout_ply *ply, char *out)
 /* How a ply comes to what is there. */
 enum way { FIRST, ABOVE, BELOW };
 
+static void add_layers(const struct sheet *s, size_t i)
+{
+  char channels[2][WORDS];
+  for (int top = 0; top < 2; top++) {
+    write_channels(s, i, top == 1, channels[top]);
+  }
+  if (dea_ply_layers(&s->layout->plies[i]) > 1) {
+    dea_document_add(s->to, DEA_BLOCK_STEP,
+                     "%s has %zu layers: do so with each of them, one on the other. Electrodes "
+                     "by turns from the bottom up: %s; %s.",
+                     s->layout->plies[i].name, dea_ply_layers(&s->layout->plies[i]), channels[0],
+                     channels[1]);
+  }
+}
+
 static void add_ply_step(const struct sheet *s, size_t i, enum way way)
 {
   const struct dea_layout_ply *ply = &s->layout->plies[i];
@@ -247,7 +265,9 @@ static void add_ply_step(const struct sheet *s, size_t i, enum way way)
     dea_document_add(s->to, DEA_BLOCK_STEP,
                      "Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
                      "%.4g \xc2\xb5m thick%s.",
-                     ply->name, name, stretch, 1e6 * ply->thickness_m, where);
+                     ply->name, name, stretch, 1e6 * ply->thickness_m / (double)dea_ply_layers(ply),
+                     where);
+    add_layers(s, i);
     return;
   }
   dea_outline_name(s->layout, like, name);
@@ -256,7 +276,8 @@ static void add_ply_step(const struct sheet *s, size_t i, enum way way)
   dea_document_add(s->to, DEA_BLOCK_STEP,
                    "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.", ply->name, name,
                    pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
-                   1e6 * ply->thickness_m, where);
+                   1e6 * ply->thickness_m / (double)dea_ply_layers(ply), where);
+  add_layers(s, i);
 }
 
 /* Films that are stretched come first: what lies below them is bonded to them from below. */
@@ -383,7 +404,7 @@ static void add_ply_checks(const struct sheet *s, const struct dea_layout_sensit
   const struct dea_fabrication *f = &s->w->plan.design->fabrication;
   const double grid = 5 * s->w->room.grid_m;
   char number[NUMBER], other[NUMBER], wanted[WORDS], tolerance[WORDS];
-  snprintf(wanted, sizeof wanted, "%.4g \xc2\xb5m%s", 1e6 * ply->thickness_unstretched_m,
+  snprintf(wanted, sizeof wanted, "%.4g \xc2\xb5m%s", 1e6 * dea_ply_layer_m(ply),
            dea_ply_is_stretched(ply) ? " unstretched" : "");
   snprintf(tolerance, sizeof tolerance, "\xc2\xb1%.3g %%", 100 * f->tolerance.thickness.si);
   add_check(s, found, i, DEA_PLY_THICKNESS, wanted, tolerance);

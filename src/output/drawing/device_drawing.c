@@ -647,7 +647,7 @@ static size_t run_of(const struct dea_layout *l, size_t ply)
   const struct dea_layout_ply *a = &l->plies[ply];
   size_t end = ply + 1;
   while (end < l->ply_count && l->plies[end].thickness_m == a->thickness_m &&
-         l->plies[end].region == a->region &&
+         l->plies[end].region == a->region && dea_ply_layers(&l->plies[end]) == dea_ply_layers(a) &&
          strcmp(l->plies[end].material.name, a->material.name) == 0) {
     end++;
   }
@@ -679,11 +679,13 @@ static size_t call_out_section(const struct view *v, const double *x, size_t cou
     *c = (struct dea_callout){.x_mm = x_of(v, x[best] + share * (x[best + 1] - x[best])),
                               .y_mm = base_of(v, i, x, best) +
                                       0.5 * (double)run * section_height(l, i)};
+    const size_t layers = dea_ply_layers(ply);
     char times[32] = "";
-    if (run > 1) {
-      snprintf(times, sizeof times, "%zu \303\227 ", run);
+    if (run * layers > 1) {
+      snprintf(times, sizeof times, "%zu \303\227 ", run * layers);
     }
-    snprintf(c->label, sizeof c->label, "%s%.4g \302\265m", times, 1e6 * ply->thickness_m);
+    snprintf(c->label, sizeof c->label, "%s%.4g \302\265m", times,
+             1e6 * ply->thickness_m / (double)layers);
     char what[96], rest[25] = "";
     if (run > 1) {
       snprintf(what, sizeof what, "%.40s to %.40s", ply->name, l->plies[i + run - 1].name);
@@ -691,7 +693,7 @@ static size_t call_out_section(const struct view *v, const double *x, size_t cou
       snprintf(what, sizeof what, "%.80s", ply->name);
     }
     if (ply->thickness_m != ply->thickness_unstretched_m) {
-      snprintf(rest, sizeof rest, "%.4g unstretched", 1e6 * ply->thickness_unstretched_m);
+      snprintf(rest, sizeof rest, "%.4g unstretched", 1e6 * dea_ply_layer_m(ply));
     }
     write_note(c, what, rest);
   }

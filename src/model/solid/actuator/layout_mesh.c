@@ -487,6 +487,9 @@ static int channel_at(const struct dea_layout_mesh *mesh, size_t plane_region, s
     bool there = mesh->present[plane_region * l->ply_count + q];
     other = there && ply_below(mesh, plane_region, q) == ply ? q : other;
   }
+  if (!top && other != DEA_LAYOUT_NONE && dea_ply_layers(&l->plies[other]) % 2 == 0) {
+    return channel_at(mesh, plane_region, other, false); // by turns: the uppermost is the lowest's
+  }
   for (size_t i = 0; i < l->electrode_count; i++) {
     const struct dea_layout_electrode *e = &l->electrodes[i];
     bool here = (e->ply == ply && e->top == top) || (e->ply == other && e->top != top);

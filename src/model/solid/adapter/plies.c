@@ -48,6 +48,7 @@ static dea_status fill_constituent(struct dea_context *ctx, const struct dea_lay
   if (mesh->dielectric[i]) {
     dea_constituent_set_permittivity(out, &material->permittivity, ply->thickness_m);
     out->relaxed = mesh->membrane && alone;
+    out->layers = (double)dea_ply_layers(ply);
   }
   out->thickness_m = ply->thickness_m;
   out->density_kg_per_m3 = material->density_kg_per_m3;
@@ -65,9 +66,10 @@ static void find_thinnest(const struct dea_layout_mesh *mesh, struct dea_plies *
   out->thinnest_m = out->flat_m = INFINITY;
   for (size_t i = l->ply_count; i-- > 0;) {
     if (mesh->dielectric[i]) {
+      const double layers = (double)dea_ply_layers(&l->plies[i]);
       out->film = i;
-      out->thinnest_m = fmin(out->thinnest_m, l->plies[i].thickness_unstretched_m);
-      out->flat_m = fmin(out->flat_m, l->plies[i].thickness_m);
+      out->thinnest_m = fmin(out->thinnest_m, dea_ply_layer_m(&l->plies[i]));
+      out->flat_m = fmin(out->flat_m, l->plies[i].thickness_m / layers);
     }
   }
   for (size_t k = 1; k < l->channel_count; k++) {

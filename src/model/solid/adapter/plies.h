@@ -12,7 +12,7 @@ struct dea_plies {
   struct dea_branches *branches;
   double *leakage_per_s; // of films, see circuit_step.h
   size_t film;           // the first dielectric ply, or the first of all
-  double thinnest_m;     // least unstretched thickness of dielectric plies over their voltage
+  double thinnest_m;     // least unstretched thickness of dielectric layers over their voltage
   double flat_m;         // the same as they are in the flat state
 };
 

@@ -28,15 +28,21 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
     const double own[CONSTITUENT_NUMBERS] = {
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
-    size_t params = l->law->param_count, more = l->pre_shear != 0 ? 1 : 0;
+    size_t params = l->law->param_count, more = 0;
+    const double rare[] = {l->pre_shear, l->layers > 1 ? l->layers : 0};
+    for (int k = 0; k < 2; k++) {
+      more += rare[k] != 0;
+    }
     if (count + CONSTITUENT_NUMBERS + params + more > room) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer constituents");
     }
     memcpy(to + count, own, sizeof own);
     memcpy(to + count + CONSTITUENT_NUMBERS, l->param, params * sizeof *to);
     count += CONSTITUENT_NUMBERS + params;
-    if (more > 0) {
-      to[count++] = l->pre_shear;
+    for (int k = 0; k < 2; k++) {
+      if (rare[k] != 0) {
+        to[count++] = rare[k];
+      }
     }
   }
   out->number_count += count;

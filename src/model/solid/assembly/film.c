@@ -196,7 +196,7 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
   dea_status status = element->type->membrane_state(element, &in, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
-    double field = fabs(in.voltage_V) / in.constituent->thickness_m * film.area[p];
+    double field = fabs(dea_constituent_field(in.constituent, in.voltage_V)) * film.area[p];
     double stretch = data->pre_stretch * sqrt(film.area[p]);
     double margin = 1 - field / dea_breakdown_field(data->material, stretch);
     out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
@@ -400,7 +400,7 @@ static double quantity_of(const struct dea_element_input *in, const struct dea_m
                           const struct dea_solid_film_data *data, enum dea_film_extreme which,
                           int p, const double direction[2])
 {
-  const double field = fabs(in->voltage_V) / in->constituent->thickness_m * film->area[p];
+  const double field = fabs(dea_constituent_field(in->constituent, in->voltage_V)) * film->area[p];
   const double stretch = data->pre_stretch * sqrt(film->area[p]), *T = film->force[p];
   return which == DEA_FILM_FIELD ? field
          : which == DEA_FILM_MARGIN

@@ -291,7 +291,7 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
   const struct dea_hex_shape *shape = element->basis;
   const struct dea_constituent *constituent = in->constituent;
   bool projected = dea_constituent_takes_pressure(constituent);
-  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  double field = dea_constituent_field(constituent, in->voltage_V);
   const double *predicted = order >= DEA_TANGENT ? in->predicted : NULL;
   dea_status status = dea_hex_find_points(shape, in->X, in->u, work.points);
   if (status == DEA_OK && projected) {
@@ -400,7 +400,7 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
   const struct dea_hex_shape *s = element->basis;
   const struct dea_constituent *constituent = in->constituent;
   const bool projected = dea_constituent_takes_pressure(constituent);
-  const double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  const double field = dea_constituent_field(constituent, in->voltage_V);
   dea_status status = DEA_OK;
   *stiffness = *mass = 0;
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
@@ -511,7 +511,7 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
   const struct dea_hex_shape *s = element->basis;
   const struct dea_constituent *constituent = in->constituent;
   const double *multiplier = in->multiplier;
-  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  double field = dea_constituent_field(constituent, in->voltage_V);
   bool projected = dea_constituent_takes_pressure(constituent);
   dea_status status = dea_hex_kinematics(s, in->X, in->u, gradient, points);
   if (status == DEA_OK && projected) {
@@ -635,8 +635,9 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
       const struct dea_hex_point *at = &state[q];
       double w = shape->weight[q];
       double pressure = pressure_at(shape, constituent, q, in->multiplier, theta);
-      status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
-                                     in->voltage_V / constituent->thickness_m, false, &point);
+      status =
+          dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
+                                dea_constituent_field(constituent, in->voltage_V), false, &point);
       if (status == DEA_OK) {
         dea_viscous_add(constituent, q, at->F, at->cof, at->J, false, &point);
       }
@@ -815,8 +816,7 @@ static dea_status find_state(const struct dea_element *element, const struct dea
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
   out->coupled = element->type->per_node > 3;
-  out->thin_V_per_m =
-      !out->coupled && constituent->thickness_m > 0 ? in->voltage_V / constituent->thickness_m : 0;
+  out->thin_V_per_m = out->coupled ? 0 : dea_constituent_field(constituent, in->voltage_V);
   dea_status status = out->coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, out->at)
                                    : dea_hex_find_points(shape, in->X, in->u, out->at);
   if (status == DEA_OK) {

@@ -140,7 +140,7 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
   const struct dea_flat_shape *shape = element->basis;
   const struct dea_constituent *constituent = in->constituent;
   double gradient[2][DEA_FLAT_NODES_MAX], F[6];
-  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  double field = dea_constituent_field(constituent, in->voltage_V);
   size_t dofs = 3 * (size_t)shape->nodes;
   struct dea_membrane_point point;
   memset(out->g, 0, dofs * sizeof *out->g);
@@ -179,7 +179,7 @@ static dea_status membrane_state(const struct dea_element *element,
 {
   const struct dea_flat_shape *shape = element->basis;
   const struct dea_constituent *constituent = in->constituent;
-  double F[6], field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  double F[6], field = dea_constituent_field(constituent, in->voltage_V);
   out->count = shape->gauss;
   for (int q = 0; q < shape->gauss; q++) {
     struct dea_membrane_point point;
@@ -288,7 +288,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
 {
   const struct dea_flat_shape *shape = element->basis;
   const struct dea_constituent *constituent = in->constituent;
-  const double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  const double field = dea_constituent_field(constituent, in->voltage_V);
   *stiffness = *mass = 0;
   for (int q = 0; q < shape->gauss; q++) {
     double gradient[2][DEA_FLAT_NODES_MAX], F[6], H[6] = {0}, here[3];
@@ -323,7 +323,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
 static dea_status strains(const struct dea_element *element, const struct dea_element_input *in,
                           struct dea_element_strains *out)
 {
-  const double field = in->voltage_V != 0 ? in->voltage_V / in->constituent->thickness_m : 0;
+  const double field = dea_constituent_field(in->constituent, in->voltage_V);
   for (int q = 0; q < element->points; q++) {
     double F[6], area = columns_at(element->basis, q, in->X, in->u, F);
     struct dea_membrane_point point;
@@ -387,7 +387,7 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
   const struct dea_flat_shape *shape = element->basis;
   const struct dea_constituent *constituent = in->constituent;
   double values[DEA_FLAT_NODES_MAX][DEA_FIT_VALUES], P[DEA_FLAT_NODES_MAX][6], F[6];
-  double field = in->voltage_V != 0 ? in->voltage_V / constituent->thickness_m : 0;
+  double field = dea_constituent_field(constituent, in->voltage_V);
   struct dea_gauss_fit fit;
   out->volume_m3 = out->volume_error = 0;
   for (int q = 0; q < shape->gauss; q++) {
@@ -417,7 +417,7 @@ static dea_status state(const struct dea_element *element, const struct dea_elem
                         bool stress, struct dea_element_state *out)
 {
   const struct dea_flat_shape *shape = element->basis;
-  double field = in->voltage_V != 0 ? in->voltage_V / in->constituent->thickness_m : 0;
+  double field = dea_constituent_field(in->constituent, in->voltage_V);
   double F[6];
   struct dea_membrane_point point;
   for (int q = 0; q < shape->gauss; q++) {

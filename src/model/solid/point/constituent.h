@@ -12,6 +12,8 @@
 #include "material/material.h"
 #include "material/point.h"
 
+#include <math.h>
+
 /* How much of an energy is wanted; each level has those before it. DEA_TANGENT_PREDICTED: of a load
  * with multipliers the tangent at these alone, without what the penalty adds to them. */
 enum dea_eval_order { DEA_ENERGY, DEA_FORCE, DEA_TANGENT, DEA_TANGENT_PREDICTED };
@@ -30,7 +32,8 @@ struct dea_constituent {
   double permittivity_F_per_m;     // eps of the flat constituent, 0: no electric energy
   /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
   double permittivity_slope_F_per_m;
-  double thickness_m;       // h, over which the voltage stands
+  double thickness_m;       // of all layers together
+  double layers;            // over each of which the voltage stands; 0: 1
   double density_kg_per_m3; // 0 for a part without mass
   bool relaxed;             // flat elements wrinkle instead of taking pressure (tension.h)
   /* Of a step in time (viscous.h): B [points of the element][6], lent, NULL: none; and b. */
@@ -50,6 +53,14 @@ void dea_constituent_set_law(struct dea_constituent *constituent, const struct d
 static inline bool dea_constituent_takes_pressure(const struct dea_constituent *constituent)
 {
   return constituent->law->compressible == NULL;
+}
+
+/* The reference field E at a voltage between the electrodes, 0 without one. */
+static inline double dea_constituent_field(const struct dea_constituent *constituent,
+                                           double voltage_V)
+{
+  const double layers = fmax(1, constituent->layers);
+  return voltage_V != 0 ? layers * voltage_V / constituent->thickness_m : 0;
 }
 
 /* G X G of a symmetric tensor of the plane (11 22 12), as C of the flat constituent becomes that of
