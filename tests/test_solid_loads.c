@@ -98,6 +98,91 @@ static void set_parameters(const struct dea_solid_load *load)
   memcpy(load->now, load->goal, load->parameter_count * sizeof *load->now);
 }
 
+/* Energy of all pieces at u, and their forces [3 nodes]; with a vector the product of the whole
+ * tangent with it. */
+static double whole_load(const struct dea_solid_load *load, const double *v, double *g, double *Kv)
+{
+  static struct dea_load_piece at;
+  const size_t count = 3 * grid->node_count;
+  double energy = 0;
+  memset(g, 0, count * sizeof *g);
+  load->prepare(load->self, u);
+  for (size_t p = 0; p < load->piece_count; p++) {
+    assert_int_equal(load->evaluate(load->self, p, u, v != NULL ? DEA_TANGENT : DEA_FORCE, &at),
+                     DEA_OK);
+    energy += at.energy_J;
+    for (int i = 0; i < 3 * at.node_count; i++) {
+      g[3 * at.nodes[i / 3] + i % 3] += at.g[i];
+      for (int j = 0; v != NULL && j < 3 * at.node_count; j++) {
+        Kv[3 * at.nodes[i / 3] + i % 3] +=
+            at.K[i * 3 * at.node_count + j] * v[3 * at.nodes[j / 3] + j % 3];
+      }
+    }
+  }
+  if (v != NULL) {
+    double *slope = calloc(count, sizeof *slope);
+    assert_non_null(slope);
+    const double stiffness = load->whole(load->self, u, slope);
+    const double along = load->along(load->self, u, v);
+    for (size_t i = 0; i < count; i++) {
+      Kv[i] += stiffness * along * slope[i];
+    }
+    free(slope);
+  }
+  return energy;
+}
+
+/* The same of a volume, whose pressure all pieces share. */
+static void test_derivatives_of_enclosed_volumes(void **state)
+{
+  (void)state;
+  static const struct dea_enclosed enclosed[] = {
+      {.volume_m3 = 20, .ambient_Pa = 2},
+      {.liquid = true, .volume_m3 = 1e-3, .stiffness_Pa_per_m3 = 5}};
+  const double d = 1e-6;
+  block_create(2, 2, 0.1);
+  const size_t count = 3 * grid->node_count;
+  double *room = calloc(5 * count, sizeof *room);
+  assert_non_null(room);
+  double *v = room, *g = v + count, *Kv = g + count, *up = Kv + count, *down = up + count;
+  for (size_t i = 0; i < count; i++) {
+    v[i] = sin(1.0 + 3.0 * (double)i);
+  }
+  for (int k = 0; k < 4; k++) {
+    struct dea_surface *surface = side_create(k < 2 ? DEA_FACE_TOP : DEA_FACE_BOTTOM);
+    struct dea_pressure *pressure;
+    double slope = 0, largest = 0;
+    assert_int_equal(dea_pressure_create_flat(ctx, surface, 0.2, &pressure), DEA_OK);
+    dea_pressure_enclose(pressure, &enclosed[k % 2]);
+    dea_pressure_set(pressure, 0.3);
+    struct dea_solid_load load = dea_pressure_load(pressure);
+    set_parameters(&load);
+    memset(Kv, 0, count * sizeof *Kv);
+    whole_load(&load, v, g, Kv);
+    double energy[2];
+    for (int side = 0; side < 2; side++) {
+      for (size_t i = 0; i < count; i++) {
+        u[i] += (side == 0 ? d : -2 * d) * v[i];
+      }
+      energy[side] = whole_load(&load, NULL, side == 0 ? up : down, NULL);
+    }
+    for (size_t i = 0; i < count; i++) {
+      u[i] += d * v[i];
+      slope += g[i] * v[i];
+      largest = fmax(largest, fabs(Kv[i]));
+    }
+    assert_true(largest > 0);
+    assert_close(slope, (energy[0] - energy[1]) / (2 * d), 1e-8, 0);
+    for (size_t i = 0; i < count; i++) {
+      assert_close(Kv[i], (up[i] - down[i]) / (2 * d), 0, 1e-7 * largest);
+    }
+    dea_pressure_destroy(ctx, pressure);
+    dea_surface_destroy(ctx, surface);
+  }
+  free(room);
+  block_destroy();
+}
+
 static void test_derivatives(void **state)
 {
   (void)state;
@@ -597,6 +682,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_derivatives),
+      cmocka_unit_test(test_derivatives_of_enclosed_volumes),
       cmocka_unit_test(test_spring),
       cmocka_unit_test(test_derivatives_of_contact),
       cmocka_unit_test(test_force_by_place_of_tip),

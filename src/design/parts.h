@@ -115,13 +115,13 @@ struct dea_parts_spring {
 };
 
 struct dea_parts_pressure {
-  struct dea_label ply, shape;
+  struct dea_label name, ply, shape;
   struct dea_choice side; // enum dea_parts_side
-  struct dea_quantity pressure_Pa;
+  struct dea_quantity pressure_Pa, gas_m3, ambient_Pa, liquid_m3;
 };
 
 struct dea_parts_monitor {
-  struct dea_label name, ply, shape, body;
+  struct dea_label name, ply, shape, body, pressure;
   struct dea_quantity at_m[2], from_m[2], to_m[2];
   size_t at_count, from_count, to_count; // 0 or 2
 };

@@ -143,6 +143,7 @@ static dea_status check_all_names(const struct dea_reader *reader, const struct 
   DEA_TRY(reader->ctx, CHECK_NAMES("ply", p->plies, p->ply_count));
   DEA_TRY(reader->ctx, CHECK_NAMES("channel", p->channels, p->channel_count));
   DEA_TRY(reader->ctx, CHECK_NAMES("body", p->bodies, p->body_count));
+  DEA_TRY(reader->ctx, CHECK_NAMES("pressure", p->pressures, p->pressure_count));
   return CHECK_NAMES("monitor", p->monitors, p->monitor_count);
 }
 

@@ -170,12 +170,25 @@ static const struct dea_field spring_fields[] = {
 };
 
 static const struct dea_field pressure_fields[] = {
+    NAME(dea_parts_pressure, name, "name", "its name, for a monitor", "chamber",
+         .absent_text = "none"),
     NAME(dea_parts_pressure, ply, "ply", "ply on whose face it acts", "film", REQUIRED),
     CHOICE(dea_parts_pressure, side, "side", sides, "face of that ply", "bottom", REQUIRED),
     NAME(dea_parts_pressure, shape, "shape", "shape in which it acts", "film", REQUIRED),
     NUMBER(dea_parts_pressure, pressure_Pa, "pressure", "Pa",
-           "follows the face and pushes into the ply; below 0 it pulls", "1 kPa", REQUIRED,
-           .min = -1e9, .max = 1e9),
+           "follows the face and pushes into the ply; below 0 it pulls; of gas: when the film is "
+           "flat, over that outside",
+           "1 kPa", .min = -1e9, .max = 1e9, .default_text = "0 Pa"),
+    NUMBER(dea_parts_pressure, gas_m3, "gas", "m^3",
+           "volume of the gas that the face encloses when it is flat, which has its pressure by "
+           "Boyle's law",
+           "5 ml", OPTIONAL, .above_min = true, .max = 1e3),
+    NUMBER(dea_parts_pressure, ambient_Pa, "ambient", "Pa", "pressure outside of gas", "100 kPa",
+           .default_text = "101.325 kPa", .above_min = true, .max = 1e9),
+    NUMBER(dea_parts_pressure, liquid_m3, "liquid", "m^3",
+           "volume of a liquid that is added to what the flat face encloses; it has the pressure "
+           "that keeps that volume",
+           "0.5 ml", OPTIONAL, .min = -1e3, .max = 1e3),
 };
 
 static const struct dea_field monitor_fields[] = {
@@ -185,6 +198,9 @@ static const struct dea_field monitor_fields[] = {
     POINT(dea_parts_monitor, to, "to", "the other end of that line", 2, OPTIONAL),
     NAME(dea_parts_monitor, shape, "shape", "a shape of a ply", "active", .group = 1, .option = 3),
     NAME(dea_parts_monitor, body, "body", "a rigid body", "hub", .group = 1, .option = 4),
+    NAME(dea_parts_monitor, pressure, "pressure",
+         "name of a pressure: it, and the volume that its face has swept", "chamber", .group = 1,
+         .option = 5),
     NAME(dea_parts_monitor, ply, "ply", "ply that the point, line or shape lies in", "film",
          .absent_text = "the uppermost one there"),
 };

@@ -36,6 +36,11 @@ static dea_status find_body(const struct maker *m, const struct dea_label *label
   PARTS_OF("body", bodies, body_count);
 }
 
+static dea_status find_pressure(const struct maker *m, const struct dea_label *label, size_t *out)
+{
+  PARTS_OF("pressure", pressures, pressure_count);
+}
+
 /* A copy of a name, since a device outlives its design; NULL when the arena has failed. */
 static const char *keep(const struct maker *m, const char *text)
 {
@@ -387,6 +392,36 @@ static dea_status add_springs(struct maker *m)
   return DEA_OK;
 }
 
+/* What a pressure encloses. */
+static dea_status take_enclosure(const struct maker *m, const struct dea_parts_pressure *from,
+                                 struct dea_layout_pressure *to)
+{
+  const bool gas = from->gas_m3.origin != DEA_ABSENT, liquid = from->liquid_m3.origin != DEA_ABSENT;
+  const bool given =
+      from->pressure_Pa.origin == DEA_GIVEN || from->pressure_Pa.origin == DEA_OVERRIDE;
+  to->encloses = gas ? DEA_GAS : liquid ? DEA_LIQUID : DEA_OPEN;
+  to->volume_m3 = gas ? from->gas_m3.si : or_zero(&from->liquid_m3);
+  to->ambient_Pa = from->ambient_Pa.si;
+  if (gas && liquid) {
+    return dea_finding_add(m->ctx, DEA_ERROR, from->liquid_m3.location,
+                           "a face encloses 'gas' or 'liquid', not both");
+  }
+  if (liquid && given) {
+    return dea_finding_add(m->ctx, DEA_ERROR, from->pressure_Pa.location,
+                           "the pressure of an enclosed liquid comes of its volume: leave "
+                           "'pressure' out, or 'liquid'");
+  }
+  if (gas && !(to->pressure_Pa + to->ambient_Pa > 0)) {
+    return dea_finding_add(m->ctx, DEA_ERROR, from->pressure_Pa.location,
+                           "gas of this pressure over 'ambient' is less than none");
+  }
+  return gas || liquid || given
+             ? DEA_OK
+             : dea_finding_add(m->ctx, DEA_ERROR, from->shape.location,
+                               "a pressure needs 'pressure', or 'gas' or 'liquid' that the face "
+                               "encloses");
+}
+
 static dea_status add_pressures(struct maker *m)
 {
   struct dea_layout *l = m->out;
@@ -397,7 +432,9 @@ static dea_status add_pressures(struct maker *m)
     const struct dea_parts_pressure *from = &m->parts->pressures[i];
     struct dea_layout_pressure *to = &l->pressures[i];
     to->top = from->side.value == DEA_SIDE_TOP;
+    to->name = keep(m, from->name.text);
     to->pressure_Pa = from->pressure_Pa.si;
+    DEA_TRY(m->ctx, take_enclosure(m, from, to));
     to->location = from->shape.location;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
@@ -450,10 +487,14 @@ static dea_status take_monitor(const struct maker *m, const struct dea_parts_mon
 {
   to->name = keep(m, from->name.text);
   to->location = from->name.location;
-  to->ply = to->region = to->body = DEA_LAYOUT_NONE;
+  to->ply = to->region = to->body = to->pressure = DEA_LAYOUT_NONE;
   if (from->body.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_BODY;
     return find_body(m, &from->body, &to->body);
+  }
+  if (from->pressure.origin != DEA_ABSENT) {
+    to->kind = DEA_MONITOR_VOLUME;
+    return find_pressure(m, &from->pressure, &to->pressure);
   }
   if (from->shape.origin != DEA_ABSENT) {
     to->kind = DEA_MONITOR_REGION;

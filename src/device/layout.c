@@ -167,7 +167,8 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
   first += (int)layout->support_count;
   LIKE_ONES(b, layout->body_count, false);
   LIKE_ONES(p, layout->pressure_count,
-            p[j].ply == p[i].ply && p[j].top == p[i].top && p[j].pressure_Pa == p[i].pressure_Pa);
+            p[j].ply == p[i].ply && p[j].top == p[i].top && p[j].pressure_Pa == p[i].pressure_Pa &&
+                (j == i || (p[j].encloses == DEA_OPEN && p[i].encloses == DEA_OPEN)));
   for (size_t i = 0; i < layout->monitor_count; i++) {
     if (layout->monitors[i].kind == DEA_MONITOR_REGION) {
       add(out, layout, layout->monitors[i].region, first + (int)i);

@@ -102,11 +102,17 @@ struct dea_layout_spring {
   struct dea_location location;
 };
 
-/* Pressure that follows a face of a ply, > 0 into the ply. */
+enum dea_enclosure { DEA_OPEN, DEA_GAS, DEA_LIQUID };
+
+/* Pressure that follows a face of a ply, > 0 into the ply: given, or that of what it encloses. */
 struct dea_layout_pressure {
+  const char *name;
   size_t region, ply;
   bool top;
-  double pressure_Pa;
+  enum dea_enclosure encloses;
+  double pressure_Pa; // of gas over what is outside, and of the flat film
+  double volume_m3;   // of gas below the flat film; of a liquid what is added to that
+  double ambient_Pa;  // outside of gas
   struct dea_location location;
 };
 
@@ -115,6 +121,7 @@ enum dea_layout_monitor_kind {
   DEA_MONITOR_LINE,   // two points: their distance
   DEA_MONITOR_REGION, // of a ply's middle surface
   DEA_MONITOR_BODY,
+  DEA_MONITOR_VOLUME, // below a face with a pressure
 };
 
 /* What results are reported of. */
@@ -123,7 +130,7 @@ struct dea_layout_monitor {
   enum dea_layout_monitor_kind kind;
   double at_m[2][2]; // a point, or the two of a line
   size_t ply;        // of these and of a region
-  size_t region, body;
+  size_t region, body, pressure;
   struct dea_location location;
 };
 

@@ -572,7 +572,7 @@ static dea_status check_monitors(struct dea_context *ctx, const struct dea_layou
 {
   for (size_t i = 0; i < l->monitor_count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
-    if (m->kind == DEA_MONITOR_BODY) {
+    if (m->kind == DEA_MONITOR_BODY || m->kind == DEA_MONITOR_VOLUME) {
       continue;
     }
     const struct dea_layout_ply *ply = &l->plies[m->ply];

@@ -43,6 +43,8 @@ const struct dea_column dea_observed_columns[DEA_OBSERVED_COUNT] = {
     MOMENT("x"),
     MOMENT("y"),
     MOMENT("z"),
+    {"pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "on a face, into its ply"},
+    {"volume_m3", "m3", "ml", 1e6, "volume", "that a face with a pressure has swept"},
 };
 
 /* In the order of DEA_OBSERVED_VOLTAGE, ... */
@@ -80,8 +82,11 @@ bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed obser
   case DEA_MONITOR_REGION:
     return observed <= DEA_OBSERVED_Z ||
            (observed >= DEA_OBSERVED_STRETCH_X && observed <= DEA_OBSERVED_AREA_STRETCH);
+  case DEA_MONITOR_VOLUME:
+    return observed >= DEA_OBSERVED_PRESSURE;
   default:
-    return observed <= DEA_OBSERVED_TURN_Z || observed >= DEA_OBSERVED_FORCE_X;
+    return observed <= DEA_OBSERVED_TURN_Z ||
+           (observed >= DEA_OBSERVED_FORCE_X && observed <= DEA_OBSERVED_MOMENT_Z);
   }
 }
 

@@ -29,6 +29,8 @@ enum dea_observed {
   DEA_OBSERVED_MOMENT_X, // about its centre as it stands
   DEA_OBSERVED_MOMENT_Y,
   DEA_OBSERVED_MOMENT_Z,
+  DEA_OBSERVED_PRESSURE, // on a face, and the volume that it has swept
+  DEA_OBSERVED_VOLUME,
   DEA_OBSERVED_COUNT
 };
 

@@ -233,7 +233,9 @@ static void draw_monitors(const struct view *v)
                  y_of(v, m->at_m[1][1]));
       type->stroke(v->paper->canvas, 0.25, MONITOR, 0);
     } else if (m->kind != DEA_MONITOR_POINT) {
-      size_t region = m->kind == DEA_MONITOR_BODY ? v->layout->bodies[m->body].region : m->region;
+      size_t region = m->kind == DEA_MONITOR_BODY     ? v->layout->bodies[m->body].region
+                      : m->kind == DEA_MONITOR_VOLUME ? v->layout->pressures[m->pressure].region
+                                                      : m->region;
       dea_region_centroid_m(&v->layout->regions[region].region, at);
     }
     double x = x_of(v, at[0]), y = y_of(v, at[1]);
@@ -868,8 +870,15 @@ static void add_bodies_and_pressures(struct view *v)
   }
   for (size_t i = 0; i < l->pressure_count; i++) {
     const struct dea_layout_pressure *p = &l->pressures[i];
-    add_key(v, &pressure_style, "%.40s, %.4g Pa on the %s of %.40s", l->regions[p->region].name,
-            p->pressure_Pa, p->top ? "top" : "bottom", l->plies[p->ply].name);
+    char what[60];
+    if (p->encloses == DEA_OPEN) {
+      snprintf(what, sizeof what, "%.4g Pa", p->pressure_Pa);
+    } else {
+      snprintf(what, sizeof what, "%.4g ml of %s", 1e6 * p->volume_m3,
+               p->encloses == DEA_GAS ? "gas" : "liquid");
+    }
+    add_key(v, &pressure_style, "%.40s, %s on the %s of %.40s", l->regions[p->region].name, what,
+            p->top ? "top" : "bottom", l->plies[p->ply].name);
   }
 }
 

@@ -20,6 +20,7 @@ struct probe {
 struct dea_observer {
   struct dea_arena memory;
   const struct dea_layout_mesh *mesh;
+  struct dea_pressure *const *pressures;
   struct probe (*probes)[2]; // [monitor_count] of points and lines
   double (*monitor)[DEA_OBSERVED_COUNT];
   double (*body)[DEA_OBSERVED_COUNT];
@@ -224,7 +225,7 @@ static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
 }
 
 dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                               struct dea_observer **out)
+                               struct dea_pressure *const *pressures, struct dea_observer **out)
 {
   const struct dea_layout *l = mesh->layout;
   struct dea_observer *o = dea_alloc(ctx, 1, sizeof *o);
@@ -232,7 +233,7 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
   if (o == NULL) {
     return DEA_E_MEMORY;
   }
-  *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh};
+  *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh, .pressures = pressures};
   o->probes = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->probes);
   o->monitor = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->monitor);
   o->body = dea_arena_alloc(&o->memory, l->body_count + 1, sizeof *o->body);
@@ -406,6 +407,16 @@ static dea_status observe_channels(struct dea_context *ctx, struct dea_observer 
   return DEA_OK;
 }
 
+static void observe_volume(const struct dea_observer *o, size_t pressure, const double *u,
+                           double *values)
+{
+  if (o->pressures[pressure] != NULL) {
+    values[DEA_OBSERVED_PRESSURE] = dea_pressure_at_Pa(o->pressures[pressure], u);
+    values[DEA_OBSERVED_VOLUME] = (double)dea_layout_sector_copies(&o->mesh->sector) *
+                                  dea_pressure_volume_m3(o->pressures[pressure], u);
+  }
+}
+
 static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
 {
   const struct dea_layout *l = o->mesh->layout;
@@ -430,6 +441,9 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
       break;
     case DEA_MONITOR_BODY:
       memcpy(values, o->body[m->body], sizeof o->body[m->body]);
+      break;
+    case DEA_MONITOR_VOLUME:
+      observe_volume(o, m->pressure, u, values);
       break;
     }
   }
@@ -664,7 +678,7 @@ static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed 
          : kind == DEA_MONITOR_LINE ? motion == DEA_OBSERVED_STRETCH
          : kind == DEA_MONITOR_REGION
              ? shift || (motion >= DEA_OBSERVED_STRETCH_X && motion <= DEA_OBSERVED_AREA_STRETCH)
-             : motion <= DEA_OBSERVED_TURN_Z;
+             : kind == DEA_MONITOR_BODY && motion <= DEA_OBSERVED_TURN_Z;
 }
 
 bool dea_observer_force_way(const struct dea_observer *o, const struct dea_solid *solid,
@@ -712,6 +726,8 @@ bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size
         motion < DEA_OBSERVED_TURN_X ? 1 : 1 / body->length_m; // turns are unknowns times that
     break;
   }
+  case DEA_MONITOR_VOLUME:
+    break;
   }
   return true;
 }

@@ -5,6 +5,7 @@
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
+#include "model/solid/assembly/rank_one.h"
 
 #include <math.h>
 #include <string.h>
@@ -138,6 +139,16 @@ double dea_solid_springs_curvature(const struct dea_solid *s, const double *v)
 
 /* ---- the whole ---- */
 
+void dea_solid_loads_prepare(const struct dea_solid *s, const double *u)
+{
+  for (size_t i = 0; i < s->problem.load_count; i++) {
+    const struct dea_solid_load *load = &s->problem.loads[i];
+    if (load->prepare != NULL) {
+      load->prepare(load->self, u);
+    }
+  }
+}
+
 /* Energy of this rank's elements and pieces of loads. */
 static dea_status own_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
@@ -148,6 +159,7 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
     }
     *energy += s->work.element->energy_J;
   }
+  dea_solid_loads_prepare(s, u);
   for (size_t i = 0; i < s->problem.load_count; i++) {
     size_t from, to;
     dea_solid_share(s->problem.loads[i].piece_count, &from, &to);
@@ -300,6 +312,7 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
                             double *energy)
 {
   struct dea_load_piece *piece = s->work.piece;
+  dea_solid_loads_prepare(s, s->state.u);
   for (size_t i = 0; i < s->problem.load_count; i++) {
     size_t from, to;
     dea_solid_share(s->problem.loads[i].piece_count, &from, &to);
@@ -380,6 +393,35 @@ static dea_status collect(struct dea_context *ctx, struct dea_solid *s, enum dea
   return DEA_OK;
 }
 
+/* What loads add beside K at the state: stiffness and slope (rank_one.h). */
+static dea_status take_rank_ones(struct dea_context *ctx, struct dea_solid *s)
+{
+  struct dea_solid_rank_one *r = &s->work.rank_one;
+  r->count = 0;
+  for (size_t i = 0; i < s->problem.load_count; i++) {
+    const struct dea_solid_load *load = &s->problem.loads[i];
+    if (load->whole == NULL) {
+      continue;
+    }
+    if (r->count == DEA_RANK_ONE_MAX) {
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "there can be %d enclosed volumes at most",
+                      DEA_RANK_ONE_MAX);
+    }
+    double *slope = s->work.trial;
+    memset(slope, 0, s->problem.dofs * sizeof *slope);
+    r->stiffness[r->count] = load->whole(load->self, s->state.u, slope);
+    dea_solid_bodies_collect(s, slope);
+    dea_solid_release_held(s, slope);
+    if (r->slope[r->count] == NULL) {
+      DEA_PETSC(ctx, VecDuplicate(s->work.right, &r->slope[r->count]));
+      DEA_PETSC(ctx, VecDuplicate(s->work.right, &r->solved[r->count]));
+    }
+    DEA_TRY(ctx, dea_solid_to_vector(ctx, s, slope, r->slope[r->count]));
+    r->count++;
+  }
+  return DEA_OK;
+}
+
 dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                               enum dea_eval_order level, double *energy)
 {
@@ -407,6 +449,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   DEA_TRY(ctx, collect(ctx, s, level, energy));
   if (level >= DEA_TANGENT) {
     DEA_TRY(ctx, add_springs(ctx, s));
+    DEA_TRY(ctx, take_rank_ones(ctx, s));
   }
   return DEA_OK;
 }

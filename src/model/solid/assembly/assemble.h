@@ -30,4 +30,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
 /* The scales of that assembly count as those of an equilibrium. */
 void dea_solid_keep_scales(struct dea_solid *s);
 
+/* Before pieces of loads are evaluated at u. */
+void dea_solid_loads_prepare(const struct dea_solid *s, const double *u);
+
 #endif

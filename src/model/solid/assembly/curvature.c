@@ -12,6 +12,7 @@
 #include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/incompressible.h"
+#include "model/solid/assembly/rank_one.h"
 
 #include <string.h>
 
@@ -111,6 +112,7 @@ static dea_status add_elements(struct dea_solid *s, double stiff, struct room *r
 static dea_status add_loads(struct dea_solid *s, size_t count, const double *v, double *out)
 {
   struct dea_load_piece *piece = s->work.piece;
+  dea_solid_loads_prepare(s, s->state.u);
   for (size_t l = 0; l < s->problem.load_count; l++) {
     const struct dea_solid_load *load = &s->problem.loads[l];
     size_t from, to;
@@ -172,7 +174,8 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
     s->work.g[i] -= s->state.force[i];
   }
   for (size_t i = 0; i < count; i++) {
-    out[i] += dea_solid_springs_curvature(s, v + i * dofs) +
+    out[i] += dea_solid_rank_one_curvature(s, v + i * dofs) +
+              dea_solid_springs_curvature(s, v + i * dofs) +
               dea_solid_bodies_curvature(s, s->work.g, v + i * dofs);
   }
   return DEA_OK;
@@ -222,7 +225,7 @@ static double motion_of_constraints(const struct dea_solid *s, const double *v, 
     const struct dea_solid_load *load = &s->problem.loads[l];
     for (size_t i = 0; i < load->multiplier_count; i++, q++) {
       struct dea_load_constraint c;
-      if (*q != 0) {
+      if (*q != 0 && load->constraint != NULL) {
         load->constraint(load->self, i, s->state.u, &c);
         const double *at = v + 3 * c.node;
         sum += 2 * *q * (c.slope[0] * at[0] + c.slope[1] * at[1] + c.slope[2] * at[2]) -
@@ -253,7 +256,8 @@ dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double
   for (size_t i = 0; i < 3 * p->grid->node_count && p->point_mass != NULL; i++) {
     sums[1] += p->point_mass[i / 3] * v[i] * v[i];
   }
-  *stiffness = sums[0] + motion_of_constraints(s, v, q + dea_solid_pressure_count(s)) +
+  *stiffness = sums[0] + dea_solid_rank_one_curvature(s, v) +
+               motion_of_constraints(s, v, q + dea_solid_pressure_count(s)) +
                dea_solid_bodies_curvature(s, s->work.g, v);
   *mass = sums[1];
   return DEA_OK;

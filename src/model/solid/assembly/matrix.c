@@ -4,6 +4,7 @@
 
 #include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/fronts.h"
+#include "model/solid/assembly/rank_one.h"
 
 #include <string.h>
 
@@ -213,6 +214,7 @@ dea_status dea_solid_create_matrix(struct dea_context *ctx, struct dea_solid *s,
 void dea_solid_destroy_matrix(struct dea_solid *s)
 {
   dea_fronts_destroy(s->memory.ctx, s->work.fronts);
+  dea_solid_rank_one_destroy(s);
   MatDestroy(&s->work.factor);
   MatDestroy(&s->work.K);
   VecDestroy(&s->work.right);
@@ -413,10 +415,22 @@ static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
+/* The solution by the factor of K alone. */
+static dea_status solve_by_factor(struct dea_context *ctx, struct dea_solid *s, Vec right, Vec x)
+{
+  if (s->work.by_fronts) {
+    return dea_fronts_solve(ctx, s->work.fronts, right, x);
+  }
+  DEA_PETSC(ctx, MatSolve(s->work.factor, right, x));
+  return DEA_OK;
+}
+
 dea_status dea_solid_factor_any(struct dea_context *ctx, struct dea_solid *s)
 {
+  int fewer;
   s->work.by_fronts = false;
   DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
+  DEA_TRY(ctx, dea_solid_rank_one_factor(ctx, s, solve_by_factor, &fewer));
   return DEA_OK;
 }
 
@@ -428,7 +442,7 @@ static dea_status factor_by_pivots(struct dea_context *ctx, struct dea_solid *s,
     DEA_TRY(ctx, analyse(ctx, s->work.K, ROOM, &s->work.factor));
   }
   DEA_PETSC(ctx, MatMumpsSetCntl(s->work.factor, 3, s->work.takes_small_pivots ? -1e-300 : 0));
-  DEA_TRY(ctx, dea_solid_factor_any(ctx, s));
+  DEA_TRY(ctx, dea_solid_factor(ctx, s->work.K, &s->work.factor));
   DEA_PETSC(ctx, MatGetInertia(s->work.factor, &minus, &zero, &plus));
   *negative = (int)(minus + zero) - (int)s->problem.free_potentials;
   return DEA_OK;
@@ -446,15 +460,21 @@ static dea_status count_factor(struct dea_context *ctx, Mat K)
 
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
+  int fewer;
   s->found.stiff_factor_fits = false;
   DEA_TRY(ctx, factor_by_fronts(ctx, s, 0, negative));
   DEA_TRY(ctx, *negative == 0 ? count_factor(ctx, s->work.K) : factor_by_pivots(ctx, s, negative));
+  DEA_TRY(ctx, dea_solid_rank_one_factor(ctx, s, solve_by_factor, &fewer));
+  *negative -= fewer;
   return DEA_OK;
 }
 
 dea_status dea_solid_factor_roughly(struct dea_context *ctx, struct dea_solid *s, int most,
                                     int *negative)
 {
+  if (s->work.rank_one.count > 0) { // a mode more or less makes a difference
+    return dea_solid_factorise(ctx, s, negative);
+  }
   s->found.stiff_factor_fits = false;
   DEA_TRY(ctx, factor_by_fronts(ctx, s, most, negative));
   DEA_TRY(ctx, *negative >= 0 ? count_factor(ctx, s->work.K) : factor_by_pivots(ctx, s, negative));
@@ -522,10 +542,8 @@ static void collect(struct dea_solid *s, double *right)
 
 dea_status dea_solid_solve_rows(struct dea_context *ctx, struct dea_solid *s, Vec right, Vec x)
 {
-  if (s->work.by_fronts) {
-    return dea_fronts_solve(ctx, s->work.fronts, right, x);
-  }
-  DEA_PETSC(ctx, MatSolve(s->work.factor, right, x));
+  DEA_TRY(ctx, solve_by_factor(ctx, s, right, x));
+  DEA_TRY(ctx, dea_solid_rank_one_correct(ctx, s, right, x));
   return DEA_OK;
 }
 
@@ -589,7 +607,7 @@ dea_status dea_solid_solve_many(struct dea_context *ctx, struct dea_solid *s, si
   Mat sides[2] = {NULL, NULL};
   PetscMPIInt ranks;
   DEA_PETSC(ctx, MPI_Comm_size(PetscObjectComm((PetscObject)s->work.K), &ranks));
-  if (count < 2 || ranks > 1 || s->work.by_fronts) {
+  if (count < 2 || ranks > 1 || s->work.by_fronts || s->work.rank_one.count > 0) {
     for (size_t k = 0; k < count; k++) {
       DEA_TRY(ctx, dea_solid_solve_linear(ctx, s, right + k * dofs, out + k * dofs));
     }

@@ -104,6 +104,17 @@ struct dea_load_steps {
   double before_last_V, last_V;
 };
 
+/* What loads add to the tangent beside K (rank_one.h). */
+enum { DEA_RANK_ONE_MAX = 8 };
+struct dea_solid_rank_one {
+  size_t count;
+  size_t solved_count; // of the present factor
+  double stiffness[DEA_RANK_ONE_MAX];
+  Vec slope[DEA_RANK_ONE_MAX];                         // S, of K's rows
+  Vec solved[DEA_RANK_ONE_MAX];                        // Z
+  double inverse[DEA_RANK_ONE_MAX * DEA_RANK_ONE_MAX]; // of M, [count][count]
+};
+
 /* Memory of the solvers: what stands in it is theirs from one call to the next, no longer. */
 struct dea_solid_work {
   double *trial;        // [dofs] displacements that are tried
@@ -120,6 +131,7 @@ struct dea_solid_work {
   struct dea_element_result *element; // of one element in an assembly
   struct dea_load_piece *piece;       // of one piece of a load in it
   Mat K;                              // tangent, by dea_solid_assemble
+  struct dea_solid_rank_one rank_one; // beside K, by dea_solid_assemble
   Mat factor;                         // LDL^T of K, by dea_solid_factorise
   struct dea_fronts *fronts;          // its factor where it is positive definite (fronts.h); owned
   bool by_fronts;                     // the present factor is that

@@ -90,8 +90,10 @@ static void find_rows(struct dea_adjoint *a)
   for (size_t k = 0; k < p->load_count; k++) {
     const struct dea_solid_load *load = &p->loads[k];
     for (size_t i = 0; i < load->multiplier_count; i++, row++) {
-      struct dea_load_constraint c;
-      load->constraint(load->self, i, a->s->state.u, &c);
+      struct dea_load_constraint c = {.held = false};
+      if (load->constraint != NULL) {
+        load->constraint(load->self, i, a->s->state.u, &c);
+      }
       *row = (struct row){.node = (size_t)c.node, .stiffness = c.stiffness};
       row->root = c.held ? sqrt(c.weight) : 0;
       for (int j = 0; j < 3 && row->root > 0; j++) {

@@ -36,6 +36,14 @@ struct dea_solid_load {
   dea_status (*evaluate)(const void *self, size_t piece, const double *u, enum dea_eval_order level,
                          struct dea_load_piece *out);
 
+  /* Of a load that a number of the whole, such as a volume, determines; NULL: of none. prepare: at
+   * u, before pieces there are evaluated. whole: what comes to the tangent beside the pieces is its
+   * answer, above 0, times s s^T; adds s, by the displacements [node_count][3], where slope is not
+   * NULL. along: s . v; needed with whole. */
+  void (*prepare)(void *self, const double *u);
+  double (*whole)(const void *self, const double *u, double *slope);
+  double (*along)(const void *self, const double *u, const double *v);
+
   /* Numbers by which the load stands, such as its size or the place of a tip. A solve leads them
    * from now to goal, by itself in steps; both are lent, and 0 of them is fine. */
   size_t parameter_count;
@@ -51,7 +59,7 @@ struct dea_solid_load {
   /* Moves them as a share of a step of Newton's method from u does, before u moves; NULL: such a
    * step leaves them. */
   void (*predict)(void *self, const double *u, const double *step, double share);
-  /* The constraint of multiplier i at u; needed where there are multipliers. */
+  /* The constraint of multiplier i at u; NULL: it is one of the whole, which `whole` takes. */
   void (*constraint)(const void *self, size_t i, const double *u, struct dea_load_constraint *out);
 };
 

@@ -69,6 +69,20 @@ dea_status dea_pressure_create(struct dea_context *ctx, const struct dea_surface
 dea_status dea_pressure_create_flat(struct dea_context *ctx, const struct dea_surface *surface,
                                     double height_m, struct dea_pressure **out);
 void dea_pressure_destroy(struct dea_context *ctx, struct dea_pressure *pressure);
+/* The surface closes a volume V in, V0 while the surface is flat. Gas has there the pressure p0
+ * over pa, which is outside, and elsewhere (p0 + pa) V0/V - pa; p0 is what dea_pressure_set sets. A
+ * liquid has whatever pressure keeps V - V0 at what dea_pressure_set sets [m^3]; in the iterations
+ * it gives way by the stiffness. Of a pressure on a flat face. */
+struct dea_enclosed {
+  bool liquid;
+  double volume_m3;           // V0 of gas; of a liquid what errors are relative to at least
+  double ambient_Pa;          // pa, of gas
+  double stiffness_Pa_per_m3; // of liquid
+};
+void dea_pressure_enclose(struct dea_pressure *pressure, const struct dea_enclosed *enclosed);
+/* V - V0 at displacements u, and the pressure there. */
+double dea_pressure_volume_m3(const struct dea_pressure *pressure, const double *u);
+double dea_pressure_at_Pa(struct dea_pressure *pressure, const double *u);
 /* Pressure that the next solve goes to, positive into the body. */
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);
 /* As it stands: the last goal, or how far a solve came. */

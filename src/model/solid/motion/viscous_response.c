@@ -317,6 +317,11 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
   const size_t room = PARTS + s->problem.constituent_count;
   struct system y = {.solid = s, .branches = branches};
   DEA_TRY(ctx, dea_solid_response_check(ctx, s));
+  if (s->work.rank_one.count > 0) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "the answer of viscous plies to an excitation does not know enclosed volumes: "
+                    "take `viscosity: none` for them, or a history in time (compute.transient)");
+  }
   y.part = dea_alloc(ctx, room, sizeof(Mat));
   y.constituent = dea_alloc(ctx, room, sizeof *y.constituent);
   y.share = dea_alloc(ctx, room, sizeof *y.share);
