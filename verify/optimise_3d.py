@@ -61,7 +61,4 @@ with tempfile.TemporaryDirectory() as work:
         gradients = "none" if how[0] in ("cobyla", "random") else how[1]
         print(f"| {how[0]} | {gradients} | {count} | {near} | {best:.1f} | {seconds:.1f} |", flush=True)
 print("""
-A local search finds a local optimum: where a row ends elsewhere, the stroke has more than one hill
-(thin fibres of the film's thickness or wide and thinner ones), and `starts` is for that.
-`cobyla` hangs on rounding: by an older program its first 18 designs had the same values
-to 11 digits, the next one differed, and it needed 45 to 1 % of -65.3 um.""")
+A local search finds a local optimum: where a row ends elsewhere, the stroke has more than one maximum, and `starts` is for that.""")

@@ -48,9 +48,6 @@ systems and disks with sectors of that size write it. The last row is what a dis
 pages: some numbers of HDF5's own tables are then neither old nor new, and it does not read such a
 file. The fourth row stands for disks that write in another order than they were asked to.
 
-Samples go to the disk before the cycle that says that they are there; before that was so, 17 of
-4000 cuts left a cycle, not yet announced, with samples that were never written.
-
 Made by `scripts/verify recordings`; in the tests, `test_lab_killed.c` and `test_lab_power.c` make 40
 of each by fixed seeds.
 EOF

@@ -285,21 +285,25 @@ int main(int argc, char **argv)
     path_of_other("1");
     path_from_rest("2");
     path_of_other("2");
-    puts(
-        "\nThe other arm is detached: it ends at its limit point, and no way of the voltage leads "
-        "from rest to it. A film gets\nthere by being pushed.\n\n"
-        "## Other ends, four and eight fibres\n\n"
-        "Refinement 1. Bold: the limit point where the arm towards the fibres begins, in kV. "
-        "Another program found the centre with\nfree ends at +0.627 mm at 2 kV with four fibres, "
-        "+0.926, +1.190 and +1.439 mm at 3, 4 and 5 kV with eight; tolerance 3 %.\n"
-        "Its +0.125 mm at 0.7 kV with four is not confirmed: 0.1377 mm here (0.139 with refinement "
-        "2 or "
-        "order 3), 0.1384 mm by\n`verify/free_branch.py` (Q2/P1 without any penalty on the volume) "
-        "on "
-        "the same nodes; the centre rises by 0.5 mm a kV there. The\ntips of free fibres rise with "
-        "the film from the onset on, those of hinged ones above 1 kV; clamped ones stay low.\n\n"
-        "| fibres | kV | from 0 V, centre, mm | the other, centre | from 0 V, tip | the other, "
-        "tip | energy |\n|---|---|---|---|---|---|---|");
+    puts("\n"
+         "The other arm is detached: no path of the voltage leads from rest to it.\n"
+         "\n"
+         "## Other ends, four and eight fibres\n"
+         "\n"
+         "Refinement 1. Bold: the limit point where the arm towards the fibres begins, in kV. "
+         "Another program found the centre with\n"
+         "free ends at +0.627 mm at 2 kV with four fibres, +0.926, +1.190 and +1.439 mm at 3, 4 "
+         "and 5 kV with eight; tolerance 3 %.\n"
+         "Its +0.125 mm at 0.7 kV with four is not confirmed: 0.1377 mm here (0.139 with "
+         "refinement 2 or order 3), 0.1384 mm by\n"
+         "`verify/free_branch.py` (Q2/P1 without any penalty on the volume) on the same nodes; the "
+         "centre rises by 0.5 mm a kV there. The\n"
+         "tips of free fibres rise with the film from the onset on, those of hinged ones above 1 "
+         "kV; clamped ones stay low.\n"
+         "\n"
+         "| fibres | kV | from 0 V, centre, mm | the other, centre | from 0 V, tip | the other, "
+         "tip | energy |\n"
+         "|---|---|---|---|---|---|---|");
     ends("4", "free", known4);
     ends("8", "free", known8);
     ends("4", "hinged", none);

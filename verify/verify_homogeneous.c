@@ -340,14 +340,17 @@ static double first_mode(int order, double kappa_s)
 static void early_modes(bool small)
 {
   static const int orders[] = {2, 3};
-  puts(
-      "\n### Where modes are counted too early\n\n"
-      "Elements ask for the volume in polynomials of one degree less than their own. Areas that "
-      "change by higher ones are\nheld by kappa_s only ([solid.md](../theory/solid.md)), and close "
-      "to the limit point of a film without pre-stretch that\nis not enough: such a mode is "
-      "counted as unstable before the film is. Neo-Hookean, free; voltage of the first mode\nthat "
-      "is counted over that of the limit:\n\n"
-      "| order of the element | kappa_s | 10 kappa_s | 100 kappa_s |\n|---|---|---|---|");
+  puts("\n"
+       "### Where modes are counted too early\n"
+       "\n"
+       "Areas that change by polynomials of higher degree than the pressures' are held by kappa_s "
+       "only ([solid.md](../theory/solid.md)); close to the limit point\n"
+       "of a film without pre-stretch such a mode is counted as unstable before the film is. "
+       "Neo-Hookean, free; voltage of the first mode that is counted over\n"
+       "that of the limit:\n"
+       "\n"
+       "| order of the element | kappa_s | 10 kappa_s | 100 kappa_s |\n"
+       "|---|---|---|---|");
   for (size_t i = 0; i < (small ? 1 : sizeof orders / sizeof orders[0]); i++) {
     printf("| %d |", orders[i]);
     for (double more = 1; more < 200; more *= 10) {

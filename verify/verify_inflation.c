@@ -292,17 +292,18 @@ int main(int argc, char **argv)
     disc_rows(0.002, 2, 2, 3);
     disc_rows(0.002, 2, 4, 3);
   }
-  puts(
-      "\nThe rim has to be free to turn: at a stretch of 1.5 the membrane leaves it at 85 degrees. "
-      "A film whose face is\nclamped there bends within a few H, which elements of 0.1 R cannot "
-      "follow; they make the disc 3 % too stiff in w\nand converge slowly.\n\n"
-      "## Balloon of radius R\n\n"
-      "An octant with three mirror planes, by solves up to 1.2, then along its path through the "
-      "largest "
-      "pressure (bold, located).\nExact: p R/(mu H) = 2 (1/l - 1/l^7) at a stretch l, largest "
-      "1.239463 at 1.383088.\n\n"
-      "| H/R | nodes | stretch | p R/(mu H) | exact | difference | unstable modes |\n"
-      "|---|---|---|---|---|---|---|");
+  puts("\n"
+       "The rim has to be free to turn: a film whose face is clamped there bends within a few H, "
+       "which elements of 0.1 R cannot follow.\n"
+       "\n"
+       "## Balloon of radius R\n"
+       "\n"
+       "An octant with three mirror planes, by solves up to 1.2, then along its path through the "
+       "largest pressure (bold, located).\n"
+       "Exact: p R/(mu H) = 2 (1/l - 1/l^7) at a stretch l, largest 1.239463 at 1.383088.\n"
+       "\n"
+       "| H/R | nodes | stretch | p R/(mu H) | exact | difference | unstable modes |\n"
+       "|---|---|---|---|---|---|---|");
   balloon_rows(0.01, 2, small ? 1.5 : 2.5);
   if (!small) {
     balloon_rows(0.01, 4, 2.5);

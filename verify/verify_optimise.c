@@ -155,15 +155,14 @@ int main(int argc, char **argv)
     return 1;
   }
   puts(
-      "# How many designs a search needs\n\n"
+      "# How many designs a search needs\n"
+      "\n"
       "`dea optimise` on functions whose optimum is known in closed form: the least sum of\n"
       "a_i / x_i where the x_i sum up to at most 1, with a_i = 1, 4, 9, ... (Cauchy and Schwarz),\n"
       "and Rosenbrock's valley plus 1. From one start, until a design within the limits is within\n"
       "1e-4 of the optimum; every design counts, those of central differences too. `random`: the\n"
-      "best of random designs. Numbers of designs of `mma`, and of `slsqp` with differences,\n"
-      "hang on rounding: they moved by up to 42 % of themselves when the slope of an objective\n"
-      "was taken of its values and then scaled, not of scaled values; with that undone they are\n"
-      "the former ones.\n\n"
+      "best of random designs.\n"
+      "\n"
       "| function | variables | method | | designs until 1e-4 | in all | best, off by |\n"
       "|---|---|---|---|---|---|---|");
   for (size_t k = 0; k < (small ? 1 : 3); k++) {

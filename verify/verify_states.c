@@ -219,12 +219,11 @@ static void carry(const char *states)
 
 static void finer(void)
 {
-  puts("## On meshes that are finer where the film is slack\n\nStates at voltages, each carried "
-       "from mesh to mesh (`compute.states: {refined: tips}`). A letter after an arrow: the state "
-       "that\nit is there; lost: it came to no equilibrium, by itself or along its branch. 7.25 kV "
-       "is "
-       "there for\nthe way: from 0 to 7.5 kV at once the film comes to the dent, and from there "
-       "the search does not find the waves.\n");
+  puts("## On meshes that are finer where the film is slack\n"
+       "\n"
+       "States at voltages, each transferred from mesh to mesh (`compute.states: {refined: "
+       "tips}`). A letter after an arrow: the state that it is there; lost: it\n"
+       "came to no equilibrium, by itself or along its branch.\n");
   carry("{voltage: [7.25 kV, 7.5 kV, 8 kV], modes: 3, push: [400 um], refined: tips, refinement: "
         "[1.5, 2, "
         "2.5], relaxed: no}");
