@@ -34,6 +34,7 @@ install(FILES ${PROJECT_BINARY_DIR}/src/completion.fish RENAME dea.fish
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/lab/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}/lab)
 
 # A program that links the static library needs its dependencies too; one that links the shared
 # library does not. udunits and HDF5 are given by path: their packages name their .pc files
