@@ -207,9 +207,11 @@ static void print_case(const struct subject *s, double rho, bool known, size_t s
   for (size_t j = 0; j < s->params; j++) {
     const struct count *c = &counts[j];
     const double mean = c->sum / n, scatter = sqrt(c->squares / n - mean * mean);
-    printf("| %g | %s | %s | %.1f | %.1f | %.1f | %.4g | %.4g |\n", rho, known ? "yes" : "no",
-           s->names[j], 100 * (double)c->within_1 / n, 400 * (double)c->profile / n,
-           100 * (double)c->within_2 / n, s->factors[j] * scatter, s->factors[j] * c->std / n);
+    if (known == (rho <= 0)) { // the simplest and the hardest case
+      printf("| %g | %s | %s | %.1f | %.1f | %.1f | %.4g | %.4g |\n", rho, known ? "yes" : "no",
+             s->names[j], 100 * (double)c->within_1 / n, 400 * (double)c->profile / n,
+             100 * (double)c->within_2 / n, s->factors[j] * scatter, s->factors[j] * c->std / n);
+    }
     verify_absolute(s->names[j], (double)c->within_1 / n, 0.683, tolerance);
     verify_absolute(s->names[j], 4 * (double)c->profile / n, 0.683, rough);
   }
@@ -229,7 +231,9 @@ int main(int argc, char **argv)
       "told to the fit it is the same in\nall rows. Truth within one standard uncertainty "
       "(tolerance: 68.3 ± %g %%), of a quarter of the sets within\nthe 68 %% interval of the "
       "profile (± %g %%), within 1.96 standard uncertainties (95 %%); beside them the\nscatter of "
-      "the values found and the mean of the uncertainties that were given for it.\n",
+      "the values found and the mean of the uncertainties that were given for it. Of the four "
+      "cases "
+      "of noise the\nsimplest and the hardest are shown.\n",
       sets, small ? 13.0 : 3.0, small ? 26.0 : 6.5);
   for (size_t k = 0; k < SUBJECTS; k++) {
     printf(

@@ -122,6 +122,9 @@ static void print_meshes(const struct found *meshes)
        "fibre tip | edge | highest | lowest |\n|---|---|---|---|---|---|---|---|---|---|---|");
   for (size_t i = 0; i < meshes->table->row_count; i++) {
     const char *is = text(meshes, i, "is");
+    if (stays(meshes, i) && number(meshes, i, "refinement") < 2.5) {
+      continue; // the second table has these
+    }
     printf("| %.2f | %s%s%s | %g | %.0f ", 1e-3 * number(meshes, i, "voltage_V"),
            text(meshes, i, "state"), stays(meshes, i) ? "" : " > ", stays(meshes, i) ? "" : is,
            number(meshes, i, "refinement"), number(meshes, i, "unknowns"));
@@ -222,8 +225,8 @@ static void finer(void)
   puts("## On meshes that are finer where the film is slack\n"
        "\n"
        "States at voltages, each transferred from mesh to mesh (`compute.states: {refined: "
-       "tips}`). A letter after an arrow: the state that it is there; lost: it\n"
-       "came to no equilibrium, by itself or along its branch.\n");
+       "tips}`): on the finest, and where one becomes\n"
+       "another (after the arrow) or is lost (no equilibrium, by itself or along its branch).\n");
   carry("{voltage: [7.25 kV, 7.5 kV, 8 kV], modes: 3, push: [400 um], refined: tips, refinement: "
         "[1.5, 2, "
         "2.5], relaxed: no}");
