@@ -107,7 +107,6 @@ dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *s,
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of this mesh and these loads");
   }
   dea_solid_controls_set(s, controls);
-  memcpy(s->state.force_goal, s->state.force, s->problem.dofs * sizeof(double));
   s->found.force_largest_N = own[0];
   s->found.energy_largest_J = own[1];
   DEA_TRY(ctx, factorise(ctx, s, factored, now));
