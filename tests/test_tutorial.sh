@@ -1,9 +1,17 @@
 #!/bin/sh
 # ctest: docs
-# Runs docs/tutorial.md: each block of commands in one shell, in a folder that is thrown away; each
-# line of a block of text after it must begin a line of what they printed.
+# Runs docs/tutorial.md and first-device.md: each block of commands of a page in one shell, in a folder that
+# is thrown away; each line of a block of text after it must begin a line of what they printed.
 set -eu
-page=$1/docs/tutorial.md
+if [ $# -eq 1 ]; then # both pages, each by itself
+  for name in tutorial first-device; do
+    result=0
+    sh "$0" "$1" "$name" || result=$?
+    [ "$result" -eq 0 ] || exit "$result"
+  done
+  exit 0
+fi
+page=$1/docs/$2.md
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/bin" "$work/user"
@@ -19,11 +27,11 @@ awk -v work="$work" '
   /^```$/ { kind = ""; next }
   kind == "sh" { print >(work "/commands") }
   kind == "text" { print block "\t" $0 >(work "/wanted") }' "$page"
-[ "$(grep -c . "$work/wanted")" -gt 5 ] || { echo "hardly any line to compare: the test is broken"; exit 1; }
-(cd "$work/user" && sh -eu "$work/commands") || { cat "$work"/said-*; echo "a command of the tutorial failed"; exit 1; }
+[ "$(grep -c . "$work/wanted")" -gt 4 ] || { echo "hardly any line to compare: the test is broken"; exit 1; }
+(cd "$work/user" && sh -eu "$work/commands") || { cat "$work"/said-*; echo "a command of docs/$2.md failed"; exit 1; }
 bad=0
 while IFS='	' read -r block line; do
   awk -v line="$line" 'BEGIN { bad = 1 } index($0, line) == 1 { bad = 0 } END { exit bad }' "$work/said-$block" ||
-    { echo "docs/tutorial.md: its commands do not print: $line"; cat "$work/said-$block"; bad=1; }
+    { echo "docs/$2.md: its commands do not print: $line"; cat "$work/said-$block"; bad=1; }
 done <"$work/wanted"
 exit $bad

@@ -6,6 +6,7 @@
 #include "geometry/drawing.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
@@ -170,13 +171,29 @@ static dea_status copy(struct maker *m, const struct dea_parts_shape *shape, str
   return failed ? DEA_E_MEMORY : dea_region_status(out);
 }
 
+/* Path of a drawing: it lies beside the design, or in the folder above, as of a design that a fit
+ * or a search has written into a folder of its own. Owned by the caller; NULL on failure. */
+static char *path_of(struct dea_context *ctx, const char *design, const char *name)
+{
+  char *path = dea_path_beside(ctx, design, name), above[1024], first;
+  size_t length;
+  if (path == NULL || dea_file_head(path, &first, 1, &length) || name[0] == '/') {
+    return path;
+  }
+  snprintf(above, sizeof above, "../%s", name);
+  char *other = dea_path_beside(ctx, design, above);
+  const bool there = other != NULL && dea_file_head(other, &first, 1, &length);
+  dea_free(ctx, there || other == NULL ? path : other);
+  return there || other == NULL ? other : path;
+}
+
 /* The drawing of a file, read once; *out NULL: it cannot be read, which was said. */
 static dea_status read_drawing(struct maker *m, const struct dea_parts_shape *shape,
                                const struct dea_drawing **out)
 {
   struct dea_context *ctx = m->ctx;
   double unit_m = shape->unit.origin == DEA_ABSENT ? 0 : dea_parts_unit_m[shape->unit.value];
-  char *path = dea_path_beside(ctx, m->design->file, shape->file.text);
+  char *path = path_of(ctx, m->design->file, shape->file.text);
   const char *file = path != NULL ? dea_intern(ctx, path) : NULL;
   dea_free(ctx, path);
   *out = NULL;
