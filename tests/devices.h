@@ -33,7 +33,8 @@ static inline struct dea_material test_material(const char *law, double p0, doub
 static inline struct dea_device test_disc(struct dea_material film, double pre_stretch,
                                           double electrode_radius_m, double coverage, int fibres)
 {
-  struct dea_device d = {.film = film,
+  struct dea_device d = {.disc = true,
+                         .film = film,
                          .film_thickness_unstretched_m = 100e-6,
                          .pre_stretch = pre_stretch,
                          .film_thickness_m = 100e-6 / (pre_stretch * pre_stretch),

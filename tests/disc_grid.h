@@ -36,7 +36,8 @@ static int disc_ply(const char *name)
 static dea_status disc_mesh(struct dea_context *in, const struct dea_fibre_disc *p,
                             const struct dea_fibre_disc *like, struct dea_layout_mesh *out)
 {
-  const struct dea_device device = {.film_thickness_m = p->film_thickness,
+  const struct dea_device device = {.disc = true,
+                                    .film_thickness_m = p->film_thickness,
                                     .film_thickness_unstretched_m = p->film_thickness,
                                     .pre_stretch = 1,
                                     .electrode_thickness_m = p->electrode_thickness,

@@ -27,7 +27,6 @@ static inline struct dea_device *device_new(void)
   assert_int_equal(dea_layout_create(ctx, &device->layout), DEA_OK);
   struct dea_layout *l = device->layout;
   enum { ROOM = 8 };
-  device->general = true;
   l->regions = dea_arena_alloc(&l->memory, ROOM, sizeof *l->regions);
   l->plies = dea_arena_alloc(&l->memory, ROOM, sizeof *l->plies);
   l->electrodes = dea_arena_alloc(&l->memory, ROOM, sizeof *l->electrodes);

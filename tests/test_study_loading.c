@@ -218,7 +218,7 @@ static void test_bad_keys(void **state)
       {"{body: hub, from: 0 mm, to: 1 mm, force_from: 0 N, force_to: 1 N}", "exclude each other"},
       {"{body: hub, direction: turn_x, from: 0 mm, to: 1 mm}", "turn_from to turn_to"},
       {"{body: hub, turn_from: 0 degree, turn_to: 1 degree}", "need direction"},
-      {"{body: hub, from: 0 mm, to: 1 mm}", "only devices of the general form"},
+      {"{body: hub, from: 0 mm, to: 1 mm}", "only designs with plies"},
   };
   (void)state;
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

@@ -86,7 +86,8 @@ static double strain(struct disc *disc, double from_V, double to_V, int *modes)
 static double exact(double a_m, double voltage_V)
 {
   const struct dea_model_type *type = dea_model_find("axisymmetric");
-  struct dea_device device = {.film_thickness_unstretched_m = 100e-6,
+  struct dea_device device = {.disc = true,
+                              .film_thickness_unstretched_m = 100e-6,
                               .pre_stretch = 1.5,
                               .film_thickness_m = 100e-6 / 2.25,
                               .frame_radius_m = frame_m,

@@ -110,7 +110,8 @@ struct lumped {
 static void lumped_create(struct lumped *l, double pre, double H, double G, double tau)
 {
   struct dea_device *d = &l->device;
-  *d = (struct dea_device){.film_thickness_unstretched_m = H,
+  *d = (struct dea_device){.disc = true,
+                           .film_thickness_unstretched_m = H,
                            .film_thickness_m = H / (pre * pre),
                            .pre_stretch = pre,
                            .electrode_radius_m = 1e-5,

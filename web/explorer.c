@@ -118,11 +118,10 @@ static struct dea_material make_film(void)
 }
 
 /* The devices here are discs: nothing of layouts is linked. */
-dea_status dea_device_disc(struct dea_context *context, const struct dea_device *of,
-                           struct dea_device *out)
+dea_status dea_device_require_disc(struct dea_context *context, const struct dea_device *of)
 {
   (void)context;
-  *out = *of;
+  (void)of;
   return DEA_OK;
 }
 
@@ -130,6 +129,7 @@ static void fill_device(void)
 {
   double l_pre = inputs[IN_pre_stretch];
   device = (struct dea_device){
+      .disc = true,
       .film = make_film(),
       .film_thickness_unstretched_m = inputs[IN_film_thickness_unstretched_m],
       .pre_stretch = l_pre,

@@ -122,7 +122,7 @@ static dea_status print_text(struct dea_context *ctx, const struct dea_design *d
   puts("\nDerived");
   struct derived rows[DERIVED_MAX];
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a design without errors has its device
-  const size_t count = device->general ? 0 : derive(device, rows);
+  const size_t count = device->disc ? derive(device, rows) : 0;
   for (size_t i = 0; i < count; i++) {
     printf("  %-32s  %.6g%s%s\n", rows[i].meaning, rows[i].factor * rows[i].si,
            rows[i].unit[0] != '\0' ? " " : "", rows[i].unit);
@@ -163,7 +163,7 @@ static void print_json(const struct dea_cli *cli, const struct request *request,
   }
   if (device != NULL) {
     struct derived rows[DERIVED_MAX];
-    size_t count = device->general ? 0 : derive(device, rows);
+    size_t count = device->disc ? derive(device, rows) : 0;
     json_t *derived = cli_layout_json(device->layout);
     for (size_t i = 0; i < count; i++) {
       json_object_set_new(derived, rows[i].key, json_real(rows[i].si));

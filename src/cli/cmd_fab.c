@@ -23,7 +23,7 @@ static json_t *amounts_json(const struct dea_workshop *w)
 {
   struct dea_amounts a;
   json_t *json = json_object();
-  if (w->plan.device->general) {
+  if (w->plan.design->parts != NULL) {
     dea_json_put(json, "ink_area_m2", dea_ink_area_m2(w));
     dea_json_put(json, "mass_kg", dea_plies_mass_kg(w->plan.device->layout));
     return json;

@@ -40,6 +40,11 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
   return DEA_OK;
 }
 
+bool dea_device_is_observed(const struct dea_device *device)
+{
+  return !device->disc || (device->layout != NULL && device->layout->monitor_count > 0);
+}
+
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device)
 {
   if (device != NULL) {

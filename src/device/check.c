@@ -53,7 +53,7 @@ dea_status dea_layout_check_densities(struct dea_context *ctx, const struct dea_
 
 dea_status dea_device_check_densities(struct dea_context *ctx, const struct dea_device *d)
 {
-  if (d->general) {
+  if (!d->disc) {
     return dea_layout_check_densities(ctx, d->layout);
   }
   DEA_TRY(ctx, check_density(ctx, &d->film));

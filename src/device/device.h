@@ -12,9 +12,14 @@
 #define DEA_STANDARD_GRAVITY_M_PER_S2 9.80665
 
 struct dea_device {
-  struct dea_layout *layout; // owned; NULL of a device that was filled by hand
-  bool general; // its parts are those of the layout; all that follows but gravity is 0 then, also
-                // of a disc (dea_device_disc)
+  struct dea_layout *layout; // owned; NULL of a device that was filled by hand, or changed
+  enum dea_gravity gravity;
+
+  /* The layout is a disc in a round frame, bare or with radial fibres, and the rest are its
+   * numbers; otherwise they are 0. */
+  bool disc;
+  double centre_m[2];
+  double angle_rad; // of the first fibre from the x axis, up to that to the next one
 
   struct dea_material film;
   struct dea_material electrode;       // name "" when the design names none
@@ -36,8 +41,6 @@ struct dea_device {
   double bond_thickness_m, bond_modulus_Pa;
   enum dea_outer_end outer_end;
   double fibre_outer_gap_m; // from a free outer end to the frame; 0 for other ends
-
-  enum dea_gravity gravity;
 };
 
 /* Resolves materials (design's own first, then the catalogue) and checks the geometry as a whole:
@@ -46,20 +49,21 @@ struct dea_device {
  * caller. */
 dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *design,
                             struct dea_device **out);
-/* The disc in a round frame that a device is, for what knows no other: itself, or, of the general
- * form, one with the numbers that its layout has; DEA_E_DESIGN with what first is not as in a disc.
- * out: lends the layout; may be the device, which then is of the short form, but that no keys are
- * there. */
-dea_status dea_device_disc(struct dea_context *ctx, const struct dea_device *device,
-                           struct dea_device *out);
+/* Looks whether the layout is a disc, and takes its numbers from there. DEA_E_MEMORY. */
+dea_status dea_device_find_disc(struct dea_context *ctx, struct dea_device *device);
+/* DEA_E_DESIGN with what first is not as in a disc, of one that is none. */
+dea_status dea_device_require_disc(struct dea_context *ctx, const struct dea_device *device);
+/* Whether monitors and channels of its layout say what it does: it has monitors, or is no disc,
+ * which has its own columns of load points. */
+bool dea_device_is_observed(const struct dea_device *device);
 /* DEA_E_DESIGN with the number that no disc can have, such as a coverage that is not between 0 and
  * 1, of a device that was filled by hand. */
 dea_status dea_device_check(struct dea_context *ctx, const struct dea_device *device);
 /* Total stretch of the electrodes at which a path ends: what the design says, or 1.5 times the
  * pre-stretch. */
 double dea_device_path_end(const struct dea_device *device, const struct dea_design *design);
-/* Of the film; of the general form that of the first ply between electrodes, along its first axis;
- * 1 without one. */
+/* Of the film: of what is no disc of the first ply between electrodes, along its first axis; 1
+ * without one. */
 double dea_device_pre_stretch(const struct dea_device *device);
 /* Whether all that has weight and inertia has a density: film, fibres, plies. DEA_E_DESIGN. */
 dea_status dea_device_check_densities(struct dea_context *ctx, const struct dea_device *device);

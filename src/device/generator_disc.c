@@ -82,6 +82,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
                                  struct dea_device *);
   static const build_fn parts[] = {build_film, build_electrode, build_fibre};
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  device->disc = true;
   dea_geometry_fill(design, device);
   for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
     dea_status status = parts[i](ctx, design, device);

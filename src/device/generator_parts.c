@@ -538,7 +538,6 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   const double g = DEA_STANDARD_GRAVITY_M_PER_S2;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   struct maker m = {.ctx = ctx, .design = design, .parts = design->parts};
-  device->general = true;
   device->gravity = (enum dea_gravity)design->gravity.value;
   DEA_TRY(ctx, dea_layout_create(ctx, &device->layout));
   m.out = device->layout;
@@ -556,6 +555,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   fit_breakdown(&m);
   DEA_TRY(ctx, check_dielectrics(&m));
   DEA_TRY(ctx, dea_layout_check(ctx, m.out, dea_design_highest_V(design)));
+  DEA_TRY(ctx, dea_device_find_disc(ctx, device));
   DEA_TRY(ctx, dea_geometry_fit_studies(ctx, design, device));
   return dea_layout_find_symmetry(ctx, m.out);
 }

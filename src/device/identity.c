@@ -81,7 +81,7 @@ void dea_device_identity(const struct dea_design *design, const struct dea_devic
   dea_material_identity(&device->film, out);
   dea_material_identity(&device->fibre, out);
   dea_material_identity(&device->electrode, out);
-  if (device->general) {
+  if (design->parts != NULL) {
     add_regions(out, device->layout);
     for (size_t i = 0; i < device->layout->ply_count; i++) {
       dea_material_identity(&device->layout->plies[i].material, out);

@@ -39,7 +39,7 @@ static const struct dea_layout_monitor *monitor_of(const struct dea_device *devi
                                                    const char *text)
 {
   const struct dea_layout *layout = device->layout;
-  for (size_t i = 0; device->general && i < layout->monitor_count; i++) {
+  for (size_t i = 0; i < layout->monitor_count; i++) {
     const struct dea_layout_monitor *monitor = &layout->monitors[i];
     char part[DEA_KEY_PART_SIZE];
     const size_t length = strlen(monitor->name);
@@ -103,11 +103,11 @@ dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *d
     *good = true;
     return DEA_OK;
   }
-  if (device->general) { // adds its columns to those that are looked through
+  if (dea_device_is_observed(device)) { // adds its columns to those that are looked through
     DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, -1, &out->of, &out->is_seen));
   }
   out->column = dea_column_find(ctx, label->text);
-  if (out->column >= 0 && device->general) {
+  if (out->column >= 0 && dea_device_is_observed(device)) {
     DEA_TRY(ctx, dea_layout_column_find(ctx, device->layout, out->column, &out->of, &out->is_seen));
     out->is_seen = out->is_seen && out->of.source != DEA_OF_MONITOR_ERROR;
   }

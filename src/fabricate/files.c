@@ -50,7 +50,7 @@ enum { DRAWINGS = sizeof drawings / sizeof drawings[0] };
 
 static bool is_general(const struct dea_workshop *workshop)
 {
-  return workshop->plan.device->general;
+  return workshop->plan.design->parts != NULL;
 }
 
 dea_status dea_workshop_files(const struct dea_workshop *workshop,

@@ -131,7 +131,7 @@ static void make(struct picture *p, const struct dea_workshop *w)
   const struct dea_fab_geometry *plan = &w->plan;
   const char *title = plan->design->title.text, *file = dea_path_name(plan->design->file);
   p->parts.ctx = w->memory.ctx;
-  if (plan->device->general) {
+  if (plan->design->parts != NULL) {
     snprintf(p->below, sizeof p->below, "%.80s; lengths in the flat film", file);
     if (dea_layout_has_frame(w)) {
       add_frame(p, w);

@@ -332,8 +332,8 @@ dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop 
       "with the numbers of the design. DXF and SVG files have the kerf of the cutter in "
       "them, parts.pdf shows the finished parts at 1:1.",
       dea_path_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "",
-      workshop->plan.device->general ? "" : " after section 3.1 of the paper,");
-  if (workshop->plan.device->general) {
+      workshop->plan.design->parts != NULL ? "" : " after section 3.1 of the paper,");
+  if (workshop->plan.design->parts != NULL) {
     DEA_TRY(ctx, dea_process_write_layout(ctx, workshop, sensitivity, document));
     return document->failed ? DEA_E_MEMORY : DEA_OK;
   }

@@ -149,7 +149,7 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
 {
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   w->memory.ctx = ctx;
-  if (device->general) {
+  if (design->parts != NULL) {
     w->plan = (struct dea_fab_geometry){.design = design,
                                         .device = device,
                                         .kerf_m = design->fabrication.kerf_m.si,
@@ -161,8 +161,8 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
     DEA_TRY(ctx, dea_fab_geometry_make(ctx, design, device, &w->plan));
   }
   if (dea_finding_count(ctx, DEA_ERROR) == errors) { // else parts have no form
-    DEA_TRY(ctx, device->general ? dea_layout_parts_make(ctx, w) : build_parts(ctx, w));
-    if (device->general && device->layout->electrode_count > 0) {
+    DEA_TRY(ctx, design->parts != NULL ? dea_layout_parts_make(ctx, w) : build_parts(ctx, w));
+    if (design->parts != NULL && device->layout->electrode_count > 0) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, design->parts->place,
                                    "leads and pads are made for discs only: draw them as part of "
                                    "the shapes of these electrodes"));

@@ -89,7 +89,7 @@ static dea_status read_design(struct work *w)
           dea_design_read_memory(w->ctx, w->path, w->bytes, w->length, NULL, 0, &w->design));
   DEA_TRY(w->ctx, dea_device_build(w->ctx, w->design, &w->device));
   DEA_TRY(w->ctx, dea_device_columns_add(w->ctx, w->device));
-  w->model.observed = w->device->general;
+  w->model.observed = dea_device_is_observed(w->device);
   w->model.ctx = w->ctx;
   w->model.name = w->path;
   w->model.bytes = w->bytes;

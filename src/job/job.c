@@ -86,8 +86,7 @@ static struct dea_location place_of(const struct dea_design *design, const char 
 static dea_status check_model(struct dea_context *ctx, const struct dea_model_type *type,
                               const struct dea_result *result)
 {
-  struct dea_device disc;
-  if (!type->any_layout && dea_device_disc(ctx, result->device, &disc) != DEA_OK) {
+  if (!type->any_layout && dea_device_require_disc(ctx, result->device) != DEA_OK) {
     char why[400];
     snprintf(why, sizeof why, "model %s: %.300s", type->name, dea_context_message(ctx));
     dea_context_clear(ctx);

@@ -38,11 +38,10 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
 dea_status dea_model_check(struct dea_context *ctx, const struct dea_model_type *type,
                            const struct dea_design *design, const struct dea_device *device)
 {
-  if (device != NULL && !(device->general && type->any_layout)) {
-    struct dea_device disc;
+  if (device != NULL && (device->disc || !type->any_layout)) {
     struct dea_film film;
-    DEA_TRY(ctx, dea_device_disc(ctx, device, &disc));
-    DEA_TRY(ctx, dea_film_create(ctx, &disc, &film));
+    DEA_TRY(ctx, dea_device_require_disc(ctx, device));
+    DEA_TRY(ctx, dea_film_create(ctx, device, &film));
   }
   if (type->check != NULL) {
     DEA_TRY(ctx, type->check(ctx, design, device));
@@ -72,7 +71,7 @@ dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_mode
                                   struct dea_model **out)
 {
   struct dea_model_settings settings = dea_model_settings_of(design);
-  settings.domain = device->general ? DEA_DOMAIN_DISC : settings.domain;
+  settings.domain = device->disc ? settings.domain : DEA_DOMAIN_DISC;
   return create(ctx, type, design, device, &settings, out);
 }
 

@@ -36,41 +36,6 @@ dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout 
   return DEA_OK;
 }
 
-static dea_status check_disc(struct dea_context *ctx, const struct dea_design *design,
-                             const struct dea_device *device)
-{
-  const struct dea_material *film = &device->film;
-  bool coupled = design->compute.solid.field.value == DEA_FIELD_COUPLED;
-  if (coupled && film->permittivity.slope != 0) {
-    DEA_TRY(ctx,
-            dea_refuse(ctx, design->compute.solid.field.location,
-                       "model 3d: a coupled field needs a constant permittivity, and that of the "
-                       "film depends on stretch (film.permittivity)"));
-  }
-  if (coupled && design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
-    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.field.location,
-                            "model 3d: a coupled field needs a film with a thickness "
-                            "(compute.solid.film: solid)"));
-  }
-  if (design->compute.solid.adapt.asked) {
-    DEA_TRY(ctx,
-            dea_refuse(ctx, design->compute.solid.adapt.monitor.location,
-                       "model 3d: compute.solid.adapt is of devices made of `plies`; of a disc in "
-                       "a frame take compute.solid.refinement and the study convergence"));
-  }
-  if (film->law != NULL && film->law->anisotropic) {
-    DEA_TRY(ctx, dea_refuse(ctx,
-                            design->film.law.origin == DEA_ABSENT ||
-                                    design->film.law.origin == DEA_DEFAULT
-                                ? design->film.material.location
-                                : design->film.law.location,
-                            "model 3d: the film's law has a direction of its own, which this model "
-                            "does not know yet"));
-  }
-  DEA_TRY(ctx, check_weight(ctx, design, device));
-  return DEA_OK;
-}
-
 /* Keys that a design with `plies` may have and that only a disc in a frame has a use for. */
 static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_design *design)
 {
@@ -101,28 +66,40 @@ static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_
   return first;
 }
 
-/* Of devices of any layout: no key of a disc, and the monitor that a mesh is refined for is there.
- */
-static dea_status check_layout(struct dea_context *ctx, const struct dea_design *design,
-                               const struct dea_device *device)
+/* The monitor that a mesh is refined for is there. */
+static dea_status check_adapt(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_layout *l)
 {
-  const struct dea_layout *l = device->layout;
-  DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
-  for (size_t i = 0; i < l->ply_count; i++) {
-    DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));
-  }
-  DEA_TRY(ctx, check_weight(ctx, design, device));
-  const char *name = design->compute.solid.adapt.monitor.text;
+  const struct dea_label *name = &design->compute.solid.adapt.monitor;
+  char message[300];
   for (size_t i = 0; i < l->monitor_count; i++) {
-    if (strcmp(l->monitors[i].name, name) == 0) {
+    if (strcmp(l->monitors[i].name, name->text) == 0) {
       return DEA_OK;
     }
   }
-  if (design->compute.solid.adapt.asked) {
-    char message[300];
-    snprintf(message, sizeof message,
-             "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name)", name);
-    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.adapt.monitor.location, message));
+  snprintf(message, sizeof message,
+           "compute.solid.adapt: there is no monitor '%.60s' (monitors[].name, of devices made of "
+           "`plies`; else take compute.solid.refinement and the study convergence)",
+           name->text);
+  return dea_refuse(ctx, name->location, message);
+}
+
+static dea_status check_field(struct dea_context *ctx, const struct dea_design *design,
+                              const struct dea_device *device)
+{
+  if (design->compute.solid.field.value != DEA_FIELD_COUPLED) {
+    return DEA_OK;
+  }
+  if (device->film.permittivity.slope != 0) {
+    DEA_TRY(ctx,
+            dea_refuse(ctx, design->compute.solid.field.location,
+                       "model 3d: a coupled field needs a constant permittivity, and that of the "
+                       "film depends on stretch (film.permittivity)"));
+  }
+  if (design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
+    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.field.location,
+                            "model 3d: a coupled field needs a film with a thickness "
+                            "(compute.solid.film: solid)"));
   }
   return DEA_OK;
 }
@@ -130,6 +107,12 @@ static dea_status check_layout(struct dea_context *ctx, const struct dea_design 
 dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_design *design,
                                   const struct dea_device *device)
 {
-  DEA_TRY(ctx, (device->general ? check_layout : check_disc)(ctx, design, device));
+  const struct dea_layout *l = device->layout;
+  DEA_TRY(ctx, device->disc ? check_field(ctx, design, device) : refuse_keys_of_disc(ctx, design));
+  DEA_TRY(ctx, design->compute.solid.adapt.asked ? check_adapt(ctx, design, l) : DEA_OK);
+  for (size_t i = 0; i < l->ply_count; i++) {
+    DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));
+  }
+  DEA_TRY(ctx, check_weight(ctx, design, device));
   return DEA_OK;
 }

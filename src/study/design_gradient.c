@@ -127,21 +127,20 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
       .key = "voltage", .value = voltage_V, .unit = "V", .tolerance = NAN, .scale = 1};
   *count = 0;
   add_number(out, count, &voltage);
-  if (device->general) {
+  if (design->parts != NULL) {
     return dea_part_numbers(ctx, design, device, false, out, count);
   }
   dea_design_schema_fill(&none, &schema);
   for (size_t i = 0; i < design->values.count; i++) {
     add_key(design, &schema.disc.record, &design->values.items[i], out, count);
   }
-  dea_material_numbers(device, take_material, &(struct materials){device, out, count});
+  dea_material_numbers(device, false, take_material, &(struct materials){device, out, count});
   return DEA_OK;
 }
 
 static bool has_weight(const struct dea_device *device)
 {
-  const double *g = device->general ? device->layout->gravity_m_per_s2 : NULL;
-  return g != NULL ? g[0] != 0 || g[1] != 0 || g[2] != 0 : device->gravity != DEA_GRAVITY_OFF;
+  return device->gravity != DEA_GRAVITY_OFF;
 }
 
 void dea_numbers_at_rest(const struct dea_device *device, struct dea_design_number *numbers,
@@ -183,9 +182,9 @@ void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number
 
 /* Room for changed devices. */
 struct changed {
-  struct dea_arena memory; // of all, and of what devices of the general form are built from
+  struct dea_arena memory; // of all, and of what devices are built from
   struct dea_design *scratch;
-  struct dea_device *devices;  // [2 number_count]; those of the general form own their layouts
+  struct dea_device *devices;  // [2 number_count], with their layouts
   struct dea_pressed *pressed; // [2 number_count]
   struct dea_design_change *changes; // [number_count]
 };
@@ -198,11 +197,12 @@ static dea_status change(struct dea_context *ctx, const struct dea_design *desig
                          struct dea_device *out)
 {
   double kept = number->scale * value;
-  if (device->general) {
+  if (design->parts != NULL) {
     DEA_TRY(ctx, dea_part_change(ctx, design, number, value, memory, out));
     return DEA_OK;
   }
   *out = *device;
+  out->layout = NULL; // it would be another one
   if (number->of == DEA_NUMBER_OF_DESIGN) {
     *scratch = *design;
     memcpy((char *)scratch + number->offset, &kept, sizeof kept);
@@ -222,7 +222,6 @@ dea_status dea_device_change(struct dea_context *ctx, const struct dea_design *d
   struct dea_design *scratch = dea_arena_alloc(&out->memory, 1, sizeof *scratch);
   DEA_TRY(ctx, dea_arena_status(&out->memory));
   DEA_TRY(ctx, change(ctx, design, device, number, value, &out->memory, scratch, &out->device));
-  out->owns_layout = device->general;
   if (number->of == DEA_NUMBER_OF_DESIGN) {
     DEA_TRY(ctx, dea_geometry_check(ctx, scratch, &out->device));
   }
@@ -231,9 +230,7 @@ dea_status dea_device_change(struct dea_context *ctx, const struct dea_design *d
 
 void dea_changed_device_free(struct dea_changed_device *changed)
 {
-  if (changed->owns_layout) {
-    dea_layout_destroy(changed->memory.ctx, changed->device.layout);
-  }
+  dea_layout_destroy(changed->memory.ctx, changed->device.layout);
   dea_arena_free(&changed->memory);
 }
 
@@ -303,8 +300,7 @@ static dea_status begin_changes(struct dea_context *ctx, const struct dea_design
 static void free_changes(struct dea_context *ctx, const struct dea_design_gradient *ask,
                          struct changed *all)
 {
-  for (size_t i = 0; all->devices != NULL && ask->device->general && i < 2 * ask->number_count;
-       i++) {
+  for (size_t i = 0; all->devices != NULL && i < 2 * ask->number_count; i++) {
     dea_layout_destroy(ctx, all->devices[i].layout);
   }
   dea_arena_free(&all->memory);

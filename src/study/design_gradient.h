@@ -45,7 +45,6 @@ dea_status dea_design_numbers(struct dea_context *ctx, const struct dea_design *
 struct dea_changed_device {
   struct dea_device device;
   struct dea_arena memory;
-  bool owns_layout;
 };
 
 /* DEA_E_DESIGN: there is no such device, or a finding says what of it does not fit together. Also

@@ -28,7 +28,7 @@ static const struct dea_listed *find_value(const struct dea_design *design, cons
   return NULL;
 }
 
-/* The same of a design of the general form. */
+/* The same of a design with plies. */
 static dea_status unknown_part(struct dea_context *ctx,
                                const struct dea_device_param_source *source,
                                const struct dea_label *name, const char *why)
@@ -61,7 +61,7 @@ dea_status dea_device_param_unknown(struct dea_context *ctx,
                                     const struct dea_device_param_source *source,
                                     const struct dea_label *name, const char *why)
 {
-  if (source->device->general) {
+  if (source->design->parts != NULL) {
     return unknown_part(ctx, source, name, why);
   }
   const struct dea_listing *values = &source->design->values;
@@ -149,7 +149,7 @@ static dea_status from_key(struct dea_context *ctx, const struct dea_device_para
   return DEA_OK;
 }
 
-/* A key of a design of the general form: of a part, as --set has it, or of a shape. */
+/* A key of a design with plies: of a part, as --set has it, or of a shape. */
 static dea_status from_part(struct dea_context *ctx, const struct dea_device_param_source *source,
                             const struct dea_label *name, struct dea_device_param *out, bool *good)
 {
@@ -254,12 +254,12 @@ dea_status dea_device_param_find(struct dea_context *ctx,
     return dea_device_param_unknown(ctx, source, name, NULL);
   }
   snprintf(out->param.name, sizeof out->param.name, "%.127s", name->text);
-  dea_material_numbers(source->device, look, &wanted);
+  dea_material_numbers(source->device, source->design->parts != NULL, look, &wanted);
   if (wanted.found) {
     *good = true;
     return DEA_OK;
   }
-  if (source->device->general) {
+  if (source->design->parts != NULL) {
     return from_part(ctx, source, name, out, good);
   }
   const char *why = none_of_film(name->text);
@@ -372,5 +372,6 @@ dea_status dea_device_params_build(struct dea_context *ctx, const struct dea_des
       dea_device_param_put(one, p[j], dea_material_at(*device, one->material));
     }
   }
+  DEA_TRY(ctx, (*design)->parts != NULL ? dea_device_find_disc(ctx, *device) : DEA_OK);
   return DEA_OK;
 }

@@ -8,7 +8,7 @@
 
 /* A design and its device, where parameters are looked up. */
 struct dea_device_param_source {
-  const struct dea_design *design; // of the short form
+  const struct dea_design *design; 
   const struct dea_device *device; // built from it
   bool whole;                      // whole numbers are parameters too
 };
@@ -16,8 +16,8 @@ struct dea_device_param_source {
 /* Fills kind, index, list, state, unit, limits (infinite for none) and `designed` of a parameter,
  * whose other members are left alone. name: a dotted key that is a number ("film.thickness"), a
  * number of a material (material_numbers.h: "fibres.young_modulus"), film.branch.N.modulus or .time
- * of the film's viscosity, from 1; of a design of the general
- * form numbers of parts and shapes by the names of --set ("plies.film.thickness",
+ * of the film's viscosity, from 1; of a design with plies
+ * numbers of parts and shapes by the names of --set ("plies.film.thickness",
  * "shapes.active.radius"). *good: false after a finding (an error at its place) that says why there
  * is no such parameter. */
 dea_status dea_device_param_find(struct dea_context *ctx,

@@ -78,7 +78,7 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
   if (force->depth_count + force->preload_count == 0) {
     return DEA_OK;
   }
-  if (device->general || force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
+  if (!device->disc || force->radius_m.si <= device->electrode_radius_m * (1 + touching)) {
     return DEA_OK;
   }
   return dea_finding_add(ctx, DEA_ERROR, force->radius_m.location,

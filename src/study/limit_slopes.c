@@ -193,7 +193,7 @@ dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_
   const double highest_V = dea_design_highest_V(result->design);
   struct found *f = dea_alloc(ctx, 1, sizeof *f);
   dea_status status = f != NULL ? DEA_OK : DEA_E_MEMORY;
-  settings.domain = result->device->general ? DEA_DOMAIN_DISC : settings.domain;
+  settings.domain = result->device->disc ? settings.domain : DEA_DOMAIN_DISC;
   for (size_t i = 0; i < DEA_CRITICAL_KINDS && status == DEA_OK && highest_V > 0; i++) {
     const struct dea_critical_ask ask = {.type = type,
                                          .device = result->device,

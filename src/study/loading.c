@@ -1,4 +1,4 @@
-/* Study "loading": a body of a device of the general form is moved along a way, pushed by a dead
+/* Study "loading": a body of a device is moved along a way, pushed by a dead
  * force, or the pressures on the device change, at some voltages: curves of force against
  * displacement, and the blocked force. Each voltage starts from rest with a model of its own; a
  * line that stops leaves its points, and the next one has its turn. */
@@ -168,9 +168,9 @@ static dea_status fit(struct dea_context *ctx, const struct dea_settings *given,
   if (range == RANGES) {
     return DEA_OK;
   }
-  if (!device->general) {
+  if (device->layout == NULL) { // of the short form
     return wrong(ctx, s,
-                 "only devices of the general form have bodies and pressures (key plies); "
+                 "only designs with plies have bodies and pressures (key plies); "
                  "compute.force presses a tip against the disc");
   }
   if (s->body.text[0] != '\0' &&

@@ -49,10 +49,10 @@ void dea_material_prefix(const struct dea_device *device, size_t material,
   }
 }
 
+/* Of a disc's own materials. */
 static bool is_there(const struct dea_device *device, size_t material)
 {
-  return device->general                 ? material >= DEA_OF_PLIES
-         : material == DEA_OF_ELECTRODES ? device->electrode_thickness_m > 0
+  return material == DEA_OF_ELECTRODES ? device->electrode_thickness_m > 0
          : material == DEA_OF_FIBRES     ? device->fibre_count > 0
                                          : material == DEA_OF_FILM;
 }
@@ -106,13 +106,13 @@ static void take_material(const struct dea_device *device, size_t i,
   }
 }
 
-void dea_material_numbers(const struct dea_device *device,
+void dea_material_numbers(const struct dea_device *device, bool plies,
                           void (*take)(void *user, const struct dea_material_number *number),
                           void *user)
 {
-  const size_t count = DEA_OF_PLIES + (device->general ? device->layout->ply_count : 0);
-  for (size_t i = 0; i < count; i++) {
-    if (is_there(device, i)) {
+  const size_t end = DEA_OF_PLIES + (plies ? device->layout->ply_count : 0);
+  for (size_t i = plies ? DEA_OF_PLIES : 0; i < end; i++) {
+    if (plies || is_there(device, i)) {
       take_material(device, i, take, user);
     }
   }

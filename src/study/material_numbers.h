@@ -22,8 +22,9 @@ struct dea_material_number {
   size_t offset;    // in struct dea_material
 };
 
-/* Calls take with each of them that the device has and whose value is known, 0 among them. */
-void dea_material_numbers(const struct dea_device *device,
+/* Calls take with each of them that the device has and whose value is known, 0 among them: of its
+ * plies, or of a disc by its short keys. */
+void dea_material_numbers(const struct dea_device *device, bool plies,
                           void (*take)(void *user, const struct dea_material_number *number),
                           void *user);
 /* A material of a device by its number; lent. */

@@ -52,7 +52,7 @@ dea_status dea_monitor_set_init(struct dea_context *ctx, const struct dea_model_
 {
   struct dea_monitor_column *columns;
   *out = (struct dea_monitor_set){.memory = {.ctx = ctx}};
-  if (type->observe == NULL || device == NULL || !device->general) { // a disc's are columns
+  if (type->observe == NULL || device == NULL || !dea_device_is_observed(device)) {
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_layout_columns(&out->memory, device->layout, &columns, &out->count));

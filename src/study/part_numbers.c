@@ -206,7 +206,7 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
       out[i].tolerance = tolerance_of(design, &out[i]);
     }
   }
-  dea_material_numbers(device, take_material, &(struct numbers){out, count});
+  dea_material_numbers(device, true, take_material, &(struct numbers){out, count});
   DEA_TRY(ctx, add_shapes(ctx, design->parts, device, all, out, count));
   return DEA_OK;
 }
@@ -253,6 +253,7 @@ dea_status dea_part_change(struct dea_context *ctx, const struct dea_design *des
   if (number->of == DEA_NUMBER_OF_PLY) {
     memcpy((char *)&out->layout->plies[number->item].material + number->offset, &value,
            sizeof value);
+    DEA_TRY(ctx, dea_device_find_disc(ctx, out));
   }
   return DEA_OK;
 }

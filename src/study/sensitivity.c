@@ -169,7 +169,7 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .columns = matter_columns,
                                                           .column_count = COUNT(matter_columns)};
 
-/* Of the general form: monitors' main motions are quantities too, which go by their names. */
+/* Of what has monitors: their main motions are quantities too, which go by their names. */
 static const struct dea_result_column part_slope_columns[] = {
     VOLTAGE,
     DEA_NUMBER_IN_ROW,
@@ -226,7 +226,7 @@ struct stop {
   struct dea_arena memory; // of the arrays
   double voltage_V;
   struct dea_load_point point;
-  const struct dea_layout *layout; // of the general form; NULL: a disc
+  const struct dea_layout *layout; // with monitors or that is no disc; NULL: none
   int columns[QUANTITIES];
   size_t width;                    // quantities: QUANTITIES, monitors, then higher modes
   size_t seen;                     // of these without the modes
@@ -380,7 +380,7 @@ static void name_of(const struct stop *stop, size_t quantity, char *out, size_t 
            column >= 0 ? dea_point_columns[column].key : stop->shown[quantity - QUANTITIES]->key);
 }
 
-/* All slopes; the table of the general form has one column less: none of held stretches. */
+/* All slopes; the table of what has monitors has one column less: none of held stretches. */
 static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
@@ -454,7 +454,7 @@ static enum dea_observed motion_of(const struct stop *stop, size_t i, const doub
               : dea_observed_main(seen);
 }
 
-/* Monitors of a device of the general form, with their motions. */
+/* Monitors of the device, with their motions. */
 static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_type *type,
                                 struct dea_model *model, const struct dea_device *device,
                                 struct stop *stop)
@@ -463,7 +463,7 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   struct dea_monitor_column *columns;
   size_t column_count;
   stop->seen = QUANTITIES;
-  if (!device->general || type->observe == NULL) {
+  if (type->observe == NULL || !dea_device_is_observed(device)) {
     return DEA_OK;
   }
   stop->layout = device->layout;
@@ -601,7 +601,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   return DEA_OK;
 }
 
-/* Its rows of both tables, of a device of the general form: first by what each monitor shows, or
+/* Its rows of both tables, of a device with a layout to look at: first by what each monitor shows, or
  * without monitors by the capacitance. */
 static dea_status put_part_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
                                 struct dea_result *result)

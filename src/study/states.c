@@ -1037,7 +1037,7 @@ static bool has_relaxed(const struct search *s, const struct dea_model_settings 
   const struct dea_device *device = s->result->device;
   return s->settings->relaxed.value != 0 && settings->film == DEA_FILM_SOLID &&
          settings->field == DEA_FIELD_THIN &&
-         (device->general || (device->pre_stretch > 1 && device->electrode_thickness_m == 0));
+         (!device->disc || (device->pre_stretch > 1 && device->electrode_thickness_m == 0));
 }
 
 /* The tension field at the voltages of the search, on the design's mesh and the finer ones. Where
@@ -1050,7 +1050,7 @@ static dea_status put_relaxed(struct search *s)
     return DEA_OK;
   }
   settings.film = DEA_FILM_MEMBRANE;
-  settings.domain = s->result->device->general ? DEA_DOMAIN_DISC : settings.domain; // of the states
+  settings.domain = s->result->device->disc ? settings.domain : DEA_DOMAIN_DISC; // of the states
   DEA_TRY(s->ctx,
           dea_result_add_table(s->ctx, s->result, &relaxed_table, s->type->name, 0, &table));
   for (size_t m = 0; m <= s->settings->refinement_count; m++) {
@@ -1133,7 +1133,7 @@ static double lowest_at(const struct dea_result *result, double voltage_V)
   return lowest_J;
 }
 
-/* A device of the general form has no centre: then the place that is farthest out of the plane. */
+/* What is no disc has no centre: then the place that is farthest out of the plane. */
 static double height(double centre_z_m, double highest_z_m, double lowest_z_m)
 {
   return !isnan(centre_z_m) ? centre_z_m : highest_z_m >= -lowest_z_m ? highest_z_m : lowest_z_m;

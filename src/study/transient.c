@@ -953,7 +953,7 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_design *desig
                          const struct dea_device *device)
 {
   const struct dea_choice *inertia = &settings_of(design)->inertia;
-  return inertia->value == 1 && (device->general || !(device->film.density_kg_per_m3 > 0))
+  return inertia->value == 1 && (!device->disc || !(device->film.density_kg_per_m3 > 0))
              ? dea_device_refuse_densities(ctx, inertia->location, device)
              : DEA_OK;
 }

@@ -48,7 +48,7 @@ static dea_status complete_options(struct dea_context *ctx, const struct request
   struct dea_device *device = NULL;
   DEA_TRY(ctx, find_design(ctx, request, recording, &design));
   dea_status status = design != NULL ? dea_device_build(ctx, design, &device) : DEA_OK;
-  if (device != NULL && !device->general) { // of another device options say all radii
+  if (device != NULL && device->disc) { // of another device options say all radii
     double tip_m = device->fibre_count > 0 ? device->fibre_tip_radius_m : NAN;
     options->fibre_tip_radius_m =
         isnan(options->fibre_tip_radius_m) ? tip_m : options->fibre_tip_radius_m;

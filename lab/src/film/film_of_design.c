@@ -73,7 +73,7 @@ static void close_model(struct dea_context *ctx, struct dea_bench_model *model)
 static dea_status build(struct dea_context *ctx, bool moves, struct film_model *m)
 {
   DEA_TRY(ctx, dea_device_build(ctx, m->design, &m->device));
-  DEA_TRY(ctx, dea_device_disc(ctx, m->device, m->device)); // the bench is that of a disc
+  DEA_TRY(ctx, dea_device_require_disc(ctx, m->device)); // the bench is that of a disc
   struct dea_device *device = m->device;
   if (!moves) { // in a check the film knows neither, and need not say so
     device->fibre_count = 0;

@@ -143,7 +143,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
 {
   const struct dea_device *device = &model->device;
   (void)settings; // of a mesh, which this model has not
-  DEA_TRY(ctx, dea_device_disc(ctx, of, &model->device));
+  DEA_TRY(ctx, dea_device_require_disc(ctx, of));
+  model->device = *of;
   static const double rest[DEA_PATH_UNKNOWNS_MAX] = {0};
   DEA_TRY(ctx, dea_disc_create(ctx, device, ORDER_OUTER, &model->disc));
   DEA_TRY(ctx, dea_film_say_weight(ctx, device, "axisymmetric"));

@@ -120,7 +120,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
 {
   const struct dea_device *device = &model->device;
   (void)settings; // of a mesh, which this model has not
-  DEA_TRY(ctx, dea_device_disc(ctx, of, &model->device));
+  DEA_TRY(ctx, dea_device_require_disc(ctx, of));
+  model->device = *of;
   DEA_TRY(ctx, dea_film_create(ctx, device, &model->lumped.film));
   model->lumped.pre_stretch = device->pre_stretch;
   model->lumped.coverage = device->coverage;

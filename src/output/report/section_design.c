@@ -269,10 +269,10 @@ dea_status dea_section_materials(struct dea_report *report, const struct dea_rep
       {&run->device->fibre, "", "", "Fibres"},
   };
   dea_section_begin(report, "materials", run->number, "Materials and their sources");
-  for (size_t i = 0; i < sizeof parts / sizeof parts[0] && !run->device->general; i++) {
+  for (size_t i = 0; i < sizeof parts / sizeof parts[0] && design->parts == NULL; i++) {
     add_part(report, design, &parts[i]);
   }
-  if (run->device->general) {
+  if (design->parts != NULL) {
     add_plies(report, run);
   }
   dea_section_end(report);

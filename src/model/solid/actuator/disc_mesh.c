@@ -86,7 +86,9 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
                              struct dea_layout_mesh *mesh)
 {
   const struct dea_fibre_disc *p = &mesh->plate;
+  bool fit;
   DEA_TRY(ctx, dea_disc_layout_create(ctx, device, mesh->membrane, &mesh->own));
+  DEA_TRY(ctx, dea_disc_layout_add_monitors(ctx, device, mesh->own, &fit));
   mesh->layout = mesh->own;
   DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
   DEA_TRY(ctx, name_groups(ctx, mesh));
@@ -122,13 +124,32 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
   return DEA_OK;
 }
 
+/* Whether blocks are the mesh: of a disc about the origin with its first fibre along x, of which
+ * nothing else is asked for. */
+static dea_status find_blocks(struct dea_context *ctx, const struct dea_device *device,
+                              const struct dea_model_settings *settings, bool *blocks)
+{
+  struct dea_layout *layout;
+  *blocks = device->disc && device->centre_m[0] == 0 && device->centre_m[1] == 0 &&
+            device->angle_rad == 0 && settings->adapt.monitor == NULL && settings->size_count == 0;
+  if (!*blocks) {
+    return DEA_OK;
+  }
+  DEA_TRY(ctx, dea_disc_layout_create(ctx, device, settings->film == DEA_FILM_MEMBRANE, &layout));
+  const dea_status status = dea_disc_layout_add_monitors(ctx, device, layout, blocks);
+  dea_layout_destroy(ctx, layout);
+  return status;
+}
+
 dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_device *device,
                                   const struct dea_model_settings *settings,
                                   struct dea_layout_mesh *out)
 {
   struct dea_fibre_disc plate;
+  bool blocks;
   *out = (struct dea_layout_mesh){0};
-  if (device->general) {
+  DEA_TRY(ctx, find_blocks(ctx, device, settings, &blocks));
+  if (!blocks) {
     DEA_TRY(ctx, dea_layout_mesh_create(ctx, device->layout, settings, out));
   } else {
     DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
@@ -143,11 +164,15 @@ dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_devi
 {
   struct dea_fibre_disc plate;
   *out = (struct dea_layout_mesh){0};
-  if (device->general) {
+  if (like->plate.order == 0) {
     DEA_TRY(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
-  } else {
-    DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
-    DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, like, out));
+    return DEA_OK;
   }
+  if (!device->disc) {
+    return dea_fail(ctx, DEA_E_ARGUMENT,
+                    "the mesh cannot follow: it is of a disc, which this is not");
+  }
+  DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
+  DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, like, out));
   return DEA_OK;
 }

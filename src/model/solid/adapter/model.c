@@ -43,7 +43,7 @@ struct dea_model {
   struct dea_standing at; // first (standing.h)
   const struct dea_device *device;
   const struct dea_layout *layout; // of the mesh
-  bool disc;                       // the device is one: it has monitors of its own
+  bool disc;                       // on a mesh of blocks: it has monitors of its own
   struct dea_disc_points points;   // of a disc
   struct dea_model_settings settings;
   struct dea_adapt_pass *passes; // [pass_count] that led to its mesh; NULL: none
@@ -749,7 +749,7 @@ static dea_status keep_rest(struct dea_context *ctx, struct dea_model *model)
 static dea_status make_mesh(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_model *from = model->settings.mesh_from;
-  if (model->disc) {
+  if (model->device->disc) {
     struct dea_film film;
     DEA_TRY(ctx, dea_film_create(ctx, model->device, &film)); // laws and permittivity are there
   }
@@ -772,6 +772,7 @@ static void look_at_mesh_places(struct dea_model *model)
 {
   const struct dea_layout_mesh *mesh = &model->mesh;
   model->layout = mesh->layout;
+  model->disc = mesh->plate.order > 0;
   if (model->disc) {
     dea_disc_points_find(mesh, &model->points);
   }
@@ -789,7 +790,6 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *devi
                           const struct dea_model_settings *settings, struct dea_model *model)
 {
   model->device = device;
-  model->disc = !device->general;
   model->settings = *settings;
   model->memory.ctx = ctx;
   model->pressure_factor = 1;
