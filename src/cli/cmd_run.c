@@ -308,7 +308,8 @@ static void print_model(const struct dea_context *ctx, const struct dea_result *
   if (sweep == NULL && path == NULL) {
     return;
   }
-  const bool any_layout = dea_device_is_observed(result->device) && dea_model_find(model)->any_layout;
+  const bool any_layout =
+      dea_device_is_observed(result->device) && dea_model_find(model)->any_layout;
   const struct dea_layout_ply *film = dea_layout_film(result->device->layout);
   printf("\n%s\n", model);
   if (sweep != NULL && sweep->count > 0) {

@@ -12,9 +12,9 @@
 dea_status dea_disc_layout_create(struct dea_context *ctx, const struct dea_device *device,
                                   bool membrane, struct dea_layout **out);
 
-/* Adds the monitors of a disc's own layout, which may have other names and plies, to that one; false
- * in *fit where one is of a region that is none of the disc's. Elements through plies that are said
- * there are taken too. */
+/* Adds the monitors of a disc's own layout, which may have other names and plies, to that one;
+ * false in *fit where one is of a region that is none of the disc's. Elements through plies that
+ * are said there are taken too. */
 dea_status dea_disc_layout_add_monitors(struct dea_context *ctx, const struct dea_device *device,
                                         struct dea_layout *to, bool *fit);
 

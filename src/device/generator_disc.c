@@ -95,6 +95,10 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_disc_layout_create(ctx, device, false, &device->layout));
+  struct dea_layout_ply *film = &device->layout->plies[device->layout->electrodes[0].ply];
+  const struct dea_label *law = &design->film.law;
+  const bool given = law->origin != DEA_ABSENT && law->origin != DEA_DEFAULT;
+  film->location = given ? law->location : design->film.material.location;
   return dea_layout_find_symmetry(ctx, device->layout);
 }
 

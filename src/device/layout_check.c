@@ -331,13 +331,20 @@ struct reach {
   double along[DIRECTIONS][2], to_m[DIRECTIONS];
 };
 
-static bool reach_out(void *self, const double at[2])
+static double direction(int k)
 {
-  struct reach *r = self;
+  return 2 * acos(-1.0) * k / DIRECTIONS;
+}
+
+static void reach_out(const struct dea_piece *piece, struct reach *r)
+{
   for (int k = 0; k < DIRECTIONS; k++) {
-    r->to_m[k] = fmax(r->to_m[k], at[0] * r->along[k][0] + at[1] * r->along[k][1]);
+    const double *along = r->along[k], *at = piece->from;
+    const bool faces = piece->arc && dea_piece_faces(piece, direction(k));
+    at = faces ? piece->centre : at;
+    r->to_m[k] =
+        fmax(r->to_m[k], at[0] * along[0] + at[1] * along[1] + (faces ? piece->radius_m : 0));
   }
-  return false;
 }
 
 /* How far a region reaches beyond the convex hull of those before, at most [m]; it is among them
@@ -349,7 +356,13 @@ static double overhang_m(struct reach *before, const struct dea_region *region)
   for (int k = 0; k < DIRECTIONS; k++) {
     own.to_m[k] = -INFINITY;
   }
-  any_sample(region, reach_out, &own);
+  for (size_t i = 0; i < region->contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(region, i);
+    for (size_t p = 0; p < dea_contour_pieces(&contour); p++) {
+      const struct dea_piece piece = dea_contour_piece(&contour, p);
+      reach_out(&piece, &own);
+    }
+  }
   for (int k = 0; k < DIRECTIONS; k++) {
     most = fmax(most, own.to_m[k] - before->to_m[k]);
     before->to_m[k] = fmax(before->to_m[k], own.to_m[k]);
@@ -362,9 +375,8 @@ static dea_status check_overhang(struct dea_context *ctx, const struct dea_layou
 {
   struct reach below;
   for (int k = 0; k < DIRECTIONS; k++) {
-    double angle = 2 * acos(-1.0) * k / DIRECTIONS;
-    below.along[k][0] = cos(angle);
-    below.along[k][1] = sin(angle);
+    below.along[k][0] = cos(direction(k));
+    below.along[k][1] = sin(direction(k));
     below.to_m[k] = -INFINITY;
   }
   for (size_t i = 0; i < l->ply_count; i++) {

@@ -288,7 +288,9 @@ dea_status dea_device_columns_add(struct dea_context *ctx, const struct dea_devi
 {
   struct dea_monitor_column none;
   bool found;
-  return dea_device_is_observed(device) ? dea_layout_column_find(ctx, device->layout, -1, &none, &found) : DEA_OK;
+  return dea_device_is_observed(device)
+             ? dea_layout_column_find(ctx, device->layout, -1, &none, &found)
+             : DEA_OK;
 }
 
 dea_status dea_layout_column_find(struct dea_context *ctx, const struct dea_layout *layout,

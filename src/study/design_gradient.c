@@ -184,8 +184,8 @@ void dea_tip_numbers(const struct dea_pressed *pressed, struct dea_design_number
 struct changed {
   struct dea_arena memory; // of all, and of what devices are built from
   struct dea_design *scratch;
-  struct dea_device *devices;  // [2 number_count], with their layouts
-  struct dea_pressed *pressed; // [2 number_count]
+  struct dea_device *devices;        // [2 number_count], with their layouts
+  struct dea_pressed *pressed;       // [2 number_count]
   struct dea_design_change *changes; // [number_count]
 };
 

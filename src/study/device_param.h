@@ -8,7 +8,7 @@
 
 /* A design and its device, where parameters are looked up. */
 struct dea_device_param_source {
-  const struct dea_design *design; 
+  const struct dea_design *design;
   const struct dea_device *device; // built from it
   bool whole;                      // whole numbers are parameters too
 };

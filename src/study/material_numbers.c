@@ -53,8 +53,8 @@ void dea_material_prefix(const struct dea_device *device, size_t material,
 static bool is_there(const struct dea_device *device, size_t material)
 {
   return material == DEA_OF_ELECTRODES ? device->electrode_thickness_m > 0
-         : material == DEA_OF_FIBRES     ? device->fibre_count > 0
-                                         : material == DEA_OF_FILM;
+         : material == DEA_OF_FIBRES   ? device->fibre_count > 0
+                                       : material == DEA_OF_FILM;
 }
 
 static bool is_dielectric(const struct dea_device *device, size_t material)

@@ -601,8 +601,8 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   return DEA_OK;
 }
 
-/* Its rows of both tables, of a device with a layout to look at: first by what each monitor shows, or
- * without monitors by the capacitance. */
+/* Its rows of both tables, of a device with a layout to look at: first by what each monitor shows,
+ * or without monitors by the capacitance. */
 static dea_status put_part_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
                                 struct dea_result *result)
 {

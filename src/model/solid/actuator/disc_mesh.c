@@ -11,9 +11,8 @@
  * without them it is four times as large. */
 static const double size_share = 0.26, beside_share = 0.13, edge_share = 0.0125;
 
-dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *d,
-                                    const struct dea_model_settings *settings,
-                                    struct dea_fibre_disc *out)
+void dea_fibre_disc_of_device(const struct dea_device *d, const struct dea_model_settings *settings,
+                              struct dea_fibre_disc *out)
 {
   double finer = exp2(1 - fmax(1, settings->refinement)), a = d->electrode_radius_m;
   double l = d->pre_stretch;
@@ -46,15 +45,9 @@ dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_de
     dea_cuts_through((size_t)out->through, cuts);
     out->fringe = d->film_thickness_m * cuts[1] * finer;
   }
-  if (d->film.law->anisotropic) { // its direction turns with the angle around the centre
-    return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "model 3d does not know films with a direction of their own (law '%s') yet",
-                    d->film.law->name);
-  }
   if (settings->domain == DEA_DOMAIN_DISC) {
     out->sectors = dea_fibre_disc_sectors(out);
   }
-  return DEA_OK;
 }
 
 /* Regions of the layout as groups: what of them lies where, by the bits of the blocks' regions. */
@@ -110,7 +103,7 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
   dea_status status = DEA_OK;
   if (like == NULL && settings->mesh_of != NULL) {
-    status = dea_fibre_disc_of_device(ctx, settings->mesh_of, settings, &out->cuts);
+    dea_fibre_disc_of_device(settings->mesh_of, settings, &out->cuts);
   }
   if (status == DEA_OK) {
     status = make_plane(ctx, device, out);
@@ -152,7 +145,7 @@ dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_devi
   if (!blocks) {
     DEA_TRY(ctx, dea_layout_mesh_create(ctx, device->layout, settings, out));
   } else {
-    DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
+    dea_fibre_disc_of_device(device, settings, &plate);
     DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, NULL, out));
   }
   return DEA_OK;
@@ -172,7 +165,7 @@ dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_devi
     return dea_fail(ctx, DEA_E_ARGUMENT,
                     "the mesh cannot follow: it is of a disc, which this is not");
   }
-  DEA_TRY(ctx, dea_fibre_disc_of_device(ctx, device, settings, &plate));
+  dea_fibre_disc_of_device(device, settings, &plate);
   DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, like, out));
   return DEA_OK;
 }

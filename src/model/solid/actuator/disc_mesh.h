@@ -4,11 +4,10 @@
 
 #include "model/solid/actuator/layout_mesh.h"
 
-/* The plate of a disc, on the domain and with the mesh that the settings name. DEA_E_UNSUPPORTED
- * for a film with a direction of its own. */
-dea_status dea_fibre_disc_of_device(struct dea_context *ctx, const struct dea_device *device,
-                                    const struct dea_model_settings *settings,
-                                    struct dea_fibre_disc *out);
+/* The plate of a disc, on the domain and with the mesh that the settings name. */
+void dea_fibre_disc_of_device(const struct dea_device *device,
+                              const struct dea_model_settings *settings,
+                              struct dea_fibre_disc *out);
 
 /* Blocks of a plate, which is a disc's, extruded through a layout of its own. like: with the
  * elements of that mesh, moved (DEA_E_ARGUMENT where other elements come of it); NULL: those of the
