@@ -143,7 +143,7 @@ static dea_status complete(struct dea_context *ctx, const struct dea_report_opti
   static const char model[] = "lumped", map[] = "operating-map", line[] = "load-line";
   const char *names[2];
   size_t count = 0;
-  if (result->device == NULL || result->design->parts != NULL) { // these are by keys of a disc
+  if (result->device == NULL || !result->device->disc) { // these are of a disc
     return DEA_OK;
   }
   if (dea_result_find_table(result, model, map, "") == NULL) {

@@ -72,7 +72,7 @@ static dea_status check_adapt(struct dea_context *ctx, const struct dea_design *
 {
   const struct dea_label *name = &design->compute.solid.adapt.monitor;
   char message[300];
-  for (size_t i = 0; i < l->monitor_count; i++) {
+  for (size_t i = 0; l != NULL && i < l->monitor_count; i++) {
     if (strcmp(l->monitors[i].name, name->text) == 0) {
       return DEA_OK;
     }
@@ -110,7 +110,7 @@ dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_desi
   const struct dea_layout *l = device->layout;
   DEA_TRY(ctx, device->disc ? check_field(ctx, design, device) : refuse_keys_of_disc(ctx, design));
   DEA_TRY(ctx, design->compute.solid.adapt.asked ? check_adapt(ctx, design, l) : DEA_OK);
-  for (size_t i = 0; i < l->ply_count; i++) {
+  for (size_t i = 0; l != NULL && i < l->ply_count; i++) {
     DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));
   }
   DEA_TRY(ctx, check_weight(ctx, design, device));

@@ -226,7 +226,7 @@ static void take_law(void *user, const struct dea_material_number *number)
 static dea_status add_laws(struct work *w)
 {
   struct laws laws = {.w = w, .first = w->count};
-  dea_material_numbers(w->result->device, take_law, &laws);
+  dea_material_numbers(w->result->device, w->result->design->parts != NULL, take_law, &laws);
   for (size_t a = laws.first; a < w->count; a++) {
     for (size_t b = laws.first; b < w->count; b++) {
       const struct dea_material *material = material_of(w, a);
