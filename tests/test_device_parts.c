@@ -751,6 +751,7 @@ static void test_what_is_no_disc(void **state)
     const char *text, *message; // NULL: it is one
   } cases[] = {
       {PLIES, RODS("rods", "stiff"), NULL},
+      {PLIES, FILM_OF "1.2, layers: 3}]", "ply 'film' is of several layers"},
       {PLIES, RODS("rods", "film"), "ply 'rods' is not linear elastic"},
       {PLIES, RODS("rods", "stiff, pre_stretch: 1.1"), "ply 'rods' is stretched"},
       {PLIES, RODS("corner", "stiff"), "ply 'rods' has not the shape"},

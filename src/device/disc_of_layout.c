@@ -366,6 +366,10 @@ static dea_status find(struct dea_context *ctx, const struct dea_layout *l, stru
   DEA_TRY(ctx, ask(ctx, l->pressure_count == 0, "the pressure on ply",
                    l->pressure_count > 0 ? l->plies[l->pressures[0].ply].name : "",
                    "is no load of one"));
+  for (size_t i = 0; i < l->ply_count; i++) {
+    DEA_TRY(ctx, ask(ctx, dea_ply_layers(&l->plies[i]) == 1, "ply", l->plies[i].name,
+                     "is of several layers"));
+  }
   DEA_TRY(ctx, find_electrodes(ctx, l, &film, &electrode));
   DEA_TRY(ctx, take_film(ctx, l, film, &electrode, out));
   DEA_TRY(ctx, take_stiffness(ctx, l, film, &electrode, &next, out));
