@@ -1,6 +1,7 @@
 /* Study "modal": frequencies and shapes of small vibrations about voltages. */
 #include "study/modal.h"
 #include "base/schema.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <stddef.h>
@@ -58,10 +59,14 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
   DEA_TRY(ctx, dea_model_modes(ctx, type, model, at, count, points, &shapes));
   snprintf(name, sizeof name, "%.50s" DEA_SHAPES_SUFFIX, type->name);
   DEA_TRY(ctx, dea_result_add_surface(ctx, result, name, stop, at->voltage_V, shapes));
-  for (size_t k = 0; k < count; k++) {
-    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &points[k]));
+  struct dea_monitor_set set;
+  dea_status status = dea_monitor_set_init(ctx, type, result->device, &set);
+  for (size_t k = 0; k < count && status == DEA_OK; k++) {
+    status = dea_monitor_set_read(ctx, &set, type, model, false, &points[k]);
+    status = status == DEA_OK ? dea_curve_add_point(ctx, curve, &points[k]) : status;
   }
-  return DEA_OK;
+  dea_monitor_set_free(&set);
+  return status;
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,

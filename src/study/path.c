@@ -1,17 +1,25 @@
 /* Study "path": the whole equilibrium path with its events. */
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
 
 struct target {
   struct dea_context *ctx;
+  const struct dea_model_type *type;
+  struct dea_model *model; // stands at each point that it hands out
+  struct dea_monitor_set set;
   struct dea_curve *curve;
 };
 
 static dea_status take_point(void *user, const struct dea_load_point *point)
 {
   struct target *target = user;
-  return dea_curve_add_point(target->ctx, target->curve, point);
+  struct dea_load_point with = *point;
+  DEA_TRY(target->ctx, dea_monitor_set_read(target->ctx, &target->set, target->type, target->model,
+                                            false, &with));
+  DEA_TRY(target->ctx, dea_curve_add_point(target->ctx, target->curve, &with));
+  return DEA_OK;
 }
 
 static dea_status take_event(void *user, const struct dea_event *event)
@@ -74,7 +82,7 @@ static struct dea_path_options long_options(const struct dea_design *design)
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
-  struct target target = {.ctx = ctx};
+  struct target target = {.ctx = ctx, .type = type, .model = model};
   bool is_long = type->path == NULL && type->long_path != NULL;
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, "path", &target.curve));
   struct dea_path_options options = {.max_voltage_V = INFINITY, .max_points = DEA_PATH_POINTS_MAX};
@@ -83,7 +91,11 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   } else {
     DEA_TRY(ctx, choose_end(ctx, type, result, &options.max_stretch));
   }
-  dea_status status = dea_model_path(ctx, type, model, &options, take_point, take_event, &target);
+  dea_status status = dea_monitor_set_init(ctx, type, result->device, &target.set);
+  if (status == DEA_OK) {
+    status = dea_model_path(ctx, type, model, &options, take_point, take_event, &target);
+  }
+  dea_monitor_set_free(&target.set);
   DEA_TRY(ctx, dea_curve_end(ctx, target.curve, status));
   fill_distances(target.curve);
   return DEA_OK;

@@ -2,6 +2,7 @@
  * each is reached, where each ends, and the band of what a sensor reads over them
  * (docs/theory/states.md). */
 #include "base/schema.h"
+#include "study/observe.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -665,9 +666,12 @@ static dea_status put_state(struct search *s, size_t i, size_t *branches)
                   ? one
                   : variant;
   }
-  DEA_TRY(ctx, dea_curve_add_point(ctx, &variant->curve, &state->point));
-  if (s->type->profile != NULL) {
+  if (s->type->profile != NULL || s->type->observe != NULL) {
     DEA_TRY(ctx, dea_model_load(ctx, s->type, s->model, &state->saved));
+  }
+  DEA_TRY(ctx, dea_study_add_point(ctx, s->type, s->model, s->result->device, &state->point,
+                                   &variant->curve));
+  if (s->type->profile != NULL) {
     DEA_TRY(ctx, dea_model_profile(ctx, s->type, s->model, &profile));
     DEA_TRY(ctx, dea_variant_set_profile(ctx, variant, state->point.voltage_V, &profile));
   }
