@@ -1,5 +1,7 @@
 #include "film/film_of_design.h"
 
+#include "film/film_table.h"
+
 #include "material/plane.h"
 #include "model/model.h"
 #include "study/design_file.h"
@@ -18,7 +20,12 @@ struct film_model {
   const struct dea_design *design; // lent
   struct dea_device *device;       // owned
   const struct dea_model_type *type;
-  struct dea_model *model; // owned
+  struct dea_model *model;      // owned; NULL of a device that is moved by a table
+  struct dea_film_table *table; // owned; NULL of a disc
+  struct dea_bench_circuit circuit;
+  double source_V, film_V; // of a table, as they are accepted
+  double trial_source_V, trial_film_V;
+  double largest_V;
 };
 
 static void destroy(struct dea_context *ctx, struct dea_bench_film *film)
@@ -66,14 +73,55 @@ static void close_model(struct dea_context *ctx, struct dea_bench_model *model)
   if (m->model != NULL) {
     m->type->destroy(ctx, m->model);
   }
+  dea_film_table_destroy(ctx, m->table);
   dea_device_destroy(ctx, m->device);
   dea_free(ctx, m);
 }
 
-static dea_status build(struct dea_context *ctx, bool moves, struct film_model *m)
+/* The film between the first electrodes; NULL: there is none. */
+static const struct dea_material *film_of(const struct dea_device *device)
+{
+  const struct dea_layout_ply *film = dea_layout_film(device->layout);
+  return film != NULL ? &film->material : NULL;
+}
+
+/* How far the device reaches from the origin along an axis. */
+static double reach_of(const struct dea_device *device)
+{
+  const struct dea_layout *l = device->layout;
+  double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY}, reach = 0; // x, y; x, y
+  for (size_t i = 0; i < l->ply_count; i++) {
+    dea_region_grow_box(&l->regions[l->plies[i].region].region, box);
+  }
+  for (size_t k = 0; k < 4; k++) {
+    reach = isfinite(box[k]) ? fmax(reach, fabs(box[k])) : reach;
+  }
+  return reach;
+}
+
+/* Any other device: by a table, and as high everywhere as its monitor. */
+static dea_status build_table(struct dea_context *ctx, const char *monitor, struct film_model *m)
+{
+  const struct dea_material *film = film_of(m->device);
+  m->base.name = "3d";
+  m->base.material = film != NULL ? film->name : "";
+  m->base.frame_radius_m = m->base.fibre_tip_radius_m = reach_of(m->device);
+  m->type = dea_model_find("3d");
+  DEA_TRY(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->table));
+  return DEA_OK;
+}
+
+static dea_status build(struct dea_context *ctx, bool moves, const char *monitor,
+                        struct film_model *m)
 {
   DEA_TRY(ctx, dea_device_build(ctx, m->design, &m->device));
-  DEA_TRY(ctx, dea_device_require_disc(ctx, m->device)); // the bench is that of a disc
+  if (monitor != NULL || !m->device->disc) {
+    DEA_TRY(ctx, build_table(ctx, monitor, m));
+    return moves ? dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                   "the simulated film is at rest at every moment, by a table of "
+                                   "model 3d: it does not creep")
+                 : DEA_OK;
+  }
   struct dea_device *device = m->device;
   if (!moves) { // in a check the film knows neither, and need not say so
     device->fibre_count = 0;
@@ -88,7 +136,7 @@ static dea_status build(struct dea_context *ctx, bool moves, struct film_model *
 }
 
 static dea_status open_model(struct dea_context *ctx, const struct dea_bench_film *film,
-                             const char *name, struct dea_bench_model **out)
+                             const char *name, const char *monitor, struct dea_bench_model **out)
 {
   const struct dea_model_type *type = dea_model_find(name != NULL ? name : "lumped");
   *out = NULL;
@@ -103,7 +151,7 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
   *m = (struct film_model){.base = {.type = &dea_film_of_design, .name = type->name},
                            .design = ((const struct film *)film)->design,
                            .type = type};
-  dea_status status = build(ctx, name != NULL, m);
+  dea_status status = build(ctx, name != NULL, monitor, m);
   if (status != DEA_OK) {
     close_model(ctx, &m->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -112,10 +160,36 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
   return DEA_OK;
 }
 
+/* Of any device: the field that the film stands where it is nearest to that. */
+static struct dea_bench_point complete_any(const struct film_model *m,
+                                           const struct dea_load_point *point)
+{
+  const struct dea_material *film = film_of(m->device);
+  struct dea_bench_point out = {.point = *point,
+                                .breakdown_V_per_m = NAN,
+                                .breakdown_probability_band = {NAN, NAN},
+                                .leakage_s = INFINITY};
+  if (film == NULL) {
+    return out;
+  }
+  const double low = film->breakdown.law.low > 0 ? film->breakdown.law.low : 1;
+  const double used = 1 - point->breakdown_margin; // of the field that it stands
+  dea_breakdown_probability_band(&film->breakdown, point->breakdown_margin,
+                                 out.breakdown_probability_band);
+  out.breakdown_V_per_m = low * (used > 0 ? point->true_field_V_per_m / used : NAN);
+  out.leakage_s = film->resistivity_ohm_m > 0
+                      ? film->resistivity_ohm_m * DEA_EPSILON_0 * film->permittivity.at_rest
+                      : (double)INFINITY;
+  return out;
+}
+
 /* What the material makes of a point. */
 static struct dea_bench_point complete(const struct film_model *m,
                                        const struct dea_load_point *point)
 {
+  if (m->table != NULL) {
+    return complete_any(m, point);
+  }
   const struct dea_material *film = &m->device->film;
   double stretch = point->electrode_stretch * m->device->pre_stretch;
   double permittivity =
@@ -159,6 +233,9 @@ static dea_status pull_in(struct dea_context *ctx, struct dea_bench_model *model
       .max_points = PATH_POINTS_MAX,
   };
   *voltage_V = NAN;
+  if (m->table != NULL) { // `solve` says it
+    return DEA_OK;
+  }
   return dea_model_path(ctx, m->type, m->model, &options, no_point, first_pull_in, voltage_V);
 }
 
@@ -168,7 +245,8 @@ static dea_status solve(struct dea_context *ctx, struct dea_bench_model *model, 
   const struct film_model *m = (struct film_model *)model;
   struct dea_load_point point;
   struct dea_model *fresh = NULL;
-  DEA_TRY(ctx, m->type->create(ctx, m->device, NULL, &fresh));
+  const struct dea_model_settings settings = dea_model_settings_of(m->design);
+  DEA_TRY(ctx, m->type->create(ctx, m->device, m->table != NULL ? &settings : NULL, &fresh));
   dea_status status = m->type->solve(ctx, fresh, voltage_V, &point);
   m->type->destroy(ctx, fresh);
   if (status == DEA_OK) {
@@ -188,8 +266,40 @@ static dea_status begin(struct dea_context *ctx, struct dea_bench_model *model,
       .circuit = {circuit->series_resistance_ohm, circuit->current_limit_A},
       .rho_inf = 0.8,
   };
+  m->circuit = *circuit;
+  if (m->table != NULL) {
+    DEA_TRY(ctx, dea_film_table_at(ctx, m->table, 0, &point));
+    *out = complete(m, &point);
+    return DEA_OK;
+  }
   DEA_TRY(ctx, m->type->solve(ctx, m->model, 0, &point));
   DEA_TRY(ctx, dea_model_begin(ctx, m->type, m->model, &options, &point));
+  *out = complete(m, &point);
+  return DEA_OK;
+}
+
+/* The film follows at once; its charge by one step and by two, whose difference is the error. */
+static dea_status advance_table(struct dea_context *ctx, struct film_model *m, double length_s,
+                                double source_V, struct dea_bench_point *out, double *error)
+{
+  struct dea_load_point point;
+  const double middle_V = 0.5 * (m->source_V + source_V);
+  struct dea_film_step step = {length_s, source_V, m->film_V, m->circuit.series_resistance_ohm,
+                               m->circuit.current_limit_A};
+  double whole_V, half_V;
+  DEA_TRY(ctx, dea_film_table_charge(ctx, m->table, &step, &whole_V));
+  step.length_s *= 0.5;
+  step.to_V = middle_V;
+  DEA_TRY(ctx, dea_film_table_charge(ctx, m->table, &step, &half_V));
+  step.to_V = source_V;
+  step.film_V = half_V;
+  DEA_TRY(ctx, dea_film_table_charge(ctx, m->table, &step, &m->trial_film_V));
+  DEA_TRY(ctx, dea_film_table_at(ctx, m->table, m->trial_film_V, &point));
+  m->trial_source_V = source_V;
+  m->largest_V = fmax(m->largest_V, fabs(source_V));
+  *error = fabs(m->trial_film_V - whole_V) / fmax(m->largest_V, 1);
+  point.current_A =
+      step.resistance_ohm > 0 ? (source_V - m->trial_film_V) / step.resistance_ohm : (double)NAN;
   *out = complete(m, &point);
   return DEA_OK;
 }
@@ -198,6 +308,10 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
                           double source_V, struct dea_bench_point *out, double *error)
 {
   struct film_model *m = (struct film_model *)model;
+  if (m->table != NULL) {
+    DEA_TRY(ctx, advance_table(ctx, m, length_s, source_V, out, error));
+    return DEA_OK;
+  }
   const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
   struct dea_load_point point;
   dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
@@ -210,6 +324,11 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
 static void accept(struct dea_bench_model *model)
 {
   struct film_model *m = (struct film_model *)model;
+  if (m->table != NULL) {
+    m->source_V = m->trial_source_V;
+    m->film_V = m->trial_film_V;
+    return;
+  }
   m->type->accept(m->model);
 }
 
@@ -218,7 +337,9 @@ static dea_status profile(struct dea_context *ctx, struct dea_bench_model *model
 {
   struct film_model *m = (struct film_model *)model;
   *out = (struct dea_profile){.count = 0};
-  return m->type->profile != NULL ? dea_model_profile(ctx, m->type, m->model, out) : DEA_OK;
+  return m->table == NULL && m->type->profile != NULL
+             ? dea_model_profile(ctx, m->type, m->model, out)
+             : DEA_OK;
 }
 
 const struct dea_bench_film_type dea_film_of_design = {

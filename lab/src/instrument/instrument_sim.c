@@ -17,7 +17,7 @@ enum {
 };
 
 struct raw {
-  struct dea_label kind, model;
+  struct dea_label kind, model, monitor;
   struct dea_choice pace;
   struct dea_quantity seed, series_resistance_ohm, breakdown_V, breakdown_s, fatigue_s;
   struct dea_quantity discharge_Hz, discharge_V, discharge_C;
@@ -41,6 +41,9 @@ static const struct dea_field fields[] = {
                   "kind of instrument; may be left out in the section `sim`", .required = true),
     DEA_LABEL_ROW("model", AT(model), "lumped", "model of the film; one that knows time",
                   .default_text = "lumped"),
+    DEA_LABEL_ROW("monitor", AT(monitor), "hub_z",
+                  "displacement of the device by which the film moves, always at rest",
+                  .absent_text = "of a film that is no disc the first monitor's z"),
     DEA_CHOICE_ROW("pace", AT(pace), paces, "real", "as fast as it can, or as slow as a bench",
                    .default_text = "fast"),
     DEA_INTEGER_ROW("seed", AT(seed), "2",
@@ -146,8 +149,12 @@ static dea_status check(const struct dea_reader *reader, const void *data,
 
 static struct dea_sim_settings settings_of(const struct raw *raw)
 {
-  return (struct dea_sim_settings){raw->model.text, raw->series_resistance_ohm.si,
-                                   raw->breakdown_V.si, raw->breakdown_s.si, raw->fatigue_s.si};
+  return (struct dea_sim_settings){raw->model.text,
+                                   raw->monitor.text[0] != '\0' ? raw->monitor.text : NULL,
+                                   raw->series_resistance_ohm.si,
+                                   raw->breakdown_V.si,
+                                   raw->breakdown_s.si,
+                                   raw->fatigue_s.si};
 }
 
 static void take_noise(const struct raw *raw, struct dea_sim_noise *out)

@@ -226,7 +226,8 @@ static dea_status begin(struct dea_sim_bench *b)
   const struct dea_bench_circuit circuit = {b->settings.series_resistance_ohm,
                                             limit->origin != DEA_ABSENT ? limit->si : INFINITY};
   struct dea_bench_point at;
-  DEA_TRY(b->ctx, b->type->open(b->ctx, b->protocol->film, b->settings.model, &b->model));
+  DEA_TRY(b->ctx, b->type->open(b->ctx, b->protocol->film, b->settings.model, b->settings.monitor,
+                                &b->model));
   DEA_TRY(b->ctx, b->type->begin(b->ctx, b->model, &circuit, &at));
   b->point = at.point;
   return DEA_OK;

@@ -11,6 +11,7 @@
 
 struct dea_sim_settings {
   const char *model;
+  const char *monitor; // by which the film moves; NULL: none named
   double series_resistance_ohm;
   double breakdown_V; // on the film; NAN: none
   double breakdown_s; // under voltage until it breaks down; NAN: never

@@ -50,10 +50,12 @@ struct dea_bench_film_type {
   const char *(*model)(size_t index, bool *moves);
 
   /* A model of the film. name: NULL for the one of the checks, which is quick and knows neither
-   * fibres nor weight; else one that moves, or DEA_E_UNSUPPORTED. film: lent, outlives the model.
+   * fibres nor weight; else one that moves, or DEA_E_UNSUPPORTED. A film that is no disc, or whose
+   * `monitor` is asked for (NULL: the first one's z), is at rest at every moment, by a table of
+   * model 3d, and its centre moves by the monitor. film: lent, outlives the model.
    * out: owned by the caller, NULL on failure. */
   dea_status (*open)(struct dea_context *ctx, const struct dea_bench_film *film, const char *name,
-                     struct dea_bench_model **out);
+                     const char *monitor, struct dea_bench_model **out);
   void (*close)(struct dea_context *ctx, struct dea_bench_model *model);
   /* For checks. Lowest voltage [V] at which the film pulls in; NAN: at none. */
   dea_status (*pull_in)(struct dea_context *ctx, struct dea_bench_model *model, double *voltage_V);

@@ -150,7 +150,7 @@ dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_pro
                            "checked");
   }
   const struct dea_bench_film_type *type = protocol->film->type;
-  DEA_TRY(ctx, type->open(ctx, protocol->film, NULL, &film.model));
+  DEA_TRY(ctx, type->open(ctx, protocol->film, NULL, NULL, &film.model));
   dea_status status = check_peak(&film, peak, plan);
   type->close(ctx, film.model);
   return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -1,0 +1,170 @@
+/* The simulated film of a device that is no disc: its monitor beside a sweep, its charge beside the
+ * closed form. */
+// ctest: quick, solid
+#include "design_text.h"
+#include "film/film_of_design.h"
+#include "study/observe.h"
+#include "study/study.h"
+#include "testing.h"
+
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+#include <math.h>
+#include <string.h>
+
+static const char cone[] =
+    "dea: 1\n"
+    "shapes:\n"
+    "  - {name: film, kind: circle, radius: 20 mm}\n"
+    "  - {name: hub, kind: circle, radius: 5 mm}\n"
+    "  - {name: active, kind: difference, of: [film, hub]}\n"
+    "plies:\n"
+    "  - {name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.2}\n"
+    "electrodes:\n"
+    "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+    "  - {ply: film, side: top, shape: active, channel: drive}\n"
+    "supports:\n"
+    "  - {edge: film}\n"
+    "bodies:\n"
+    "  - {name: hub, shape: hub, free: [z], force_z: 100 mN}\n"
+    "monitors:\n"
+    "  - {name: hub, body: hub}\n"
+    "  - {name: gauge, from: [8 mm, 0 mm], to: [16 mm, 0 mm], ply: film}\n" FILM_MATERIAL
+    "compute:\n"
+    "  models: [3d]\n"
+    "  voltage: {values: [0 kV, 1.1 kV, 3.3 kV, 4 kV]}\n"
+    "  solid: {film: membrane, order: 1}\n";
+
+static struct dea_bench_film *film;
+
+static int set_up(void **state)
+{
+  if (context_set_up(state) != 0) {
+    return -1;
+  }
+  return dea_film_of_design.read(ctx, "cone.yaml", cone, strlen(cone), &film) == DEA_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+  dea_film_of_design.destroy(ctx, film);
+  return context_tear_down(state);
+}
+
+static struct dea_bench_model *open_at_rest(double resistance_ohm, double limit_A)
+{
+  const struct dea_bench_circuit circuit = {resistance_ohm, limit_A};
+  struct dea_bench_model *model;
+  struct dea_bench_point at;
+  assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "hub_z", &model), DEA_OK);
+  assert_int_equal(dea_film_of_design.begin(ctx, model, &circuit, &at), DEA_OK);
+  return model;
+}
+
+static struct dea_bench_point go(struct dea_bench_model *model, double length_s, double source_V,
+                                 double *error)
+{
+  struct dea_bench_point at;
+  assert_int_equal(dea_film_of_design.advance(ctx, model, length_s, source_V, &at, error), DEA_OK);
+  dea_film_of_design.accept(model);
+  return at;
+}
+
+/* Without a resistance the hub is where a sweep has it, also between the voltages of the table and
+ * whatever the sign. */
+static void test_hub_of_a_sweep(void **state)
+{
+  (void)state;
+  static const char *const sweep[] = {"sweep"};
+  struct dea_design *design;
+  struct dea_device *device;
+  struct dea_result *result;
+  double error;
+  assert_int_equal(read_and_build(ctx, cone, NULL, 0, &design, &device), DEA_OK);
+  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), sweep, 1, result), DEA_OK);
+  const struct dea_curve *curve = dea_result_find(result, "3d", "sweep");
+  const int column = dea_column_find(ctx, "hub_z");
+  const double rest = dea_point_get(&curve->points[0], column);
+  struct dea_bench_model *model = open_at_rest(0, INFINITY);
+  for (size_t i = 0; i < curve->count; i++) {
+    const struct dea_load_point *p = &curve->points[i];
+    const double z = dea_point_get(p, column) - rest;
+    const struct dea_bench_point at = go(model, 0, -p->voltage_V, &error);
+    assert_close(at.point.centre_z_m - rest, z, 2e-3, 1e-12);
+    assert_close(at.point.capacitance_F, p->capacitance_F, 1e-4, 0);
+  }
+  dea_film_of_design.close(ctx, model);
+  dea_result_destroy(ctx, result);
+  dea_device_destroy(ctx, device);
+  dea_design_destroy(ctx, design);
+}
+
+/* At small voltages the film does not move: it is charged as a capacitor is. */
+static void test_charge(void **state)
+{
+  (void)state;
+  const double R = 1e7, to_V = 10;
+  struct dea_bench_model *model = open_at_rest(R, INFINITY);
+  double error = 0, time_s = 0, V = 0;
+  struct dea_bench_point at = go(model, 0, to_V, &error); // a jump of the source alone
+  assert_close(at.point.voltage_V, 0, 0, 1e-9);
+  const double C = at.point.capacitance_F, tau_s = R * C;
+  for (int i = 0; i < 200; i++) {
+    at = go(model, 0.01 * tau_s, to_V, &error);
+    time_s += 0.01 * tau_s;
+    V = to_V * (1 - exp(-time_s / tau_s));
+    assert_close(at.point.voltage_V, V, 0, 2e-3 * to_V); // of first order, in 400 steps
+    assert_true(error < 1e-4);
+  }
+  assert_close(at.point.current_A, (to_V - V) / R, 0.02, 0);
+  dea_film_of_design.close(ctx, model);
+  const double limit_A = 1e-9;
+  model = open_at_rest(0, limit_A);
+  at = go(model, 0.5 * C * to_V / limit_A, to_V, &error); // half of its charge
+  assert_close(at.point.voltage_V, 0.5 * to_V, 1e-4, 0);
+  dea_film_of_design.close(ctx, model);
+}
+
+static void test_no_such_monitor(void **state)
+{
+  (void)state;
+  struct dea_bench_model *model;
+  assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "hub_zm", &model), DEA_E_DESIGN);
+  assert_non_null(strstr(dea_context_message(ctx), "did you mean 'hub_z_m'?"));
+  assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "gauge_stretch", &model),
+                   DEA_E_DESIGN);
+  dea_context_clear(ctx);
+}
+
+/* What the checks ask: the field that is allowed, and that the film has an equilibrium. */
+static void test_checks(void **state)
+{
+  (void)state;
+  struct dea_bench_model *model;
+  struct dea_bench_point at;
+  double pull_in_V;
+  assert_int_equal(dea_film_of_design.open(ctx, film, NULL, NULL, &model), DEA_OK);
+  assert_int_equal(dea_film_of_design.pull_in(ctx, model, &pull_in_V), DEA_OK);
+  assert_true(isnan(pull_in_V));
+  assert_int_equal(dea_film_of_design.solve(ctx, model, 3e3, &at), DEA_OK);
+  /* 80 V/um times the stretch to the power 1.5; the film is stretched by 1.2 and some more */
+  assert_true(at.breakdown_V_per_m > 80e6 * pow(1.2, 1.5) &&
+              at.breakdown_V_per_m < 80e6 * pow(1.25, 1.5));
+  assert_close(at.point.true_field_V_per_m / at.breakdown_V_per_m, 1 - at.point.breakdown_margin,
+               1e-12, 0);
+  assert_int_equal(dea_film_of_design.solve(ctx, model, 20e3, &at), DEA_E_NO_EQUILIBRIUM);
+  dea_context_clear(ctx);
+  dea_film_of_design.close(ctx, model);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_hub_of_a_sweep),
+      cmocka_unit_test(test_charge),
+      cmocka_unit_test(test_no_such_monitor),
+      cmocka_unit_test(test_checks),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
