@@ -377,6 +377,11 @@ static void test_what_run_refuses(void **state)
       {DISC "compute: {models: [3d], frequency: {bias: [1 V]}, solid: {field: coupled}, " AT_REST
             "}",
        plain, "the study 'frequency' needs the field V/h"},
+      {PLIES "electrodes:\n  - {ply: film, side: bottom, shape: film, channel: ground}\n"
+             "  - {ply: film, side: top, shape: film, channel: a}\n"
+             "channels: [{name: a, voltage: 1 kV}]\ncompute: {solid: {field: coupled}, " AT_REST
+             "}",
+       plain, "a coupled field has one channel, at a share of the sweep's voltage alone"},
       {DISC "compute: {models: [3d], compare: [{name: a, set: {film: {thickness: 100 um}, "
             "electrodes: {diameter: 50 mm stretched}}}], " AT_REST "}",
        plain, "the electrode"},
@@ -401,15 +406,14 @@ static void test_keys_of_a_disc(void **state)
 {
   (void)state;
   static const char cone[] = "@/examples/devices/cone-mass.yaml --json --set compute.";
-  static const char *const keys[][2] = {{"solid.buckling_branch", "fibres"},
-                                        {"solid.field", "coupled"},
-                                        {"solid.tip_refinement", "2"},
-                                        {"path.max_stretch", "2"}};
+  static const char *const keys[][3] = {
+      {"solid.field", "coupled", "a coupled field knows no rigid bodies"},
+      {"solid.tip_refinement", "2", "compute.solid.tip_refinement is of a disc in a frame"},
+      {"path.max_stretch", "2", "compute.path.max_stretch is of a disc in a frame"}};
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
     char arguments[200], message[200];
-    snprintf(message, sizeof message,
-             "--set compute.%s: error: model 3d: compute.%s%s is of a disc in a frame", keys[i][0],
-             keys[i][0], strcmp(keys[i][0], "solid.field") == 0 ? ": coupled" : "");
+    snprintf(message, sizeof message, "--set compute.%s: error: model 3d: %s", keys[i][0],
+             keys[i][2]);
     snprintf(arguments, sizeof arguments, "check %s%s=%s", cone, keys[i][0], keys[i][1]);
     command_expect(arguments, 3, message);
     snprintf(arguments, sizeof arguments, "run %s%s=%s", cone, keys[i][0], keys[i][1]);

@@ -1,7 +1,8 @@
 /* Studies of a device made of plies by its monitors: against the same computed by hand. */
-// ctest: quick, solid
+// ctest: solid
 #include "design_text.h"
 #include "result/convergence.h"
+#include "study/observe.h"
 #include "study/rerun.h"
 #include "testing.h"
 
@@ -284,6 +285,84 @@ static void test_operating_map_of_what_is_not_there(void **state)
   }
 }
 
+static const char flat[] = "dea: 1\n"
+                           "title: a film that is held at its edge\n"
+                           "shapes:\n"
+                           "  - {name: film, kind: circle, radius: 10 mm}\n"
+                           "  - {name: active, kind: circle, radius: 4 mm}\n"
+                           "plies:\n"
+                           "  - {name: film, shape: film, material: film, thickness: 500 um}\n"
+                           "electrodes:\n"
+                           "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+                           "  - {ply: film, side: top, shape: active, channel: drive}\n"
+                           "channels: [{name: drive, ratio: 0.5}]\n"
+                           "supports:\n"
+                           "  - {edge: film}\n"
+                           "monitors:\n"
+                           "  - {name: middle, at: [0 mm, 0 mm]}\n" FILM_MATERIAL "compute:\n"
+                           "  models: [3d]\n"
+                           "  voltage: {values: [1 kV]}\n";
+
+/* One voltage of that film. */
+static struct dea_load_point at_one(const struct dea_override *overrides, size_t count, double *z_m,
+                                    double *charge_C)
+{
+  struct run run;
+  struct dea_model *model;
+  struct dea_load_point point;
+  struct dea_monitor_set set;
+  const struct dea_model_type *type = dea_model_find("3d");
+  assert_int_equal(read_and_build(ctx, flat, overrides, count, &run.design, &run.device), DEA_OK);
+  assert_int_equal(dea_model_create(ctx, type, run.design, run.device, &model), DEA_OK);
+  assert_int_equal(type->solve(ctx, model, run.design->compute.voltages_V[0], &point), DEA_OK);
+  assert_int_equal(dea_monitor_set_init(ctx, type, run.device, &set), DEA_OK);
+  assert_int_equal(dea_monitor_set_read(ctx, &set, type, model, false, &point), DEA_OK);
+  *z_m = get(&point, "middle_z_m");
+  *charge_C = get(&point, "drive_charge_C");
+  point.monitors = NULL;
+  dea_monitor_set_free(&set);
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, run.device);
+  dea_design_destroy(ctx, run.design);
+  return point;
+}
+
+/* Two plates that end inside a film are longer by h ln 4/(2 pi) (docs/verification/coupled.md); the
+ * mesh makes that somewhat more. */
+static void test_fringe(void **state)
+{
+  (void)state;
+  static const struct dea_override of[] = {{"compute.solid.field", "coupled"},
+                                           {"compute.solid.elements_z", "4"},
+                                           {"compute.voltage", "{values: [10 V]}"}};
+  const double pi = acos(-1), a = 4e-3, h = 500e-6, permittivity = 2.8 * 8.8541878128e-12;
+  double z_m, charge_C;
+  const struct dea_load_point point = at_one(of, 3, &z_m, &charge_C);
+  const double C = point.capacitance_F / 0.25; // at half the voltage
+  const double longer_m = sqrt(C * h / (pi * permittivity)) - a;
+  assert_true(longer_m > h * log(4) / (2 * pi) && longer_m < 1.1 * h * log(4) / (2 * pi));
+  assert_close(charge_C, C * 0.5 * 10, 1e-6, 0);
+  const struct dea_load_point thin = at_one(&of[2], 1, &z_m, &charge_C);
+  assert_close(thin.capacitance_F / 0.25, pi * a * a * permittivity / h, 1e-3, 0);
+}
+
+/* The side that is asked for; the other one is its mirror image. */
+static void test_side(void **state)
+{
+  (void)state;
+  double z_m[2], charge_C;
+  for (int back = 0; back < 2; back++) {
+    const struct dea_override of[] = {{"compute.solid.buckling_branch", back ? "back" : "fibres"},
+                                      {"plies.film.thickness", "200 um"},
+                                      {"shapes.active.radius", "10 mm"},
+                                      {"channels.drive.ratio", "1"},
+                                      {"compute.voltage", "{values: [3 kV]}"}};
+    at_one(of, 5, &z_m[back], &charge_C);
+  }
+  assert_true(z_m[0] > 100e-6);
+  assert_close(z_m[1], -z_m[0], 1e-4, 0);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
@@ -292,6 +371,8 @@ int main(void)
       cmocka_unit_test(test_uncertainty),
       cmocka_unit_test(test_uncertain_laws),
       cmocka_unit_test(test_operating_map),
+      cmocka_unit_test(test_fringe),
+      cmocka_unit_test(test_side),
       cmocka_unit_test(test_operating_map_of_what_is_not_there),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);

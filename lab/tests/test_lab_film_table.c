@@ -1,6 +1,6 @@
 /* The simulated film of a device that is no disc: its monitor beside a sweep, its charge beside the
  * closed form. */
-// ctest: quick, solid
+// ctest: solid
 #include "design_text.h"
 #include "film/film_of_design.h"
 #include "study/observe.h"

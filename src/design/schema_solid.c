@@ -65,12 +65,16 @@ static const struct dea_field fields[] = {
     DEA_CHOICE_ROW(
         "field", AT(field), electrostatics, "coupled",
         "electric field: V/h where electrodes face each other, or from the potential as an "
-        "unknown, with the fringe at the electrode's edge (solid film of a disc in a frame only)",
+        "unknown, with the fringe at the electrode's edge (of solid films; of devices made of "
+        "`plies` without "
+        "rigid bodies, with one channel)",
         .default_text = "thin"),
-    DEA_CHOICE_ROW("buckling_branch", AT(buckling_branch), branches, "fibres",
-                   "side that film and fibres are on where a film without tension may buckle to "
-                   "either one; any: the one that follows from 0 V",
-                   .alias = "side", .default_text = "any"),
+    DEA_CHOICE_ROW(
+        "buckling_branch", AT(buckling_branch), branches, "fibres",
+        "side that film and fibres are on where a film without tension may buckle to "
+        "either one; any: the one that follows from 0 V; of devices made of `plies` fibres is "
+        "the side of +z",
+        .alias = "side", .default_text = "any"),
     DEA_CHOICE_ROW("path", AT(path), dea_no_yes, "yes",
                    "whether study path follows model 3d too: all of its equilibrium path from 0 V "
                    "to the highest voltage, through limit points and bifurcations",

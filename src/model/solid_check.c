@@ -36,31 +36,65 @@ dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout 
   return DEA_OK;
 }
 
+/* What of a layout a coupled field does not go with; NULL: nothing. */
+static const char *not_coupled(const struct dea_design *design, const struct dea_layout *l)
+{
+  bool slope = false, own = false, one_V = true, encloses = false;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    slope =
+        slope || (dea_layout_is_dielectric(l, i) && l->plies[i].material.permittivity.slope != 0);
+  }
+  for (size_t k = 1; k < l->channel_count; k++) {
+    own = own || l->channels[k].own_V != 0 || l->channels[k].waveform != NULL;
+    one_V = one_V && k == 1;
+  }
+  for (size_t i = 0; i < l->pressure_count; i++) {
+    encloses = encloses || l->pressures[i].encloses != DEA_OPEN;
+  }
+  return design->compute.solid.film.value == DEA_FILM_MEMBRANE
+             ? "needs films with a thickness (compute.solid.film: solid)"
+         : slope         ? "needs a constant permittivity, and that of a ply depends on stretch"
+         : !one_V || own ? "has one channel, at a share of the sweep's voltage alone"
+         : encloses      ? "knows no enclosed volumes"
+         : l->body_count > 0
+             ? "knows no rigid bodies: a stiff ply that is held has a field of its own"
+             : NULL;
+}
+
+static dea_status check_coupled(struct dea_context *ctx, const struct dea_design *design,
+                                const struct dea_layout *layout)
+{
+  char message[200];
+  const char *why =
+      design->compute.solid.field.value == DEA_FIELD_COUPLED ? not_coupled(design, layout) : NULL;
+  snprintf(message, sizeof message, "model 3d: a coupled field %s", why != NULL ? why : "");
+  return why != NULL ? dea_refuse(ctx, design->compute.solid.field.location, message) : DEA_OK;
+}
+
 /* Keys that a design with `plies` may have and that only a disc in a frame has a use for. */
 static dea_status refuse_keys_of_disc(struct dea_context *ctx, const struct dea_design *design)
 {
-  const struct dea_choice *side = &design->compute.solid.buckling_branch;
-  const struct dea_choice *field = &design->compute.solid.field;
   const struct dea_quantity *tips = &design->compute.solid.tip_refinement;
   const struct dea_quantity *end = &design->compute.path_max_stretch;
   const struct {
-    bool asked;
-    const struct dea_location *where;
-    const char *key;
+    const struct dea_quantity *given;
+    const char *key, *instead;
   } keys[] = {
-      {side->value != DEA_BRANCH_ANY, &side->location, "solid.buckling_branch"},
-      {field->value == DEA_FIELD_COUPLED, &field->location, "solid.field: coupled"},
-      {tips->origin == DEA_GIVEN || tips->origin == DEA_OVERRIDE, &tips->location,
-       "solid.tip_refinement"},
-      {end->origin == DEA_GIVEN || end->origin == DEA_OVERRIDE, &end->location, "path.max_stretch"},
+      {tips, "solid.tip_refinement",
+       "their free mesh is finer where a monitor's error comes from (compute.solid.adapt), and has "
+       "rows along all edges"},
+      {end, "path.max_stretch",
+       "they have no electrode's stretch: their path ends at the highest voltage "
+       "(compute.voltage)"},
   };
   dea_status first = DEA_OK;
   for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
-    char message[160];
+    char message[300];
     snprintf(message, sizeof message,
-             "model 3d: compute.%s is of a disc in a frame, not of devices made of `plies`",
-             keys[i].key);
-    dea_status status = keys[i].asked ? dea_refuse(ctx, *keys[i].where, message) : DEA_OK;
+             "model 3d: compute.%s is of a disc in a frame, not of devices made of `plies`: %s",
+             keys[i].key, keys[i].instead);
+    const bool given = keys[i].given->origin == DEA_GIVEN || keys[i].given->origin == DEA_OVERRIDE;
+    dea_status status = given ? dea_refuse(ctx, keys[i].given->location, message) : DEA_OK;
     first = first == DEA_OK ? status : first;
   }
   return first;
@@ -108,7 +142,12 @@ dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_desi
                                   const struct dea_device *device)
 {
   const struct dea_layout *l = device->layout;
-  DEA_TRY(ctx, device->disc ? check_field(ctx, design, device) : refuse_keys_of_disc(ctx, design));
+  if (device->disc) {
+    DEA_TRY(ctx, check_field(ctx, design, device));
+  } else {
+    DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
+    DEA_TRY(ctx, check_coupled(ctx, design, l));
+  }
   DEA_TRY(ctx, design->compute.solid.adapt.asked ? check_adapt(ctx, design, l) : DEA_OK);
   for (size_t i = 0; l != NULL && i < l->ply_count; i++) {
     DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));

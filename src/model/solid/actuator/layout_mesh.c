@@ -19,6 +19,9 @@ static const double across_share = 2;
  * elements beside them. */
 static const double layer_share = 4.5, layer_rows = 2, layered_edge_share = 0.7,
                     most_rows_finer = 8;
+/* Of a coupled field: the fringe is as wide as the film is thick, and the rows across it grow to
+ * four times the width of the first. */
+static const double fringe_share = 2, fringe_rows = 8;
 static const double near_share = 1e-6;  // of the size of all: a node on a boundary
 static const double least_share = 1e-6; // of the area of all: what is smaller is as good as a point
 
@@ -246,8 +249,9 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
 {
   const struct dea_layout *l = mesh->layout;
   double largest_m2 = largest_ply_m2(l), finer = exp2(1 - fmax(1, settings->refinement));
-  const bool rows = !mesh->membrane && is_stretched(l);
-  const double layer_m = rows ? layer_share * film_thickness_m(l) : 0;
+  const bool fringe = settings->field == DEA_FIELD_COUPLED;
+  const bool rows = !mesh->membrane && (fringe || is_stretched(l));
+  const double layer_m = rows ? (fringe ? fringe_share : layer_share) * film_thickness_m(l) : 0;
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
   struct dea_gmsh_shape *curves = dea_arena_alloc(memory, l->region_count, sizeof *curves);
   if (shapes == NULL || curves == NULL) {
@@ -258,7 +262,8 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
                                  .order = settings->order == 1 ? 1 : 2,
                                  .size_m = size_share * sqrt(largest_m2) * finer,
                                  .growth = growth,
-                                 .layer_rows = (size_t)lround(layer_rows / finer)};
+                                 .layer_rows =
+                                     (size_t)lround((fringe ? fringe_rows : layer_rows) / finer)};
   for (size_t i = 0; i < l->region_count; i++) {
     const struct dea_region *region =
         clipped[i].contour_count > 0 ? &clipped[i] : &l->regions[i].region;

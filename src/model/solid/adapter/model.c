@@ -25,6 +25,7 @@
 #include "result/columns.h"
 #include "result/copies.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -587,11 +588,24 @@ static dea_status find_rest(struct dea_context *ctx, struct dea_model *model)
 
 // The model --------------------------------------------------------------------------------------
 
+/* Elements through the film, the least of several. */
+static int least_through(const struct dea_model *model)
+{
+  const int usual = model->settings.elements_z > 1 ? model->settings.elements_z : 1;
+  int least = model->disc ? usual : INT_MAX;
+  for (size_t i = 0; i < model->layout->ply_count && !model->disc; i++) {
+    const int own = (int)model->layout->plies[i].elements;
+    least = model->mesh.dielectric[i] && (own > 0 ? own : usual) < least ? (own > 0 ? own : usual)
+                                                                         : least;
+  }
+  return least;
+}
+
 /* What of a coupled field the mesh does not resolve. */
 static dea_status say_coupled(struct dea_context *ctx, const struct dea_model *model)
 {
   const struct dea_device *d = model->device;
-  const int through = model->settings.elements_z > 1 ? model->settings.elements_z : 1;
+  const int through = least_through(model);
   if (through < resolved) {
     return dea_finding_add(
         ctx, DEA_WARNING, (struct dea_location){0},

@@ -2,6 +2,7 @@
 
 #include "base/quadrature.h"
 #include "model/solid/assembly/channels.h"
+#include "model/solid/assembly/film.h"
 #include "model/solid/assembly/problem.h"
 
 #include <math.h>
@@ -391,6 +392,23 @@ static void observe_body(const struct dea_layout_mesh *mesh, const struct dea_so
   }
 }
 
+/* Of a coupled field, which has one channel: energies are by the voltage of the solve, of which the
+ * channel has its ratio. */
+static dea_status charge_coupled(struct dea_context *ctx, const struct dea_observer *o,
+                                 struct dea_solid *solid, const double *voltage, double *charge,
+                                 double *capacitance)
+{
+  const size_t count = o->channel_count;
+  const double ratio = count > 1 ? o->mesh->layout->channels[1].ratio : 0;
+  double total_F;
+  DEA_TRY(ctx, dea_solid_capacitance(ctx, solid, &total_F));
+  for (size_t k = 0; k < count && ratio != 0; k++) {
+    capacitance[k * count + k] = total_F / (ratio * ratio);
+    charge[k] = (k == 0 ? -1 : 1) * total_F / (ratio * ratio) * voltage[1];
+  }
+  return DEA_OK;
+}
+
 static dea_status observe_channels(struct dea_context *ctx, struct dea_observer *o,
                                    struct dea_solid *solid)
 {
@@ -398,8 +416,12 @@ static dea_status observe_channels(struct dea_context *ctx, struct dea_observer 
   double copies = (double)dea_layout_sector_copies(&o->mesh->sector);
   double *voltage = o->work, *charge = voltage + count, *capacitance = charge + count;
   dea_solid_channel_voltages(solid, voltage);
-  DEA_TRY(ctx, dea_solid_charges(ctx, solid, charge));
-  DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, capacitance));
+  if (solid->problem.field == NULL) {
+    DEA_TRY(ctx, dea_solid_charges(ctx, solid, charge));
+    DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, capacitance));
+  } else {
+    DEA_TRY(ctx, charge_coupled(ctx, o, solid, voltage, charge, capacitance));
+  }
   for (size_t k = 0; k < o->mesh->layout->channel_count; k++) {
     o->channel[k] = (struct dea_channel_values){voltage[k], copies * charge[k],
                                                 copies * capacitance[k * count + k], NAN};
