@@ -24,7 +24,7 @@ static void destroy(struct dea_context *c, struct dea_bench_film *film)
 static dea_status read_film(struct dea_context *c, const char *file, const char *text,
                             size_t length, struct dea_bench_film **out);
 static dea_status open_model(struct dea_context *c, const struct dea_bench_film *film,
-                             const char *name, struct dea_bench_model **out);
+                             const char *name, const char *monitor, struct dea_bench_model **out);
 
 static void close_model(struct dea_context *c, struct dea_bench_model *model)
 {
@@ -112,8 +112,9 @@ static dea_status read_film(struct dea_context *c, const char *file, const char 
 }
 
 static dea_status open_model(struct dea_context *c, const struct dea_bench_film *film,
-                             const char *name, struct dea_bench_model **out)
+                             const char *name, const char *monitor, struct dea_bench_model **out)
 {
+  (void)monitor;
   assert_ptr_equal(film->type, &capacitor);
   *out = dea_alloc(c, 1, sizeof **out);
   assert_non_null(*out);
