@@ -502,7 +502,8 @@ static dea_status add_effects(struct work *w, const struct dea_curve *curve, int
                               struct dea_result_table *table)
 {
   const size_t i = last_with_band(curve, column);
-  for (size_t j = 0; i < SIZE_MAX && j <= w->count; j++) {
+  const bool shown = i < SIZE_MAX && dea_point_get(&curve->std[i], column) > 0;
+  for (size_t j = 0; shown && j <= w->count; j++) {
     const bool all = j == w->count;
     const struct dea_result_table_value row[] = {
         {.number = column},
