@@ -4,6 +4,7 @@
 #include "failing_allocator.h"
 #include "model/model.h"
 #include "result/columns.h"
+#include "study/design_gradient.h"
 
 #include <math.h>
 
@@ -741,6 +742,60 @@ static void test_disc_of_both_forms(void **state)
   }
 }
 
+/* Sum of the slopes of the electrode's edge at 2 kV by the numbers whose keys end so. */
+static double slope_by(const char *text, const char *ending)
+{
+  const struct dea_model_type *type = dea_model_find("3d");
+  struct dea_model *model;
+  struct dea_load_point point;
+  static struct dea_design_number numbers[DEA_NUMBERS_MAX];
+  static double slopes[DEA_NUMBERS_MAX];
+  size_t count = 0;
+  double sum = 0;
+  assert_int_equal(read_and_build(ctx, text, NULL, 0, &design, &device), DEA_OK);
+  assert_int_equal(dea_model_create(ctx, type, design, device, &model), DEA_OK);
+  assert_int_equal(type->solve(ctx, model, 2e3, &point), DEA_OK);
+  assert_int_equal(dea_design_numbers(ctx, design, device, 2e3, numbers, &count), DEA_OK);
+  const int column = dea_point_column_find("electrode_edge_u_m");
+  const struct dea_design_gradient ask = {.type = type,
+                                          .model = model,
+                                          .design = design,
+                                          .device = device,
+                                          .voltage_V = 2e3,
+                                          .numbers = numbers,
+                                          .number_count = count,
+                                          .columns = &column,
+                                          .column_count = 1};
+  assert_int_equal(dea_design_gradient_find(ctx, &ask, slopes), DEA_OK);
+  for (size_t i = 0; i < count; i++) {
+    const size_t length = strlen(numbers[i].key), end = strlen(ending);
+    if (length >= end && strcmp(numbers[i].key + length - end, ending) == 0 &&
+        strstr(numbers[i].key, "film") == NULL) {
+      sum += slopes[i];
+    }
+  }
+  type->destroy(ctx, model);
+  drop();
+  return sum;
+}
+
+/* A disc whose electrodes are changed one after the other, which is none between, changes as one
+ * whose electrodes are changed together. */
+static void test_slopes_of_both_forms(void **state)
+{
+  (void)state;
+  const struct disc disc = {1.2, 100, 15, 3.75, 0, 10, LEVEL, .film = "film"};
+  static const char *const endings[] = {".thickness", ".law.c1"};
+  for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+    char text[2][4000];
+    write_short(&disc, text[0], sizeof text[0]);
+    write_parts(&disc, text[1], sizeof text[1]);
+    const double wanted = slope_by(text[0], endings[i]);
+    assert_true(fabs(wanted) > 0);
+    assert_close(slope_by(text[1], endings[i]), wanted, 1e-7, 0);
+  }
+}
+
 static void test_what_is_no_disc(void **state)
 {
   (void)state;
@@ -819,6 +874,7 @@ int main(void)
       TEST(test_override_by_name),         TEST(test_failing_memory),
       TEST(test_no_dielectric_is_a_note),  TEST(test_overhang_is_a_note),
       TEST(test_disc_of_both_forms),       TEST(test_what_is_no_disc),
+      TEST(test_slopes_of_both_forms),
   };
   return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
 }

@@ -5,6 +5,7 @@
 #include "model/solid/mesh/cuts.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Sizes of elements over the electrode radius at refinement 1, which each refinement more halves
  * (docs/theory/mesh.md has the study that they come from). The fine edge is for the ends of fibres:
@@ -75,6 +76,25 @@ static dea_status name_groups(struct dea_context *ctx, struct dea_layout_mesh *m
   return DEA_OK;
 }
 
+/* The numbers of plies and channels that a disc cannot have, such as one electrode that is thicker
+ * than the other, into its layout. */
+static void take_numbers(const struct dea_layout *from, struct dea_layout *to)
+{
+  for (size_t i = 0; i < to->ply_count; i++) {
+    const struct dea_layout_ply *a = &from->plies[i];
+    struct dea_layout_ply *b = &to->plies[i];
+    const double density = b->material.density_kg_per_m3;
+    b->material = a->material;
+    b->material.density_kg_per_m3 =
+        a->material.density_kg_per_m3 > 0 ? a->material.density_kg_per_m3 : density;
+    b->thickness_m = a->thickness_m;
+    b->thickness_unstretched_m = a->thickness_unstretched_m;
+    memcpy(b->pre_stretch, a->pre_stretch, sizeof a->pre_stretch);
+  }
+  to->channels[1].ratio = from->channels[1].ratio;
+  to->channels[1].own_V = from->channels[1].own_V;
+}
+
 static dea_status make_plane(struct dea_context *ctx, const struct dea_device *device,
                              struct dea_layout_mesh *mesh)
 {
@@ -82,6 +102,12 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_device *d
   bool fit;
   DEA_TRY(ctx, dea_disc_layout_create(ctx, device, mesh->membrane, &mesh->own));
   DEA_TRY(ctx, dea_disc_layout_add_monitors(ctx, device, mesh->own, &fit));
+  if (!fit) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the mesh cannot follow a monitor's region");
+  }
+  if (!device->disc && device->layout != NULL) {
+    take_numbers(device->layout, mesh->own);
+  }
   mesh->layout = mesh->own;
   DEA_TRY(ctx, dea_fibre_disc_plane(ctx, p, &mesh->cuts, &mesh->plane));
   DEA_TRY(ctx, name_groups(ctx, mesh));
@@ -97,6 +123,7 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
   *out = (struct dea_layout_mesh){
       .memory = {.ctx = ctx},
       .plate = *plate,
+      .disc = device,
       .cuts = like != NULL ? like->cuts : *plate,
       .membrane = plate->membrane,
       .sector = {.fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
@@ -151,21 +178,41 @@ dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_devi
   return DEA_OK;
 }
 
+/* The disc that a mesh is of with the layout of what is no disc any more: of the same shapes. */
+static dea_status find_near(struct dea_context *ctx, const struct dea_device *device,
+                            const struct dea_layout_mesh *like, struct dea_device *out)
+{
+  const struct dea_layout *a = device->layout, *b = like->disc->layout;
+  bool same = !like->membrane && b != NULL && a->region_count == b->region_count &&
+              a->ply_count == b->ply_count && a->channel_count == b->channel_count;
+  for (size_t i = 0; same && i < a->region_count; i++) {
+    same = dea_region_same(&a->regions[i].region, &b->regions[i].region);
+  }
+  *out = *like->disc;
+  out->layout = device->layout;
+  out->disc = false;
+  return same ? DEA_OK
+              : dea_fail(ctx, DEA_E_ARGUMENT,
+                         "the mesh cannot follow: it is of a disc, which this is not");
+}
+
 dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_device *device,
                                   const struct dea_model_settings *settings,
                                   const struct dea_layout_mesh *like, struct dea_layout_mesh *out)
 {
   struct dea_fibre_disc plate;
+  struct dea_device near;
   *out = (struct dea_layout_mesh){0};
   if (like->plate.order == 0) {
     DEA_TRY(ctx, dea_mesh_follow(ctx, device->layout, settings, like, out));
     return DEA_OK;
   }
   if (!device->disc) {
-    return dea_fail(ctx, DEA_E_ARGUMENT,
-                    "the mesh cannot follow: it is of a disc, which this is not");
+    DEA_TRY(ctx, find_near(ctx, device, like, &near));
   }
-  dea_fibre_disc_of_device(device, settings, &plate);
-  DEA_TRY(ctx, dea_disc_mesh_create(ctx, device, settings, &plate, like, out));
+  const struct dea_device *disc = device->disc ? device : &near;
+  dea_fibre_disc_of_device(disc, settings, &plate);
+  DEA_TRY(ctx, dea_disc_mesh_create(ctx, disc, settings, &plate, like, out));
+  out->disc = device;
   return DEA_OK;
 }

@@ -19,6 +19,7 @@ struct dea_layout_mesh {
   struct dea_layout *own;          // NULL: the device's own
   struct dea_fibre_disc plate;     // of a mesh of blocks; its order is 0: a free mesh
   struct dea_fibre_disc cuts;      // whose elements those are
+  const struct dea_device *disc;   // lent, of that mesh
   double bottom_m;                 // z of the lowest ply
   bool membrane;                   // dielectric plies are surfaces
   struct dea_layout_sector sector; // what is meshed of the layout; its fold is 0: the whole
