@@ -15,14 +15,18 @@ static inline double displacement(const struct dea_sensitivity *of,
   const struct dea_model_type *type = dea_model_find(of->model);
   struct dea_design *changed_design;
   struct dea_device *changed;
-  struct dea_model *model;
+  struct dea_model *model, *of_mesh = NULL;
   struct dea_load_point point;
   assert_int_equal(read_and_build(ctx, GOOD_DESIGN, sets, 2, &changed_design, &changed), DEA_OK);
   struct dea_model_settings settings = dea_model_settings_of(changed_design);
-  settings.mesh_of = mesh_of;
+  if (mesh_of != NULL) {
+    assert_int_equal(type->create(ctx, mesh_of, &settings, &of_mesh), DEA_OK);
+    settings.mesh_from = of_mesh;
+  }
   assert_int_equal(type->create(ctx, changed, &settings, &model), DEA_OK);
   assert_int_equal(type->solve(ctx, model, of->voltage_V, &point), DEA_OK);
   type->destroy(ctx, model);
+  type->destroy(ctx, of_mesh);
   dea_device_destroy(ctx, changed);
   dea_design_destroy(ctx, changed_design);
   return device->fibre_count > 0 ? point.fibre_tip_z_m : point.electrode_edge_u_m;

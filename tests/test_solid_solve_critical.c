@@ -58,7 +58,9 @@ static void check_critical(const struct state *at, const struct dea_model_settin
   double slopes[OF_DEVICE], left[SHARES];
   struct dea_model_settings own = *settings;
   const double base_V = find_critical_slopes(at, settings, kind, slopes);
-  own.mesh_of = &at->device;
+  struct dea_model *model;
+  assert_int_equal(solid->create(ctx, &at->device, settings, &model), DEA_OK);
+  own.mesh_from = model;
   for (int i = 0; i < count; i++) {
     for (size_t n = 0; n < SHARES; n++) {
       struct state there = changed(at, numbers[i], shares[n]);
@@ -76,6 +78,7 @@ static void check_critical(const struct state *at, const struct dea_model_settin
       }
     }
   }
+  solid->destroy(ctx, model);
 }
 
 /* Of a membrane, which has a kink where it loses its tension, and of a solid film, by every number

@@ -77,14 +77,15 @@ static void begin_at(const struct state *at, struct dea_model *model, struct dea
   dea_free(ctx, there);
 }
 
-static struct dea_load_point solve(const struct state *at, const struct dea_device *mesh_of,
+/* near: whose mesh and state it begins with; NULL: none. */
+static struct dea_load_point solve(const struct state *at,
                                    const struct dea_model_settings *settings,
                                    struct dea_model *near, struct dea_model **keep)
 {
   struct dea_model_settings own = *settings;
   struct dea_model *model = NULL;
   struct dea_load_point point = dea_load_point_empty();
-  own.mesh_of = mesh_of;
+  own.mesh_from = near;
   if (solid->create(ctx, &at->device, &own, &model) != DEA_OK) {
     fail_msg("%s", dea_context_message(ctx));
   }
@@ -126,7 +127,7 @@ static struct dea_load_point find_slopes(const struct state *at,
   struct state sides[2 * NUMBERS];
   struct dea_design_change changes[NUMBERS];
   int columns[KEYS_MAX];
-  struct dea_load_point base = solve(at, NULL, settings, NULL, &model);
+  struct dea_load_point base = solve(at, settings, NULL, &model);
   for (int k = 0; k < key_count(at); k++) {
     columns[k] = dea_point_column_find(key_of(at, k));
   }
@@ -188,13 +189,13 @@ static void check_some(const struct state *at, const struct dea_model_settings *
   struct dea_load_point moved[SHARES_MAX];
   step_aside(at, model);
   if (is_pressed(at)) { // by the way of the others, for what the contact leaves
-    base = solve(at, &at->device, settings, model, NULL);
+    base = solve(at, settings, model, NULL);
   }
   for (int a = 0; a < number_count; a++) {
     const int i = numbers[a];
     for (size_t n = 0; n < count; n++) {
       struct state there = changed(at, i, shares[n]);
-      moved[n] = solve(&there, &at->device, settings, model, NULL);
+      moved[n] = solve(&there, settings, model, NULL);
     }
     for (int k = 0; k < width; k++) {
       const char *key = key_of(at, k);
@@ -324,13 +325,13 @@ static void test_frequency_of_all_lengths(void **state)
 enum { MODES = 3 };
 
 /* Frequencies of the lowest modes of a membrane, by itself or on the mesh of another one. */
-static void find_frequencies(const struct state *at, const struct dea_device *mesh_of,
-                             struct dea_model *near, struct dea_model **keep, double out[MODES])
+static void find_frequencies(const struct state *at, struct dea_model *near,
+                             struct dea_model **keep, double out[MODES])
 {
   struct dea_load_point modes[MODES];
   struct dea_field_mesh *shapes;
   struct dea_model *model;
-  const struct dea_load_point point = solve(at, mesh_of, &linear_membrane, near, &model);
+  const struct dea_load_point point = solve(at, &linear_membrane, near, &model);
   assert_int_equal(solid->modes(ctx, model, &point, MODES, modes, &shapes), DEA_OK);
   dea_field_mesh_destroy(ctx, shapes);
   for (int i = 0; i < MODES; i++) {
@@ -362,7 +363,7 @@ static void test_higher_modes(void **state)
   for (int i = 0; i < 2 * COUNT; i++) {
     changes[i / 2].voltage_V[i % 2] = sides[i].voltage_V;
   }
-  find_frequencies(&at, NULL, NULL, &model, base);
+  find_frequencies(&at, NULL, &model, base);
   const struct dea_gradient_ask ask = {.changes = changes,
                                        .change_count = COUNT,
                                        .columns = columns,
@@ -373,7 +374,7 @@ static void test_higher_modes(void **state)
   for (int a = 0; a < COUNT; a++) {
     for (int n = 0; n < 3; n++) {
       const struct state there = changed(&at, numbers[a], shares[n]);
-      find_frequencies(&there, &at.device, model, NULL, moved[n]);
+      find_frequencies(&there, model, NULL, moved[n]);
     }
     for (int k = 0; k < MODES; k++) {
       const double from = base[modes[k]];
@@ -406,7 +407,7 @@ static void test_pair_of_modes(void **state)
   double slopes[2];
   make_changes(&at, &number, 1, sides, &change);
   change.voltage_V[0] = change.voltage_V[1] = at.voltage_V;
-  solve(&at, NULL, &whole, NULL, &model);
+  solve(&at, &whole, NULL, &model);
   const struct dea_gradient_ask ask = {
       .changes = &change, .change_count = 1, .columns = columns, .modes = modes, .column_count = 2};
   assert_int_equal(solid->gradient(ctx, model, &ask, slopes), DEA_OK);
@@ -485,7 +486,7 @@ static void test_mesh_that_cannot_follow(void **state)
     sides[k].device.fibre_tip_radius_m =
         (k == 0 ? 0.99999 : 1.00001) * at.device.electrode_radius_m;
   }
-  solve(&at, NULL, &settings, NULL, &model);
+  solve(&at, &settings, NULL, &model);
   const struct dea_design_change change = {
       {&sides[0].device, &sides[1].device}, {at.voltage_V, at.voltage_V}, 1, {NULL, NULL}};
   const struct dea_gradient_ask ask = {

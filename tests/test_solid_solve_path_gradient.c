@@ -95,12 +95,15 @@ static void check(const struct state *at, const struct dea_model_settings *setti
   double slopes[OF_DEVICE * KEYS];
   struct dea_model_settings own = *settings;
   struct dea_load_point base = find_slopes(at, settings, stretch, numbers, count, slopes);
-  own.mesh_of = &at->device;
+  struct dea_model *model;
+  assert_int_equal(solid->create(ctx, &at->device, settings, &model), DEA_OK);
+  own.mesh_from = model;
   assert_close(base.electrode_stretch, stretch, 1e-12, 0);
   assert_int_equal(base.unstable_modes, 1); // beyond the limit point
   for (size_t i = 0; i < count; i++) {
     check_number(at, &own, &base, numbers[i], slopes + i * KEYS);
   }
+  solid->destroy(ctx, model);
 }
 
 /* Of which more than the whole turns unstable only far beyond its limit point. */

@@ -48,10 +48,9 @@ struct dea_model_settings {
     double tolerance, voltage_V; // relative; where it is looked at
     int passes;
   } adapt;
-  /* Whose mesh it is, moved to this device: so that answers change smoothly with lengths. Lent,
-   * outlives the model; NULL: a mesh of its own. */
-  const struct dea_device *mesh_of;  // of a disc: another device
-  const struct dea_model *mesh_from; // of the general form: a model of another device
+  /* A model of another device, whose mesh is moved to this one: so that answers change smoothly
+   * with lengths. Lent, outlives the model; NULL: a mesh of its own. */
+  const struct dea_model *mesh_from;
 };
 
 /* One mesh of an adaptive refinement. */

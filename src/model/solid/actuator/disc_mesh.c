@@ -128,13 +128,7 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .membrane = plate->membrane,
       .sector = {.fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
-  dea_status status = DEA_OK;
-  if (like == NULL && settings->mesh_of != NULL) {
-    dea_fibre_disc_of_device(settings->mesh_of, settings, &out->cuts);
-  }
-  if (status == DEA_OK) {
-    status = make_plane(ctx, device, out);
-  }
+  const dea_status status = make_plane(ctx, device, out);
   if (status != DEA_OK) {
     dea_layout_mesh_free(ctx, out);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

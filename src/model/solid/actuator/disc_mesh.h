@@ -11,7 +11,7 @@ void dea_fibre_disc_of_device(const struct dea_device *device,
 
 /* Blocks of a plate, which is a disc's, extruded through a layout of its own. like: with the
  * elements of that mesh, moved (DEA_E_ARGUMENT where other elements come of it); NULL: those of the
- * plate, or of settings->mesh_of. device: need not have a layout. On failure out is empty. */
+ * plate. device: need not have a layout. On failure out is empty. */
 dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device *device,
                                 const struct dea_model_settings *settings,
                                 const struct dea_fibre_disc *plate,
