@@ -118,36 +118,12 @@ static dea_status check_adapt(struct dea_context *ctx, const struct dea_design *
   return dea_refuse(ctx, name->location, message);
 }
 
-static dea_status check_field(struct dea_context *ctx, const struct dea_design *design,
-                              const struct dea_device *device)
-{
-  if (design->compute.solid.field.value != DEA_FIELD_COUPLED) {
-    return DEA_OK;
-  }
-  if (device->film.permittivity.slope != 0) {
-    DEA_TRY(ctx,
-            dea_refuse(ctx, design->compute.solid.field.location,
-                       "model 3d: a coupled field needs a constant permittivity, and that of the "
-                       "film depends on stretch (film.permittivity)"));
-  }
-  if (design->compute.solid.film.value == DEA_FILM_MEMBRANE) {
-    DEA_TRY(ctx, dea_refuse(ctx, design->compute.solid.field.location,
-                            "model 3d: a coupled field needs a film with a thickness "
-                            "(compute.solid.film: solid)"));
-  }
-  return DEA_OK;
-}
-
 dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_design *design,
                                   const struct dea_device *device)
 {
   const struct dea_layout *l = device->layout;
-  if (device->disc) {
-    DEA_TRY(ctx, check_field(ctx, design, device));
-  } else {
-    DEA_TRY(ctx, refuse_keys_of_disc(ctx, design));
-    DEA_TRY(ctx, check_coupled(ctx, design, l));
-  }
+  DEA_TRY(ctx, device->disc ? DEA_OK : refuse_keys_of_disc(ctx, design));
+  DEA_TRY(ctx, l != NULL ? check_coupled(ctx, design, l) : DEA_OK);
   DEA_TRY(ctx, design->compute.solid.adapt.asked ? check_adapt(ctx, design, l) : DEA_OK);
   for (size_t i = 0; l != NULL && i < l->ply_count; i++) {
     DEA_TRY(ctx, dea_solid_check_ply(ctx, l, i));
