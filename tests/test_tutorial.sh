@@ -21,6 +21,9 @@ if ! dea doctor 2>/dev/null | grep -q '^ok *3D engine'; then
   echo "no model 3d in this build"
   exit 77
 fi
+if [ "$2" = first-device ] && dea drive --help | grep -q 'Not in this build'; then
+  exit 77
+fi
 awk -v work="$work" '
   /^```sh$/ { block++; kind = "sh"; print "exec >" work "/said-" block " 2>&1" >(work "/commands"); next }
   /^```text$/ { kind = "text"; next }
