@@ -184,6 +184,15 @@ static double tolerance_of(const struct dea_design *design, const struct dea_des
              : NAN;
 }
 
+/* Whether a number says something of this device: what is outside does of enclosed gas only. */
+static bool is_used(const struct list *list, const char *item, const struct dea_field *field)
+{
+  const struct dea_parts_pressure *pressure = (const void *)item;
+  return list->items != offsetof(struct dea_parts, pressures) ||
+         field->offset != offsetof(struct dea_parts_pressure, ambient_Pa) ||
+         pressure->gas_m3.origin != DEA_ABSENT;
+}
+
 dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *design,
                             const struct dea_device *device, bool all,
                             struct dea_design_number *out, size_t *count)
@@ -197,7 +206,9 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
     memcpy(&item_count, (const char *)design->parts + list->count, sizeof item_count);
     for (size_t i = 0; i < item_count; i++) {
       for (size_t f = 0; f < record->field_count; f++) {
-        add_field(l, i, items + i * list->size, &record->fields[f], 0, out, count);
+        if (is_used(list, items + i * list->size, &record->fields[f])) {
+          add_field(l, i, items + i * list->size, &record->fields[f], 0, out, count);
+        }
       }
     }
   }
