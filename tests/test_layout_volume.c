@@ -43,6 +43,8 @@ static struct seen solve(double stretch, struct dea_layout_pressure pressure, do
   out.pressure_Pa = o.monitor[1][DEA_OBSERVED_PRESSURE];
   out.volume_m3 = o.monitor[1][DEA_OBSERVED_VOLUME];
   out.charge_C = o.channel[1].charge_C;
+  assert_int_equal(dea_observed_main(o.monitor[0]), DEA_OBSERVED_Z);
+  assert_int_equal(dea_observed_main(o.monitor[1]), DEA_OBSERVED_VOLUME);
   dea_model_find("3d")->destroy(ctx, model);
   dea_device_destroy(ctx, device);
   return out;

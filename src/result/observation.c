@@ -63,6 +63,9 @@ enum dea_observed dea_observed_main(const double values[DEA_OBSERVED_COUNT])
   if (!isnan(values[DEA_OBSERVED_STRETCH])) {
     return DEA_OBSERVED_STRETCH;
   }
+  if (!isnan(values[DEA_OBSERVED_VOLUME])) {
+    return DEA_OBSERVED_VOLUME;
+  }
   if (!isnan(values[DEA_OBSERVED_AREA_STRETCH])) {
     return DEA_OBSERVED_AREA_STRETCH;
   }

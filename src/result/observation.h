@@ -38,7 +38,7 @@ enum dea_observed {
 enum { DEA_OBSERVED_MOTIONS = DEA_OBSERVED_FORCE_X };
 
 /* The motion of a monitor that its estimated error is of: stretch of a line, area stretch of a
- * region, otherwise the largest displacement. */
+ * region, swept volume, otherwise the largest displacement. */
 enum dea_observed dea_observed_main(const double values[DEA_OBSERVED_COUNT]);
 
 /* Of a channel; ground is [0]. */

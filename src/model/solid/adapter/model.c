@@ -1276,6 +1276,11 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
     const struct dea_solid_load tip = dea_contact_load(own->indent->contact);
     DEA_TRY(ctx, dea_solid_add_load(ctx, model->solid, &tip));
   }
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    if (model->pressures[i] != NULL && own->pressures[i] != NULL) {
+      dea_pressure_hold(model->pressures[i], own->pressures[i]);
+    }
+  }
   DEA_TRY(ctx, check_held(ctx, model));
   DEA_TRY(ctx, dea_observer_create(ctx, &model->mesh, model->pressures, &model->observer));
   return DEA_OK;

@@ -700,7 +700,8 @@ static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed 
          : kind == DEA_MONITOR_LINE ? motion == DEA_OBSERVED_STRETCH
          : kind == DEA_MONITOR_REGION
              ? shift || (motion >= DEA_OBSERVED_STRETCH_X && motion <= DEA_OBSERVED_AREA_STRETCH)
-             : kind == DEA_MONITOR_BODY && motion <= DEA_OBSERVED_TURN_Z;
+         : kind == DEA_MONITOR_VOLUME ? motion == DEA_OBSERVED_VOLUME
+                                      : motion <= DEA_OBSERVED_TURN_Z;
 }
 
 bool dea_observer_force_way(const struct dea_observer *o, const struct dea_solid *solid,
@@ -749,6 +750,12 @@ bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size
     break;
   }
   case DEA_MONITOR_VOLUME:
+    if (o->pressures[m->pressure] != NULL) {
+      dea_pressure_volume_slope(o->pressures[m->pressure], dea_solid_displacement(solid), weight);
+    }
+    for (size_t i = 0; i < count; i++) {
+      weight[i] *= (double)dea_layout_sector_copies(&o->mesh->sector);
+    }
     break;
   }
   return true;

@@ -199,11 +199,23 @@ double dea_pressure_at_Pa(struct dea_pressure *pressure, const double *u)
   return pressure->pressure;
 }
 
+void dea_pressure_volume_slope(const struct dea_pressure *p, const double *u, double *slope)
+{
+  for (size_t k = 0; k < p->surface->face_count; k++) {
+    volume_of(p, k, u, NULL, NULL, slope);
+  }
+}
+
+void dea_pressure_hold(struct dea_pressure *pressure, const struct dea_pressure *other)
+{
+  pressure->lambda = other->lambda;
+}
+
 static double whole(const void *self, const double *u, double *slope)
 {
   const struct dea_pressure *p = self;
-  for (size_t k = 0; k < p->surface->face_count && slope != NULL; k++) {
-    volume_of(p, k, u, NULL, NULL, slope);
+  if (slope != NULL) {
+    dea_pressure_volume_slope(p, u, slope);
   }
   return p->stiffness;
 }

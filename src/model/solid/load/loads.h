@@ -83,6 +83,11 @@ void dea_pressure_enclose(struct dea_pressure *pressure, const struct dea_enclos
 /* V - V0 at displacements u, and the pressure there. */
 double dea_pressure_volume_m3(const struct dea_pressure *pressure, const double *u);
 double dea_pressure_at_Pa(struct dea_pressure *pressure, const double *u);
+/* Adds the slopes of that volume by u [node_count][3]. */
+void dea_pressure_volume_slope(const struct dea_pressure *pressure, const double *u, double *slope);
+/* Of the same face moved: a liquid has the pressure that the other one has come to. For slopes at
+ * one state. */
+void dea_pressure_hold(struct dea_pressure *pressure, const struct dea_pressure *other);
 /* Pressure that the next solve goes to, positive into the body. */
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);
 /* As it stands: the last goal, or how far a solve came. */
