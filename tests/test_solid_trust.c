@@ -69,6 +69,18 @@ static void test_films_without_electrodes(void **state)
   }
 }
 
+/* Far beyond that nothing looks for its wrinkles one after the other. */
+static void test_film_twisted_far(void **state)
+{
+  (void)state;
+  json_t *root = run("@/tests/cases/trust/twist.yaml", "--set 'bodies.hub.turn_z=5 degree'");
+  assert_true(is_slack(point(root, 0)));
+  assert_true(json_is_false(json_object_get(point(root, 0), "stable")));
+  assert_true(number(point(root, 0), "compression_ratio") > 10);
+  assert_non_null(strstr(command_err, "a film without tension that is twisted"));
+  json_decref(root);
+}
+
 /* Curvature of an active film 1 on a sheet 2, free to bend to both sides: mismatch of strains under
  * the Maxwell stress (Timoshenko 1925), with biaxial moduli E/(1 - nu). */
 static double bilayer_curvature_per_m(double E1, double nu1, double h1, double E2, double nu2,
@@ -228,6 +240,7 @@ int main(void)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_films_without_electrodes),
+      cmocka_unit_test(test_film_twisted_far),
       cmocka_unit_test(test_film_on_a_sheet),
       cmocka_unit_test(test_bender),
       cmocka_unit_test(test_fibres),

@@ -494,7 +494,7 @@ static dea_status explain_pressure(struct dea_context *ctx, struct dea_model *mo
                   way * pressure->pressure_Pa, pressure->pressure_Pa, low / half);
 }
 
-/* Whether a part is moved in its plane, and a ply has no tension to begin with. */
+/* Whether a part is moved in its plane, and a film has no tension to begin with. */
 static bool is_twisted_slack(const struct dea_layout *l)
 {
   bool moved = false, slack = false;
@@ -506,7 +506,8 @@ static bool is_twisted_slack(const struct dea_layout *l)
     moved = moved || l->supports[i].move_m[0] != 0 || l->supports[i].move_m[1] != 0;
   }
   for (size_t i = 0; i < l->ply_count; i++) {
-    slack = slack || l->plies[i].pre_stretch[0] <= 1 || l->plies[i].pre_stretch[1] <= 1;
+    const double *stretch = l->plies[i].pre_stretch;
+    slack = slack || (l->plies[i].material.law != NULL && fmin(stretch[0], stretch[1]) <= 1);
   }
   return moved && slack;
 }
@@ -540,9 +541,21 @@ static dea_status go_to_loads(struct dea_context *ctx, struct dea_model *model)
   set_pressures(model, 1);
   DEA_TRY(ctx, set_weight(ctx, model));
   DEA_TRY(ctx, load_bodies(ctx, model));
+  const bool twisted = is_twisted_slack(model->layout);
+  dea_solid_accept_unstable(model->solid, twisted); // of its many wrinkles none is followed
   const dea_status status = dea_load_steps_solve(ctx, model->solid, 0, &model->at.report);
   DEA_TRY(ctx, explain_loads(ctx, model, status));
-  return DEA_OK;
+  const int modes = model->at.report.unstable_modes;
+  dea_solid_accept_unstable(model->solid, twisted && modes > 0);
+  return !twisted || modes == 0
+             ? DEA_OK
+             : dea_finding_add(
+                   ctx, DEA_WARNING, (struct dea_location){0},
+                   "model 3d: a film without tension that is twisted or shifted in its plane "
+                   "wrinkles, here in %d mode%s of the mesh, and has no state of its own: the "
+                   "numbers are those of one that is kept from it. A pre_stretch above 1 keeps it "
+                   "taut, a smaller motion or a thicker ply flat",
+                   modes, modes == 1 ? "" : "s");
 }
 
 /* From the flat state, in which everything is held, to that of the loads at 0 V
