@@ -42,14 +42,17 @@ for name in ("two-electrodes", "diaphragm", "pure-shear"):
                 off = max(off, abs(value - other[key]) / max(largest[kind(key)], 1e-300))
     print(name, largest, "largest difference", off)
     bad += len(wanted) != len(found) or len(largest) < 2 or not off <= 1e-9
-sizes, moved = [], []
+sizes, points = [], []
 for name in ("arcs", "film"):
     made = subprocess.run([command, "run", f"{source}/tests/cases/drawings/bezier/{name}.yaml", "-o", f"{folder}/{name}"],
                           check=True, capture_output=True, text=True)
     sizes.append(int(re.search(r"(\d+) unknowns", made.stderr).group(1)))
-    moved.append(json.load(open(f"{folder}/{name}/summary.json"))["points"][-1])
-print("circles, and of cubics:", sizes, moved)
-# the meshes are not the same: a hundredth of what each says its mesh costs
-bad += sizes[1] > 1.1 * sizes[0] or not abs(moved[1]["edge_x_m"] - moved[0]["edge_x_m"]) <= 0.01 * moved[0]["edge_x_error_m"]
+    points.append(json.load(open(f"{folder}/{name}/summary.json"))["points"])
+print("circles, and of cubics:", sizes, points)
+area = [p[0]["capacitance_F"] for p in points]
+edge = [p[-1]["edge_x_m"] for p in points]
+# the same circle; and meshes that are not the same, so that each is off by its own error
+bad += sizes[1] > 1.1 * sizes[0] or not abs(area[1] / area[0] - 1) <= 1e-7
+bad += not abs(edge[1] - edge[0]) <= max(p[-1]["edge_x_error_m"] for p in points)
 sys.exit(bad > 0)
 PYTHON
