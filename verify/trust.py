@@ -1,6 +1,6 @@
 """Page docs/verification/trust.md: what the estimated errors of model 3d are worth, on designs of many
 kinds. Arguments: the command, the source tree; --small: two of them; --only "NAME;NAME": these; --keep FOLDER: runs
-that are there are not made again."""
+that are there are not made again; --jobs N: designs at once, of error_bars.py."""
 
 import csv
 import math
@@ -17,6 +17,7 @@ SMALL = "--small" in sys.argv
 ONLY = sys.argv[sys.argv.index("--only") + 1].split(";") if "--only" in sys.argv else None
 FOLDER = tempfile.TemporaryDirectory(prefix="dea-trust-")
 WORK = pathlib.Path(sys.argv[sys.argv.index("--keep") + 1] if "--keep" in sys.argv else FOLDER.name)
+JOBS = int(sys.argv[sys.argv.index("--jobs") + 1]) if "--jobs" in sys.argv else 1
 WITHIN = (0.5, 2)
 HEAD = """# Estimated errors of model 3d against finer meshes
 
@@ -182,10 +183,15 @@ def meshes_of(design, sets):
 
 
 def sweep(name, kV, design, sets, order, elements, through):
-    """Runs half the voltage and the voltage; returns the run's folder."""
+    """Runs half the voltage and the voltage of an example, or of a design's text; returns the run's folder."""
     folder = WORK / f"{'-'.join(re.findall('[a-z0-9.]+', name))}-{kV:g}kV-{order}-{elements}-{through}"
     if (folder / "summary.json").exists():
         return folder
+    path = ROOT / "examples" / f"{design}.yaml"
+    if "\n" in design:
+        WORK.mkdir(parents=True, exist_ok=True)
+        path = WORK / f"{folder.name}.yaml"
+        path.write_text(design, encoding="utf-8")
     keys = sets | {
         "compute.voltage": f"{{from: {kV / 2} kV, to: {kV} kV, step: {kV / 2} kV}}",
         "compute.solid.order": order,
@@ -193,7 +199,7 @@ def sweep(name, kV, design, sets, order, elements, through):
         "compute.solid.elements_z": through,
         "compute.solid.refinement": 1 + math.log2(elements),
     }
-    words = [DEA, "run", ROOT / "examples" / f"{design}.yaml", "--model", "3d", "--study", "sweep", "--no-figures"]
+    words = [DEA, "run", path, "--model", "3d", "--study", "sweep", "--no-figures"]
     words += ["--force", "--quiet", "-o", folder] + [w for k, v in keys.items() for w in ("--set", f"{k}={v}")]
     one = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(words, env=os.environ | one, capture_output=True, text=True, check=False)
@@ -290,9 +296,9 @@ def fine_limit(values):
     return limit, orders[0], off
 
 
-def design_rows(name, kV, design, sets):
+def design_rows(name, kV, design, sets, meshes=None):
     """Per quantity: [(kV, value, limit, order, how far that may be off, estimated)] and the flags at each voltage."""
-    meshes = meshes_of(design, sets)
+    meshes = meshes or meshes_of(design, sets)
     runs = [read(sweep(name, kV, design, sets, *mesh)) for mesh in meshes]
     out = {}
     for quantity, at in runs[0][0].items():
