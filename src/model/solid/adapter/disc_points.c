@@ -67,7 +67,7 @@ dea_status dea_disc_points_errors(struct dea_context *ctx, const struct dea_disc
   static const char *const keys[COUNT] = {"centre_z_m", "fibre_tip_z_m", "electrode_edge_u_m"};
   size_t dofs = solid->problem.dofs;
   double error_m[COUNT], *weights;
-  const double *each[COUNT];
+  struct dea_solid_quantity each[COUNT];
   if (!dea_load_point_trusted(out) || out->voltage_V == 0) {
     return DEA_OK;
   }
@@ -76,7 +76,7 @@ dea_status dea_disc_points_errors(struct dea_context *ctx, const struct dea_disc
     return DEA_E_MEMORY;
   }
   for (size_t k = 0; k < COUNT; k++) {
-    each[k] = weights + k * dofs;
+    each[k] = (struct dea_solid_quantity){.weight = weights + k * dofs};
     dea_disc_points_weigh(points, keys[k], weights + k * dofs);
   }
   dea_status status = dea_solid_errors(ctx, solid, each, COUNT, error_m, NULL);

@@ -2,7 +2,6 @@
 
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
-#include "model/solid/recovery/recover_error.h"
 
 #include <math.h>
 
@@ -94,12 +93,12 @@ static void find_mirror(const struct dea_solid_problem *p, size_t node, double n
 }
 
 dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
-                            const double *const *weight, size_t count, double *error_m,
+                            const struct dea_solid_quantity *of, size_t count, double *error_m,
                             double *part)
 {
   const struct dea_solid_problem *p = &s->problem;
   double *z = NULL, (*mirror)[3] = NULL;
-  const double *each[DEA_ERRORS_MAX];
+  struct dea_recover_quantity each[DEA_ERRORS_MAX];
   for (size_t k = 0; k < count; k++) {
     error_m[k] = NAN;
   }
@@ -114,8 +113,8 @@ dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *s,
     find_mirror(p, n, mirror[n]);
   }
   for (size_t k = 0; k < count && status == DEA_OK; k++) {
-    each[k] = z + k * p->dofs;
-    memcpy(z + k * p->dofs, weight[k], p->dofs * sizeof *z);
+    each[k] = (struct dea_recover_quantity){z + k * p->dofs, of[k].probes, of[k].probe_count};
+    memcpy(z + k * p->dofs, of[k].weight, p->dofs * sizeof *z);
     dea_solid_release_held(s, z + k * p->dofs);
     status = dea_solid_solve_linear(ctx, s, z + k * p->dofs, z + k * p->dofs);
   }

@@ -1915,8 +1915,9 @@ static dea_status find_error(struct dea_context *ctx, struct dea_model *model, s
     }
   }
   dea_observer_gradient(model->observer, model->solid, monitor, motion, weight);
-  const double *one[1] = {weight};
-  dea_status status = dea_solid_errors(ctx, model->solid, one, 1, error, part);
+  struct dea_solid_quantity one = {.weight = weight};
+  one.probe_count = dea_observer_probes(model->observer, model->solid, monitor, motion, one.probes);
+  dea_status status = dea_solid_errors(ctx, model->solid, &one, 1, error, part);
   return status == DEA_E_DOMAIN ? DEA_OK : status; // at the end of a law none is known
 }
 

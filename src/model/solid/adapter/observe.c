@@ -15,6 +15,8 @@ struct probe {
   int count;
   int node[2][PLANE_MAX]; // of the lowest and the highest element of the ply there
   double weight[PLANE_MAX];
+  size_t element; // one of the ply there, and where in it
+  double at[2];
   size_t copy; // of the sector, that the point lies in
 };
 
@@ -172,6 +174,8 @@ static bool find_in_sector(const struct dea_layout_mesh *mesh, size_t ply, const
       continue; // on the side of one that was found
     }
     out->count = (grid->order + 1) * (grid->order + 1);
+    out->element = e;
+    memcpy(out->at, at, sizeof out->at);
     basis(grid->order, at, out->weight, slope);
     for (int n = 0; n < out->count; n++) { // elements above each other have the same places
       out->node[0][n] = z[0] < low ? face[0][n] : out->node[0][n];
@@ -286,18 +290,24 @@ static void displacement_at(const struct dea_layout_mesh *mesh, const struct pro
   }
 }
 
-static void observe_line(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
-                         const struct probe probe[2], const double *u, double *out)
+static double length_of(const double v[3])
 {
-  double v[2][3], flat = 0, now = 0;
+  return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* From one end of a line to the other; returns its length in the flat state. */
+static double line_between(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
+                           const struct probe probe[2], const double *u, double now[3])
+{
+  double v[2][3], flat = 0;
   displacement_at(mesh, &probe[0], u, v[0]);
   displacement_at(mesh, &probe[1], u, v[1]);
   for (int i = 0; i < 3; i++) {
-    double d = i < 2 ? m->at_m[1][i] - m->at_m[0][i] : 0, e = d + v[1][i] - v[0][i];
+    const double d = i < 2 ? m->at_m[1][i] - m->at_m[0][i] : 0;
+    now[i] = d + v[1][i] - v[0][i];
     flat += d * d;
-    now += e * e;
   }
-  out[DEA_OBSERVED_STRETCH] = sqrt(now / flat);
+  return sqrt(flat);
 }
 
 /* Adds displacement v, lengths of the two tangents and area by their products C (11 22 12) times
@@ -449,14 +459,15 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
   }
   for (size_t i = 0; i < l->monitor_count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
-    double *values = o->monitor[i];
+    double *values = o->monitor[i], now[3];
     nothing_observed(values);
     switch (m->kind) {
     case DEA_MONITOR_POINT:
       displacement_at(o->mesh, &o->probes[i][0], u, values);
       break;
     case DEA_MONITOR_LINE:
-      observe_line(o->mesh, m, o->probes[i], u, values);
+      values[DEA_OBSERVED_STRETCH] = 1 / line_between(o->mesh, m, o->probes[i], u, now);
+      values[DEA_OBSERVED_STRETCH] *= length_of(now);
       break;
     case DEA_MONITOR_REGION:
       observe_region(o->mesh, m, u, values);
@@ -530,31 +541,62 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
 
 // Gradients --------------------------------------------------------------------------------------
 
-/* Of a point's displacement, or a line's stretch, by differences at the nodes of its elements. */
-static void gradient_of_probes(struct dea_observer *o, struct dea_solid *solid, size_t monitor,
-                               enum dea_observed motion, double *weight)
+/* How a point's displacement along an axis, or a line's stretch, changes with the displacements of
+ * the probes in the sector, along [probes][3]. Returns how many. */
+static size_t ways_of_probes(const struct dea_observer *o, const double *u, size_t monitor,
+                             enum dea_observed motion, double along[2][3])
 {
-  static const double little = 1e-5; // of the size of the mesh
   const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
-  double *u = dea_solid_displacement(solid), value[2][DEA_OBSERVED_COUNT];
-  double step = little * o->mesh->near_m / 1e-6;
-  int probes = m->kind == DEA_MONITOR_LINE ? 2 : 1;
-  for (int p = 0; p < probes; p++) {
-    const struct probe *probe = &o->probes[monitor][p];
-    for (int i = 0; i < 2 * 3 * probe->count; i++) {
-      double *at = &u[3 * probe->node[i % 2][i / 6] + i / 2 % 3], keep = *at;
-      for (int side = 0; side < 2; side++) {
-        *at = keep + (side == 0 ? -step : step);
-        if (m->kind == DEA_MONITOR_LINE) {
-          observe_line(o->mesh, m, o->probes[monitor], u, value[side]);
-        } else {
-          displacement_at(o->mesh, probe, u, value[side]);
-        }
-      }
-      *at = keep;
-      weight[at - u] = (value[1][motion] - value[0][motion]) / (2 * step);
+  const struct probe *probes = o->probes[monitor];
+  const size_t count = m->kind == DEA_MONITOR_LINE ? 2 : 1;
+  double now[3], flat = 0, size = 0;
+  if (count == 2) {
+    flat = line_between(o->mesh, m, probes, u, now);
+    size = length_of(now);
+  }
+  for (size_t p = 0; p < count; p++) {
+    for (int i = 0; i < 3; i++) {
+      along[p][i] = count == 1 ? i == (int)(motion - DEA_OBSERVED_X)
+                               : (p == 0 ? -1 : 1) * now[i] / (size * flat);
+    }
+    if (probes[p].copy > 0) {
+      const struct dea_motion back = back_to_sector(o->mesh, probes[p].copy);
+      dea_layout_sector_turn(&back, along[p], along[p]);
     }
   }
+  return count;
+}
+
+static void gradient_of_probes(const struct dea_observer *o, const double *u, size_t monitor,
+                               enum dea_observed motion, double *weight)
+{
+  double along[2][3];
+  const size_t count = ways_of_probes(o, u, monitor, motion, along);
+  for (size_t p = 0; p < count; p++) {
+    const struct probe *probe = &o->probes[monitor][p];
+    for (int i = 0; i < 2 * 3 * probe->count; i++) {
+      weight[3 * probe->node[i % 2][i / 6] + i / 2 % 3] +=
+          0.5 * probe->weight[i / 6] * along[p][i / 2 % 3];
+    }
+  }
+}
+
+size_t dea_observer_probes(const struct dea_observer *o, struct dea_solid *solid, size_t monitor,
+                           enum dea_observed motion, struct dea_recover_probe out[2])
+{
+  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
+  double along[2][3];
+  if (m->kind != DEA_MONITOR_POINT && m->kind != DEA_MONITOR_LINE) {
+    return 0;
+  }
+  const size_t count = ways_of_probes(o, dea_solid_displacement(solid), monitor, motion, along);
+  for (size_t p = 0; p < count; p++) {
+    const struct probe *probe = &o->probes[monitor][p];
+    out[p] = (struct dea_recover_probe){.element = probe->element,
+                                        .at = {probe->at[0], probe->at[1]},
+                                        .along = {along[p][0], along[p][1], along[p][2]}};
+  }
+  return count;
 }
 
 /* The nodal basis and its gradients at a point of an element in the plane, its area by local
@@ -734,7 +776,7 @@ bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size
   switch (m->kind) {
   case DEA_MONITOR_POINT:
   case DEA_MONITOR_LINE:
-    gradient_of_probes(o, solid, monitor, motion, weight);
+    gradient_of_probes(o, dea_solid_displacement(solid), monitor, motion, weight);
     break;
   case DEA_MONITOR_REGION: {
     double area = gradient_of_region(o->mesh, m, motion, dea_solid_displacement(solid), weight);

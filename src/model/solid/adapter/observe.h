@@ -5,6 +5,7 @@
 #include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/load/loads.h"
+#include "model/solid/recovery/recover_error.h"
 #include "result/observation.h"
 
 struct dea_observer; // where each monitor is on the mesh, and its last values
@@ -31,6 +32,11 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
  * [3 node_count]. false: that is not known of this motion (forces). */
 bool dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, double *weight);
+
+/* Where a motion of a point or a line is read, 0 to 2 of them; 0 of other monitors. */
+size_t dea_observer_probes(const struct dea_observer *observer, struct dea_solid *solid,
+                           size_t monitor, enum dea_observed motion,
+                           struct dea_recover_probe out[2]);
 
 /* The motion that a force or moment of a body's monitor does work along, way [3 node_count], 0
  * before: it is way . R, with the forces R on what is held. false: not one of these, or not known

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Numbers of a point: P, the gradient of each z, the pressure of each z. */
-enum { TENSOR = 9, WIDTH_MAX = TENSOR + (TENSOR + 1) * DEA_ERRORS_MAX };
+/* Numbers of a point: P, F, the gradient of each z, the pressure of each z. */
+enum { TENSOR = 9, WIDTH_MAX = 2 * TENSOR + (TENSOR + 1) * DEA_ERRORS_MAX };
 enum { SECOND = 2 * DEA_RECOVER_LEVELS, CORNERS = 4 };
 
 /* Of an error how many times what recovery sees of it, 1 / (1 - (2/3)^2p): recovery sees elements
@@ -28,13 +28,13 @@ struct work {
   int *group; // [elements] of a ply and a region
   int *point; // [groups][node_count], counted from 1; 0: none
   size_t point_count;
-  double *own;             // [elements][nodes][width] at the Gauss points
-  double *excess, *share;  // [elements][nodes] J - 1, volume of a Gauss point
-  double *value;           // [elements][nodes][width] at the nodes
-  double *mean;            // [points][width] sums, then means
-  double *second;          // [elements] as dea_recover_second
-  double *weight, *volume; // [points], [elements]
-  double *around;          // [count][columns of nodes] what elements add around each
+  double *own;            // [elements][nodes][width] at the Gauss points
+  double *excess, *share; // [elements][nodes] J - 1, volume of a Gauss point
+  double *value;          // [elements][nodes][width] at the nodes
+  double *mean;           // [points][width] sums, then means
+  double *second;         // [elements] as dea_recover_second
+  int *around_point;      // [points] elements
+  double *around;         // [count][columns of nodes] what elements add around each
   struct dea_gauss_fit to_nodes[2], back[2];  // of solid elements, of flat ones
   double hat[DEA_ELEMENT_LEVEL_MAX][CORNERS]; // of the corners at the Gauss points of a level
 };
@@ -67,7 +67,7 @@ static dea_status prepare(struct work *w)
   }
   size_t most = elements * w->nodes;
   w->group_count = plies * regions;
-  w->width = TENSOR + (TENSOR + 1) * w->count;
+  w->width = 2 * TENSOR + (TENSOR + 1) * w->count;
   w->moved = dea_arena_alloc(&w->memory, 3 * grid->node_count, sizeof *w->moved);
   w->group = dea_arena_alloc(&w->memory, elements, sizeof *w->group);
   w->point = dea_arena_alloc(&w->memory, w->group_count * grid->node_count, sizeof *w->point);
@@ -77,8 +77,7 @@ static dea_status prepare(struct work *w)
   w->value = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->value);
   w->mean = dea_arena_alloc(&w->memory, most * w->width, sizeof *w->mean);
   w->second = dea_arena_alloc(&w->memory, elements * SECOND * w->width, sizeof *w->second);
-  w->weight = dea_arena_alloc(&w->memory, most, sizeof *w->weight);
-  w->volume = dea_arena_alloc(&w->memory, elements, sizeof *w->volume);
+  w->around_point = dea_arena_alloc(&w->memory, most, sizeof *w->around_point);
   w->around = dea_arena_alloc(&w->memory, w->count * dea_grid_columns(grid), sizeof *w->around);
   for (size_t e = 0; e < elements && w->group != NULL; e++) {
     w->group[e] = (int)((size_t)grid->region[e] * plies + (size_t)grid->ply[e]);
@@ -106,12 +105,12 @@ static double *own_at(const struct work *w, size_t e, int q, size_t at)
 
 static size_t gradient_of(size_t k)
 {
-  return TENSOR * (1 + k);
+  return TENSOR * (2 + k);
 }
 
 static size_t pressure_of(const struct work *w, size_t k)
 {
-  return TENSOR * (1 + w->count) + k;
+  return TENSOR * (2 + w->count) + k;
 }
 
 /* Values of one element at u, and in `own` those that the moved one is compared with. */
@@ -120,9 +119,9 @@ static dea_status take_state(struct work *w, size_t e, struct dea_element_state 
   dea_status status = dea_recover_state(w->in, e, true, at);
   for (int q = 0; status == DEA_OK && q < dea_grid_nodes_of(w->in->grid, e); q++) {
     memcpy(own_at(w, e, q, 0), at->P[q], sizeof at->P[q]);
+    memcpy(own_at(w, e, q, TENSOR), at->F[q], sizeof at->F[q]);
     w->excess[e * w->nodes + (size_t)q] = at->J[q] - 1;
     w->share[e * w->nodes + (size_t)q] = at->volume_m3[q];
-    w->volume[e] += at->volume_m3[q];
     for (size_t k = 0; k < w->count; k++) {
       memcpy(own_at(w, e, q, gradient_of(k)), at->F[q], sizeof at->F[q]);
       *own_at(w, e, q, pressure_of(w, k)) = at->pressure[q];
@@ -163,7 +162,8 @@ static double move(struct work *w, const double *z)
 }
 
 /* All elements, at u and moved by each z. */
-static dea_status take_all(struct work *w, const double *const *z, struct dea_element_state *at)
+static dea_status take_all(struct work *w, const struct dea_recover_quantity *of,
+                           struct dea_element_state *at)
 {
   const size_t elements = w->in->grid->element_count;
   struct dea_recover_input in = *w->in;
@@ -174,7 +174,7 @@ static dea_status take_all(struct work *w, const double *const *z, struct dea_el
   }
   in.u = w->moved;
   for (size_t k = 0; status == DEA_OK && k < w->count; k++) {
-    const double step = move(w, z[k]);
+    const double step = move(w, of[k].z);
     for (e = 0; status == DEA_OK && e < elements; e++) {
       status = take_dual(w, &in, e, k, step, at);
     }
@@ -189,12 +189,22 @@ static bool is_flat(const struct work *w, size_t e)
   return w->in->grid->levels[e] == 1;
 }
 
+static double unseen(const struct work *w, size_t e)
+{
+  return is_flat(w, e) ? unseen_of_membranes : unseen_of_solids;
+}
+
 static void fit_all(struct work *w)
 {
   for (size_t e = 0; e < w->in->grid->element_count; e++) {
     dea_fit_nodes(&w->to_nodes[is_flat(w, e)], (int)w->width, own_at(w, e, 0, 0),
                   w->value + e * w->nodes * w->width);
   }
+}
+
+static const double *second_at(const struct work *w, size_t e, size_t axis, size_t level)
+{
+  return w->second + (e * SECOND + axis * DEA_RECOVER_LEVELS + level) * w->width;
 }
 
 /* P_2 at the nodes of a line of order 2. */
@@ -209,14 +219,14 @@ static void add_second(const struct work *w, size_t e, int n, double *value)
   size_t level = (size_t)n / 9;
   const double share[2] = {bent[n % 3], bent[n / 3 % 3]};
   for (size_t axis = 0; axis < 2; axis++) {
-    const double *c = w->second + (e * SECOND + axis * DEA_RECOVER_LEVELS + level) * w->width;
+    const double *c = second_at(w, e, axis, level);
     for (size_t i = 0; i < w->width; i++) {
       value[i] += share[axis] * c[i];
     }
   }
 }
 
-/* Means at the points, by volume. */
+/* Means at the points: a wide element knows no more of a place than a narrow one. */
 static void take_means(struct work *w)
 {
   const struct dea_grid *grid = w->in->grid;
@@ -227,14 +237,14 @@ static void take_means(struct work *w)
       size_t p = (size_t)*point - 1;
       double *value = w->value + (e * w->nodes + (size_t)n) * w->width;
       add_second(w, e, n, value);
-      w->weight[p] += w->volume[e];
+      w->around_point[p]++;
       for (size_t i = 0; i < w->width; i++) {
-        w->mean[p * w->width + i] += w->volume[e] * value[i];
+        w->mean[p * w->width + i] += value[i];
       }
     }
   }
   for (size_t i = 0; i < w->point_count * w->width; i++) {
-    w->mean[i] /= w->weight[i / w->width];
+    w->mean[i] /= w->around_point[i / w->width];
   }
 }
 
@@ -270,9 +280,9 @@ static double add_element(const struct work *w, size_t e, size_t k, const double
   int level = (grid->order + 1) * (grid->order + 1), line = grid->order + 1;
   const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX;
   const int corner[CORNERS] = {nodes[0], nodes[line - 1], nodes[level - line], nodes[level - 1]};
-  double unseen = is_flat(w, e) ? unseen_of_membranes : unseen_of_solids, sum = 0;
+  double sum = 0;
   for (int q = 0; q < dea_grid_nodes_of(grid, e); q++) {
-    double one = unseen * w->share[e * w->nodes + (size_t)q] * work_at(w, e, q, k, recovered);
+    double one = unseen(w, e) * w->share[e * w->nodes + (size_t)q] * work_at(w, e, q, k, recovered);
     for (int c = 0; c < CORNERS; c++) {
       around[grid->column[corner[c]]] += w->hat[q % level][c] * one;
     }
@@ -292,8 +302,41 @@ static double larger_side(const double *around, size_t columns)
   return fmax(raised, lowered);
 }
 
+/* How far the displacement along a probe is off inside of an element that all nodes have exactly:
+ * c P_2 of its slope along an axis, integrated from a node on. */
+static double between_at(const struct work *w, const struct dea_recover_probe *probe)
+{
+  const struct dea_grid *grid = w->in->grid;
+  const size_t e = probe->element;
+  const int *nodes = grid->nodes + e * DEA_HEX_NODES_MAX, levels = grid->levels[e];
+  double sum = 0;
+  for (size_t axis = 0; axis < 2 && grid->order == 2; axis++) {
+    const double *from = grid->X + 3 * (size_t)nodes[axis == 0 ? 3 : 1], x = probe->at[axis],
+                 *to = grid->X + 3 * (size_t)nodes[axis == 0 ? 5 : 7];
+    for (size_t level = 0; level < (size_t)levels; level++) {
+      const double *c = second_at(w, e, axis, level) + TENSOR;
+      for (int i = 0; i < TENSOR; i++) {
+        sum +=
+            probe->along[i / 3] * c[i] * (to[i % 3] - from[i % 3]) * (x * x - 1) * x / (4 * levels);
+      }
+    }
+  }
+  return sum;
+}
+
+/* Of a quantity that is read inside of elements, with what is not seen. */
+static double between_nodes(const struct work *w, const struct dea_recover_quantity *of)
+{
+  double sum = 0;
+  for (size_t p = 0; p < of->probe_count; p++) {
+    sum += unseen(w, of->probes[p].element) * between_at(w, &of->probes[p]);
+  }
+  return fabs(sum);
+}
+
 /* What the elements add around the corners of the plane mesh. */
-static void estimate(struct work *w, double *error, double *part)
+static void estimate(struct work *w, const struct dea_recover_quantity *of, double *error,
+                     double *part)
 {
   const size_t elements = w->in->grid->element_count, columns = dea_grid_columns(w->in->grid);
   double recovered[DEA_HEX_NODES_MAX * WIDTH_MAX];
@@ -307,15 +350,15 @@ static void estimate(struct work *w, double *error, double *part)
     }
   }
   for (size_t k = 0; k < w->count; k++) {
-    error[k] = larger_side(w->around + k * columns, columns);
+    error[k] = larger_side(w->around + k * columns, columns) + between_nodes(w, &of[k]);
   }
 }
 
 /* Values of all elements at u and moved by each z, and what follows from them. */
-static dea_status gather(struct work *w, const double *const *z, const double (*mirror)[3],
-                         struct dea_element_state *at)
+static dea_status gather(struct work *w, const struct dea_recover_quantity *of,
+                         const double (*mirror)[3], struct dea_element_state *at)
 {
-  dea_status status = take_all(w, z, at);
+  dea_status status = take_all(w, of, at);
   if (status == DEA_OK) {
     fit_all(w);
   }
@@ -323,7 +366,7 @@ static dea_status gather(struct work *w, const double *const *z, const double (*
     const struct dea_recover_second second = {.grid = w->in->grid,
                                               .group = w->group,
                                               .mirror = mirror,
-                                              .tensors = 1 + w->count,
+                                              .tensors = 2 + w->count,
                                               .scalars = w->count,
                                               .nodes = w->nodes,
                                               .value = w->value};
@@ -336,17 +379,17 @@ static dea_status gather(struct work *w, const double *const *z, const double (*
 }
 
 dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_input *in,
-                              const double (*mirror)[3], const double *const *z, size_t count,
-                              double *error, double *part)
+                              const double (*mirror)[3], const struct dea_recover_quantity *of,
+                              size_t count, double *error, double *part)
 {
   struct work w = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .count = count};
   struct dea_element_state *at = dea_alloc(ctx, 1, sizeof *at);
   dea_status status = at != NULL ? prepare(&w) : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    status = gather(&w, z, mirror, at);
+    status = gather(&w, of, mirror, at);
   }
   if (status == DEA_OK) {
-    estimate(&w, error, part);
+    estimate(&w, of, error, part);
   }
   dea_free(ctx, at);
   dea_arena_free(&w.memory);

@@ -6,13 +6,25 @@
 
 enum { DEA_ERRORS_MAX = 4 };
 
+/* A place in the plane of an element, by its local coordinates, whose displacement is read there
+ * along a direction. */
+struct dea_recover_probe {
+  size_t element;
+  double at[2], along[3];
+};
+
+/* A quantity that is linear in u. */
+struct dea_recover_quantity {
+  const double *z; // the answer to the load that has its weights [3 node_count]
+  const struct dea_recover_probe *probes; // where it is read inside of elements
+  size_t probe_count;
+};
+
 /* error[count]: estimated errors, not negative, of which part [count][element_count] (may be NULL)
- * has what each element adds with its sign, of quantities that are linear in u, whose dual
- * displacements z [count][3 node_count] are the answers to the load that has their weights. count
- * <= DEA_ERRORS_MAX. mirror: as struct dea_recover_second has it. DEA_E_DOMAIN as
- * dea_recover_volume. */
+ * has what each element adds with its sign. count <= DEA_ERRORS_MAX. mirror: as struct
+ * dea_recover_second has it. DEA_E_DOMAIN as dea_recover_volume. */
 dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_input *in,
-                              const double (*mirror)[3], const double *const *z, size_t count,
-                              double *error, double *part);
+                              const double (*mirror)[3], const struct dea_recover_quantity *of,
+                              size_t count, double *error, double *part);
 
 #endif

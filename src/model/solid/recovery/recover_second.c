@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { AXES = 2, SIDES = 4, LINE = 3, TENSOR = 9 }; // side 2 axis: the low end, 2 axis + 1: high
 
@@ -169,14 +170,17 @@ static bool add_side(const struct work *w, size_t e, int axis, int end, int leve
   return n != NULL;
 }
 
-/* Means over the sides that tell. */
-static void combine(const struct work *w, size_t e, int axis, double *c)
+/* The smaller of what both sides tell, nothing where their signs differ: beside a layer of narrow
+ * elements only the other side knows how a wide one goes on. One side where only that one tells. */
+static void combine(const struct work *w, size_t e, int axis, double *other, double *c)
 {
   for (int level = 0; level < w->in->grid->levels[e]; level++) {
     double *at = c + ((e * AXES + (size_t)axis) * DEA_RECOVER_LEVELS + (size_t)level) * w->size;
-    bool low = add_side(w, e, axis, 0, level, at), high = add_side(w, e, axis, LINE - 1, level, at);
+    memset(other, 0, w->size * sizeof *other);
+    bool low = add_side(w, e, axis, 0, level, at);
+    bool high = add_side(w, e, axis, LINE - 1, level, low ? other : at);
     for (size_t i = 0; low && high && i < w->size; i++) {
-      at[i] /= 2;
+      at[i] = at[i] * other[i] <= 0 ? 0 : fabs(at[i]) < fabs(other[i]) ? at[i] : other[i];
     }
   }
 }
@@ -190,6 +194,7 @@ dea_status dea_recover_second(struct dea_context *ctx, const struct dea_recover_
   w.slope = dea_arena_alloc(&w.memory, count * AXES * DEA_RECOVER_LEVELS * w.size, sizeof *w.slope);
   w.length = dea_arena_alloc(&w.memory, count, sizeof *w.length);
   w.neighbour = dea_arena_alloc(&w.memory, SIDES * count, sizeof *w.neighbour);
+  double *other = dea_arena_alloc(&w.memory, w.size, sizeof *other);
   struct side *sides = dea_arena_alloc(&w.memory, SIDES * count, sizeof *sides);
   if (!w.memory.failed) {
     pair(&w, sides);
@@ -197,7 +202,7 @@ dea_status dea_recover_second(struct dea_context *ctx, const struct dea_recover_
       measure(&w, k / AXES, (int)(k % AXES));
     }
     for (size_t k = 0; k < AXES * count; k++) {
-      combine(&w, k / AXES, (int)(k % AXES), c);
+      combine(&w, k / AXES, (int)(k % AXES), other, c);
     }
   }
   dea_status status = dea_arena_status(&w.memory);
