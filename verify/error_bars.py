@@ -179,7 +179,7 @@ half the voltage and at the voltage that is written, with the default mesh, whos
 
 * **Limit** and **+-**, how far that may be off: as in [trust.md](trust.md), of discs from elements of order 2, of order 3, and of half
   the size in all directions; of plies from elements of half and a third of the size in all directions. Where +- is above a third of
-  what is found, the found error is no more than a bound of found and +- together, and the effectivity has a `~`.
+  what is found, that is known to be at most the sum of both, and the effectivity has a `~`.
 * **Inside**: the limit is no farther from the value of the default mesh than the error that is stated.
 * **Effectivity**: stated over found. Numbers whose error is both stated and found to be below {negligible:g} % of the motion
   count as inside or not, and not for the effectivity (in brackets).
@@ -216,13 +216,13 @@ def main():
     for quantity in SHORT.values():
         groups[quantity + " of discs"] = [r for r in rows if r[0] not in plies and r[2] == quantity]
     groups["all"] = rows
-    shares = []
+    shares = {}
     for name, some in groups.items():
         if some:
-            shares.append(summary(name, some))
+            shares[name] = summary(name, some)
             summary(name + ", found error known to a third", [r for r in some if is_known(r)])
     print_rows(rows)
-    if min(shares) < 0.9:
+    if min(shares.get(name, 1) for name in ("plies", "all")) < 0.95:
         sys.exit("too many numbers are outside of their stated error")
 
 
