@@ -149,12 +149,12 @@ static void test_film_on_a_sheet(void **state)
 static void test_wide_film_on_a_sheet(void **state)
 {
   (void)state;
-  json_t *root =
-      run("@/tests/cases/trust/unimorph-pet.yaml",
-          "--set 'shapes.strip.x=40 mm' --set 'shapes.strip.width=80 mm' "
-          "--set 'shapes.strip.height=24 mm' --set 'shapes.root.height=28 mm' "
-          "--set 'monitors.a.at=[58 mm, 0 mm]' --set 'monitors.b.at=[61 mm, 0 mm]' "
-          "--set 'monitors.c.at=[64 mm, 0 mm]' --set 'compute.voltage={values: [0.1 kV]}'");
+  json_t *root = run("@/tests/cases/trust/unimorph-pet.yaml",
+                     "--set 'shapes.strip.x=40 mm' --set 'shapes.strip.width=80 mm' "
+                     "--set 'shapes.strip.height=24 mm' --set 'shapes.root.height=28 mm' "
+                     "--set 'monitors.a.at=[58 mm, 0 mm]' --set 'monitors.b.at=[61 mm, 0 mm]' "
+                     "--set 'monitors.c.at=[64 mm, 0 mm]' --set 'compute.voltage={values: [0.1 "
+                     "kV]}' --set compute.solid.refinement=2");
   assert_close(curvature_share(point(root, 0), 100), 1, 0, 1e-3);
   json_decref(root);
 }
