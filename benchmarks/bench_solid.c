@@ -8,7 +8,7 @@
 enum { REPEATS = 500 };
 
 static struct dea_hex_shape shape;
-static struct dea_constituent layer;
+static struct dea_part_material layer;
 static double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], pressures[DEA_HEX_PRESSURES_MAX];
 static struct dea_element_result result;
 
@@ -17,7 +17,7 @@ static void evaluate(void *user)
   enum dea_eval_order level = *(enum dea_eval_order *)user;
   const struct dea_element element = {.basis = &shape};
   const struct dea_element_input in = {
-      .constituent = &layer, .X = X, .u = u, .multiplier = pressures, .voltage_V = 4e3};
+      .part_material = &layer, .X = X, .u = u, .multiplier = pressures, .voltage_V = 4e3};
   for (int i = 0; i < REPEATS; i++) {
     if (dea_hex_evaluate(&element, &in, level, &result) != DEA_OK) {
       abort();
@@ -27,13 +27,13 @@ static void evaluate(void *user)
 
 int main(void)
 {
-  layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
-                                   .param = {178.4e3, -6e3, 4.2e3},
-                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                   .kappa_Pa = 4e7,
-                                   .permittivity_F_per_m = 2.5e-11,
-                                   .thickness_m = 44e-6};
-  if (dea_hex_shape_create(2, 2, &shape) != DEA_OK || dea_constituent_relax(&layer) != DEA_OK) {
+  layer = (struct dea_part_material){.law = dea_law_find("yeoh"),
+                                     .param = {178.4e3, -6e3, 4.2e3},
+                                     .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                     .kappa_Pa = 4e7,
+                                     .permittivity_F_per_m = 2.5e-11,
+                                     .thickness_m = 44e-6};
+  if (dea_hex_shape_create(2, 2, &shape) != DEA_OK || dea_part_material_relax(&layer) != DEA_OK) {
     return 1;
   }
   for (int n = 0; n < shape.nodes; n++) {

@@ -74,17 +74,17 @@ static int run_one(double unknowns)
   enum { CUTS_MAX = 400 };
   static double cuts[CUTS_MAX + 1];
   size_t count = (size_t)lround(0.5 * (sqrt(unknowns / 15) - 1)); // (2 count + 1)^2 columns of five
-  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = {178.4e3, -6e3, 4.2e3},
-                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                  .kappa_Pa = 4e7,
-                                  .permittivity_F_per_m = 2.5e-11,
-                                  .thickness_m = thickness_m};
+  struct dea_part_material layer = {.law = dea_law_find("yeoh"),
+                                    .param = {178.4e3, -6e3, 4.2e3},
+                                    .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                    .kappa_Pa = 4e7,
+                                    .permittivity_F_per_m = 2.5e-11,
+                                    .thickness_m = thickness_m};
   const struct dea_block block = {map_square, NULL, cuts, cuts, count, count, 0};
   const struct dea_ply plies[] = {{thickness_m, 1, 2}, {thickness_m, 1, 2}};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = under_voltage,
                                             .held = edges};
   struct dea_context *ctx = NULL;
@@ -100,7 +100,7 @@ static int run_one(double unknowns)
   for (int i = 0; i < FIGURES; i++) {
     sample.of[i] = INFINITY;
   }
-  bench_need(dea_constituent_relax(&layer), ctx);
+  bench_need(dea_part_material_relax(&layer), ctx);
   bench_need(dea_solid_start(ctx), ctx);
   double start = bench_now_s();
   bench_need(dea_grid_create(ctx, 2, &block, 1, plies, 2, NULL, 0, side_m, &grid), ctx);

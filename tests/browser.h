@@ -20,7 +20,7 @@ struct browser {
   pid_t pid;
   int to, from;
   char *buffer; // what has come and is not read yet
-  size_t length, room;
+  size_t length, capacity;
   int last_id;
   char session[128];
   char trouble[BROWSER_TROUBLE_SIZE]; // errors, messages and requests of pages so far
@@ -70,12 +70,12 @@ static inline json_t *browser_read(struct browser *b)
     if (poll(&ready, 1, BROWSER_WAIT_MS) <= 0) {
       fail_msg("the browser says nothing");
     }
-    if (b->room - b->length < 65536) {
-      b->room = 2 * b->room + 131072;
-      b->buffer = realloc(b->buffer, b->room);
+    if (b->capacity - b->length < 65536) {
+      b->capacity = 2 * b->capacity + 131072;
+      b->buffer = realloc(b->buffer, b->capacity);
       assert_non_null(b->buffer);
     }
-    ssize_t got = read(b->from, b->buffer + b->length, b->room - b->length);
+    ssize_t got = read(b->from, b->buffer + b->length, b->capacity - b->length);
     if (got <= 0) {
       fail_msg("the browser has ended");
     }

@@ -28,13 +28,13 @@ static void add_moments(int nodes, const double *X, const double *mass, double s
 }
 
 /* Those of all elements of a grid. */
-static void grid_moments(const struct dea_grid *grid, const struct dea_constituent *layers,
+static void grid_moments(const struct dea_grid *grid, const struct dea_part_material *layers,
                          int (*layer_of)(const void *self, int region, int ply), const void *self,
                          double sum[MOMENTS])
 {
   for (size_t e = 0; e < grid->element_count; e++) {
     double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-    const struct dea_constituent *layer = &layers[layer_of(self, grid->region[e], grid->ply[e])];
+    const struct dea_part_material *layer = &layers[layer_of(self, grid->region[e], grid->ply[e])];
     int nodes = dea_grid_nodes_of(grid, e);
     for (int n = 0; n < nodes; n++) {
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],

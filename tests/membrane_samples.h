@@ -8,17 +8,17 @@
 static const double yeoh[DEA_LAW_PARAM_MAX] = {178.4e3, -6e3, 4.2e3};
 static const double permittivity = 2.8 * DEA_EPSILON_0;
 
-static inline struct dea_constituent film(const struct dea_law *law, const double *param, double g1,
-                                          double g2)
+static inline struct dea_part_material film(const struct dea_law *law, const double *param,
+                                            double g1, double g2)
 {
-  struct dea_constituent out = {.pre_stretch = {g1, g2, 1 / (g1 * g2)},
-                                .permittivity_F_per_m = permittivity,
-                                .thickness_m = 100e-6 / (g1 * g2)};
-  dea_constituent_set_law(&out, law, param);
+  struct dea_part_material out = {.pre_stretch = {g1, g2, 1 / (g1 * g2)},
+                                  .permittivity_F_per_m = permittivity,
+                                  .thickness_m = 100e-6 / (g1 * g2)};
+  dea_part_material_set_law(&out, law, param);
   return out;
 }
 
-static inline struct dea_constituent yeoh_film(double pre_stretch)
+static inline struct dea_part_material yeoh_film(double pre_stretch)
 {
   return film(dea_law_find("yeoh"), yeoh, pre_stretch, pre_stretch);
 }

@@ -25,11 +25,11 @@ static inline void octave(const char *commands)
 }
 
 /* Numbers that Octave wrote raw; returns how many. */
-static inline size_t read_raw(const char *name, double *values, size_t room)
+static inline size_t read_raw(const char *name, double *values, size_t capacity)
 {
   FILE *file = fopen(in_folder(name), "rb");
   assert_non_null(file);
-  size_t n = fread(values, sizeof *values, room, file);
+  size_t n = fread(values, sizeof *values, capacity, file);
   fclose(file);
   return n;
 }

@@ -39,11 +39,11 @@ static inline struct dea_grid *block_grid(struct dea_context *ctx, const struct 
 }
 
 static inline struct dea_solid *block_solid(struct dea_context *ctx, const struct dea_grid *grid,
-                                            int order_z, const struct dea_constituent *layer,
+                                            int order_z, const struct dea_part_material *layer,
                                             int (*held)(const void *self, const double X[3]))
 {
   const struct dea_solid_options options = {
-      .order_z = order_z, .constituent_count = 1, .constituents = layer, .held = held};
+      .order_z = order_z, .part_material_count = 1, .part_materials = layer, .held = held};
   struct dea_solid *solid;
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   return solid;

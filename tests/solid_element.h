@@ -31,25 +31,29 @@ static inline struct dea_element membrane(const struct dea_flat_shape *shape)
 }
 
 static inline dea_status evaluate_hex(const struct dea_hex_shape *shape,
-                                      const struct dea_constituent *constituent, const double *X,
-                                      const double *u, const double *multiplier, double voltage_V,
-                                      enum dea_eval_order order, struct dea_element_result *out)
+                                      const struct dea_part_material *part_material,
+                                      const double *X, const double *u, const double *multiplier,
+                                      double voltage_V, enum dea_eval_order order,
+                                      struct dea_element_result *out)
 {
   const struct dea_element element = hexahedron(shape);
-  const struct dea_element_input in = {
-      .constituent = constituent, .X = X, .u = u, .multiplier = multiplier, .voltage_V = voltage_V};
+  const struct dea_element_input in = {.part_material = part_material,
+                                       .X = X,
+                                       .u = u,
+                                       .multiplier = multiplier,
+                                       .voltage_V = voltage_V};
   return element.type->evaluate(&element, &in, order, out);
 }
 
 static inline dea_status evaluate_membrane(const struct dea_flat_shape *shape,
-                                           const struct dea_constituent *constituent,
+                                           const struct dea_part_material *part_material,
                                            const double *X, const double *u, double voltage_V,
                                            enum dea_eval_order order,
                                            struct dea_element_result *out)
 {
   const struct dea_element element = membrane(shape);
   const struct dea_element_input in = {
-      .constituent = constituent, .X = X, .u = u, .voltage_V = voltage_V};
+      .part_material = part_material, .X = X, .u = u, .voltage_V = voltage_V};
   return element.type->evaluate(&element, &in, order, out);
 }
 

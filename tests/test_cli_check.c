@@ -82,7 +82,7 @@ static void test_every_bad_file_has_its_exit_code(void **state)
        "turned.yaml:2:18: error: model 3d does not know films with a direc"},
       {"run turned.yaml -m axisymmetric --json", 3, "turned.yaml:2:18: error: model axisymmetric"},
       {"check tab.yaml", 3, "tab.yaml:3:1: error: a tab stands here; YAML indents with spaces"},
-      {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml is there already"},
+      {"run @/examples/frdea-4.yaml -o .", 5, "./design.yaml already exists"},
       {"materials nothing", 3, "there is no material 'nothing'"},
       {"schema --json --markdown", 2, "exclude each other"},
       {"optimize x", 2, "'optimize' is not a command; did you mean 'optimise'?"},
@@ -140,11 +140,11 @@ static void test_studies_of_no_model(void **state)
   memcpy(models, "models: [lumped]\n  modal: {}  ", 30);
   command_write("modal.yaml", text);
   char wanted[200];
-  snprintf(
-      wanted, sizeof wanted,
-      "modal.yaml:%zu:3: warning: no study 'modal' of model lumped, which knows no vibrations; "
-      "there is one of 3d (compute.models)\n",
-      line);
+  snprintf(wanted, sizeof wanted,
+           "modal.yaml:%zu:3: warning: no study 'modal' of model lumped, which does not compute "
+           "vibrations; "
+           "there is one of 3d (compute.models)\n",
+           line);
   command_expect("check modal.yaml", 0, wanted);
   assert_null(strstr(command_err, "'transient'"));
   assert_null(strstr(command_err, "'path'"));

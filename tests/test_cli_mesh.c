@@ -243,7 +243,7 @@ static void test_what_goes_wrong(void **state)
   assert_int_equal(command_run("mesh a b"), 2);
   command_write("mine.msh", "my own\n");
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o mine.msh"), 5);
-  assert_non_null(strstr(command_err, "'mine.msh' is there already"));
+  assert_non_null(strstr(command_err, "'mine.msh' already exists"));
   command_read("mine.msh", command_out);
   assert_string_equal(command_out, "my own\n");
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o mine.msh --force"), 0);

@@ -123,7 +123,7 @@ static void test_run_folder(void **state)
     snprintf(path, sizeof path, "%s/frdea-4.run/%s", command_folder, files[i]);
     assert_int_equal(access(path, R_OK), 0);
   }
-  assert_contains(command_err, "model axisymmetric: to be trusted and safe up to 3.2 kV");
+  assert_contains(command_err, "model axisymmetric: valid and below breakdown up to 3.2 kV");
   assert_contains(command_err, "those of the film without its fibres");
   assert_contains(command_out, "<5017.0"); // the tip's z of model lumped is a bound
 }
@@ -197,7 +197,7 @@ static void test_path_reaches_as_far_as_the_sweep(void **state)
       0);
   assert_contains(command_out, "\n    8.000   3."); // last row
   assert_contains(command_out, "  not trusted: slack locking breakdown\n");
-  assert_contains(command_err, "model lumped: to be trusted and safe up to ");
+  assert_contains(command_err, "model lumped: valid and below breakdown up to ");
   assert_contains(command_err, "the film's law is near its locking stretch");
   assert_contains(command_out, ": the film goes slack\n");
   assert_contains(command_out, "reaches the film's breakdown field, ");
@@ -427,9 +427,10 @@ static void test_models_that_cannot(void **state)
     const char *message;
   } cases[] = {
       {"plain-disc.yaml -m lumped --study modal", 2,
-       "no study 'modal' of model lumped, which knows no vibrations; there is one of 3d"},
+       "no study 'modal' of model lumped, which does not compute vibrations; there is one of 3d"},
       {"plain-disc.yaml -m lumped -m axisymmetric --study sweep --study convergence", 2,
-       "no study 'convergence' of model lumped or axisymmetric, which know no mesh to refine"},
+       "no study 'convergence' of model lumped or axisymmetric, which do not compute mesh to "
+       "refine"},
       {"plain-disc.yaml -m lumped --study load-line", 2, "no load line of this actuator\n"},
       {"plain-disc.yaml -m 3d --study path", 2, "no path without compute.solid.path; there is"},
       {"devices/cone-mass.yaml -m lumped", 3, "this needs a disc in a round frame"},
@@ -446,10 +447,10 @@ static void test_models_that_cannot(void **state)
   // one of the models is enough, and what a design asks for is for those that can
   command_expect("run @/examples/plain-disc.yaml -m lumped --set compute.modal={} --no-figures "
                  "-o able",
-                 0, "model lumped knows no vibrations: no study 'modal'");
+                 0, "model lumped does not compute vibrations: no study 'modal'");
   command_expect("run @/examples/frdea-4.yaml -m axisymmetric -m lumped --study load-line "
                  "--no-figures -o able --force",
-                 0, "model axisymmetric knows no load line of this actuator");
+                 0, "model axisymmetric does not compute load line of this actuator");
 }
 
 /* A figure that a run has nothing for is an error, and a quantity that is none names those that

@@ -743,7 +743,7 @@ static void test_disc_of_both_forms(void **state)
 }
 
 /* Sum of the slopes of the electrode's edge at 2 kV by the numbers whose keys end so. */
-static double slope_by(const char *text, const char *ending)
+static double slope_by(const char *text, const char *outcome)
 {
   const struct dea_model_type *type = dea_model_find("3d");
   struct dea_model *model;
@@ -768,8 +768,8 @@ static double slope_by(const char *text, const char *ending)
                                           .column_count = 1};
   assert_int_equal(dea_design_gradient_find(ctx, &ask, slopes), DEA_OK);
   for (size_t i = 0; i < count; i++) {
-    const size_t length = strlen(numbers[i].key), end = strlen(ending);
-    if (length >= end && strcmp(numbers[i].key + length - end, ending) == 0 &&
+    const size_t length = strlen(numbers[i].key), end = strlen(outcome);
+    if (length >= end && strcmp(numbers[i].key + length - end, outcome) == 0 &&
         strstr(numbers[i].key, "film") == NULL) {
       sum += slopes[i];
     }
@@ -785,14 +785,14 @@ static void test_slopes_of_both_forms(void **state)
 {
   (void)state;
   const struct disc disc = {1.2, 100, 15, 3.75, 0, 10, LEVEL, .film = "film"};
-  static const char *const endings[] = {".thickness", ".law.c1"};
-  for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+  static const char *const outcomes[] = {".thickness", ".law.c1"};
+  for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0]; i++) {
     char text[2][4000];
     write_short(&disc, text[0], sizeof text[0]);
     write_parts(&disc, text[1], sizeof text[1]);
-    const double wanted = slope_by(text[0], endings[i]);
+    const double wanted = slope_by(text[0], outcomes[i]);
     assert_true(fabs(wanted) > 0);
-    assert_close(slope_by(text[1], endings[i]), wanted, 1e-7, 0);
+    assert_close(slope_by(text[1], outcomes[i]), wanted, 1e-7, 0);
   }
 }
 

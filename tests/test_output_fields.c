@@ -265,11 +265,11 @@ static void test_figures(void **state)
   assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &options, NULL), DEA_OK);
   assert_false(there("figures/animation.gp")); // on request only
   assert_int_equal(dea_figures_write(ctx, result, in_folder("figures"), &animation, NULL), DEA_OK);
-  static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
+  static const char *const outcomes[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
   for (size_t i = 0; i < 4; i++) {
     for (size_t k = 0; k < 6; k++) {
       char name[64];
-      snprintf(name, sizeof name, "figures/%s.%s", names[i], endings[k]);
+      snprintf(name, sizeof name, "figures/%s.%s", names[i], outcomes[k]);
       bool wanted = k < 2 || (i == 3) == (k == 5);
       if (there(name) != wanted || (wanted && size_of(name) < 500)) {
         fail_msg("%s %s", name, wanted ? "is missing or empty" : "should not be there");

@@ -500,7 +500,7 @@ static void test_only_pages_are_replaced(void **state)
   (void)state;
   command_write("mine.txt", "mine");
   assert_int_equal(command_run("report a.run -o mine.txt"), 5);
-  assert_contains(command_err, "mine.txt is there already and is not a page");
+  assert_contains(command_err, "mine.txt already exists and is not a page");
   static char text[COMMAND_TEXT_MAX];
   command_read("mine.txt", text);
   assert_string_equal(text, "mine");

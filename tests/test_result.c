@@ -99,7 +99,8 @@ static void test_trust_ends_at_the_lowest_doubt(void **state)
   assert_true(trust.doubt_V == 3e3 && trust.danger_V == 4e3);
   struct dea_text text = {.ctx = ctx};
   dea_trust_text(&trust, &text);
-  assert_non_null(strstr(dea_text_get(&text), "to be trusted and safe up to 2 kV; at 3 kV one of"));
+  assert_non_null(
+      strstr(dea_text_get(&text), "valid and below breakdown up to 2 kV; at 3 kV one of"));
   assert_null(strstr(dea_text_get(&text), "tension"));
   dea_text_free(&text);
   points[1].min_tension_N_per_m = -1; // 2 kV: a corner; 3 kV: with the doubt, which says enough

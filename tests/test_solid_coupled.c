@@ -16,23 +16,23 @@ struct sample {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], psi[DEA_HEX_NODES_MAX];
 };
 
-static struct dea_constituent film(double pre_stretch)
+static struct dea_part_material film(double pre_stretch)
 {
   double z = 1 / (pre_stretch * pre_stretch);
-  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = {178.4e3, -6e3, 4.2e3},
-                                  .pre_stretch = {pre_stretch, pre_stretch, z},
-                                  .kappa_Pa = 4e7,
-                                  .permittivity_F_per_m = 2.5e-11,
-                                  .thickness_m = 44e-6};
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = {.law = dea_law_find("yeoh"),
+                                    .param = {178.4e3, -6e3, 4.2e3},
+                                    .pre_stretch = {pre_stretch, pre_stretch, z},
+                                    .kappa_Pa = 4e7,
+                                    .permittivity_F_per_m = 2.5e-11,
+                                    .thickness_m = 44e-6};
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
-static struct dea_constituent plastic(void)
+static struct dea_part_material plastic(void)
 {
   static const double param[] = {5.2e5, 0.3};
-  struct dea_constituent layer = dea_constituent_bonded(param);
+  struct dea_part_material layer = dea_part_material_bonded(param);
   layer.permittivity_F_per_m = 4e-11;
   return layer;
 }
@@ -55,11 +55,11 @@ static struct sample distorted(void)
   return s;
 }
 
-static dea_status evaluate(const struct dea_constituent *layer, const struct sample *s,
+static dea_status evaluate(const struct dea_part_material *layer, const struct sample *s,
                            enum dea_eval_order level, struct dea_element_result *out)
 {
   const struct dea_element element = potential_hexahedron(&shape);
-  const struct dea_element_input in = {.constituent = layer,
+  const struct dea_element_input in = {.part_material = layer,
                                        .X = s->X,
                                        .u = s->u,
                                        .multiplier = pressures,
@@ -68,10 +68,10 @@ static dea_status evaluate(const struct dea_constituent *layer, const struct sam
   return element.type->evaluate(&element, &in, level, out);
 }
 
-static dea_status capacity(const struct dea_constituent *layer, const struct sample *s, double *L)
+static dea_status capacity(const struct dea_part_material *layer, const struct sample *s, double *L)
 {
   const struct dea_element element = potential_hexahedron(&shape);
-  const struct dea_element_input in = {.constituent = layer, .X = s->X, .u = s->u};
+  const struct dea_element_input in = {.part_material = layer, .X = s->X, .u = s->u};
   return element.type->capacity(&element, &in, L);
 }
 
@@ -90,7 +90,7 @@ static double largest(const double *values, int count)
   return most;
 }
 
-static void check_derivatives(const struct dea_constituent *layer)
+static void check_derivatives(const struct dea_part_material *layer)
 {
   int dofs = 4 * shape.nodes;
   const double d = 1e-10;
@@ -117,7 +117,7 @@ static void test_derivatives_of_all_orders(void **state)
   (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= (order < 3 ? 2 : 1); order_z++) {
-      const struct dea_constituent soft = film(1.5), hard = plastic();
+      const struct dea_part_material soft = film(1.5), hard = plastic();
       assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
       check_derivatives(&soft);
       check_derivatives(&hard);
@@ -131,7 +131,7 @@ static void test_capacity_is_the_electric_energy(void **state)
 {
   (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
   int n = shape.nodes;
@@ -157,7 +157,7 @@ static void test_rigid_motion_and_added_potential(void **state)
 {
   (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted(), turned = s;
   for (int n = 0; n < shape.nodes; n++) {
@@ -191,7 +191,7 @@ static void test_rigid_motion_and_added_potential(void **state)
 static void test_linear_potential_is_the_thin_film(void **state)
 {
   (void)state;
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   const double V = 4e3;
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
@@ -218,7 +218,7 @@ static void test_plate_capacitor(void **state)
 {
   (void)state;
   static const double D[9] = {1.2, 0.1, 0.2, -0.1, 0.95, 0.1, 0.3, 0, 0.9};
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   const double a = 100e-6, h = 44e-6, V = 3e3;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     struct sample s;
@@ -272,7 +272,7 @@ static void test_inverted_element(void **state)
 {
   (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   struct sample s = distorted();
   s.u[3 * 13 + 2] = 1e-4; // the middle node out through the top

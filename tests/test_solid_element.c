@@ -17,7 +17,7 @@ static const double turned_stretch[3] = {1.6, 1.25, 1 / (1.6 * 1.25 - 0.04)}, tu
 
 struct sample {
   const struct dea_element *element;
-  struct dea_constituent film;
+  struct dea_part_material film;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], psi[DEA_HEX_NODES_MAX];
   struct dea_element_input in;
 };
@@ -54,7 +54,7 @@ static void fill(int order, const struct dea_element *element, bool turned, stru
     memcpy(s->film.pre_stretch, turned_stretch, sizeof turned_stretch);
     s->film.pre_shear = turned_shear;
   }
-  assert_int_equal(dea_constituent_relax(&s->film), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&s->film), DEA_OK);
   dea_lobatto_nodes((size_t)order, line);
   if (levels > 1) {
     dea_lobatto_nodes((size_t)levels - 1, line_z);
@@ -65,7 +65,7 @@ static void fill(int order, const struct dea_element *element, bool turned, stru
     s->X[3 * a + 1] = 90e-6 * y - 10e-6 * x;
     s->X[3 * a + 2] = 0.5 * h * z;
   }
-  s->in = (struct dea_element_input){.constituent = &s->film,
+  s->in = (struct dea_element_input){.part_material = &s->film,
                                      .X = s->X,
                                      .u = s->u,
                                      .multiplier = pressures,
@@ -143,7 +143,7 @@ static void check_rigid_motion(struct sample *s)
   turned.in.u = turned.u;
   turned.in.X = turned.X;
   turned.in.potential = turned.psi;
-  turned.in.constituent = &turned.film;
+  turned.in.part_material = &turned.film;
   for (int a = 0; a < s->element->nodes; a++) {
     turned.psi[a] = s->psi[a];
     for (int i = 0; i < 3; i++) {
@@ -488,20 +488,20 @@ static void test_pre_stretch_at_an_angle(void **state)
       FR[a] += F[a / 3 * 3 + k] * R[3 * k + a % 3];
     }
   }
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {178.4e3, -6e3, 4.2e3},
-                                 .pre_stretch = {D[0], D[1], D[2]},
-                                 .permittivity_F_per_m = 2.5e-11};
-  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  struct dea_part_material film = {.law = dea_law_find("yeoh"),
+                                   .param = {178.4e3, -6e3, 4.2e3},
+                                   .pre_stretch = {D[0], D[1], D[2]},
+                                   .permittivity_F_per_m = 2.5e-11};
+  assert_int_equal(dea_part_material_relax(&film), DEA_OK);
   double J = dea_cofactors(FR, cof), p0 = film.p0_Pa;
-  assert_int_equal(dea_constituent_point(&film, FR, cof, J, 1e4, 3e7, true, &straight), DEA_OK);
+  assert_int_equal(dea_part_material_point(&film, FR, cof, J, 1e4, 3e7, true, &straight), DEA_OK);
   film.pre_stretch[0] = D[0] * c * c + D[1] * s * s;
   film.pre_stretch[1] = D[0] * s * s + D[1] * c * c;
   film.pre_shear = (D[0] - D[1]) * s * c;
-  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&film), DEA_OK);
   assert_close(film.p0_Pa, p0, 1e-13, 0);
   J = dea_cofactors(F, cof);
-  assert_int_equal(dea_constituent_point(&film, F, cof, J, 1e4, 3e7, true, &turned), DEA_OK);
+  assert_int_equal(dea_part_material_point(&film, F, cof, J, 1e4, 3e7, true, &turned), DEA_OK);
   assert_close(turned.W, straight.W, 1e-13, 0);
   for (int a = 0; a < 9; a++) {
     for (int k = 0; k < 3; k++) {

@@ -15,24 +15,24 @@ static struct dea_hex_shape shape;
 static struct dea_element_result at, up, down;
 
 /* Pre-stretched film with a field (law), or a compressible solid. */
-static struct dea_constituent film(double pre_stretch)
+static struct dea_part_material film(double pre_stretch)
 {
   double h = 100e-6 / (pre_stretch * pre_stretch);
-  struct dea_constituent layer = {
+  struct dea_part_material layer = {
       .law = dea_law_find("yeoh"),
       .param = {178.4e3, -6e3, 4.2e3},
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
       .thickness_m = h};
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
-static struct dea_constituent plastic(void)
+static struct dea_part_material plastic(void)
 {
   static const double param[] = {5.2e5, 0.3};
-  return dea_constituent_bonded(param);
+  return dea_part_material_bonded(param);
 }
 
 /* A distorted element of the shape, about 200 um wide and 44 um thick, with displacements of given
@@ -53,7 +53,7 @@ static void sample(double size, double *X, double *u)
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
                                                         2e3, 1e3,  -4e2, 7e2, 1e2};
 
-static void check_derivatives(const struct dea_constituent *layer)
+static void check_derivatives(const struct dea_part_material *layer)
 {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], d = 1e-10, largest_g = 0, largest_K = 0;
   int dofs = 3 * shape.nodes;
@@ -85,8 +85,8 @@ static void test_derivatives_of_all_orders(void **state)
   (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= 2; order_z++) {
-      const struct dea_constituent soft = film(1.5), hard = plastic();
-      struct dea_constituent sloped = soft;
+      const struct dea_part_material soft = film(1.5), hard = plastic();
+      struct dea_part_material sloped = soft;
       sloped.permittivity_slope_F_per_m = -0.4 * soft.permittivity_F_per_m;
       assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
       check_derivatives(&soft);
@@ -104,7 +104,7 @@ static void test_levels_agree(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_constituent layers[] = {film(1.5), plastic()};
+  const struct dea_part_material layers[] = {film(1.5), plastic()};
   for (int k = 0; k < 2; k++) {
     assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
     sample(1, X, u);
@@ -128,7 +128,7 @@ static void test_rigid_motion(void **state)
   (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], turned[DEA_HEX_DOFS_MAX];
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
   for (int n = 0; n < shape.nodes; n++) {
@@ -166,7 +166,7 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   (void)state;
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   double X[DEA_HEX_DOFS_MAX];
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   const double a = 100e-6, h = 22e-6, voltages[] = {0, 5e3};
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   for (int n = 0; n < shape.nodes; n++) {
@@ -194,7 +194,7 @@ static void test_inverted_element_and_bad_order(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_constituent soft = film(1.5);
+  const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
   sample(1, X, u);
   assert_int_equal(evaluate_hex(&shape, &soft, X, u, pressures, 0, DEA_ENERGY, &at), DEA_OK);
@@ -209,7 +209,7 @@ static void test_inverted_element_and_bad_order(void **state)
 /* ---- meshes ---- */
 
 /* Forces of all elements on the nodes under u = (D - 1) X. */
-static void forces(const struct dea_grid *grid, const struct dea_constituent *layer,
+static void forces(const struct dea_grid *grid, const struct dea_part_material *layer,
                    const double *D, double *g, double *volume)
 {
   static const double none[DEA_HEX_PRESSURES_MAX] = {0};
@@ -242,7 +242,7 @@ static void test_patch_and_area(void **state)
   const double a = 3.75e-3, b = 15e-3, h = 44e-6;
   for (int order = 1; order <= 3; order++) {
     struct dea_grid *grid;
-    const struct dea_constituent soft = film(1.5);
+    const struct dea_part_material soft = film(1.5);
     double volume, largest = 0;
     assert_int_equal(dea_hex_shape_create(order, 2, &shape), DEA_OK);
     const struct dea_quarter quarter = {order, 2, a, b, h, .fine = 3, .edge = 5e-4};
@@ -285,7 +285,7 @@ static void check_joined(int fibres, double width)
   }
   assert_int_equal(dea_hex_shape_create(2, 1, &shape), DEA_OK);
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
-  const struct dea_constituent hard = plastic();
+  const struct dea_part_material hard = plastic();
   char *used = calloc(grid->node_count, 1);
   double volume = 0;
   assert_non_null(used);

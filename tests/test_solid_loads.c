@@ -142,9 +142,9 @@ static void test_derivatives_of_enclosed_volumes(void **state)
   const double d = 1e-6;
   block_create(2, 2, 0.1);
   const size_t count = 3 * grid->node_count;
-  double *room = calloc(5 * count, sizeof *room);
-  assert_non_null(room);
-  double *v = room, *g = v + count, *Kv = g + count, *up = Kv + count, *down = up + count;
+  double *capacity = calloc(5 * count, sizeof *capacity);
+  assert_non_null(capacity);
+  double *v = capacity, *g = v + count, *Kv = g + count, *up = Kv + count, *down = up + count;
   for (size_t i = 0; i < count; i++) {
     v[i] = sin(1.0 + 3.0 * (double)i);
   }
@@ -179,7 +179,7 @@ static void test_derivatives_of_enclosed_volumes(void **state)
     dea_pressure_destroy(ctx, pressure);
     dea_surface_destroy(ctx, surface);
   }
-  free(room);
+  free(capacity);
   block_destroy();
 }
 

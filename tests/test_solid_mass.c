@@ -33,7 +33,7 @@ static void test_mass_of_a_block(void **state)
   (void)state;
   static const double cuts[] = {0, 0.35, 1};
   const double rho = 970, h = 0.7, z0 = 0.2, area = 3 * 2 + 0.5 * 0.4;
-  const struct dea_constituent layer = {.density_kg_per_m3 = rho, .thickness_m = h};
+  const struct dea_part_material layer = {.density_kg_per_m3 = rho, .thickness_m = h};
   const struct dea_block block = {map_block, NULL, cuts, cuts, 2, 2, 0};
   for (int order = 1; order <= 3; order++) {
     for (int kind = 0; kind < 4; kind++) { // a surface, then solids of each order
@@ -61,7 +61,7 @@ static void test_an_inverted_element_has_no_mass(void **state)
 {
   (void)state;
   double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_constituent layer = {.density_kg_per_m3 = 1, .thickness_m = 1};
+  const struct dea_part_material layer = {.density_kg_per_m3 = 1, .thickness_m = 1};
   assert_int_equal(dea_hex_shape_create(1, 1, &shape), DEA_OK);
   assert_int_equal(dea_flat_shape_create(1, &flat), DEA_OK);
   for (int n = 0; n < shape.nodes; n++) {

@@ -17,7 +17,7 @@ static struct dea_element_result at, up, down;
 
 /* P of the film from the material point of a solid, its third column the normal over |F1 x F2|^2;
  * for complex F. */
-static double complex solid_film(const struct dea_constituent *layer, double field,
+static double complex solid_film(const struct dea_part_material *layer, double field,
                                  const double complex F[6], double complex P[6])
 {
   const double *G = layer->pre_stretch, s = layer->pre_shear;
@@ -54,7 +54,7 @@ static double complex solid_film(const struct dea_constituent *layer, double fie
 }
 
 /* W, P and A of the film against the solid: A by complex step of P, P by complex step of W too. */
-static void check_point(const struct dea_constituent *layer, double field, const double F[6],
+static void check_point(const struct dea_part_material *layer, double field, const double F[6],
                         double tolerance)
 {
   static const double step = 1e-30;
@@ -89,7 +89,7 @@ static void check_law(const struct dea_law *law, const double *param)
   uint64_t seed = 11;
   for (int n = 0; n < 20 && !law->anisotropic && law->compressible == NULL; n++) {
     double m1 = uniform(&seed, 0.8, 1.3), m2 = uniform(&seed, 0.8, 1.3), F[6];
-    struct dea_constituent layer =
+    struct dea_part_material layer =
         film(law, param, uniform(&seed, 0.9, 1.4), uniform(&seed, 0.9, 1.4));
     layer.permittivity_slope_F_per_m = uniform(&seed, -0.3, 0.1) * permittivity;
     compose(m1, m2, uniform(&seed, 0, 6), F);
@@ -121,17 +121,17 @@ static void test_equal_stretches(void **state)
       double F[6], scale;
       struct dea_membrane_point a, b;
       compose(1.2 * (1 + gaps[g]), 1.2, 0.3 * turn, F);
-      const struct dea_constituent invariant = yeoh_film(1.5);
+      const struct dea_part_material invariant = yeoh_film(1.5);
       check_point(&invariant, 3e7, F, 1e-12);
-      const struct dea_constituent principal = film(dea_law_find("ogden"), square, 1.1, 1.1);
-      const struct dea_constituent the_same = film(dea_law_find("neo-hookean"), neo, 1.1, 1.1);
+      const struct dea_part_material principal = film(dea_law_find("ogden"), square, 1.1, 1.1);
+      const struct dea_part_material the_same = film(dea_law_find("neo-hookean"), neo, 1.1, 1.1);
       assert_int_equal(dea_membrane_point(&principal, F, 2e7, &a), DEA_OK);
       assert_int_equal(dea_membrane_point(&the_same, F, 2e7, &b), DEA_OK);
       scale = largest(b.A, 36);
       assert_all_close("alpha = 2", a.P, b.P, 6, 1e-12, scale);
       assert_all_close("alpha = 2", a.A, b.A, 36, 1e-12, scale);
       if (gaps[g] > 1e-4) {
-        const struct dea_constituent higher = film(dea_law_find("ogden"), fourth, 1.1, 1.1);
+        const struct dea_part_material higher = film(dea_law_find("ogden"), fourth, 1.1, 1.1);
         check_point(&higher, 2e7, F, 1e-9);
       }
     }
@@ -141,9 +141,9 @@ static void test_equal_stretches(void **state)
 static void test_laws_that_are_refused(void **state)
 {
   (void)state;
-  const struct dea_constituent plastic = dea_constituent_bonded((const double[]){2, 0});
-  const struct dea_constituent soft = yeoh_film(1.5);
-  const struct dea_constituent fibrous = film(dea_law_find("holzapfel-gasser-ogden"), yeoh, 1, 1);
+  const struct dea_part_material plastic = dea_part_material_bonded((const double[]){2, 0});
+  const struct dea_part_material soft = yeoh_film(1.5);
+  const struct dea_part_material fibrous = film(dea_law_find("holzapfel-gasser-ogden"), yeoh, 1, 1);
   assert_int_equal(dea_membrane_check(&soft), DEA_OK);
   assert_int_equal(dea_membrane_check(&plastic), DEA_E_UNSUPPORTED);
   assert_int_equal(dea_membrane_check(&fibrous), DEA_E_UNSUPPORTED);
@@ -153,15 +153,15 @@ static void test_laws_that_are_refused(void **state)
 static void test_bond(void **state)
 {
   (void)state;
-  struct dea_constituent soft = yeoh_film(1.5), bond;
+  struct dea_part_material soft = yeoh_film(1.5), bond;
   double area = 2.25, I1 = 2 * area + 1 / (area * area) - 3;
   double W1 = yeoh[0] + 2 * yeoh[1] * I1 + 3 * yeoh[2] * I1 * I1;
-  assert_int_equal(dea_constituent_relax(&soft), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&soft), DEA_OK);
   assert_int_equal(dea_membrane_bond(&soft, &bond), DEA_OK);
-  assert_false(dea_constituent_takes_pressure(&bond));
-  assert_close(dea_constituent_modulus(&bond), 1.5 * 2 * W1 / (area * area), 1e-12, 0);
+  assert_false(dea_part_material_takes_pressure(&bond));
+  assert_close(dea_part_material_modulus(&bond), 1.5 * 2 * W1 / (area * area), 1e-12, 0);
   assert_true(bond.param[1] > 0.48); // nearly incompressible
-  const struct dea_constituent plastic = dea_constituent_bonded((const double[]){2, 0});
+  const struct dea_part_material plastic = dea_part_material_bonded((const double[]){2, 0});
   assert_int_equal(dea_membrane_bond(&plastic, &bond), DEA_E_UNSUPPORTED);
 }
 
@@ -177,7 +177,7 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   for (int i = 0; i < 6; i++) {
     for (int k = 0; k < 2; k++) {
       double field = k * 1e8, l = stretch[i], I1 = 2 * l * l + pow(l, -4) - 3;
-      const struct dea_constituent layer = yeoh_film(l);
+      const struct dea_part_material layer = yeoh_film(l);
       struct dea_membrane_point point;
       assert_int_equal(dea_membrane_point(&layer, flat, field, &point), DEA_OK);
       double stress = nominal[i] * l - permittivity * field * field;
@@ -206,7 +206,7 @@ static void sample(double size, double *X, double *u)
   }
 }
 
-static void check_element(const struct dea_constituent *layer)
+static void check_element(const struct dea_part_material *layer)
 {
   double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX], d = 1e-10;
   int dofs = 3 * shape.nodes;
@@ -232,7 +232,7 @@ static void test_derivatives_of_all_orders(void **state)
 {
   (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
-    const struct dea_constituent layer = yeoh_film(1.5);
+    const struct dea_part_material layer = yeoh_film(1.5);
     assert_int_equal(dea_flat_shape_create(order, &shape), DEA_OK);
     check_element(&layer);
   }
@@ -244,7 +244,7 @@ static void test_rigid_motion(void **state)
   (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX], turned[DEA_FLAT_DOFS_MAX];
-  const struct dea_constituent soft = yeoh_film(1.5);
+  const struct dea_part_material soft = yeoh_film(1.5);
   assert_int_equal(dea_flat_shape_create(2, &shape), DEA_OK);
   sample(1, X, u);
   for (int n = 0; n < shape.nodes; n++) {
@@ -275,7 +275,7 @@ static void test_bad_elements(void **state)
 {
   (void)state;
   double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX];
-  const struct dea_constituent soft = yeoh_film(1.5);
+  const struct dea_part_material soft = yeoh_film(1.5);
   assert_int_equal(dea_flat_shape_create(0, &shape), DEA_E_ARGUMENT);
   assert_int_equal(dea_flat_shape_create(DEA_HEX_ORDER_MAX + 1, &shape), DEA_E_ARGUMENT);
   assert_int_equal(dea_flat_shape_create(1, &shape), DEA_OK);
@@ -299,7 +299,7 @@ static void test_patch_and_area(void **state)
   const double a = 3.75e-3, b = 15e-3, h = 44e-6;
   for (int order = 1; order <= 3; order++) {
     struct dea_grid *grid;
-    const struct dea_constituent soft = yeoh_film(1.5);
+    const struct dea_part_material soft = yeoh_film(1.5);
     double volume = 0;
     assert_int_equal(dea_flat_shape_create(order, &shape), DEA_OK);
     const struct dea_quarter quarter = {order,           2, a, b, h, .fine = 3, .edge = 5e-4,

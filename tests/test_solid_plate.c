@@ -125,11 +125,11 @@ static struct dea_element_result result;
 static double volume(const struct dea_grid *grid, int ply, int bits)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
-  const struct dea_constituent hard = dea_constituent_bonded((const double[]){5.2e5, 0.3});
-  const struct dea_constituent film = {.law = dea_law_find("neo-hookean"),
-                                       .param = {1e5},
-                                       .pre_stretch = {1, 1, 1},
-                                       .thickness_m = h};
+  const struct dea_part_material hard = dea_part_material_bonded((const double[]){5.2e5, 0.3});
+  const struct dea_part_material film = {.law = dea_law_find("neo-hookean"),
+                                         .param = {1e5},
+                                         .pre_stretch = {1, 1, 1},
+                                         .thickness_m = h};
   double X[DEA_HEX_DOFS_MAX], sum = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
     for (int n = 0; n < dea_grid_nodes_of(grid, e); n++) {

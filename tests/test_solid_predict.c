@@ -10,22 +10,22 @@ static double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], way[DEA_HEX_DOFS_MAX];
 static double predicted[DEA_HEX_PRESSURES_MAX + 6 * DEA_HEX_GAUSS_MAX];
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3, 5e2};
 
-static struct dea_constituent film(void)
+static struct dea_part_material film(void)
 {
-  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = {178.4e3, -6e3, 4.2e3},
-                                  .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                  .kappa_Pa = 4e7,
-                                  .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                  .thickness_m = 44e-6};
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = {.law = dea_law_find("yeoh"),
+                                    .param = {178.4e3, -6e3, 4.2e3},
+                                    .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                    .kappa_Pa = 4e7,
+                                    .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                    .thickness_m = 44e-6};
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
-static struct dea_constituent plastic(void)
+static struct dea_part_material plastic(void)
 {
   static const double param[] = {5.2e5, 0.3};
-  return dea_constituent_bonded(param);
+  return dea_part_material_bonded(param);
 }
 
 static void sample(void)
@@ -54,12 +54,12 @@ static double distance(int dofs)
 }
 
 /* Apart from the plain tangent at u + share way. */
-static double apart_at(const struct dea_constituent *layer, double share)
+static double apart_at(const struct dea_part_material *layer, double share)
 {
   double end[DEA_HEX_DOFS_MAX];
   const struct dea_element element = hexahedron(&shape);
   struct dea_element_input in = {
-      .constituent = layer, .X = X, .u = u, .multiplier = pressures, .voltage_V = 4e3};
+      .part_material = layer, .X = X, .u = u, .multiplier = pressures, .voltage_V = 4e3};
   assert_int_equal(element.type->predict(&element, &in, way, share, true, predicted), DEA_OK);
   for (int i = 0; i < 3 * shape.nodes; i++) {
     end[i] = u[i] + share * way[i];
@@ -85,7 +85,7 @@ static double apart_at(const struct dea_constituent *layer, double share)
 static void test_stresses_of_a_step(void **state)
 {
   (void)state;
-  const struct dea_constituent layers[] = {film(), plastic()};
+  const struct dea_part_material layers[] = {film(), plastic()};
   sample();
   for (int k = 0; k < 2; k++) {
     assert_close(apart_at(&layers[k], 0), 0, 0, 1e-12);
@@ -101,7 +101,7 @@ static void test_metric(void **state)
 {
   (void)state;
   double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume[DEA_HEX_NODES_MAX], sum = 0, whole = 0;
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   sample();
   const struct dea_element element = hexahedron(&shape);
   assert_int_equal(element.type->metric(&element, &layer, X, L, volume), DEA_OK);
@@ -129,17 +129,17 @@ static void test_metric(void **state)
 static void test_barrier(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   double slope, curvature, ahead, behind, ignored;
-  assert_close(dea_constituent_pointwise(&layer, 1, &slope, &curvature), 0, 0, 1e-12);
+  assert_close(dea_part_material_pointwise(&layer, 1, &slope, &curvature), 0, 0, 1e-12);
   assert_close(slope, 0, 0, 1e-9);
   assert_close(curvature, layer.kappa_s_Pa, 1e-14, 0);
-  double far = dea_constituent_pointwise(&layer, 0.3, &slope, &curvature), d = 1e-6;
-  double up = dea_constituent_pointwise(&layer, 0.3 + d, &ahead, &ignored);
-  double down = dea_constituent_pointwise(&layer, 0.3 - d, &behind, &ignored);
+  double far = dea_part_material_pointwise(&layer, 0.3, &slope, &curvature), d = 1e-6;
+  double up = dea_part_material_pointwise(&layer, 0.3 + d, &ahead, &ignored);
+  double down = dea_part_material_pointwise(&layer, 0.3 - d, &behind, &ignored);
   assert_close(slope, (up - down) / (2 * d), 1e-8, 0);
   assert_close(curvature, (ahead - behind) / (2 * d), 1e-8, 0);
-  assert_true(dea_constituent_pointwise(&layer, 1e-12, &slope, &curvature) > 10 * far);
+  assert_true(dea_part_material_pointwise(&layer, 1e-12, &slope, &curvature) > 10 * far);
 }
 
 int main(void)

@@ -49,7 +49,7 @@ struct strip {
   struct dea_grid *grid;
   struct dea_element_set elements;
   enum dea_element_kind *kinds; // [elements]
-  struct dea_constituent layers[2];
+  struct dea_part_material layers[2];
   int *layer;
   bool *active;
   double *u, *multiplier, *across_V, *potential_V;
@@ -73,13 +73,13 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
                                    kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid),
                    DEA_OK);
   assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->elements), DEA_OK);
-  s->layers[0] = (struct dea_constituent){.pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
-                                          .kappa_Pa = 4e7,
-                                          .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                          .thickness_m = h_m};
-  dea_constituent_set_law(&s->layers[0], film.law, film.param);
-  s->layers[1] = dea_constituent_bonded(fibre);
-  assert_int_equal(dea_constituent_relax(&s->layers[0]), DEA_OK);
+  s->layers[0] = (struct dea_part_material){.pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
+                                            .kappa_Pa = 4e7,
+                                            .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                            .thickness_m = h_m};
+  dea_part_material_set_law(&s->layers[0], film.law, film.param);
+  s->layers[1] = dea_part_material_bonded(fibre);
+  assert_int_equal(dea_part_material_relax(&s->layers[0]), DEA_OK);
   size_t count = s->grid->element_count;
   s->layer = calloc(count, sizeof *s->layer);
   s->active = calloc(count, sizeof *s->active);
@@ -97,9 +97,9 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   s->in = (struct dea_recover_input){.grid = s->grid,
                                      .elements = &s->elements,
                                      .kind = s->kinds,
-                                     .constituents = s->layers,
+                                     .part_materials = s->layers,
                                      .bulk_factor = 1,
-                                     .constituent = s->layer,
+                                     .part_material = s->layer,
                                      .active = s->active,
                                      .u = s->u,
                                      .multiplier = s->multiplier,
@@ -153,7 +153,7 @@ static void relax(struct strip *s, const double F[9])
     double cof[9], J = dea_cofactors(F, cof);
     if (s->layer[e] == 0 && s->kind != FLAT) {
       double field = s->across_V[e] / h_m;
-      assert_int_equal(dea_constituent_point(&s->layers[0], F, cof, J, 0, field, true, &point),
+      assert_int_equal(dea_part_material_point(&s->layers[0], F, cof, J, 0, field, true, &point),
                        DEA_OK);
       double push = 0, size = 0; // along the current normal
       for (int i = 0; i < 3; i++) {

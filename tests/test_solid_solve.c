@@ -44,7 +44,7 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
                                double edge_m)
 {
   double h = H0 / (pre_stretch * pre_stretch);
-  struct dea_constituent film = {
+  struct dea_part_material film = {
       .law = dea_law_find("yeoh"),
       .param = {178.4e3, -6e3, 4.2e3},
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
@@ -52,12 +52,12 @@ static struct disc disc_create(double H0, double pre_stretch, int order_z, size_
       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
       .thickness_m = h};
   struct disc disc = {0};
-  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&film), DEA_OK);
   const struct dea_quarter quarter = {2, order_z, a_m, b_m, h, .fine = fine, .edge = edge_m};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &disc.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = order_z,
-                                            .constituent_count = 1,
-                                            .constituents = &film,
+                                            .part_material_count = 1,
+                                            .part_materials = &film,
                                             .active = inner_region,
                                             .held = disc_held};
   assert_int_equal(dea_solid_create(ctx, disc.grid, &options, &disc.solid), DEA_OK);
@@ -220,25 +220,25 @@ static void test_four_fibres_as_built(void **state)
   (void)state;
   static const double plastic[] = {2950e6, 0.38};
   const double h = 100e-6 / 2.25;
-  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = {178.4e3, -6e3, 4.2e3},
-                                      .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                      .kappa_Pa = 4e7,
-                                      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                      .thickness_m = h},
-                                     dea_constituent_bonded(plastic)};
+  struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
+                                        .param = {178.4e3, -6e3, 4.2e3},
+                                        .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                        .kappa_Pa = 4e7,
+                                        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                        .thickness_m = h},
+                                       dea_part_material_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           4,
                                       2e-3, 100e-6, .fine = 3, .across = 2, .edge = 2e-4};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = sheet_layer,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = sheet_layer,
                                             .active = film_inside,
                                             .held = disc_held};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   size_t tip = node_near(grid, a_m, 0, 0.5 * h), centre = node_near(grid, 0, 0, 0);
@@ -279,9 +279,9 @@ static void test_cantilever_under_end_shear(void **state)
   static const double part[] = {0.2, 0.5, 1.0}, wanted[] = {2.493, 4.933, 6.698};
   const struct dea_block block = {map_strip, NULL, cuts, one, 10, 1, 0};
   const struct dea_ply ply = {0.1, 1, 2};
-  const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
+  const struct dea_part_material steel = dea_part_material_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &steel, .held = clamp};
+      .order_z = 2, .part_material_count = 1, .part_materials = &steel, .held = clamp};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -318,9 +318,9 @@ static struct dea_grid *small_grid;
 
 static void make_solid(struct dea_context *failing)
 {
-  const struct dea_constituent steel = dea_constituent_bonded((const double[]){1.2e6, 0});
+  const struct dea_part_material steel = dea_part_material_bonded((const double[]){1.2e6, 0});
   const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &steel, .held = disc_held};
+      .order_z = 2, .part_material_count = 1, .part_materials = &steel, .held = disc_held};
   struct dea_solid *solid = NULL;
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);

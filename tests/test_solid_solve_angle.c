@@ -37,20 +37,20 @@ static struct dea_grid *turned_grid(double angle, double thickness_m)
   return grid;
 }
 
-static struct dea_constituent film(double angle)
+static struct dea_part_material film(double angle)
 {
   double c = cos(angle), s = sin(angle);
-  struct dea_constituent out = {.law = dea_law_find("yeoh"),
-                                .param = {178.4e3, -6e3, 4.2e3},
-                                .pre_stretch = {stretch[0] * c * c + stretch[1] * s * s,
-                                                stretch[0] * s * s + stretch[1] * c * c,
-                                                1 / (stretch[0] * stretch[1])},
-                                .pre_shear = (stretch[0] - stretch[1]) * s * c,
-                                .kappa_Pa = 4e7,
-                                .permittivity_F_per_m = 2.5e-11,
-                                .permittivity_slope_F_per_m = -0.3e-11,
-                                .thickness_m = h_m};
-  assert_int_equal(dea_constituent_relax(&out), DEA_OK);
+  struct dea_part_material out = {.law = dea_law_find("yeoh"),
+                                  .param = {178.4e3, -6e3, 4.2e3},
+                                  .pre_stretch = {stretch[0] * c * c + stretch[1] * s * s,
+                                                  stretch[0] * s * s + stretch[1] * c * c,
+                                                  1 / (stretch[0] * stretch[1])},
+                                  .pre_shear = (stretch[0] - stretch[1]) * s * c,
+                                  .kappa_Pa = 4e7,
+                                  .permittivity_F_per_m = 2.5e-11,
+                                  .permittivity_slope_F_per_m = -0.3e-11,
+                                  .thickness_m = h_m};
+  assert_int_equal(dea_part_material_relax(&out), DEA_OK);
   return out;
 }
 
@@ -76,12 +76,15 @@ static bool second(const void *self, int region, int ply)
 static double *solve(double angle, double thickness_m, size_t *count)
 {
   struct dea_grid *grid = turned_grid(angle, thickness_m);
-  struct dea_constituent layer = film(angle);
+  struct dea_part_material layer = film(angle);
   struct dea_solid_report report;
   struct dea_solid *solid;
   angle_of_test = angle;
-  const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &layer, .active = second, .held = held};
+  const struct dea_solid_options options = {.order_z = 2,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
+                                            .active = second,
+                                            .held = held};
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 3e3, &report), DEA_OK);
   double *u = dea_alloc(ctx, 3 * grid->node_count, sizeof *u);

@@ -24,9 +24,10 @@ struct bodies {
   struct dea_solid_report report;
 };
 
-static struct bodies bodies_create(const struct block *block, const struct dea_constituent *layers,
-                                   size_t layer_count, size_t count, const double X0[BODIES_MAX][3],
-                                   int held, int (*of)(const double X[3]),
+static struct bodies bodies_create(const struct block *block,
+                                   const struct dea_part_material *layers, size_t layer_count,
+                                   size_t count, const double X0[BODIES_MAX][3], int held,
+                                   int (*of)(const double X[3]),
                                    int (*support)(const void *self, const double X[3]),
                                    int (*layer_of)(const void *self, int region, int ply))
 {
@@ -45,9 +46,9 @@ static struct bodies bodies_create(const struct block *block, const struct dea_c
     it.grid->region[e] = it.grid->X[3 * it.grid->nodes[e * DEA_HEX_NODES_MAX]] > 1;
   }
   const struct dea_solid_options options = {.order_z = block->order_z,
-                                            .constituent_count = layer_count,
-                                            .constituents = layers,
-                                            .constituent_of = layer_of,
+                                            .part_material_count = layer_count,
+                                            .part_materials = layers,
+                                            .part_material_of = layer_of,
                                             .held = support,
                                             .body_count = count,
                                             .bodies = it.body,
@@ -96,7 +97,7 @@ static const double turns[BODIES_MAX][3] = {{0.9, -0.5, 0.4}, {-0.1, 0.15, 0.2}}
 
 static struct bodies two_bodies(void)
 {
-  struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct dea_part_material layer = dea_part_material_bonded(elastic);
   layer.density_kg_per_m3 = 1000;
   return bodies_create(&bar, &layer, 1, 2, two_centres, 0, third_and_part, clamped, NULL);
 }
@@ -337,7 +338,7 @@ static void test_turned_as_a_whole(void **state)
   static const double ends[BODIES_MAX][3] = {{0, 0.5, 0.5}, {2, 0.5, 0.5}}, origin[3] = {0};
   static const double bend_t[3] = {-0.2, 0.3, 0.1}, bend_w[3] = {0.5, 0.3, -0.4};
   static const double whole_w[3] = {-0.8, 0.9, 0.7}, whole_t[3] = {0.1, -0.2, 0.3};
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  const struct dea_part_material layer = dea_part_material_bonded(elastic);
   struct bodies it = bodies_create(&bar, &layer, 1, 2, ends, 0, both_ends, free_nodes, NULL);
   double Q[9], R[9], QR[9], w[3], t[3], x[3], force[2][3], moment[2][3], energy[2];
   dea_solid_body_prescribe(ctx, it.solid, 0, ALL, origin, origin);
@@ -395,7 +396,7 @@ static void test_body_that_only_shifts(void **state)
 {
   (void)state;
   static const double end[BODIES_MAX][3] = {{2, 0, 0}}, stretch = 1.7, mu = 1e5;
-  const struct dea_constituent layer = dea_constituent_bonded(no_width_change);
+  const struct dea_part_material layer = dea_part_material_bonded(no_width_change);
   struct bodies it =
       bodies_create(&bar, &layer, 1, 1, end, 2 | 4 | TURNS, end_of_bar, on_planes, NULL);
   double force[3], moment[3], t[3], w[3];
@@ -443,7 +444,7 @@ static void test_vibrations_of_a_rigid_block(void **state)
   (void)state;
   static const double points[2][BODIES_MAX][3] = {{{1, 0.5, 0}}, {{-0.3, 2, 0.7}}};
   static const double k[3] = {3e3, 5e3, 11e3}, rho = 700, a = 2, b = 1, h = 1;
-  struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct dea_part_material layer = dea_part_material_bonded(elastic);
   double wanted[6], found[6], area = a * b, m = rho * a * b * h;
   layer.density_kg_per_m3 = rho;
   two_modes(k[0] * area, k[2] * a * a * area / 12, m, m * (a * a / 12 + h * h / 3), m * h / 2,
@@ -484,7 +485,7 @@ static void test_springs_and_point_masses(void **state)
                       none[3] = {0};
   static const double force[3] = {300, 0, 0}, moment[3] = {0, 0, 100};
   const double points[18] = {1, 1, 1, 1, 1, 1, 1 + a, 1, 1, 1 - a, 1, 1, 1, 1 + b, 1, 1, 1 - b, 1};
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  const struct dea_part_material layer = dea_part_material_bonded(elastic);
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid_body body = {.length_m = 2};
   struct dea_spring *springs[6];
@@ -499,8 +500,8 @@ static void test_springs_and_point_masses(void **state)
     masses[n] = n >= body.node + 2 ? mass / 4 : 0;
   }
   const struct dea_solid_options options = {.order_z = bar.order_z,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .held = free_nodes,
                                             .body_count = 1,
                                             .bodies = &body,
@@ -595,7 +596,7 @@ static double tumble(int steps, double radius, double *energy_error)
   const double m = rho * a * b * h;
   const double J[3] = {m * (b * b + h * h) / 12, m * (a * a + h * h) / 12,
                        m * (a * a + b * b) / 12};
-  struct dea_constituent layer = dea_constituent_bonded(elastic);
+  struct dea_part_material layer = dea_part_material_bonded(elastic);
   layer.density_kg_per_m3 = rho;
   struct bodies it = bodies_create(&bar, &layer, 1, 1, middle, 0, whole_block, free_nodes, NULL);
   const struct dea_spring_options none = {.node = it.body[0].node};
@@ -682,8 +683,8 @@ static void test_stiff_part(void **state)
   (void)state;
   static const double centre[BODIES_MAX][3] = {{1.5, 0.5, 0.5}}, corner[3] = {2, 1, 1};
   static const double force[3] = {1e3, 5e3, -8e3};
-  const struct dea_constituent layers[2] = {dea_constituent_bonded(elastic),
-                                            dea_constituent_bonded(stiff)};
+  const struct dea_part_material layers[2] = {dea_part_material_bonded(elastic),
+                                              dea_part_material_bonded(stiff)};
   struct bodies rigid =
       bodies_create(&bar, layers, 2, 1, centre, 0, last_third, clamped, layer_of_region);
   struct bodies soft =
@@ -711,7 +712,7 @@ static void test_stiff_part(void **state)
 static void test_errors(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  const struct dea_part_material layer = dea_part_material_bonded(elastic);
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid *solid;
   struct dea_solid_report report;
@@ -722,8 +723,8 @@ static void test_errors(void **state)
   int *follows = dea_alloc(ctx, grid->node_count, sizeof *follows);
   struct dea_solid_body body = {.node = node};
   struct dea_solid_options options = {.order_z = bar.order_z,
-                                      .constituent_count = 1,
-                                      .constituents = &layer,
+                                      .part_material_count = 1,
+                                      .part_materials = &layer,
                                       .held = clamped,
                                       .body_count = 1,
                                       .bodies = &body,

@@ -45,9 +45,9 @@ static void create(void)
   }
   const struct dea_block block = {map_strip, NULL, cuts, one, ALONG, 1, 0};
   const struct dea_ply ply = {thickness, 1, 2};
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  const struct dea_part_material layer = dea_part_material_bonded(elastic);
   const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &layer, .held = clamped};
+      .order_z = 2, .part_material_count = 1, .part_materials = &layer, .held = clamped};
   assert_int_equal(
       dea_grid_create(ctx, ORDER, &block, 1, &ply, 1, NULL, -0.5 * thickness, length, &grid),
       DEA_OK);
@@ -237,7 +237,7 @@ static void test_modes_of_a_square_plate(void **state)
   (void)state;
   enum { COUNT = 4 };
   const double h = plate.size[2], D = 2 * mu * h * h / 12;
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  const struct dea_part_material layer = dea_part_material_bonded(elastic);
   double value[COUNT];
   grid = block_grid(ctx, &plate);
   solid = block_solid(ctx, grid, plate.order_z, &layer, clamped_around);

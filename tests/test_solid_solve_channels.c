@@ -15,16 +15,16 @@
 
 static const double h_m = 44e-6, length_m = 4e-3;
 
-static struct dea_constituent film_of(double thickness_m)
+static struct dea_part_material film_of(double thickness_m)
 {
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {178.4e3, -6e3, 4.2e3},
-                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                 .kappa_Pa = 4e7,
-                                 .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                 .thickness_m = thickness_m,
-                                 .density_kg_per_m3 = 1080};
-  assert_int_equal(dea_constituent_relax(&film), DEA_OK);
+  struct dea_part_material film = {.law = dea_law_find("yeoh"),
+                                   .param = {178.4e3, -6e3, 4.2e3},
+                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                   .kappa_Pa = 4e7,
+                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                   .thickness_m = thickness_m,
+                                   .density_kg_per_m3 = 1080};
+  assert_int_equal(dea_part_material_relax(&film), DEA_OK);
   return film;
 }
 
@@ -73,10 +73,10 @@ static struct strip strip_create(bool membrane, size_t channels, const double *s
     blocks[i] = (struct dea_block){map_third, &from[i], cuts_s, cuts_t, 2, 2, i};
   }
   const struct dea_ply ply = {membrane ? 0 : h_m, 1, 2};
-  const struct dea_constituent film = film_of(h_m);
+  const struct dea_part_material film = film_of(h_m);
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &film,
+                                            .part_material_count = 1,
+                                            .part_materials = &film,
                                             .active = all_but_the_middle,
                                             .channels = channels > 0 ? two_channels : NULL,
                                             .channel_count = channels,
@@ -270,14 +270,14 @@ static void solve_stack(size_t films, double thickness_m, double voltage_V, doub
 {
   static const double cuts[] = {0, 1};
   const struct dea_block block = {map_square, NULL, cuts, cuts, 1, 1, 0};
-  const struct dea_constituent film = film_of(thickness_m);
+  const struct dea_part_material film = film_of(thickness_m);
   struct dea_ply plies[FILMS];
   for (size_t i = 0; i < films; i++) {
     plies[i] = (struct dea_ply){thickness_m, 1, 2};
   }
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &film,
+                                            .part_material_count = 1,
+                                            .part_materials = &film,
                                             .active = everywhere,
                                             .channels = alternating,
                                             .channel_count = 1,
@@ -379,10 +379,10 @@ static void test_refused(void **state)
 {
   (void)state;
   struct strip strip = strip_create(false, 2, NULL);
-  const struct dea_constituent film = film_of(h_m);
+  const struct dea_part_material film = film_of(h_m);
   struct dea_solid_options options = {.order_z = 2,
-                                      .constituent_count = 1,
-                                      .constituents = &film,
+                                      .part_material_count = 1,
+                                      .part_materials = &film,
                                       .active = everywhere,
                                       .channels = unknown_channel,
                                       .channel_count = 1,

@@ -97,7 +97,7 @@ static void test_hertz(void **state)
 {
   (void)state;
   const double E = 1e6, nu = 0.3, d = 0.01;
-  const struct dea_constituent soft = dea_constituent_bonded((const double[]){E, nu});
+  const struct dea_part_material soft = dea_part_material_bonded((const double[]){E, nu});
   struct dea_grid *grid = hertz_grid();
   struct dea_solid *solid = block_solid(ctx, grid, 2, &soft, bonded);
   struct dea_surface *top;
@@ -162,7 +162,7 @@ static void check_one_factor(struct dea_solid *solid, struct dea_contact *contac
 
 /* A quarter of a pre-stretched film that a tip touches from above. */
 struct pressed {
-  struct dea_constituent film;
+  struct dea_part_material film;
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_surface *top;
@@ -178,7 +178,7 @@ static void press_on_film(size_t fine, const struct dea_contact_options *options
                                    .pre_stretch = {1.5, 1.5, 1 / 2.25},
                                    .kappa_Pa = 4e7,
                                    .thickness_m = film_h}};
-  assert_int_equal(dea_constituent_relax(&out->film), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&out->film), DEA_OK);
   const struct dea_quarter quarter = {2, 2, punch_m, frame_m, film_h, .fine = fine, .edge = 2e-4};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &out->grid), DEA_OK);
   out->solid = block_solid(ctx, out->grid, 2, &out->film, disc_held);

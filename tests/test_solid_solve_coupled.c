@@ -13,16 +13,16 @@
 
 static const double epsilon = 2.8 * DEA_EPSILON_0;
 
-static struct dea_constituent film(double pre_stretch, double thickness_m)
+static struct dea_part_material film(double pre_stretch, double thickness_m)
 {
-  struct dea_constituent layer = {
+  struct dea_part_material layer = {
       .law = dea_law_find("yeoh"),
       .param = {178.4e3, -6e3, 4.2e3},
       .pre_stretch = {pre_stretch, pre_stretch, 1 / (pre_stretch * pre_stretch)},
       .kappa_Pa = 4e7,
       .permittivity_F_per_m = epsilon,
       .thickness_m = thickness_m};
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
@@ -79,14 +79,14 @@ static void body_destroy(struct body *body)
 static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, double edge)
 {
   struct body body = {.location = {3.75e-3, 15e-3, h}};
-  const struct dea_constituent soft = film(1.5, h);
+  const struct dea_part_material soft = film(1.5, h);
   const struct dea_quarter quarter = {
       2, 2, body.location.a, body.location.b, h, .fine = fine, .edge = edge};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .constituent_count = 1,
-                                            .constituents = &soft,
-                                            .constituent_of = sheet_layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &soft,
+                                            .part_material_of = sheet_layer,
                                             .active = electrode_film,
                                             .held = disc_held,
                                             .electrode = faces,
@@ -170,12 +170,12 @@ static struct body strip(enum dea_solid_field_kind field, const struct location 
 {
   static const double one[] = {0, 1};
   struct body body = {.location = *location};
-  const struct dea_constituent soft = film(1, location->h);
+  const struct dea_part_material soft = film(1, location->h);
   const struct dea_block block = {map_strip, &body.location, cuts, one, count, 1, 0};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .constituent_count = 1,
-                                            .constituents = &soft,
+                                            .part_material_count = 1,
+                                            .part_materials = &soft,
                                             .active = everywhere,
                                             .held = strip_held,
                                             .electrode = strip_faces,
@@ -284,14 +284,14 @@ static double lift(enum dea_solid_field_kind field, bool axes)
   static const double plastic[] = {2950e6, 0.38};
   const double h = 44e-6;
   struct body body = {.location = {3.75e-3, 15e-3, h}};
-  const struct dea_constituent layers[] = {film(1.5, h), dea_constituent_bonded(plastic)};
+  const struct dea_part_material layers[] = {film(1.5, h), dea_part_material_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      3.75e-3,   15e-3,       h,           4,
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 1e-4};
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = sheet_layer,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = sheet_layer,
                                             .active = electrode_film,
                                             .held = axes ? swapped_held : disc_held,
                                             .frame = axes ? swapped : NULL,
@@ -339,13 +339,13 @@ static void test_a_field_needs_electrodes(void **state)
 {
   (void)state;
   struct body body = {.location = {3.75e-3, 15e-3, 44e-6}};
-  struct dea_constituent soft = film(1.5, 44e-6);
+  struct dea_part_material soft = film(1.5, 44e-6);
   const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
   struct dea_solid_options options = {.order_z = 2,
                                       .field = DEA_SOLID_FIELD_COUPLED,
-                                      .constituent_count = 1,
-                                      .constituents = &soft,
-                                      .constituent_of = sheet_layer,
+                                      .part_material_count = 1,
+                                      .part_materials = &soft,
+                                      .part_material_of = sheet_layer,
                                       .active = electrode_film,
                                       .held = disc_held,
                                       .electrode = no_electrode,
@@ -366,12 +366,12 @@ static const struct location small_place = {3.75e-3, 15e-3, 44e-6};
 
 static void make_solid(struct dea_context *failing)
 {
-  const struct dea_constituent soft = film(1.5, 44e-6);
+  const struct dea_part_material soft = film(1.5, 44e-6);
   const struct dea_solid_options options = {.order_z = 1,
                                             .field = DEA_SOLID_FIELD_COUPLED,
-                                            .constituent_count = 1,
-                                            .constituents = &soft,
-                                            .constituent_of = sheet_layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &soft,
+                                            .part_material_of = sheet_layer,
                                             .active = electrode_film,
                                             .held = disc_held,
                                             .electrode = faces,

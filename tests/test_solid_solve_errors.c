@@ -38,14 +38,14 @@ static struct dea_grid *grid;
 static struct dea_solid *solid;
 static const struct dea_solid_settings *settings; // NULL: the default ones
 
-static dea_status solve(const struct dea_constituent *layer, const int *bits, double voltage_V)
+static dea_status solve(const struct dea_part_material *layer, const int *bits, double voltage_V)
 {
   static const double cuts[] = {0, 0.5, 1};
   const struct dea_block block = {map_square, NULL, cuts, cuts, 2, 2, 0};
   const struct dea_ply ply = {1e-3, 1, 2};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = layer,
+                                            .part_material_count = 1,
+                                            .part_materials = layer,
                                             .active = everywhere,
                                             .held = held_at_ends,
                                             .self = bits,
@@ -66,15 +66,15 @@ static void clear(void)
   solid = NULL;
 }
 
-static struct dea_constituent film(void)
+static struct dea_part_material film(void)
 {
-  struct dea_constituent layer = {.law = dea_law_find("yeoh"),
-                                  .param = {178.4e3, -6e3, 4.2e3},
-                                  .pre_stretch = {1, 1, 1},
-                                  .kappa_Pa = 4e7,
-                                  .permittivity_F_per_m = 2.5e-11,
-                                  .thickness_m = 1e-3};
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = {.law = dea_law_find("yeoh"),
+                                    .param = {178.4e3, -6e3, 4.2e3},
+                                    .pre_stretch = {1, 1, 1},
+                                    .kappa_Pa = 4e7,
+                                    .permittivity_F_per_m = 2.5e-11,
+                                    .thickness_m = 1e-3};
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
@@ -88,7 +88,7 @@ static void expect(const char *part)
 static void test_unconstrained_bodies(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   static const int free_ends[] = {0, 0}, slides[] = {1, 1 | 4}, turns[] = {4, 4}, held[] = {7, 0};
   const int *const loose[] = {free_ends, slides, turns};
   for (size_t i = 0; i < 3; i++) {
@@ -103,7 +103,7 @@ static void test_unconstrained_bodies(void **state)
 static void test_inverted_element(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   static const int held[] = {7, 7};
   assert_int_equal(solve(&layer, held, 0), DEA_OK);
   struct dea_grid *folded = grid;
@@ -122,9 +122,9 @@ static void test_inverted_element(void **state)
 static void test_law_that_ends(void **state)
 {
   (void)state;
-  struct dea_constituent layer = film();
+  struct dea_part_material layer = film();
   static const int held[] = {7, 7};
-  dea_constituent_set_law(&layer, dea_law_find("gent"), (const double[]){100e3, 3}); // I1 - 3 < 3
+  dea_part_material_set_law(&layer, dea_law_find("gent"), (const double[]){100e3, 3}); // I1 - 3 < 3
   layer.pre_stretch[0] = layer.pre_stretch[1] = 2;
   layer.pre_stretch[2] = 0.25;
   assert_int_equal(solve(&layer, held, 0), DEA_E_DOMAIN);
@@ -137,9 +137,9 @@ static void test_law_that_ends(void **state)
 static void test_voltage_beyond_any_equilibrium(void **state)
 {
   (void)state;
-  struct dea_constituent layer = film();
-  dea_constituent_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = film();
+  dea_part_material_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   static const int held[] = {7, 0};
   struct dea_solid_report report;
   assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
@@ -156,9 +156,9 @@ static void test_voltage_beyond_any_equilibrium(void **state)
 static void test_divergence_is_seen(void **state)
 {
   (void)state;
-  struct dea_constituent layer = film();
-  dea_constituent_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = film();
+  dea_part_material_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   static const int held[] = {7, 0};
   struct dea_solid_settings early = dea_solid_settings_default();
   struct dea_solid_report all, few;
@@ -198,7 +198,7 @@ static void test_memory_that_runs_out(void **state)
     skip(); // the address space is taken
   }
   enum { CUTS = 25 };
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   static const int held[] = {7, 7};
   double cuts[CUTS];
   for (int i = 0; i < CUTS; i++) {
@@ -214,8 +214,8 @@ static void test_memory_that_runs_out(void **state)
   assert_true(now > 0);
   int failed = 0, by_petsc = 0;
   dea_status status = DEA_E_MEMORY;
-  for (rlim_t room = 8 << 20; status != DEA_OK && room < (rlim_t)4 << 30; room *= 2) {
-    small.rlim_cur = now + room;
+  for (rlim_t capacity = 8 << 20; status != DEA_OK && capacity < (rlim_t)4 << 30; capacity *= 2) {
+    small.rlim_cur = now + capacity;
     assert_int_equal(setrlimit(RLIMIT_AS, &small), 0);
     status = solve(&layer, held, 0);
     assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
@@ -236,7 +236,7 @@ static void test_memory_that_runs_out(void **state)
 static void test_settings(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   static const int held[] = {7, 0};
   struct dea_solid_settings own = dea_solid_settings_default();
   settings = &own;
@@ -269,7 +269,7 @@ static bool after_two(void *user)
 static void test_interrupted(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = film();
+  const struct dea_part_material layer = film();
   static const int held[] = {7, 7};
   struct dea_solid_report report;
   int asked = 0;

@@ -33,7 +33,7 @@ static int on_planes(const void *self, const double X[3])
   return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 
-static void slab_create(const struct dea_constituent *layer,
+static void slab_create(const struct dea_part_material *layer,
                         int (*held)(const void *self, const double X[3]))
 {
   grid = block_grid(ctx, &slab);
@@ -89,7 +89,7 @@ static double stretch(double P)
 static void test_slab_on_a_foundation(void **state)
 {
   (void)state;
-  const struct dea_constituent soft = dea_constituent_bonded((const double[]){2e5, 0});
+  const struct dea_part_material soft = dea_part_material_bonded((const double[]){2e5, 0});
   static const double stiffness[3] = {0, 0, 4e5}, traction[3] = {0, 0, -6e4};
   slab_create(&soft, sideways);
   struct dea_surface *bottom = side_create(DEA_FACE_BOTTOM), *top = side_create(DEA_FACE_TOP);
@@ -121,7 +121,7 @@ static double density(const void *self, int region, int ply)
 static void test_hanging_block(void **state)
 {
   (void)state;
-  const struct dea_constituent soft = dea_constituent_bonded((const double[]){2e5, 0});
+  const struct dea_part_material soft = dea_part_material_bonded((const double[]){2e5, 0});
   static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
   double way = 0;
   slab_create(&soft, hangs);
@@ -140,7 +140,7 @@ static void test_hanging_block(void **state)
 static void test_pressure_all_around(void **state)
 {
   (void)state;
-  const struct dea_constituent soft = dea_constituent_bonded((const double[]){8e5 / 3, 1. / 3});
+  const struct dea_part_material soft = dea_part_material_bonded((const double[]){8e5 / 3, 1. / 3});
   static const double origin[3] = {0, 0, 0}, p = 1.5e5;
   static const enum dea_face sides[] = {DEA_FACE_FIRST_HIGH, DEA_FACE_SECOND_HIGH, DEA_FACE_TOP};
   struct dea_surface *surface[3];

@@ -32,7 +32,7 @@ static double density(const void *self, int region, int ply)
 static void test_inertia_of_rigid_motions(void **state)
 {
   (void)state;
-  struct dea_constituent layer = dea_constituent_bonded((const double[]){2, 0});
+  struct dea_part_material layer = dea_part_material_bonded((const double[]){2, 0});
   layer.density_kg_per_m3 = rho;
   struct dea_grid *grid = block_grid(ctx, &slab);
   struct dea_solid *solid = block_solid(ctx, grid, slab.order_z, &layer, end_held);
@@ -169,7 +169,7 @@ static void test_mass_of_an_actuator(void **state)
     assert_int_equal(dea_plies_create(ctx, &mesh, &memory, &plies), DEA_OK);
     assert_int_equal(dea_hex_shape_create(mesh.grid->order, mesh.plate.order_z, &shape), DEA_OK);
     assert_int_equal(dea_flat_shape_create(mesh.grid->order, &flat), DEA_OK);
-    grid_moments(mesh.grid, plies.constituents, dea_plies_constituent, &mesh, sum);
+    grid_moments(mesh.grid, plies.part_materials, dea_plies_part_material, &mesh, sum);
     double copies = (double)dea_layout_sector_copies(&mesh.sector), R = d.frame_radius_m;
     double a = d.electrode_radius_m;
     double t = d.electrode_thickness_m / (d.pre_stretch * d.pre_stretch);

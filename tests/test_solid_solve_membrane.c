@@ -53,26 +53,26 @@ static struct actuator actuator_create(const struct dea_quarter *mesh, double pr
 {
   static const double plastic[] = {2950e6, 0.38};
   const double area = pre_stretch * pre_stretch;
-  struct dea_constituent layers[3] = {{.law = dea_law_find("yeoh"),
-                                       .param = {178.4e3, -6e3, 4.2e3},
-                                       .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
-                                       .kappa_Pa = 4e7,
-                                       .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                       .thickness_m = 100e-6 / area,
-                                       .relaxed = relaxed},
-                                      {0},
-                                      dea_constituent_bonded(plastic)};
+  struct dea_part_material layers[3] = {{.law = dea_law_find("yeoh"),
+                                         .param = {178.4e3, -6e3, 4.2e3},
+                                         .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
+                                         .kappa_Pa = 4e7,
+                                         .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                         .thickness_m = 100e-6 / area,
+                                         .relaxed = relaxed},
+                                        {0},
+                                        dea_part_material_bonded(plastic)};
   struct actuator it = {0};
   struct dea_quarter quarter = *mesh;
   quarter.film_thickness = layers[FILM].thickness_m;
   quarter.membrane = true;
-  assert_int_equal(dea_constituent_relax(&layers[FILM]), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layers[FILM]), DEA_OK);
   assert_int_equal(dea_membrane_bond(&layers[FILM], &layers[BOND]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &it.grid), DEA_OK);
   const struct dea_solid_options options = {.order_z = quarter.order_z,
-                                            .constituent_count = 3,
-                                            .constituents = layers,
-                                            .constituent_of = layer_of,
+                                            .part_material_count = 3,
+                                            .part_materials = layers,
+                                            .part_material_of = layer_of,
                                             .active = active,
                                             .held = held};
   assert_int_equal(dea_solid_create(ctx, it.grid, &options, &it.solid), DEA_OK);
@@ -218,14 +218,14 @@ static void test_four_fibres_as_built(void **state)
 static void test_law_that_is_refused(void **state)
 {
   (void)state;
-  const struct dea_constituent layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
-                                        .param = {100e3, 400e3, 0.8, 0.1},
-                                        .pre_stretch = {1, 1, 1},
-                                        .thickness_m = 1e-4};
+  const struct dea_part_material layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
+                                          .param = {100e3, 400e3, 0.8, 0.1},
+                                          .pre_stretch = {1, 1, 1},
+                                          .thickness_m = 1e-4};
   const struct dea_solid_options options = {.order_z = 1,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
-                                            .constituent_of = layer_of,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
+                                            .part_material_of = layer_of,
                                             .active = active,
                                             .held = held};
   const struct dea_quarter quarter = {2, 1, a_m, b_m, .fine = 1, .membrane = true};

@@ -77,13 +77,13 @@ static struct answer run(int fibres, int sectors)
 {
   static const double plastic[] = {2950e6, 0.38};
   const double pi = acos(-1);
-  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = {178.4e3, -6e3, 4.2e3},
-                                      .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                      .kappa_Pa = 4e7,
-                                      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                      .thickness_m = h_m},
-                                     dea_constituent_bonded(plastic)};
+  struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
+                                        .param = {178.4e3, -6e3, 4.2e3},
+                                        .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                        .kappa_Pa = 4e7,
+                                        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                        .thickness_m = h_m},
+                                       dea_part_material_bonded(plastic)};
   const struct dea_fibre_disc plate = {.order = 2,
                                        .order_z = 2,
                                        .fibres = fibres,
@@ -99,9 +99,9 @@ static struct answer run(int fibres, int sectors)
                                        .size = 0.5 * a_m,
                                        .edge = 0.2 * a_m};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = layer_of,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = layer_of,
                                             .active = active,
                                             .held = held,
                                             .frame = frame,
@@ -109,7 +109,7 @@ static struct answer run(int fibres, int sectors)
   struct dea_layout_mesh mesh;
   struct dea_solid *solid;
   struct dea_solid_report rest, report;
-  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layers[0]), DEA_OK);
   assert_int_equal(disc_mesh(ctx, &plate, NULL, &mesh), DEA_OK);
   const struct dea_grid *grid = mesh.grid;
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);

@@ -100,19 +100,19 @@ static struct answer solve(const struct test_case *k)
 {
   static const double plastic[] = {2950e6, 0.38};
   const double l = k->pre_stretch, h = 100e-6 / (l * l);
-  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = {178.4e3, -6e3, 4.2e3},
-                                      .pre_stretch = {l, l, 1 / (l * l)},
-                                      .kappa_Pa = 4e7,
-                                      .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                      .thickness_m = h},
-                                     dea_constituent_bonded(plastic)};
+  struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
+                                        .param = {178.4e3, -6e3, 4.2e3},
+                                        .pre_stretch = {l, l, 1 / (l * l)},
+                                        .kappa_Pa = 4e7,
+                                        .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                        .thickness_m = h},
+                                       dea_part_material_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      a_m,       b_m,         h,           k->fibres,
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 8e-4};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = sheet_layer,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = sheet_layer,
                                             .active = film_inside,
                                             .held = quarter_held,
                                             .field = k->field,
@@ -122,7 +122,7 @@ static struct answer solve(const struct test_case *k)
   struct dea_solid *solid = NULL;
   struct dea_solid_report report = {0};
   struct answer answer = {0};
-  dea_status status = dea_constituent_relax(&layers[0]);
+  dea_status status = dea_part_material_relax(&layers[0]);
   status = status == DEA_OK ? dea_grid_quarter(ctx, &quarter, &grid) : status;
   status = status == DEA_OK ? dea_solid_create(ctx, grid, &options, &solid) : status;
   if (status == DEA_OK && k->inverted) {

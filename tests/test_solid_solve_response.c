@@ -74,7 +74,7 @@ static double displacement, weight;
 static void strip_create(const struct dea_material *film, double voltage_V)
 {
   static const double cuts[] = {0, 1};
-  struct dea_constituent layers[] = {
+  struct dea_part_material layers[] = {
       {.pre_stretch = {l1, l2, 1 / (l1 * l2)}, .permittivity_F_per_m = eps, .thickness_m = h},
       {.law = dea_law_find("neo-hookean"),
        .param = {3e8},
@@ -82,14 +82,14 @@ static void strip_create(const struct dea_material *film, double voltage_V)
        .thickness_m = h,
        .density_kg_per_m3 = mass / (bar * width * h)},
   };
-  dea_constituent_set_law(&layers[0], film->law, film->param);
+  dea_part_material_set_law(&layers[0], film->law, film->param);
   const struct dea_block blocks[] = {{map_strip, NULL, cuts, cuts, 1, 1, 0},
                                      {map_bar, NULL, cuts, cuts, 1, 1, 1}};
   const struct dea_ply ply = {0, 1, 1};
   const struct dea_solid_options options = {.order_z = 1,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = layer_of,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = layer_of,
                                             .active = strip_active,
                                             .held = along_x};
   struct dea_solid_report report;
@@ -276,30 +276,30 @@ static void check_direct(const struct dea_solid_response *response, double w,
 
 static const double bender_ply_m = 200e-6;
 
-static struct dea_constituent bender_layer(void)
+static struct dea_part_material bender_layer(void)
 {
-  struct dea_constituent layer = {.law = dea_law_find("gent"),
-                                  .param = {43e3, 115},
-                                  .pre_stretch = {1, 1, 1},
-                                  .kappa_Pa = 43e5,
-                                  .permittivity_F_per_m = eps,
-                                  .thickness_m = bender_ply_m,
-                                  .density_kg_per_m3 = 1000};
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = {.law = dea_law_find("gent"),
+                                    .param = {43e3, 115},
+                                    .pre_stretch = {1, 1, 1},
+                                    .kappa_Pa = 43e5,
+                                    .permittivity_F_per_m = eps,
+                                    .thickness_m = bender_ply_m,
+                                    .density_kg_per_m3 = 1000};
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
 static void test_bender_against_static_solves(void **state)
 {
   (void)state;
-  struct dea_constituent layer = bender_layer();
+  struct dea_part_material layer = bender_layer();
   static const double cuts[] = {0, 0.3, 0.6, 1};
   static const double whole[] = {0, 1};
   const struct dea_block strip = {block_map, &bender, cuts, whole, 3, 1, 0};
   const struct dea_ply plies[] = {{bender_ply_m, 1, 2}, {bender_ply_m, 1, 2}};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = upper,
                                             .held = clamped};
   struct dea_solid_report report;
@@ -333,10 +333,10 @@ static int one_of_many(const void *self, int region, int ply)
 
 /* Response of the far end at a frequency, of the bender with so many constituents, all of one
  * material; apart: a billionth, by which the branches of each differ. */
-static void respond_with(int constituents, double apart, double out[1][2][3])
+static void respond_with(int part_materials, double apart, double out[1][2][3])
 {
   static const double cuts[] = {0, 0.5, 1}, whole[] = {0, 1}, w = 300;
-  struct dea_constituent layers[MANY];
+  struct dea_part_material layers[MANY];
   struct dea_branches branches[MANY] = {{0}};
   for (int i = 0; i < MANY; i++) {
     layers[i] = bender_layer();
@@ -345,9 +345,10 @@ static void respond_with(int constituents, double apart, double out[1][2][3])
   const struct dea_block strip = {block_map, &bender, cuts, whole, 2, 1, 0};
   const struct dea_ply plies[] = {{bender_ply_m, 1, 2}, {bender_ply_m, 1, 2}};
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = (size_t)constituents,
-                                            .constituents = layers,
-                                            .constituent_of = constituents > 1 ? one_of_many : NULL,
+                                            .part_material_count = (size_t)part_materials,
+                                            .part_materials = layers,
+                                            .part_material_of =
+                                                part_materials > 1 ? one_of_many : NULL,
                                             .active = upper,
                                             .held = clamped};
   const struct dea_damping none = {0};

@@ -13,7 +13,7 @@
 #include <math.h>
 
 static const struct block strip = {{20, 3, 0.2}, {16, 3, 1}, 2, 2};
-static struct dea_constituent layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
+static struct dea_part_material layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
 
 static int ends(const void *self, const double X[3])
 {
@@ -67,7 +67,7 @@ static void test_strip(void **state)
   (void)state;
   static const double shares[] = {0.0036, 0.0045, 0.006, 0.008, 0.01};
   layer.law = dea_law_find("neo-hookean");
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   struct dea_grid *grid = block_grid(ctx, &strip);
   int negative[5];
   double before_Pa = 0;
@@ -86,7 +86,7 @@ static void test_many_modes(void **state)
   (void)state;
   static const int modes[] = {8, 40};
   layer.law = dea_law_find("neo-hookean");
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   struct dea_grid *grid = block_grid(ctx, &strip);
   double energy_J[2];
   int negative;

@@ -6,7 +6,7 @@
 #include "model/model.h"
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/standing.h"
+#include "model/solid/adapter/solver_state.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "testing.h"
@@ -129,7 +129,7 @@ static void create(int fibres, enum dea_outer_end end)
   device = slack(fibres, end);
   assert_int_equal(dea_solid_module.create(ctx, &device, &(struct dea_model_settings){0}, &made),
                    DEA_OK);
-  solid = ((const struct dea_standing *)made)->ending.owner.solid;
+  solid = ((const struct dea_solver_state *)made)->outcome.owner.solid;
   assert_int_equal(dea_device_mesh_create(ctx, &device, &(struct dea_model_settings){0}, &mesh),
                    DEA_OK);
   grid = mesh.grid; // as the model has it

@@ -65,13 +65,13 @@ static dea_status spring(const void *self, size_t piece, const double *u, enum d
 static void check_capacity(int order)
 {
   const double V = 100;
-  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = {178.4e3, -6e3, 4.2e3},
-                                      .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                      .kappa_Pa = 4e7,
-                                      .permittivity_F_per_m = epsilon,
-                                      .thickness_m = h_m},
-                                     dea_constituent_bonded((const double[]){2.75e9, 0.375})};
+  struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
+                                        .param = {178.4e3, -6e3, 4.2e3},
+                                        .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                        .kappa_Pa = 4e7,
+                                        .permittivity_F_per_m = epsilon,
+                                        .thickness_m = h_m},
+                                       dea_part_material_bonded((const double[]){2.75e9, 0.375})};
   const struct dea_quarter quarter = {.order = order,
                                       .order_z = order,
                                       .a = a_m,
@@ -85,9 +85,9 @@ static void check_capacity(int order)
                                       .edge = 0.5e-3};
   const struct dea_solid_options options = {.order_z = order,
                                             .field = DEA_SOLID_FIELD_COUPLED,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = sheet_layer,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = sheet_layer,
                                             .held = held,
                                             .frame = swapped,
                                             .electrode = faces};
@@ -95,7 +95,7 @@ static void check_capacity(int order)
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report rest, report;
-  assert_int_equal(dea_constituent_relax(&layers[0]), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layers[0]), DEA_OK);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);

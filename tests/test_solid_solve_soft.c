@@ -12,7 +12,7 @@
 #include <string.h>
 
 static const struct block strip = {{20, 3, 0.2}, {16, 3, 1}, 2, 2};
-static struct dea_constituent layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
+static struct dea_part_material layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
 
 static int ends(const void *self, const double X[3])
 {
@@ -102,7 +102,7 @@ int main(void)
                                      cmocka_unit_test(test_small_push),
                                      cmocka_unit_test(test_is_its_own_again)};
   layer.law = dea_law_find("neo-hookean");
-  return dea_constituent_relax(&layer) == DEA_OK
+  return dea_part_material_relax(&layer) == DEA_OK
              ? cmocka_run_group_tests(tests, solid_set_up, solid_tear_down)
              : 1;
 }

@@ -11,7 +11,7 @@
 static const double mu = 1e5;
 static const double length = 2;
 static const struct block bar = {{2, 1, 1}, {3, 1, 1}, 2, 2};
-static struct dea_constituent soft; // of modulus mu, Poisson's ratio 0
+static struct dea_part_material soft; // of modulus mu, Poisson's ratio 0
 
 /* Slides on the three planes through the origin. */
 static int on_planes(const void *self, const double X[3])
@@ -102,8 +102,8 @@ static void test_prescribed_in_local_axes(void **state)
   (void)state;
   struct dea_grid *grid = block_grid(ctx, &bar);
   const struct dea_solid_options options = {.order_z = bar.order_z,
-                                            .constituent_count = 1,
-                                            .constituents = &soft,
+                                            .part_material_count = 1,
+                                            .part_materials = &soft,
                                             .held = on_planes_turned,
                                             .frame = turned_end};
   struct dea_solid *solid;
@@ -200,7 +200,7 @@ static void test_arguments(void **state)
 int main(void)
 {
   static const double param[] = {2e5, 0}; // modulus mu
-  soft = dea_constituent_bonded(param);
+  soft = dea_part_material_bonded(param);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bar_is_pulled_and_pushed),
       cmocka_unit_test(test_prescribed_in_local_axes),

@@ -61,20 +61,20 @@ static void hang_weights(struct film *film)
 static void film_create(struct film *film)
 {
   const double p = film->pre_stretch;
-  struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
-                                  .param = {mu[0]},
-                                  .pre_stretch = {p, p, 1 / (p * p)},
-                                  .kappa_Pa = 100 * mu[0],
-                                  .permittivity_F_per_m = eps,
-                                  .thickness_m = film->block.size[2],
-                                  .density_kg_per_m3 = film->density_kg_per_m3};
+  struct dea_part_material layer = {.law = dea_law_find("neo-hookean"),
+                                    .param = {mu[0]},
+                                    .pre_stretch = {p, p, 1 / (p * p)},
+                                    .kappa_Pa = 100 * mu[0],
+                                    .permittivity_F_per_m = eps,
+                                    .thickness_m = film->block.size[2],
+                                    .density_kg_per_m3 = film->density_kg_per_m3};
   struct dea_solid_report report;
   double most = -1;
   film->grid = block_grid(ctx, &film->block);
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = film->block.order_z,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = everywhere,
                                             .held = film->held,
                                             .self = film};

@@ -29,17 +29,17 @@ static dea_status try(struct dea_context *with, const struct block *block, const
                       int (*held)(const void *self, const double X[3]))
 {
   static const double mu_1[] = {2, 0};
-  struct dea_constituent layer = dea_constituent_bonded(mu_1);
+  struct dea_part_material layer = dea_part_material_bonded(mu_1);
   if (law != NULL) {
-    dea_constituent_set_law(&layer, dea_law_find(law), (const double[]){1});
+    dea_part_material_set_law(&layer, dea_law_find(law), (const double[]){1});
     layer.kappa_Pa = 100;
     layer.permittivity_F_per_m = 1;
   }
   layer.thickness_m = block->size[2];
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   const struct dea_solid_options options = {.order_z = block->order_z,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = all_active,
                                             .held = held,
                                             .self = block};

@@ -40,14 +40,14 @@ static double pre_stress(const struct dea_material *material, double l)
   return l * plane.s1;
 }
 
-static struct dea_constituent film_layer(const struct dea_material *material, double l)
+static struct dea_part_material film_layer(const struct dea_material *material, double l)
 {
-  struct dea_constituent layer = {.pre_stretch = {l, l, 1 / (l * l)},
-                                  .kappa_Pa = 100 * material->law->shear_modulus(material->param),
-                                  .thickness_m = h,
-                                  .density_kg_per_m3 = rho};
-  dea_constituent_set_law(&layer, material->law, material->param);
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  struct dea_part_material layer = {.pre_stretch = {l, l, 1 / (l * l)},
+                                    .kappa_Pa = 100 * material->law->shear_modulus(material->param),
+                                    .thickness_m = h,
+                                    .density_kg_per_m3 = rho};
+  dea_part_material_set_law(&layer, material->law, material->param);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return layer;
 }
 
@@ -107,7 +107,7 @@ static void modes_out_of_plane(struct dea_solid *solid, const struct dea_grid *g
 static void check_rectangle(const struct dea_material *material, double l, bool membrane)
 {
   const struct block film = {{frame_x, frame_y, membrane ? 0 : h}, {8, 5, 1}, 3, membrane ? 1 : 2};
-  const struct dea_constituent layer = film_layer(material, l);
+  const struct dea_part_material layer = film_layer(material, l);
   struct dea_grid *grid = block_grid(ctx, &film);
   struct dea_solid *solid = block_solid(ctx, grid, film.order_z, &layer, all_around);
   double square[MODES], exact[MODES], tolerance = membrane ? 1e-4 : 6e-4;
@@ -132,7 +132,7 @@ static void test_tense_rectangle(void **state)
 
 /* ---- what frequencies must not depend on, and what they must show ---- */
 
-static void lowest(const struct dea_constituent *layer, const struct block *block, size_t count,
+static void lowest(const struct dea_part_material *layer, const struct block *block, size_t count,
                    double *square)
 {
   struct dea_grid *grid = block_grid(ctx, block);
@@ -152,7 +152,7 @@ static void test_no_trace_of_kappa(void **state)
   (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
   const struct block thick = {{frame_x, frame_y, 4e-3}, {4, 3, 1}, 2, 2};
-  struct dea_constituent layer = film_layer(&gent, 1.5);
+  struct dea_part_material layer = film_layer(&gent, 1.5);
   double soft[ALL], stiff[ALL];
   lowest(&layer, &thick, ALL, soft);
   layer.kappa_Pa *= 16;
@@ -178,12 +178,12 @@ static void test_voltage_takes_tension_away(void **state)
   enum { OUT_OF_PLANE = 9, UNSTABLE_MAX = 27 }; // free nodes and their components
   const struct block film = {{frame_x, frame_y, 0}, {2, 2, 1}, 2, 1};
   struct dea_material gent = test_material("gent", 43e3, 115, 0);
-  struct dea_constituent layer = film_layer(&gent, 2);
+  struct dea_part_material layer = film_layer(&gent, 2);
   layer.permittivity_F_per_m = 1e-11;
   struct dea_grid *grid = block_grid(ctx, &film);
   const struct dea_solid_options options = {.order_z = 1,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = everywhere,
                                             .held = all_around};
   struct dea_solid *solid;
@@ -225,7 +225,7 @@ static void test_modes_that_come_twice(void **state)
 {
   (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
-  const struct dea_constituent layer = film_layer(&gent, 4);
+  const struct dea_part_material layer = film_layer(&gent, 4);
   const struct block film = {{frame_y, frame_y, 0}, {6, 6, 1}, 3, 1};
   double square[MODES];
   struct dea_grid *grid = block_grid(ctx, &film);
@@ -244,7 +244,7 @@ static void test_what_is_refused(void **state)
 {
   (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
-  struct dea_constituent layer = film_layer(&gent, 2);
+  struct dea_part_material layer = film_layer(&gent, 2);
   const struct block film = {{frame_x, frame_y, 0}, {2, 2, 1}, 2, 1};
   struct dea_grid *grid = block_grid(ctx, &film);
   double square[1];

@@ -16,7 +16,7 @@ static void test_wrinkled_is_uniaxial_and_slack_is_nothing(void **state)
 {
   (void)state;
   static const double widths[] = {0.8, 0.5, 0.1, 0};
-  struct dea_constituent layer = yeoh_film(1);
+  struct dea_part_material layer = yeoh_film(1);
   struct dea_membrane_point point;
   double F[6], direction[3], l = 1.4, I1 = l * l + 2 / l - 3;
   layer.relaxed = true;
@@ -49,8 +49,8 @@ static void test_relaxed_energy_is_the_lowest(void **state)
 {
   (void)state;
   const double G = 1.2, field = 6e7;
-  const struct dea_constituent plain = yeoh_film(G);
-  struct dea_constituent layer = plain;
+  const struct dea_part_material plain = yeoh_film(G);
+  struct dea_part_material layer = plain;
   bool seen[3] = {false, false, false};
   layer.relaxed = true;
   for (double m1 = 0.76; m1 < 1.3; m1 += 0.09) {
@@ -84,7 +84,7 @@ static void test_derivatives_of_the_relaxed_energy(void **state)
 {
   (void)state;
   const double d = 1e-6, field = 6e7;
-  struct dea_constituent layer = yeoh_film(1.2);
+  struct dea_part_material layer = yeoh_film(1.2);
   layer.relaxed = true;
   bool seen[3] = {false, false, false};
   for (double m2 = 0.3; m2 < 1.3; m2 += 0.05) {
@@ -118,8 +118,8 @@ static void test_no_natural_width(void **state)
 {
   (void)state;
   static const double neo[DEA_LAW_PARAM_MAX] = {80e3}, gent[DEA_LAW_PARAM_MAX] = {80e3, 7};
-  struct dea_constituent soft = film(dea_law_find("neo-hookean"), neo, 1, 1);
-  struct dea_constituent locking = film(dea_law_find("gent"), gent, 1, 1);
+  struct dea_part_material soft = film(dea_law_find("neo-hookean"), neo, 1, 1);
+  struct dea_part_material locking = film(dea_law_find("gent"), gent, 1, 1);
   struct dea_membrane_point point;
   double F[6], peak = 0.687365 * sqrt(80e3 / permittivity); // benchmark 2
   soft.relaxed = locking.relaxed = true;

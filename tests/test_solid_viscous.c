@@ -29,7 +29,7 @@ static void strains_at(double size, double C[6], double inverse[6])
   dea_viscous_strain(F, cof, J, C, inverse);
 }
 
-static struct dea_point point_at(const struct dea_constituent *layer, const double F[9],
+static struct dea_point point_at(const struct dea_part_material *layer, const double F[9],
                                  bool tangent)
 {
   struct dea_point point = {0};
@@ -43,7 +43,7 @@ static void test_derivatives(void **state)
 {
   (void)state;
   const double B[12] = {0, 0, 0, 0, 0, 0, 3e5, 2e5, 1.5e5, 2e4, -4e4, 3e4};
-  const struct dea_constituent layer = {.viscous = B, .viscous_Pa = 2.2e5};
+  const struct dea_part_material layer = {.viscous = B, .viscous_Pa = 2.2e5};
   const double d = 1e-6;
   double F[9];
   deform(0.4, 0.03, F);
@@ -80,7 +80,7 @@ static void test_held_film_has_no_stress(void **state)
     for (int a = 0; a < 6; a++) {
       B[6 + a] = branch.modulus_Pa * share * inverse[a];
     }
-    const struct dea_constituent layer = {.viscous = B, .viscous_Pa = branch.modulus_Pa * share};
+    const struct dea_part_material layer = {.viscous = B, .viscous_Pa = branch.modulus_Pa * share};
     const struct dea_point point = point_at(&layer, F, false);
     for (int a = 0; a < 9; a++) {
       assert_close(point.P[a], 0, 0, 1e-14 * branch.modulus_Pa);
@@ -88,7 +88,7 @@ static void test_held_film_has_no_stress(void **state)
   }
   const double B[12] = {0, 0, 0, 0, 0, 0, 1e5, 1e5, 1e5, 0, 0, 0};
   const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, e[9] = {0.3, 1, -2, 0.4, 1.1, 5, 0.6, 2, -0.7};
-  const struct dea_constituent layer = {.viscous = B, .viscous_Pa = 1e5};
+  const struct dea_part_material layer = {.viscous = B, .viscous_Pa = 1e5};
   const struct dea_point rest = point_at(&layer, one, true);
   double twice = 0, wanted = 0;
   for (int a = 0; a < 9; a++) {
@@ -121,7 +121,7 @@ static void test_pre_stretch_drops_out(void **state)
   for (int a = 0; a < 9; a++) {
     FG[a] = F[a] * G[a % 3];
   }
-  const struct dea_constituent unstretched = {.viscous = there}, stretched = {.viscous = here};
+  const struct dea_part_material unstretched = {.viscous = there}, stretched = {.viscous = here};
   assert_close(point_at(&unstretched, FG, false).W + trace[0],
                point_at(&stretched, F, false).W + trace[1], 1e-13, 0);
 }
@@ -182,7 +182,7 @@ static void test_work_is_stored_or_dissipated(void **state)
       B[6 + k] = branch.modulus_Pa * known;
       A[k] = known + step.end.w1 * to[k];
     }
-    const struct dea_constituent layer = {
+    const struct dea_part_material layer = {
         .viscous = B, .viscous_Pa = branch.modulus_Pa * (step.end.e + step.end.w0)};
     const struct dea_point point = point_at(&layer, next, false);
     for (int a = 0; a < 9; a++) {
@@ -198,21 +198,21 @@ static void test_work_is_stored_or_dissipated(void **state)
 }
 
 /* A film of a law so soft that it counts for nothing. */
-static struct dea_constituent soft_film(const double B[6])
+static struct dea_part_material soft_film(const double B[6])
 {
-  struct dea_constituent layer = {.pre_stretch = {1, 1, 1}, .viscous = B};
-  dea_constituent_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){1e-12});
+  struct dea_part_material layer = {.pre_stretch = {1, 1, 1}, .viscous = B};
+  dea_part_material_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){1e-12});
   return layer;
 }
 
-static void membrane_at(const struct dea_constituent *layer, const double F[6], double field,
+static void membrane_at(const struct dea_part_material *layer, const double F[6], double field,
                         struct dea_membrane_point *out)
 {
   assert_int_equal(dea_membrane_point_in_time(layer, layer->viscous, F, field, out), DEA_OK);
 }
 
 /* Derivatives of a membrane by differences, to a share of the modulus. */
-static void check_membrane(const struct dea_constituent *layer, const double F[6], double field,
+static void check_membrane(const struct dea_part_material *layer, const double F[6], double field,
                            double share)
 {
   const double d = 1e-6, small = share * 3e5;
@@ -239,7 +239,7 @@ static void test_flat(void **state)
   (void)state;
   const double B[6] = {3e5, 2e5, 1.5e5, 0, 0, 3e4};
   const double F[6] = {1.2, 0.1, -0.2, 0.9, 0.3, 0.4};
-  struct dea_constituent layer = soft_film(B);
+  struct dea_part_material layer = soft_film(B);
   struct dea_membrane_point at;
   check_membrane(&layer, F, 0, 1e-9);
   double C[6], inverse[6];
@@ -271,12 +271,12 @@ static void test_relaxed_with_branches(void **state)
   const double places[CASES][3] = {
       {0.6, 1.2, 0}, {0.5, 0.7, 0.1}, {0.3, 1.6, 0.2}, {1.3, 0.4, -0.1}};
   const double yeoh[] = {178.4e3, -6e3, 4.2e3};
-  struct dea_constituent layer = {.pre_stretch = {0.95, 1.15, 1 / (0.95 * 1.15 - 1e-4)},
-                                  .pre_shear = 0.01,
-                                  .permittivity_F_per_m = 2.5e-11,
-                                  .viscous = B};
+  struct dea_part_material layer = {.pre_stretch = {0.95, 1.15, 1 / (0.95 * 1.15 - 1e-4)},
+                                    .pre_shear = 0.01,
+                                    .permittivity_F_per_m = 2.5e-11,
+                                    .viscous = B};
   bool seen[3] = {false};
-  dea_constituent_set_law(&layer, dea_law_find("yeoh"), yeoh);
+  dea_part_material_set_law(&layer, dea_law_find("yeoh"), yeoh);
   for (int i = 0; i < CASES; i++) {
     double F[6], least = INFINITY, width = 0.8;
     const double *c = places[i];

@@ -84,26 +84,26 @@ static inline int clamped(const void *self, const double X[3])
 static inline void body_create(struct body *body)
 {
   double cuts[33], one[2] = {0, 1}, p = body->pre_stretch;
-  struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
-                                  .param = {mu[0]},
-                                  .pre_stretch = {p, p, 1 / (p * p)},
-                                  .kappa_Pa = 100 * mu[0],
-                                  .permittivity_F_per_m = eps,
-                                  .thickness_m = body->size[2],
-                                  .density_kg_per_m3 = body->density_kg_per_m3};
+  struct dea_part_material layer = {.law = dea_law_find("neo-hookean"),
+                                    .param = {mu[0]},
+                                    .pre_stretch = {p, p, 1 / (p * p)},
+                                    .kappa_Pa = 100 * mu[0],
+                                    .permittivity_F_per_m = eps,
+                                    .thickness_m = body->size[2],
+                                    .density_kg_per_m3 = body->density_kg_per_m3};
   struct dea_solid_report report;
   bool square = body->held == clamped;
   for (size_t i = 0; i <= body->count; i++) {
     cuts[i] = (double)i / (double)body->count;
   }
-  verify_ok(ctx, dea_constituent_relax(&layer));
+  verify_ok(ctx, dea_part_material_relax(&layer));
   const struct dea_block block = {
       map_body, body, cuts, square ? cuts : one, body->count, square ? body->count : 1, 0};
   const struct dea_ply ply = {body->size[2], 1, 2};
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, body->size[0], &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = all_active,
                                             .held = body->held,
                                             .self = body};

@@ -2,7 +2,7 @@
  * norms of what a solid gets wrong.
  *
  * Of a state only x(X), the pressure and the potential are written down. F and Grad phi are their
- * complex steps; the elastic stress is that of the layer (dea_constituent_point), the electric
+ * complex steps; the elastic stress is that of the layer (dea_part_material_point), the electric
  * stress and the displacement D are complex steps of the energy -(eps/2) |cof(F) E|^2; Div P and
  * Div D are central differences of order 8 of P(F(X)) and D(F(X), E(X)). Body forces b = -Div P,
  * tractions P N, charges rho = Div D and -D N come in as integrals with the shape functions over
@@ -27,7 +27,7 @@ struct exact {
   double (*pressure)(const double X[3]);  // NULL: compressible
   number (*potential)(const number X[3]); // NULL: no field
   bool held_all;
-  struct dea_constituent layer;
+  struct dea_part_material layer;
 };
 
 static const double tiny = 1e-30; // of a complex step
@@ -81,7 +81,7 @@ static void exact_stress(const struct exact *exact, const double X[3], double P[
   struct dea_point point;
   exact_place(exact, X, x, F);
   double J = dea_cofactors(F, cof), p = exact->pressure == NULL ? 0 : exact->pressure(X);
-  if (dea_constituent_point(&exact->layer, F, cof, J, p, 0, true, &point) != DEA_OK) {
+  if (dea_part_material_point(&exact->layer, F, cof, J, p, 0, true, &point) != DEA_OK) {
     fprintf(stderr, "%s: the law has no stress there\n", exact->name);
     exit(1);
   }

@@ -69,20 +69,20 @@ static inline number potential_linear(const number X[3])
 }
 
 /* Layers with a shear modulus of 1 and, with a field, a permittivity of 1. */
-static inline struct dea_constituent layer_of(bool compressible, bool field)
+static inline struct dea_part_material layer_of(bool compressible, bool field)
 {
   static const double mu_1[] = {2.6, 0.3}; // Lame constants 1 and 1.5
-  struct dea_constituent layer = dea_constituent_bonded(mu_1);
+  struct dea_part_material layer = dea_part_material_bonded(mu_1);
   layer.thickness_m = 1;
   if (!compressible) {
-    layer = (struct dea_constituent){.law = dea_law_find("yeoh"),
-                                     .param = {yeoh[0], yeoh[1], yeoh[2]},
-                                     .pre_stretch = {1, 1, 1},
-                                     .kappa_Pa = 100,
-                                     .thickness_m = 1};
+    layer = (struct dea_part_material){.law = dea_law_find("yeoh"),
+                                       .param = {yeoh[0], yeoh[1], yeoh[2]},
+                                       .pre_stretch = {1, 1, 1},
+                                       .kappa_Pa = 100,
+                                       .thickness_m = 1};
   }
   layer.permittivity_F_per_m = field ? 1 : 0;
-  verify_ok(states_ctx, dea_constituent_relax(&layer));
+  verify_ok(states_ctx, dea_part_material_relax(&layer));
   return layer;
 }
 
@@ -160,8 +160,8 @@ static inline void solve(const struct exact *exact, struct dea_grid *grid, doubl
   const struct dea_solid_options options = {
       .order_z = order,
       .field = exact->potential != NULL ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
-      .constituent_count = 1,
-      .constituents = &exact->layer,
+      .part_material_count = 1,
+      .part_materials = &exact->layer,
       .held = states_held,
       .electrode = states_electrode,
       .self = exact};

@@ -277,7 +277,7 @@ def plies_of(number, coarse):
                                             ", order: 1, order_z: 1" if coarse else "")]) + "\n"
 
 
-OURS = "ours: not converged"
+OURS = "the solver did not converge; please report"
 
 
 def verdict_of(summary, code, stderr):

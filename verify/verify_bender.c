@@ -123,13 +123,13 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  struct dea_constituent layer = {.law = dea_law_find("gent"),
-                                  .param = {gent[0], gent[1]},
-                                  .pre_stretch = {1, 1, 1},
-                                  .kappa_Pa = 100,
-                                  .permittivity_F_per_m = 1,
-                                  .thickness_m = 1};
-  verify_ok(ctx, dea_constituent_relax(&layer));
+  struct dea_part_material layer = {.law = dea_law_find("gent"),
+                                    .param = {gent[0], gent[1]},
+                                    .pre_stretch = {1, 1, 1},
+                                    .kappa_Pa = 100,
+                                    .permittivity_F_per_m = 1,
+                                    .thickness_m = 1};
+  verify_ok(ctx, dea_part_material_relax(&layer));
   for (size_t i = 0; i <= along; i++) {
     cuts[i] = (double)i / (double)along;
   }
@@ -138,8 +138,8 @@ static void bend(enum dea_solid_field_kind kind, bool clamp, size_t along, size_
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, plies, 2, NULL, -1, length, &grid));
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = kind,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = upper,
                                             .held = clamp ? clamped : mirrored,
                                             .electrode = electrode};

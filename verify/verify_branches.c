@@ -9,7 +9,7 @@
 #include "model/model.h"
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/standing.h"
+#include "model/solid/adapter/solver_state.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "study/design_file.h"
@@ -97,7 +97,7 @@ static void solid_create(const char *refinement, const char *fibres, const char 
   device_create(refinement, "any", fibres, end);
   const struct dea_model_settings settings = dea_model_settings_of(design);
   verify_ok(ctx, dea_solid_module.create(ctx, device, &settings, &made));
-  solid = ((const struct dea_standing *)made)->ending.owner.solid;
+  solid = ((const struct dea_solver_state *)made)->outcome.owner.solid;
   verify_ok(ctx, dea_device_mesh_create(ctx, device, &settings, &mesh));
   grid = mesh.grid; // as the model has it
   centre = dea_grid_nearest(grid, (const double[3]){0});

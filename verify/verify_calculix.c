@@ -60,15 +60,15 @@ static struct answer ours(int elements, double stretch)
   const struct dea_block block = {map_plate,        NULL, cuts, cuts, (size_t)elements,
                                   (size_t)elements, 0};
   const struct dea_ply ply = {half_thickness_m, 2, 2};
-  struct dea_constituent rubber = {.law = dea_law_find("yeoh"),
-                                   .param = {yeoh[0], yeoh[1], yeoh[2]},
-                                   .pre_stretch = {1, 1, 1},
-                                   .kappa_Pa = 4e7};
+  struct dea_part_material rubber = {.law = dea_law_find("yeoh"),
+                                     .param = {yeoh[0], yeoh[1], yeoh[2]},
+                                     .pre_stretch = {1, 1, 1},
+                                     .kappa_Pa = 4e7};
   const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &rubber, .held = held};
+      .order_z = 2, .part_material_count = 1, .part_materials = &rubber, .held = held};
   struct dea_grid *grid;
   struct dea_solid *solid;
-  verify_ok(ctx, dea_constituent_relax(&rubber));
+  verify_ok(ctx, dea_part_material_relax(&rubber));
   verify_ok(ctx, dea_grid_create(ctx, 2, &block, 1, &ply, 1, NULL, 0, half_length_m, &grid));
   verify_ok(ctx, dea_solid_create(ctx, grid, &options, &solid));
   const double pull = (stretch - 1) * half_length_m, step = 1e-3 * half_length_m;

@@ -88,18 +88,18 @@ static struct cone cone_create(const struct mesh *mesh)
 {
   static const double nowhere[6] = {0};
   double along[CUTS_MAX + 1], around[CUTS_MAX + 1], area = pre_stretch * pre_stretch;
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {178.4e3, -6e3, 4.2e3},
-                                 .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
-                                 .kappa_Pa = 4e7,
-                                 .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                 .thickness_m = mesh->thin * unstretched_m / area};
+  struct dea_part_material film = {.law = dea_law_find("yeoh"),
+                                   .param = {178.4e3, -6e3, 4.2e3},
+                                   .pre_stretch = {pre_stretch, pre_stretch, 1 / area},
+                                   .kappa_Pa = 4e7,
+                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                   .thickness_m = mesh->thin * unstretched_m / area};
   struct cone it = {.hub = {.held = HUB_HELD}};
   graded_cuts(mesh->along, mesh->grade, along);
   graded_cuts(mesh->around, 1, around);
   const struct dea_block block = {map_annulus, NULL, along, around, mesh->along, mesh->around, 0};
   const struct dea_ply ply = {mesh->membrane ? 0 : film.thickness_m, 1, 2};
-  verify_ok(ctx, dea_constituent_relax(&film));
+  verify_ok(ctx, dea_part_material_relax(&film));
   verify_ok(ctx, dea_grid_create(ctx, mesh->order, &block, 1, &ply, 1, NULL,
                                  mesh->membrane ? 0 : -0.5 * film.thickness_m, frame_m, &it.grid));
   size_t nodes = it.grid->node_count;
@@ -112,8 +112,8 @@ static struct cone cone_create(const struct mesh *mesh)
     follows[n] = hypot(it.grid->X[3 * n], it.grid->X[3 * n + 1]) < hub_m * (1 + 1e-9);
   }
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &film,
+                                            .part_material_count = 1,
+                                            .part_materials = &film,
                                             .active = everywhere,
                                             .held = held,
                                             .body_count = 1,

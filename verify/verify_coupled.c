@@ -57,7 +57,7 @@ static bool active(const void *self, int region, int ply)
   return region != FIBRE && ply < (int)through;
 }
 
-static int constituent_of(const void *self, int region, int ply)
+static int part_material_of(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;
@@ -88,14 +88,14 @@ static void create(enum dea_solid_field_kind field, struct dea_grid **grid,
   struct dea_ply plies[THROUGH_MAX + 1];
   struct dea_block blocks[2];
   double cuts[2][ALONG_MAX + 1];
-  struct dea_constituent layers[] = {{.law = dea_law_find("yeoh"),
-                                      .param = {178.4e3, -6e3, 4.2e3},
-                                      .pre_stretch = {stretch, stretch, 1 / (stretch * stretch)},
-                                      .kappa_Pa = 4e7,
-                                      .permittivity_F_per_m = epsilon,
-                                      .thickness_m = h_m},
-                                     dea_constituent_bonded((const double[]){2950e6, 0.38})};
-  verify_ok(ctx, dea_constituent_relax(&layers[0]));
+  struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
+                                        .param = {178.4e3, -6e3, 4.2e3},
+                                        .pre_stretch = {stretch, stretch, 1 / (stretch * stretch)},
+                                        .kappa_Pa = 4e7,
+                                        .permittivity_F_per_m = epsilon,
+                                        .thickness_m = h_m},
+                                       dea_part_material_bonded((const double[]){2950e6, 0.38})};
+  verify_ok(ctx, dea_part_material_relax(&layers[0]));
   set_plies(plies);
   for (int i = 0; i < 2; i++) {
     double length = parts[i].to_m - parts[i].from_m, fine = plies[0].thickness_m;
@@ -106,9 +106,9 @@ static void create(enum dea_solid_field_kind field, struct dea_grid **grid,
   }
   const struct dea_solid_options options = {.order_z = 2,
                                             .field = field,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = constituent_of,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = part_material_of,
                                             .active = active,
                                             .held = held,
                                             .electrode = electrode};

@@ -36,19 +36,19 @@ static int held(const void *self, const double X[3])
 static struct disc disc_create(double a_m, double H0_m, size_t fine, double edge_m)
 {
   const double h = H0_m / 2.25;
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {yeoh[0], yeoh[1], yeoh[2]},
-                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                 .kappa_Pa = 4e7,
-                                 .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                 .thickness_m = h};
+  struct dea_part_material film = {.law = dea_law_find("yeoh"),
+                                   .param = {yeoh[0], yeoh[1], yeoh[2]},
+                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                   .kappa_Pa = 4e7,
+                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                   .thickness_m = h};
   struct disc disc = {.a_m = a_m, .H0_m = H0_m};
-  verify_ok(ctx, dea_constituent_relax(&film));
+  verify_ok(ctx, dea_part_material_relax(&film));
   const struct dea_quarter quarter = {2, 2, a_m, frame_m, h, .fine = fine, .edge = edge_m};
   verify_ok(ctx, dea_grid_quarter(ctx, &quarter, &disc.grid));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &film,
+                                            .part_material_count = 1,
+                                            .part_materials = &film,
                                             .active = inner_region,
                                             .held = held};
   verify_ok(ctx, dea_solid_create(ctx, disc.grid, &options, &disc.solid));

@@ -160,16 +160,16 @@ static int disc_held(const void *self, const double X[3])
 static struct answer disc_answer(struct dea_grid *grid, int electrode_region)
 {
   const double h = H0_m / 2.25;
-  struct dea_constituent film = {.law = dea_law_find("yeoh"),
-                                 .param = {178.4e3, -6e3, 4.2e3}, // paper Table 1
-                                 .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                 .kappa_Pa = 4e7,
-                                 .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                 .thickness_m = h};
-  verify_ok(states_ctx, dea_constituent_relax(&film));
+  struct dea_part_material film = {.law = dea_law_find("yeoh"),
+                                   .param = {178.4e3, -6e3, 4.2e3}, // paper Table 1
+                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                   .kappa_Pa = 4e7,
+                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                   .thickness_m = h};
+  verify_ok(states_ctx, dea_part_material_relax(&film));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &film,
+                                            .part_material_count = 1,
+                                            .part_materials = &film,
                                             .active = on_electrode,
                                             .held = disc_held,
                                             .self = &electrode_region};

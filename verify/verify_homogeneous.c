@@ -40,13 +40,13 @@ static void cut(size_t count, double *cuts)
   }
 }
 
-static void body_create(struct body *body, struct dea_constituent layer,
+static void body_create(struct body *body, struct dea_part_material layer,
                         int (*held)(const void *self, const double X[3]))
 {
   double cuts[2][65];
   layer.thickness_m = body->size[2];
   layer.kappa_Pa = 100 * layer.law->shear_modulus(layer.param);
-  verify_ok(ctx, dea_constituent_relax(&layer));
+  verify_ok(ctx, dea_part_material_relax(&layer));
   layer.kappa_s_Pa *= body->kappa_s > 0 ? body->kappa_s : 1;
   cut(body->count, cuts[0]);
   cut(body->across, cuts[1]);
@@ -55,8 +55,8 @@ static void body_create(struct body *body, struct dea_constituent layer,
   verify_ok(ctx, dea_grid_create(ctx, body->order, &block, 1, &ply, 1, NULL, 0, body->size[0],
                                  &body->grid));
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = all_active,
                                             .held = held,
                                             .self = body};
@@ -172,9 +172,9 @@ static struct body film_create(const struct film *film, int order, double kappa_
                       .across = 1,
                       .order = order,
                       .kappa_s = kappa_s};
-  struct dea_constituent layer = {.pre_stretch = {pre, pre, 1 / (pre * pre)},
-                                  .permittivity_F_per_m = film->permittivity};
-  dea_constituent_set_law(&layer, dea_law_find(film->law), film->param);
+  struct dea_part_material layer = {.pre_stretch = {pre, pre, 1 / (pre * pre)},
+                                    .permittivity_F_per_m = film->permittivity};
+  dea_part_material_set_law(&layer, dea_law_find(film->law), film->param);
   body_create(&body, layer, on_planes);
   if (pre > 1) {
     hang_weights(&body);
@@ -395,10 +395,10 @@ static double follow_buckled(struct body *body, const struct dea_continuation_po
 static void buckle(size_t count, int order, double h, double tolerance)
 {
   const double pi = acos(-1), critical = 4 * pi * pi / 3 * h * h;
-  const struct dea_constituent layer = {.law = dea_law_find("neo-hookean"),
-                                        .param = {1},
-                                        .pre_stretch = {1, 1, 1},
-                                        .permittivity_F_per_m = 1};
+  const struct dea_part_material layer = {.law = dea_law_find("neo-hookean"),
+                                          .param = {1},
+                                          .pre_stretch = {1, 1, 1},
+                                          .permittivity_F_per_m = 1};
   struct body body = {.size = {1, 0.1, h}, .count = count, .across = 1, .order = order};
   struct dea_continuation_point point = {0}, fork;
   body_create(&body, layer, clamped_in_plane_strain);

@@ -22,14 +22,14 @@ struct shell {
 static void shell_fill(struct shell *shell, int (*held)(const void *self, const double X[3]))
 {
   static const double origin[3] = {0, 0, 0};
-  struct dea_constituent rubber = {.law = dea_law_find("neo-hookean"),
-                                   .param = {1},
-                                   .pre_stretch = {1, 1, 1},
-                                   .kappa_Pa = 100,
-                                   .thickness_m = shell->H};
-  verify_ok(ctx, dea_constituent_relax(&rubber));
+  struct dea_part_material rubber = {.law = dea_law_find("neo-hookean"),
+                                     .param = {1},
+                                     .pre_stretch = {1, 1, 1},
+                                     .kappa_Pa = 100,
+                                     .thickness_m = shell->H};
+  verify_ok(ctx, dea_part_material_relax(&rubber));
   const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &rubber, .held = held};
+      .order_z = 2, .part_material_count = 1, .part_materials = &rubber, .held = held};
   verify_ok(ctx, dea_solid_create(ctx, shell->grid, &options, &shell->solid));
   verify_ok(ctx, dea_surface_create(ctx, shell->grid, DEA_FACE_BOTTOM, NULL, NULL, &shell->inside));
   verify_ok(ctx, dea_pressure_create(ctx, shell->inside, origin, &shell->pressure));

@@ -83,9 +83,9 @@ static struct plate plate_create(const struct problem *problem, int order, const
   static const double nowhere[3] = {0, 0, 0};
   static double elastic[2]; // lent to the solid; one plate at a time
   elastic[0] = problem->modulus;
-  const struct dea_constituent layer = dea_constituent_bonded(elastic);
+  const struct dea_part_material layer = dea_part_material_bonded(elastic);
   const struct dea_solid_options options = {
-      .order_z = 2, .constituent_count = 1, .constituents = &layer, .held = not_held};
+      .order_z = 2, .part_material_count = 1, .part_materials = &layer, .held = not_held};
   const double traction[3] = {0, 0, problem->traction};
   struct plate plate = {.grid = unit_square(order, count, problem->thickness)};
   struct dea_surface *end;

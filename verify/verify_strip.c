@@ -23,7 +23,7 @@ struct strip {
   bool membrane;
   int halvings; // of the film's thickness, down to the elements at the beam
   double cuts[PARTS][CUTS_MAX + 1];
-  struct dea_constituent layers[LAYERS];
+  struct dea_part_material layers[LAYERS];
   struct dea_grid *grid;
   struct dea_solid *solid;
 };
@@ -120,16 +120,16 @@ static void make_layers(struct strip *s)
 {
   static const double yeoh[3] = {178.4e3, -6e3, 4.2e3}; // paper Table 1
   const double scale = usual_m / s->h_m;
-  s->layers[LAYER_FILM] = (struct dea_constituent){.law = dea_law_find("yeoh"),
-                                                   .pre_stretch = {1.5, 1.5, 1 / 2.25},
-                                                   .kappa_Pa = 4e7 * scale,
-                                                   .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
-                                                   .thickness_m = s->h_m};
+  s->layers[LAYER_FILM] = (struct dea_part_material){.law = dea_law_find("yeoh"),
+                                                     .pre_stretch = {1.5, 1.5, 1 / 2.25},
+                                                     .kappa_Pa = 4e7 * scale,
+                                                     .permittivity_F_per_m = 2.8 * DEA_EPSILON_0,
+                                                     .thickness_m = s->h_m};
   for (int i = 0; i < 3; i++) {
     s->layers[LAYER_FILM].param[i] = scale * yeoh[i];
   }
-  s->layers[LAYER_BEAM] = dea_constituent_bonded((const double[]){2950e6, 0.38});
-  verify_ok(ctx, dea_constituent_relax(&s->layers[LAYER_FILM]));
+  s->layers[LAYER_BEAM] = dea_part_material_bonded((const double[]){2950e6, 0.38});
+  verify_ok(ctx, dea_part_material_relax(&s->layers[LAYER_FILM]));
   verify_ok(ctx, dea_membrane_bond(&s->layers[LAYER_FILM], &s->layers[LAYER_BOND]));
 }
 
@@ -164,9 +164,9 @@ static struct answer solve(double h_m, bool membrane, int halvings)
   make_layers(&strip);
   make_grid(&strip);
   const struct dea_solid_options options = {.order_z = 2,
-                                            .constituent_count = LAYERS,
-                                            .constituents = strip.layers,
-                                            .constituent_of = layer_of,
+                                            .part_material_count = LAYERS,
+                                            .part_materials = strip.layers,
+                                            .part_material_of = layer_of,
                                             .active = active,
                                             .held = held,
                                             .self = &strip};

@@ -62,12 +62,12 @@ static double closed_form_Hz(const struct film *film, double tension_Pa)
 static double computed_Hz(const struct film *film, bool membrane, double kappa, double voltage_V)
 {
   const double mu = film->material.law->shear_modulus(film->material.param), l = film->stretch;
-  struct dea_constituent layer = {.pre_stretch = {l, l, 1 / (l * l)},
-                                  .kappa_Pa = kappa * mu,
-                                  .permittivity_F_per_m = 1e-11,
-                                  .thickness_m = film->thickness_m,
-                                  .density_kg_per_m3 = film->density_kg_per_m3};
-  dea_constituent_set_law(&layer, film->material.law, film->material.param);
+  struct dea_part_material layer = {.pre_stretch = {l, l, 1 / (l * l)},
+                                    .kappa_Pa = kappa * mu,
+                                    .permittivity_F_per_m = 1e-11,
+                                    .thickness_m = film->thickness_m,
+                                    .density_kg_per_m3 = film->density_kg_per_m3};
+  dea_part_material_set_law(&layer, film->material.law, film->material.param);
   enum { PIECES = 8 };
   double cuts[2][PIECES + 1], square;
   for (int i = 0; i < 2; i++) { // the film bends over about its thickness at the frame
@@ -81,15 +81,15 @@ static double computed_Hz(const struct film *film, bool membrane, double kappa, 
   const struct dea_block block = {map_film, film, cuts[0], cuts[1], PIECES, PIECES, 0};
   const struct dea_ply ply = {membrane ? 0 : film->thickness_m, 1, membrane ? 1 : 2};
   const struct dea_solid_options options = {.order_z = membrane ? 1 : 2,
-                                            .constituent_count = 1,
-                                            .constituents = &layer,
+                                            .part_material_count = 1,
+                                            .part_materials = &layer,
                                             .active = everywhere,
                                             .held = in_frame,
                                             .self = film};
   struct dea_grid *grid;
   struct dea_solid *solid;
   struct dea_solid_report report;
-  verify_ok(runs_ctx, dea_constituent_relax(&layer));
+  verify_ok(runs_ctx, dea_part_material_relax(&layer));
   verify_ok(runs_ctx,
             dea_grid_create(runs_ctx, 3, &block, 1, &ply, 1, NULL, 0, film->size[0], &grid));
   verify_ok(runs_ctx, dea_solid_create(runs_ctx, grid, &options, &solid));

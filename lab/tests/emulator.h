@@ -49,12 +49,12 @@ static inline void emulator_send(struct emulator *emulator, int connection, cons
 
 /* Waits for bytes, which are logged too; 0 when the other end is gone or the test is over. */
 static inline size_t emulator_receive(struct emulator *emulator, int connection, char *bytes,
-                                      size_t room)
+                                      size_t capacity)
 {
   struct pollfd entry = {.fd = connection, .events = POLLIN};
   do { // what was sent before the end is still taken
     if (poll(&entry, 1, 5) > 0) {
-      ssize_t got = recv(connection, bytes, room, 0);
+      ssize_t got = recv(connection, bytes, capacity, 0);
       size_t length = got > 0 ? (size_t)got : 0, at = atomic_load(&emulator->got);
       if (at + length < sizeof emulator->log) {
         memcpy(emulator->log + at, bytes, length);

@@ -183,15 +183,15 @@ API DAQmxGetReadAvailSampPerChan(void *task, uint32_t *samples)
 }
 
 API DAQmxReadAnalogF64(void *task, int32_t samples, double timeout_s, uint32_t layout,
-                       double *volts, uint32_t room, int32_t *read, uint32_t *reserved);
+                       double *volts, uint32_t capacity, int32_t *read, uint32_t *reserved);
 API DAQmxReadAnalogF64(void *task, int32_t samples, double timeout_s, uint32_t layout,
-                       double *volts, uint32_t room, int32_t *read, uint32_t *reserved)
+                       double *volts, uint32_t capacity, int32_t *read, uint32_t *reserved)
 {
   struct task *t = task;
   (void)timeout_s, (void)reserved;
   *read = 0;
   CALL("Read", "%d %u", samples, layout);
-  if (room < (uint32_t)(samples * t->channels)) {
+  if (capacity < (uint32_t)(samples * t->channels)) {
     return -200229;
   }
   for (; *read < samples && fake.read < fake.written; ++*read) {

@@ -78,7 +78,7 @@ static void test_simulated(void **state)
   assert_contains(command_out, "output            at 0 V");
   assert_contains(command_out, "Next:  dea reduce s.h5");
   assert_int_equal(command_run(text), 5);
-  assert_contains(command_err, "'s.h5' is there already");
+  assert_contains(command_err, "'s.h5' already exists");
   snprintf(again, sizeof again, "%s --force --json", text);
   assert_int_equal(command_run(again), 0);
   json_t *json = json_loads(command_out, 0, &error);

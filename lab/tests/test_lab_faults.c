@@ -131,12 +131,12 @@ static void begin_fault(const struct run *r, const char *folder, struct supply *
   }
 }
 
-static size_t read_text(const char *folder, const char *name, char *bytes, size_t room)
+static size_t read_text(const char *folder, const char *name, char *bytes, size_t capacity)
 {
   char path[700];
   snprintf(path, sizeof path, "%s/%s", folder, name);
   FILE *file = fopen(path, "rb");
-  size_t length = file != NULL ? fread(bytes, 1, room - 1, file) : 0;
+  size_t length = file != NULL ? fread(bytes, 1, capacity - 1, file) : 0;
   bytes[length] = '\0';
   if (file != NULL) {
     fclose(file);

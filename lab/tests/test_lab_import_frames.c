@@ -210,12 +210,12 @@ static void test_days(void **state)
   static const int lengths[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   double wanted = 0;
   for (int year = 1970; year < 2110; year++) {
-    bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+    bool branch_jump = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
     for (int month = 1; month <= 12; month++) {
       char text[40];
       double days, seconds;
       bool dated;
-      int last = lengths[month - 1] + (leap && month == 2);
+      int last = lengths[month - 1] + (branch_jump && month == 2);
       snprintf(text, sizeof text, "%04d-%02d-01 01:02:03.25", year, month);
       assert_true(dea_clock_text((struct dea_slice){text, strlen(text)}, &days, &seconds, &dated));
       assert_true(dated && days == wanted && seconds == 3723.25);

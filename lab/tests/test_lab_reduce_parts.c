@@ -106,12 +106,12 @@ static void test_filter_has_its_cutoff_and_no_delay(void **state)
 static void test_a_list_grows(void **state)
 {
   (void)state;
-  size_t room = 0;
+  size_t capacity = 0;
   size_t *list = NULL;
   for (size_t n = 0; n < 1000; n++) {
-    size_t before = room;
-    list = dea_list_grow(ctx, list, n, sizeof *list, &room);
-    assert_true(room > n && (before > n ? room == before : room >= 2 * before));
+    size_t before = capacity;
+    list = dea_list_grow(ctx, list, n, sizeof *list, &capacity);
+    assert_true(capacity > n && (before > n ? capacity == before : capacity >= 2 * before));
     list[n] = n;
   }
   for (size_t n = 0; n < 1000; n++) {

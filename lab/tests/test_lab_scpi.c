@@ -645,7 +645,7 @@ static void test_late_samples(void **state)
   o.turned_s = 0.2;
   assert_int_equal(dea_timed_take(ctx, &o, 0.021 + 0.2), DEA_OK); // 0.2 s late
   o = (struct dea_timed_output){
-      .rate_Hz = 100, .queue_s = 0.25, .behind_s = 1, .queue = o.queue, .room = o.room};
+      .rate_Hz = 100, .queue_s = 0.25, .behind_s = 1, .queue = o.queue, .capacity = o.capacity};
   o.clock_s = o.waiting_s = NAN;
   assert_int_equal(dea_timed_put(ctx, &o, volts, 5, NULL, NULL), DEA_OK);
   dea_timed_start(&o, 0);

@@ -416,8 +416,8 @@ static void test_real_pace(void **state)
                                                      "duration: 50 ms}\nsim: {pace: real}\n");
   struct dea_instrument *bench;
   struct record r = {.inputs = 4, .points = 320};
-  static double volts[50], room[50 * 4 + 4], z_m[320 * 50], frame_s[50];
-  r.volts = room;
+  static double volts[50], capacity[50 * 4 + 4], z_m[320 * 50], frame_s[50];
+  r.volts = capacity;
   r.z_m = z_m;
   r.frame_s = frame_s;
   const struct dea_sink sink = {&r, take_samples, take_profile, NULL};
@@ -446,7 +446,7 @@ static void test_errors(void **state)
   } wrong[] = {
       {HEAD IDEAL "waveform: " WAVE "\nsim: {model: lumpd}\n", "did you mean 'lumped'", 11},
       {HEAD IDEAL "waveform: " WAVE "\nsim: {model: axisymmetric}\n",
-       "model 'axisymmetric' knows no time", 11},
+       "model 'axisymmetric' does not compute time", 11},
       {HEAD IDEAL "waveform: " WAVE "\nsim: {voltage_nois: 3 V}\n", "did you mean 'voltage_noise'",
        11},
       {"dea-protocol: 1\n" IDEAL "waveform: " WAVE "\nsim: {kind: sim}\n", "needs a film", 4},

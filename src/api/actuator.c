@@ -1,5 +1,5 @@
 /* Lists of models and studies, and one actuator step by step. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "result/columns.h"
 #include "study/force.h"
@@ -56,14 +56,14 @@ struct dea_actuator_handle {
   struct dea_model *model;
   struct dea_load_point point;     // the last one
   struct dea_monitor_set monitors; // whose values it lends
-  struct door_mesh *mesh;
+  struct api_mesh *mesh;
 };
 
 void dea_actuator_free(dea_actuator *actuator)
 {
   if (actuator != NULL) {
     struct dea_context *ctx = actuator->ctx->inner;
-    door_mesh_free(ctx, actuator->mesh);
+    api_mesh_free(ctx, actuator->mesh);
     if (actuator->model != NULL) {
       actuator->type->destroy(ctx, actuator->model);
     }
@@ -77,17 +77,17 @@ void dea_actuator_free(dea_actuator *actuator)
 dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const char *model,
                              dea_actuator **out)
 {
-  struct dea_context *inner = door_begin(ctx);
+  struct dea_context *inner = api_begin(ctx);
   *out = NULL;
   const struct dea_model_type *type;
-  DEA_TRY(inner, door_model_find(ctx, model, &type));
+  DEA_TRY(inner, api_model_find(ctx, model, &type));
   dea_actuator *actuator = dea_alloc(inner, 1, sizeof *actuator);
   if (actuator == NULL) {
     return DEA_E_MEMORY;
   }
   actuator->ctx = ctx;
   actuator->point = dea_load_point_empty();
-  dea_status status = door_design_build(inner, design, &actuator->design, &actuator->device);
+  dea_status status = api_design_build(inner, design, &actuator->design, &actuator->device);
   if (status == DEA_OK) {
     actuator->type = type;
     status = dea_model_create(inner, actuator->type, actuator->design, actuator->device,
@@ -107,9 +107,9 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
 /* Begins a call that changes the actuator: what it has lent goes. */
 static dea_status begin(dea_context *ctx, dea_actuator *actuator)
 {
-  struct dea_context *inner = door_begin(ctx);
-  DEA_TRY(inner, door_check_owner(ctx, actuator->ctx, "actuator"));
-  door_mesh_free(inner, actuator->mesh);
+  struct dea_context *inner = api_begin(ctx);
+  DEA_TRY(inner, api_check_owner(ctx, actuator->ctx, "actuator"));
+  api_mesh_free(inner, actuator->mesh);
   actuator->mesh = NULL;
   return DEA_OK;
 }
@@ -163,7 +163,7 @@ dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, cons
       return DEA_E_MEMORY;
     }
     dea_status status =
-        door_unknown(ctx, "quantity", key, known, (size_t)dea_column_count(ctx->inner));
+        api_unknown(ctx, "quantity", key, known, (size_t)dea_column_count(ctx->inner));
     dea_free(ctx->inner, known);
     return status;
   } else {
@@ -179,8 +179,8 @@ dea_status dea_actuator_mesh(dea_context *ctx, dea_actuator *actuator, const dea
   DEA_TRY(ctx->inner, begin(ctx, actuator));
   DEA_TRY(ctx->inner,
           dea_model_fields(ctx->inner, actuator->type, actuator->model, DEA_FIELDS_VOLUME, &mesh));
-  DEA_TRY(ctx->inner, door_mesh_make(ctx->inner, actuator->type->name, actuator->point.voltage_V,
-                                     mesh, true, &actuator->mesh));
+  DEA_TRY(ctx->inner, api_mesh_make(ctx->inner, actuator->type->name, actuator->point.voltage_V,
+                                    mesh, true, &actuator->mesh));
   *out = &actuator->mesh->shown;
   return DEA_OK;
 }

@@ -1,5 +1,5 @@
 /* Contexts of the public interface: they hand the callbacks on. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "base/version.h"
 
@@ -130,7 +130,7 @@ const dea_finding *dea_finding_at(dea_context *ctx, size_t index)
   return &ctx->shown[index];
 }
 
-struct dea_context *door_begin(dea_context *ctx)
+struct dea_context *api_begin(dea_context *ctx)
 {
   dea_finding_clear(ctx->inner);
   dea_context_clear(ctx->inner);
@@ -138,7 +138,7 @@ struct dea_context *door_begin(dea_context *ctx)
   return ctx->inner;
 }
 
-dea_status door_check_owner(dea_context *ctx, const dea_context *owner, const char *what)
+dea_status api_check_owner(dea_context *ctx, const dea_context *owner, const char *what)
 {
   return ctx == owner
              ? DEA_OK
@@ -146,10 +146,10 @@ dea_status door_check_owner(dea_context *ctx, const dea_context *owner, const ch
                         "the %s belongs to the context that made it, this is another one", what);
 }
 
-dea_status door_check_numbers(dea_context *ctx, const struct door_numbers *numbers, size_t count)
+dea_status api_check_numbers(dea_context *ctx, const struct api_numbers *numbers, size_t count)
 {
   for (size_t k = 0; k < count; k++) {
-    const struct door_numbers *n = &numbers[k];
+    const struct api_numbers *n = &numbers[k];
     for (size_t i = 0; n->values != NULL && i < n->count; i++) {
       if (!isfinite(n->values[i]) && !(n->endless && !isnan(n->values[i]))) {
         return n->count > 1
@@ -164,8 +164,8 @@ dea_status door_check_numbers(dea_context *ctx, const struct door_numbers *numbe
   return DEA_OK;
 }
 
-dea_status door_unknown(dea_context *ctx, const char *what, const char *name,
-                        const char *const known[], size_t count)
+dea_status api_unknown(dea_context *ctx, const char *what, const char *name,
+                       const char *const known[], size_t count)
 {
   const char *nearest = count > 0 ? dea_nearest_name(name, known, count) : NULL;
   return nearest != NULL
@@ -174,15 +174,15 @@ dea_status door_unknown(dea_context *ctx, const char *what, const char *name,
              : dea_fail(ctx->inner, DEA_E_ARGUMENT, "there is no %s '%.100s'", what, name);
 }
 
-void *door_grow(struct dea_context *ctx, void *items, size_t count, size_t *room, size_t size)
+void *api_grow(struct dea_context *ctx, void *items, size_t count, size_t *capacity, size_t size)
 {
-  if (count < *room) {
+  if (count < *capacity) {
     return items;
   }
-  size_t wanted = *room > 0 ? 2 * *room : 32;
+  size_t wanted = *capacity > 0 ? 2 * *capacity : 32;
   void *moved = dea_resize(ctx, items, wanted, size);
   if (moved != NULL) {
-    *room = wanted;
+    *capacity = wanted;
   }
   return moved;
 }

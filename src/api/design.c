@@ -1,5 +1,5 @@
 /* Designs of the public interface: the text as it was read, what was set since, and both read. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "base/file.h"
 #include "base/write_file.h"
@@ -13,8 +13,8 @@
 #include <stdint.h>
 #include <string.h>
 
-struct dea_override *door_overrides(struct dea_context *ctx, const struct door_setting *settings,
-                                    size_t count)
+struct dea_override *api_overrides(struct dea_context *ctx, const struct api_setting *settings,
+                                   size_t count)
 {
   struct dea_override *overrides = dea_alloc(ctx, count, sizeof *overrides);
   for (size_t i = 0; overrides != NULL && i < count; i++) {
@@ -25,11 +25,11 @@ struct dea_override *door_overrides(struct dea_context *ctx, const struct door_s
 
 /* The design with settings in the place of its own. */
 static dea_status read_with(struct dea_context *ctx, const dea_design *design,
-                            const struct door_setting *settings, size_t count,
+                            const struct api_setting *settings, size_t count,
                             struct dea_design **out)
 {
   *out = NULL;
-  struct dea_override *overrides = door_overrides(ctx, settings, count);
+  struct dea_override *overrides = api_overrides(ctx, settings, count);
   if (overrides == NULL) {
     return DEA_E_MEMORY;
   }
@@ -39,8 +39,8 @@ static dea_status read_with(struct dea_context *ctx, const dea_design *design,
   return status;
 }
 
-dea_status door_design_build(struct dea_context *ctx, const dea_design *design,
-                             struct dea_design **inner, struct dea_device **device)
+dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
+                            struct dea_design **inner, struct dea_device **device)
 {
   *device = NULL;
   DEA_TRY(ctx, read_with(ctx, design, design->settings, design->setting_count, inner));
@@ -76,7 +76,7 @@ static dea_status take_inner(struct dea_context *ctx, dea_design *design, struct
   return DEA_OK;
 }
 
-static void free_settings(struct dea_context *ctx, struct door_setting *settings, size_t count)
+static void free_settings(struct dea_context *ctx, struct api_setting *settings, size_t count)
 {
   for (size_t i = 0; settings != NULL && i < count; i++) {
     dea_free(ctx, settings[i].key);
@@ -103,7 +103,7 @@ void dea_design_free(dea_design *design)
 
 /* A design of these bytes (copied) and settings (taken, also on failure). */
 static dea_status make(dea_context *owner, const char *name, const char *bytes, size_t length,
-                       struct door_setting *settings, size_t setting_count, dea_design **out)
+                       struct api_setting *settings, size_t setting_count, dea_design **out)
 {
   struct dea_context *ctx = owner->inner;
   dea_design *design = dea_alloc(ctx, 1, sizeof *design);
@@ -140,7 +140,7 @@ dea_status dea_design_open(dea_context *ctx, const char *path, dea_design **out)
   char *bytes;
   size_t length;
   *out = NULL;
-  door_begin(ctx);
+  api_begin(ctx);
   DEA_TRY(ctx->inner, dea_file_read(ctx->inner, path, DEA_YAML_SIZE_MAX, &bytes, &length));
   dea_status status = make(ctx, path, bytes, length, NULL, 0, out);
   dea_free(ctx->inner, bytes);
@@ -150,7 +150,7 @@ dea_status dea_design_open(dea_context *ctx, const char *path, dea_design **out)
 dea_status dea_design_parse(dea_context *ctx, const char *text, const char *name, dea_design **out)
 {
   *out = NULL;
-  door_begin(ctx);
+  api_begin(ctx);
   DEA_TRY(ctx->inner, make(ctx, name != NULL ? name : "design", text, strlen(text), NULL, 0, out));
   return DEA_OK;
 }
@@ -158,7 +158,7 @@ dea_status dea_design_parse(dea_context *ctx, const char *text, const char *name
 /* Number of lines of the form "key=value" in a text; their places into settings, if not NULL:
  * copies. *failed: set when there is no memory. */
 static size_t split_settings(struct dea_context *ctx, const char *text,
-                             struct door_setting *settings, bool *failed)
+                             struct api_setting *settings, bool *failed)
 {
   size_t count = 0;
   for (const char *line = text; line != NULL && *line != '\0';) {
@@ -176,12 +176,12 @@ static size_t split_settings(struct dea_context *ctx, const char *text,
   return count;
 }
 
-dea_status door_design_make(dea_context *ctx, const char *name, const char *text, const char *set,
-                            dea_design **out)
+dea_status api_design_make(dea_context *ctx, const char *name, const char *text, const char *set,
+                           dea_design **out)
 {
   bool failed = false;
   size_t count = split_settings(ctx->inner, set, NULL, &failed);
-  struct door_setting *settings = dea_alloc(ctx->inner, count, sizeof *settings);
+  struct api_setting *settings = dea_alloc(ctx->inner, count, sizeof *settings);
   if (settings != NULL) {
     split_settings(ctx->inner, set, settings, &failed);
   }
@@ -194,7 +194,7 @@ dea_status door_design_make(dea_context *ctx, const char *name, const char *text
 }
 
 /* Where a key is among settings; count when it is not there. */
-static size_t find_setting(const struct door_setting *settings, size_t count, const char *key)
+static size_t find_setting(const struct api_setting *settings, size_t count, const char *key)
 {
   size_t i = 0;
   while (i < count && strcmp(settings[i].key, key) != 0) {
@@ -207,9 +207,9 @@ static size_t find_setting(const struct door_setting *settings, size_t count, co
  * holds. out: owned by the caller, NULL on failure. */
 static dea_status join_settings(struct dea_context *ctx, const dea_design *design,
                                 const char *const *keys, const char *const *values, size_t count,
-                                struct door_setting **out, size_t *out_count)
+                                struct api_setting **out, size_t *out_count)
 {
-  struct door_setting *settings = dea_alloc(ctx, design->setting_count + count, sizeof *settings);
+  struct api_setting *settings = dea_alloc(ctx, design->setting_count + count, sizeof *settings);
   size_t n = 0;
   bool failed = settings == NULL;
   for (size_t i = 0; !failed && i < design->setting_count + count; i++) {
@@ -239,10 +239,10 @@ static dea_status join_settings(struct dea_context *ctx, const dea_design *desig
 
 dea_status dea_design_copy(dea_context *ctx, const dea_design *design, dea_design **out)
 {
-  struct door_setting *settings;
+  struct api_setting *settings;
   size_t count;
   *out = NULL;
-  door_begin(ctx);
+  api_begin(ctx);
   DEA_TRY(ctx->inner, join_settings(ctx->inner, design, NULL, NULL, 0, &settings, &count));
   DEA_TRY(ctx->inner, make(ctx, design->name, design->bytes, design->length, settings, count, out));
   return DEA_OK;
@@ -251,11 +251,11 @@ dea_status dea_design_copy(dea_context *ctx, const dea_design *design, dea_desig
 dea_status dea_design_set_all(dea_context *ctx, dea_design *design, const char *const *keys,
                               const char *const *values, size_t count)
 {
-  struct dea_context *inner_ctx = door_begin(ctx);
-  struct door_setting *settings;
+  struct dea_context *inner_ctx = api_begin(ctx);
+  struct api_setting *settings;
   size_t setting_count;
   struct dea_design *inner;
-  DEA_TRY(inner_ctx, door_check_owner(ctx, design->ctx, "design"));
+  DEA_TRY(inner_ctx, api_check_owner(ctx, design->ctx, "design"));
   DEA_TRY(inner_ctx,
           join_settings(inner_ctx, design, keys, values, count, &settings, &setting_count));
   dea_status status = read_with(inner_ctx, design, settings, setting_count, &inner);
@@ -298,7 +298,7 @@ dea_status dea_design_get(dea_context *ctx, const dea_design *design, const char
   for (size_t i = 0; i < count; i++) {
     known[i] = design->values[i].key;
   }
-  dea_status status = door_unknown(ctx, "value", key, known, count);
+  dea_status status = api_unknown(ctx, "value", key, known, count);
   dea_free(ctx->inner, known);
   return status;
 }
@@ -306,7 +306,7 @@ dea_status dea_design_get(dea_context *ctx, const dea_design *design, const char
 dea_status dea_design_text(dea_context *ctx, dea_design *design, const char **out)
 {
   *out = NULL;
-  DEA_TRY(ctx->inner, door_check_owner(ctx, design->ctx, "design"));
+  DEA_TRY(ctx->inner, api_check_owner(ctx, design->ctx, "design"));
   if (design->setting_count == 0) {
     *out = design->bytes;
     return DEA_OK;
@@ -333,11 +333,11 @@ dea_status dea_design_write(dea_context *ctx, dea_design *design, const char *pa
 
 dea_status dea_design_check(dea_context *ctx, const dea_design *design)
 {
-  struct dea_context *inner_ctx = door_begin(ctx);
+  struct dea_context *inner_ctx = api_begin(ctx);
   struct dea_design *inner;
   struct dea_device *device;
   struct dea_job job = {.folder = NULL};
-  dea_status status = door_design_build(inner_ctx, design, &inner, &device);
+  dea_status status = api_design_build(inner_ctx, design, &inner, &device);
   if (inner != NULL) {
     const dea_status known = dea_job_models(inner_ctx, inner, &job);
     status = status != DEA_OK ? status : known;
@@ -353,9 +353,9 @@ dea_status dea_design_check(dea_context *ctx, const dea_design *design)
 
 dea_status dea_design_svg(dea_context *ctx, dea_design *design, const char **out)
 {
-  struct dea_context *inner_ctx = door_begin(ctx);
+  struct dea_context *inner_ctx = api_begin(ctx);
   *out = NULL;
-  DEA_TRY(inner_ctx, door_check_owner(ctx, design->ctx, "design"));
+  DEA_TRY(inner_ctx, api_check_owner(ctx, design->ctx, "design"));
   if (design->svg.length == 0) {
     struct dea_device *device = NULL;
     DEA_TRY(inner_ctx, dea_device_build(inner_ctx, design->inner, &device));

@@ -1,5 +1,5 @@
 /* Meshes with fields in their public form. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "result/copies.h"
 
@@ -7,16 +7,16 @@
 #include <stdio.h>
 #include <string.h>
 
-void door_mesh_free(struct dea_context *ctx, struct door_mesh *mesh)
+void api_mesh_free(struct dea_context *ctx, struct api_mesh *mesh)
 {
   if (mesh != NULL) {
-    door_mesh_free(ctx, mesh->whole);
+    api_mesh_free(ctx, mesh->whole);
     dea_field_mesh_destroy(ctx, mesh->owned);
     dea_free(ctx, mesh);
   }
 }
 
-static void show_fields(struct door_mesh *mesh)
+static void show_fields(struct api_mesh *mesh)
 {
   const struct dea_field_mesh *inner = mesh->inner;
   for (size_t i = 0; i < inner->field_count; i++) {
@@ -33,10 +33,10 @@ static void show_fields(struct door_mesh *mesh)
   }
 }
 
-dea_status door_mesh_make(struct dea_context *ctx, const char *name, double voltage_V,
-                          struct dea_field_mesh *inner, bool own, struct door_mesh **out)
+dea_status api_mesh_make(struct dea_context *ctx, const char *name, double voltage_V,
+                         struct dea_field_mesh *inner, bool own, struct api_mesh **out)
 {
-  struct door_mesh *mesh = dea_alloc(ctx, 1, sizeof *mesh);
+  struct api_mesh *mesh = dea_alloc(ctx, 1, sizeof *mesh);
   *out = mesh;
   if (mesh == NULL) {
     if (own) {
@@ -75,21 +75,21 @@ const dea_mesh *dea_result_mesh_at(const dea_result *result, size_t index)
 dea_status dea_result_mesh(dea_context *ctx, dea_result *result, const char *name, int whole,
                            const dea_mesh **out)
 {
-  struct door_mesh *mesh = NULL;
+  struct api_mesh *mesh = NULL;
   *out = NULL;
-  DEA_TRY(ctx->inner, door_check_owner(ctx, result->ctx, "result"));
+  DEA_TRY(ctx->inner, api_check_owner(ctx, result->ctx, "result"));
   for (size_t i = 0; i < result->mesh_count; i++) {
     mesh = strcmp(result->meshes[i]->name, name) == 0 ? result->meshes[i] : mesh;
   }
   if (mesh == NULL) {
-    return door_unknown(ctx, "mesh", name, NULL, 0);
+    return api_unknown(ctx, "mesh", name, NULL, 0);
   }
   if (whole != 0 && mesh->inner->fold > 0) {
     if (mesh->whole == NULL) {
       struct dea_field_mesh *all;
       DEA_TRY(ctx->inner, dea_field_mesh_whole(ctx->inner, mesh->inner, &all));
-      DEA_TRY(ctx->inner, door_mesh_make(ctx->inner, mesh->name, mesh->shown.voltage_V, all, true,
-                                         &mesh->whole));
+      DEA_TRY(ctx->inner, api_mesh_make(ctx->inner, mesh->name, mesh->shown.voltage_V, all, true,
+                                        &mesh->whole));
     }
     mesh = mesh->whole;
   }

@@ -1,5 +1,5 @@
 /* Results of the public interface: what studies left, as named arrays and texts. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "base/write_file.h"
 #include "job/design_of_run.h"
@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-dea_run_options door_run_options(const dea_run_options *options)
+dea_run_options api_run_options(const dea_run_options *options)
 {
   dea_run_options all = DEA_RUN_OPTIONS_INIT;
   if (options != NULL) { // of an older or a newer caller
@@ -46,8 +46,8 @@ struct filling {
 static double *add_array(struct filling *f, const struct dea_column *column, size_t count)
 {
   struct dea_context *ctx = f->result->ctx->inner;
-  void *moved = f->status == DEA_OK ? door_grow(ctx, f->result->arrays, f->result->array_count,
-                                                &f->result->array_room, sizeof *f->result->arrays)
+  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->arrays, f->result->array_count,
+                                               &f->result->array_room, sizeof *f->result->arrays)
                                     : NULL;
   if (moved != NULL) {
     f->result->arrays = moved;
@@ -74,8 +74,8 @@ static double *add_array(struct filling *f, const struct dea_column *column, siz
 static void add_text(struct filling *f, const char *key, const char *text)
 {
   struct dea_context *ctx = f->result->ctx->inner;
-  void *moved = f->status == DEA_OK ? door_grow(ctx, f->result->texts, f->result->text_count,
-                                                &f->result->text_room, sizeof *f->result->texts)
+  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->texts, f->result->text_count,
+                                               &f->result->text_room, sizeof *f->result->texts)
                                     : NULL;
   if (moved == NULL) {
     f->status = DEA_E_MEMORY;
@@ -84,10 +84,10 @@ static void add_text(struct filling *f, const char *key, const char *text)
   char name[NAME_SIZE];
   snprintf(name, sizeof name, "%.*s%s%s", NAME_SIZE / 2, f->folder, f->folder[0] != '\0' ? "/" : "",
            key);
-  struct door_setting *entry = &((struct door_setting *)moved)[f->result->text_count];
+  struct api_setting *entry = &((struct api_setting *)moved)[f->result->text_count];
   f->result->texts = moved;
-  *entry = (struct door_setting){dea_copy_text(ctx, name, SIZE_MAX),
-                                 dea_copy_text(ctx, text != NULL ? text : "", SIZE_MAX)};
+  *entry = (struct api_setting){dea_copy_text(ctx, name, SIZE_MAX),
+                                dea_copy_text(ctx, text != NULL ? text : "", SIZE_MAX)};
   f->result->text_count++;
   if (entry->key == NULL || entry->value == NULL) {
     f->status = DEA_E_MEMORY;
@@ -248,13 +248,13 @@ static void add_meshes(struct filling *f)
     const struct dea_surface_record *record = &inner->surfaces[i];
     char name[2 * DEA_NAME_SIZE];
     snprintf(name, sizeof name, "%s/surface/%04zu", record->model, record->point);
-    f->status = door_mesh_make(result->ctx->inner, name, record->voltage_V, record->mesh, false,
-                               &result->meshes[i]);
+    f->status = api_mesh_make(result->ctx->inner, name, record->voltage_V, record->mesh, false,
+                              &result->meshes[i]);
     result->mesh_count += f->status == DEA_OK;
   }
 }
 
-dea_status door_result_list(dea_result *result)
+dea_status api_result_list(dea_result *result)
 {
   struct filling f = {.result = result, .status = DEA_OK};
   const struct dea_result *inner = result->inner;
@@ -286,7 +286,7 @@ void dea_result_free(dea_result *result)
     dea_free(ctx, result->texts[i].value);
   }
   for (size_t i = 0; i < result->mesh_count; i++) {
-    door_mesh_free(ctx, result->meshes[i]);
+    api_mesh_free(ctx, result->meshes[i]);
   }
   dea_free(ctx, result->arrays);
   dea_free(ctx, result->texts);
@@ -303,7 +303,7 @@ void dea_result_free(dea_result *result)
   dea_free(ctx, result);
 }
 
-dea_status door_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out)
+dea_status api_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out)
 {
   struct dea_context *inner = ctx->inner;
   dea_result *result = dea_alloc(inner, 1, sizeof *result);
@@ -321,7 +321,7 @@ dea_status door_result_make(dea_context *ctx, struct dea_result_handle contents,
     return DEA_E_MEMORY;
   }
   *result = contents;
-  dea_status status = door_result_list(result);
+  dea_status status = api_result_list(result);
   if (status != DEA_OK) {
     dea_result_free(result);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
@@ -358,14 +358,14 @@ dea_status dea_result_array(dea_context *ctx, const dea_result *result, const ch
   for (size_t i = 0; i < result->array_count; i++) {
     known[i] = result->arrays[i]->name;
   }
-  dea_status status = door_unknown(ctx, "array", name, known, result->array_count);
+  dea_status status = api_unknown(ctx, "array", name, known, result->array_count);
   dea_free(ctx->inner, known);
   return status;
 }
 
 static dea_status get_summary(dea_context *ctx, dea_result *result, const char **out)
 {
-  DEA_TRY(ctx->inner, door_check_owner(ctx, result->ctx, "result"));
+  DEA_TRY(ctx->inner, api_check_owner(ctx, result->ctx, "result"));
   if (result->summary.length == 0) {
     char *text;
     DEA_TRY(ctx->inner, dea_summary_text(ctx->inner, result->inner, &text));
@@ -388,7 +388,7 @@ dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *nam
       return DEA_OK;
     }
   }
-  return door_unknown(ctx, "text", name, NULL, 0);
+  return api_unknown(ctx, "text", name, NULL, 0);
 }
 
 // Figures and files ------------------------------------------------------------------------------
@@ -404,7 +404,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_result *inner,
   if (status == DEA_OK && dea_plot_shows(plot)) {
     void *locale = dea_c_locale_enter();
     dea_plot_add_svg(&fragment, plot, 1);
-    door_svg_add(svg, dea_text_get(&fragment));
+    api_svg_add(svg, dea_text_get(&fragment));
     dea_c_locale_leave(locale);
     status = fragment.failed || svg->failed ? DEA_E_MEMORY : DEA_OK;
   }
@@ -421,7 +421,7 @@ dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figu
   const struct dea_figure *one;
   bool found = figure[0] == '\0';
   *out = NULL;
-  DEA_TRY(ctx->inner, door_check_owner(ctx, result->ctx, "result"));
+  DEA_TRY(ctx->inner, api_check_owner(ctx, result->ctx, "result"));
   dea_text_free(&result->svg);
   for (size_t i = 0; (one = dea_figure_get(i)) != NULL && result->svg.length == 0; i++) {
     if (one->build != NULL && (figure[0] == '\0' || strcmp(one->name, figure) == 0)) {
@@ -430,7 +430,7 @@ dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figu
     }
   }
   if (!found) {
-    return door_unknown(ctx, "figure", figure, known, count);
+    return api_unknown(ctx, "figure", figure, known, count);
   }
   if (result->svg.length == 0) {
     return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the result has nothing to show in figure '%.60s'",
@@ -443,7 +443,7 @@ dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figu
 dea_status dea_result_write(dea_context *ctx, const dea_result *result, const char *folder,
                             const dea_run_options *options)
 {
-  const dea_run_options all = door_run_options(options);
+  const dea_run_options all = api_run_options(options);
   const struct dea_run_folder_options inner = {.force = all.replace != 0,
                                                .no_figures = all.no_figures != 0};
   DEA_TRY(ctx->inner, dea_run_folder_prepare(ctx->inner, folder, inner.force));
@@ -482,7 +482,7 @@ static dea_status read_design(struct dea_context *ctx, struct dea_result_handle 
 
 dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
 {
-  struct dea_context *inner = door_begin(ctx);
+  struct dea_context *inner = api_begin(ctx);
   struct dea_result_handle contents = {.ctx = ctx};
   *out = NULL;
   DEA_TRY(inner, dea_run_read(inner, path, &contents.run));
@@ -492,7 +492,7 @@ dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
     dea_run_destroy(inner, contents.run);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  DEA_TRY(inner, door_result_make(ctx, contents, out));
+  DEA_TRY(inner, api_result_make(ctx, contents, out));
   return DEA_OK;
 }
 
@@ -500,13 +500,13 @@ dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_des
 {
   const struct dea_provenance *p = &result->inner->provenance;
   *out = NULL;
-  door_begin(ctx);
+  api_begin(ctx);
   if (p->input == NULL) {
     return dea_fail(ctx->inner, DEA_E_UNSUPPORTED, "the result does not have its design");
   }
   DEA_TRY(ctx->inner,
-          door_design_make(ctx,
-                           result->run != NULL ? result->run->design_file : result->design->file,
-                           p->input, p->overrides, out));
+          api_design_make(ctx,
+                          result->run != NULL ? result->run->design_file : result->design->file,
+                          p->input, p->overrides, out));
   return DEA_OK;
 }

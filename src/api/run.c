@@ -1,5 +1,5 @@
 /* dea_run: design -> models -> studies -> result. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "job/job.h"
 #include "result/provenance.h"
@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-dea_status door_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out)
+dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out)
 {
   *out = dea_model_find(name);
   if (*out == NULL) {
@@ -17,7 +17,7 @@ dea_status door_model_find(dea_context *ctx, const char *name, const struct dea_
     for (size_t i = 0; i < count && i < sizeof known / sizeof known[0]; i++) {
       known[i] = all[i]->name;
     }
-    return door_unknown(ctx, "model", name, known, count);
+    return api_unknown(ctx, "model", name, known, count);
   }
   return DEA_OK;
 }
@@ -33,8 +33,8 @@ static dea_status choose_models(dea_context *ctx, const dea_run_options *options
   }
   for (size_t i = 0; i < count; i++) {
     DEA_TRY(ctx->inner,
-            door_model_find(ctx, given ? options->models[i] : design->compute.models[i].text,
-                            &job->models[i]));
+            api_model_find(ctx, given ? options->models[i] : design->compute.models[i].text,
+                           &job->models[i]));
     for (size_t k = 0; k < i; k++) {
       if (job->models[k] == job->models[i]) {
         return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the model '%s' is given twice",
@@ -51,9 +51,9 @@ static dea_status prepare(dea_context *ctx, const dea_design *design,
                           struct dea_result_handle *contents)
 {
   struct dea_context *inner = ctx->inner;
-  DEA_TRY(inner, door_design_build(inner, design, &contents->design, &contents->device));
+  DEA_TRY(inner, api_design_build(inner, design, &contents->design, &contents->device));
   DEA_TRY(inner, dea_result_create(inner, contents->design, contents->device, &contents->inner));
-  struct dea_override *overrides = door_overrides(inner, design->settings, design->setting_count);
+  struct dea_override *overrides = api_overrides(inner, design->settings, design->setting_count);
   if (overrides == NULL) {
     return DEA_E_MEMORY;
   }
@@ -83,9 +83,9 @@ static dea_status compute(dea_context *ctx, struct dea_job *job, struct dea_resu
 dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_options *options,
                    dea_result **out)
 {
-  struct dea_context *inner = door_begin(ctx);
+  struct dea_context *inner = api_begin(ctx);
   struct dea_result_handle contents = {.ctx = ctx};
-  const dea_run_options all = door_run_options(options);
+  const dea_run_options all = api_run_options(options);
   struct dea_job job = {.studies = all.study_count > 0 ? all.studies : NULL,
                         .study_count = all.study_count,
                         .folder = all.folder,
@@ -107,6 +107,6 @@ dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_opt
     dea_design_destroy(inner, contents.design);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  dea_status made = door_result_make(ctx, contents, out);
+  dea_status made = api_result_make(ctx, contents, out);
   return made != DEA_OK ? made : status;
 }

@@ -1,5 +1,5 @@
 /* Solids of the public interface: the engine's module by model/solid_access.h. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include "material/law.h"
 #include "model/film.h"
@@ -17,7 +17,7 @@ struct dea_solid_handle {
   struct dea_solid_object *object;
   dea_array shown; // what dea_solid_array lends
   char name[32];
-  struct door_mesh *mesh; // what dea_solid_mesh lends
+  struct api_mesh *mesh; // what dea_solid_mesh lends
 };
 
 const dea_law_info *dea_law_at(dea_context *ctx, size_t index)
@@ -48,7 +48,7 @@ static dea_status find_law(dea_context *ctx, const char *name, const struct dea_
     for (size_t i = 0; i < count && i < sizeof known / sizeof known[0]; i++) {
       known[i] = all[i]->name;
     }
-    return door_unknown(ctx, "law", name, known, count);
+    return api_unknown(ctx, "law", name, known, count);
   }
   return DEA_OK;
 }
@@ -205,7 +205,7 @@ static dea_status take_bodies(dea_context *ctx, const dea_solid_options *o, dea_
 
 dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea_solid **out)
 {
-  struct dea_context *inner = door_begin(ctx);
+  struct dea_context *inner = api_begin(ctx);
   dea_solid_options all = DEA_SOLID_OPTIONS_INIT;
   *out = NULL;
   memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
@@ -248,7 +248,7 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
 void dea_solid_free(dea_solid *solid)
 {
   if (solid != NULL) {
-    door_mesh_free(solid->ctx->inner, solid->mesh);
+    api_mesh_free(solid->ctx->inner, solid->mesh);
     dea_solid_enter();
     solid->access->destroy(solid->ctx->inner, solid->object);
     dea_solid_leave(DEA_OK);
@@ -259,8 +259,8 @@ void dea_solid_free(dea_solid *solid)
 /* Begins a call that changes the solid. */
 static dea_status begin(dea_context *ctx, const dea_solid *solid)
 {
-  door_begin(ctx);
-  return door_check_owner(ctx, solid->ctx, "solid");
+  api_begin(ctx);
+  return api_check_owner(ctx, solid->ctx, "solid");
 }
 
 dea_status dea_solid_hold(dea_context *ctx, dea_solid *solid, const double low_m[3],
@@ -454,7 +454,7 @@ dea_status dea_solid_array(dea_context *ctx, dea_solid *solid, const char *name,
   const double *data = solid->access->array(solid->object, name, &unit, shape);
   dea_solid_leave(DEA_OK);
   if (data == NULL) {
-    return door_unknown(ctx, "array", name, known, sizeof known / sizeof known[0]);
+    return api_unknown(ctx, "array", name, known, sizeof known / sizeof known[0]);
   }
   snprintf(solid->name, sizeof solid->name, "%s", name);
   solid->shown = (dea_array){.name = solid->name, .unit = unit, .meaning = "", .data = data};
@@ -472,11 +472,11 @@ dea_status dea_solid_mesh(dea_context *ctx, dea_solid *solid, const dea_mesh **o
   double voltage_V = NAN;
   *out = NULL;
   DEA_TRY(ctx->inner, begin(ctx, solid));
-  door_mesh_free(ctx->inner, solid->mesh);
+  api_mesh_free(ctx->inner, solid->mesh);
   solid->mesh = NULL;
   (void)solid->access->number(solid->object, "voltage_V", &voltage_V);
   DEA_TRY(ctx->inner, DEA_SOLID_IN_TURN(solid->access->mesh(ctx->inner, solid->object, &mesh)));
-  DEA_TRY(ctx->inner, door_mesh_make(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
+  DEA_TRY(ctx->inner, api_mesh_make(ctx->inner, "solid", voltage_V, mesh, true, &solid->mesh));
   *out = &solid->mesh->shown;
   return DEA_OK;
 }
@@ -488,5 +488,5 @@ dea_status dea_solid_number(dea_context *ctx, const dea_solid *solid, const char
   *out = NAN;
   return solid->access->number(solid->object, name, out)
              ? DEA_OK
-             : door_unknown(ctx, "number", name, known, sizeof known / sizeof known[0]);
+             : api_unknown(ctx, "number", name, known, sizeof known / sizeof known[0]);
 }

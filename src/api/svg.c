@@ -1,6 +1,6 @@
 /* Drawings of the report's page as SVG files of their own: one below the other, with the page's
  * colours and the key of a plot. */
-#include "api/door.h"
+#include "api/api.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -76,7 +76,7 @@ static double add_key(struct dea_text *out, const char *fragment, double y)
   return y + rows * KEY_LINE;
 }
 
-void door_svg_add(struct dea_text *out, const char *fragment)
+void api_svg_add(struct dea_text *out, const char *fragment)
 {
   struct dea_text inside = {.ctx = out->ctx};
   struct drawing drawing;

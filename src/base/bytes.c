@@ -2,25 +2,25 @@
 
 #include <string.h>
 
-void dea_bytes_reserve(struct dea_bytes *bytes, size_t room)
+void dea_bytes_reserve(struct dea_bytes *bytes, size_t capacity)
 {
-  if (bytes->failed || room <= bytes->room) {
+  if (bytes->failed || capacity <= bytes->capacity) {
     return;
   }
-  char *moved = dea_resize(bytes->ctx, bytes->data, room, 1);
+  char *moved = dea_resize(bytes->ctx, bytes->data, capacity, 1);
   if (moved == NULL) {
     bytes->failed = true;
     return;
   }
   bytes->data = moved;
-  bytes->room = room;
+  bytes->capacity = capacity;
 }
 
 /* Room for `length` more; NULL after a failure. */
 static char *extend(struct dea_bytes *bytes, size_t length)
 {
-  if (length > bytes->room - bytes->length) {
-    size_t doubled = 2 * bytes->room, needed = bytes->length + length;
+  if (length > bytes->capacity - bytes->length) {
+    size_t doubled = 2 * bytes->capacity, needed = bytes->length + length;
     dea_bytes_reserve(bytes, doubled > needed ? doubled : needed + 4096);
   }
   if (bytes->failed) {

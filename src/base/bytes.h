@@ -11,11 +11,11 @@
 struct dea_bytes {
   struct dea_context *ctx;
   char *data; // owned
-  size_t length, room;
+  size_t length, capacity;
   bool failed;
 };
 
-void dea_bytes_reserve(struct dea_bytes *bytes, size_t room);
+void dea_bytes_reserve(struct dea_bytes *bytes, size_t capacity);
 void dea_bytes_add(struct dea_bytes *bytes, const void *data, size_t length);
 void dea_bytes_add_u8(struct dea_bytes *bytes, uint8_t value);
 void dea_bytes_add_i32(struct dea_bytes *bytes, int32_t value);

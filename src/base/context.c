@@ -189,15 +189,15 @@ void dea_context_clear(struct dea_context *ctx)
 }
 
 /* Makes room for one more item; returns the (possibly moved) array or NULL, old one then intact. */
-static void *grow(struct dea_context *ctx, void *items, size_t count, size_t *room, size_t size)
+static void *grow(struct dea_context *ctx, void *items, size_t count, size_t *capacity, size_t size)
 {
-  if (count < *room) {
+  if (count < *capacity) {
     return items;
   }
-  size_t wanted = *room > 0 ? 2 * *room : 8;
+  size_t wanted = *capacity > 0 ? 2 * *capacity : 8;
   void *moved = dea_resize(ctx, items, wanted, size);
   if (moved != NULL) {
-    *room = wanted;
+    *capacity = wanted;
   }
   return moved;
 }

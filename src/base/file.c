@@ -40,17 +40,17 @@ static dea_status too_large(struct dea_context *ctx, const char *file, size_t ma
 static dea_status read_all(struct dea_context *ctx, int fd, const char *file, size_t max,
                            char **bytes, size_t *length)
 {
-  size_t room = 0, used = 0;
+  size_t capacity = 0, used = 0;
   for (;;) {
-    if (used + 1 >= room) {
-      room = 2 * room + 16384;
-      char *moved = dea_resize(ctx, *bytes, room, 1);
+    if (used + 1 >= capacity) {
+      capacity = 2 * capacity + 16384;
+      char *moved = dea_resize(ctx, *bytes, capacity, 1);
       if (moved == NULL) {
         return DEA_E_MEMORY;
       }
       *bytes = moved;
     }
-    ssize_t got = read(fd, *bytes + used, room - used - 1);
+    ssize_t got = read(fd, *bytes + used, capacity - used - 1);
     if (got < 0 && errno == EINTR) {
       continue;
     }

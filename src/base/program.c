@@ -64,9 +64,9 @@ static bool hear(int pipe_end, char *said, size_t *used)
   if (n <= 0) {
     return n < 0 && errno == EINTR;
   }
-  size_t got = (size_t)n, room = DEA_PROGRAM_SAID - 1;
-  if (*used + got > room) { // the first of it goes
-    size_t gone = *used + got - room;
+  size_t got = (size_t)n, capacity = DEA_PROGRAM_SAID - 1;
+  if (*used + got > capacity) { // the first of it goes
+    size_t gone = *used + got - capacity;
     memmove(said, said + gone, *used - gone);
     *used -= gone;
   }

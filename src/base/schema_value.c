@@ -28,14 +28,14 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
   if (listing == NULL) {
     return DEA_OK;
   }
-  if (listing->count == listing->room) {
-    size_t room = 2 * listing->room + 32;
-    void *moved = dea_resize(reader->ctx, listing->items, room, sizeof *listing->items);
+  if (listing->count == listing->capacity) {
+    size_t capacity = 2 * listing->capacity + 32;
+    void *moved = dea_resize(reader->ctx, listing->items, capacity, sizeof *listing->items);
     if (moved == NULL) {
       return DEA_E_MEMORY;
     }
     listing->items = moved;
-    listing->room = room;
+    listing->capacity = capacity;
   }
   char *copy = dea_copy_text(reader->ctx, path, DEA_PATH_SIZE);
   if (copy == NULL) {

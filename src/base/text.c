@@ -11,36 +11,36 @@
 
 static bool text_reserve(struct dea_text *text, size_t more)
 {
-  if (text->length + more + 1 <= text->room) {
+  if (text->length + more + 1 <= text->capacity) {
     return true;
   }
-  size_t wanted = 2 * text->room + more + 64;
+  size_t wanted = 2 * text->capacity + more + 64;
   char *moved = dea_resize(text->ctx, text->data, wanted, 1);
   if (moved == NULL) {
     text->failed = true;
     return false;
   }
   text->data = moved;
-  text->room = wanted;
+  text->capacity = wanted;
   return true;
 }
 
 void dea_text_add(struct dea_text *text, const char *format, ...)
 {
   va_list args, again;
-  size_t room = text->room - text->length;
+  size_t capacity = text->capacity - text->length;
   va_start(args, format);
   va_copy(again, args);
-  int needed = vsnprintf(room > 0 ? text->data + text->length : NULL, room, format, args);
+  int needed = vsnprintf(capacity > 0 ? text->data + text->length : NULL, capacity, format, args);
   va_end(args);
   if (needed < 0) {
     text->failed = true;
-  } else if ((size_t)needed < room) {
+  } else if ((size_t)needed < capacity) {
     text->length += (size_t)needed;
   } else if (text_reserve(text, (size_t)needed)) {
     vsnprintf(text->data + text->length, (size_t)needed + 1, format, again);
     text->length += (size_t)needed;
-  } else if (room > 0) { // what did not fit whole is not there
+  } else if (capacity > 0) { // what did not fit whole is not there
     text->data[text->length] = '\0';
   }
   va_end(again);
@@ -55,7 +55,7 @@ void dea_text_free(struct dea_text *text)
 {
   dea_free(text->ctx, text->data);
   text->data = NULL;
-  text->length = text->room = 0;
+  text->length = text->capacity = 0;
 }
 
 size_t dea_letter_read(const char *text, unsigned *code)

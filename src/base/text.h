@@ -9,7 +9,7 @@
 struct dea_text {
   struct dea_context *ctx;
   char *data; // NULL or NUL-terminated; owned
-  size_t length, room;
+  size_t length, capacity;
   bool failed;
 };
 

@@ -56,7 +56,7 @@ struct dea_listed {
 /* The list; owned by whoever reads the file. */
 struct dea_listing {
   struct dea_listed *items;
-  size_t count, room;
+  size_t count, capacity;
 };
 
 void dea_listing_free(struct dea_context *ctx, struct dea_listing *listing);

@@ -51,7 +51,7 @@ dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const
   dea_free(ctx, path);
   return !there ? DEA_OK
                 : dea_fail(ctx, DEA_E_IO,
-                           "%s/%s is there already; choose another folder, or replace "
+                           "%s/%s already exists; choose another folder, or replace "
                            "what is there with --force",
                            directory, name);
 }

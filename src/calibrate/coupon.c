@@ -114,14 +114,14 @@ static void add_nodes(struct dea_coupon *s, double t, double l, double t_to, dou
 dea_status dea_coupon_follow(struct dea_arena *arena, const double *time_s, double ramp_s,
                              struct dea_coupon *s)
 {
-  size_t room = 2;
+  size_t capacity = 2;
   double l = 1, t = 0;
   for (size_t i = 0; i < s->rows; i++) {
-    room += 2 + steps_between(l, s->stretch[i]);
+    capacity += 2 + steps_between(l, s->stretch[i]);
     l = s->stretch[i];
   }
-  s->node_s = dea_arena_alloc(arena, room, sizeof *s->node_s);
-  s->node_stretch = dea_arena_alloc(arena, room, sizeof *s->node_stretch);
+  s->node_s = dea_arena_alloc(arena, capacity, sizeof *s->node_s);
+  s->node_stretch = dea_arena_alloc(arena, capacity, sizeof *s->node_stretch);
   s->node_of_row = dea_arena_alloc(arena, s->rows, sizeof *s->node_of_row);
   if (arena->failed) {
     return DEA_E_MEMORY;

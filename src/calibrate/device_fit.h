@@ -101,7 +101,7 @@ struct dea_device_candidate {
 };
 
 /* Fills weak, pairs and next from what was fitted (least_squares and statistics). */
-dea_status dea_device_tell(struct dea_context *ctx, struct dea_device_fit *fit,
-                           const struct dea_device_candidate *candidates, size_t count);
+dea_status dea_device_identify(struct dea_context *ctx, struct dea_device_fit *fit,
+                               const struct dea_device_candidate *candidates, size_t count);
 
 #endif

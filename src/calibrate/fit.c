@@ -587,10 +587,10 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, check_rest(w, &w->materials[fit->chosen]));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));
-  dea_fit_tell_weak(fit);
-  dea_fit_tell_stability(fit);
+  dea_fit_identify_weak(fit);
+  dea_fit_identify_stability(fit);
   find_spreads(w);
-  DEA_TRY(w->ctx, dea_fit_tell_next(w->ctx, fit));
+  DEA_TRY(w->ctx, dea_fit_identify_next(w->ctx, fit));
   fit->scatter_Pa *= fit->scale_known ? 1 : misfit(w); // so far the unit of the residuals
   return DEA_OK;
 }

@@ -116,16 +116,17 @@ dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem
                            bool all, struct dea_fit_value *value);
 /* A direction that the measurements (`what`: "tests") do not hold, or hardly: of two parameters of
  * one unit what they do hold, else the direction in units of the scales. */
-void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const double *direction,
-                            bool open, const char *what, char out[DEA_FIT_WEAK_SIZE]);
+void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
+                                const double *direction, bool open, const char *what,
+                                char out[DEA_FIT_WEAK_SIZE]);
 /* The weak combinations in words, where the law ends to be stable, and the next test. */
-void dea_fit_tell_weak(struct dea_fit *fit);
-void dea_fit_tell_stability(struct dea_fit *fit);
+void dea_fit_identify_weak(struct dea_fit *fit);
+void dea_fit_identify_stability(struct dea_fit *fit);
 /* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */
 double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
                              double to);
 /* Stretch of a mode, at least 1, with that I1. */
 double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1);
-dea_status dea_fit_tell_next(struct dea_context *ctx, struct dea_fit *fit);
+dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit);
 
 #endif

@@ -98,10 +98,10 @@ enum cli_kind {
 };
 
 struct cli_kind_info {
-  const char *name;   // for "dea completion names NAME"; NULL: files
-  const char *ending; // of the files; NULL: any file
-  bool folder;        // folders only
-  bool few;           // help lists them too
+  const char *name;    // for "dea completion names NAME"; NULL: files
+  const char *outcome; // of the files; NULL: any file
+  bool folder;         // folders only
+  bool few;            // help lists them too
   dea_status (*list)(struct dea_cli *cli, struct dea_text *out); // a line each; NULL: nothing
 };
 extern const struct cli_kind_info cli_kinds[CLI_KINDS];
@@ -230,7 +230,7 @@ dea_status cli_build_device(struct dea_cli *cli, const char *file,
                             struct dea_device **device);
 /* Where the results of a file go: `given`, or where that is NULL the file's name without ending,
  * plus ".ENDING", in the current folder, which `made` holds. NULL: no memory. */
-const char *cli_output_name(const char *given, const char *file, const char *ending,
+const char *cli_output_name(const char *given, const char *file, const char *outcome,
                             struct dea_text *made);
 /* All findings so far as an array; owned by the caller. */
 json_t *cli_findings_json(const struct dea_context *ctx);

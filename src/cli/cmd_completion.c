@@ -98,8 +98,8 @@ static void print_zsh_action(const struct cli_option *option)
     printf("{compadd -- ${(f)\"$(dea completion names %s 2>/dev/null)\"}}", kind->name);
   } else if (kind->folder) {
     fputs("_files -/", stdout);
-  } else if (kind->ending != NULL) {
-    printf("_files -g \"*.%s\"", kind->ending);
+  } else if (kind->outcome != NULL) {
+    printf("_files -g \"*.%s\"", kind->outcome);
   } else {
     fputs("_files", stdout);
   }
@@ -166,8 +166,8 @@ static void print_fish_option(const char *condition, const struct cli_option *op
     printf(" -x -a '(dea completion names %s 2>/dev/null)'", kind->name);
   } else if (kind->folder) {
     fputs(" -x -a '(__fish_complete_directories)'", stdout);
-  } else if (kind->ending != NULL) {
-    printf(" -k -x -a '(__fish_complete_suffix .%s)'", kind->ending);
+  } else if (kind->outcome != NULL) {
+    printf(" -k -x -a '(__fish_complete_suffix .%s)'", kind->outcome);
   } else if (option->kind != CLI_FLAG) {
     fputs(" -r -F", stdout);
   }

@@ -121,7 +121,7 @@ static dea_status refuse_output(struct dea_cli *cli, const struct request *reque
     return dea_fail(cli->ctx, DEA_E_IO, "'%s' is the design itself", request->output);
   }
   return request->force ? DEA_OK
-                        : dea_fail(cli->ctx, DEA_E_IO, "'%s' is there already; --force replaces it",
+                        : dea_fail(cli->ctx, DEA_E_IO, "'%s' already exists; --force replaces it",
                                    request->output);
 }
 

@@ -12,22 +12,22 @@ struct request {
   struct dea_optimise_options options;
 };
 
-static void print_optimum(const struct dea_question *question, const struct dea_optimum *best)
+static void print_optimum(const struct dea_case_key *case_key, const struct dea_optimum *best)
 {
-  for (size_t j = 0; j < question->variable_count; j++) {
+  for (size_t j = 0; j < case_key->variable_count; j++) {
     char text[80];
-    const char *bound = dea_optimum_bound(question, best, j);
-    dea_device_param_show(&question->params[j], best->p[j], text);
-    printf("  %-28s %s%s%s%s\n", question->params[j].param.name, text,
+    const char *bound = dea_optimum_bound(case_key, best, j);
+    dea_device_param_show(&case_key->params[j], best->p[j], text);
+    printf("  %-28s %s%s%s%s\n", case_key->params[j].param.name, text,
            bound != NULL ? ", at its " : "", bound != NULL ? bound : "",
            bound != NULL ? " bound" : "");
-    for (size_t k = 0; k < question->params[j].tie_count; k++) {
-      printf("  %-28s %s\n", question->params[j].ties[k].param.name, text);
+    for (size_t k = 0; k < case_key->params[j].tie_count; k++) {
+      printf("  %-28s %s\n", case_key->params[j].ties[k].param.name, text);
     }
   }
-  for (size_t k = 0; k < question->file->objective_count; k++) {
-    const struct dea_column *column = &question->quantities[question->objectives[k]].shown;
-    const bool most = question->file->objectives[k].goal.value == DEA_MOST; // f is the least
+  for (size_t k = 0; k < case_key->file->objective_count; k++) {
+    const struct dea_column *column = &case_key->quantities[case_key->objectives[k]].shown;
+    const bool most = case_key->file->objectives[k].goal.value == DEA_MOST; // f is the least
     printf("  %-28s %.6g %s\n", column->key, column->factor * (most ? -1 : 1) * best->f[k],
            column->display_unit);
   }
@@ -53,37 +53,37 @@ static void print_flags(const struct dea_optimise_report *report)
 }
 
 /* Where gradients came from, of a search that goes by them. */
-static void print_gradients(const struct dea_question *question,
+static void print_gradients(const struct dea_case_key *case_key,
                             const struct dea_optimise_report *report)
 {
-  const int method = question->file->method.value;
+  const int method = case_key->file->method.value;
   if (method != DEA_SLSQP && method != DEA_MMA) {
     return;
   }
   printf("gradients: %s", report->gradients ? "of the model" : "by differences");
-  for (size_t j = 0, told = 0; j < question->variable_count && report->gradients; j++) {
+  for (size_t j = 0, told = 0; j < case_key->variable_count && report->gradients; j++) {
     if (report->replaced[j] > 0) {
       printf("%s %s (%zu designs)", told++ > 0 ? "," : ", by differences of",
-             question->params[j].param.name, report->replaced[j]);
+             case_key->params[j].param.name, report->replaced[j]);
     }
   }
   printf("\n");
 }
 
-static void print_report(const struct dea_question *question,
+static void print_report(const struct dea_case_key *case_key,
                          const struct dea_optimise_report *report, const char *folder)
 {
   for (size_t i = 0; i < report->count; i++) {
     if (report->count > 1) {
       printf("best-%zu\n", i + 1);
     }
-    print_optimum(question, &report->optima[i]);
+    print_optimum(case_key, &report->optima[i]);
   }
   print_flags(report);
   if (report->scattered > 1) {
     printf("each stands for %zu that scatter\n", report->scattered);
   }
-  print_gradients(question, report);
+  print_gradients(case_key, report);
   printf("designs: %zu, %zu of them computed before", report->evaluations, report->before);
   if (report->failed > 0) {
     printf(", %zu without all values", report->failed);
@@ -93,13 +93,13 @@ static void print_report(const struct dea_question *question,
 }
 
 static dea_status search(struct dea_cli *cli, const struct request *request,
-                         const struct dea_question *question)
+                         const struct dea_case_key *case_key)
 {
   struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
   dea_status status =
-      report != NULL ? dea_optimise_run(question, &request->options, report) : DEA_E_MEMORY;
+      report != NULL ? dea_optimise_run(case_key, &request->options, report) : DEA_E_MEMORY;
   if (report != NULL && report->evaluations > 0) {
-    print_report(question, report, request->options.folder);
+    print_report(case_key, report, request->options.folder);
   }
   dea_free(cli->ctx, report);
   return status;
@@ -107,10 +107,10 @@ static dea_status search(struct dea_cli *cli, const struct request *request,
 
 static dea_status optimise(struct dea_cli *cli, const struct request *request)
 {
-  struct dea_question *question;
-  DEA_TRY(cli->ctx, dea_question_read(cli->ctx, request->file, &question));
-  dea_status status = search(cli, request, question);
-  dea_question_destroy(question);
+  struct dea_case_key *case_key;
+  DEA_TRY(cli->ctx, dea_case_key_read(cli->ctx, request->file, &case_key));
+  dea_status status = search(cli, request, case_key);
+  dea_case_key_destroy(case_key);
   return status;
 }
 

@@ -31,7 +31,7 @@ static dea_status check_place(struct dea_context *ctx, const char *path)
   return length == 0 || strcmp(start, wanted) == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_IO,
-                        "%s is there already and is not a page; choose another name with -o", path);
+                        "%s already exists and is not a page; choose another name with -o", path);
 }
 
 static int run(struct dea_cli *cli, void *user)

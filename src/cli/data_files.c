@@ -13,10 +13,10 @@ static bool is_regular(const char *path)
   return stat(path, &info) == 0 && S_ISREG(info.st_mode);
 }
 
-static bool ends_in(const char *text, const char *ending)
+static bool ends_in(const char *text, const char *outcome)
 {
-  size_t n = strlen(text), m = strlen(ending);
-  return n >= m && strcmp(text + n - m, ending) == 0;
+  size_t n = strlen(text), m = strlen(outcome);
+  return n >= m && strcmp(text + n - m, outcome) == 0;
 }
 
 /* Adds what is in `folder` to *found; the folder's own name is taken literally. */
@@ -33,7 +33,7 @@ static dea_status glob_folder(struct dea_context *ctx, const char *folder, const
   return code == GLOB_NOSPACE ? dea_fail(ctx, DEA_E_MEMORY, "out of memory") : DEA_OK;
 }
 
-static dea_status take_files(struct dea_context *ctx, const char *folder, const char *ending,
+static dea_status take_files(struct dea_context *ctx, const char *folder, const char *outcome,
                              const glob_t *found, struct cli_data_list *list)
 {
   list->folder = dea_copy_text(ctx, folder, strlen(folder));
@@ -43,7 +43,7 @@ static dea_status take_files(struct dea_context *ctx, const char *folder, const 
   }
   for (size_t i = 0; i < found->gl_pathc; i++) {
     const char *path = found->gl_pathv[i];
-    if (!ends_in(path, ending) || !is_regular(path)) {
+    if (!ends_in(path, outcome) || !is_regular(path)) {
       continue;
     }
     struct cli_data_file *file = &list->files[list->count];
@@ -58,7 +58,7 @@ static dea_status take_files(struct dea_context *ctx, const char *folder, const 
   return DEA_OK;
 }
 
-static dea_status find_in(struct dea_context *ctx, const char *folder, const char *ending,
+static dea_status find_in(struct dea_context *ctx, const char *folder, const char *outcome,
                           struct cli_data_list *list)
 {
   glob_t found = {.gl_pathc = 0};
@@ -68,13 +68,13 @@ static dea_status find_in(struct dea_context *ctx, const char *folder, const cha
     status = glob_folder(ctx, folder, deeper[i], GLOB_APPEND, &found);
   }
   if (status == DEA_OK) {
-    status = take_files(ctx, folder, ending, &found, list);
+    status = take_files(ctx, folder, outcome, &found, list);
   }
   globfree(&found);
   return status;
 }
 
-dea_status cli_examples_find(struct dea_context *ctx, const char *ending,
+dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
                              struct cli_data_list *list)
 {
   static const char *const places[] = {DEA_INSTALL_DATA_DIR "/examples",
@@ -82,7 +82,7 @@ dea_status cli_examples_find(struct dea_context *ctx, const char *ending,
   *list = (struct cli_data_list){.count = 0};
   for (size_t i = 0; i < 2 && list->count == 0; i++) {
     cli_data_free(ctx, list);
-    DEA_TRY(ctx, find_in(ctx, places[i], ending, list));
+    DEA_TRY(ctx, find_in(ctx, places[i], outcome, list));
   }
   return DEA_OK;
 }

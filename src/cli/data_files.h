@@ -18,7 +18,7 @@ struct cli_data_list {
 
 /* Files whose name ends in `ending` ("" for all), of the installed examples, or if there are none
  * of those in the source tree. list: to be freed in any case. */
-dea_status cli_examples_find(struct dea_context *ctx, const char *ending,
+dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
                              struct cli_data_list *list);
 void cli_data_free(struct dea_context *ctx, struct cli_data_list *list);
 /* Length of a name without its last ending: 5 for "fig02.yaml". */

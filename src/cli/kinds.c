@@ -103,7 +103,7 @@ const struct cli_kind_info cli_kinds[CLI_KINDS] = {
     [CLI_FILE] = {.name = NULL},
     [CLI_NEW_FILE] = {.name = NULL},
     [CLI_FOLDER] = {.folder = true},
-    [CLI_DESIGN] = {.ending = "yaml"},
+    [CLI_DESIGN] = {.outcome = "yaml"},
     [CLI_COMMAND] = {"commands", .list = list_commands},
     [CLI_EXAMPLE] = {"examples", .list = list_examples},
     [CLI_FIGURE] = {"figures", .list = list_figures},

@@ -294,7 +294,7 @@ bool cli_read_share(const char *text, double *share)
   return *end == '\0';
 }
 
-const char *cli_output_name(const char *given, const char *file, const char *ending,
+const char *cli_output_name(const char *given, const char *file, const char *outcome,
                             struct dea_text *made)
 {
   size_t length;
@@ -302,7 +302,7 @@ const char *cli_output_name(const char *given, const char *file, const char *end
   if (given != NULL) {
     return given;
   }
-  dea_text_add(made, "%.*s.%s", (int)length, name, ending);
+  dea_text_add(made, "%.*s.%s", (int)length, name, outcome);
   return made->failed ? NULL : dea_text_get(made);
 }
 

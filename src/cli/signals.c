@@ -90,16 +90,16 @@ void cli_voltage_is_on(void)
 {
   // The terminal is closed, limits of time, what batch systems and timers send: all would end the
   // program at once.
-  static const int ending[] = {SIGHUP,  SIGQUIT, SIGALRM,   SIGUSR1,
-                               SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF};
+  static const int outcome[] = {SIGHUP,  SIGQUIT, SIGALRM,   SIGUSR1,
+                                SIGUSR2, SIGXCPU, SIGVTALRM, SIGPROF};
   static const int ignored[] = {SIGTSTP, SIGTTOU, SIGTTIN}; // it would leave the voltage on
   struct sigaction action = {.sa_handler = on_signal}, before;
   sigemptyset(&action.sa_mask);
   voltage_flag = 1;
-  for (size_t i = 0; i < sizeof ending / sizeof ending[0]; i++) {
+  for (size_t i = 0; i < sizeof outcome / sizeof outcome[0]; i++) {
     // what was ignored before stays so: `nohup` asks for it
-    if (sigaction(ending[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
-      sigaction(ending[i], &action, NULL);
+    if (sigaction(outcome[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+      sigaction(outcome[i], &action, NULL);
     }
   }
   for (size_t i = 0; i < sizeof ignored / sizeof ignored[0]; i++) {

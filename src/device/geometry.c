@@ -87,11 +87,11 @@ static dea_status check_neighbours(struct dea_context *ctx, const struct dea_des
                                    const struct dea_device *device)
 {
   int N = device->fibre_count;
-  double room = sin(fmin(pi / N, pi / 2)), w_t = device->fibre_tip_width_m,
+  double capacity = sin(fmin(pi / N, pi / 2)), w_t = device->fibre_tip_width_m,
          r_t = device->fibre_tip_radius_m, w = device->fibre_width_m,
          r_o = device->frame_radius_m - device->fibre_outer_gap_m;
   bool tapers = design->fibres.tip_width_m.origin != DEA_ABSENT;
-  if (w_t > 2 * r_t * room * (1 + touching)) {
+  if (w_t > 2 * r_t * capacity * (1 + touching)) {
     struct dea_location location = N > 1    ? design->fibres.count.location
                                    : tapers ? design->fibres.tip_width_m.location
                                             : design->fibres.width_m.location;
@@ -103,13 +103,13 @@ static dea_status check_neighbours(struct dea_context *ctx, const struct dea_des
               : "%d fibre of %.4g mm width does not fit on the circle of its tip, %.4g mm from the "
                 "centre (stretched); there it may be at most %.4g mm wide, or its tip must be at "
                 "least %.4g mm from the centre",
-        N, 1e3 * w_t, 1e3 * r_t, 2e3 * r_t * room, 1e3 * w_t / (2 * room));
+        N, 1e3 * w_t, 1e3 * r_t, 2e3 * r_t * capacity, 1e3 * w_t / (2 * capacity));
   }
-  if (w > 2 * r_o * room * (1 + touching)) {
+  if (w > 2 * r_o * capacity * (1 + touching)) {
     return dea_finding_add(ctx, DEA_ERROR, design->fibres.width_m.location,
                            "%d fibres of %.4g mm width overlap each other at the frame, where they "
                            "may be at most %.4g mm wide",
-                           N, 1e3 * w, 2e3 * r_o * room);
+                           N, 1e3 * w, 2e3 * r_o * capacity);
   }
   return DEA_OK;
 }

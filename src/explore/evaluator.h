@@ -1,4 +1,4 @@
-/* What is explored: some numbers in, named quantities out. A device is one (question.h); tests have
+/* What is explored: some numbers in, named quantities out. A device is one (case_key.h); tests have
  * functions in closed form. */
 #ifndef DEA_EXPLORE_EVALUATOR_H
 #define DEA_EXPLORE_EVALUATOR_H

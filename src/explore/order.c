@@ -126,15 +126,15 @@ dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, 
   return DEA_OK;
 }
 
-dea_status dea_order_make(const struct dea_question *question, const struct dea_plan *plan,
+dea_status dea_order_make(const struct dea_case_key *case_key, const struct dea_plan *plan,
                           struct dea_order *out)
 {
   bool whole[DEA_CASE_PARAMS_MAX];
-  for (size_t j = 0; j < question->variable_count; j++) {
-    whole[j] = question->params[j].whole;
+  for (size_t j = 0; j < case_key->variable_count; j++) {
+    whole[j] = case_key->params[j].whole;
   }
-  return dea_order_of(question->ctx, plan->p, plan->count, question->variable_count, whole,
-                      dea_question_warms(question) ? GROUP : 1, out);
+  return dea_order_of(case_key->ctx, plan->p, plan->count, case_key->variable_count, whole,
+                      dea_case_key_warms(case_key) ? GROUP : 1, out);
 }
 
 void dea_order_free(struct dea_context *ctx, struct dea_order *order)

@@ -14,7 +14,7 @@ struct dea_order {
 
 /* Groups of the plan alone: the same whatever is done, and however many processes do it. Arrays:
  * owned by the caller. */
-dea_status dea_order_make(const struct dea_question *question, const struct dea_plan *plan,
+dea_status dea_order_make(const struct dea_case_key *case_key, const struct dea_plan *plan,
                           struct dea_order *out);
 /* The same of points p [count][params] in groups of at most `group`; whole[j]: numbers of
  * parameter j are whole ones, which neighbours have in common. */

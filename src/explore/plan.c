@@ -189,23 +189,23 @@ static dea_status cannot_be_made(struct dea_context *ctx)
   return dea_fail(ctx, DEA_E_DESIGN, "the plan cannot be made");
 }
 
-static dea_status too_many(const struct dea_question *question, double count)
+static dea_status too_many(const struct dea_case_key *case_key, double count)
 {
-  DEA_TRY(question->ctx,
-          dea_finding_add(question->ctx, DEA_ERROR, question->file->plan.location,
+  DEA_TRY(case_key->ctx,
+          dea_finding_add(case_key->ctx, DEA_ERROR, case_key->file->plan.location,
                           "%.3g cases are too many: at most %d", count, DEA_EXPLORE_CASES_MAX));
-  return cannot_be_made(question->ctx);
+  return cannot_be_made(case_key->ctx);
 }
 
-dea_status dea_plan_check(const struct dea_question *question)
+dea_status dea_plan_check(const struct dea_case_key *case_key)
 {
-  const struct dea_explore_file *file = question->file;
-  struct dea_context *ctx = question->ctx;
+  const struct dea_explore_file *file = case_key->file;
+  struct dea_context *ctx = case_key->ctx;
   const bool grid = file->plan.value == DEA_PLAN_GRID;
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  for (size_t j = 0; j < question->variable_count && grid; j++) {
-    const struct dea_label *name = &question->variables[j].text->text.name;
-    if (question->variables[j].value_count == 0) {
+  for (size_t j = 0; j < case_key->variable_count && grid; j++) {
+    const struct dea_label *name = &case_key->variables[j].text->text.name;
+    if (case_key->variables[j].value_count == 0) {
       DEA_TRY(ctx,
               dea_finding_add(ctx, DEA_ERROR, name->location,
                               "%s: a grid needs values, or steps from low to high", name->text));
@@ -221,25 +221,25 @@ dea_status dea_plan_check(const struct dea_question *question)
   return dea_finding_count(ctx, DEA_ERROR) == errors ? DEA_OK : cannot_be_made(ctx);
 }
 
-static dea_status make_grid(const struct dea_question *question, struct dea_plan *out)
+static dea_status make_grid(const struct dea_case_key *case_key, struct dea_plan *out)
 {
-  const size_t n = question->variable_count;
+  const size_t n = case_key->variable_count;
   double count = 1;
   for (size_t j = 0; j < n; j++) {
-    count *= (double)question->variables[j].value_count;
+    count *= (double)case_key->variables[j].value_count;
   }
   if (count > DEA_EXPLORE_CASES_MAX) {
-    return too_many(question, count);
+    return too_many(case_key, count);
   }
   out->samples = out->count = (size_t)count;
-  out->p = dea_alloc(question->ctx, out->count * n, sizeof *out->p);
+  out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
   if (out->p == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t c = 0; c < out->count; c++) {
     size_t rest = c;
     for (size_t j = n; j-- > 0;) { // the last variable changes first
-      const struct dea_variable *variable = &question->variables[j];
+      const struct dea_variable *variable = &case_key->variables[j];
       out->p[c * n + j] = variable->values[rest % variable->value_count];
       rest /= variable->value_count;
     }
@@ -247,13 +247,13 @@ static dea_status make_grid(const struct dea_question *question, struct dea_plan
   return DEA_OK;
 }
 
-static dea_status draw(const struct dea_question *question, size_t dimensions, size_t count,
+static dea_status draw(const struct dea_case_key *case_key, size_t dimensions, size_t count,
                        double *u)
 {
-  const unsigned long long seed = (unsigned long long)question->file->seed.si;
-  switch (question->file->plan.value) {
+  const unsigned long long seed = (unsigned long long)case_key->file->seed.si;
+  switch (case_key->file->plan.value) {
   case DEA_PLAN_LATIN:
-    return dea_sample_latin(question->ctx, dimensions, count, seed, u);
+    return dea_sample_latin(case_key->ctx, dimensions, count, seed, u);
   case DEA_PLAN_RANDOM:
     dea_sample_random(dimensions, count, seed, u);
     return DEA_OK;
@@ -263,50 +263,50 @@ static dea_status draw(const struct dea_question *question, size_t dimensions, s
   }
 }
 
-static dea_status make_samples(const struct dea_question *question, struct dea_plan *out)
+static dea_status make_samples(const struct dea_case_key *case_key, struct dea_plan *out)
 {
-  const size_t n = question->variable_count, samples = (size_t)question->file->samples.si;
-  const bool indices = question->file->plan.value == DEA_PLAN_INDICES;
+  const size_t n = case_key->variable_count, samples = (size_t)case_key->file->samples.si;
+  const bool indices = case_key->file->plan.value == DEA_PLAN_INDICES;
   const size_t dimensions = indices ? 2 * n : n, blocks = indices ? n + 2 : 1;
   if (dimensions > DEA_SOBOL_DIMENSIONS) {
-    DEA_TRY(question->ctx,
-            dea_finding_add(question->ctx, DEA_ERROR, question->file->plan.location,
+    DEA_TRY(case_key->ctx,
+            dea_finding_add(case_key->ctx, DEA_ERROR, case_key->file->plan.location,
                             "indices of at most %d variables", DEA_SOBOL_DIMENSIONS / 2));
-    return cannot_be_made(question->ctx);
+    return cannot_be_made(case_key->ctx);
   }
   if (samples * blocks > DEA_EXPLORE_CASES_MAX) {
-    return too_many(question, (double)(samples * blocks));
+    return too_many(case_key, (double)(samples * blocks));
   }
   out->samples = samples;
   out->count = samples * blocks;
-  out->p = dea_alloc(question->ctx, out->count * n, sizeof *out->p);
-  double *u = dea_alloc(question->ctx, samples * dimensions, sizeof *u);
+  out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
+  double *u = dea_alloc(case_key->ctx, samples * dimensions, sizeof *u);
   dea_status status =
-      out->p != NULL && u != NULL ? draw(question, dimensions, samples, u) : DEA_E_MEMORY;
+      out->p != NULL && u != NULL ? draw(case_key, dimensions, samples, u) : DEA_E_MEMORY;
   if (status == DEA_OK && !indices) {
-    dea_sample_correlate(question->file, samples, u);
+    dea_sample_correlate(case_key->file, samples, u);
   }
   for (size_t b = 0; b < blocks && status == DEA_OK; b++) {
     for (size_t i = 0; i < samples; i++) {
       for (size_t j = 0; j < n; j++) { // block 0: A, 1: B, 2 + j: A with column j of B
         const bool second = b == 1 || b == j + 2;
         out->p[(b * samples + i) * n + j] =
-            value_at(&question->variables[j], u[i * dimensions + j + (second ? n : 0)]);
+            value_at(&case_key->variables[j], u[i * dimensions + j + (second ? n : 0)]);
       }
     }
   }
-  dea_free(question->ctx, u);
+  dea_free(case_key->ctx, u);
   return status;
 }
 
-dea_status dea_plan_make(const struct dea_question *question, struct dea_plan *out)
+dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *out)
 {
   *out = (struct dea_plan){0};
-  DEA_TRY(question->ctx, dea_plan_check(question));
-  dea_status status = question->file->plan.value == DEA_PLAN_GRID ? make_grid(question, out)
-                                                                  : make_samples(question, out);
+  DEA_TRY(case_key->ctx, dea_plan_check(case_key));
+  dea_status status = case_key->file->plan.value == DEA_PLAN_GRID ? make_grid(case_key, out)
+                                                                  : make_samples(case_key, out);
   if (status != DEA_OK) {
-    dea_free(question->ctx, out->p);
+    dea_free(case_key->ctx, out->p);
     *out = (struct dea_plan){0};
   }
   return status;

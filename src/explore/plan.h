@@ -2,7 +2,7 @@
 #ifndef DEA_EXPLORE_PLAN_H
 #define DEA_EXPLORE_PLAN_H
 
-#include "explore/question.h"
+#include "explore/case_key.h"
 
 enum { DEA_SOBOL_DIMENSIONS = 21 };
 
@@ -30,8 +30,8 @@ struct dea_plan {
 };
 /* Whether a plan can be made of the variables as they are given, which a search does not ask.
  * Errors are findings; DEA_E_DESIGN then. */
-dea_status dea_plan_check(const struct dea_question *question);
+dea_status dea_plan_check(const struct dea_case_key *case_key);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
-dea_status dea_plan_make(const struct dea_question *question, struct dea_plan *out);
+dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *out);
 
 #endif

@@ -1,8 +1,8 @@
 #define _GNU_SOURCE // names of POSIX
 #include "explore/pool.h"
 
-#include "base/aside.h"
 #include "base/clock.h"
+#include "base/worker.h"
 
 #include <errno.h>
 #include <math.h>

@@ -27,25 +27,25 @@ struct wanted {
 };
 
 /* Whether an objective or a limit is of a quantity. */
-static bool is_wanted(const struct dea_question *question, size_t i)
+static bool is_wanted(const struct dea_case_key *case_key, size_t i)
 {
   bool wanted = false;
-  for (size_t k = 0; k < question->file->objective_count; k++) {
-    wanted = wanted || question->objectives[k] == (int)i;
+  for (size_t k = 0; k < case_key->file->objective_count; k++) {
+    wanted = wanted || case_key->objectives[k] == (int)i;
   }
-  for (size_t l = 0; l < question->limit_count; l++) {
-    wanted = wanted || question->limits[l].column == (int)i;
+  for (size_t l = 0; l < case_key->limit_count; l++) {
+    wanted = wanted || case_key->limits[l].column == (int)i;
   }
   return wanted;
 }
 
-static struct wanted find_wanted(const struct dea_question *question, bool held)
+static struct wanted find_wanted(const struct dea_case_key *case_key, bool held)
 {
   struct wanted out = {.column_count = 0};
   for (int of_monitors = 0; of_monitors < 2; of_monitors++) {
-    for (size_t i = 0; i < question->quantity_count; i++) {
-      const struct dea_explored *quantity = &question->quantities[i];
-      if (!is_wanted(question, i) || dea_question_is_held(question, i) != held ||
+    for (size_t i = 0; i < case_key->quantity_count; i++) {
+      const struct dea_explored *quantity = &case_key->quantities[i];
+      if (!is_wanted(case_key, i) || dea_case_key_is_held(case_key, i) != held ||
           quantity->is_critical || quantity->is_seen != (of_monitors == 1) ||
           (quantity->is_seen && quantity->of.source != DEA_OF_MONITOR)) {
         continue;
@@ -63,17 +63,17 @@ static struct wanted find_wanted(const struct dea_question *question, bool held)
 }
 
 /* The device with variable j moved by `by`. *device: NULL where it cannot be. */
-static dea_status build(struct dea_context *ctx, const struct dea_question *question, size_t j,
+static dea_status build(struct dea_context *ctx, const struct dea_case_key *case_key, size_t j,
                         double by, struct dea_design **design, struct dea_device **device)
 {
   double p[DEA_CASE_PARAMS_MAX];
-  const struct dea_design_bytes file = {question->path, question->bytes, question->length};
-  for (size_t i = 0; i < question->variable_count; i++) {
-    p[i] = question->now->p[i];
+  const struct dea_design_bytes file = {case_key->path, case_key->bytes, case_key->length};
+  for (size_t i = 0; i < case_key->variable_count; i++) {
+    p[i] = case_key->now->p[i];
   }
   p[j] += by;
-  const dea_status status = dea_device_params_build(ctx, &file, question->params,
-                                                    question->variable_count, p, design, device);
+  const dea_status status = dea_device_params_build(ctx, &file, case_key->params,
+                                                    case_key->variable_count, p, design, device);
   if (status == DEA_E_DESIGN) { // beyond what the key takes
     dea_context_clear(ctx);
     dea_device_destroy(ctx, *device);
@@ -84,16 +84,16 @@ static dea_status build(struct dea_context *ctx, const struct dea_question *ques
 }
 
 /* Adds the change of a variable: to both sides, or to the one where there is a device. */
-static dea_status add_change(struct dea_context *ctx, const struct dea_question *question, size_t j,
+static dea_status add_change(struct dea_context *ctx, const struct dea_case_key *case_key, size_t j,
                              const struct dea_device *device, double voltage_V, struct sides *sides)
 {
-  const struct dea_variable *variable = &question->variables[j];
-  const double size = fmax(fabs(question->now->p[j]), variable->high - variable->low);
+  const struct dea_variable *variable = &case_key->variables[j];
+  const double size = fmax(fabs(case_key->now->p[j]), variable->high - variable->low);
   struct dea_design_change *change = &sides->changes[sides->count];
   *change = (struct dea_design_change){.voltage_V = {voltage_V, voltage_V}};
   for (size_t k = 0; k < 2; k++) {
     const size_t n = 2 * j + k;
-    DEA_TRY(ctx, build(ctx, question, j, (k == 0 ? -step : step) * size, &sides->design[n],
+    DEA_TRY(ctx, build(ctx, case_key, j, (k == 0 ? -step : step) * size, &sides->design[n],
                        &sides->device[n]));
     change->device[k] = sides->device[n] != NULL ? sides->device[n] : device;
     change->width += sides->device[n] != NULL ? step * size : 0;
@@ -110,17 +110,17 @@ static dea_status add_change(struct dea_context *ctx, const struct dea_question 
 }
 
 /* Keeps the slope of a quantity at the last voltage. */
-static void put(const struct dea_question *question, size_t quantity, size_t variable, double slope)
+static void put(const struct dea_case_key *case_key, size_t quantity, size_t variable, double slope)
 {
-  const size_t value = (question->voltage_count - 1) * question->quantity_count + quantity;
-  question->now->q[question->evaluator.value_count + value * question->variable_count + variable] =
+  const size_t value = (case_key->voltage_count - 1) * case_key->quantity_count + quantity;
+  case_key->now->q[case_key->evaluator.value_count + value * case_key->variable_count + variable] =
       slope;
 }
 
-static dea_status find(struct dea_context *ctx, const struct dea_question *question,
+static dea_status find(struct dea_context *ctx, const struct dea_case_key *case_key,
                        struct dea_model *model, const struct sides *sides, bool held)
 {
-  const struct wanted wanted = find_wanted(question, held);
+  const struct wanted wanted = find_wanted(case_key, held);
   double slopes[DEA_CASE_PARAMS_MAX * DEA_EXPLORE_QUANTITIES_MAX];
   const size_t count = wanted.column_count + wanted.monitor_count;
   const struct dea_gradient_ask ask = {.changes = sides->changes,
@@ -133,7 +133,7 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   if (count == 0) {
     return DEA_OK;
   }
-  const dea_status status = question->model.type->gradient(ctx, model, &ask, slopes);
+  const dea_status status = case_key->model.type->gradient(ctx, model, &ask, slopes);
   if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
     return status;
   }
@@ -143,23 +143,23 @@ static dea_status find(struct dea_context *ctx, const struct dea_question *quest
   }
   for (size_t c = 0; c < sides->count; c++) {
     for (size_t i = 0; i < count; i++) {
-      put(question, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
+      put(case_key, wanted.quantity[i], sides->variable[c], slopes[c * count + i]);
     }
   }
   return DEA_OK;
 }
 
 /* Slopes of critical voltages. */
-static dea_status find_critical(struct dea_context *ctx, const struct dea_question *question,
+static dea_status find_critical(struct dea_context *ctx, const struct dea_case_key *case_key,
                                 const struct sides *sides)
 {
   double slopes[DEA_CASE_PARAMS_MAX];
-  for (size_t i = 0; i < question->quantity_count; i++) {
-    if (!question->quantities[i].is_critical || !is_wanted(question, i)) {
+  for (size_t i = 0; i < case_key->quantity_count; i++) {
+    if (!case_key->quantities[i].is_critical || !is_wanted(case_key, i)) {
       continue;
     }
     const dea_status status =
-        dea_critical_slopes(ctx, &question->critical[i], sides->changes, sides->count, slopes);
+        dea_critical_slopes(ctx, &case_key->critical[i], sides->changes, sides->count, slopes);
     if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
       return status;
     }
@@ -168,34 +168,34 @@ static dea_status find_critical(struct dea_context *ctx, const struct dea_questi
       continue;
     }
     for (size_t c = 0; c < sides->count; c++) {
-      put(question, i, sides->variable[c], slopes[c]);
+      put(case_key, i, sides->variable[c], slopes[c]);
     }
   }
   return DEA_OK;
 }
 
-static dea_status take(struct dea_question *question, struct dea_model *model,
+static dea_status take(struct dea_case_key *case_key, struct dea_model *model,
                        const struct dea_device *device, size_t stop)
 {
-  struct dea_context *ctx = question->model.ctx;
-  const size_t last = question->voltage_count - 1;
+  struct dea_context *ctx = case_key->model.ctx;
+  const size_t last = case_key->voltage_count - 1;
   struct sides sides = {.count = 0};
   dea_status status = DEA_OK;
-  if (stop != last && stop != question->voltage_count + last) {
+  if (stop != last && stop != case_key->voltage_count + last) {
     return DEA_OK;
   }
-  for (size_t j = 0; j < question->variable_count && status == DEA_OK; j++) {
-    if (question->variables[j].value_count == 0) {
-      status = add_change(ctx, question, j, device, question->voltages_V[last], &sides);
+  for (size_t j = 0; j < case_key->variable_count && status == DEA_OK; j++) {
+    if (case_key->variables[j].value_count == 0) {
+      status = add_change(ctx, case_key, j, device, case_key->voltages_V[last], &sides);
     }
   }
   if (status == DEA_OK && sides.count > 0) {
-    status = find(ctx, question, model, &sides, stop != last);
+    status = find(ctx, case_key, model, &sides, stop != last);
   }
   if (status == DEA_OK && sides.count > 0 && stop == last) {
-    status = find_critical(ctx, question, &sides);
+    status = find_critical(ctx, case_key, &sides);
   }
-  for (size_t n = 0; n < 2 * question->variable_count; n++) {
+  for (size_t n = 0; n < 2 * case_key->variable_count; n++) {
     dea_device_destroy(ctx, sides.device[n]);
     dea_design_destroy(ctx, sides.design[n]);
   }
@@ -204,22 +204,22 @@ static dea_status take(struct dea_question *question, struct dea_model *model,
 
 static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case *io)
 {
-  struct dea_question *question = user;
-  question->now = io;
-  question->stood = take;
-  const dea_status status = question->evaluator.evaluate(question, ctx, io);
-  question->stood = NULL;
-  question->now = NULL;
+  struct dea_case_key *case_key = user;
+  case_key->now = io;
+  case_key->stood = take;
+  const dea_status status = case_key->evaluator.evaluate(case_key, ctx, io);
+  case_key->stood = NULL;
+  case_key->now = NULL;
   return status;
 }
 
-struct dea_evaluator dea_question_with_slopes(const struct dea_question *question)
+struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key)
 {
-  struct dea_evaluator out = question->evaluator;
-  const int method = question->file->method.value;
-  out.gradients = question->model.type->gradient != NULL &&
+  struct dea_evaluator out = case_key->evaluator;
+  const int method = case_key->file->method.value;
+  out.gradients = case_key->model.type->gradient != NULL &&
                   (method == DEA_SLSQP || method == DEA_MMA) &&
-                  question->file->gradients.value == DEA_SLOPES_MODEL;
+                  case_key->file->gradients.value == DEA_SLOPES_MODEL;
   if (out.gradients && dea_evaluator_values(&out) <= DEA_CASE_VALUES_MAX) {
     out.evaluate = evaluate;
   } else {

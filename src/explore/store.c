@@ -24,10 +24,10 @@ static const double sync_every_s = 0.5;
 struct dea_store {
   struct dea_context *ctx;
   const struct dea_evaluator *evaluator;
-  char question[65], *path; // of the part that is written; NULL: none
+  char case_key[65], *path; // of the part that is written; NULL: none
   int file;                 // -1: none
   struct dea_case **cases;  // [room], count of them there; each with its own values only
-  size_t count, room;
+  size_t count, capacity;
   size_t *table, table_size; // open addressing: 1 + index of a case, 0: free
   size_t torn;
   double synced_s, wait_s; // last fsync, and how long the next one waits
@@ -57,17 +57,18 @@ static size_t *place_of(const struct dea_store *store, const double *p)
 
 static dea_status grow(struct dea_store *store)
 {
-  const size_t room = store->room > 0 ? 2 * store->room : 1024;
-  struct dea_case **cases = dea_resize(store->ctx, store->cases, room, sizeof(struct dea_case *));
-  size_t *table = cases != NULL ? dea_alloc(store->ctx, 2 * room, sizeof *table) : NULL;
+  const size_t capacity = store->capacity > 0 ? 2 * store->capacity : 1024;
+  struct dea_case **cases =
+      dea_resize(store->ctx, store->cases, capacity, sizeof(struct dea_case *));
+  size_t *table = cases != NULL ? dea_alloc(store->ctx, 2 * capacity, sizeof *table) : NULL;
   store->cases = cases != NULL ? cases : store->cases;
   if (table == NULL) {
     return DEA_E_MEMORY;
   }
   dea_free(store->ctx, store->table);
   store->table = table;
-  store->table_size = 2 * room;
-  store->room = room;
+  store->table_size = 2 * capacity;
+  store->capacity = capacity;
   for (size_t i = 0; i < store->count; i++) {
     *place_of(store, store->cases[i]->p) = i + 1;
   }
@@ -77,7 +78,7 @@ static dea_status grow(struct dea_store *store)
 /* Keeps a case that is not there yet. */
 static dea_status remember(struct dea_store *store, const struct dea_case *done)
 {
-  if (store->count == store->room) {
+  if (store->count == store->capacity) {
     DEA_TRY(store->ctx, grow(store));
   }
   size_t *place = place_of(store, done->p);
@@ -186,7 +187,7 @@ static bool read_line(const struct dea_evaluator *evaluator, char *line, struct 
 
 static void add_head(struct dea_text *out, const struct dea_store *store)
 {
-  dea_text_add(out, "%s %s %zu %zu\n", first_word, store->question, store->evaluator->param_count,
+  dea_text_add(out, "%s %s %zu %zu\n", first_word, store->case_key, store->evaluator->param_count,
                dea_evaluator_values(store->evaluator) + store->evaluator->mark_count);
 }
 
@@ -340,7 +341,7 @@ static dea_status open_all(struct dea_store *store, const char *folder,
   return shard != NULL ? mend_part(store) : DEA_OK;
 }
 
-dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *question,
+dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *case_key,
                           const struct dea_evaluator *evaluator, const struct dea_shard *shard,
                           struct dea_store **out)
 {
@@ -350,7 +351,7 @@ dea_status dea_store_open(struct dea_context *ctx, const char *folder, const cha
     return DEA_E_MEMORY;
   }
   *store = (struct dea_store){.ctx = ctx, .evaluator = evaluator, .file = -1};
-  snprintf(store->question, sizeof store->question, "%s", question);
+  snprintf(store->case_key, sizeof store->case_key, "%s", case_key);
   void *before = dea_c_locale_enter();
   dea_status status = grow(store);
   status = status == DEA_OK ? open_all(store, folder, shard) : status;

@@ -17,7 +17,7 @@ struct dea_store;
  * of what is asked; DEA_E_IO where the folder holds answers to another one, or where another
  * process writes to the same part. shard: NULL: nothing will be written. out: owned by the caller,
  * NULL on failure. */
-dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *question,
+dea_status dea_store_open(struct dea_context *ctx, const char *folder, const char *case_key,
                           const struct dea_evaluator *evaluator, const struct dea_shard *shard,
                           struct dea_store **out);
 /* NULL is fine. */

@@ -15,7 +15,7 @@ struct stretch {
 };
 
 struct work {
-  const struct dea_question *question;
+  const struct dea_case_key *case_key;
   const struct dea_sweep_options *options;
   struct dea_sweep_report *report;
   const struct dea_plan *plan;
@@ -28,7 +28,7 @@ struct work {
 
 static const double *numbers(const struct work *w, size_t i)
 {
-  return w->plan->p + i * w->question->variable_count;
+  return w->plan->p + i * w->case_key->variable_count;
 }
 
 /* Whether a place of the order is of this shard: blocks of it go round. */
@@ -93,7 +93,7 @@ static bool next_case(void *user, struct dea_case *out)
   if (!move_on(w, own)) {
     return false;
   }
-  const size_t i = w->order.cases[own->next], size = w->question->variable_count * sizeof *out->p;
+  const size_t i = w->order.cases[own->next], size = w->case_key->variable_count * sizeof *out->p;
   const double *near = numbers(w, w->order.first[own->next]);
   const struct dea_case *done = dea_store_find(w->store, near);
   out->number = i;
@@ -108,9 +108,9 @@ static bool next_case(void *user, struct dea_case *out)
 static dea_status keep(void *user, const struct dea_case *done)
 {
   struct work *w = user;
-  DEA_TRY(w->question->ctx, dea_store_add(w->store, done));
+  DEA_TRY(w->case_key->ctx, dea_store_add(w->store, done));
   w->report->now++;
-  dea_progress(w->question->ctx, "designs", w->report->before + w->report->now,
+  dea_progress(w->case_key->ctx, "designs", w->report->before + w->report->now,
                w->report->of_shard);
   return DEA_OK;
 }
@@ -124,8 +124,8 @@ static dea_status evaluate_all(struct work *w)
       w->report->before += is_open(w, i) ? 0U : 1U;
     }
   }
-  DEA_TRY(w->question->ctx,
-          dea_pool_create(w->question->ctx, &w->question->evaluator, w->options->processes, &pool));
+  DEA_TRY(w->case_key->ctx,
+          dea_pool_create(w->case_key->ctx, &w->case_key->evaluator, w->options->processes, &pool));
   dea_status status = dea_pool_run(pool, next_case, keep, w);
   dea_pool_destroy(pool);
   return status;
@@ -134,8 +134,8 @@ static dea_status evaluate_all(struct work *w)
 /* Evaluates what is open, groups after each other. */
 static dea_status evaluate(struct work *w)
 {
-  struct dea_context *ctx = w->question->ctx;
-  DEA_TRY(ctx, dea_order_make(w->question, w->plan, &w->order));
+  struct dea_context *ctx = w->case_key->ctx;
+  DEA_TRY(ctx, dea_order_make(w->case_key, w->plan, &w->order));
   w->block = w->plan->count / (SHARES * w->options->shard.parts);
   w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
   w->stretches = dea_alloc(ctx, w->options->processes, sizeof *w->stretches);
@@ -146,16 +146,16 @@ static dea_status evaluate(struct work *w)
 }
 
 /* Adds what a case's numbers are flagged with. */
-static void count_flags(const struct dea_question *question, const struct dea_case *done,
+static void count_flags(const struct dea_case_key *case_key, const struct dea_case *done,
                         struct dea_sweep_report *report)
 {
   for (size_t f = 0; f < DEA_FLAG_COUNT; f++) {
     size_t k = 0;
-    while (k < question->voltage_count && (done->marks[k] >> f & 1U) == 0) {
+    while (k < case_key->voltage_count && (done->marks[k] >> f & 1U) == 0) {
       k++;
     }
-    if (k < question->voltage_count) {
-      const double from_V = question->voltages_V[k];
+    if (k < case_key->voltage_count) {
+      const double from_V = case_key->voltages_V[k];
       report->flagged_from_V[f] =
           report->flagged[f] == 0 ? from_V : fmin(report->flagged_from_V[f], from_V);
       report->flagged[f]++;
@@ -173,7 +173,7 @@ static void count(struct work *w)
     const struct dea_case *done = dea_store_find(w->store, numbers(w, i));
     report->there += done != NULL ? 1U : 0U;
     if (done != NULL) {
-      count_flags(w->question, done, report);
+      count_flags(w->case_key, done, report);
     }
     if (done == NULL || done->why[0] == '\0') {
       continue;
@@ -189,12 +189,12 @@ static void count(struct work *w)
 
 static dea_status run(struct work *w)
 {
-  struct dea_context *ctx = w->question->ctx;
+  struct dea_context *ctx = w->case_key->ctx;
   const struct dea_sweep_options *options = w->options;
   if (options->force) {
     DEA_TRY(ctx, dea_store_remove(ctx, options->folder));
   }
-  DEA_TRY(ctx, dea_store_open(ctx, options->folder, w->question->hash, &w->question->evaluator,
+  DEA_TRY(ctx, dea_store_open(ctx, options->folder, w->case_key->hash, &w->case_key->evaluator,
                               options->merge ? NULL : &options->shard, &w->store));
   dea_status status = options->merge ? DEA_OK : evaluate(w);
   char message[512];
@@ -202,21 +202,21 @@ static dea_status run(struct work *w)
   count(w);
   if (status != DEA_E_MEMORY && (options->merge || options->shard.parts == 1)) {
     DEA_TRY(ctx,
-            dea_sweep_write(w->question, w->plan, w->store, &options->format, options->folder));
+            dea_sweep_write(w->case_key, w->plan, w->store, &options->format, options->folder));
     w->report->written = true;
   }
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 
-dea_status dea_sweep_run(const struct dea_question *question,
+dea_status dea_sweep_run(const struct dea_case_key *case_key,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report)
 {
   struct dea_plan plan;
   *report = (struct dea_sweep_report){0};
-  DEA_TRY(question->ctx, dea_plan_make(question, &plan));
-  struct work w = {.question = question, .options = options, .report = report, .plan = &plan};
+  DEA_TRY(case_key->ctx, dea_plan_make(case_key, &plan));
+  struct work w = {.case_key = case_key, .options = options, .report = report, .plan = &plan};
   dea_status status = run(&w);
   dea_store_close(w.store);
-  dea_free(question->ctx, plan.p);
+  dea_free(case_key->ctx, plan.p);
   return status;
 }

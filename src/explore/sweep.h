@@ -30,18 +30,18 @@ struct dea_sweep_report {
 
 /* Evaluates what of the plan is not in the folder yet and writes the tables of all that is there:
  * cases.csv, cases.h5, and of samples statistics.csv and indices.csv. After an interruption too. */
-dea_status dea_sweep_run(const struct dea_question *question,
+dea_status dea_sweep_run(const struct dea_case_key *case_key,
                          const struct dea_sweep_options *options, struct dea_sweep_report *report);
 
 /* Figures band_KEY of spreads [voltages][quantities] of so many samples, into a folder. doubted:
  * [voltages], samples whose numbers are not to be trusted there. */
 struct dea_spread;
-dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
+dea_status dea_sweep_draw(const struct dea_case_key *case_key, const struct dea_spread *spreads,
                           size_t samples, const size_t *doubted,
                           const struct dea_plot_format *format, const char *folder);
 /* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
  */
-dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
+dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
                            const struct dea_store *store, const struct dea_plot_format *format,
                            const char *folder);
 

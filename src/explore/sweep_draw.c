@@ -20,7 +20,7 @@ static dea_status add_series(struct dea_context *ctx, struct dea_panel *panel, s
 
 /* Spreads of a quantity at all voltages and how it is shown. */
 struct shown {
-  const struct dea_question *question;
+  const struct dea_case_key *case_key;
   const struct dea_spread *spreads; // of the quantity: [voltages * quantities] from it on
   const struct dea_column *column;
   size_t samples;
@@ -30,9 +30,9 @@ struct shown {
 /* Puts quantiles `low` and its opposite at voltage v. */
 static void put(const struct shown *shown, size_t v, size_t low, struct dea_series *out)
 {
-  const size_t n = shown->question->voltage_count;
-  const double *quantile = shown->spreads[v * shown->question->quantity_count].quantile;
-  out->values[v] = 1e-3 * shown->question->voltages_V[v];
+  const size_t n = shown->case_key->voltage_count;
+  const double *quantile = shown->spreads[v * shown->case_key->quantity_count].quantile;
+  out->values[v] = 1e-3 * shown->case_key->voltages_V[v];
   out->values[n + v] = shown->column->factor * quantile[low];
   out->values[2 * n + v] = shown->column->factor * quantile[DEA_SHARES - 1 - low];
 }
@@ -41,11 +41,11 @@ static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
 {
   static const char *const titles[] = {"95 %", "68 %"};
   static const enum dea_colour colours[] = {DEA_GREY, DEA_VERMILLION};
-  const size_t n = shown->question->voltage_count;
+  const size_t n = shown->case_key->voltage_count;
   for (size_t k = 0; k < 2; k++) { // from the outer pair inwards
     struct dea_series *band;
-    DEA_TRY(shown->question->ctx,
-            add_series(shown->question->ctx, panel, n, DEA_BAND, colours[k], &band));
+    DEA_TRY(shown->case_key->ctx,
+            add_series(shown->case_key->ctx, panel, n, DEA_BAND, colours[k], &band));
     snprintf(band->title, sizeof band->title, "%s", titles[k]);
     for (size_t v = 0; v < n; v++) {
       put(shown, v, k, band);
@@ -57,7 +57,7 @@ static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
 /* Whether a voltage has samples that are not to be trusted; none lies beyond the last one. */
 static bool is_doubted(const struct shown *shown, size_t v)
 {
-  return v < shown->question->voltage_count && shown->doubted[v] > 0;
+  return v < shown->case_key->voltage_count && shown->doubted[v] > 0;
 }
 
 /* The median where all samples are to be trusted, or dashed where some are not, up to the points
@@ -65,9 +65,9 @@ static bool is_doubted(const struct shown *shown, size_t v)
 static dea_status add_line(const struct shown *shown, struct dea_panel *panel, bool dashed,
                            const char *title)
 {
-  const size_t n = shown->question->voltage_count;
+  const size_t n = shown->case_key->voltage_count;
   struct dea_series *line;
-  DEA_TRY(shown->question->ctx, add_series(shown->question->ctx, panel, n,
+  DEA_TRY(shown->case_key->ctx, add_series(shown->case_key->ctx, panel, n,
                                            dashed ? DEA_DASHED : DEA_LINE_MARKED, DEA_BLUE, &line));
   snprintf(line->title, sizeof line->title, "%s", title);
   for (size_t v = 0; v < n; v++) {
@@ -85,8 +85,8 @@ static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
 {
   size_t most = 0, least = shown->samples, good = 0;
   char median[64] = "median", doubts[62], both[DEA_LABEL_SIZE];
-  for (size_t v = 0; v < shown->question->voltage_count; v++) {
-    const size_t count = shown->spreads[v * shown->question->quantity_count].count;
+  for (size_t v = 0; v < shown->case_key->voltage_count; v++) {
+    const size_t count = shown->spreads[v * shown->case_key->quantity_count].count;
     most = shown->doubted[v] > most ? shown->doubted[v] : most;
     least = count < least ? count : least;
     good += is_doubted(shown, v) ? 0U : 1U;
@@ -99,42 +99,42 @@ static dea_status add_median(const struct shown *shown, struct dea_panel *panel)
     snprintf(both, sizeof both, "%s, %s", median, doubts);
     return add_line(shown, panel, true, both);
   }
-  DEA_TRY(shown->question->ctx, add_line(shown, panel, false, median));
+  DEA_TRY(shown->case_key->ctx, add_line(shown, panel, false, median));
   return most > 0 ? add_line(shown, panel, true, doubts) : DEA_OK;
 }
 
 static dea_status fill_panel(const struct shown *shown, struct dea_panel *panel)
 {
-  DEA_TRY(shown->question->ctx, add_bands(shown, panel));
-  DEA_TRY(shown->question->ctx, add_median(shown, panel));
+  DEA_TRY(shown->case_key->ctx, add_bands(shown, panel));
+  DEA_TRY(shown->case_key->ctx, add_median(shown, panel));
   dea_figure_label(shown->column, panel->y_label, sizeof panel->y_label);
   dea_panel_voltage_axis(panel);
   dea_panel_place_key(panel);
   return DEA_OK;
 }
 
-dea_status dea_sweep_draw(const struct dea_question *question, const struct dea_spread *spreads,
+dea_status dea_sweep_draw(const struct dea_case_key *case_key, const struct dea_spread *spreads,
                           size_t samples, const size_t *doubted,
                           const struct dea_plot_format *format, const char *folder)
 {
   char names[DEA_EXPLORE_QUANTITIES_MAX][64];
   const char *list[DEA_EXPLORE_QUANTITIES_MAX];
-  for (size_t i = 0; i < question->quantity_count; i++) {
+  for (size_t i = 0; i < case_key->quantity_count; i++) {
     struct dea_plot *plot;
-    const struct shown shown = {question, spreads + i, &question->quantities[i].shown, samples,
+    const struct shown shown = {case_key, spreads + i, &case_key->quantities[i].shown, samples,
                                 doubted};
-    snprintf(names[i], sizeof names[i], "band_%.50s", question->quantities[i].key);
+    snprintf(names[i], sizeof names[i], "band_%.50s", case_key->quantities[i].key);
     list[i] = names[i];
-    DEA_TRY(question->ctx, dea_plot_create(question->ctx, names[i],
+    DEA_TRY(case_key->ctx, dea_plot_create(case_key->ctx, names[i],
                                            "median of the samples, and where 68 and 95 % of them "
                                            "lie",
                                            &plot));
     dea_status status = fill_panel(&shown, &plot->panels[0]);
     if (status == DEA_OK) {
-      status = dea_plot_write(question->ctx, plot, format, folder);
+      status = dea_plot_write(case_key->ctx, plot, format, folder);
     }
-    dea_plot_destroy(question->ctx, plot);
-    DEA_TRY(question->ctx, status);
+    dea_plot_destroy(case_key->ctx, plot);
+    DEA_TRY(case_key->ctx, status);
   }
-  return dea_gnuplot_draw(question->ctx, folder, list, question->quantity_count);
+  return dea_gnuplot_draw(case_key->ctx, folder, list, case_key->quantity_count);
 }

@@ -10,7 +10,7 @@
 #include <string.h>
 
 struct work {
-  const struct dea_question *question;
+  const struct dea_case_key *case_key;
   const struct dea_plan *plan;
   const struct dea_store *store;
   const struct dea_plot_format *format;
@@ -26,8 +26,8 @@ static const struct dea_case *case_of(const struct work *w, size_t i)
 
 static const char *unit_of(const struct work *w, size_t value)
 {
-  const size_t i = value % w->question->quantity_count;
-  return w->question->quantities[i].shown.si_unit;
+  const size_t i = value % w->case_key->quantity_count;
+  return w->case_key->quantities[i].shown.si_unit;
 }
 
 static void add_field(struct dea_text *out, double value)
@@ -43,16 +43,16 @@ static dea_status write_cases(const struct work *w)
   char name[64];
   dea_text_add(&out, "case,id");
   for (size_t j = 0; j < w->params; j++) {
-    const struct dea_device_param *param = &w->question->params[j];
+    const struct dea_device_param *param = &w->case_key->params[j];
     dea_text_add(&out, ",%s (%s)", param->param.name, param->param.unit);
   }
   for (size_t i = 0; i < w->values; i++) {
-    dea_question_value_name(w->question, i, name, sizeof name);
+    dea_case_key_value_name(w->case_key, i, name, sizeof name);
     dea_text_add(&out, ",%s (%s)", name, unit_of(w, i));
   }
   dea_text_add(&out, ",time (s)");
-  for (size_t k = 0; k < w->question->voltage_count; k++) {
-    dea_question_flags_name(w->question, k, name, sizeof name);
+  for (size_t k = 0; k < w->case_key->voltage_count; k++) {
+    dea_case_key_flags_name(w->case_key, k, name, sizeof name);
     dea_text_add(&out, ",%s", name);
   }
   dea_text_add(&out, ",reason\n");
@@ -69,7 +69,7 @@ static dea_status write_cases(const struct work *w)
       add_field(&out, done->q[i]);
     }
     dea_text_add(&out, ",%.4g", done->wall_s);
-    for (size_t k = 0; k < w->question->voltage_count; k++) {
+    for (size_t k = 0; k < w->case_key->voltage_count; k++) {
       char words[DEA_FLAGS_SIZE];
       dea_text_add(&out, ",%s", dea_flags_text(done->marks[k], words));
     }
@@ -94,12 +94,12 @@ static void put_column(struct h5 *h, const struct work *w, hid_t group, size_t r
   }
   if (value >= 0) {
     const struct dea_column *of =
-        &w->question->quantities[(size_t)value % w->question->quantity_count].shown;
-    dea_question_value_name(w->question, (size_t)value, name, sizeof name);
+        &w->case_key->quantities[(size_t)value % w->case_key->quantity_count].shown;
+    dea_case_key_value_name(w->case_key, (size_t)value, name, sizeof name);
     dea_h5_put_array(h, group, name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column, of->si_unit,
                      of->meaning);
   } else {
-    const struct dea_device_param *of = &w->question->params[param];
+    const struct dea_device_param *of = &w->case_key->params[param];
     dea_h5_put_array(h, group, of->param.name, H5T_NATIVE_DOUBLE, H5T_IEEE_F64LE, rows, column,
                      of->param.unit, "value in the design");
   }
@@ -117,7 +117,7 @@ static void put_texts(struct h5 *h, const struct work *w, hid_t group, size_t ro
   char name[64];
   snprintf(name, sizeof name, "%s", what == ID ? "id" : "reason");
   if (kind == FLAGS) {
-    dea_question_flags_name(w->question, what - FLAGS, name, sizeof name);
+    dea_case_key_flags_name(w->case_key, what - FLAGS, name, sizeof name);
   }
   char *texts = dea_alloc(w->ctx, rows, size);
   size_t row = 0;
@@ -158,8 +158,8 @@ static dea_status write_h5(const struct work *w)
   }
   dea_h5_begin(&h, w->ctx, path);
   hid_t file = dea_h5_file_make(&h);
-  dea_h5_put_text(&h, file, "question", w->question->hash);
-  dea_h5_put_text(&h, file, "model", w->question->model.type->name);
+  dea_h5_put_text(&h, file, "question", w->case_key->hash);
+  dea_h5_put_text(&h, file, "model", w->case_key->model.type->name);
   hid_t group = dea_h5_group_make(&h, file, "cases");
   if (rows > 0) {
     put_texts(&h, w, group, rows, ID);
@@ -169,7 +169,7 @@ static dea_status write_h5(const struct work *w)
     for (size_t i = 0; i < w->values; i++) {
       put_column(&h, w, group, rows, column, 0, (int)i);
     }
-    for (size_t k = 0; k < w->question->voltage_count; k++) {
+    for (size_t k = 0; k < w->case_key->voltage_count; k++) {
       put_texts(&h, w, group, rows, FLAGS + k);
     }
     put_texts(&h, w, group, rows, REASON);
@@ -196,7 +196,7 @@ static void take_values(const struct work *w, size_t i, size_t first, size_t cou
 /* Number of samples that are independent: of indices A and B. */
 static size_t independent(const struct work *w)
 {
-  return w->question->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
+  return w->case_key->file->plan.value == DEA_PLAN_INDICES ? 2 * w->plan->samples : w->plan->count;
 }
 
 /* Independent samples whose numbers at voltage k are not to be trusted. */
@@ -224,16 +224,16 @@ static dea_status write_statistics(const struct work *w, const size_t *doubted, 
   for (size_t i = 0; i < w->values && status == DEA_OK; i++) {
     take_values(w, i, 0, independent(w), values);
     status = dea_spread_find(w->ctx, values, independent(w), &spreads[i]);
-    dea_question_value_name(w->question, i, name, sizeof name);
+    dea_case_key_value_name(w->case_key, i, name, sizeof name);
     name[strcspn(name, "@")] = '\0';
     dea_text_add(&out, "%s,%s,%.6g,%zu", name, unit_of(w, i),
-                 1e-3 * w->question->voltages_V[i / w->question->quantity_count], spreads[i].count);
+                 1e-3 * w->case_key->voltages_V[i / w->case_key->quantity_count], spreads[i].count);
     add_field(&out, spreads[i].mean);
     add_field(&out, spreads[i].std);
     for (size_t k = 0; k < DEA_SHARES; k++) {
       add_field(&out, spreads[i].quantile[k]);
     }
-    dea_text_add(&out, ",%zu\n", doubted[i / w->question->quantity_count]);
+    dea_text_add(&out, ",%zu\n", doubted[i / w->case_key->quantity_count]);
   }
   status = status == DEA_OK ? dea_text_write(w->ctx, &out, w->folder, "statistics.csv") : status;
   dea_text_free(&out);
@@ -246,16 +246,16 @@ static dea_status write_limits(const struct work *w)
 {
   struct dea_text out = {.ctx = w->ctx};
   dea_text_add(&out, "quantity,above,below,samples,crossed,probability,standard error\n");
-  for (size_t l = 0; l < w->question->limit_count; l++) {
-    const struct dea_limit *limit = &w->question->limits[l];
+  for (size_t l = 0; l < w->case_key->limit_count; l++) {
+    const struct dea_limit *limit = &w->case_key->limits[l];
     size_t n = 0, crossed = 0;
     for (size_t c = 0; c < independent(w); c++) {
       const struct dea_case *done = case_of(w, c);
       n += done != NULL ? 1U : 0U;
-      crossed += done != NULL && !(dea_limit_margin(w->question, limit, done->q) >= 0) ? 1U : 0U;
+      crossed += done != NULL && !(dea_limit_margin(w->case_key, limit, done->q) >= 0) ? 1U : 0U;
     }
     const double share = (double)crossed / (double)n;
-    dea_text_add(&out, "%s", w->question->quantities[limit->column].key);
+    dea_text_add(&out, "%s", w->case_key->quantities[limit->column].key);
     add_field(&out, limit->above);
     add_field(&out, limit->below);
     dea_text_add(&out, ",%zu,%zu", n, crossed);
@@ -264,7 +264,7 @@ static dea_status write_limits(const struct work *w)
     dea_text_add(&out, "\n");
   }
   dea_status status =
-      w->question->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
+      w->case_key->limit_count > 0 ? dea_text_write(w->ctx, &out, w->folder, "limits.csv") : DEA_OK;
   dea_text_free(&out);
   return status;
 }
@@ -277,11 +277,11 @@ static dea_status write_indices(const struct work *w, double *values)
   dea_text_add(&out, "quantity,variable,first,total\n");
   for (size_t i = 0; i < w->values; i++) {
     take_values(w, i, 0, w->plan->count, values);
-    dea_question_value_name(w->question, i, name, sizeof name);
+    dea_case_key_value_name(w->case_key, i, name, sizeof name);
     for (size_t j = 0; j < w->params; j++) {
       double first, total;
       dea_sobol_index(values, values + n, values + (2 + j) * n, n, &first, &total);
-      dea_text_add(&out, "%s,%s", name, w->question->params[j].param.name);
+      dea_text_add(&out, "%s,%s", name, w->case_key->params[j].param.name);
       add_field(&out, first);
       add_field(&out, total);
       dea_text_add(&out, "\n");
@@ -296,11 +296,11 @@ static dea_status write_all(const struct work *w)
 {
   DEA_TRY(w->ctx, write_cases(w));
   DEA_TRY(w->ctx, write_h5(w));
-  if (w->question->file->plan.value == DEA_PLAN_GRID || w->question->file->objective_count > 0) {
+  if (w->case_key->file->plan.value == DEA_PLAN_GRID || w->case_key->file->objective_count > 0) {
     return DEA_OK;
   }
   size_t doubted[DEA_EXPLORE_VOLTAGES_MAX] = {0};
-  for (size_t k = 0; k < w->question->voltage_count; k++) {
+  for (size_t k = 0; k < w->case_key->voltage_count; k++) {
     doubted[k] = doubted_at(w, k);
   }
   double *values = dea_alloc(w->ctx, w->plan->count, sizeof *values);
@@ -309,29 +309,29 @@ static dea_status write_all(const struct work *w)
                           ? write_statistics(w, doubted, values, spreads)
                           : DEA_E_MEMORY;
   status = status == DEA_OK ? write_limits(w) : status;
-  if (status == DEA_OK && w->question->file->plan.value == DEA_PLAN_INDICES) {
+  if (status == DEA_OK && w->case_key->file->plan.value == DEA_PLAN_INDICES) {
     status = write_indices(w, values);
   }
-  if (status == DEA_OK && w->question->voltage_count > 1) {
-    status = dea_sweep_draw(w->question, spreads, independent(w), doubted, w->format, w->folder);
+  if (status == DEA_OK && w->case_key->voltage_count > 1) {
+    status = dea_sweep_draw(w->case_key, spreads, independent(w), doubted, w->format, w->folder);
   }
   dea_free(w->ctx, spreads);
   dea_free(w->ctx, values);
   return status;
 }
 
-dea_status dea_sweep_write(const struct dea_question *question, const struct dea_plan *plan,
+dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
                            const struct dea_store *store, const struct dea_plot_format *format,
                            const char *folder)
 {
-  const struct work w = {question,
+  const struct work w = {case_key,
                          plan,
                          store,
                          format,
                          folder,
-                         question->ctx,
-                         question->variable_count,
-                         question->evaluator.value_count};
+                         case_key->ctx,
+                         case_key->variable_count,
+                         case_key->evaluator.value_count};
   void *before = dea_c_locale_enter();
   dea_status status = write_all(&w);
   dea_c_locale_leave(before);

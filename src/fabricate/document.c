@@ -35,15 +35,15 @@ void dea_document_add(struct dea_document *document, enum dea_block_kind kind, c
   if (document->failed) {
     return;
   }
-  if (document->count == document->room) {
-    size_t room = document->room > 0 ? 2 * document->room : 32;
-    void *bigger = dea_resize(document->ctx, document->block, room, sizeof *document->block);
+  if (document->count == document->capacity) {
+    size_t capacity = document->capacity > 0 ? 2 * document->capacity : 32;
+    void *bigger = dea_resize(document->ctx, document->block, capacity, sizeof *document->block);
     if (bigger == NULL) {
       document->failed = true;
       return;
     }
     document->block = bigger;
-    document->room = room;
+    document->capacity = capacity;
   }
   document->block[document->count++] = (struct dea_document_block){.kind = kind};
   va_list args;

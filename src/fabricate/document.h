@@ -28,7 +28,7 @@ struct dea_document_block {
 struct dea_document {
   struct dea_context *ctx;
   struct dea_document_block *block; // owned
-  size_t count, room;
+  size_t count, capacity;
   bool failed; // memory was short; stays set, as in struct dea_text
 };
 

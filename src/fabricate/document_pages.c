@@ -17,7 +17,7 @@ struct writer {
 };
 
 /* The part of a text that fits on one line: its length, and where the next one starts. */
-static size_t fit(const struct dea_paper *paper, double size, bool bold, double room,
+static size_t fit(const struct dea_paper *paper, double size, bool bold, double capacity,
                   const char *text, char line[WORDS_MAX], const char **next)
 {
   size_t used = 0, taken = 0;
@@ -28,12 +28,12 @@ static size_t fit(const struct dea_paper *paper, double size, bool bold, double 
     }
     memcpy(line, text, end);
     line[end] = '\0';
-    if (taken > 0 && paper->type->text_width(paper->canvas, size, bold, line) > room) {
+    if (taken > 0 && paper->type->text_width(paper->canvas, size, bold, line) > capacity) {
       break;
     }
     // a word that is wider than the room is cut, not inside of a letter
     while (taken == 0 && end > 1 &&
-           paper->type->text_width(paper->canvas, size, bold, line) > room) {
+           paper->type->text_width(paper->canvas, size, bold, line) > capacity) {
       do {
         end--;
       } while (end > 1 && (text[end] & 0xc0) == 0x80);
@@ -53,14 +53,14 @@ static size_t fit(const struct dea_paper *paper, double size, bool bold, double 
 }
 
 /* Draws a text in a column of a table, or only counts its lines. */
-static int flow(const struct writer *w, bool draw, double x, bool bold, double room,
+static int flow(const struct writer *w, bool draw, double x, bool bold, double capacity,
                 const char *text)
 {
   int lines = 0;
   do {
     char line[WORDS_MAX];
     const char *next;
-    if (fit(w->paper, small_size, bold, room, text, line, &next) == 0) {
+    if (fit(w->paper, small_size, bold, capacity, text, line, &next) == 0) {
       break;
     }
     if (draw) {
@@ -98,12 +98,12 @@ static bool need(struct writer *w, double needed)
 static void write_text(struct writer *w, double before, double indent, double size, bool bold,
                        unsigned colour, double also, const char *text)
 {
-  double room = width - 2 * left - indent, line_height = size * leading;
+  double capacity = width - 2 * left - indent, line_height = size * leading;
   need(w, before + line_height + also);
   w->y -= before;
   while (*text != '\0') {
     char line[WORDS_MAX];
-    if (fit(w->paper, size, bold, room, text, line, &text) == 0) {
+    if (fit(w->paper, size, bold, capacity, text, line, &text) == 0) {
       break;
     }
     need(w, line_height);
@@ -125,8 +125,8 @@ static double row_height(const struct writer *w, const struct dea_document_block
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a table has its head
   for (size_t c = 0; c < row->cells && c < w->head->cells; c++) {
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a table has its head
-    double room = w->head->width[c] * (width - 2 * left) - 3;
-    int its = flow(w, false, 0, bold, room, row->cell[c]);
+    double capacity = w->head->width[c] * (width - 2 * left) - 3;
+    int its = flow(w, false, 0, bold, capacity, row->cell[c]);
     lines = its > lines ? its : lines;
   }
   return lines * small_size * leading + 2.4;

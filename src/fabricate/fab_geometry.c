@@ -152,14 +152,14 @@ static dea_status check_marks(struct dea_context *ctx, const struct dea_fab_geom
 {
   const struct dea_fabrication *f = &plan->design->fabrication;
   struct dea_location location = f->mark_diameter.length.location;
-  double room = plan->ring_m - plan->holder_m, needed = 2 * (plan->mark_m + plan->feature_m);
-  if (needed > room * (1 + touching)) {
+  double capacity = plan->ring_m - plan->holder_m, needed = 2 * (plan->mark_m + plan->feature_m);
+  if (needed > capacity * (1 + touching)) {
     return dea_finding_add(ctx, DEA_ERROR, location,
                            "alignment marks of %.4g mm diameter (stretched) do not fit on the %s, "
                            "%.4g mm wide, with %.4g mm (minimum_feature) around them",
                            2e3 * plan->mark_m,
-                           plan->device->fibre_count > 0 ? "fibres' holder" : "ring", 1e3 * room,
-                           1e3 * plan->feature_m);
+                           plan->device->fibre_count > 0 ? "fibres' holder" : "ring",
+                           1e3 * capacity, 1e3 * plan->feature_m);
   }
   for (int m = 0; m < DEA_FAB_MARKS; m++) {
     for (int side = 0; side < 2; side++) {

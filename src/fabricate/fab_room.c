@@ -157,10 +157,10 @@ static dea_status make_hole(struct dea_context *ctx, const struct dea_layout *la
 
 /* Three marks beside the opening. All distances between them differ, so that a sheet that is turned
  * over or around does not fit; the third one's place is the best of some for that. */
-static void place_marks(struct dea_fab_room *room, double width_m)
+static void place_marks(struct dea_fab_room *capacity, double width_m)
 {
   static const double share[] = {0.15, -0.1, 0.3, 0.45};
-  double x = room->opening_m[0] + 0.5 * width_m, y = room->opening_m[1] + 0.5 * width_m;
+  double x = capacity->opening_m[0] + 0.5 * width_m, y = capacity->opening_m[1] + 0.5 * width_m;
   double best = -1;
   for (size_t i = 0; i < sizeof share / sizeof share[0]; i++) {
     const double at[DEA_FAB_MARKS][2] = {{-x, -0.35 * y}, {x, 0.2 * y}, {share[i] * x, y}};
@@ -172,23 +172,23 @@ static void place_marks(struct dea_fab_room *room, double width_m)
     double least = fmin(fabs(d[0] - d[1]), fmin(fabs(d[1] - d[2]), fabs(d[2] - d[0])));
     if (least > best) {
       best = least;
-      memcpy(room->mark_at_m, at, sizeof at);
+      memcpy(capacity->mark_at_m, at, sizeof at);
     }
   }
 }
 
 static dea_status check(struct dea_context *ctx, const struct dea_fab_geometry *plan,
-                        const struct dea_fab_room *room)
+                        const struct dea_fab_room *capacity)
 {
   const struct dea_fabrication *f = &plan->design->fabrication;
-  double needed = 2 * (room->mark_m + plan->feature_m);
+  double needed = 2 * (capacity->mark_m + plan->feature_m);
   if (needed > f->ring.width_m.si * (1 + 1e-9)) {
-    DEA_TRY(ctx,
-            dea_finding_add(ctx, DEA_ERROR, f->mark_diameter.length.location,
-                            "alignment marks of %.4g mm diameter (stretched) do not fit on "
-                            "the frame, %.4g mm wide, with %.4g mm (minimum_feature) around "
-                            "them",
-                            2e3 * room->mark_m, 1e3 * f->ring.width_m.si, 1e3 * plan->feature_m));
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, f->mark_diameter.length.location,
+                                 "alignment marks of %.4g mm diameter (stretched) do not fit on "
+                                 "the frame, %.4g mm wide, with %.4g mm (minimum_feature) around "
+                                 "them",
+                                 2e3 * capacity->mark_m, 1e3 * f->ring.width_m.si,
+                                 1e3 * plan->feature_m));
   }
   return dea_fab_check_cutter(ctx, plan);
 }
@@ -224,7 +224,7 @@ dea_status dea_fab_room_make(struct dea_context *ctx, const struct dea_fab_geome
   return check(ctx, plan, out);
 }
 
-void dea_fab_room_free(struct dea_fab_room *room)
+void dea_fab_room_free(struct dea_fab_room *capacity)
 {
-  dea_region_free(&room->hole);
+  dea_region_free(&capacity->hole);
 }

@@ -23,7 +23,7 @@ struct dea_fab_room {
  * after a failure, which is one of memory. */
 dea_status dea_fab_room_make(struct dea_context *ctx, const struct dea_fab_geometry *plan,
                              struct dea_fab_room *out);
-void dea_fab_room_free(struct dea_fab_room *room);
+void dea_fab_room_free(struct dea_fab_room *capacity);
 
 /* ---- of a layout ---- */
 

@@ -19,7 +19,7 @@ enum { NAME_SIZE = 64 };
 
 /* Formats of a sheet. */
 static const struct {
-  const char *ending;
+  const char *outcome;
   dea_status (*write)(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
 } formats[] = {{"dxf", dea_dxf_write}, {"svg", dea_svg_write}};
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -61,7 +61,7 @@ dea_status dea_workshop_files(const struct dea_workshop *workshop,
   dea_status status = DEA_OK;
   for (size_t i = 0; i < workshop->count && !options->drawing_only; i++) {
     for (size_t f = 0; f < FORMATS && status == DEA_OK; f++) {
-      snprintf(name, sizeof name, "%s.%s", workshop->part[i].name, formats[f].ending);
+      snprintf(name, sizeof name, "%s.%s", workshop->part[i].name, formats[f].outcome);
       status = sink(user, name);
     }
   }
@@ -175,7 +175,7 @@ static dea_status write_sheet(struct dea_context *ctx, const struct dea_workshop
 {
   char name[NAME_SIZE];
   struct dea_text text = {.ctx = ctx};
-  snprintf(name, sizeof name, "%s.%s", workshop->part[index].name, formats[format].ending);
+  snprintf(name, sizeof name, "%s.%s", workshop->part[index].name, formats[format].outcome);
   void *locale = dea_c_locale_enter();
   dea_status status = formats[format].write(workshop, index, &text);
   dea_c_locale_leave(locale);

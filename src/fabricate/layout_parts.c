@@ -114,7 +114,7 @@ static struct sheet start(struct dea_workshop *w, const char *name, const char *
                               .title = title,
                               .seen = below ? "seen from below" : "seen from above",
                               .state = DEA_STRETCHED,
-                              .flat = !w->room.stretched,
+                              .flat = !w->capacity.stretched,
                               .quantity = 1,
                               .mirrored = below};
   if (unstretched != NULL && dea_ply_is_stretched(unstretched)) {
@@ -139,7 +139,7 @@ static struct sheet start(struct dea_workshop *w, const char *name, const char *
 
 static void place(const struct sheet *s, const double x_m[2], double out[2])
 {
-  double x = x_m[0] - s->w->room.centre_m[0], y = x_m[1] - s->w->room.centre_m[1];
+  double x = x_m[0] - s->w->capacity.centre_m[0], y = x_m[1] - s->w->capacity.centre_m[1];
   out[0] = s->map[0][0] * x + s->map[0][1] * y;
   out[1] = s->map[1][0] * x + s->map[1][1] * y;
 }
@@ -223,7 +223,7 @@ static void add_region(const struct sheet *s, const struct dea_region *region,
 static void add_box(const struct sheet *s, enum dea_layer layer, const double half_m[2],
                     struct dea_location location)
 {
-  const double *c = s->w->room.centre_m;
+  const double *c = s->w->capacity.centre_m;
   struct dea_vertex v[4] = {{0}};
   for (int k = 0; k < 4; k++) {
     v[k].x_m = c[0] + (k == 0 || k == 3 ? half_m[0] : -half_m[0]);
@@ -236,12 +236,12 @@ static void add_box(const struct sheet *s, enum dea_layer layer, const double ha
 
 static void add_marks(const struct sheet *s, enum dea_layer layer)
 {
-  const struct dea_fab_room *room = &s->w->room;
+  const struct dea_fab_room *capacity = &s->w->capacity;
   struct dea_region marks = {.ctx = s->part->ctx};
   for (int k = 0; k < DEA_FAB_MARKS; k++) {
-    dea_region_add_circle(&marks, room->centre_m[0] + room->mark_at_m[k][0],
-                          room->centre_m[1] + room->mark_at_m[k][1], room->mark_m, false,
-                          s->w->plan.design->fabrication.mark_diameter.length.location);
+    dea_region_add_circle(&marks, capacity->centre_m[0] + capacity->mark_at_m[k][0],
+                          capacity->centre_m[1] + capacity->mark_at_m[k][1], capacity->mark_m,
+                          false, s->w->plan.design->fabrication.mark_diameter.length.location);
   }
   s->part->failed |= marks.failed;
   add_region(s, &marks, layer, layer);
@@ -251,19 +251,21 @@ static void add_marks(const struct sheet *s, enum dea_layer layer)
 /* Whether a cross of the grid at a place of the flat film would lie on something else. */
 static bool is_taken(const struct dea_workshop *w, double x, double y)
 {
-  const struct dea_fab_room *room = &w->room;
-  double clear = 1.5 * room->cross_m + w->plan.feature_m;
-  bool taken = (fabs(x) < room->opening_m[0] + clear && fabs(y) < room->opening_m[1] + clear) ||
-               fabs(x) > room->blank_m[0] - clear || fabs(y) > room->blank_m[1] - clear;
+  const struct dea_fab_room *capacity = &w->capacity;
+  double clear = 1.5 * capacity->cross_m + w->plan.feature_m;
+  bool taken =
+      (fabs(x) < capacity->opening_m[0] + clear && fabs(y) < capacity->opening_m[1] + clear) ||
+      fabs(x) > capacity->blank_m[0] - clear || fabs(y) > capacity->blank_m[1] - clear;
   for (int k = 0; k < DEA_FAB_MARKS; k++) {
-    taken |= hypot(x - room->mark_at_m[k][0], y - room->mark_at_m[k][1]) < room->mark_m + clear;
+    taken |= hypot(x - capacity->mark_at_m[k][0], y - capacity->mark_at_m[k][1]) <
+             capacity->mark_m + clear;
   }
   return taken;
 }
 
 static void add_line(const struct sheet *s, double x0, double y0, double x1, double y1)
 {
-  const double *c = s->w->room.centre_m;
+  const double *c = s->w->capacity.centre_m;
   const double from[2] = {c[0] + x0, c[1] + y0}, to[2] = {c[0] + x1, c[1] + y1};
   double a[2], b[2];
   place(s, from, a);
@@ -275,14 +277,14 @@ static void add_line(const struct sheet *s, double x0, double y0, double x1, dou
 /* Crosses of a grid, on the film beyond the opening. */
 static void add_grid(const struct sheet *s)
 {
-  const struct dea_fab_room *room = &s->w->room;
+  const struct dea_fab_room *capacity = &s->w->capacity;
   int n[2];
   for (int k = 0; k < 2; k++) {
-    n[k] = (int)fmin(room->blank_m[k] / room->grid_m, 500);
+    n[k] = (int)fmin(capacity->blank_m[k] / capacity->grid_m, 500);
   }
   for (int j = -n[1]; j <= n[1]; j++) {
     for (int i = -n[0]; i <= n[0]; i++) {
-      double x = i * room->grid_m, y = j * room->grid_m, arm = room->cross_m;
+      double x = i * capacity->grid_m, y = j * capacity->grid_m, arm = capacity->cross_m;
       if (!is_taken(s->w, x, y)) {
         add_line(s, x - arm, y, x + arm, y);
         add_line(s, x, y - arm, x, y + arm);
@@ -352,7 +354,7 @@ static void add_blank(struct dea_workshop *w, size_t ply)
   s.part->quantity = dea_ply_count_like(l, ply);
   add_grid(&s);
   add_marks(&s, DEA_LAYER_MARK);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->room.blank_m, f->blank.margin.length.location);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->capacity.blank_m, f->blank.margin.length.location);
   measure_box(s.part, "film");
 }
 
@@ -407,7 +409,7 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
   measure(s.part, 0, DEA_LAYER_CUT_INNER, "electrode");
   measure(s.part, 0, DEA_LAYER_CUT_OUTER, "loose piece");
   add_marks(&s, DEA_LAYER_CUT_INNER);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->room.blank_m, edge);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->capacity.blank_m, edge);
   measure_box(s.part, "stencil");
   double box[4];
   dea_part_box(s.part, box);
@@ -452,36 +454,36 @@ static void add_template(struct dea_workshop *w)
   add_marks(&s, mark);
   size_t first = s.part->contour_count;
   if (dea_layout_has_frame(w)) {
-    add_box(&s, mark, w->room.frame_m, f->ring.width_m.location);
+    add_box(&s, mark, w->capacity.frame_m, f->ring.width_m.location);
     measure(s.part, first, mark, "frame");
   }
-  if (w->room.stretched) {
+  if (w->capacity.stretched) {
     first = s.part->contour_count;
-    add_box(&s, mark, w->room.blank_m, f->blank.margin.length.location);
+    add_box(&s, mark, w->capacity.blank_m, f->blank.margin.length.location);
     measure(s.part, first, mark, "film");
   }
 }
 
 bool dea_layout_has_frame(const struct dea_workshop *workshop)
 {
-  return workshop->room.held || workshop->room.stretched;
+  return workshop->capacity.held || workshop->capacity.stretched;
 }
 
 static void add_frame(struct dea_workshop *w)
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
   struct sheet s = start(w, "frame",
-                         w->room.held ? "Frame, to which the edge of the film is bonded"
-                                      : "Frame that holds the film until it is cut",
+                         w->capacity.held ? "Frame, to which the edge of the film is bonded"
+                                          : "Frame that holds the film until it is cut",
                          NULL, false);
-  if (w->room.held) {
-    add_region(&s, &w->room.hole, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
+  if (w->capacity.held) {
+    add_region(&s, &w->capacity.hole, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
   } else {
-    add_box(&s, DEA_LAYER_CUT_INNER, w->room.opening_m, f->frame_gap_m.location);
+    add_box(&s, DEA_LAYER_CUT_INNER, w->capacity.opening_m, f->frame_gap_m.location);
   }
   measure(s.part, 0, DEA_LAYER_CUT_INNER, "opening");
   add_marks(&s, DEA_LAYER_CUT_INNER);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->room.frame_m, f->ring.width_m.location);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->capacity.frame_m, f->ring.width_m.location);
   measure_box(s.part, "frame");
 }
 

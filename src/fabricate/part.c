@@ -7,19 +7,20 @@
 static const double pi = 3.14159265358979323846;
 
 /* Room for one more item of an array; false when memory is short. */
-static bool make_room(struct dea_part *part, void **items, size_t size, size_t count, size_t *room)
+static bool make_room(struct dea_part *part, void **items, size_t size, size_t count,
+                      size_t *capacity)
 {
-  if (part->failed || count < *room) {
+  if (part->failed || count < *capacity) {
     return !part->failed;
   }
-  size_t more = *room > 0 ? 2 * *room : 32;
+  size_t more = *capacity > 0 ? 2 * *capacity : 32;
   void *bigger = dea_resize(part->ctx, *items, more, size);
   if (bigger == NULL) {
     part->failed = true;
     return false;
   }
   *items = bigger;
-  *room = more;
+  *capacity = more;
   return true;
 }
 

@@ -107,22 +107,22 @@ static void add_box(struct picture *p, const double centre[2], const double half
 
 static void add_frame(struct picture *p, const struct dea_workshop *w)
 {
-  const struct dea_fab_room *room = &w->room;
+  const struct dea_fab_room *capacity = &w->capacity;
   const struct dea_drawn_shape frame = {
       .colour = FRAME, .opacity = 1, .note = "frame, outside", .stretch = 1};
   const struct dea_drawn_shape hole = {.colour = WHITE, .opacity = 1};
-  add_box(p, room->centre_m, room->frame_m, &frame);
-  for (size_t i = 0; room->held && i < room->hole.contour_count; i++) {
-    const struct dea_contour contour = dea_region_contour(&room->hole, i);
+  add_box(p, capacity->centre_m, capacity->frame_m, &frame);
+  for (size_t i = 0; capacity->held && i < capacity->hole.contour_count; i++) {
+    const struct dea_contour contour = dea_region_contour(&capacity->hole, i);
     dea_part_add(&p->parts, DEA_LAYER_MARK, contour.vertex, contour.count, false);
     next(p, &hole);
   }
-  if (!room->held) {
-    add_box(p, room->centre_m, room->opening_m, &hole);
+  if (!capacity->held) {
+    add_box(p, capacity->centre_m, capacity->opening_m, &hole);
   }
   double marks[DEA_FAB_MARKS][2];
-  memcpy(marks, room->mark_at_m, sizeof marks);
-  add_marks(p, room->centre_m[0], room->centre_m[1], marks, room->mark_m);
+  memcpy(marks, capacity->mark_at_m, sizeof marks);
+  add_marks(p, capacity->centre_m[0], capacity->centre_m[1], marks, capacity->mark_m);
 }
 
 /* p: zero; to be freed. */

@@ -67,7 +67,7 @@ static void add_ply(const struct sheet *s, size_t i)
   size_t count = dea_ply_count_like(s->layout, i);
   double area = area_of(s, ply->region);
   double cut =
-      film ? 4 * s->w->room.blank_m[0] * s->w->room.blank_m[1] / stretched_area(ply) : area;
+      film ? 4 * s->w->capacity.blank_m[0] * s->w->capacity.blank_m[1] / stretched_area(ply) : area;
   double mass =
       area * ply->thickness_m / (double)dea_ply_layers(ply) * ply->material.density_kg_per_m3;
   char item[WORDS], note[WORDS], weight[64] = "mass unknown: the material has no density";
@@ -114,7 +114,7 @@ double dea_ink_area_m2(const struct dea_workshop *workshop)
 static void add_materials(const struct sheet *s)
 {
   const struct dea_layout *l = s->layout;
-  const struct dea_fab_room *room = &s->w->room;
+  const struct dea_fab_room *capacity = &s->w->capacity;
   double printed = dea_ink_area_m2(s->w), stencils = 0;
   int copies = s->w->plan.copies;
   dea_process_begin_materials(s->to, copies);
@@ -123,9 +123,10 @@ static void add_materials(const struct sheet *s)
       add_ply(s, i);
     }
     for (int top = 0; top < 2; top++) {
-      stencils += dea_face_like(l, i, top == 1) == i
-                      ? 4 * room->blank_m[0] * room->blank_m[1] / stretched_area(&l->plies[i])
-                      : 0;
+      stencils +=
+          dea_face_like(l, i, top == 1) == i
+              ? 4 * capacity->blank_m[0] * capacity->blank_m[1] / stretched_area(&l->plies[i])
+              : 0;
     }
   }
   if (printed > 0) {
@@ -136,10 +137,10 @@ static void add_materials(const struct sheet *s)
                              "Before cutting; its thickness sets how much is printed");
   }
   if (dea_layout_has_frame(s->w)) {
-    dea_process_add_material(s->to, room->held ? copies : 1, "frame", "rigid plate",
-                             4 * room->frame_m[0] * room->frame_m[1], NAN,
-                             room->held ? "Before cutting; it stays"
-                                        : "Before cutting; used again");
+    dea_process_add_material(s->to, capacity->held ? copies : 1, "frame", "rigid plate",
+                             4 * capacity->frame_m[0] * capacity->frame_m[1], NAN,
+                             capacity->held ? "Before cutting; it stays"
+                                            : "Before cutting; used again");
   }
   for (size_t i = 0; i < l->body_count; i++) {
     char note[WORDS] = "The design gives it no mass beside its plies'";
@@ -157,7 +158,7 @@ static void add_cutting(const struct sheet *s)
 {
   const struct dea_layout *l = s->layout;
   char name[DEA_PART_NAME], size[WORDS], grid[NUMBER];
-  dea_length_text(grid, sizeof grid, s->w->room.grid_m);
+  dea_length_text(grid, sizeof grid, s->w->capacity.grid_m);
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_layout_ply *ply = &l->plies[i];
     size_t count = dea_ply_count_like(l, i);
@@ -165,7 +166,7 @@ static void add_cutting(const struct sheet *s)
       continue;
     }
     dea_blank_name(l, i, name);
-    write_size(s, s->w->room.blank_m, name, size);
+    write_size(s, s->w->capacity.blank_m, name, size);
     dea_document_add(s->to, DEA_BLOCK_STEP,
                      "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
                      "crosses of the grid and the three alignment marks%s.",
@@ -331,9 +332,9 @@ static void add_supports(const struct sheet *s)
     dea_document_add(s->to, DEA_BLOCK_STEP, "Hold %s%s%s%s along %s%s.",
                      p->edge ? "the edge of " : "", l->regions[p->region].name,
                      within ? " within " : "", within ? l->regions[p->within].name : "", held,
-                     p->hinged                               ? ", so that it may turn"
-                     : p->edge && !within && s->w->room.held ? ": the frame does that"
-                                                             : "");
+                     p->hinged                                   ? ", so that it may turn"
+                     : p->edge && !within && s->w->capacity.held ? ": the frame does that"
+                                                                 : "");
   }
   for (size_t i = 0; i < l->spring_count; i++) {
     const struct dea_layout_spring *p = &l->springs[i];
@@ -402,7 +403,7 @@ static void add_ply_checks(const struct sheet *s, const struct dea_layout_sensit
 {
   const struct dea_layout_ply *ply = &s->layout->plies[i];
   const struct dea_fabrication *f = &s->w->plan.design->fabrication;
-  const double grid = 5 * s->w->room.grid_m;
+  const double grid = 5 * s->w->capacity.grid_m;
   char number[NUMBER], other[NUMBER], wanted[WORDS], tolerance[WORDS];
   snprintf(wanted, sizeof wanted, "%.4g \xc2\xb5m%s", 1e6 * dea_ply_layer_m(ply),
            dea_ply_is_stretched(ply) ? " unstretched" : "");

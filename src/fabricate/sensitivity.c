@@ -12,7 +12,7 @@ enum { QUARTERS = 4 };
 
 // Where a model stands ---------------------------------------------------------------------------
 
-struct standing {
+struct solver_state {
   const struct dea_model_type *type;
   const struct dea_design *design;
   const struct dea_device *device;
@@ -32,7 +32,7 @@ static dea_status answer(struct dea_context *ctx, dea_status status, bool *there
 }
 
 /* A new model at a voltage, if it comes to a state there that is to be trusted. */
-static dea_status stand_at(struct dea_context *ctx, struct standing *s, double voltage_V,
+static dea_status state_at(struct dea_context *ctx, struct solver_state *s, double voltage_V,
                            bool *there)
 {
   s->type->destroy(ctx, s->model);
@@ -47,7 +47,7 @@ static dea_status stand_at(struct dea_context *ctx, struct standing *s, double v
 }
 
 /* Whether the film is taut at a voltage, if its tension goes on as from one point to the next: with
- * the square of the voltage. Of a model that knows no tension: yes. */
+ * the square of the voltage. Of a model that does not compute tension: yes. */
 static bool stays_taut(const struct dea_load_point *from, const struct dea_load_point *to,
                        double voltage_V)
 {
@@ -59,7 +59,7 @@ static bool stays_taut(const struct dea_load_point *from, const struct dea_load_
 
 /* Goes up by quarters of the highest voltage. A quarter at which the film would be slack is not
  * asked for: it takes long, and its shape is one of several. */
-static dea_status stand(struct dea_context *ctx, struct standing *s, double *voltage_V)
+static dea_status stand(struct dea_context *ctx, struct solver_state *s, double *voltage_V)
 {
   const double highest = dea_design_highest_V(s->design);
   struct dea_load_point last, next;
@@ -68,7 +68,7 @@ static dea_status stand(struct dea_context *ctx, struct standing *s, double *vol
   if (!(highest > 0)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, stand_at(ctx, s, 0, &there));
+  DEA_TRY(ctx, state_at(ctx, s, 0, &there));
   last = s->point;
   for (int quarter = 1; quarter <= QUARTERS && there; quarter++) {
     const double voltage = highest * quarter / QUARTERS;
@@ -82,14 +82,14 @@ static dea_status stand(struct dea_context *ctx, struct standing *s, double *vol
     *voltage_V = there ? voltage : *voltage_V;
   }
   if (!there && !isnan(*voltage_V)) { // it has gone too far
-    DEA_TRY(ctx, stand_at(ctx, s, *voltage_V, &there));
+    DEA_TRY(ctx, state_at(ctx, s, *voltage_V, &there));
     *voltage_V = there ? *voltage_V : NAN;
   }
   return DEA_OK;
 }
 
 /* What is asked of a gradient there, but for the quantities. */
-static struct dea_design_gradient ask_of(const struct standing *s, double voltage_V,
+static struct dea_design_gradient ask_of(const struct solver_state *s, double voltage_V,
                                          const struct dea_design_number *numbers, size_t count)
 {
   return (struct dea_design_gradient){.type = s->type,
@@ -129,7 +129,7 @@ static double sign_of(const char *key)
 }
 
 /* By the gradient, for all numbers with a tolerance. */
-static dea_status differentiate(struct dea_context *ctx, const struct standing *s, int column,
+static dea_status differentiate(struct dea_context *ctx, const struct solver_state *s, int column,
                                 struct dea_sensitivity *out)
 {
   struct dea_design_number all[DEA_NUMBERS_MAX], numbers[DEA_DEVIATION_COUNT];
@@ -154,17 +154,17 @@ static dea_status differentiate(struct dea_context *ctx, const struct standing *
 }
 
 /* The displacement with the fibre tips farther from the centre; NAN: none. */
-static dea_status ask_moved(struct dea_context *ctx, const struct standing *s, int column,
+static dea_status ask_moved(struct dea_context *ctx, const struct solver_state *s, int column,
                             double by_m, double voltage_V, double *out)
 {
   struct dea_device moved = *s->device;
-  struct standing other = {.type = s->type, .design = s->design, .device = &moved};
+  struct solver_state other = {.type = s->type, .design = s->design, .device = &moved};
   moved.fibre_tip_radius_m += by_m;
   moved.fibre_length_m -= by_m;
   moved.fibre_overlap_m -= by_m;
   bool there = false;
   if (moved.fibre_tip_radius_m > 0 && moved.fibre_length_m > 0) {
-    const dea_status status = stand_at(ctx, &other, voltage_V, &there);
+    const dea_status status = state_at(ctx, &other, voltage_V, &there);
     other.type->destroy(ctx, other.model);
     DEA_TRY(ctx, status);
   }
@@ -174,7 +174,7 @@ static dea_status ask_moved(struct dea_context *ctx, const struct standing *s, i
 
 /* Where fibre tips lie on the electrode's edge the gradient's mesh cannot follow them (nor is an
  * overlap of 0 a number): half of the difference from minus to plus. */
-static dea_status move_tips(struct dea_context *ctx, const struct standing *s, int column,
+static dea_status move_tips(struct dea_context *ctx, const struct solver_state *s, int column,
                             struct dea_sensitivity *out)
 {
   const double by_m =
@@ -186,8 +186,8 @@ static dea_status move_tips(struct dea_context *ctx, const struct standing *s, i
   return DEA_OK;
 }
 
-static dea_status find(struct dea_context *ctx, struct standing *s, const struct question *question,
-                       struct dea_sensitivity *out)
+static dea_status find(struct dea_context *ctx, struct solver_state *s,
+                       const struct question *question, struct dea_sensitivity *out)
 {
   const int column = dea_point_column_find(question->column);
   *out = (struct dea_sensitivity){
@@ -215,7 +215,7 @@ dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design
     if (questions[q].fibres != (device->fibre_count > 0)) {
       continue;
     }
-    struct standing s = {
+    struct solver_state s = {
         .type = dea_model_find(questions[q].model), .design = design, .device = device};
     const size_t errors = dea_finding_trial_begin(ctx); // the sheet says what is to be said
     const dea_status status = find(ctx, &s, &questions[q], out);
@@ -255,7 +255,7 @@ static bool find_ply(const struct dea_layout *layout, const char *key, struct of
   return false;
 }
 
-static dea_status differentiate_plies(struct dea_context *ctx, const struct standing *s,
+static dea_status differentiate_plies(struct dea_context *ctx, const struct solver_state *s,
                                       struct dea_layout_sensitivity *out)
 {
   struct dea_design_number all[DEA_NUMBERS_MAX], numbers[DEA_NUMBERS_MAX];
@@ -282,7 +282,7 @@ static dea_status differentiate_plies(struct dea_context *ctx, const struct stan
   return DEA_OK;
 }
 
-static dea_status find_layout(struct dea_context *ctx, struct standing *s,
+static dea_status find_layout(struct dea_context *ctx, struct solver_state *s,
                               struct dea_layout_sensitivity *out)
 {
   struct dea_observation seen;
@@ -316,7 +316,7 @@ dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea
                                        const struct dea_device *device,
                                        struct dea_layout_sensitivity *out)
 {
-  struct standing s = {.type = dea_model_find("3d"), .design = design, .device = device};
+  struct solver_state s = {.type = dea_model_find("3d"), .design = design, .device = device};
   *out = (struct dea_layout_sensitivity){.seen = 0};
   const size_t errors = dea_finding_trial_begin(ctx);
   const dea_status status = find_layout(ctx, &s, out);

@@ -155,7 +155,7 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
                                         .kerf_m = design->fabrication.kerf_m.si,
                                         .feature_m = design->fabrication.minimum_feature_m.si,
                                         .copies = (int)design->fabrication.copies.si};
-    DEA_TRY(ctx, dea_fab_room_make(ctx, &w->plan, &w->room));
+    DEA_TRY(ctx, dea_fab_room_make(ctx, &w->plan, &w->capacity));
   } else {
     DEA_TRY(ctx, dea_device_check(ctx, device));
     DEA_TRY(ctx, dea_fab_geometry_make(ctx, design, device, &w->plan));
@@ -199,8 +199,8 @@ void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop
     for (size_t i = 0; i < workshop->count; i++) {
       dea_part_free(&workshop->part[i]);
     }
-    if (workshop->room.hole.ctx != NULL) {
-      dea_fab_room_free(&workshop->room);
+    if (workshop->capacity.hole.ctx != NULL) {
+      dea_fab_room_free(&workshop->capacity);
     }
     dea_arena_free(&workshop->memory);
     dea_free(ctx, workshop);

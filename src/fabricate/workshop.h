@@ -20,7 +20,7 @@ struct dea_sheet_layout {
 
 struct dea_workshop {
   struct dea_fab_geometry plan;
-  struct dea_fab_room room;        // of a device that is no disc
+  struct dea_fab_room capacity;    // of a device that is no disc
   struct dea_part *part;           // [count] in the order of the work; owned
   struct dea_sheet_layout *layout; // [count] owned
   size_t count;

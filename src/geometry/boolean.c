@@ -59,19 +59,19 @@ struct work {
 };
 
 /* Room for one more in an owned array. */
-static dea_status make_room(struct dea_context *ctx, void **array, size_t count, size_t *room,
+static dea_status make_room(struct dea_context *ctx, void **array, size_t count, size_t *capacity,
                             size_t size)
 {
-  if (count < *room) {
+  if (count < *capacity) {
     return DEA_OK;
   }
-  size_t larger = 2 * *room + 64;
+  size_t larger = 2 * *capacity + 64;
   void *moved = dea_resize(ctx, *array, larger, size);
   if (moved == NULL) {
     return DEA_E_MEMORY;
   }
   *array = moved;
-  *room = larger;
+  *capacity = larger;
   return DEA_OK;
 }
 
@@ -503,28 +503,28 @@ struct ring_room {
 /* Adds a ring of the result as a contour, counter-clockwise unless it is a hole; not one that is
  * thinner than the tolerance. */
 static dea_status add_ring(struct reading *r, const struct edge *sorted, bool hole,
-                           const struct ring_room *room, struct dea_region *out)
+                           const struct ring_room *capacity, struct dea_region *out)
 {
   const struct work *w = r->work;
-  struct found *p = room->piece;
+  struct found *p = capacity->piece;
   size_t count = read_pieces(r, p);
   for (size_t i = 0; i < count; i++) { // before they are joined
-    room->location[i] = location_of(w, sorted, &p[i], p[(i + 1) % count].node);
+    capacity->location[i] = location_of(w, sorted, &p[i], p[(i + 1) % count].node);
     p[i].edge = i;
   }
   count = count > 0 ? join_pieces(w, p, count) : 0;
   for (size_t i = 0; i < count; i++) {
     const double *x = w->node.point[p[i].node];
-    room->vertex[i] =
-        (struct dea_vertex){x[0], x[1], tan(0.25 * p[i].sweep), room->location[p[i].edge]};
+    capacity->vertex[i] =
+        (struct dea_vertex){x[0], x[1], tan(0.25 * p[i].sweep), capacity->location[p[i].edge]};
   }
-  const struct dea_contour contour = {room->vertex, count, true};
+  const struct dea_contour contour = {capacity->vertex, count, true};
   double area = count > 1 ? dea_contour_area_m2(&contour) : 0;
   if (count > 1 && fabs(area) > w->all.snap_m * dea_contour_length_m(&contour)) {
     if ((area < 0) == hole) {
-      dea_region_add(out, room->vertex, count);
+      dea_region_add(out, capacity->vertex, count);
     } else {
-      dea_region_add_reversed(out, room->vertex, count);
+      dea_region_add_reversed(out, capacity->vertex, count);
     }
   }
   return dea_region_status(out);
@@ -540,9 +540,9 @@ static dea_status read_rings(struct work *w, const struct dea_rings *rings, stru
     longest = count > longest ? count : longest;
   }
   struct edge *sorted = dea_arena_alloc(arena, w->edge_count, sizeof *sorted);
-  const struct ring_room room = {dea_arena_alloc(arena, longest, sizeof *room.piece),
-                                 dea_arena_alloc(arena, longest, sizeof *room.vertex),
-                                 dea_arena_alloc(arena, longest, sizeof *room.location)};
+  const struct ring_room capacity = {dea_arena_alloc(arena, longest, sizeof *capacity.piece),
+                                     dea_arena_alloc(arena, longest, sizeof *capacity.vertex),
+                                     dea_arena_alloc(arena, longest, sizeof *capacity.location)};
   DEA_TRY(w->ctx, dea_arena_status(arena));
   if (w->edge_count > 0) {
     memcpy(sorted, w->edge, w->edge_count * sizeof *sorted);
@@ -552,7 +552,7 @@ static dea_status read_rings(struct work *w, const struct dea_rings *rings, stru
     size_t first = i > 0 ? rings->end[i - 1] : 0;
     struct reading r = {w, rings->point + first, rings->end[i] - first, NULL};
     bool hole = i > 0 && rings->polygon[i] == rings->polygon[i - 1];
-    DEA_TRY(w->ctx, add_ring(&r, sorted, hole, &room, out));
+    DEA_TRY(w->ctx, add_ring(&r, sorted, hole, &capacity, out));
     *unknown = r.unknown;
   }
   return DEA_OK;

@@ -55,19 +55,19 @@ dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, con
   return dea_fail(drawing->ctx, DEA_E_DESIGN, "%s:%zu: %s", drawing->file, line, text);
 }
 
-dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t count, size_t *room,
-                                 size_t size)
+dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t count,
+                                 size_t *capacity, size_t size)
 {
-  if (count < *room) {
+  if (count < *capacity) {
     return DEA_OK;
   }
-  size_t larger = *room + *room / 2 + 16;
+  size_t larger = *capacity + *capacity / 2 + 16;
   void *moved = dea_resize(ctx, *array, larger, size);
   if (moved == NULL) {
     return DEA_E_MEMORY;
   }
   *array = moved;
-  *room = larger;
+  *capacity = larger;
   return DEA_OK;
 }
 

@@ -4,11 +4,11 @@
 #include <ctype.h>
 #include <string.h>
 
-static bool ends_with(const char *file, const char *ending)
+static bool ends_with(const char *file, const char *outcome)
 {
-  size_t n = strlen(file), m = strlen(ending);
+  size_t n = strlen(file), m = strlen(outcome);
   for (size_t i = 0; i < m; i++) {
-    if (n < m || tolower((unsigned char)file[n - m + i]) != ending[i]) {
+    if (n < m || tolower((unsigned char)file[n - m + i]) != outcome[i]) {
       return false;
     }
   }

@@ -46,7 +46,7 @@ struct block {
 /* A growing list; owned. */
 struct list {
   void *data;
-  size_t count, room;
+  size_t count, capacity;
 };
 
 /* What of an entity is kept until it ends; its numbers are in the reader's list. */
@@ -174,7 +174,7 @@ static dea_status number(struct reader *r, double *out)
 
 static dea_status add_to(struct reader *r, struct list *list, const void *item, size_t size)
 {
-  DEA_TRY(r->ctx, dea_drawing_make_room(r->ctx, &list->data, list->count, &list->room, size));
+  DEA_TRY(r->ctx, dea_drawing_make_room(r->ctx, &list->data, list->count, &list->capacity, size));
   memcpy((char *)list->data + list->count++ * size, item, size);
   return DEA_OK;
 }

@@ -41,15 +41,15 @@ static size_t add_letter(char *to, unsigned code)
  * as is all without a converter. */
 static void convert(iconv_t converter, char *from, size_t count, char to[DEA_DXF_TEXT_SIZE])
 {
-  size_t room = DEA_DXF_TEXT_SIZE - 1;
-  while (count > 0 && room > 2) {
-    if (converter != (iconv_t)-1 && iconv(converter, &from, &count, &to, &room) != (size_t)-1) {
+  size_t capacity = DEA_DXF_TEXT_SIZE - 1;
+  while (count > 0 && capacity > 2) {
+    if (converter != (iconv_t)-1 && iconv(converter, &from, &count, &to, &capacity) != (size_t)-1) {
       break;
     }
-    if (count > 0 && room > 2) {
+    if (count > 0 && capacity > 2) {
       size_t n = add_letter(to, (unsigned char)*from);
       to += n;
-      room -= n;
+      capacity -= n;
       from++;
       count--;
     }

@@ -56,23 +56,23 @@ static void put(struct dea_point_map *map, size_t i)
 
 static dea_status grow(struct dea_point_map *map)
 {
-  size_t room = map->room == 0 ? 64 : 2 * map->room;
-  double(*point)[2] = dea_resize(map->ctx, map->point, room, sizeof *point);
+  size_t capacity = map->capacity == 0 ? 64 : 2 * map->capacity;
+  double(*point)[2] = dea_resize(map->ctx, map->point, capacity, sizeof *point);
   if (point == NULL) {
     return DEA_E_MEMORY;
   }
   map->point = point;
-  size_t *next = dea_resize(map->ctx, map->next, room, sizeof *next);
+  size_t *next = dea_resize(map->ctx, map->next, capacity, sizeof *next);
   if (next == NULL) {
     return DEA_E_MEMORY;
   }
   map->next = next;
-  size_t *head = dea_resize(map->ctx, map->head, room, sizeof *head);
+  size_t *head = dea_resize(map->ctx, map->head, capacity, sizeof *head);
   if (head == NULL) {
     return DEA_E_MEMORY;
   }
   map->head = head;
-  map->room = map->heads = room;
+  map->capacity = map->heads = capacity;
   for (size_t h = 0; h < map->heads; h++) {
     map->head[h] = SIZE_MAX;
   }
@@ -88,7 +88,7 @@ dea_status dea_point_map_add(struct dea_point_map *map, const double x_m[2], siz
   if (*index != SIZE_MAX) {
     return DEA_OK;
   }
-  if (map->count == map->room) {
+  if (map->count == map->capacity) {
     DEA_TRY(map->ctx, grow(map));
   }
   map->point[map->count][0] = x_m[0];

@@ -11,7 +11,7 @@ struct dea_point_map {
   double tolerance_m, cell_m; // cell_m: 0: twice the tolerance
   double (*point)[2];         // [count]; owned
   size_t *next, *head;        // chains of points whose cells fall together; owned
-  size_t count, room, heads;
+  size_t count, capacity, heads;
 };
 
 /* Number of the first point within the tolerance; SIZE_MAX when there is none. */

@@ -5,9 +5,9 @@
 
 /* Room for `count` elements of an array that holds `used`; false on failure. */
 static bool make_room(struct dea_region *region, void **array, size_t used, size_t count,
-                      size_t *room, size_t size)
+                      size_t *capacity, size_t size)
 {
-  if (count <= *room - used) {
+  if (count <= *capacity - used) {
     return true;
   }
   size_t larger = used + count + used / 2 + 4;
@@ -17,7 +17,7 @@ static bool make_room(struct dea_region *region, void **array, size_t used, size
     return false;
   }
   *array = moved;
-  *room = larger;
+  *capacity = larger;
   return true;
 }
 

@@ -155,7 +155,7 @@ static dea_status check_times(struct work *w)
                           ? dea_finding_add(w->ctx, DEA_ERROR, kind->location,
                                             "the design plays nothing: it needs drive.waveform")
                           : dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                                            "the model %s knows no time", w->fit->model));
+                                            "the model %s does not compute time", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
     return make_fine(w);
@@ -169,8 +169,9 @@ static dea_status check_tips(struct work *w)
   for (size_t c = 0; c < w->fit->curve_count && w->model.type->indent == NULL; c++) {
     const struct dea_choice *kind = &w->fit->curves[c].text->kind;
     if (kind->value == DEA_DEVICE_FORCE) {
-      DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                                      "the model %s knows no tip that is held", w->fit->model));
+      DEA_TRY(w->ctx,
+              dea_finding_add(w->ctx, DEA_ERROR, kind->location,
+                              "the model %s does not compute tip that is held", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
   }
@@ -754,7 +755,7 @@ static dea_status tell(struct work *w, const struct slopes *s)
     }
   }
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  return dea_device_tell(w->ctx, w->fit, candidates, count);
+  return dea_device_identify(w->ctx, w->fit, candidates, count);
 }
 
 // All of it ---------------------------------------------------------------------------------------

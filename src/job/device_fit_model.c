@@ -22,7 +22,7 @@ static bool is_fatal(dea_status status)
 
 /* More area than this, or less than its inverse, beside a design nearby: another branch, as beyond
  * pull-in. */
-static const double leap = 1.5;
+static const double branch_jump = 1.5;
 
 /* Copies the state of the last point, for the next evaluation to start from. */
 static dea_status keep_state(struct dea_device_model *model, struct dea_model *m, size_t stop)
@@ -62,7 +62,7 @@ static dea_status solve_from_start(struct dea_device_model *model, struct dea_mo
   if (near) {
     const double grown = area_of(out) / area_of(&model->start.points[stop]);
     model->doubtful = model->doubtful || out->min_tension_N_per_m <= 0 || !out->stable ||
-                      grown > leap || grown < 1 / leap;
+                      grown > branch_jump || grown < 1 / branch_jump;
   }
   return DEA_OK;
 }

@@ -78,7 +78,7 @@ dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_mode
 static dea_status lacks(struct dea_context *ctx, const struct dea_model_type *type,
                         const char *what)
 {
-  return dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' knows no %s", type->name, what);
+  return dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' does not compute %s", type->name, what);
 }
 
 dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,
@@ -223,9 +223,9 @@ dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *
                             : lacks(ctx, type, "states beside one");
 }
 
-dea_status dea_model_carry(struct dea_context *ctx, const struct dea_model_type *type,
-                           struct dea_model *model, const struct dea_model *from,
-                           struct dea_load_point *out, bool *found)
+dea_status dea_model_transfer(struct dea_context *ctx, const struct dea_model_type *type,
+                              struct dea_model *model, const struct dea_model *from,
+                              struct dea_load_point *out, bool *found)
 {
   return type->carry != NULL ? type->carry(ctx, model, from, out, found)
                              : lacks(ctx, type, "states of another mesh");

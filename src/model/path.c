@@ -279,15 +279,15 @@ static dea_status find_rest(struct dea_path *path)
 
 /* The same along the system's ease: from nothing of what is in the way to all of it, in shares that
  * are halved where Newton's method fails and doubled where it does not. */
-static dea_status ease_rest(struct dea_path *path)
+static dea_status ramp_to_rest(struct dea_path *path)
 {
   static const double least = 1e-6;
   double share = 0, more = 0.5;
-  path->system.ease(path->system.self, share);
+  path->system.ramp(path->system.self, share);
   dea_status status = find_rest(path);
   while (status == DEA_OK && share < 1) {
     double next = fmin(share + more, 1);
-    path->system.ease(path->system.self, next);
+    path->system.ramp(path->system.self, next);
     dea_status tried = find_rest(path);
     if (tried == DEA_OK) {
       share = next;
@@ -297,7 +297,7 @@ static dea_status ease_rest(struct dea_path *path)
       status = more < least ? tried : DEA_OK;
     }
   }
-  path->system.ease(path->system.self, 1);
+  path->system.ramp(path->system.self, 1);
   return status;
 }
 
@@ -317,8 +317,8 @@ dea_status dea_path_create(struct dea_context *ctx, const struct dea_path_system
   path->system = *system;
   memcpy(path->rest.u, start, system->unknowns * sizeof *start);
   dea_status status = find_rest(path);
-  if (status != DEA_OK && system->ease != NULL) {
-    status = ease_rest(path);
+  if (status != DEA_OK && system->ramp != NULL) {
+    status = ramp_to_rest(path);
   }
   if (status != DEA_OK) {
     dea_free(ctx, path);
@@ -462,7 +462,7 @@ static dea_status fail_seek(struct dea_context *ctx, const struct dea_path *path
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED,
                   "the path to %.6g kV cannot be followed beyond %.6g kV and an electrode stretch "
-                  "of %.5g (ours: not converged)",
+                  "of %.5g (the solver did not converge; please report)",
                   1e-3 * voltage_V, 1e-3 * last->voltage_V, last->electrode_stretch);
 }
 

@@ -26,7 +26,7 @@ struct dea_path_system {
   double voltage_scale_V; // V_s
   /* Share, 0 to 1, of what keeps the system from being at rest at the start it is given (stiffness
    * of electrodes); 0: the start is its rest. The path begins with 1. NULL: none. */
-  void (*ease)(void *self, double share);
+  void (*ramp)(void *self, double share);
 };
 
 struct dea_path_state {

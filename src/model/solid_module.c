@@ -180,7 +180,7 @@ static dea_status carry(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
   DEA_TRY(ctx, DEA_SOLID_IN_TURN(
-                   dea_model_carry(ctx, model->type, model->inner, from->inner, out, found)));
+                   dea_model_transfer(ctx, model->type, model->inner, from->inner, out, found)));
   return DEA_OK;
 }
 

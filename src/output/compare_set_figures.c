@@ -17,7 +17,7 @@ struct dea_set_figures {
   const struct dea_plot_format *format;
   const char *directory;
   char (*names)[DEA_SET_FIGURE_SIZE]; // [room]
-  size_t count, room;
+  size_t count, capacity;
 };
 
 static const char band_title[] = "\302\261 1 std";
@@ -45,7 +45,7 @@ static void name_figure(const struct dea_column *quantity, const char *model,
 
 static dea_status finish_figure(struct dea_set_figures *f, struct dea_plot *plot, dea_status status)
 {
-  if (status == DEA_OK && dea_plot_shows(plot) && f->count < f->room) {
+  if (status == DEA_OK && dea_plot_shows(plot) && f->count < f->capacity) {
     snprintf(f->names[f->count++], DEA_SET_FIGURE_SIZE, "%s", plot->name);
     status = dea_plot_write(f->ctx, plot, f->format, f->directory);
   }
@@ -484,8 +484,8 @@ static dea_status add_track(struct dea_context *ctx, struct dea_panel *panel, co
     last--;
   }
   size_t stretch = (last - first) / (DRAWN_MAX / 2) + 1;
-  size_t room = stretch == 1 ? last - first : 2 * ((last - first) / stretch + 1), n = 0;
-  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, room, look, &series));
+  size_t capacity = stretch == 1 ? last - first : 2 * ((last - first) / stretch + 1), n = 0;
+  DEA_TRY(ctx, dea_panel_add_as(ctx, panel, capacity, look, &series));
   for (size_t i = first; i < last; i += stretch) {
     size_t end = i + stretch < last ? i + stretch : last, low = i, high = i;
     for (size_t k = i; k < end; k++) {
@@ -495,7 +495,7 @@ static dea_status add_track(struct dea_context *ctx, struct dea_panel *panel, co
     size_t shown[2] = {low < high ? low : high, low < high ? high : low};
     for (size_t k = 0; k < (stretch == 1 ? 1U : 2U); k++) {
       series->values[n] = time[shown[k]];
-      series->values[room + n++] = values[shown[k]];
+      series->values[capacity + n++] = values[shown[k]];
     }
   }
   return DEA_OK;
@@ -619,9 +619,10 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
                                 const struct dea_plot_format *format, const char *directory)
 {
   struct dea_set_figures *f = dea_alloc(ctx, 1, sizeof *f);
-  const size_t room = (size_t)dea_column_count(ctx) * set->curve_count + DEA_MEASURED_COLUMNS + 1;
-  const char **names = dea_alloc(ctx, room, sizeof *names);
-  char(*texts)[DEA_SET_FIGURE_SIZE] = dea_alloc(ctx, room, sizeof *texts);
+  const size_t capacity =
+      (size_t)dea_column_count(ctx) * set->curve_count + DEA_MEASURED_COLUMNS + 1;
+  const char **names = dea_alloc(ctx, capacity, sizeof *names);
+  char(*texts)[DEA_SET_FIGURE_SIZE] = dea_alloc(ctx, capacity, sizeof *texts);
   if (f == NULL || names == NULL || texts == NULL) {
     dea_free(ctx, f);
     dea_free(ctx, names);
@@ -633,7 +634,7 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
                                 .format = format,
                                 .directory = directory,
                                 .names = texts,
-                                .room = room};
+                                .capacity = capacity};
   dea_status status = dea_folder_make(ctx, directory);
   for (size_t i = 0; status == DEA_OK && set->pairs && i < set->curve_count; i++) {
     status = draw_pair(f, i);

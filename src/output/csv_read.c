@@ -317,15 +317,15 @@ static dea_status add_row(struct reader *r, struct dea_measurement *m, size_t *r
                           const struct dea_load_point *std)
 {
   if (m->curve.count == *room_now) {
-    size_t room = *room_now > 0 ? 2 * *room_now : 64;
-    void *moved = dea_resize(r->ctx, m->std, room, sizeof *m->std);
+    size_t capacity = *room_now > 0 ? 2 * *room_now : 64;
+    void *moved = dea_resize(r->ctx, m->std, capacity, sizeof *m->std);
     m->std = moved != NULL ? moved : m->std;
-    void *lines = moved != NULL ? dea_resize(r->ctx, m->line, room, sizeof *m->line) : NULL;
+    void *lines = moved != NULL ? dea_resize(r->ctx, m->line, capacity, sizeof *m->line) : NULL;
     if (lines == NULL) {
       return DEA_E_MEMORY;
     }
     m->line = lines;
-    *room_now = room;
+    *room_now = capacity;
   }
   m->curve.memory.ctx = r->ctx;
   m->std[m->curve.count] = *std;
@@ -352,7 +352,7 @@ static dea_status make_rows(struct reader *r)
 
 static dea_status read_rows(struct reader *r, struct dea_measurement *m)
 {
-  size_t room = 0;
+  size_t capacity = 0;
   dea_context_clear(r->ctx); // so that the status below can only be of a finding
   read_header(r);
   DEA_TRY(r->ctx, make_rows(r));
@@ -360,7 +360,7 @@ static dea_status read_rows(struct reader *r, struct dea_measurement *m)
   for (size_t row = 0; row < rows && r->errors < FINDINGS_MAX; row++) {
     struct dea_load_point point, std;
     if (read_row(r, row, &point, &std)) {
-      DEA_TRY(r->ctx, add_row(r, m, &room, r->table.numbers[row], &point, &std));
+      DEA_TRY(r->ctx, add_row(r, m, &capacity, r->table.numbers[row], &point, &std));
     }
   }
   for (size_t i = 0; i < r->field_count && r->errors == 0; i++) {

@@ -238,7 +238,7 @@ static void get_content(struct h5 *h, hid_t group, struct dea_curve *curve)
   curve->status = status_of_name(name);
   dea_h5_get_text(h, group, "stopped", curve->stopped, sizeof curve->stopped);
   get_points(h, group, &curve->memory, &curve->points, &curve->count);
-  curve->room = curve->count;
+  curve->capacity = curve->count;
   get_std(h, group, curve);
   get_events(h, group, curve);
 }

@@ -115,12 +115,12 @@ dea_status dea_run_folder_replace(struct dea_context *ctx, const char *directory
 
 static void forget_figures(struct dea_context *ctx, const char *directory)
 {
-  static const char *const endings[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
+  static const char *const outcomes[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
   const struct dea_figure *figure;
   for (size_t f = 0; (figure = dea_figure_get(f)) != NULL; f++) {
-    for (size_t e = 0; e < sizeof endings / sizeof endings[0]; e++) {
+    for (size_t e = 0; e < sizeof outcomes / sizeof outcomes[0]; e++) {
       char name[128];
-      snprintf(name, sizeof name, DEA_FIGURE_FOLDER "/%s.%s", figure->name, endings[e]);
+      snprintf(name, sizeof name, DEA_FIGURE_FOLDER "/%s.%s", figure->name, outcomes[e]);
       dea_path_forget(ctx, directory, name);
     }
   }

@@ -165,11 +165,11 @@ static void read_caption(const char *script, const char *name, char *out, size_t
 
 /* Text of directory/name.ending; *bytes NULL where there is no such file. */
 static dea_status read_named(struct dea_context *ctx, const char *directory, const char *name,
-                             const char *ending, char **path, char **bytes, size_t *length)
+                             const char *outcome, char **path, char **bytes, size_t *length)
 {
   char file[128];
   *bytes = NULL;
-  snprintf(file, sizeof file, "%.119s.%s", name, ending);
+  snprintf(file, sizeof file, "%.119s.%s", name, outcome);
   *path = dea_path_join(ctx, directory, file);
   if (*path == NULL) {
     return DEA_E_MEMORY;
@@ -197,17 +197,17 @@ static dea_status finish_one(struct dea_context *ctx, const char *pictures, cons
 }
 
 /* Whether a script draws a format: one of its list, or the one that it names itself. */
-static bool draws(const char *script, const char *ending)
+static bool draws(const char *script, const char *outcome)
 {
   char own[16];
   size_t length;
   const char *end, *list = strstr(script, "\nformats = ");
-  snprintf(own, sizeof own, "\".%s\"", ending);
+  snprintf(own, sizeof own, "\".%s\"", outcome);
   if (list == NULL || strstr(script, "in formats]") == NULL) {
     return strstr(script, own) != NULL;
   }
   list = between(list, "\nformats = \"", "\"", &length, &end);
-  const char *found = list != NULL ? strstr(list, ending) : NULL;
+  const char *found = list != NULL ? strstr(list, outcome) : NULL;
   return found != NULL && found < list + length;
 }
 
@@ -216,15 +216,15 @@ static bool draws(const char *script, const char *ending)
 static dea_status check_drawn(struct dea_context *ctx, const char *pictures, const char *name,
                               const char *script)
 {
-  static const char *const endings[] = {"svg", "pdf", "png", "gif"};
+  static const char *const outcomes[] = {"svg", "pdf", "png", "gif"};
   dea_status status = DEA_OK;
-  for (size_t i = 0; i < sizeof endings / sizeof endings[0] && status == DEA_OK; i++) {
+  for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0] && status == DEA_OK; i++) {
     char file[128], byte;
     size_t length;
-    if (!draws(script, endings[i])) {
+    if (!draws(script, outcomes[i])) {
       continue;
     }
-    snprintf(file, sizeof file, "%.119s.%s", name, endings[i]);
+    snprintf(file, sizeof file, "%.119s.%s", name, outcomes[i]);
     char *path = dea_path_join(ctx, pictures, file);
     if (path == NULL) {
       return DEA_E_MEMORY;

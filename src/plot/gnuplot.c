@@ -168,10 +168,10 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
 dea_status dea_gnuplot_make_way(struct dea_context *ctx, const char *directory, const char *name,
                                 bool force)
 {
-  static const char *const endings[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
-  for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+  static const char *const outcomes[] = {"", ".gp", ".dat", ".svg", ".pdf", ".png"};
+  for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0]; i++) {
     char file[128];
-    snprintf(file, sizeof file, "%.119s%s", name, endings[i]);
+    snprintf(file, sizeof file, "%.119s%s", name, outcomes[i]);
     DEA_TRY(ctx, dea_path_make_way(ctx, directory, file, force));
   }
   return DEA_OK;

@@ -34,7 +34,7 @@ int dea_point_column_find(const char *key)
 struct registry {
   struct dea_context *ctx;
   struct dea_column **columns;
-  size_t count, room;
+  size_t count, capacity;
 };
 
 static void release(void *object)
@@ -99,8 +99,8 @@ static size_t key_unit(const char *si_unit, char out[KEY_UNIT_SIZE])
 static bool is_key_without_unit(const struct dea_column *column, const char *text)
 {
   char unit[KEY_UNIT_SIZE];
-  const size_t length = strlen(column->key), ending = key_unit(column->si_unit, unit);
-  const size_t without = length > ending ? length - ending : 0;
+  const size_t length = strlen(column->key), outcome = key_unit(column->si_unit, unit);
+  const size_t without = length > outcome ? length - outcome : 0;
   return strcmp(column->key + without, unit) == 0 && strlen(text) == without &&
          memcmp(column->key, text, without) == 0;
 }
@@ -159,14 +159,14 @@ static struct registry *get_registry(struct dea_context *ctx)
       return NULL;
     }
   }
-  if (registry->count == registry->room) {
-    const size_t room = registry->room > 0 ? 2 * registry->room : 32;
-    void *columns = dea_resize(ctx, registry->columns, room, sizeof(struct dea_column *));
+  if (registry->count == registry->capacity) {
+    const size_t capacity = registry->capacity > 0 ? 2 * registry->capacity : 32;
+    void *columns = dea_resize(ctx, registry->columns, capacity, sizeof(struct dea_column *));
     if (columns == NULL) {
       return NULL;
     }
     registry->columns = columns;
-    registry->room = room;
+    registry->capacity = capacity;
   }
   return registry;
 }
@@ -274,8 +274,8 @@ bool dea_points_have(const struct dea_load_point *points, size_t count, int colu
 void dea_column_error_key(const struct dea_column *column, char out[DEA_ERROR_KEY_SIZE])
 {
   char unit[KEY_UNIT_SIZE];
-  const size_t length = strlen(column->key), ending = key_unit(column->si_unit, unit);
-  snprintf(out, DEA_ERROR_KEY_SIZE, "%.*s_error%s", (int)(length > ending ? length - ending : 0),
+  const size_t length = strlen(column->key), outcome = key_unit(column->si_unit, unit);
+  snprintf(out, DEA_ERROR_KEY_SIZE, "%.*s_error%s", (int)(length > outcome ? length - outcome : 0),
            column->key, unit);
 }
 

@@ -134,15 +134,16 @@ static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
   return a->count == b->count;
 }
 
-dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room, struct dea_misfit *out)
+dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t capacity,
+                           struct dea_misfit *out)
 {
   *out = (struct dea_misfit){
       .column = column, .quantity = dea_column_at(ctx, column), .memory = {.ctx = ctx}};
-  out->at = dea_arena_alloc(&out->memory, room, sizeof *out->at);
-  out->a = dea_arena_alloc(&out->memory, room, sizeof *out->a);
-  out->b = dea_arena_alloc(&out->memory, room, sizeof *out->b);
-  out->a_std = dea_arena_alloc(&out->memory, room, sizeof *out->a_std);
-  out->b_std = dea_arena_alloc(&out->memory, room, sizeof *out->b_std);
+  out->at = dea_arena_alloc(&out->memory, capacity, sizeof *out->at);
+  out->a = dea_arena_alloc(&out->memory, capacity, sizeof *out->a);
+  out->b = dea_arena_alloc(&out->memory, capacity, sizeof *out->b);
+  out->a_std = dea_arena_alloc(&out->memory, capacity, sizeof *out->a_std);
+  out->b_std = dea_arena_alloc(&out->memory, capacity, sizeof *out->b_std);
   return dea_arena_status(&out->memory);
 }
 

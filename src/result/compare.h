@@ -48,7 +48,7 @@ size_t dea_comparison_keep(struct dea_comparison *comparison, const int *columns
 
 /* A misfit of a column with room for that many points, by hand: add, then summarise. Freed by the
  * caller, also after a failure. */
-dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t room,
+dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t capacity,
                            struct dea_misfit *out);
 /* Adds a point, at most room; not one where a or b is NAN. std: of b, NAN for unknown; of a there
  * is none until it is set. */

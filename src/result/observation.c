@@ -93,11 +93,11 @@ bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed obser
   }
 }
 
-static bool ends_with(const char *text, const char *ending)
+static bool ends_with(const char *text, const char *outcome)
 {
-  const size_t length = strlen(text), size = strlen(ending);
+  const size_t length = strlen(text), size = strlen(outcome);
   return length > size + 1 && text[length - size - 1] == '_' &&
-         strcmp(text + length - size, ending) == 0;
+         strcmp(text + length - size, outcome) == 0;
 }
 
 enum { QUANTITIES = DEA_OBSERVED_COUNT + DEA_OBSERVED_OF_CHANNEL };
@@ -212,8 +212,8 @@ dea_status dea_layout_columns(struct dea_arena *memory, const struct dea_layout 
                               struct dea_monitor_column **out, size_t *count)
 {
   const size_t monitors = layout->monitor_count, channels = layout->channel_count;
-  const size_t room = monitors * 2 * DEA_OBSERVED_COUNT + channels * DEA_OBSERVED_OF_CHANNEL;
-  struct listing list = {memory->ctx, dea_arena_alloc(memory, room, sizeof *list.columns), 0};
+  const size_t capacity = monitors * 2 * DEA_OBSERVED_COUNT + channels * DEA_OBSERVED_OF_CHANNEL;
+  struct listing list = {memory->ctx, dea_arena_alloc(memory, capacity, sizeof *list.columns), 0};
   const char **names = dea_arena_alloc(memory, monitors + channels, sizeof *names);
   DEA_TRY(memory->ctx, dea_arena_status(memory));
   for (size_t i = 0; i < monitors; i++) {
@@ -240,7 +240,7 @@ static dea_status add_answer(struct listing *list, const char *name, const char 
 {
   const struct dea_column *of = &dea_observed_columns[column.number];
   const char *unit = strcmp(of->si_unit, "1") == 0 ? "" : of->si_unit; // "m", "rad"
-  const size_t ending = unit[0] != '\0' ? strlen(unit) + 1 : 0;
+  const size_t outcome = unit[0] != '\0' ? strlen(unit) + 1 : 0;
   char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE];
   for (int phase = 0; phase < 2; phase++) {
     const bool length = strcmp(of->si_unit, "m") == 0;
@@ -254,8 +254,9 @@ static dea_status add_answer(struct listing *list, const char *name, const char 
                                     length ? 1e9 : of->factor,
                                     header,
                                     "of the motion that the excitation makes"};
-    snprintf(key, sizeof key, "%s_%.*s_%s%s%s", part, (int)(strlen(of->key) - ending), of->key,
-             phase ? "phase_rad" : "amplitude", phase || ending == 0 ? "" : "_", phase ? "" : unit);
+    snprintf(key, sizeof key, "%s_%.*s_%s%s%s", part, (int)(strlen(of->key) - outcome), of->key,
+             phase ? "phase_rad" : "amplitude", phase || outcome == 0 ? "" : "_",
+             phase ? "" : unit);
     snprintf(header, sizeof header, "%s %.63s %s", phase ? "phase" : "amplitude", name, of->header);
     column.source = phase ? DEA_OF_PHASE : DEA_OF_AMPLITUDE;
     DEA_TRY(list->ctx, dea_column_add(list->ctx, &shown, &column.column));
@@ -267,8 +268,8 @@ static dea_status add_answer(struct listing *list, const char *name, const char 
 dea_status dea_layout_answer_columns(struct dea_arena *memory, const struct dea_layout *layout,
                                      struct dea_monitor_column **out, size_t *count)
 {
-  const size_t monitors = layout->monitor_count, room = monitors * 2 * DEA_OBSERVED_MOTIONS;
-  struct listing list = {memory->ctx, dea_arena_alloc(memory, room, sizeof *list.columns), 0};
+  const size_t monitors = layout->monitor_count, capacity = monitors * 2 * DEA_OBSERVED_MOTIONS;
+  struct listing list = {memory->ctx, dea_arena_alloc(memory, capacity, sizeof *list.columns), 0};
   const char **names = dea_arena_alloc(memory, monitors, sizeof *names);
   DEA_TRY(memory->ctx, dea_arena_status(memory));
   for (size_t i = 0; i < monitors; i++) {

@@ -78,8 +78,8 @@ dea_status dea_provenance_fill(struct dea_context *ctx, const char *input, size_
 void dea_provenance_add_libraries(const char *libraries, struct dea_provenance *provenance)
 {
   char *all = provenance->libraries;
-  size_t length = strlen(all), room = sizeof provenance->libraries - length;
+  size_t length = strlen(all), capacity = sizeof provenance->libraries - length;
   if (strstr(all, libraries) == NULL) {
-    snprintf(all + length, room, "%s%s", length > 0 ? ", " : "", libraries);
+    snprintf(all + length, capacity, "%s%s", length > 0 ? ", " : "", libraries);
   }
 }

@@ -162,24 +162,24 @@ dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *res
   *to = *table;
   table->cells = NULL;
   table->own_columns = NULL;
-  table->row_count = table->room = 0;
+  table->row_count = table->capacity = 0;
   return DEA_OK;
 }
 
 /* Room for one more of *items; on failure everything stays as it was. */
-static dea_status make_room(struct dea_context *ctx, void **items, size_t count, size_t *room,
+static dea_status make_room(struct dea_context *ctx, void **items, size_t count, size_t *capacity,
                             size_t size)
 {
-  if (count < *room) {
+  if (count < *capacity) {
     return DEA_OK;
   }
-  size_t wanted = *room > 0 ? 2 * *room : 16;
+  size_t wanted = *capacity > 0 ? 2 * *capacity : 16;
   void *moved = dea_resize(ctx, *items, wanted, size);
   if (moved == NULL) {
     return DEA_E_MEMORY;
   }
   *items = moved;
-  *room = wanted;
+  *capacity = wanted;
   return DEA_OK;
 }
 
@@ -187,7 +187,7 @@ dea_status dea_curve_add_point(struct dea_context *ctx, struct dea_curve *curve,
                                const struct dea_load_point *point)
 {
   void *points = curve->points;
-  DEA_TRY(ctx, make_room(ctx, &points, curve->count, &curve->room, sizeof *curve->points));
+  DEA_TRY(ctx, make_room(ctx, &points, curve->count, &curve->capacity, sizeof *curve->points));
   curve->points = points;
   curve->memory.ctx = ctx;
   struct dea_monitor_values *monitors = dea_monitor_values_copy(&curve->memory, point->monitors);

@@ -17,7 +17,7 @@ struct dea_curve {
   char kind[DEA_NAME_SIZE];  // "sweep", "path"
   struct dea_load_point *points;
   struct dea_arena memory; // of what monitors show at them
-  size_t count, room;
+  size_t count, capacity;
   struct dea_load_point *std; // [count] standard uncertainties by those of the design and its
                               // material, NAN: not known; owned, NULL: none are known
   struct dea_event *events;   // of a path

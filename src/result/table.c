@@ -69,21 +69,21 @@ void dea_result_table_free(struct dea_context *ctx, struct dea_result_table *tab
   dea_free(ctx, table->own_columns);
   table->own_columns = NULL;
   table->cells = NULL;
-  table->row_count = table->room = 0;
+  table->row_count = table->capacity = 0;
 }
 
 static dea_status make_room(struct dea_context *ctx, struct dea_result_table *table)
 {
-  if (table->row_count < table->room) {
+  if (table->row_count < table->capacity) {
     return DEA_OK;
   }
-  size_t room = table->room > 0 ? 2 * table->room : 8;
-  struct dea_cell *cells = dea_resize(ctx, table->cells, room * table->stride, sizeof *cells);
+  size_t capacity = table->capacity > 0 ? 2 * table->capacity : 8;
+  struct dea_cell *cells = dea_resize(ctx, table->cells, capacity * table->stride, sizeof *cells);
   if (cells == NULL) {
     return DEA_E_MEMORY;
   }
   table->cells = cells;
-  table->room = room;
+  table->capacity = capacity;
   return DEA_OK;
 }
 

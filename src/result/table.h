@@ -73,7 +73,7 @@ struct dea_result_table {
   struct dea_result_column *own_columns; // owned: of a table that was read; else NULL
   int quantity;                          // of all rows, where no column says it; -1: none
   size_t width;                          // values in each list
-  size_t row_count, room, stride;
+  size_t row_count, capacity, stride;
   struct dea_cell *cells; // [row_count][stride], column after column, lists with all their values
 };
 

@@ -74,15 +74,15 @@ static void add_flags(struct dea_text *out, unsigned flags)
 void dea_trust_text(const struct dea_trust *trust, struct dea_text *out)
 {
   if (isnan(trust->good_V)) {
-    dea_text_add(out, "at no voltage both to be trusted and safe");
+    dea_text_add(out, "at no voltage both valid and below breakdown");
   } else {
-    dea_text_add(out, "to be trusted and safe up to %.4g kV", 1e-3 * trust->good_V);
+    dea_text_add(out, "valid and below breakdown up to %.4g kV", 1e-3 * trust->good_V);
   }
   if (trust->dangers != 0 && trust->danger_V <= trust->doubt_V) {
     dea_text_add(out, "; at %.4g kV ", 1e-3 * trust->danger_V);
     add_flags(out, trust->dangers);
     if (!isnan(trust->trusted_V) && trust->trusted_V > trust->good_V) {
-      dea_text_add(out, "; to be trusted up to %.4g kV, for a film that holds out",
+      dea_text_add(out, "; valid up to %.4g kV, for a film that withstands",
                    1e-3 * trust->trusted_V);
     }
   }

@@ -17,7 +17,7 @@ struct dea_trust {
 };
 /* curve: with points. */
 struct dea_trust dea_curve_trust(const struct dea_curve *curve);
-/* One sentence without its full stop: "to be trusted and safe up to 3.3 kV; at 3.4 kV ...". */
+/* One sentence without its full stop: "valid and below breakdown up to 3.3 kV; at 3.4 kV ...". */
 void dea_trust_text(const struct dea_trust *trust, struct dea_text *out);
 
 /* Flags with a doubt at a voltage of the model's sweep; 0 where none is known, also without a

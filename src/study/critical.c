@@ -185,7 +185,7 @@ static dea_status rest(struct search *s, bool *holds)
   s->largest = s->low.value;
   *holds = there && s->low.value > 0;
   if (there && isnan(s->low.value)) {
-    snprintf(s->out->why, sizeof s->out->why, "the model knows no %s of this device",
+    snprintf(s->out->why, sizeof s->out->why, "the model does not compute %s of this device",
              s->ask->kind == DEA_EVENT_SLACK ? "tension" : "breakdown field");
   } else if (there && !*holds) {
     snprintf(s->out->why, sizeof s->out->why, "the film has no tension at rest");
@@ -387,7 +387,7 @@ static dea_status find_buckling(struct search *s)
   double square = NAN, high = INFINITY;
   bool there = false;
   if (s->ask->type->modes == NULL) {
-    snprintf(s->out->why, sizeof s->out->why, "the model knows no frequencies");
+    snprintf(s->out->why, sizeof s->out->why, "the model does not compute frequencies");
     return DEA_OK;
   }
   DEA_TRY(s->ctx, lowest_square(s, 0, &square, &there));
@@ -490,10 +490,10 @@ static dea_status slopes_of_value(struct dea_context *ctx, const struct dea_crit
  * a line. */
 static dea_status slopes_below(struct dea_context *ctx, const struct dea_critical *c,
                                const struct dea_design_change *changes, size_t count,
-                               struct dea_design_change *own, double *out, double *room)
+                               struct dea_design_change *own, double *out, double *capacity)
 {
   static const double share = 1e-4; // of the voltage; more than changes make of it
-  double *const at[2] = {room, out};
+  double *const at[2] = {capacity, out};
   for (int k = 0; k < 2; k++) {
     const double V = c->voltage_V * (1 - (2 - k) * share);
     struct dea_load_point point;
@@ -501,7 +501,7 @@ static dea_status slopes_below(struct dea_context *ctx, const struct dea_critica
     DEA_TRY(ctx, slopes_of_value(ctx, c, V, changes, count, own, at[k]));
   }
   for (size_t i = 0; i < count; i++) {
-    out[i] += out[i] - room[i];
+    out[i] += out[i] - capacity[i];
   }
   return DEA_OK;
 }

@@ -5,8 +5,8 @@
  * Voltages between others of a smooth line are interpolated (force_line.h).
  */
 #include "study/force.h"
-#include "base/aside.h"
 #include "base/schema.h"
+#include "base/worker.h"
 #include "result/trust.h"
 #include "study/force_line.h"
 #include "study/study.h"
@@ -256,7 +256,7 @@ static dea_status line_aside(struct dea_context *ctx, void *user, struct dea_byt
 
 /* Lines of stops that processes beside this one compute. */
 struct lines {
-  struct dea_aside at[DEA_DESIGN_STOPS_MAX]; // [begun]
+  struct dea_worker at[DEA_DESIGN_STOPS_MAX]; // [begun]
   size_t begun;
   size_t most; // processes, with this one, that compute at the same time
 };
@@ -265,7 +265,7 @@ static bool one_failed(const struct lines *lines)
 {
   bool failed = false;
   for (size_t i = 0; i < lines->begun; i++) {
-    failed = failed || dea_aside_failed(&lines->at[i]);
+    failed = failed || dea_worker_failed(&lines->at[i]);
   }
   return failed;
 }
@@ -279,9 +279,9 @@ static dea_status take_lines(struct dea_context *ctx, struct press *press, size_
     DEA_TRY(ctx, press_in(ctx, press, i));
     lines->most = dea_context_is_alone(ctx) ? lines->most : 1; // known once there is a model
     if (lines->most > 1 && stops > 1) {
-      DEA_TRY(ctx, dea_aside_start(ctx, line_aside, press, &lines->at[i]));
+      DEA_TRY(ctx, dea_worker_start(ctx, line_aside, press, &lines->at[i]));
       lines->begun++;
-      DEA_TRY(ctx, dea_aside_wait(ctx, lines->at, lines->begun, lines->most - 1));
+      DEA_TRY(ctx, dea_worker_wait(ctx, lines->at, lines->begun, lines->most - 1));
     } else {
       DEA_TRY(ctx, take_line(ctx, press, curve));
       dea_progress(ctx, what, i + 1, stops);
@@ -291,13 +291,13 @@ static dea_status take_lines(struct dea_context *ctx, struct press *press, size_
 }
 
 /* The points of one line into the curve, as far as it has come. */
-static dea_status gather_line(struct dea_context *ctx, const struct dea_aside *line,
+static dea_status gather_line(struct dea_context *ctx, const struct dea_worker *line,
                               struct dea_curve *curve)
 {
   const char *bytes;
   size_t length;
   struct dea_load_point point;
-  dea_status status = dea_aside_take(ctx, line, &bytes, &length);
+  dea_status status = dea_worker_take(ctx, line, &bytes, &length);
   for (size_t at = 0; at + sizeof point <= length; at += sizeof point) {
     memcpy(&point, bytes + at, sizeof point);
     DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
@@ -312,13 +312,13 @@ static dea_status gather(struct dea_context *ctx, struct lines *lines, size_t st
 {
   char why[1024];
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-  dea_status first = dea_aside_wait(ctx, lines->at, lines->begun, 0);
+  dea_status first = dea_worker_wait(ctx, lines->at, lines->begun, 0);
   for (size_t i = 0; i < lines->begun; i++) {
     first = first == DEA_OK ? gather_line(ctx, &lines->at[i], curve) : first;
     if (first == DEA_OK) {
       dea_progress(ctx, what, i + 1, stops);
     }
-    dea_aside_end(&lines->at[i]);
+    dea_worker_end(&lines->at[i]);
   }
   return first == DEA_OK && status != DEA_OK ? dea_fail(ctx, status, "%s", why) : first;
 }

@@ -135,7 +135,7 @@ struct search {
   double voltages_V[DEA_DESIGN_STOPS_MAX];
   size_t level_count; // reached
   struct state *states;
-  size_t count, room;
+  size_t count, capacity;
   bool whole; // no plane of symmetry: each fibre goes its own way
   int parts;  // equal sectors that are pushed one by one; 0: none
 };
@@ -223,10 +223,10 @@ static dea_status keep_model(struct search *s, struct dea_state *kept)
 
 static dea_status make_room(struct search *s)
 {
-  if (s->count < s->room) {
+  if (s->count < s->capacity) {
     return DEA_OK;
   }
-  struct state *more = dea_alloc(s->ctx, 2 * s->room + 8, sizeof *more);
+  struct state *more = dea_alloc(s->ctx, 2 * s->capacity + 8, sizeof *more);
   if (more == NULL) {
     return DEA_E_MEMORY;
   }
@@ -235,7 +235,7 @@ static dea_status make_room(struct search *s)
   }
   dea_free(s->ctx, s->states);
   s->states = more;
-  s->room = 2 * s->room + 8;
+  s->capacity = 2 * s->capacity + 8;
   return DEA_OK;
 }
 
@@ -494,7 +494,7 @@ static dea_status carry_one(struct search *s, struct dea_model *from, const stru
   struct dea_load_point point;
   bool found = false;
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, from, saved));
-  dea_status status = dea_model_carry(s->ctx, s->type, mesh->model, from, &point, &found);
+  dea_status status = dea_model_transfer(s->ctx, s->type, mesh->model, from, &point, &found);
   if (status == DEA_OK && found) {
     DEA_TRY(s->ctx, keep_carried(s, mesh, i, &point));
   }

@@ -98,7 +98,8 @@ static dea_status say_unknown(struct dea_context *ctx, const struct dea_study *s
     return DEA_OK;
   }
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                         "model %s knows no %s: no study '%s'", model, study->ability, study->name);
+                         "model %s does not compute %s: no study '%s'", model, study->ability,
+                         study->name);
 }
 
 /* What there is to say of a study that none of these models knows, added to *text. */
@@ -112,7 +113,7 @@ static void add_known_to_none(const struct dea_study *study,
   for (size_t i = 0; i < type_count; i++) {
     dea_text_add(out, "%s%s", i > 0 ? " or " : "", types[i]->name);
   }
-  dea_text_add(out, ", which %s no %s", type_count > 1 ? "know" : "knows", study->ability);
+  dea_text_add(out, ", which %s not compute %s", type_count > 1 ? "do" : "does", study->ability);
   for (size_t i = 0, able = 0; i < count; i++) {
     if (is_known_to(study, all[i], result)) {
       dea_text_add(out, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);
@@ -229,16 +230,16 @@ static dea_status make_tables(struct dea_context *ctx, const struct dea_study *s
 }
 
 /* What a run of several studies ends with: the first that failed, and what it said. */
-struct ending {
+struct outcome {
   dea_status status;
   char message[1024];
 };
 
-static void take(const struct dea_context *ctx, dea_status status, struct ending *ending)
+static void take(const struct dea_context *ctx, dea_status status, struct outcome *outcome)
 {
-  if (status != DEA_OK && ending->status == DEA_OK) {
-    ending->status = status;
-    snprintf(ending->message, sizeof ending->message, "%s", dea_context_message(ctx));
+  if (status != DEA_OK && outcome->status == DEA_OK) {
+    outcome->status = status;
+    snprintf(outcome->message, sizeof outcome->message, "%s", dea_context_message(ctx));
   }
 }
 
@@ -261,7 +262,7 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
 {
   struct dea_model *model = NULL; // made for the first study that wants it
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
-  struct ending first = {.status = DEA_OK};
+  struct outcome first = {.status = DEA_OK};
   for (size_t i = 0; i < STUDIES; i++) {
     if (!is_wanted(studies[i], names, name_count, result->design)) {
       continue;

@@ -32,14 +32,15 @@ static bool take(struct dea_slice *field, const char *one_of, char *found)
 static bool days_of(int year, int month, int day, double *days)
 {
   static const int before[] = {0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334, 365};
-  bool leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+  bool branch_jump = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
   if (month < 1 || month > 12 || day < 1 || year < 1900 || year > 2200 ||
-      day > before[month] - before[month - 1] + (leap && month == 2)) {
+      day > before[month] - before[month - 1] + (branch_jump && month == 2)) {
     return false;
   }
   int past = year - 1;
-  int leaps = past / 4 - past / 100 + past / 400 - 477; // since 1970
-  *days = 365.0 * (year - 1970) + leaps + before[month - 1] + (leap && month > 2) + day - 1;
+  int branch_jumps = past / 4 - past / 100 + past / 400 - 477; // since 1970
+  *days = 365.0 * (year - 1970) + branch_jumps + before[month - 1] + (branch_jump && month > 2) +
+          day - 1;
   return true;
 }
 

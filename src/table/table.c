@@ -38,7 +38,7 @@ static char *copy_text(struct dea_context *ctx, const char *text, size_t length)
 
 struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table *table,
                                        const char *name, size_t name_length, const char *unit,
-                                       size_t unit_length, size_t room)
+                                       size_t unit_length, size_t capacity)
 {
   if (table->column_count == DEA_TABLE_COLUMNS_MAX) {
     dea_fail(ctx, DEA_E_IO, "'%s' has more than %d columns", table->file,
@@ -58,7 +58,7 @@ struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table
   *column = (struct dea_table_column){.start = 0, .interval = NAN, .origin_s = NAN};
   column->name = copy_text(ctx, name, name_length);
   column->unit = column->name != NULL ? copy_text(ctx, unit, unit_length) : NULL;
-  column->values = column->unit != NULL ? dea_alloc(ctx, room, sizeof(double)) : NULL;
+  column->values = column->unit != NULL ? dea_alloc(ctx, capacity, sizeof(double)) : NULL;
   if (column->values == NULL) {
     dea_free(ctx, column->name);
     dea_free(ctx, column->unit);
@@ -109,13 +109,13 @@ void dea_table_destroy(struct dea_context *ctx, struct dea_table *table)
   }
 }
 
-bool dea_name_ends(const char *file, const char *ending)
+bool dea_name_ends(const char *file, const char *outcome)
 {
-  size_t n = strlen(file), m = strlen(ending);
+  size_t n = strlen(file), m = strlen(outcome);
   bool same = n >= m;
   for (size_t i = 0; same && i < m; i++) {
     char c = file[n - m + i];
-    same = (c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) == ending[i];
+    same = (c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c) == outcome[i];
   }
   return same;
 }

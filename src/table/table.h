@@ -38,7 +38,7 @@ struct dea_table {
 /* Adds an empty column with room for `room` values; NULL on failure. Name and unit become UTF-8. */
 struct dea_table_column *dea_table_add(struct dea_context *ctx, struct dea_table *table,
                                        const char *name, size_t name_length, const char *unit,
-                                       size_t unit_length, size_t room);
+                                       size_t unit_length, size_t capacity);
 /* Notes a column that is left out. */
 dea_status dea_table_leave(struct dea_context *ctx, struct dea_table *table, struct dea_slice name,
                            struct dea_slice field, size_t line);
@@ -46,7 +46,7 @@ dea_status dea_table_leave(struct dea_context *ctx, struct dea_table *table, str
 dea_status dea_table_note(struct dea_context *ctx, struct dea_table *table, const char *text,
                           size_t length);
 /* Whether a file's name ends so (".csv"; lower case), in letters of either case. */
-bool dea_name_ends(const char *file, const char *ending);
+bool dea_name_ends(const char *file, const char *outcome);
 /* NULL is fine. */
 void dea_table_destroy(struct dea_context *ctx, struct dea_table *table);
 

@@ -148,13 +148,13 @@ static bool convert(struct dea_context *ctx, const char *encoding, struct dea_sl
   if (converter == (iconv_t)-1) {
     return false;
   }
-  size_t left = text.length, most = 3 * text.length + 4, room = most;
+  size_t left = text.length, most = 3 * text.length + 4, capacity = most;
   *copy = dea_alloc(ctx, most, 1);
   char *from = (char *)text.text, *to = *copy;
-  const bool good = to != NULL && iconv(converter, &from, &left, &to, &room) != (size_t)-1;
+  const bool good = to != NULL && iconv(converter, &from, &left, &to, &capacity) != (size_t)-1;
   iconv_close(converter);
   if (good) {
-    *out = (struct dea_slice){*copy, most - room};
+    *out = (struct dea_slice){*copy, most - capacity};
   } else {
     dea_free(ctx, *copy);
     *copy = NULL;

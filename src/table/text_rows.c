@@ -63,7 +63,7 @@ static void name_and_unit(struct dea_context *ctx, struct dea_slice title,
 
 /* A name for what has none: "column 3". */
 static dea_status add_column(struct rows *rows, size_t index, struct dea_slice title,
-                             const struct dea_slice *given, size_t room)
+                             const struct dea_slice *given, size_t capacity)
 {
   struct dea_slice name, unit;
   char number[32];
@@ -74,7 +74,7 @@ static dea_status add_column(struct rows *rows, size_t index, struct dea_slice t
   }
   rows->column[index] = (int)rows->table->column_count;
   return dea_table_add(rows->ctx, rows->table, name.text, name.length, unit.text, unit.length,
-                       room) != NULL
+                       capacity) != NULL
              ? DEA_OK
              : dea_context_status(rows->ctx);
 }
@@ -167,7 +167,7 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
                               const struct dea_slice *titles, const struct dea_slice *units)
 {
   static const struct dea_slice second = {"s", 1};
-  size_t room = rows_room(text, rows->dialect);
+  size_t capacity = rows_room(text, rows->dialect);
   find_fraction(rows, text, titles, units);
   bool numbers = has_times(rows, titles, units);
   for (size_t i = 0; i < rows->dialect->count; i++) {
@@ -177,11 +177,12 @@ static dea_status add_columns(struct rows *rows, struct dea_slice text,
     }
     if (!numbers && rows->dialect->text[i] && is_clock(rows, text, i)) {
       numbers = true; // one clock is enough
-      DEA_TRY(rows->ctx, add_column(rows, i, titles[i], &second, room));
+      DEA_TRY(rows->ctx, add_column(rows, i, titles[i], &second, capacity));
       rows->table->columns[rows->column[i]].origin_s =
           rows->clocks[i].first_day * 86400 + rows->clocks[i].first_s;
     } else if (!rows->dialect->text[i]) {
-      DEA_TRY(rows->ctx, add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, room));
+      DEA_TRY(rows->ctx,
+              add_column(rows, i, titles[i], units != NULL ? &units[i] : NULL, capacity));
     } else {
       const struct dea_location location = {rows->table->file, rows->dialect->line + 1, 1};
       struct dea_slice name, unit = {"", 0}, field = first_field(rows, text, i);
@@ -435,9 +436,9 @@ dea_status dea_text_lines_read(struct dea_context *ctx, struct dea_slice text,
                                const struct dea_csv_dialect *dialect, struct dea_table *out)
 {
   struct rows rows = {.ctx = ctx, .dialect = dialect, .table = out};
-  const size_t room = rows_room(text, dialect);
-  out->fields->lines = dea_alloc(ctx, room, sizeof *out->fields->lines);
-  out->fields->numbers = dea_alloc(ctx, room, sizeof *out->fields->numbers);
+  const size_t capacity = rows_room(text, dialect);
+  out->fields->lines = dea_alloc(ctx, capacity, sizeof *out->fields->lines);
+  out->fields->numbers = dea_alloc(ctx, capacity, sizeof *out->fields->numbers);
   if (out->fields->lines == NULL || out->fields->numbers == NULL) {
     return DEA_E_MEMORY;
   }

@@ -301,13 +301,14 @@ static size_t title_end(struct dea_slice line, size_t blanks)
   return line.length;
 }
 
-static size_t part_blanks(struct dea_slice line, size_t blanks, size_t room, struct dea_slice *out)
+static size_t part_blanks(struct dea_slice line, size_t blanks, size_t capacity,
+                          struct dea_slice *out)
 {
   size_t count = 0;
   line = dea_slice_trim(line);
   while (line.length > 0) {
     size_t n = title_end(line, blanks);
-    if (count < room) {
+    if (count < capacity) {
       out[count] = dea_slice_trim((struct dea_slice){line.text, n});
     }
     count++;
@@ -317,7 +318,7 @@ static size_t part_blanks(struct dea_slice line, size_t blanks, size_t room, str
 }
 
 /* Each ends with a unit in brackets: "V0 (kV) Line integration (N)". */
-static size_t part_units(struct dea_slice line, size_t room, struct dea_slice *out)
+static size_t part_units(struct dea_slice line, size_t capacity, struct dea_slice *out)
 {
   size_t count = 0;
   line = dea_slice_trim(line);
@@ -327,7 +328,7 @@ static size_t part_units(struct dea_slice line, size_t room, struct dea_slice *o
       n++;
     }
     n += n < line.length;
-    if (count < room) {
+    if (count < capacity) {
       out[count] = dea_slice_trim((struct dea_slice){line.text, n});
     }
     count++;

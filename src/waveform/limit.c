@@ -9,7 +9,7 @@ static const struct dea_wave_type limited = {.name = "limited"};
 /* Where the supply is, and what it made so far. */
 struct player {
   struct dea_waveform *out;
-  size_t room;
+  size_t capacity;
   double time_s, value_V;
   bool follows, was_late;
 };
@@ -17,13 +17,13 @@ struct player {
 static dea_status go_to(struct player *p, double time_s, double value_V)
 {
   struct dea_waveform *w = p->out;
-  if (w->knot_count == p->room) {
-    struct dea_wave_knot *moved = dea_resize(w->ctx, w->knots, 2 * p->room, sizeof *moved);
+  if (w->knot_count == p->capacity) {
+    struct dea_wave_knot *moved = dea_resize(w->ctx, w->knots, 2 * p->capacity, sizeof *moved);
     if (moved == NULL) {
       return DEA_E_MEMORY;
     }
     w->knots = moved;
-    p->room *= 2;
+    p->capacity *= 2;
   }
   p->time_s = time_s;
   p->value_V = value_V;
@@ -72,7 +72,7 @@ static dea_status play(struct player *p, const struct dea_waveform *source, doub
 dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform *waveform,
                               double slew_V_per_s, double until_s, struct dea_waveform **out)
 {
-  struct player p = {.room = 64, .follows = true};
+  struct player p = {.capacity = 64, .follows = true};
   *out = NULL;
   p.out = dea_alloc(ctx, 1, sizeof *p.out);
   if (p.out == NULL) {
@@ -80,7 +80,7 @@ dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform
   }
   *p.out = (struct dea_waveform){
       .type = &limited, .ctx = ctx, .end_s = until_s, .longest_step_s = INFINITY};
-  dea_status status = dea_wave_room(ctx, p.out, p.room, 1);
+  dea_status status = dea_wave_room(ctx, p.out, p.capacity, 1);
   if (status == DEA_OK) {
     dea_wave_open(p.out, 0, 1 / until_s, 1);
     status = go_to(&p, 0, 0);

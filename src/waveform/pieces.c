@@ -196,14 +196,14 @@ void dea_wave_add_pulses(struct dea_waveform *waveform, double start_s,
 dea_status dea_wave_check_rise(const struct dea_reader *reader, const struct dea_quantity *rise_s,
                                double frequency_Hz, double duty)
 {
-  double room = fmin(duty, 1 - duty) / frequency_Hz;
-  if (!(rise_s->si > room)) {
+  double capacity = fmin(duty, 1 - duty) / frequency_Hz;
+  if (!(rise_s->si > capacity)) {
     return DEA_OK;
   }
   return dea_finding_add(reader->ctx, DEA_ERROR, rise_s->location,
                          "rise_time: %g s is longer than the %g s that the shorter part of a cycle "
                          "lasts",
-                         rise_s->si, room);
+                         rise_s->si, capacity);
 }
 
 static const double two_pi = 6.28318530717958647692;

@@ -189,8 +189,7 @@ static dea_status clear_output(struct dea_cli *cli, const struct request *reques
   }
   if (!request->force) {
     return dea_fail(cli->ctx, DEA_E_IO,
-                    "'%s' is there already; -o names another file, --force replaces this one",
-                    file);
+                    "'%s' already exists; -o names another file, --force replaces this one", file);
   }
   if (!may_be_replaced(file)) {
     return dea_fail(cli->ctx, DEA_E_IO, "'%s' is no recording and is not replaced", file);

@@ -163,7 +163,7 @@ static dea_status write_file(struct dea_cli *cli, const struct request *request,
 {
   struct dea_context *ctx = cli->ctx;
   if (dea_path_exists(file) && !request->force) {
-    return dea_fail(ctx, DEA_E_IO, "'%s' is there already; --force replaces it", file);
+    return dea_fail(ctx, DEA_E_IO, "'%s' already exists; --force replaces it", file);
   }
   char *partial = dea_partial_name(ctx, file);
   if (partial == NULL) {

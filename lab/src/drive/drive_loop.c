@@ -63,7 +63,7 @@ struct loop {
   size_t put, got, recorded; // samples of the output, of the inputs, of the command's channel
   size_t block, ahead;       // samples
   double *asked, *volts;     // [room] of the samples on their way, by number; [block]
-  size_t room;
+  size_t capacity;
   struct drive_monitor monitor;
   bool held;       // the output stood still for a stall: what the inputs read of it has come late
   double held_V;   // where
@@ -75,7 +75,7 @@ struct loop {
   struct dea_guard *guard;
   const struct dea_supply *supply;
   size_t told;       // events among what is said
-  bool ending;       // a fault came
+  bool outcome;      // a fault came
   dea_status status; // of it
   struct dea_drive_report *report;
 };
@@ -87,14 +87,14 @@ static void end_early(struct loop *loop, dea_status status, const char *format, 
     DEA_PRINTF(3, 4);
 static void end_early(struct loop *loop, dea_status status, const char *format, ...)
 {
-  if (loop->ending) {
+  if (loop->outcome) {
     return;
   }
   va_list args;
   va_start(args, format);
   vsnprintf(loop->report->ended, sizeof loop->report->ended, format, args);
   va_end(args);
-  loop->ending = true;
+  loop->outcome = true;
   loop->status = status;
   dea_drive_output_ramp(&loop->output);
 }
@@ -172,7 +172,7 @@ static void record_columns(struct loop *loop)
 /* The next sample of all channels; values: of the inputs, NULL: lost. */
 static double record_sample(struct loop *loop, const double *values)
 {
-  double asked_V = loop->asked[loop->recorded++ % loop->room];
+  double asked_V = loop->asked[loop->recorded++ % loop->capacity];
   loop->columns[loop->columns_used] = asked_V;
   for (size_t i = 0; i < loop->protocol->input_count; i++) {
     loop->columns[(i + 1) * loop->block + loop->columns_used] =
@@ -210,7 +210,7 @@ static void take_sample(struct loop *loop, const double *volts)
   double asked_V = record_sample(loop, values);
   loop->got++;
   bool good = dea_drive_watch_sample(&loop->watch, asked_V, values, why);
-  for (size_t i = 0; i < loop->watch.event_count && !loop->ending; i++) {
+  for (size_t i = 0; i < loop->watch.event_count && !loop->outcome; i++) {
     struct dea_recorded_event event = loop->watch.events[i];
     const char *name = loop->protocol->inputs[event.channel++].name.text; // 0: the asked voltage
     take_event(loop, &event, name);
@@ -264,7 +264,7 @@ static void take_behind_end(struct loop *loop, const double *volts)
 /* A sample of an output that stands still. */
 static void hold_sample(struct loop *loop)
 {
-  loop->asked[loop->put++ % loop->room] = loop->held_V;
+  loop->asked[loop->put++ % loop->capacity] = loop->held_V;
 }
 
 /* The functions of the sink never fail: what goes wrong with the recording is no fault of the
@@ -373,7 +373,7 @@ static void check_values(struct loop *loop, struct source *source)
     const struct dea_instrument_reading *reading = &instrument->readings[i];
     double silent_s = now_s - source->value_s[i];
     if ((reading->kind != DEA_CHANNEL_CURRENT && reading->kind != DEA_CHANNEL_VOLTAGE) ||
-        silent_s < silent_warn_s || loop->ending) {
+        silent_s < silent_warn_s || loop->outcome) {
       continue;
     }
     if (!source->silent[i]) {
@@ -425,7 +425,7 @@ static void resume(struct loop *loop, double volts)
   loop->output.played = loop->output.played > dropped ? loop->output.played - dropped : 0;
   if (reads(loop)) {
     for (size_t i = loop->got; i < loop->put; i++) { // never played
-      loop->asked[i % loop->room] = loop->held_V;
+      loop->asked[i % loop->capacity] = loop->held_V;
     }
     do {
       before = loop->got;
@@ -506,10 +506,10 @@ static void put_block(struct loop *loop)
   double asked_V[64];
   size_t filled = 0;
   while (filled < loop->block && !loop->output.over) {
-    size_t room = loop->block - filled < 64 ? loop->block - filled : 64;
-    size_t n = dea_drive_output_next(&loop->output, room, asked_V);
+    size_t capacity = loop->block - filled < 64 ? loop->block - filled : 64;
+    size_t n = dea_drive_output_next(&loop->output, capacity, asked_V);
     for (size_t i = 0; i < n; i++) {
-      loop->asked[(loop->put + filled) % loop->room] = asked_V[i];
+      loop->asked[(loop->put + filled) % loop->capacity] = asked_V[i];
       loop->volts[filled++] = asked_V[i] / loop->protocol->amplifier.gain.si;
     }
   }
@@ -580,7 +580,7 @@ static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
     if (interrupt != NULL && *interrupt != 0 && !loop->output.over) { // else there is all of it
       end_early(loop, DEA_E_INTERRUPTED, "interrupted");
     }
-    if (loop->supply != NULL && !loop->ending && dea_supply_is_asked(loop->supply)) {
+    if (loop->supply != NULL && !loop->outcome && dea_supply_is_asked(loop->supply)) {
       end_early(loop, DEA_E_INTERRUPTED, "another program (dea drive --zero) asked for 0 V");
     }
     bool more = has_room(loop);
@@ -592,7 +592,7 @@ static void play(struct loop *loop, const volatile sig_atomic_t *interrupt)
     played = is_played(loop);
     double now_s = floor((double)loop->output.played / loop->protocol->rate_Hz.si);
     if (now_s > shown_s) {
-      dea_progress(loop->ctx, loop->ending ? "ramp to 0 V (s)" : "drive (s)", (size_t)now_s,
+      dea_progress(loop->ctx, loop->outcome ? "ramp to 0 V (s)" : "drive (s)", (size_t)now_s,
                    (size_t)ceil(duration_s));
       shown_s = now_s;
     }
@@ -604,7 +604,7 @@ static void wait_for_frames(struct loop *loop)
 {
   struct dea_recorded_cycle cycle;
   double until_s = dea_clock_s() + last_frame_wait_s;
-  while (loop->sensor != NULL && !loop->sensor->failed && !loop->ending &&
+  while (loop->sensor != NULL && !loop->sensor->failed && !loop->outcome &&
          dea_protocol_cycle(loop->protocol, loop->report->cycles, &cycle) &&
          dea_clock_s() < until_s) {
     get_from(loop, loop->sensor, wait_s);
@@ -616,7 +616,7 @@ static void wait_for_frames(struct loop *loop)
 static void start_all(struct loop *loop)
 {
   loop->started_s = dea_clock_s();
-  for (size_t i = 0; i < loop->count && !loop->ending; i++) { // the one that plays comes last
+  for (size_t i = 0; i < loop->count && !loop->outcome; i++) { // the one that plays comes last
     struct source *source = &loop->sources[i];
     source->heard_s = dea_clock_s();
     for (size_t r = 0; r < DEA_CHANNELS_MAX; r++) {
@@ -743,8 +743,8 @@ static dea_status set_rooms(struct loop *loop)
   double rate_Hz = loop->protocol->rate_Hz.si;
   loop->block = (size_t)fmax(1, rint(block_s * rate_Hz));
   loop->ahead = (size_t)fmax(2, rint(ahead_s * rate_Hz));
-  loop->room = loop->ahead + 2 * loop->block;
-  loop->asked = dea_alloc(loop->ctx, loop->room, sizeof *loop->asked);
+  loop->capacity = loop->ahead + 2 * loop->block;
+  loop->asked = dea_alloc(loop->ctx, loop->capacity, sizeof *loop->asked);
   loop->volts = dea_alloc(loop->ctx, loop->block, sizeof *loop->volts);
   loop->columns =
       dea_alloc(loop->ctx, loop->block * (loop->protocol->input_count + 1), sizeof *loop->columns);
@@ -757,13 +757,13 @@ static dea_status begin_recording(struct loop *loop, const struct dea_drive_benc
 {
   struct dea_recorder *recorder;
   double samples = queue_s * loop->protocol->rate_Hz.si;
-  size_t room = queue_least + (size_t)samples * (loop->protocol->input_count + 1);
+  size_t capacity = queue_least + (size_t)samples * (loop->protocol->input_count + 1);
   DEA_TRY(loop->ctx, dea_context_create(NULL, &loop->own));
   dea_status status = dea_drive_recorder(loop->own, loop->protocol, bench, file, sensor, &recorder);
   if (status != DEA_OK) {
     return dea_fail(loop->ctx, status, "%s", dea_context_message(loop->own));
   }
-  return dea_writer_begin(loop->ctx, recorder, room, loop->player->instrument->patient,
+  return dea_writer_begin(loop->ctx, recorder, capacity, loop->player->instrument->patient,
                           &loop->writer);
 }
 
@@ -840,7 +840,7 @@ dea_status dea_drive_play(struct dea_context *ctx, const struct dea_protocol *pr
     dea_drive_watch_start(&loop.watch, protocol, bench->settle_s, bench->capacitance_F);
     set_monitor(&loop, bench->settle_s);
     start_all(&loop);
-    if (!loop.ending) {
+    if (!loop.outcome) {
       dea_guard_limit(loop.guard, protocol->safety.guard_time_s.si);
       play(&loop, interrupt);
       // time for what is left to do; the output is at 0 V, or was brought there by the guard

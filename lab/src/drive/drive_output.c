@@ -24,10 +24,10 @@ static double next_of_ramp(struct dea_drive_output *output)
   return output->over ? 0 : copysign(left_V, output->last_V);
 }
 
-size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, double *asked_V)
+size_t dea_drive_output_next(struct dea_drive_output *output, size_t capacity, double *asked_V)
 {
   size_t n = 0;
-  while (n < room && !output->over) {
+  while (n < capacity && !output->over) {
     output->last_V = output->ramping ? next_of_ramp(output) : next_of_sequence(output);
     asked_V[n++] = output->last_V;
   }

@@ -16,7 +16,7 @@ struct dea_drive_output {
 
 void dea_drive_output_start(struct dea_drive_output *output, const struct dea_protocol *protocol);
 /* The next asked voltages [V], at most `room`; the number of them, 0 when it is over. */
-size_t dea_drive_output_next(struct dea_drive_output *output, size_t room, double *asked_V);
+size_t dea_drive_output_next(struct dea_drive_output *output, size_t capacity, double *asked_V);
 /* From here on a ramp from the last voltage to 0 V, by the protocol's ramp or within its longest
  * time, whichever is faster; nothing more for one that is over. */
 void dea_drive_output_ramp(struct dea_drive_output *output);

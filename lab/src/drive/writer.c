@@ -34,7 +34,7 @@ struct dea_writer {
   struct item items[ITEMS];
   size_t first, waiting; // of items
   double *numbers;       // [room], a ring; no item goes round its end
-  size_t room, head, tail;
+  size_t capacity, head, tail;
   bool ended;
   dea_status status; // first failure
   char message[MESSAGE_SIZE];
@@ -141,7 +141,7 @@ static bool find_room(const struct dea_writer *w, size_t count, size_t *at)
   if (round) {
     return w->tail - w->head >= count;
   }
-  if (w->room - w->head >= count) {
+  if (w->capacity - w->head >= count) {
     return true;
   }
   *at = 0;
@@ -260,18 +260,18 @@ static int start_thread(struct dea_writer *w)
   return error;
 }
 
-dea_status dea_writer_begin(struct dea_context *ctx, struct dea_recorder *recorder, size_t room,
+dea_status dea_writer_begin(struct dea_context *ctx, struct dea_recorder *recorder, size_t capacity,
                             bool waits, struct dea_writer **out)
 {
   struct dea_writer *w = *out = dea_alloc(ctx, 1, sizeof *w);
-  double *numbers = w != NULL ? dea_alloc(ctx, room, sizeof *numbers) : NULL;
+  double *numbers = w != NULL ? dea_alloc(ctx, capacity, sizeof *numbers) : NULL;
   int error = 0;
   if (numbers != NULL) {
     w->recorder = recorder;
     w->own = dea_recorder_context(recorder);
     w->waits = waits;
     w->numbers = numbers;
-    w->room = room;
+    w->capacity = capacity;
     pthread_mutex_init(&w->lock, NULL);
     pthread_cond_init(&w->came, NULL);
     pthread_cond_init(&w->went, NULL);

@@ -11,7 +11,7 @@ struct dea_writer;
 /* recorder: taken, also on failure; its context is the thread's until the end, and nobody else's.
  * room: numbers that the queue holds. waits: for room. out: owned by the caller
  * (dea_writer_finish), NULL on failure. */
-dea_status dea_writer_begin(struct dea_context *ctx, struct dea_recorder *recorder, size_t room,
+dea_status dea_writer_begin(struct dea_context *ctx, struct dea_recorder *recorder, size_t capacity,
                             bool waits, struct dea_writer **out);
 /* As those of a recorder. DEA_E_IO when the queue is full; the first failure of the thread, and
  * this one, are answered again by all calls that follow, which do nothing. */

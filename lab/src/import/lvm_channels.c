@@ -86,9 +86,9 @@ static double row_time(const struct dea_lvm *lvm, struct dea_lvm_channel *channe
   return channel->x_now + channel->shift_s;
 }
 
-static void put(struct dea_lvm *lvm, size_t column, double value, size_t room)
+static void put(struct dea_lvm *lvm, size_t column, double value, size_t capacity)
 {
-  if (column != SIZE_MAX && lvm->table->columns[column].count < room) {
+  if (column != SIZE_MAX && lvm->table->columns[column].count < capacity) {
     lvm->table->columns[column].values[lvm->table->columns[column].count++] = value;
   }
 }
@@ -137,11 +137,12 @@ void dea_lvm_keep_row(struct dea_lvm *lvm, size_t row)
 }
 
 /* A column for times; *column its index. */
-static dea_status add_times(struct dea_lvm *lvm, const char *name, size_t room, size_t *column)
+static dea_status add_times(struct dea_lvm *lvm, const char *name, size_t capacity, size_t *column)
 {
   const char *unit = lvm->not_time ? "" : "s";
   *column = lvm->table->column_count;
-  return dea_table_add(lvm->ctx, lvm->table, name, strlen(name), unit, strlen(unit), room) != NULL
+  return dea_table_add(lvm->ctx, lvm->table, name, strlen(name), unit, strlen(unit), capacity) !=
+                 NULL
              ? DEA_OK
              : dea_context_status(lvm->ctx);
 }

@@ -72,7 +72,7 @@ struct dea_tdms {
   struct dea_context *ctx;
   const char *file;
   struct dea_tdms_object *objects; // owned
-  size_t count, room;
+  size_t count, capacity;
   size_t *order, order_count, order_room; // objects of the segment with values; owned
 };
 

@@ -139,14 +139,14 @@ static dea_status find_object(struct dea_tdms *tdms, struct dea_tdms_text path, 
     return dea_fail(tdms->ctx, DEA_E_IO, "'%s' has more than %d channels", tdms->file,
                     (int)DEA_TDMS_OBJECTS_MAX);
   }
-  if (tdms->count == tdms->room) {
-    size_t room = 2 * tdms->room + 16;
-    void *moved = dea_resize(tdms->ctx, tdms->objects, room, sizeof *tdms->objects);
+  if (tdms->count == tdms->capacity) {
+    size_t capacity = 2 * tdms->capacity + 16;
+    void *moved = dea_resize(tdms->ctx, tdms->objects, capacity, sizeof *tdms->objects);
     if (moved == NULL) {
       return DEA_E_MEMORY;
     }
     tdms->objects = moved;
-    tdms->room = room;
+    tdms->capacity = capacity;
   }
   tdms->objects[tdms->count++] = (struct dea_tdms_object){.path = path,
                                                           .unit = {"", 0},
@@ -164,13 +164,13 @@ static dea_status add_to_order(struct dea_tdms *tdms, size_t object)
     return DEA_OK;
   }
   if (tdms->order_count == tdms->order_room) {
-    size_t room = 2 * tdms->order_room + 16;
-    void *moved = dea_resize(tdms->ctx, tdms->order, room, sizeof *tdms->order);
+    size_t capacity = 2 * tdms->order_room + 16;
+    void *moved = dea_resize(tdms->ctx, tdms->order, capacity, sizeof *tdms->order);
     if (moved == NULL) {
       return DEA_E_MEMORY;
     }
     tdms->order = moved;
-    tdms->order_room = room;
+    tdms->order_room = capacity;
   }
   tdms->objects[object].in_segment = true;
   tdms->order[tdms->order_count++] = object;

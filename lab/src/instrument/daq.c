@@ -20,7 +20,7 @@ dea_status dea_daq_begin(struct dea_context *ctx, const struct dea_protocol *pro
                          double queue_s, struct dea_daq *out)
 {
   double rate_Hz = protocol->rate_Hz.si;
-  *out = (struct dea_daq){.room = samples_of(queue_s, rate_Hz),
+  *out = (struct dea_daq){.capacity = samples_of(queue_s, rate_Hz),
                           .input_room = samples_of(input_room_s, rate_Hz),
                           .scans_room = samples_of(scans_room_s, rate_Hz)};
   out->scans = dea_alloc(ctx, out->scans_room, sizeof *out->scans * (protocol->input_count + 1));
@@ -47,12 +47,12 @@ dea_status dea_daq_part(struct dea_context *ctx, const struct dea_daq *daq, cons
                     device);
   }
   if (daq->running) {
-    *part = count < daq->room / 2 ? count : daq->room / 2; // the driver waits for room
+    *part = count < daq->capacity / 2 ? count : daq->capacity / 2; // the driver waits for room
     return DEA_OK;
   }
-  size_t left = daq->room - daq->queued;
+  size_t left = daq->capacity - daq->queued;
   if (left == 0) {
-    return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", daq->room);
+    return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", daq->capacity);
   }
   *part = count < left ? count : left;
   return DEA_OK;

@@ -32,7 +32,7 @@ struct dea_daq_raw {
 #define DEA_DAQ_PATIENCE_S 2.0
 
 struct dea_daq {
-  size_t room;       // of the queue, samples
+  size_t capacity;   // of the queue, samples
   size_t input_room; // that the driver holds for each input
   size_t scans_room; // of scans, samples of each input
   double *scans;     // [scans_room][inputs]; owned

@@ -68,8 +68,8 @@ static enum dea_gdp_event read_profiles(struct dea_gdp *g, bool uniform)
                                .source = m[32],
                                .uniform = uniform,
                                .ranges = m + data};
-  size_t room = (g->length - data) / point;
-  if (p.count == 0 || p.width == 0 || p.count > room || p.width > room / p.count ||
+  size_t capacity = (g->length - data) / point;
+  if (p.count == 0 || p.width == 0 || p.count > capacity || p.width > capacity / p.count ||
       !(p.x_scale_m > 0) || !(p.z_scale_m > 0)) {
     return DEA_GDP_ODD;
   }

@@ -405,24 +405,24 @@ static dea_status start_comedi(struct dea_context *ctx, struct dea_instrument *i
 }
 
 /* Waits until the queue has room. DEA_E_INSTRUMENT when that takes too long. */
-static dea_status wait_for_room(struct dea_context *ctx, struct comedi *c, size_t *room)
+static dea_status wait_for_room(struct dea_context *ctx, struct comedi *c, size_t *capacity)
 {
   double until_s =
-      dea_clock_s() + DEA_DAQ_PATIENCE_S + (double)c->daq.room / c->protocol->rate_Hz.si;
+      dea_clock_s() + DEA_DAQ_PATIENCE_S + (double)c->daq.capacity / c->protocol->rate_Hz.si;
   for (;;) {
     int bytes = c->library.get_buffer_contents(c->device, c->output.subdevice);
     size_t held = bytes > 0 ? (size_t)bytes / c->output.sample_size : 0;
     if (bytes < 0) {
       return failed(ctx, c, "tell what it has left to play");
     }
-    if (held < c->daq.room) {
-      *room = c->daq.room - held;
+    if (held < c->daq.capacity) {
+      *capacity = c->daq.capacity - held;
       return DEA_OK;
     }
     if (dea_clock_s() > until_s) {
       return dea_fail(ctx, DEA_E_INSTRUMENT, "%s takes no more samples", c->name);
     }
-    dea_clock_wait(0.05 * (double)c->daq.room / c->protocol->rate_Hz.si);
+    dea_clock_wait(0.05 * (double)c->daq.capacity / c->protocol->rate_Hz.si);
   }
 }
 
@@ -463,12 +463,12 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   struct comedi *c = (struct comedi *)instrument;
   DEA_TRY(ctx, dea_protocol_guard(ctx, c->protocol, volts, count));
   while (count > 0) {
-    size_t part, room = c->daq.room;
+    size_t part, capacity = c->daq.capacity;
     DEA_TRY(ctx, dea_daq_part(ctx, &c->daq, c->name, count, &part));
     if (c->daq.running) {
-      DEA_TRY(ctx, wait_for_room(ctx, c, &room));
+      DEA_TRY(ctx, wait_for_room(ctx, c, &capacity));
     }
-    part = part < room ? part : room;
+    part = part < capacity ? part : capacity;
     DEA_TRY(ctx, write_samples(ctx, c, volts, &part));
     c->daq.queued += part;
     volts += part;

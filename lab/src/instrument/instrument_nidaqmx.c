@@ -51,7 +51,7 @@ enum { // DAQmxError...
                      uint32_t layout, const double *volts, int32_t *written, uint32_t *reserved))  \
   X(GetReadAvailSampPerChan, (void *task, uint32_t *samples))                                      \
   X(ReadAnalogF64, (void *task, int32_t samples, double timeout_s, uint32_t layout, double *volts, \
-                    uint32_t room, int32_t *read, uint32_t *reserved))                             \
+                    uint32_t capacity, int32_t *read, uint32_t *reserved))                         \
   X(GetExtendedErrorInfo, (char *text, uint32_t size))
 
 struct driver {
@@ -192,9 +192,9 @@ static dea_status set_up(struct dea_context *ctx, struct nidaqmx *n, int32_t wir
 {
   DEA_TRY(ctx, set_zero(ctx, n));
   DEA_TRY(ctx, make_output(ctx, n));
-  DEA_TRY(ctx, set_clock(ctx, n, n->output, n->daq.room));
+  DEA_TRY(ctx, set_clock(ctx, n, n->output, n->daq.capacity));
   TRY(n, "play without repetition", SetWriteRegenMode, n->output, NO_REGENERATION);
-  TRY(n, "take a queue of that length", CfgOutputBuffer, n->output, (uint32_t)n->daq.room);
+  TRY(n, "take a queue of that length", CfgOutputBuffer, n->output, (uint32_t)n->daq.capacity);
   return make_input(ctx, n, wiring);
 }
 
@@ -290,7 +290,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
     int32_t written = 0;
     size_t part;
     DEA_TRY(ctx, dea_daq_part(ctx, &n->daq, n->device, count, &part));
-    double timeout_s = DEA_DAQ_PATIENCE_S + (double)n->daq.room / n->protocol->rate_Hz.si;
+    double timeout_s = DEA_DAQ_PATIENCE_S + (double)n->daq.capacity / n->protocol->rate_Hz.si;
     TRY(n, "play on", WriteAnalogF64, n->output, (int32_t)part, 0, timeout_s, BY_CHANNEL, volts,
         &written, NULL);
     if (written <= 0 || (size_t)written > part) {

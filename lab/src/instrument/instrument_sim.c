@@ -102,12 +102,12 @@ struct sim {
   struct dea_sim_random random;
   bool real_time, stopped;
   double started_s, frame_rate_Hz;
-  double *x_m, *z_m;   // [profile_points]
-  double *volts;       // [BLOCK_SAMPLES][inputs]
-  double *queue;       // control voltages that wait
-  size_t queued, room; // in the queue
-  size_t put, done;    // samples that came in all, and that were simulated
-  size_t frames;       // that were due
+  double *x_m, *z_m;       // [profile_points]
+  double *volts;           // [BLOCK_SAMPLES][inputs]
+  double *queue;           // control voltages that wait
+  size_t queued, capacity; // in the queue
+  size_t put, done;        // samples that came in all, and that were simulated
+  size_t frames;           // that were due
 };
 
 // Opening ----------------------------------------------------------------------------------------
@@ -139,7 +139,7 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   const char *nearest = dea_nearest_name(raw->model.text, names, count);
   dea_status status = dea_finding_add(
       reader->ctx, DEA_ERROR, raw->model.location, "%s '%.60s'%s%s%s%s; models with time are: %s",
-      there ? "model" : "there is no model", raw->model.text, there ? " knows no time" : "",
+      there ? "model" : "there is no model", raw->model.text, there ? " does not compute time" : "",
       nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
       nearest != NULL ? "'?" : "", dea_text_get(&list));
   status = list.failed ? DEA_E_MEMORY : status;
@@ -268,14 +268,14 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   while (s->real_time && (double)(s->put - due_samples(s)) > most && !dea_interrupted(ctx)) {
     dea_clock_wait(0.01);
   }
-  if (s->queued + count > s->room) {
-    size_t room = 2 * s->room + count;
-    double *moved = dea_resize(ctx, s->queue, room, sizeof *moved);
+  if (s->queued + count > s->capacity) {
+    size_t capacity = 2 * s->capacity + count;
+    double *moved = dea_resize(ctx, s->queue, capacity, sizeof *moved);
     if (moved == NULL) {
       return DEA_E_MEMORY;
     }
     s->queue = moved;
-    s->room = room;
+    s->capacity = capacity;
   }
   memcpy(s->queue + s->queued, volts, count * sizeof *volts);
   s->queued += count;

@@ -95,13 +95,13 @@ dea_status dea_socket_connect(struct dea_context *ctx, const char *what, const c
 }
 
 dea_status dea_socket_read(struct dea_context *ctx, const struct dea_socket *connection,
-                           double timeout_s, void *bytes, size_t room, size_t *length)
+                           double timeout_s, void *bytes, size_t capacity, size_t *length)
 {
   *length = 0;
-  if (room == 0 || wait_for(connection->descriptor, POLLIN, timeout_s) != 1) {
+  if (capacity == 0 || wait_for(connection->descriptor, POLLIN, timeout_s) != 1) {
     return DEA_OK;
   }
-  ssize_t got = read(connection->descriptor, bytes, room);
+  ssize_t got = read(connection->descriptor, bytes, capacity);
   if (got > 0) {
     *length = (size_t)got;
     return DEA_OK;

@@ -23,7 +23,7 @@ dea_status dea_socket_connect(struct dea_context *ctx, const char *what, const c
 /* Takes what is there, waiting up to timeout_s (0: not at all) for it; *length is 0 when nothing
  * came, or a signal did. DEA_E_INSTRUMENT once the connection is lost. */
 dea_status dea_socket_read(struct dea_context *ctx, const struct dea_socket *connection,
-                           double timeout_s, void *bytes, size_t room, size_t *length);
+                           double timeout_s, void *bytes, size_t capacity, size_t *length);
 /* Sends all of it, or fails with DEA_E_INSTRUMENT after timeout_s. */
 dea_status dea_socket_write(struct dea_context *ctx, const struct dea_socket *connection,
                             double timeout_s, const void *bytes, size_t length);

@@ -82,8 +82,8 @@ dea_status dea_timed_begin(struct dea_context *ctx, struct dea_timed_output *o)
   if (isfinite(o->measure_interval_s)) {
     o->measure_interval_s = fmin(o->measure_interval_s, measure_at_least_s);
   }
-  o->room = (size_t)(o->queue_s * o->rate_Hz) + 1;
-  o->queue = dea_alloc(ctx, o->room, sizeof *o->queue);
+  o->capacity = (size_t)(o->queue_s * o->rate_Hz) + 1;
+  o->queue = dea_alloc(ctx, o->capacity, sizeof *o->queue);
   return o->queue != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
@@ -116,13 +116,13 @@ dea_status dea_timed_put(struct dea_context *ctx, struct dea_timed_output *o, co
                          void *supply)
 {
   for (size_t i = 0; i < count; i++) {
-    while (o->count == o->room) {
+    while (o->count == o->capacity) {
       if (isnan(o->clock_s)) {
-        return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", o->room);
+        return dea_fail(ctx, DEA_E_ARGUMENT, "more than %zu samples before the start", o->capacity);
       }
       DEA_TRY(ctx, serve(ctx, supply, due(o)));
     }
-    o->queue[(o->first + o->count++) % o->room] = volts[i];
+    o->queue[(o->first + o->count++) % o->capacity] = volts[i];
   }
   return DEA_OK;
 }
@@ -146,7 +146,7 @@ dea_status dea_timed_take(struct dea_context *ctx, struct dea_timed_output *o, d
   DEA_TRY(ctx, check_stall(ctx, o, now_s));
   while (o->count > 0 && due(o) <= now_s) {
     o->wanted_V = o->queue[o->first];
-    o->first = (o->first + 1) % o->room;
+    o->first = (o->first + 1) % o->capacity;
     o->count--;
     o->played++;
   }

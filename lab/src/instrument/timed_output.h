@@ -24,7 +24,7 @@ enum dea_timed_action {
 /* Zero-initialised: it plays nothing. */
 struct dea_timed_output {
   double *queue; // [room], a ring; owned. NULL: it plays nothing
-  size_t room, first, count;
+  size_t capacity, first, count;
   size_t played;                // samples taken out of the queue since clock_s
   double queue_s, behind_s;     // that the queue holds; that a voltage may take
   double output_interval_s;     // shortest time between two voltages

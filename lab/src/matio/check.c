@@ -109,13 +109,13 @@ struct tag {
   unsigned char data[4];
 };
 
-static bool take_tag(struct source *source, uint64_t *room, struct tag *tag)
+static bool take_tag(struct source *source, uint64_t *capacity, struct tag *tag)
 {
   unsigned char bytes[TAG_SIZE];
-  if (*room < TAG_SIZE || !take_bytes(source, bytes, TAG_SIZE)) {
+  if (*capacity < TAG_SIZE || !take_bytes(source, bytes, TAG_SIZE)) {
     return false;
   }
-  *room -= TAG_SIZE;
+  *capacity -= TAG_SIZE;
   uint32_t first = integer(bytes, source->big);
   memcpy(tag->data, bytes + 4, 4);
   if (first >> 16 != 0) {
@@ -126,47 +126,49 @@ static bool take_tag(struct source *source, uint64_t *room, struct tag *tag)
   tag->type = first;
   tag->length = integer(bytes + 4, source->big);
   tag->padded = ((uint64_t)tag->length + 7) / 8 * 8;
-  if (tag->type != TYPE_MATRIX && tag->padded > *room && tag->length <= *room) {
-    tag->padded = *room; // the last one may end without
+  if (tag->type != TYPE_MATRIX && tag->padded > *capacity && tag->length <= *capacity) {
+    tag->padded = *capacity; // the last one may end without
   }
-  return tag->padded <= *room || tag->type == TYPE_MATRIX;
+  return tag->padded <= *capacity || tag->type == TYPE_MATRIX;
 }
 
 /* The data of an element that was begun, at most `size` bytes. */
-static bool take_data(struct source *source, uint64_t *room, const struct tag *tag,
+static bool take_data(struct source *source, uint64_t *capacity, const struct tag *tag,
                       unsigned char *out, size_t size)
 {
   if (tag->padded == 0) {
     memcpy(out, tag->data, tag->length);
     return true;
   }
-  if (tag->padded > size || tag->padded > *room || !take_bytes(source, out, (size_t)tag->padded)) {
+  if (tag->padded > size || tag->padded > *capacity ||
+      !take_bytes(source, out, (size_t)tag->padded)) {
     return false;
   }
-  *room -= tag->padded;
+  *capacity -= tag->padded;
   return true;
 }
 
-static bool skip_data(struct source *source, uint64_t *room, const struct tag *tag)
+static bool skip_data(struct source *source, uint64_t *capacity, const struct tag *tag)
 {
-  if (tag->padded > *room || !skip(source, tag->padded)) {
+  if (tag->padded > *capacity || !skip(source, tag->padded)) {
     return false;
   }
-  *room -= tag->padded;
+  *capacity -= tag->padded;
   return true;
 }
 
 /* Number of fields of a struct, whose names are skipped. */
-static bool take_fields(struct source *source, uint64_t *room, uint64_t *count)
+static bool take_fields(struct source *source, uint64_t *capacity, uint64_t *count)
 {
   unsigned char data[8];
   struct tag tag;
-  if (!take_tag(source, room, &tag) || tag.type != TYPE_INT32 || tag.length != 4 ||
-      !take_data(source, room, &tag, data, sizeof data)) {
+  if (!take_tag(source, capacity, &tag) || tag.type != TYPE_INT32 || tag.length != 4 ||
+      !take_data(source, capacity, &tag, data, sizeof data)) {
     return false;
   }
   uint32_t each = integer(data, source->big);
-  if (!take_tag(source, room, &tag) || tag.type != TYPE_INT8 || !skip_data(source, room, &tag)) {
+  if (!take_tag(source, capacity, &tag) || tag.type != TYPE_INT8 ||
+      !skip_data(source, capacity, &tag)) {
     return false;
   }
   *count = each > 0 ? tag.length / each : 0;
@@ -175,17 +177,17 @@ static bool take_fields(struct source *source, uint64_t *room, uint64_t *count)
 
 /* The numbers of a matrix, at least so many elements: libmatio allocates what they say, and reads
  * on in what follows the matrix where there are less. */
-static bool skip_numbers(struct source *source, uint64_t room, unsigned least)
+static bool skip_numbers(struct source *source, uint64_t capacity, unsigned least)
 {
   struct tag tag;
   unsigned found = 0;
-  while (room >= TAG_SIZE) {
-    if (!take_tag(source, &room, &tag) || !skip_data(source, &room, &tag)) {
+  while (capacity >= TAG_SIZE) {
+    if (!take_tag(source, &capacity, &tag) || !skip_data(source, &capacity, &tag)) {
       return false;
     }
     found++;
   }
-  return found >= least && skip(source, room);
+  return found >= least && skip(source, capacity);
 }
 
 /* A matrix of `length` bytes, whose tag was taken. */
@@ -193,20 +195,20 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
 {
   unsigned char data[4 * RANK_MAX];
   struct tag tag;
-  uint64_t room = length, count = 1, fields = 1;
+  uint64_t capacity = length, count = 1, fields = 1;
   if (length == 0) {
     return true;
   }
-  if (depth > DEPTH_MAX || !take_tag(source, &room, &tag) || tag.type != TYPE_UINT32 ||
-      tag.length != 8 || !take_data(source, &room, &tag, data, sizeof data)) {
+  if (depth > DEPTH_MAX || !take_tag(source, &capacity, &tag) || tag.type != TYPE_UINT32 ||
+      tag.length != 8 || !take_data(source, &capacity, &tag, data, sizeof data)) {
     return false;
   }
   unsigned flags = integer(data, source->big), class = flags & 0xff;
   if (class == MAT_C_OPAQUE) { // has no dimensions, but libmatio would read some
-    return take_tag(source, &room, &tag) && tag.type == TYPE_INT8 && skip(source, room);
+    return take_tag(source, &capacity, &tag) && tag.type == TYPE_INT8 && skip(source, capacity);
   }
-  if (!take_tag(source, &room, &tag) || tag.type != TYPE_INT32 || tag.length < 8 ||
-      !take_data(source, &room, &tag, data, sizeof data)) {
+  if (!take_tag(source, &capacity, &tag) || tag.type != TYPE_INT32 || tag.length < 8 ||
+      !take_data(source, &capacity, &tag, data, sizeof data)) {
     return false;
   }
   for (uint32_t k = 0; k < tag.length / 4; k++) {
@@ -216,44 +218,46 @@ static bool check_matrix(struct source *source, uint64_t length, int depth)
     }
     count *= n;
   }
-  if (!take_tag(source, &room, &tag) || tag.type != TYPE_INT8 || !skip_data(source, &room, &tag)) {
+  if (!take_tag(source, &capacity, &tag) || tag.type != TYPE_INT8 ||
+      !skip_data(source, &capacity, &tag)) {
     return false;
   }
   bool parts = class == MAT_C_CELL || class == MAT_C_STRUCT || class == MAT_C_FUNCTION;
   if (class == MAT_C_OBJECT) { // the name of its class
-    parts = take_tag(source, &room, &tag) && skip_data(source, &room, &tag);
+    parts = take_tag(source, &capacity, &tag) && skip_data(source, &capacity, &tag);
   }
-  if ((class == MAT_C_STRUCT || class == MAT_C_OBJECT) && !take_fields(source, &room, &fields)) {
+  if ((class == MAT_C_STRUCT || class == MAT_C_OBJECT) &&
+      !take_fields(source, &capacity, &fields)) {
     return false;
   }
   if (!parts) {
     // rows and columns of a sparse one; real and imaginary part
     unsigned least = (class == MAT_C_SPARSE ? 2U : 0U) + ((flags & COMPLEX) != 0 ? 2U : 1U);
-    return class != MAT_C_OBJECT && skip_numbers(source, room, count > 0 ? least : 0);
+    return class != MAT_C_OBJECT && skip_numbers(source, capacity, count > 0 ? least : 0);
   }
-  if (fields > 0 && count > room / TAG_SIZE / fields) {
+  if (fields > 0 && count > capacity / TAG_SIZE / fields) {
     return false;
   }
   for (uint64_t i = 0; i < count * fields; i++) {
-    if (!take_tag(source, &room, &tag) || tag.type != TYPE_MATRIX || tag.length > room ||
+    if (!take_tag(source, &capacity, &tag) || tag.type != TYPE_MATRIX || tag.length > capacity ||
         !check_matrix(source, tag.length, depth + 1)) {
       return false;
     }
-    room -= tag.length;
+    capacity -= tag.length;
   }
-  return skip(source, room);
+  return skip(source, capacity);
 }
 
 static bool check_compressed(struct source *source)
 {
   struct tag tag;
-  uint64_t room = source->left * RATIO_MAX;
+  uint64_t capacity = source->left * RATIO_MAX;
   source->zipped = true;
   if (inflateInit(&source->z) != Z_OK) {
     return false;
   }
-  bool good = take_tag(source, &room, &tag) && tag.type == TYPE_MATRIX && tag.length <= room &&
-              check_matrix(source, tag.length, 0);
+  bool good = take_tag(source, &capacity, &tag) && tag.type == TYPE_MATRIX &&
+              tag.length <= capacity && check_matrix(source, tag.length, 0);
   inflateEnd(&source->z);
   return good;
 }

@@ -19,7 +19,7 @@ if control(end) ~= 0
 end
 name = fullfile(folder, 'recording.csv');
 if exist(name, 'file')
-  error('recording.csv is there already; rename it first');
+  error('recording.csv already exists; rename it first');
 end
 
 d = daq('ni');

@@ -152,7 +152,7 @@ def play(device):
     voltage, control = read_waveform()
     recording = os.path.join(FOLDER, "recording.csv")
     if os.path.exists(recording):
-        sys.exit("recording.csv is there already; rename it first")
+        sys.exit("recording.csv already exists; rename it first")
     for name in ("SIGINT", "SIGTERM", "SIGBREAK", "SIGHUP", "SIGQUIT"):  # as the system has them
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), on_signal)

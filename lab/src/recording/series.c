@@ -6,14 +6,14 @@ static const char cannot_write[] = "cannot write";
 
 // Writing ----------------------------------------------------------------------------------------
 
-void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, size_t room,
+void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
                      const char *unit, const char *meaning)
 {
   if (h->status != DEA_OK) {
     return;
   }
   int rank = width == 1 ? 1 : 2;
-  hsize_t size[2] = {0, width}, most[2] = {H5S_UNLIMITED, width}, chunk[2] = {room, width};
+  hsize_t size[2] = {0, width}, most[2] = {H5S_UNLIMITED, width}, chunk[2] = {capacity, width};
   hid_t space = H5Screate_simple(rank, size, most);
   hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_chunk(properties, rank, chunk);
@@ -30,10 +30,11 @@ void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, 
   dea_h5_close(space);
 }
 
-void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t room,
+void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
                      struct dea_recorded_series *series)
 {
-  *series = (struct dea_recorded_series){.set = H5I_INVALID_HID, .width = width, .room = room};
+  *series =
+      (struct dea_recorded_series){.set = H5I_INVALID_HID, .width = width, .capacity = capacity};
   if (h->status != DEA_OK) {
     return;
   }
@@ -45,7 +46,7 @@ void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, 
     dea_h5_fail(h, cannot_write);
     return;
   }
-  series->rows = dea_alloc(h->ctx, room, width * sizeof *series->rows);
+  series->rows = dea_alloc(h->ctx, capacity, width * sizeof *series->rows);
   if (series->rows == NULL) {
     h->status = DEA_E_MEMORY;
   }
@@ -96,14 +97,14 @@ void dea_series_add(struct h5 *h, struct dea_recorded_series *series, const doub
 {
   while (count > 0 && h->status == DEA_OK) {
     // up to the end of a chunk, so that every full one is written once and in one piece
-    size_t room = series->room - (size_t)(series->stored % series->room) - series->used;
-    size_t n = count < room ? count : room;
+    size_t capacity = series->capacity - (size_t)(series->stored % series->capacity) - series->used;
+    size_t n = count < capacity ? count : capacity;
     memcpy(series->rows + series->used * series->width, rows,
            n * series->width * sizeof *series->rows);
     series->used += n;
     rows += n * series->width;
     count -= n;
-    if (n == room) {
+    if (n == capacity) {
       store(h, series);
     }
   }

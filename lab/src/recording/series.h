@@ -10,18 +10,18 @@
  * place in the file, never through a cache of HDF5, so that a flush writes only what is new. */
 struct dea_recorded_series {
   hid_t set;
-  size_t width;   // numbers in a row
-  size_t room;    // rows of a chunk, and of the buffer
-  size_t used;    // rows waiting
-  hsize_t stored; // rows in the file
-  double *rows;   // [room][width], owned
+  size_t width;    // numbers in a row
+  size_t capacity; // rows of a chunk, and of the buffer
+  size_t used;     // rows waiting
+  hsize_t stored;  // rows in the file
+  double *rows;    // [room][width], owned
 };
 
 /* Makes an empty dataset of rows of `width` numbers: one-dimensional for 1. */
-void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, size_t room,
+void dea_series_make(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
                      const char *unit, const char *meaning);
 /* Opens it for writing. series: to be closed by the caller, also after a failure. */
-void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t room,
+void dea_series_open(struct h5 *h, hid_t group, const char *name, size_t width, size_t capacity,
                      struct dea_recorded_series *series);
 void dea_series_close(struct dea_context *ctx, struct dea_recorded_series *series);
 /* Appends rows: [count][width]. */

@@ -11,7 +11,7 @@ struct run {
 
 struct runs {
   struct run *list;
-  size_t count, room;
+  size_t count, capacity;
 };
 
 struct finder {
@@ -27,7 +27,7 @@ static dea_status add_run(struct dea_context *ctx, struct runs *runs, struct run
     runs->list[runs->count - 1].end = run.end;
     return DEA_OK;
   }
-  struct run *list = dea_list_grow(ctx, runs->list, runs->count, sizeof run, &runs->room);
+  struct run *list = dea_list_grow(ctx, runs->list, runs->count, sizeof run, &runs->capacity);
   if (list == NULL) {
     return DEA_E_MEMORY;
   }
@@ -84,7 +84,7 @@ static void set_rests(const struct finder *f, const struct runs *runs, size_t r,
 static dea_status add_part(struct dea_context *ctx, struct dea_cycle_list *out,
                            const struct dea_cycle_parts *part)
 {
-  void *list = dea_list_grow(ctx, out->parts, out->count, sizeof *part, &out->room);
+  void *list = dea_list_grow(ctx, out->parts, out->count, sizeof *part, &out->capacity);
   if (list == NULL) {
     return DEA_E_MEMORY;
   }

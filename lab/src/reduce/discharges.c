@@ -17,7 +17,7 @@ struct search {
   double step;      // of the converter
   struct dea_current_limits limits;
   struct dea_discharge *found;
-  size_t count, room;
+  size_t count, capacity;
 };
 
 double dea_discharge_threshold(size_t samples)
@@ -36,7 +36,7 @@ double dea_discharge_threshold(size_t samples)
 
 static dea_status add(struct search *s, struct dea_discharge discharge)
 {
-  void *list = dea_list_grow(s->ctx, s->found, s->count, sizeof discharge, &s->room);
+  void *list = dea_list_grow(s->ctx, s->found, s->count, sizeof discharge, &s->capacity);
   if (list == NULL) {
     return DEA_E_MEMORY;
   }
@@ -366,14 +366,14 @@ dea_status dea_discharges_find(struct dea_context *ctx, const struct dea_channel
                      .scale = scale,
                      .step = smallest_step(current),
                      .limits = {.noise_A = NAN, .factor = NAN}};
-  size_t room = current->count > 0 ? current->count : 1;
+  size_t capacity = current->count > 0 ? current->count : 1;
   *out = NULL;
   *count = 0;
   dea_status status = find_plateaus(&s);
   if (status == DEA_OK) {
-    room = room > s.plateau_count ? room : s.plateau_count;
-    s.residual = dea_alloc(ctx, room, sizeof *s.residual);
-    s.work = dea_alloc(ctx, room, sizeof *s.work);
+    capacity = capacity > s.plateau_count ? capacity : s.plateau_count;
+    s.residual = dea_alloc(ctx, capacity, sizeof *s.residual);
+    s.work = dea_alloc(ctx, capacity, sizeof *s.work);
     status = s.residual != NULL && s.work != NULL ? DEA_OK : DEA_E_MEMORY;
   }
   if (status == DEA_OK) {

@@ -137,9 +137,9 @@ dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profile
 {
   enum { ARRAYS = 3 * STACKS + 6 };
   size_t points = profiles->points;
-  double *room = dea_alloc(ctx, points, ARRAYS * sizeof *room), *next = room;
+  double *capacity = dea_alloc(ctx, points, ARRAYS * sizeof *capacity), *next = capacity;
   reduction->radius_m = dea_alloc(ctx, points, sizeof *reduction->radius_m);
-  bool good = room != NULL && reduction->radius_m != NULL;
+  bool good = capacity != NULL && reduction->radius_m != NULL;
   for (size_t l = 0; l < reduction->level_count && good; l++) {
     struct dea_voltage_level *level = &reduction->levels[l];
     level->z_m = dea_alloc(ctx, points, sizeof *level->z_m);
@@ -147,7 +147,7 @@ dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profile
     good = level->z_m != NULL && level->z_std_m != NULL;
   }
   if (!good) {
-    dea_free(ctx, room);
+    dea_free(ctx, capacity);
     return DEA_E_MEMORY;
   }
   struct worker w = {.profiles = profiles,
@@ -168,6 +168,6 @@ dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profile
   for (size_t l = 0; l < reduction->level_count; l++) {
     level_profile(&w, parts, l, reduction, next + 5 * points);
   }
-  dea_free(ctx, room);
+  dea_free(ctx, capacity);
   return DEA_OK;
 }

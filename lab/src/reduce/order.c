@@ -113,13 +113,14 @@ void dea_running_median(const double *values, size_t count, size_t half, double 
   }
 }
 
-void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t size, size_t *room)
+void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t size,
+                    size_t *capacity)
 {
-  if (count < *room) {
+  if (count < *capacity) {
     return list;
   }
-  size_t more = *room > 0 ? 2 * *room : 32;
+  size_t more = *capacity > 0 ? 2 * *capacity : 32;
   void *moved = dea_resize(ctx, list, more, size);
-  *room = moved != NULL ? more : *room;
+  *capacity = moved != NULL ? more : *capacity;
   return moved;
 }

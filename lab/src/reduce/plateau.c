@@ -41,8 +41,8 @@ dea_status dea_voltage_scale_find(struct dea_context *ctx, const struct dea_chan
                                   struct dea_voltage_scale *out)
 {
   *out = (struct dea_voltage_scale){0};
-  size_t room = voltage->count < THINNED_MAX ? voltage->count : THINNED_MAX;
-  double *values = dea_alloc(ctx, room + 1, sizeof *values);
+  size_t capacity = voltage->count < THINNED_MAX ? voltage->count : THINNED_MAX;
+  double *values = dea_alloc(ctx, capacity + 1, sizeof *values);
   if (values == NULL) {
     return DEA_E_MEMORY;
   }
@@ -126,7 +126,7 @@ dea_status dea_plateaus_find(struct dea_context *ctx, const struct dea_channel *
 {
   const double *u = voltage->values;
   struct dea_plateau *found = NULL;
-  size_t n = 0, room = 0;
+  size_t n = 0, capacity = 0;
   *out = NULL;
   *count = 0;
   for (size_t at = begin; at < end;) {
@@ -136,7 +136,7 @@ dea_status dea_plateaus_find(struct dea_context *ctx, const struct dea_channel *
       at++;
     }
     if (is_flat(u, at, stop, tolerance_V)) {
-      struct dea_plateau *moved = dea_list_grow(ctx, found, n, sizeof *found, &room);
+      struct dea_plateau *moved = dea_list_grow(ctx, found, n, sizeof *found, &capacity);
       if (moved == NULL) {
         dea_free(ctx, found);
         return DEA_E_MEMORY;

@@ -208,8 +208,8 @@ dea_status dea_profiles_reduce(struct dea_context *ctx, const struct dea_profile
   double *centre = dea_alloc(ctx, frames, sizeof *centre);
   double *tip = dea_alloc(ctx, frames, sizeof *tip);
   double *own = dea_alloc(ctx, frames, sizeof *own);
-  bool room = marks != NULL && work != NULL && centre != NULL && tip != NULL && own != NULL;
-  dea_status status = room ? DEA_OK : DEA_E_MEMORY;
+  bool capacity = marks != NULL && work != NULL && centre != NULL && tip != NULL && own != NULL;
+  dea_status status = capacity ? DEA_OK : DEA_E_MEMORY;
   *offsets = NULL;
   if (status == DEA_OK) {
     l->frames = frames;

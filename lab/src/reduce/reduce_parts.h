@@ -21,7 +21,8 @@ void dea_running_median(const double *values, size_t count, size_t half, double 
 
 /* A list (NULL at first) with room for one more than `count` things; NULL when there is no memory,
  * and the old one stays. */
-void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t size, size_t *room);
+void *dea_list_grow(struct dea_context *ctx, void *list, size_t count, size_t size,
+                    size_t *capacity);
 
 // filter.c ---------------------------------------------------------------------------------------
 
@@ -72,7 +73,7 @@ struct dea_cycle_parts {
 /* What became of a list of cycles. */
 struct dea_cycle_list {
   struct dea_cycle_parts *parts; // [count] in time, owned; NULL without
-  size_t count, room;
+  size_t count, capacity;
   size_t without; // cycles of the recording in which no active part was found
   size_t outside; // active parts that are in no cycle of the recording
 };

@@ -124,7 +124,7 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
 }
 
 /* Rest of a film whose electrodes have a share of their stiffness. */
-static void ease(void *self, double share)
+static void ramp(void *self, double share)
 {
   struct dea_model *model = self;
   model->disc.film.electrode_ratio = share * dea_film_electrode_ratio(&model->device);
@@ -155,7 +155,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
       .evaluate = evaluate,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->disc.film),
-      .ease = model->disc.film.electrode != NULL ? ease : NULL,
+      .ramp = model->disc.film.electrode != NULL ? ramp : NULL,
   };
   DEA_TRY(ctx, dea_path_create(ctx, &system, rest, &model->path));
   struct dea_load_point at_rest;

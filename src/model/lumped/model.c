@@ -101,7 +101,7 @@ static dea_status point(void *self, const double *u, double voltage_V, struct de
 }
 
 /* Rest of a film whose electrodes have a share of their stiffness. */
-static void ease(void *self, double share)
+static void ramp(void *self, double share)
 {
   struct dea_model *model = self;
   model->lumped.film.electrode_ratio = share * dea_film_electrode_ratio(&model->device);
@@ -149,7 +149,7 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_device *of,
       .evaluate = evaluate,
       .point = point,
       .voltage_scale_V = dea_film_voltage_scale(&model->lumped.film),
-      .ease = model->lumped.film.electrode != NULL ? ease : NULL,
+      .ramp = model->lumped.film.electrode != NULL ? ramp : NULL,
   };
   static const double start = 1;
   DEA_TRY(ctx, dea_path_create(ctx, &system, &start, &model->path));
@@ -204,8 +204,8 @@ static dea_status hold(struct dea_context *ctx, const struct dea_model *model, d
 }
 
 /* The point of a moment: that of its stretch and voltage, and what only time has. */
-static dea_status moment_point(const struct dea_model *model,
-                               const struct dea_lumped_moment *moment, struct dea_load_point *out)
+static dea_status moment_point(const struct dea_model *model, const struct dea_lumped_state *moment,
+                               struct dea_load_point *out)
 {
   const struct dea_circuit_state *circuit = &moment->circuit;
   double rate = moment->rate_per_s;

@@ -130,16 +130,16 @@ static double passive_stretch(const struct dea_lumped *lumped, double l) // pape
 }
 
 /* What follows once the stretch is known: branches, charge, energies. */
-static void fill_moment(const struct dea_lumped_motion *motion,
-                        const struct dea_lumped_moment *from, const struct dea_time_step *step,
-                        const struct evaluation *at, struct dea_lumped_moment *to)
+static void fill_moment(const struct dea_lumped_motion *motion, const struct dea_lumped_state *from,
+                        const struct dea_time_step *step, const struct evaluation *at,
+                        struct dea_lumped_state *to)
 {
   const struct dea_lumped *lumped = &motion->lumped;
   const struct dea_material *material = lumped->film.material;
   double R = lumped->coverage, l_pre = lumped->pre_stretch, h = step->length_s;
   double passive = (1 - R) / R; // volume of the passive film over that of the active
   double l_A[2], l_P[2], W[2], D[2];
-  const struct dea_lumped_moment *ends[2] = {from, to};
+  const struct dea_lumped_state *ends[2] = {from, to};
   for (int i = 0; i < 2; i++) {
     l_A[i] = ends[i]->electrode_stretch * l_pre;
     l_P[i] = passive_stretch(lumped, ends[i]->electrode_stretch);
@@ -164,7 +164,7 @@ static void fill_moment(const struct dea_lumped_motion *motion,
 
 /* The lumped model in a step from a moment. */
 static struct dea_lumped with_branches(const struct dea_lumped_motion *motion,
-                                       const struct dea_lumped_moment *from, double length_s)
+                                       const struct dea_lumped_state *from, double length_s)
 {
   struct dea_lumped lumped = motion->lumped;
   const struct dea_material *material = lumped.film.material;
@@ -176,15 +176,15 @@ static struct dea_lumped with_branches(const struct dea_lumped_motion *motion,
 }
 
 struct dea_lumped dea_lumped_frozen(const struct dea_lumped_motion *motion,
-                                    const struct dea_lumped_moment *moment)
+                                    const struct dea_lumped_state *moment)
 {
   return with_branches(motion, moment, 0);
 }
 
 /* One step, whole; generalised-alpha where there is inertia. */
 static dea_status step_once(const struct dea_lumped_motion *motion,
-                            const struct dea_lumped_moment *from, const struct dea_time_step *step,
-                            struct dea_lumped_moment *to)
+                            const struct dea_lumped_state *from, const struct dea_time_step *step,
+                            struct dea_lumped_state *to)
 {
   const struct dea_lumped lumped = with_branches(motion, from, step->length_s);
   double h = step->length_s, l = from->electrode_stretch;
@@ -224,7 +224,7 @@ static dea_status step_once(const struct dea_lumped_motion *motion,
   return DEA_OK;
 }
 
-static double loss(const struct dea_lumped_moment *moment)
+static double loss(const struct dea_lumped_state *moment)
 {
   return moment->branch_loss_J + moment->circuit.leakage_loss_J;
 }
@@ -234,7 +234,7 @@ dea_status dea_lumped_begin(struct dea_lumped_motion *motion, double electrode_s
 {
   const struct dea_time_step none = {.length_s = 0, .source_voltage_V = voltage_V};
   const struct dea_circuit ideal = {0, INFINITY}, given = motion->options.circuit;
-  struct dea_lumped_moment rest = {.electrode_stretch = electrode_stretch};
+  struct dea_lumped_state rest = {.electrode_stretch = electrode_stretch};
   struct dea_lumped lumped = motion->lumped;
   struct evaluation at;
   for (size_t i = 0; i < lumped.film.material->branch_count; i++) {
@@ -267,8 +267,8 @@ static void extrapolate(const double *whole, double *halves)
 dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea_time_step *step,
                               double *error)
 {
-  const struct dea_lumped_moment *now = &motion->now;
-  struct dea_lumped_moment whole, half, *end = &motion->trial;
+  const struct dea_lumped_state *now = &motion->now;
+  struct dea_lumped_state whole, half, *end = &motion->trial;
   double h = step->length_s;
   *error = 0;
   if (!(h > 0)) {
@@ -308,7 +308,7 @@ dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea
 
 void dea_lumped_accept(struct dea_lumped_motion *motion)
 {
-  const struct dea_lumped_moment *now = &motion->now;
+  const struct dea_lumped_state *now = &motion->now;
   motion->now = motion->trial;
   motion->largest_motion = fmax(motion->largest_motion, fabs(now->electrode_stretch - 1));
   motion->largest_voltage_V = fmax(motion->largest_voltage_V, fabs(now->circuit.voltage_V));

@@ -6,7 +6,7 @@
 #include "model/model.h"
 
 /* One moment. l_a as in lumped.h; rates by time. */
-struct dea_lumped_moment {
+struct dea_lumped_state {
   double time_s;
   double electrode_stretch, rate_per_s, acceleration_per_s2;
   struct dea_equal_tensor active[DEA_BRANCHES_MAX], passive[DEA_BRANCHES_MAX]; // A_i
@@ -22,7 +22,7 @@ struct dea_lumped_motion {
   struct dea_time_options options;
   double volume_m3;  // unstretched, of the electrode disc
   double mass_kg_m2; // M: the kinetic energy is M/2 (dl_a/dt)^2
-  struct dea_lumped_moment now, trial;
+  struct dea_lumped_state now, trial;
   double largest_motion, largest_voltage_V, largest_work_J; // so far, for the estimate of error
 };
 
@@ -35,7 +35,7 @@ dea_status dea_lumped_begin(struct dea_lumped_motion *motion, double electrode_s
                             double voltage_V);
 /* The lumped model with the branches as they are at a moment, as it is felt by what is fast. */
 struct dea_lumped dea_lumped_frozen(const struct dea_lumped_motion *motion,
-                                    const struct dea_lumped_moment *moment);
+                                    const struct dea_lumped_state *moment);
 /* From `now` to `trial`, as advance of struct dea_model_type; no message is recorded. */
 dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea_time_step *step,
                               double *error);

@@ -458,11 +458,11 @@ static void set_note(struct dea_callout *c, const char *what, const struct dea_c
 
 /* Callouts of a region: one for each size of its outlines, the first of them for the holes too. */
 static size_t call_out_region(const struct view *v, size_t number, double stretch,
-                              struct dea_callout *out, size_t room)
+                              struct dea_callout *out, size_t capacity)
 {
   const struct dea_layout_region *region = &v->layout->regions[number];
   size_t count = 0;
-  for (size_t i = 0; i < region->region.contour_count && count < room && count < 2; i++) {
+  for (size_t i = 0; i < region->region.contour_count && count < capacity && count < 2; i++) {
     const struct dea_contour contour = dea_region_contour(&region->region, i);
     double area = dea_contour_area_m2(&contour);
     size_t like = 0, first = region->region.contour_count;

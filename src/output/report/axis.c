@@ -31,9 +31,9 @@ struct dea_axis dea_axis_create(double low, double high, const double fixed[2], 
     return axis;
   }
   if (high - low <= 1e-12 * fmax(fabs(high), fabs(low))) { // one value: room on both sides
-    double room = high != 0 ? 0.1 * fabs(high) : 1;
-    axis.low = low -= room;
-    axis.high = high += room;
+    double capacity = high != 0 ? 0.1 * fabs(high) : 1;
+    axis.low = low -= capacity;
+    axis.high = high += capacity;
   }
   axis.step = nice_step(high - low, most_tics);
   if (!isfinite(fixed[0])) {

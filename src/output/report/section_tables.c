@@ -115,7 +115,8 @@ static void add_glance(struct dea_report *report, const struct dea_result *resul
   dea_text_add(out, ".</p>");
   out->failed = out->failed || text.failed;
   dea_text_free(&text);
-  add_cards_at(report, sweep, trust.good_V, ", the largest voltage to be trusted and safe", 0);
+  add_cards_at(report, sweep, trust.good_V,
+               ", the largest voltage that is valid and below breakdown", 0);
   if (trust.trusted_V > trust.good_V || isnan(trust.good_V)) {
     add_cards_at(report, sweep, trust.trusted_V, ", the largest voltage to be trusted, but ",
                  trust.dangers);

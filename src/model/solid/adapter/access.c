@@ -27,8 +27,8 @@ struct held_spring {
 struct dea_solid_object {
   struct dea_plane_mesh *plane; // of a .msh file, otherwise NULL
   struct dea_grid *grid;
-  struct dea_constituent *constituents; // [part_count]
-  int (*between)[2];                    // [part_count] channels above and below
+  struct dea_part_material *part_materials; // [part_count]
+  int (*between)[2];                        // [part_count] channels above and below
   size_t part_count;
   double length_m;        // of the mesh: what is near enough
   size_t mesh_node_count; // without those of bodies
@@ -101,7 +101,7 @@ static dea_status fill_grid(struct dea_context *ctx, const struct dea_solid_spec
   }
   for (size_t i = 0; i < 3 * spec->point_count; i++) {
     if (!isfinite(spec->points_m[i])) {
-      return dea_fail(ctx, DEA_E_ARGUMENT, "point %zu is nowhere", i / 3);
+      return dea_fail(ctx, DEA_E_ARGUMENT, "point %zu has non-finite coordinates", i / 3);
     }
     grid->X[i] = spec->points_m[i];
   }
@@ -309,27 +309,27 @@ static dea_status add_bodies(struct dea_context *ctx, const struct dea_solid_spe
 
 /* Of the compressible law where the part has none. */
 static dea_status make_constituent(struct dea_context *ctx, const struct dea_part_spec *part,
-                                   struct dea_constituent *out)
+                                   struct dea_part_material *out)
 {
   double l = part->pre_stretch;
   if (part->law == NULL) {
-    *out = dea_constituent_bonded((const double[]){part->young_modulus_Pa, part->poisson_ratio});
+    *out = dea_part_material_bonded((const double[]){part->young_modulus_Pa, part->poisson_ratio});
   } else {
-    *out = (struct dea_constituent){.pre_stretch = {l, l, 1 / (l * l)},
-                                    .kappa_Pa = part->bulk_modulus_Pa};
-    dea_constituent_set_law(out, part->law, part->param);
+    *out = (struct dea_part_material){.pre_stretch = {l, l, 1 / (l * l)},
+                                      .kappa_Pa = part->bulk_modulus_Pa};
+    dea_part_material_set_law(out, part->law, part->param);
   }
   out->permittivity_F_per_m = part->permittivity_F_per_m;
   out->thickness_m = part->electrode_gap_m;
   out->density_kg_per_m3 = part->density_kg_per_m3;
-  if (dea_constituent_relax(out) != DEA_OK) {
+  if (dea_part_material_relax(out) != DEA_OK) {
     return dea_fail(ctx, DEA_E_DOMAIN, "the law '%s' has no stress at a pre-stretch of %g",
                     out->law->name, l);
   }
   return DEA_OK;
 }
 
-static int constituent_of(const void *self, int region, int ply)
+static int part_material_of(const void *self, int region, int ply)
 {
   (void)self;
   (void)ply;
@@ -340,7 +340,7 @@ static bool is_active(const void *self, int region, int ply)
 {
   const struct dea_solid_object *object = self;
   (void)ply;
-  return object->constituents[region].thickness_m > 0;
+  return object->part_materials[region].thickness_m > 0;
 }
 
 static void channels(const void *self, int region, int ply, int *top, int *bottom)
@@ -392,7 +392,7 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_free(ctx, object->springs);
     dea_free(ctx, object->spring_told);
     dea_grid_destroy(ctx, object->grid);
-    dea_free(ctx, object->constituents);
+    dea_free(ctx, object->part_materials);
     dea_free(ctx, object->between);
     dea_plane_mesh_destroy(ctx, object->plane);
     dea_free(ctx, object->mode_square);
@@ -410,9 +410,9 @@ static dea_status make_solid(struct dea_context *ctx, const struct dea_solid_spe
 {
   DEA_TRY(ctx, add_bodies(ctx, spec, object, bodies, follows));
   const struct dea_solid_options options = {.order_z = spec->order_z,
-                                            .constituent_count = object->part_count,
-                                            .constituents = object->constituents,
-                                            .constituent_of = constituent_of,
+                                            .part_material_count = object->part_count,
+                                            .part_materials = object->part_materials,
+                                            .part_material_of = part_material_of,
                                             .active = is_active,
                                             .channels = channels,
                                             .channel_count = object->channel_count,
@@ -435,14 +435,14 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   object->length_m = size_of(object->grid);
   object->mesh_node_count = object->grid->node_count;
   object->part_count = spec->part_count;
-  object->constituents = dea_alloc(ctx, spec->part_count, sizeof *object->constituents);
+  object->part_materials = dea_alloc(ctx, spec->part_count, sizeof *object->part_materials);
   object->between = dea_alloc(ctx, spec->part_count, sizeof *object->between);
-  if (object->constituents == NULL || object->between == NULL) {
+  if (object->part_materials == NULL || object->between == NULL) {
     return DEA_E_MEMORY;
   }
   DEA_TRY(ctx, take_channels(ctx, spec, object));
   for (size_t i = 0; i < spec->part_count; i++) {
-    DEA_TRY(ctx, make_constituent(ctx, &spec->parts[i], &object->constituents[i]));
+    DEA_TRY(ctx, make_constituent(ctx, &spec->parts[i], &object->part_materials[i]));
   }
   object->body_count = spec->body_count;
   object->body_told = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));

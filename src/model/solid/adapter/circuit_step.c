@@ -15,7 +15,7 @@ static const double smallest_motion = 1e-2; // of the thickness: errors are not 
 
 /* What a step gives that the accounts do not hold, and whether another one was tried before it from
  * the same state. */
-struct leap {
+struct branch_jump {
   bool tried;
   double step_s, lost_J;
 };
@@ -39,7 +39,7 @@ struct dea_circuit_step {
   bool leaks_evenly;    // all films have the next
   double leakage_per_s; // conductance over capacitance
   double time_s, time_next_s;
-  struct leap leap;
+  struct branch_jump branch_jump;
   double lost_J, lost_next_J; // in leaps from one equilibrium to another
   struct dea_circuit_state circuit, circuit_next;
   double step_s, voltage_before_V, step_before_s; // of the step that is tried; before the last one
@@ -69,10 +69,10 @@ static dea_status find_film(struct dea_context *ctx, const struct dea_circuit_st
 }
 
 double dea_leakage_per_s(const struct dea_material *material,
-                         const struct dea_constituent *constituent)
+                         const struct dea_part_material *part_material)
 {
   double rho = material->resistivity_ohm_m;
-  return rho > 0 ? 1 / (rho * constituent->permittivity_F_per_m) : 0; // as it is pre-stretched
+  return rho > 0 ? 1 / (rho * part_material->permittivity_F_per_m) : 0; // as it is pre-stretched
 }
 
 static void find_leakage(struct dea_circuit_step *d)
@@ -80,9 +80,9 @@ static void find_leakage(struct dea_circuit_step *d)
   const struct dea_solid_problem *p = &d->driven.solid->problem;
   bool any = false;
   d->leaks_evenly = true;
-  for (size_t i = 0; i < p->constituent_count; i++) {
+  for (size_t i = 0; i < p->part_material_count; i++) {
     double per_s = d->driven.leakage_per_s[i];
-    if (p->constituents[i].permittivity_F_per_m > 0) {
+    if (p->part_materials[i].permittivity_F_per_m > 0) {
       d->leaks_evenly = d->leaks_evenly && (!any || per_s == d->leakage_per_s);
       d->leakage_per_s = per_s;
       any = true;
@@ -383,8 +383,8 @@ static bool has_leapt(const struct dea_circuit_step *d, double lost_J,
                       const struct dea_solid_report *report)
 {
   return !d->options.inertia &&
-         (report->snapped || (d->leap.tried && d->step_s < 0.35 * d->leap.step_s &&
-                              lost_J > 0.5 * d->leap.lost_J && d->leap.lost_J > 0));
+         (report->snapped || (d->branch_jump.tried && d->step_s < 0.35 * d->branch_jump.step_s &&
+                              lost_J > 0.5 * d->branch_jump.lost_J && d->branch_jump.lost_J > 0));
 }
 
 /* Largest work of the supply or of what moves supports and bodies so far. */
@@ -411,8 +411,8 @@ static double find_error(struct dea_circuit_step *d, double error_m, double lost
   } else if (energy_J > 0 && dea_solid_resolved(d->driven.solid, lost_J / d->driven.copies)) {
     error = fmax(error, fabs(lost_J) / energy_J);
   }
-  if (!d->leap.tried || d->step_s < 0.35 * d->leap.step_s) {
-    d->leap = (struct leap){true, d->step_s, lost_J};
+  if (!d->branch_jump.tried || d->step_s < 0.35 * d->branch_jump.step_s) {
+    d->branch_jump = (struct branch_jump){true, d->step_s, lost_J};
   }
   return error;
 }
@@ -489,7 +489,7 @@ void dea_circuit_step_accept(struct dea_circuit_step *d)
   d->largest_V = fmax(d->largest_V, fabs(d->circuit.voltage_V));
   d->time_s = d->time_next_s;
   d->lost_J = d->lost_next_J;
-  d->leap.tried = false;
+  d->branch_jump.tried = false;
 }
 
 void dea_circuit_step_point(const struct dea_circuit_step *d, struct dea_load_point *point)

@@ -23,7 +23,7 @@ struct dea_driven_solid {
 
 /* 1/(resistivity permittivity) of a film of a material; 0: it does not leak. */
 double dea_leakage_per_s(const struct dea_material *material,
-                         const struct dea_constituent *constituent);
+                         const struct dea_part_material *part_material);
 
 /* From the solid's last equilibrium, at rest there for long and charged to its voltage. driven:
  * lent, and its solid in time, until *out is destroyed; of time->own_sources as well.

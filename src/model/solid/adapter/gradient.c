@@ -220,7 +220,7 @@ static double step_along(const struct work *w, const double *v)
   const struct dea_solid *s = w->owner->solid;
   double thinnest_m = INFINITY, largest = 0;
   for (size_t e = 0; e < s->problem.grid->element_count; e++) {
-    const struct dea_constituent *film = dea_solid_constituent(s, e);
+    const struct dea_part_material *film = dea_solid_part_material(s, e);
     thinnest_m = film->permittivity_F_per_m > 0 ? fmin(thinnest_m, film->thickness_m) : thinnest_m;
   }
   for (size_t i = 0; i < s->problem.dofs; i++) {
@@ -466,7 +466,8 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
   b->along = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->slope);
   b->along_rate = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->rate);
   return known ? DEA_OK
-               : dea_fail(ctx, DEA_E_UNSUPPORTED, "model 3d knows no electrode's stretch here");
+               : dea_fail(ctx, DEA_E_UNSUPPORTED,
+                          "model 3d does not compute electrode's stretch here");
 }
 
 /* Quantities at the unknowns as they are and another voltage, out [dea_gradient_width], 0 before.
@@ -686,7 +687,7 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
   struct dea_gradient_owner there = *owner;
   double side[2];
   struct work w = {.owner = &there, .ask = ask, .side = side};
-  dea_solid_stand_again(s, &owner->ending->at_limit);
+  dea_solid_restore_state(s, &owner->outcome->at_limit);
   there.voltage_V = dea_solid_voltage(s);
   w.null_mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.null_mode);
   if (w.null_mode == NULL) {
@@ -707,21 +708,21 @@ static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_
                              const struct dea_gradient_ask *ask, double *out)
 {
   struct dea_solid *s = owner->solid;
-  struct dea_solid_stand here;
+  struct dea_solid_saved_state here;
   double energy_J;
-  if (owner->ending->at_limit.state == NULL) {
+  if (owner->outcome->at_limit.state == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "no limit point was located on the way of the last solve");
   }
-  dea_status status = dea_solid_stand_keep(ctx, s, &here);
+  dea_status status = dea_solid_save_state(ctx, s, &here);
   if (status == DEA_OK) {
     status = find_at_limit(ctx, owner, ask, out);
-    dea_solid_stand_again(s, &here);
+    dea_solid_restore_state(s, &here);
   }
   if (status == DEA_OK) {
     status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
   }
-  dea_solid_stand_free(&here);
+  dea_solid_saved_state_free(&here);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 

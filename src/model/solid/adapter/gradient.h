@@ -5,13 +5,13 @@
 #define DEA_MODEL_SOLID_ADAPTER_GRADIENT_H
 
 #include "model/model.h"
-#include "model/solid/adapter/ending.h"
+#include "model/solid/adapter/step_outcome.h"
 #include "model/solid/assembly/film.h"
 
 /* Whose solid it is. */
 struct dea_gradient_owner {
   struct dea_solid *solid;
-  const struct dea_ending *ending; // of its last solve, for a question of a limit point
+  const struct dea_step_outcome *outcome; // of its last solve, for a question of a limit point
   void *model;
   double voltage_V;
   /* out [dofs], pressures [elements][pressures], 0 before: slope of a column of load points by the

@@ -1,8 +1,8 @@
 #include "model/solid/adapter/indent.h"
 
 #include "model/solid/assembly/controls.h"
-#include "model/solid/equilibrium/approach.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/solve_incremental.h"
 
 #include <math.h>
 #include <string.h>
@@ -168,7 +168,7 @@ void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,
 
 /* Two equilibria on the way, and their depths: where the solid is, and the one before. */
 struct way {
-  struct dea_solid_stand last, before; // before.state NULL: none
+  struct dea_solid_saved_state last, before; // before.state NULL: none
   double last_m, before_m;
 };
 
@@ -176,11 +176,11 @@ struct way {
 static dea_status keep_last(struct dea_context *ctx, struct dea_solid *s, double depth_m,
                             struct way *way)
 {
-  dea_solid_stand_free(&way->before);
+  dea_solid_saved_state_free(&way->before);
   way->before = way->last;
   way->before_m = way->last_m;
   way->last_m = depth_m;
-  DEA_TRY(ctx, dea_solid_stand_keep(ctx, s, &way->last));
+  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &way->last));
   return DEA_OK;
 }
 
@@ -213,7 +213,7 @@ static dea_status move_on(struct dea_context *ctx, struct dea_indent *indent, st
   dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
   if (dea_solid_may_shorten(status) && way->before.state != NULL) {
     dea_context_clear(ctx);
-    dea_solid_stand_again(s, &way->last);
+    dea_solid_restore_state(s, &way->last);
     status = dea_load_steps_solve(ctx, s, voltage_V, report);
   }
   if (status == DEA_OK) {
@@ -237,8 +237,8 @@ dea_status dea_indent_move(struct dea_context *ctx, struct dea_indent *indent,
                  : move_on(ctx, indent, solid, voltage_V, next, &way, report);
     step = fmin(growth * step, largest_step_m);
   } while (status == DEA_OK && indent->depth_m != depth_m);
-  dea_solid_stand_free(&way.last);
-  dea_solid_stand_free(&way.before);
+  dea_solid_saved_state_free(&way.last);
+  dea_solid_saved_state_free(&way.before);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 

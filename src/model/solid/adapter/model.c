@@ -13,7 +13,7 @@
 #include "model/solid/adapter/motions.h"
 #include "model/solid/adapter/observe.h"
 #include "model/solid/adapter/plies.h"
-#include "model/solid/adapter/standing.h"
+#include "model/solid/adapter/solver_state.h"
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/film.h"
 #include "model/solid/assembly/matrix.h"
@@ -41,7 +41,7 @@ struct marks {
 };
 
 struct dea_model {
-  struct dea_standing at; // first (standing.h)
+  struct dea_solver_state at; // first (solver_state.h)
   const struct dea_device *device;
   const struct dea_layout *layout; // of the mesh
   bool disc;                       // on a mesh of blocks: it has monitors of its own
@@ -181,10 +181,10 @@ static dea_status add_body(struct dea_context *ctx, struct dea_model *model, siz
 static dea_status add_bodies(struct dea_context *ctx, struct dea_model *model, double **point_mass)
 {
   const struct dea_layout *l = model->layout;
-  size_t room = model->mesh_node_count + 2 * l->body_count;
+  size_t capacity = model->mesh_node_count + 2 * l->body_count;
   model->on = dea_arena_alloc(&model->memory, model->mesh.plane->node_count, sizeof *model->on);
-  model->follows = dea_arena_alloc(&model->memory, room, sizeof *model->follows);
-  *point_mass = dea_arena_alloc(&model->memory, room, sizeof **point_mass);
+  model->follows = dea_arena_alloc(&model->memory, capacity, sizeof *model->follows);
+  *point_mass = dea_arena_alloc(&model->memory, capacity, sizeof **point_mass);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
   for (size_t i = 0; i < l->body_count; i++) {
     size_t found;
@@ -299,7 +299,7 @@ static void enclose(struct dea_model *model, size_t i, double area_m2)
   const double copies = model->copies, whole_m2 = copies * area_m2;
   double modulus_N_per_m = 0;
   for (size_t k = 0; k < model->layout->ply_count; k++) {
-    modulus_N_per_m += dea_constituent_modulus(&model->plies.constituents[k]) *
+    modulus_N_per_m += dea_part_material_modulus(&model->plies.part_materials[k]) *
                        model->layout->plies[k].thickness_m;
   }
   const struct dea_enclosed enclosed = {
@@ -736,9 +736,9 @@ static dea_status make_solid(struct dea_context *ctx, struct dea_model *model)
   }
   const struct dea_solid_options options = {
       .order_z = model->settings.order_z > 0 ? model->settings.order_z : 2,
-      .constituent_count = l->ply_count,
-      .constituents = model->plies.constituents,
-      .constituent_of = dea_plies_constituent,
+      .part_material_count = l->ply_count,
+      .part_materials = model->plies.part_materials,
+      .part_material_of = dea_plies_part_material,
       .active = dea_plies_active,
       .field = coupled ? DEA_SOLID_FIELD_COUPLED : DEA_SOLID_FIELD_THIN,
       .electrode = dea_plies_electrode,
@@ -861,7 +861,7 @@ static void destroy(struct dea_context *ctx, struct dea_model *model)
     return;
   }
   dea_observer_destroy(ctx, model->observer);
-  dea_standing_free(ctx, &model->at);
+  dea_solver_state_free(ctx, &model->at);
   dea_free(ctx, model->answers);
   dea_free(ctx, model->passes);
   dea_solid_destroy(ctx, model->solid);
@@ -1015,7 +1015,7 @@ static dea_status arrived(struct dea_context *ctx, void *self, double voltage_V)
 {
   struct dea_model *model = self;
   model->at.voltage_V = voltage_V;
-  note_states(model, model->at.report.snapped || model->at.ending.leapt);
+  note_states(model, model->at.report.snapped || model->at.outcome.leapt);
   DEA_TRY(ctx, take_side(ctx, model));
   return DEA_OK;
 }
@@ -1087,22 +1087,22 @@ static bool is_same(const struct dea_control *a, const struct dea_control *b)
 /* After the way of a control that succeeded; from: the state before. */
 static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
                                const struct dea_control *control, double from_value, double value,
-                               const struct dea_solid_stand *from)
+                               const struct dea_solid_saved_state *from)
 {
-  struct dea_ending *ending = &model->at.ending;
+  struct dea_step_outcome *outcome = &model->at.outcome;
   bool force = control->kind == DEA_CONTROL_FORCE, turns = control->component >= 3;
   double share;
   if (!is_same(control, &model->moved)) {
-    ending->rate[1] = 0;
+    outcome->rate[1] = 0;
   }
   model->moved = *control;
-  DEA_TRY(ctx, dea_ending_watch(ctx, ending, value - from_value, from, &share));
+  DEA_TRY(ctx, dea_step_outcome_watch(ctx, outcome, value - from_value, from, &share));
   note_states(model, !isnan(share));
   if (isnan(share)) {
     return DEA_OK;
   }
   double limit = from_value + share * (value - from_value);
-  ending->passed.point.force_N = force && !turns ? limit : NAN;
+  outcome->passed.point.force_N = force && !turns ? limit : NAN;
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: at %.4g kV it leaps past a limit point at %.6g %s to another "
                          "state",
@@ -1116,15 +1116,15 @@ static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
 static dea_status follow_control(struct dea_context *ctx, struct dea_model *model,
                                  const struct dea_control *control, double from_value, double value)
 {
-  struct dea_solid_stand from;
-  dea_status status = dea_solid_stand_keep(ctx, model->solid, &from);
+  struct dea_solid_saved_state from;
+  dea_status status = dea_solid_save_state(ctx, model->solid, &from);
   if (status == DEA_OK) {
     status = dea_solid_reach(ctx, model->solid, model->at.voltage_V, &model->at.report);
   }
   if (status == DEA_OK && !model->at.report.snapped) {
     status = look_at_move(ctx, model, control, from_value, value, &from);
   }
-  dea_solid_stand_free(&from);
+  dea_solid_saved_state_free(&from);
   return status;
 }
 
@@ -1157,7 +1157,7 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
 {
   char why[200];
   DEA_TRY(ctx, check_control(ctx, model, control, value));
-  dea_standing_end_history(ctx, &model->at);
+  dea_solver_state_end_history(ctx, &model->at);
   double from = where_control_is(model, control);
   DEA_TRY(ctx, set_control(ctx, model, control, value));
   dea_status status = follow_control(ctx, model, control, from, value);
@@ -1191,7 +1191,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
     DEA_TRY(ctx, check_control(ctx, model, step->control, step->value));
     DEA_TRY(ctx, set_control(ctx, model, step->control, step->value));
   }
-  DEA_TRY(ctx, dea_standing_advance(ctx, model, step, out, error));
+  DEA_TRY(ctx, dea_solver_state_advance(ctx, model, step, out, error));
   return DEA_OK;
 }
 
@@ -1349,7 +1349,7 @@ static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
   model->solid = s;
   DEA_TRY(ctx, status);
   s->problem.grid = v->solid->problem.grid;
-  s->problem.constituents = v->solid->problem.constituents;
+  s->problem.part_materials = v->solid->problem.part_materials;
   s->problem.share = v->solid->problem.share;
   s->problem.point_mass = v->solid->problem.point_mass;
   s->problem.loads = v->solid->problem.loads;
@@ -1533,7 +1533,7 @@ static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model
   struct variant *v = model->variant;
   struct dea_solid *s = model->solid;
   const struct dea_gradient_owner owner = {.solid = s,
-                                           .ending = &model->at.ending,
+                                           .outcome = &model->at.outcome,
                                            .model = model,
                                            .voltage_V = model->at.voltage_V,
                                            .slope = slope,
@@ -1560,7 +1560,7 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
 {
   struct dea_arena memory = {.ctx = ctx};
   const struct dea_solid_problem *p = &model->solid->problem;
-  dea_standing_end_history(ctx, &model->at);
+  dea_solver_state_end_history(ctx, &model->at);
   if (dea_gradient_asks_mode(ask)) {
     DEA_TRY(ctx, check_mass(ctx, model));
   }
@@ -1598,7 +1598,7 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   if (time->inertia) {
     DEA_TRY(ctx, check_mass(ctx, model));
   }
-  DEA_TRY(ctx, dea_standing_begin(ctx, &model->at, &driven, time, out));
+  DEA_TRY(ctx, dea_solver_state_begin(ctx, &model->at, &driven, time, out));
   return DEA_OK;
 }
 
@@ -1652,7 +1652,7 @@ static void mark_layout(const struct dea_layout *l, struct marks *marks)
 
 static dea_status save(struct dea_context *ctx, struct dea_model *model, struct dea_state *out)
 {
-  DEA_TRY(ctx, dea_standing_save(ctx, &model->at, out));
+  DEA_TRY(ctx, dea_solver_state_save(ctx, &model->at, out));
   if (model->marks.out == NULL) {
     struct marks counted = {.out = NULL};
     mark_layout(model->layout, &counted);
@@ -1687,7 +1687,7 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
                               .has_centre = model->disc,
                               .has_tip = model->points.has_fibres,
                               .branches = model->plies.branches,
-                              .constituent_count = model->layout->ply_count};
+                              .part_material_count = model->layout->ply_count};
   DEA_TRY(ctx, check_mass(ctx, model));
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                          "model 3d: frequencies are those in vacuo; the air that moves with a film "
@@ -1818,7 +1818,7 @@ static dea_status profile(struct dea_context *ctx, struct dea_model *model, stru
 static dea_status indent(struct dea_context *ctx, struct dea_model *model,
                          const struct dea_probe *probe, double depth_m, struct dea_load_point *out)
 {
-  dea_standing_end_history(ctx, &model->at);
+  dea_solver_state_end_history(ctx, &model->at);
   if (model->indent == NULL) {
     DEA_TRY(ctx, dea_indent_create(ctx, &model->mesh, model->solid, probe, &model->indent));
   }
@@ -1840,7 +1840,7 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_path_options *options, dea_point_sink points,
                             dea_event_sink events, void *user)
 {
-  struct dea_standing_end end = {0};
+  struct dea_solver_state_end end = {0};
   double *weight = NULL;
   if (model->disc) {
     weight = dea_solid_alloc(ctx, model->solid->problem.dofs, sizeof *weight);
@@ -1851,7 +1851,7 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
     end.weight = weight;
     end.value = (options->max_stretch / model->device->pre_stretch - 1) * model->points.radius_m;
   }
-  dea_status status = dea_standing_path(ctx, &model->at, options, &end, points, events, user);
+  dea_status status = dea_solver_state_path(ctx, &model->at, options, &end, points, events, user);
   dea_free(ctx, weight);
   DEA_TRY(ctx, status);
   return DEA_OK;
@@ -1865,7 +1865,7 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
     return DEA_E_MEMORY;
   }
   dea_buckling_branch_fold(model->solid, model->mesh.grid, &model->band, way->side, fold);
-  dea_status status = dea_standing_push(ctx, &model->at, way, fold, out, found);
+  dea_status status = dea_solver_state_push(ctx, &model->at, way, fold, out, found);
   dea_free(ctx, fold);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
@@ -1873,7 +1873,7 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
 static dea_status carry(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  DEA_TRY(ctx, dea_standing_carry(ctx, &model->at, &from->at, out, found));
+  DEA_TRY(ctx, dea_solver_state_transfer(ctx, &model->at, &from->at, out, found));
   return DEA_OK;
 }
 
@@ -1961,7 +1961,7 @@ static dea_status make(struct dea_context *ctx, const struct dea_device *device,
   DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
   struct dea_model *model = *out;
   const struct dea_layout_ply *film = &model->layout->plies[model->plies.film];
-  model->at.ending.owner = (struct dea_ending_owner){
+  model->at.outcome.owner = (struct dea_step_outcome_owner){
       .solid = model->solid,
       .films = model->plies.films,
       .model = model,
@@ -1969,7 +1969,7 @@ static dea_status make(struct dea_context *ctx, const struct dea_device *device,
       .arrived = arrived,
       .step_V = field_step_V_per_m * model->plies.thinnest_m,
       .tension_scale_N_per_m =
-          dea_constituent_modulus(&model->plies.constituents[model->plies.film]) *
+          dea_part_material_modulus(&model->plies.part_materials[model->plies.film]) *
           film->thickness_m,
       .flat_thickness_m = model->plies.flat_m,
       .refinement = model->settings.refinement,
@@ -1984,7 +1984,7 @@ static dea_status look_at_mesh(struct dea_context *ctx, struct adaptation *a,
   struct dea_load_point point;
   struct dea_observation seen;
   const struct dea_grid *grid = model->mesh.grid;
-  DEA_TRY(ctx, dea_standing_solve(ctx, model, a->settings.adapt.voltage_V, &point));
+  DEA_TRY(ctx, dea_solver_state_solve(ctx, model, a->settings.adapt.voltage_V, &point));
   DEA_TRY(ctx, dea_observer_take(ctx, model->observer, model->solid, &seen));
   const double *values = seen.monitor[a->monitor];
   enum dea_observed motion = dea_observed_main(values);
@@ -2117,17 +2117,17 @@ const struct dea_model_type dea_solid_module = {
     .libraries = dea_solid_libraries,
     .create = create,
     .destroy = destroy,
-    .solve = dea_standing_solve,
+    .solve = dea_solver_state_solve,
     .gradient = gradient,
-    .limit = dea_standing_limit,
-    .passed = dea_standing_passed,
+    .limit = dea_solver_state_limit,
+    .passed = dea_solver_state_passed,
     .observe = observe,
     .errors = errors,
     .passes = passes,
     .indent = indent,
     .move = move,
     .long_path = long_path,
-    .soften = dea_standing_soften,
+    .soften = dea_solver_state_soften,
     .push = push,
     .carry = carry,
     .modes = modes,
@@ -2136,9 +2136,9 @@ const struct dea_model_type dea_solid_module = {
     .profile = profile,
     .fields = fields,
     .save = save,
-    .load = dea_standing_load,
+    .load = dea_solver_state_load,
     .begin = begin,
     .advance = advance,
-    .accept = dea_standing_accept,
+    .accept = dea_solver_state_accept,
     .size = size,
 };

@@ -137,7 +137,7 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
 static bool is_viscous(const struct dea_motions *m)
 {
   bool any = false;
-  for (size_t i = 0; i < m->constituent_count; i++) {
+  for (size_t i = 0; i < m->part_material_count; i++) {
     any = any || m->branches[i].count > 0;
   }
   return any;

@@ -1,6 +1,6 @@
 #include "model/solid/adapter/plies.h"
 
-#include "model/solid/actuator/constituent_of_material.h"
+#include "model/solid/actuator/part_of_material.h"
 #include "model/solid/adapter/circuit_step.h"
 #include "model/solid/point/membrane_point.h"
 #include "model/solid_check.h"
@@ -21,12 +21,12 @@ static enum dea_part part_of(const struct dea_layout_mesh *mesh, size_t i)
 /* Between a surface and what lies on it. The load of an electrode comes in below it, and not over
  * its depth as a film's own does. */
 static dea_status fill_bond(struct dea_context *ctx, const struct dea_layout_mesh *mesh, size_t i,
-                            struct dea_constituent *constituents)
+                            struct dea_part_material *part_materials)
 {
   const size_t joins = mesh->layout->plies[i].joins;
-  dea_status status = dea_membrane_bond(&constituents[joins], &constituents[i]);
+  dea_status status = dea_membrane_bond(&part_materials[joins], &part_materials[i]);
   if (!mesh->dielectric[joins]) {
-    constituents[i].param[0] /= 1.5;
+    part_materials[i].param[0] /= 1.5;
   }
   return status == DEA_OK ? DEA_OK
                           : dea_fail(ctx, status,
@@ -35,24 +35,24 @@ static dea_status fill_bond(struct dea_context *ctx, const struct dea_layout_mes
 }
 
 static dea_status fill_constituent(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                                   size_t i, bool alone, struct dea_constituent *out)
+                                   size_t i, bool alone, struct dea_part_material *out)
 {
   const struct dea_layout_ply *ply = &mesh->layout->plies[i];
   const struct dea_material *material = &ply->material;
   const double *l = ply->pre_stretch;
   DEA_TRY(ctx, dea_solid_check_ply(ctx, mesh->layout, i));
   *out = material->law != NULL
-             ? dea_constituent_stretched(part_of(mesh, i), material, l, ply->angle_rad)
-             : dea_constituent_free(part_of(mesh, i), material->young_modulus_Pa,
-                                    material->poisson_ratio);
+             ? dea_part_material_stretched(part_of(mesh, i), material, l, ply->angle_rad)
+             : dea_part_material_free(part_of(mesh, i), material->young_modulus_Pa,
+                                      material->poisson_ratio);
   if (mesh->dielectric[i]) {
-    dea_constituent_set_permittivity(out, &material->permittivity, ply->thickness_m);
+    dea_part_material_set_permittivity(out, &material->permittivity, ply->thickness_m);
     out->relaxed = mesh->membrane && alone;
     out->layers = (double)dea_ply_layers(ply);
   }
   out->thickness_m = ply->thickness_m;
   out->density_kg_per_m3 = material->density_kg_per_m3;
-  if (dea_constituent_relax(out) != DEA_OK) {
+  if (dea_part_material_relax(out) != DEA_OK) {
     return dea_fail(ctx, DEA_E_DOMAIN, "ply '%s': the law '%s' ends before the pre-stretch %.4g",
                     ply->name, out->law->name, fmax(l[0], l[1]));
   }
@@ -85,7 +85,7 @@ dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mes
   const struct dea_layout *l = mesh->layout;
   bool alone = true; // bonded plies wrinkle together, not each by itself
   *out = (struct dea_plies){
-      .constituents = dea_arena_alloc(memory, l->ply_count, sizeof *out->constituents),
+      .part_materials = dea_arena_alloc(memory, l->ply_count, sizeof *out->part_materials),
       .films = dea_arena_alloc(memory, l->ply_count, sizeof *out->films),
       .branches = dea_arena_alloc(memory, l->ply_count, sizeof *out->branches),
       .leakage_per_s = dea_arena_alloc(memory, l->ply_count, sizeof *out->leakage_per_s)};
@@ -98,12 +98,12 @@ dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mes
     const struct dea_material *material = &ply->material;
     const bool film = material->law != NULL && ply->kind == DEA_PLY_SHEET;
     DEA_TRY(ctx, ply->kind == DEA_PLY_JOINT
-                     ? fill_bond(ctx, mesh, i, out->constituents)
-                     : fill_constituent(ctx, mesh, i, alone, &out->constituents[i]));
+                     ? fill_bond(ctx, mesh, i, out->part_materials)
+                     : fill_constituent(ctx, mesh, i, alone, &out->part_materials[i]));
     out->films[i] = (struct dea_solid_film_data){film ? material : NULL,
                                                  sqrt(ply->pre_stretch[0] * ply->pre_stretch[1])};
     out->leakage_per_s[i] =
-        mesh->dielectric[i] ? dea_leakage_per_s(material, &out->constituents[i]) : 0;
+        mesh->dielectric[i] ? dea_leakage_per_s(material, &out->part_materials[i]) : 0;
     out->branches[i].count = material->branch_count;
     memcpy(out->branches[i].branch, material->branches,
            material->branch_count * sizeof *material->branches);
@@ -114,7 +114,7 @@ dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mes
 
 // Places -----------------------------------------------------------------------------------------
 
-int dea_plies_constituent(const void *self, int region, int ply)
+int dea_plies_part_material(const void *self, int region, int ply)
 {
   (void)self;
   (void)region;

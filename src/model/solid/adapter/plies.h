@@ -7,7 +7,7 @@
 #include "model/solid/assembly/internal_variables.h"
 
 struct dea_plies {
-  struct dea_constituent *constituents; // [ply_count], as all
+  struct dea_part_material *part_materials; // [ply_count], as all
   struct dea_solid_film_data *films;
   struct dea_branches *branches;
   double *leakage_per_s; // of films, see circuit_step.h
@@ -22,7 +22,7 @@ dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mes
                             struct dea_arena *memory, struct dea_plies *out);
 
 /* Callbacks for a solid (assembly/solid.h); self: a struct dea_layout_mesh. */
-int dea_plies_constituent(const void *self, int region, int ply);
+int dea_plies_part_material(const void *self, int region, int ply);
 bool dea_plies_active(const void *self, int region, int ply);
 void dea_plies_channels(const void *self, int region, int ply, int *top, int *bottom);
 int dea_plies_held(const void *self, const double X[3]);

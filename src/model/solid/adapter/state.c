@@ -12,7 +12,7 @@ static size_t used_constituents(const struct dea_solid *s)
   const struct dea_solid_problem *p = &s->problem;
   size_t count = 0;
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    count = count > (size_t)p->constituent_of[e] ? count : (size_t)p->constituent_of[e] + 1;
+    count = count > (size_t)p->part_material_of[e] ? count : (size_t)p->part_material_of[e] + 1;
   }
   return count;
 }
@@ -22,9 +22,9 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
                                  struct dea_state *out)
 {
   double *to = out->numbers + out->number_count;
-  size_t count = 0, room = DEA_STATE_NUMBERS_MAX - out->number_count;
+  size_t count = 0, capacity = DEA_STATE_NUMBERS_MAX - out->number_count;
   for (size_t i = 0; i < used_constituents(s); i++) {
-    const struct dea_constituent *l = &s->problem.constituents[i];
+    const struct dea_part_material *l = &s->problem.part_materials[i];
     const double own[CONSTITUENT_NUMBERS] = {
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
@@ -33,7 +33,7 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
     for (int k = 0; k < 2; k++) {
       more += rare[k] != 0;
     }
-    if (count + CONSTITUENT_NUMBERS + params + more > room) {
+    if (count + CONSTITUENT_NUMBERS + params + more > capacity) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer constituents");
     }
     memcpy(to + count, own, sizeof own);
@@ -63,8 +63,8 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *s, struct d
           dea_state_add_mark(ctx, out, "mesh", grid->X, 3 * grid->node_count * sizeof(double)));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "elements", grid->nodes,
                                   grid->element_count * DEA_HEX_NODES_MAX * sizeof(int)));
-  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "layers of the elements", p->constituent_of,
-                                  grid->element_count * sizeof *p->constituent_of));
+  DEA_TRY(ctx, dea_state_add_mark(ctx, out, "layers of the elements", p->part_material_of,
+                                  grid->element_count * sizeof *p->part_material_of));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "electrodes", p->active,
                                   grid->element_count * sizeof *p->active));
   DEA_TRY(ctx, dea_state_add_mark(ctx, out, "supports", p->held, p->dofs));

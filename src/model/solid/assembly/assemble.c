@@ -98,7 +98,7 @@ dea_status dea_solid_create_springs(struct dea_context *ctx, struct dea_solid *s
     }
     dea_solid_gather(s, e, p->grid->X, X);
     dea_status status =
-        element->type->neutral_stiffness(element, dea_solid_constituent(s, e), X, stiffness);
+        element->type->neutral_stiffness(element, dea_solid_part_material(s, e), X, stiffness);
     for (int i = 0; i < 3 * element->nodes && status == DEA_OK; i++) { // dea_solid_check says where
       p->spring[3 * nodes[i / 3] + i % 3] += stiffness[i / 3];
     }
@@ -264,7 +264,8 @@ static dea_status fail_element(struct dea_context *ctx, const struct dea_solid *
   const struct dea_element *element = dea_solid_element(s, e);
   struct dea_element_strains *strains = dea_alloc(ctx, 1, sizeof *strains);
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], x[3] = {0};
-  const struct dea_element_input in = {.constituent = dea_solid_constituent(s, e), .X = X, .u = u};
+  const struct dea_element_input in = {
+      .part_material = dea_solid_part_material(s, e), .X = X, .u = u};
   if (strains == NULL) {
     return DEA_E_MEMORY;
   }

@@ -195,7 +195,7 @@ static void slopes_of(const struct dea_solid *s, size_t body, size_t node, doubl
   }
 }
 
-void dea_solid_bodies_carry(const struct dea_solid *s, double *v)
+void dea_solid_bodies_transfer(const struct dea_solid *s, double *v)
 {
   const struct dea_solid_problem *p = &s->problem;
   for (size_t n = 0; n < p->grid->node_count && p->body_count > 0; n++) {

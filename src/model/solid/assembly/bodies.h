@@ -28,7 +28,7 @@ bool dea_solid_turns_body(const struct dea_solid *s, size_t node);
 /* Places of the followers in u [dofs] from the unknowns of the bodies in it. */
 void dea_solid_bodies_place(const struct dea_solid *s, double *u);
 /* The same for a small motion v [dofs] from state.u on: v_n = A_n v_q. */
-void dea_solid_bodies_carry(const struct dea_solid *s, double *v);
+void dea_solid_bodies_transfer(const struct dea_solid *s, double *v);
 /* Forces g [dofs] on the followers become those on their bodies: g_q += A_n^T g_n, g_n = 0. */
 void dea_solid_bodies_collect(const struct dea_solid *s, double *g);
 

@@ -78,7 +78,7 @@ static dea_status capacitance_of(struct dea_solid *s, size_t e, double *capacita
   struct dea_solid_element_place place;
   struct dea_element_input in;
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  double step = field_step_V_per_m * in.constituent->thickness_m, square = in.voltage_V;
+  double step = field_step_V_per_m * in.part_material->thickness_m, square = in.voltage_V;
   square *= square;
   const double squares[2] = {fmax(square - step * step, 0), square + step * step};
   double energy[2] = {0, 0};
@@ -133,10 +133,10 @@ static void add_element(const struct dea_solid *s, size_t e, double C, const str
   }
   if (sums->conductance_S != NULL) {
     double share = p->share[top] - p->share[bottom];
-    *sums->conductance_S += share * share * sums->per_s[p->constituent_of[e]] * C;
+    *sums->conductance_S += share * share * sums->per_s[p->part_material_of[e]] * C;
   }
   if (sums->conductances_S != NULL) {
-    add_between(sums->per_s[p->constituent_of[e]] * C, top, bottom, count, sums->conductances_S);
+    add_between(sums->per_s[p->part_material_of[e]] * C, top, bottom, count, sums->conductances_S);
   }
 }
 

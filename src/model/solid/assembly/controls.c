@@ -175,6 +175,6 @@ bool dea_solid_controls_increment(struct dea_solid *s, const double *controls)
   }
   dea_solid_frame_vector(s, true, s->work.increment);
   dea_solid_bodies_prepare(s);
-  dea_solid_bodies_carry(s, s->work.increment);
+  dea_solid_bodies_transfer(s, s->work.increment);
   return any;
 }

@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* The room for b and L of one element. */
-struct room {
+struct capacity {
   double b[DEA_HEX_PRESSURES_MAX * DEA_HEX_DOFS_MAX];
   double L[DEA_HEX_PRESSURES_MAX * DEA_HEX_PRESSURES_MAX];
 };
@@ -52,7 +52,7 @@ static void gather_shape(const struct dea_solid *s, size_t e, const double *v, d
 
 /* Of an element that is in work.element and `room`; kappa_Pa: that of the stiff solid. */
 static double of_element(const struct dea_solid *s, size_t e, double kappa_Pa,
-                         const struct room *room, const double *v)
+                         const struct capacity *capacity, const double *v)
 {
   const struct dea_element *element = dea_solid_element(s, e);
   const int per = element->type->per_node, nodes = element->nodes;
@@ -67,7 +67,7 @@ static double of_element(const struct dea_solid *s, size_t e, double kappa_Pa,
   for (int m = 0; m < element->pressures && element->type->constraint != NULL; m++) {
     double gain = 0;
     for (int i = 0; i < 3 * nodes; i++) {
-      gain += room->b[m * 3 * nodes + i] * shape[i];
+      gain += capacity->b[m * 3 * nodes + i] * shape[i];
     }
     sum += kappa_Pa * gain * gain;
   }
@@ -82,8 +82,8 @@ static void add_forces(struct dea_solid *s, int count, const int *nodes, int per
   }
 }
 
-static dea_status add_elements(struct dea_solid *s, double stiff, struct room *room, size_t count,
-                               const double *v, double *out)
+static dea_status add_elements(struct dea_solid *s, double stiff, struct capacity *capacity,
+                               size_t count, const double *v, double *out)
 {
   const struct dea_solid_problem *p = &s->problem;
   for (size_t k = 0; k < p->own_count; k++) {
@@ -94,14 +94,14 @@ static dea_status add_elements(struct dea_solid *s, double stiff, struct room *r
     dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
     dea_status status = element->type->evaluate(element, &in, DEA_TANGENT, s->work.element);
     if (status == DEA_OK && element->type->constraint != NULL) {
-      status = element->type->constraint(element, &in, room->b, room->L);
+      status = element->type->constraint(element, &in, capacity->b, capacity->L);
     }
     if (status != DEA_OK) {
       return status;
     }
     for (size_t i = 0; i < count; i++) {
-      out[i] +=
-          of_element(s, e, stiff * dea_solid_constituent(s, e)->kappa_Pa, room, v + i * p->dofs);
+      out[i] += of_element(s, e, stiff * dea_solid_part_material(s, e)->kappa_Pa, capacity,
+                           v + i * p->dofs);
     }
     add_forces(s, element->nodes, p->grid->nodes + e * DEA_HEX_NODES_MAX, element->type->per_node,
                s->work.element->g);
@@ -136,8 +136,8 @@ static dea_status add_loads(struct dea_solid *s, size_t count, const double *v, 
 }
 
 /* Without kappa, at the pressures that the state has. */
-static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s, struct room *room,
-                             size_t count, const double *v, double *out)
+static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s,
+                             struct capacity *capacity, size_t count, const double *v, double *out)
 {
   const double stiff = s->settings.bulk_stiff * s->state.bulk_factor;
   const size_t pressures = dea_solid_pressure_count(s);
@@ -148,7 +148,7 @@ static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s, struc
   memcpy(own, s->state.multiplier, pressures * sizeof *own);
   dea_solid_update_multipliers(s);
   dea_solid_drop_bulk_modulus(s);
-  dea_status status = add_elements(s, stiff, room, count, v, out);
+  dea_status status = add_elements(s, stiff, capacity, count, v, out);
   dea_solid_restore_dropped_bulk_modulus(s);
   memcpy(s->state.multiplier, own, pressures * sizeof *own);
   dea_free(ctx, own);
@@ -159,14 +159,14 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
                                 const double *v, double *out)
 {
   const size_t dofs = s->problem.dofs;
-  struct room *room = dea_solid_alloc(ctx, 1, sizeof *room);
-  if (room == NULL) {
+  struct capacity *capacity = dea_solid_alloc(ctx, 1, sizeof *capacity);
+  if (capacity == NULL) {
     return DEA_E_MEMORY;
   }
   memset(out, 0, count * sizeof *out);
   memset(s->work.g, 0, dofs * sizeof *s->work.g);
-  dea_status status = dea_solid_agree(ctx, add_pieces(ctx, s, room, count, v, out));
-  dea_free(ctx, room);
+  dea_status status = dea_solid_agree(ctx, add_pieces(ctx, s, capacity, count, v, out));
+  dea_free(ctx, capacity);
   DEA_TRY(ctx, status);
   dea_solid_sum(out, count);
   dea_solid_sum(s->work.g, dofs);
@@ -201,10 +201,10 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
   }
   const struct dea_element_motion motion = {
       .v = moving, .potential = potential, .pressure = q + e * (size_t)p->elements.pressures};
-  place.constituent.kappa_Pa *= s->settings.bulk_stiff;
+  place.part_material.kappa_Pa *= s->settings.bulk_stiff;
   dea_status status = element->type->motion(element, &in, &motion, &bent, &moved);
   if (status == DEA_OK && p->body_count > 0) {
-    place.constituent.kappa_Pa = 0;
+    place.part_material.kappa_Pa = 0;
     status = element->type->evaluate(element, &in, DEA_FORCE, s->work.element);
   }
   if (status == DEA_OK) {
@@ -245,7 +245,7 @@ dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double
   memset(s->work.g, 0, p->dofs * sizeof *s->work.g);
   dea_solid_bodies_place(s, s->state.u);
   dea_solid_bodies_prepare(s);
-  dea_solid_bodies_carry(s, v);
+  dea_solid_bodies_transfer(s, v);
   for (size_t k = 0; k < p->own_count && status == DEA_OK; k++) {
     status = add_motion(s, p->own[k], v, q, &sums[0], &sums[1]);
   }

@@ -6,10 +6,10 @@
 static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t e)
 {
   struct dea_solid_problem *p = &s->problem;
-  const struct dea_constituent *constituent = dea_solid_constituent(s, e);
+  const struct dea_part_material *part_material = dea_solid_part_material(s, e);
   enum dea_element_kind kind = p->grid->kind[e];
   const struct dea_element_type *type = dea_element_types[kind];
-  if (p->per_node > type->per_node && constituent->permittivity_F_per_m > 0) {
+  if (p->per_node > type->per_node && part_material->permittivity_F_per_m > 0) {
     if (type->with_potential == kind) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "a %s takes the field V/h, not a coupled one",
                       type->name);
@@ -18,7 +18,7 @@ static dea_status set_kind(struct dea_context *ctx, struct dea_solid *s, size_t 
   }
   p->kind[e] = kind;
   type = dea_element_types[kind];
-  dea_status status = type->check(constituent);
+  dea_status status = type->check(part_material);
   return status == DEA_OK ? DEA_OK
                           : dea_fail(ctx, status, "a %s takes %s", type->name, type->takes);
 }
@@ -65,12 +65,12 @@ dea_status dea_solid_find_laminates(struct dea_context *ctx, struct dea_solid *s
   const size_t elements = p->grid->element_count, columns = dea_grid_columns(p->grid);
   p->laminate = dea_arena_alloc(&s->memory, elements, sizeof *p->laminate);
   DEA_TRY(ctx, dea_arena_status(&s->memory));
-  int *room = dea_solid_alloc(ctx, columns + elements, sizeof *room);
-  if (room == NULL) {
+  int *capacity = dea_solid_alloc(ctx, columns + elements, sizeof *capacity);
+  if (capacity == NULL) {
     return dea_fail_chain(ctx, DEA_E_MEMORY, __func__, __FILE__, __LINE__);
   }
-  find_laminates(s, columns, room, room + columns);
-  dea_free(ctx, room);
+  find_laminates(s, columns, capacity, capacity + columns);
+  dea_free(ctx, capacity);
   return DEA_OK;
 }
 
@@ -81,14 +81,14 @@ void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *
   const struct dea_element *element = dea_solid_element(s, e);
   const int *nodes;
   int count = dea_solid_nodes(s, e, &nodes);
-  place->constituent = dea_solid_constituent_at(s, e);
+  place->part_material = dea_solid_part_material_at(s, e);
   dea_solid_gather(s, e, p->grid->X, place->X);
   dea_solid_gather(s, e, u, place->u);
   for (int n = 0; n < count && element->type->per_node > 3; n++) {
     place->potential[n] = u[dea_solid_at(s, nodes[n], 3)];
   }
   *out = (struct dea_element_input){
-      .constituent = &place->constituent,
+      .part_material = &place->part_material,
       .X = place->X,
       .u = place->u,
       .multiplier = s->state.multiplier + e * (size_t)p->elements.pressures,

@@ -14,7 +14,7 @@ dea_status dea_solid_find_laminates(struct dea_context *ctx, struct dea_solid *s
 
 /* Memory that an input lends from. */
 struct dea_solid_element_place {
-  struct dea_constituent constituent;
+  struct dea_part_material part_material;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential[DEA_HEX_NODES_MAX];
 };
 

@@ -22,18 +22,18 @@ static double height_of(const struct dea_solid *s, size_t e)
   const struct dea_grid *grid = s->problem.grid;
   const int *nodes;
   const int count = dea_solid_nodes(s, e, &nodes);
-  return grid->levels[e] == 1 ? dea_solid_constituent(s, e)->thickness_m
+  return grid->levels[e] == 1 ? dea_solid_part_material(s, e)->thickness_m
                               : grid->X[3 * nodes[count - 1] + 2] - grid->X[3 * nodes[0] + 2];
 }
 
 static bool is_dielectric(const struct dea_solid *s, size_t e)
 {
-  return dea_solid_constituent(s, e)->permittivity_F_per_m > 0;
+  return dea_solid_part_material(s, e)->permittivity_F_per_m > 0;
 }
 
 static bool is_electrode(const struct dea_solid *s, size_t e)
 {
-  return dea_solid_constituent(s, e)->part == DEA_PART_ELECTRODE;
+  return dea_solid_part_material(s, e)->part == DEA_PART_ELECTRODE;
 }
 
 /* Whose forces a membrane force is: that of a dielectric ply with electrodes of a thickness on it,
@@ -53,7 +53,7 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
                              struct dea_element_input *in, struct dea_membrane_state *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  double share = height_of(s, e) / dea_solid_constituent(s, e)->thickness_m;
+  double share = height_of(s, e) / dea_solid_part_material(s, e)->thickness_m;
   bool alone = true;
   dea_solid_element_input(s, e, s->state.u, voltage_V, place, in);
   dea_status status = element->type->membrane_state(element, in, out);
@@ -73,7 +73,7 @@ static dea_status surface_of(const struct dea_solid *s, size_t e, enum extent ex
     }
     alone = false;
     element = dea_solid_element(s, k);
-    share = height_of(s, k) / dea_solid_constituent(s, k)->thickness_m;
+    share = height_of(s, k) / dea_solid_part_material(s, k)->thickness_m;
     dea_solid_element_input(s, k, s->state.u, voltage_V, &at, &of_other);
     status = element->type->membrane_state(element, &of_other, &other);
     for (int i = 0; i < 3 * out->count && status == DEA_OK; i++) {
@@ -95,7 +95,7 @@ static double bending_stiffness_Nm(const struct dea_solid *s, size_t e)
   for (int outer = 0; outer < 2; outer++) {
     size_t k = e;
     do {
-      const double Q = dea_constituent_plate_modulus(dea_solid_constituent(s, k));
+      const double Q = dea_part_material_plate_modulus(dea_solid_part_material(s, k));
       const double h = height_of(s, k), z = grid->X[3 * grid->nodes[k * DEA_HEX_NODES_MAX] + 2];
       const bool flat = grid->levels[k] == 1;
       if (outer == (flat && is_electrode(s, k) ? 1 : 0)) {
@@ -137,7 +137,7 @@ static struct ring ring_of(const struct dea_solid *s, const struct dea_solid_fil
   struct ring out = {.lowest = true, .lowest_of_ply = true};
   size_t k = e;
   do {
-    const bool film = films[p->constituent_of[k]].material != NULL;
+    const bool film = films[p->part_material_of[k]].material != NULL;
     out.lowest = out.lowest && k >= e;
     out.lowest_of_ply = out.lowest_of_ply && (k >= e || p->grid->ply[k] != p->grid->ply[e]);
     out.film = out.film || film;
@@ -176,7 +176,7 @@ static dea_status reach_of(const struct dea_solid *s, size_t e, const struct dea
   for (int q = 0; status == DEA_OK && q < element->points; q++) {
     const double *C = strains.C[q];
     double plane[3] = {C[0], C[1], C[5]};
-    dea_constituent_pull_back(in.constituent, plane, plane);
+    dea_part_material_pull_back(in.part_material, plane, plane);
     double root = hypot(0.5 * (plane[0] - plane[1]), plane[2]);
     double middle = 0.5 * (plane[0] + plane[1]);
     dea_reach_take(&out->reach, dea_material_reach(material, sqrt(middle + root),
@@ -196,7 +196,7 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
   dea_status status = element->type->membrane_state(element, &in, &film);
   for (int p = 0; status == DEA_OK && p < film.count; p++) {
-    double field = fabs(dea_constituent_field(in.constituent, in.voltage_V)) * film.area[p];
+    double field = fabs(dea_part_material_field(in.part_material, in.voltage_V)) * film.area[p];
     double stretch = data->pre_stretch * sqrt(film.area[p]);
     double margin = 1 - field / dea_breakdown_field(data->material, stretch);
     out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
@@ -219,7 +219,7 @@ static dea_status find_compressed(const struct dea_solid *s,
     struct dea_solid_element_place place;
     struct dea_element_input in;
     struct dea_membrane_state film = {.count = 0};
-    if (films[s->problem.constituent_of[k]].material != NULL) {
+    if (films[s->problem.part_material_of[k]].material != NULL) {
       status = surface_of(s, k, OF_FILM, s->state.voltage_V, &place, &in, &film);
     }
     for (int p = 0; p < film.count && status == DEA_OK; p++) {
@@ -304,9 +304,9 @@ static double squares_about(const struct dea_solid *s, bool of_slopes, double sq
   const struct dea_solid_problem *p = &s->problem;
   double thickness = 0, square = s->state.voltage_V * s->state.voltage_V;
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    const struct dea_constituent *constituent = dea_solid_constituent(s, e);
+    const struct dea_part_material *part_material = dea_solid_part_material(s, e);
     bool counts = p->active[e] || dea_solid_element(s, e)->type->per_node > 3;
-    thickness = fmax(thickness, counts ? constituent->thickness_m : 0);
+    thickness = fmax(thickness, counts ? part_material->thickness_m : 0);
   }
   const double narrow = pow(step_V_per_m * thickness, 2),
                wide = pow(wide_step_V_per_m * thickness, 2);
@@ -368,7 +368,7 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
                                      .reach = {NAN, NAN}};
   for (size_t k = 0; k < s->problem.own_count && status == DEA_OK; k++) {
     size_t e = s->problem.own[k];
-    const struct dea_solid_film_data *film = &films[s->problem.constituent_of[e]];
+    const struct dea_solid_film_data *film = &films[s->problem.part_material_of[e]];
     status = film->material != NULL ? reach_of(s, e, film->material, out) : DEA_OK;
     if (status == DEA_OK && film->material != NULL && s->problem.active[e]) {
       status = field_of(s, e, film, out);
@@ -400,7 +400,8 @@ static double quantity_of(const struct dea_element_input *in, const struct dea_m
                           const struct dea_solid_film_data *data, enum dea_film_extreme which,
                           int p, const double direction[2])
 {
-  const double field = fabs(dea_constituent_field(in->constituent, in->voltage_V)) * film->area[p];
+  const double field =
+      fabs(dea_part_material_field(in->part_material, in->voltage_V)) * film->area[p];
   const double stretch = data->pre_stretch * sqrt(film->area[p]), *T = film->force[p];
   return which == DEA_FILM_FIELD ? field
          : which == DEA_FILM_MARGIN
@@ -426,7 +427,7 @@ double dea_solid_extreme_at(const struct dea_solid *s, const struct dea_solid_fi
   struct dea_membrane_state film;
   return surface_of(s, place->element, extent_of(s, place->element), voltage_V, &at, &in, &film) ==
                  DEA_OK
-             ? quantity_of(&in, &film, &films[s->problem.constituent_of[place->element]], which,
+             ? quantity_of(&in, &film, &films[s->problem.part_material_of[place->element]], which,
                            place->point, place->direction)
              : NAN;
 }
@@ -441,7 +442,7 @@ bool dea_solid_extreme_find(struct dea_solid *s, const struct dea_solid_film_dat
   struct dea_membrane_state film;
   *out = (struct dea_film_place){.element = 0};
   for (size_t e = 0; e < s->problem.grid->element_count; e++) { // all ranks all of them
-    const struct dea_solid_film_data *data = &films[s->problem.constituent_of[e]];
+    const struct dea_solid_film_data *data = &films[s->problem.part_material_of[e]];
     const struct ring ring = ring_of(s, films, e);
     bool asked = which == DEA_FILM_TENSION ? has_tension(s, &ring, e)
                                            : data->material != NULL && s->problem.active[e];
@@ -497,7 +498,7 @@ void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_f
   const size_t first = place->element;
   size_t e = first;
   do {
-    const struct dea_constituent *part = dea_solid_constituent(s, e);
+    const struct dea_part_material *part = dea_solid_part_material(s, e);
     const bool has =
         e == first || (which == DEA_FILM_TENSION && counts(s, first, e, extent_of(s, first)));
     const int *nodes;
@@ -510,7 +511,7 @@ void dea_solid_extreme_slope(const struct dea_solid *s, const struct dea_solid_f
     }
     for (size_t j = e * most; has && j < (e + 1) * most; j++) {
       pressures[j] += slope_by(s, films, which, place, &s->state.multiplier[j],
-                               share * dea_constituent_modulus(part));
+                               share * dea_part_material_modulus(part));
     }
     e = (size_t)s->problem.laminate[e];
   } while (e != first);

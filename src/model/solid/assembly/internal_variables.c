@@ -12,9 +12,9 @@ enum { TENSOR_BYTES = 6 * sizeof(double) }; // of a symmetric one
 static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_element_strains *out)
 {
   const struct dea_element *element = dea_solid_element(s, e);
-  const struct dea_constituent constituent = dea_solid_constituent_at(s, e);
+  const struct dea_part_material part_material = dea_solid_part_material_at(s, e);
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
-  const struct dea_element_input in = {.constituent = &constituent,
+  const struct dea_element_input in = {.part_material = &part_material,
                                        .X = X,
                                        .u = u,
                                        .voltage_V =
@@ -31,7 +31,7 @@ static size_t place_points(const struct dea_solid *s, struct dea_internal_variab
 {
   size_t count = 0;
   for (size_t e = 0; e < s->problem.grid->element_count; e++) {
-    bool viscous = h->branches[s->problem.constituent_of[e]].count > 0;
+    bool viscous = h->branches[s->problem.part_material_of[e]].count > 0;
     h->first[e] = viscous ? count : ELASTIC;
     count += viscous ? (size_t)dea_solid_element(s, e)->points : 0;
   }
@@ -50,7 +50,7 @@ static dea_status held_for_long(const struct dea_solid *s, struct dea_internal_v
     for (int q = 0; q < dea_solid_element(s, e)->points && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse[at], strains.inverse[q], TENSOR_BYTES);
-      for (size_t i = 0; i < h->branches[s->problem.constituent_of[e]].count; i++) {
+      for (size_t i = 0; i < h->branches[s->problem.part_material_of[e]].count; i++) {
         memcpy(h->A[at][i], strains.inverse[q], TENSOR_BYTES);
       }
     }
@@ -65,12 +65,12 @@ static dea_status allocate_points(struct dea_context *ctx, const struct dea_soli
   const struct dea_solid_problem *p = &s->problem;
   struct dea_arena *memory = &h->memory;
   memory->ctx = ctx;
-  h->branches = dea_arena_alloc(memory, p->constituent_count, sizeof *h->branches);
-  h->steps = dea_arena_alloc(memory, p->constituent_count, sizeof *h->steps);
-  h->b_Pa = dea_arena_alloc(memory, p->constituent_count, sizeof *h->b_Pa);
+  h->branches = dea_arena_alloc(memory, p->part_material_count, sizeof *h->branches);
+  h->steps = dea_arena_alloc(memory, p->part_material_count, sizeof *h->steps);
+  h->b_Pa = dea_arena_alloc(memory, p->part_material_count, sizeof *h->b_Pa);
   h->first = dea_arena_alloc(memory, p->grid->element_count, sizeof *h->first);
   DEA_TRY(ctx, dea_arena_status(memory));
-  memcpy(h->branches, branches, p->constituent_count * sizeof *branches);
+  memcpy(h->branches, branches, p->part_material_count * sizeof *branches);
   size_t points = place_points(s, h);
   h->B = dea_arena_alloc(memory, points + 1, TENSOR_BYTES);
   h->inverse = dea_arena_alloc(memory, points + 1, TENSOR_BYTES);
@@ -106,16 +106,16 @@ void dea_internal_variables_destroy(struct dea_context *ctx, struct dea_internal
 
 /* ---- steps ---- */
 
-struct dea_constituent dea_solid_constituent_at(const struct dea_solid *s, size_t e)
+struct dea_part_material dea_solid_part_material_at(const struct dea_solid *s, size_t e)
 {
   const struct dea_internal_variables *h = s->state.internal_variables;
-  struct dea_constituent constituent = *dea_solid_constituent(s, e);
-  constituent.kappa_Pa = dea_solid_bulk_modulus(s, e);
+  struct dea_part_material part_material = *dea_solid_part_material(s, e);
+  part_material.kappa_Pa = dea_solid_bulk_modulus(s, e);
   if (h != NULL && h->first[e] != ELASTIC) {
-    constituent.viscous = h->B + 6 * h->first[e];
-    constituent.viscous_Pa = h->b_Pa[s->problem.constituent_of[e]];
+    part_material.viscous = h->B + 6 * h->first[e];
+    part_material.viscous_Pa = h->b_Pa[s->problem.part_material_of[e]];
   }
-  return constituent;
+  return part_material;
 }
 
 /* B of the points of an element. */
@@ -138,7 +138,7 @@ void dea_internal_variables_begin(struct dea_internal_variables *h, const struct
                                   double step_s)
 {
   const struct dea_solid_problem *p = &s->problem;
-  for (size_t l = 0; l < p->constituent_count; l++) {
+  for (size_t l = 0; l < p->part_material_count; l++) {
     const struct dea_branches *branches = &h->branches[l];
     struct dea_branch_step *steps = h->steps[l];
     h->b_Pa[l] = 0;
@@ -147,7 +147,7 @@ void dea_internal_variables_begin(struct dea_internal_variables *h, const struct
       h->b_Pa[l] += branches->branch[i].modulus_Pa * (steps[i].end.e + steps[i].end.w0);
     }
     for (size_t e = 0; e < p->grid->element_count; e++) {
-      if ((size_t)p->constituent_of[e] == l && branches->count > 0) {
+      if ((size_t)p->part_material_of[e] == l && branches->count > 0) {
         begin_element(h, h->first[e], (size_t)dea_solid_element(s, e)->points, branches, steps);
       }
     }
@@ -170,8 +170,8 @@ dea_status dea_internal_variables_energy(const struct dea_internal_variables *h,
     }
     for (int q = 0; q < dea_solid_element(s, e)->points; q++) {
       const double *B = h->B + 6 * (h->first[e] + (size_t)q);
-      *energy_J +=
-          strains.volume_m3[q] * dea_viscous_energy(B, h->b_Pa[p->constituent_of[e]], strains.C[q]);
+      *energy_J += strains.volume_m3[q] *
+                   dea_viscous_energy(B, h->b_Pa[p->part_material_of[e]], strains.C[q]);
     }
   }
   return DEA_OK;
@@ -200,7 +200,7 @@ dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_inte
   dea_status status = DEA_OK;
   *out = (struct dea_solid_branch_energies){0};
   for (size_t e = 0; e < p->grid->element_count && status == DEA_OK; e++) {
-    const struct dea_branches *branches = &h->branches[p->constituent_of[e]];
+    const struct dea_branches *branches = &h->branches[p->part_material_of[e]];
     struct dea_element_strains strains;
     if (h->first[e] == ELASTIC) {
       continue;
@@ -209,7 +209,7 @@ dea_status dea_internal_variables_close(struct dea_context *ctx, struct dea_inte
     for (int q = 0; q < dea_solid_element(s, e)->points && status == DEA_OK; q++) {
       size_t at = h->first[e] + (size_t)q;
       memcpy(h->inverse_next[at], strains.inverse[q], TENSOR_BYTES);
-      add_energies(h, at, branches, h->steps[p->constituent_of[e]], strains.C[q],
+      add_energies(h, at, branches, h->steps[p->part_material_of[e]], strains.C[q],
                    strains.volume_m3[q], out);
     }
   }
@@ -221,8 +221,8 @@ void dea_internal_variables_accept(struct dea_internal_variables *h, const struc
 {
   const struct dea_solid_problem *p = &s->problem;
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    const struct dea_branches *branches = &h->branches[p->constituent_of[e]];
-    const struct dea_branch_step *steps = h->steps[p->constituent_of[e]];
+    const struct dea_branches *branches = &h->branches[p->part_material_of[e]];
+    const struct dea_branch_step *steps = h->steps[p->part_material_of[e]];
     size_t from = h->first[e],
            to = from != ELASTIC ? from + (size_t)dea_solid_element(s, e)->points : from;
     for (size_t at = from; at < to; at++) {

@@ -27,7 +27,7 @@ struct dea_internal_variables {
 };
 
 /* What an element is of, with its kappa and the step of its branches. */
-struct dea_constituent dea_solid_constituent_at(const struct dea_solid *solid, size_t e);
+struct dea_part_material dea_solid_part_material_at(const struct dea_solid *solid, size_t e);
 
 /* branches: [constituent_count of the solid]. The film was held as it is for long: A = C^-1. out:
  * owned by the caller, NULL on failure. */

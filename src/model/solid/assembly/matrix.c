@@ -325,7 +325,7 @@ static dea_status factor_failure(struct dea_context *ctx, Mat factor, MatFactorE
     return DEA_OK;
   case MAT_FACTOR_OUTMEMORY:
     return dea_fail(ctx, DEA_E_MEMORY,
-                    "the factors of the tangent find no room in memory: take a coarser mesh");
+                    "out of memory while factorising the stiffness matrix: take a coarser mesh");
   case MAT_FACTOR_STRUCT_ZEROPIVOT:
   case MAT_FACTOR_NUMERIC_ZEROPIVOT:
     return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the tangent is singular");
@@ -365,11 +365,12 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
   DEA_TRY(ctx, heed_before_factor(ctx));
-  for (PetscInt room = ROOM; room <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY; room *= 2) {
-    if (room > ROOM) {
+  for (PetscInt capacity = ROOM; capacity <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY;
+       capacity *= 2) {
+    if (capacity > ROOM) {
       MatDestroy(factor); // PETSc takes no second attempt with it
     }
-    status = try_factor(ctx, A, room, factor, &error);
+    status = try_factor(ctx, A, capacity, factor, &error);
     if (status != DEA_OK) {
       break;
     }
@@ -514,7 +515,7 @@ dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid
   dea_solid_frame_vector(s, true, out);
   if (s->problem.body_count > 0) {
     dea_solid_bodies_prepare(s);
-    dea_solid_bodies_carry(s, out);
+    dea_solid_bodies_transfer(s, out);
   }
   return DEA_OK;
 }

@@ -26,10 +26,10 @@ static bool has_potential(const struct dea_solid *s, size_t e)
 static void set_scale(const struct dea_solid *s, size_t count, struct dea_solid_field *field)
 {
   for (size_t i = 0; i < count && field->permittivity == 0; i++) {
-    const struct dea_constituent *l = &s->problem.constituents[i];
+    const struct dea_part_material *l = &s->problem.part_materials[i];
     if (l->permittivity_F_per_m > 0) {
       field->permittivity = l->permittivity_F_per_m;
-      field->scale_V_per_m = sqrt(dea_constituent_modulus(l) / l->permittivity_F_per_m);
+      field->scale_V_per_m = sqrt(dea_part_material_modulus(l) / l->permittivity_F_per_m);
     }
   }
 }
@@ -76,9 +76,9 @@ dea_status dea_solid_field_create(struct dea_context *ctx, struct dea_solid *s,
   p->field->share = dea_arena_alloc(&s->memory, nodes, sizeof(double));
   p->field->right = dea_arena_alloc(&s->memory, nodes, sizeof(double));
   DEA_TRY(ctx, dea_arena_status(&s->memory));
-  set_scale(s, options->constituent_count, p->field);
-  for (size_t i = 0; i < options->constituent_count; i++) {
-    if (p->constituents[i].permittivity_slope_F_per_m != 0) {
+  set_scale(s, options->part_material_count, p->field);
+  for (size_t i = 0; i < options->part_material_count; i++) {
+    if (p->part_materials[i].permittivity_slope_F_per_m != 0) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "a coupled field needs a constant permittivity");
     }
   }
@@ -123,7 +123,8 @@ static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, siz
   const unsigned char *held = p->held + 3 * p->grid->node_count;
   PetscInt rows[DEA_HEX_NODES_MAX];
   const struct dea_element *element = dea_solid_element(s, e);
-  const struct dea_element_input in = {.constituent = dea_solid_constituent(s, e), .X = X, .u = at};
+  const struct dea_element_input in = {
+      .part_material = dea_solid_part_material(s, e), .X = X, .u = at};
   int count = element->nodes;
   dea_solid_gather(s, e, p->grid->X, X);
   dea_solid_gather(s, e, u, at);

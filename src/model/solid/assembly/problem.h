@@ -29,11 +29,11 @@ struct dea_solid_problem {
   int per_node;                // unknowns of a node: 3, or 4 with a potential
   size_t dofs;                 // per_node * nodes
 
-  struct dea_element_set elements;            // all kinds at the orders of the grid
-  enum dea_element_kind *kind;                // [elements] by dea_solid_set_kinds
-  const struct dea_constituent *constituents; // [constituent_count]
-  size_t constituent_count;
-  int *constituent_of; // [elements] place in constituents
+  struct dea_element_set elements;                // all kinds at the orders of the grid
+  enum dea_element_kind *kind;                    // [elements] by dea_solid_set_kinds
+  const struct dea_part_material *part_materials; // [constituent_count]
+  size_t part_material_count;
+  int *part_material_of; // [elements] place in constituents
   int *laminate;     // [elements] the next one above in the same column, which it is bonded to, of
                      // the last the first; by dea_solid_find_laminates
   int (*between)[2]; // [elements] channels at its top and bottom; 0, 0 without electrodes
@@ -120,7 +120,7 @@ struct dea_solid_work {
   double *trial;        // [dofs] displacements that are tried
   double *g;            // [dofs] residual forces [N], 0 at held components, by dea_solid_assemble
   double *step;         // [dofs] of Newton's method [m]
-  double *foreseen;     // [dofs] the first linear step of a way [m], by dea_solid_foresee
+  double *extrapolated; // [dofs] the first linear step of a way [m], by dea_solid_predict_tangent
   double *increment;    // [dofs] how far held components go in the next linear step [m], else 0;
                         // by dea_solid_controls_increment
   bool takes_increment; // the next assembly adds K times it to g
@@ -155,8 +155,8 @@ struct dea_solid_found {
   bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite
   bool stiff_factor_fits;  // it is so of K with the raised kappa; until the next factor
   bool factor_before;      // either is of the state before the last step to this one
-  bool foresees, foreseen; // work.foreseen is to be found; it is there
-  double foreseen_V;       // where it leads
+  bool predicts_tangent, extrapolated; // work.foreseen is to be found; it is there
+  double extrapolated_V;               // where it leads
 };
 
 struct dea_solid {
@@ -193,16 +193,16 @@ static inline const struct dea_element *dea_solid_element(const struct dea_solid
 }
 
 /* What an element is of. */
-static inline const struct dea_constituent *dea_solid_constituent(const struct dea_solid *s,
-                                                                  size_t e)
+static inline const struct dea_part_material *dea_solid_part_material(const struct dea_solid *s,
+                                                                      size_t e)
 {
-  return &s->problem.constituents[s->problem.constituent_of[e]];
+  return &s->problem.part_materials[s->problem.part_material_of[e]];
 }
 
 /* kappa of an element as it is [Pa]. */
 static inline double dea_solid_bulk_modulus(const struct dea_solid *s, size_t e)
 {
-  return s->state.bulk_factor * dea_solid_constituent(s, e)->kappa_Pa;
+  return s->state.bulk_factor * dea_solid_part_material(s, e)->kappa_Pa;
 }
 
 /* Whether a channel has a voltage beside its share. */

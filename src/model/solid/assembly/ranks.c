@@ -52,11 +52,12 @@ static dea_status start_blas(struct dea_context *ctx)
   static const size_t work_space = (size_t)128 << 20;
   double matrix[] = {2, 1, 1, 1, 2, 1, 1, 1, 2}, values[3];
   // not malloc, which under Open MPI keeps what it is given back
-  void *room = mmap(NULL, work_space, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (room == MAP_FAILED) {
+  void *capacity =
+      mmap(NULL, work_space, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (capacity == MAP_FAILED) {
     return dea_fail(ctx, DEA_E_MEMORY, "out of memory: the work space of BLAS has no room");
   }
-  munmap(room, work_space);
+  munmap(capacity, work_space);
   return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', 3, matrix, 3, values) == 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_MEMORY, "out of memory: LAPACK cannot be started");

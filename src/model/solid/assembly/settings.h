@@ -68,10 +68,12 @@
   X(double, approach_unit, 0.1, "of the displacement on the way", "counts as much as all of it")   \
   X(double, approach_step, 0.5, "of the way or of that displacement", "first step on it")          \
   X(double, approach_step_most, 4, "of the way or of that displacement", "longest step")           \
-  X(double, astray, 1, "of what the tangent foresees", "off it, at most, up to a limit point")     \
+  X(double, left_branch, 1, "of what the tangent foresees",                                        \
+    "off it, at most, up to a limit point")                                                        \
   X(double, limit_close, 0.1, "of the displacement", "to a state that lies beyond a limit point")  \
-  X(double, leap_way, 1e-3, "of the way", "to a limit point that the path does not get around")    \
-  X(double, leap_jump, 0.25, "of the whole", "motion that is left there, at least")                \
+  X(double, branch_jump_way, 1e-3, "of the way",                                                   \
+    "to a limit point that the path does not get around")                                          \
+  X(double, branch_jump_jump, 0.25, "of the whole", "motion that is left there, at least")         \
   X(int, descent_modes, 4, "1", "unstable modes that are left one after the other")                \
   X(double, descent_push, 0.05, "of the solid's length", "first push along a mode")                \
   X(double, descent_equal, 1e-6, "of the fall", "energies of two sides that count as equal")       \

@@ -22,7 +22,7 @@ static void find_sizes(struct dea_solid *s)
   double squares = 0, extent[3];
   p->modulus_Pa = INFINITY;
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    double modulus = dea_constituent_modulus(dea_solid_constituent(s, e));
+    double modulus = dea_part_material_modulus(dea_solid_part_material(s, e));
     double volume_m3 = dea_solid_volume_of(s, e); // an inverted one: dea_solid_check speaks of it
     squares += modulus * modulus * volume_m3 * volume_m3;
     p->modulus_Pa = fmin(p->modulus_Pa, modulus);
@@ -50,20 +50,22 @@ static dea_status allocate(struct dea_solid *s, const struct dea_solid_options *
   struct dea_solid_problem *p = &s->problem;
   struct dea_arena *memory = &s->memory;
   size_t elements = p->grid->element_count, pressures = (size_t)p->elements.pressures;
-  double **const of_dofs[] = {
-      &s->state.u, &s->state.force, &s->state.force_goal, &s->state.u_goal,  &s->work.trial,
-      &s->work.g,  &s->work.step,   &s->work.increment,   &s->work.foreseen, &s->found.reaction};
+  double **const of_dofs[] = {&s->state.u,       &s->state.force,    &s->state.force_goal,
+                              &s->state.u_goal,  &s->work.trial,     &s->work.g,
+                              &s->work.step,     &s->work.increment, &s->work.extrapolated,
+                              &s->found.reaction};
   for (size_t i = 0; i < sizeof of_dofs / sizeof of_dofs[0]; i++) {
     *of_dofs[i] = dea_arena_alloc(memory, p->dofs, sizeof(double));
   }
-  struct dea_constituent *constituents =
-      dea_arena_alloc(memory, options->constituent_count, sizeof *constituents);
-  if (constituents != NULL) {
-    memcpy(constituents, options->constituents, options->constituent_count * sizeof *constituents);
+  struct dea_part_material *part_materials =
+      dea_arena_alloc(memory, options->part_material_count, sizeof *part_materials);
+  if (part_materials != NULL) {
+    memcpy(part_materials, options->part_materials,
+           options->part_material_count * sizeof *part_materials);
   }
-  p->constituents = constituents;
-  p->constituent_count = options->constituent_count;
-  p->constituent_of = dea_arena_alloc(memory, elements, sizeof *p->constituent_of);
+  p->part_materials = part_materials;
+  p->part_material_count = options->part_material_count;
+  p->part_material_of = dea_arena_alloc(memory, elements, sizeof *p->part_material_of);
   p->kind = dea_arena_alloc(memory, elements, sizeof *p->kind);
   p->held = dea_arena_alloc(memory, p->dofs, sizeof *p->held);
   s->state.multiplier = dea_arena_alloc(memory, elements * pressures, sizeof(double));
@@ -82,8 +84,9 @@ static dea_status fill_solid(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, allocate(s, options));
   for (size_t e = 0; e < grid->element_count; e++) {
     int region = grid->region[e], ply = grid->ply[e];
-    p->constituent_of[e] =
-        options->constituent_of != NULL ? options->constituent_of(options->self, region, ply) : 0;
+    p->part_material_of[e] = options->part_material_of != NULL
+                                 ? options->part_material_of(options->self, region, ply)
+                                 : 0;
   }
   DEA_TRY(ctx, dea_solid_channels_create(ctx, s, options));
   DEA_TRY(ctx, dea_solid_bodies_create(ctx, s, options));

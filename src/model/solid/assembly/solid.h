@@ -34,11 +34,11 @@ struct dea_solid_body {
 struct dea_solid_options {
   int order_z;
   enum dea_solid_field_kind field;
-  size_t constituent_count;
-  const struct dea_constituent *constituents; // copied
+  size_t part_material_count;
+  const struct dea_part_material *part_materials; // copied
   /* Constituent of an element (NULL: the first of all), and whether it lies between electrodes
    * (NULL: none does; with a coupled field: for what fields and extremes report by V/h). */
-  int (*constituent_of)(const void *self, int region, int ply);
+  int (*part_material_of)(const void *self, int region, int ply);
   bool (*active)(const void *self, int region, int ply);
   /* Channels (docs/theory/devices.md) at the top and the bottom of an active element, each 0
    * (ground) to channel_count; NULL: the one channel at its top, ground at its bottom. Not for a

@@ -10,7 +10,7 @@
 
 #include "base/context.h"
 #include "model/solid/element/element_list.h"
-#include "model/solid/point/constituent.h"
+#include "model/solid/point/part_material.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -44,7 +44,7 @@ struct dea_element_set {
 
 /* One element, as it is asked for something. All is lent. */
 struct dea_element_input {
-  const struct dea_constituent *constituent;
+  const struct dea_part_material *part_material;
   const double *X, *u;      // [nodes][3]
   const double *multiplier; // [pressures] p_k [Pa]
   const double *potential;  // [nodes] psi; of a kind with a potential
@@ -113,7 +113,7 @@ struct dea_element_type {
   size_t basis_size;
   dea_status (*create)(int order, int order_z, struct dea_element *out); // all but type and basis
   /* Whether it can be of that: DEA_OK, or DEA_E_UNSUPPORTED and `takes` says what it can be of. */
-  dea_status (*check)(const struct dea_constituent *constituent);
+  dea_status (*check)(const struct dea_part_material *part_material);
   const char *takes;
   /* Energy and, up to the order, g and K; theta and volume always. */
   dea_status (*evaluate)(const struct dea_element *e, const struct dea_element_input *in,
@@ -132,11 +132,12 @@ struct dea_element_type {
                            double *b, double *L);
   /* Consistent mass between nodes int rho N_a N_b [kg], the same for each component of the
    * displacement (docs/theory/vibration.md). [nodes][nodes] */
-  dea_status (*mass)(const struct dea_element *e, const struct dea_constituent *constituent,
+  dea_status (*mass)(const struct dea_element *e, const struct dea_part_material *part_material,
                      const double *X, double *mass);
   /* That matrix times motions v [nodes][3], without making it; out: [nodes][3]. */
-  dea_status (*mass_times)(const struct dea_element *e, const struct dea_constituent *constituent,
-                           const double *X, const double *v, double *out);
+  dea_status (*mass_times)(const struct dea_element *e,
+                           const struct dea_part_material *part_material, const double *X,
+                           const double *v, double *out);
   /* v A v + 2 q . B^T v - q . M q / kappa of a small motion with its potentials and pressures, A at
    * the pressures p_k alone, without kappa; and v . mass v [kg of v's unit squared]
    * (docs/theory/gradients.md, "Frequencies"). */
@@ -144,12 +145,12 @@ struct dea_element_type {
                        const struct dea_element_motion *motion, double *stiffness, double *mass);
   /* What a shift of K and a norm of displacements are made of: int grad N_a . grad N_b [m],
    * [nodes][nodes]; and the volume lumped to the nodes [m^3], all positive. */
-  dea_status (*metric)(const struct dea_element *e, const struct dea_constituent *constituent,
+  dea_status (*metric)(const struct dea_element *e, const struct dea_part_material *part_material,
                        const double *X, double *laplace, double *volume);
   /* A stiffness [N/m] of each node, whatever the state, for modes that have none of their own
    * (docs/theory/membrane.md). NULL for a kind without such modes. */
   dea_status (*neutral_stiffness)(const struct dea_element *e,
-                                  const struct dea_constituent *constituent, const double *X,
+                                  const struct dea_part_material *part_material, const double *X,
                                   double *out);
   dea_status (*strains)(const struct dea_element *e, const struct dea_element_input *in,
                         struct dea_element_strains *out);

@@ -198,30 +198,31 @@ static void set_tangent(int q, const double A[81], struct hex_work *work)
 }
 
 /* Pressure of the projected part at a Gauss point. */
-static double pressure_at(const struct dea_hex_shape *s, const struct dea_constituent *constituent,
-                          int q, const double *multiplier, const double *theta)
+static double pressure_at(const struct dea_hex_shape *s,
+                          const struct dea_part_material *part_material, int q,
+                          const double *multiplier, const double *theta)
 {
   double pressure = 0;
   for (int m = 0; m < s->pressures; m++) {
-    pressure += s->pressure[q][m] * (multiplier[m] + constituent->kappa_Pa * theta[m]);
+    pressure += s->pressure[q][m] * (multiplier[m] + part_material->kappa_Pa * theta[m]);
   }
   return pressure;
 }
 
 /* One Gauss point: its energy, and what the sums over the points take. predicted: NULL without. */
 static dea_status evaluate_point(const struct dea_hex_shape *s,
-                                 const struct dea_constituent *constituent, int q, double pressure,
-                                 double field, enum dea_eval_order order, const double *predicted,
-                                 struct hex_work *work, double *energy)
+                                 const struct dea_part_material *part_material, int q,
+                                 double pressure, double field, enum dea_eval_order order,
+                                 const double *predicted, struct hex_work *work, double *energy)
 {
   const struct dea_hex_point *at = &work->points[q];
   struct dea_point point;
-  dea_status status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field,
-                                            order >= DEA_TANGENT, &point);
+  dea_status status = dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field,
+                                              order >= DEA_TANGENT, &point);
   if (status != DEA_OK) {
     return status;
   }
-  dea_viscous_add(constituent, q, at->F, at->cof, at->J, order >= DEA_TANGENT, &point);
+  dea_viscous_add(part_material, q, at->F, at->cof, at->J, order >= DEA_TANGENT, &point);
   *energy += at->weight * point.W;
   if (order >= DEA_FORCE) {
     set_flux(s, q, at->weight, point.P, 0, work);
@@ -231,8 +232,8 @@ static dea_status evaluate_point(const struct dea_hex_shape *s,
     for (int m = 0; m < s->pressures; m++) { // 0 of what takes none
       other += s->pressure[q][m] * predicted[m];
     }
-    dea_constituent_restress(at->F, at->cof, at->J, other, predicted + s->pressures + 6 * q,
-                             &point);
+    dea_part_material_restress(at->F, at->cof, at->J, other, predicted + s->pressures + 6 * q,
+                               &point);
   }
   if (order >= DEA_TANGENT) {
     set_tangent(q, point.A, work);
@@ -289,9 +290,9 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
 {
   struct hex_work work;
   const struct dea_hex_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
-  bool projected = dea_constituent_takes_pressure(constituent);
-  double field = dea_constituent_field(constituent, in->voltage_V);
+  const struct dea_part_material *part_material = in->part_material;
+  bool projected = dea_part_material_takes_pressure(part_material);
+  double field = dea_part_material_field(part_material, in->voltage_V);
   const double *predicted = order >= DEA_TANGENT ? in->predicted : NULL;
   dea_status status = dea_hex_find_points(shape, in->X, in->u, work.points);
   if (status == DEA_OK && projected) {
@@ -303,14 +304,14 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
   }
   for (int m = 0; status == DEA_OK && m < shape->pressures && projected; m++) {
     out->energy_J +=
-        (in->multiplier[m] + 0.5 * constituent->kappa_Pa * out->theta[m]) * work.moment[m];
+        (in->multiplier[m] + 0.5 * part_material->kappa_Pa * out->theta[m]) * work.moment[m];
   }
   work.columns = order >= DEA_TANGENT && projected ? 3 + 3 * shape->pressures : 3;
   for (int q = 0; status == DEA_OK && q < shape->gauss; q++) {
     double pressure =
-        projected ? pressure_at(shape, constituent, q, in->multiplier, out->theta) : 0;
+        projected ? pressure_at(shape, part_material, q, in->multiplier, out->theta) : 0;
     out->volume_m3 += work.points[q].weight;
-    status = evaluate_point(shape, constituent, q, pressure, field, order, predicted, &work,
+    status = evaluate_point(shape, part_material, q, pressure, field, order, predicted, &work,
                             &out->energy_J);
   }
   if (status != DEA_OK || order < DEA_FORCE) {
@@ -321,7 +322,7 @@ dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_
     out->g[i] = work.sums[i / 3 * work.columns + i % 3];
   }
   if (order >= DEA_TANGENT) {
-    set_projected(shape, constituent->kappa_Pa, &work, out->K);
+    set_projected(shape, part_material->kappa_Pa, &work, out->K);
     dea_hex_add_tangent(shape, work.A, out->K);
   }
   return DEA_OK;
@@ -336,7 +337,7 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   size_t count = (size_t)s->pressures, dofs = 3 * (size_t)s->nodes;
   memset(b, 0, count * dofs * sizeof *b);
   memset(L, 0, count * count * sizeof *L);
-  if (!dea_constituent_takes_pressure(in->constituent)) {
+  if (!dea_part_material_takes_pressure(in->part_material)) {
     return DEA_OK;
   }
   dea_status status = dea_hex_find_points(s, in->X, in->u, work.points);
@@ -374,17 +375,17 @@ static double product(const double a[9], const double b[9])
 }
 
 /* H A H of one Gauss point at a pressure, without weight. */
-static dea_status bend_point(const struct dea_constituent *constituent, int q,
+static dea_status bend_point(const struct dea_part_material *part_material, int q,
                              const struct dea_hex_point *at, double pressure, double field,
                              const double H[9], double *out)
 {
   struct dea_point point;
   dea_status status =
-      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, true, &point);
+      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, true, &point);
   if (status != DEA_OK) {
     return status;
   }
-  dea_viscous_add(constituent, q, at->F, at->cof, at->J, true, &point);
+  dea_viscous_add(part_material, q, at->F, at->cof, at->J, true, &point);
   *out = 0;
   for (int a = 0; a < 9; a++) {
     *out += H[a] * product(point.A + 9 * a, H);
@@ -398,9 +399,9 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
                              double *mass)
 {
   const struct dea_hex_shape *s = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
-  const bool projected = dea_constituent_takes_pressure(constituent);
-  const double field = dea_constituent_field(constituent, in->voltage_V);
+  const struct dea_part_material *part_material = in->part_material;
+  const bool projected = dea_part_material_takes_pressure(part_material);
+  const double field = dea_part_material_field(part_material, in->voltage_V);
   dea_status status = DEA_OK;
   *stiffness = *mass = 0;
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
@@ -410,12 +411,12 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
       pressure += s->pressure[q][m] * in->multiplier[m];
       change += s->pressure[q][m] * motion->pressure[m];
     }
-    status = bend_point(constituent, q, &points[q], pressure, field, H[q], &bent);
+    status = bend_point(part_material, q, &points[q], pressure, field, H[q], &bent);
     bent += 2 * change * product(points[q].cof, H[q]);
-    bent -= change != 0 ? change * change / constituent->kappa_Pa : 0;
+    bent -= change != 0 ? change * change / part_material->kappa_Pa : 0;
     *stiffness += weight * bent;
     dea_element_at(s->nodes, s->value[q], motion->v, here);
-    *mass += constituent->density_kg_per_m3 * weight *
+    *mass += part_material->density_kg_per_m3 * weight *
              (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
   }
   return status;
@@ -468,7 +469,7 @@ static void solve_moments(const struct dea_hex_shape *s,
 }
 
 /* S + share F^-1 (dP - H S) at a point: dS of dP = H S + F dS. */
-static dea_status predict_point(const struct dea_constituent *constituent, int q,
+static dea_status predict_point(const struct dea_part_material *part_material, int q,
                                 const struct dea_hex_point *at, double pressure,
                                 double pressure_change, double field, const double H[9],
                                 double share, double out[6])
@@ -476,12 +477,12 @@ static dea_status predict_point(const struct dea_constituent *constituent, int q
   struct dea_point point;
   double S[9], dP[9], dS[9];
   dea_status status =
-      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, field, true, &point);
+      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, true, &point);
   if (status != DEA_OK) {
     return status;
   }
-  dea_viscous_add(constituent, q, at->F, at->cof, at->J, true, &point);
-  dea_constituent_second_stress(at->cof, at->J, point.P, S);
+  dea_viscous_add(part_material, q, at->F, at->cof, at->J, true, &point);
+  dea_part_material_second_stress(at->cof, at->J, point.P, S);
   for (int i = 0; i < 3; i++) {
     for (int B = 0; B < 3; B++) {
       int a = 3 * i + B;
@@ -491,7 +492,7 @@ static dea_status predict_point(const struct dea_constituent *constituent, int q
       }
     }
   }
-  dea_constituent_second_stress(at->cof, at->J, dP, dS);
+  dea_part_material_second_stress(at->cof, at->J, dP, dS);
   for (int a = 0; a < 9; a++) {
     S[a] += share * dS[a];
   }
@@ -509,10 +510,10 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX] = {0}, change[DEA_HEX_PRESSURES_MAX] = {0};
   const struct dea_hex_shape *s = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
+  const struct dea_part_material *part_material = in->part_material;
   const double *multiplier = in->multiplier;
-  double field = dea_constituent_field(constituent, in->voltage_V);
-  bool projected = dea_constituent_takes_pressure(constituent);
+  double field = dea_part_material_field(part_material, in->voltage_V);
+  bool projected = dea_part_material_takes_pressure(part_material);
   dea_status status = dea_hex_kinematics(s, in->X, in->u, gradient, points);
   if (status == DEA_OK && projected) {
     status = dea_hex_project(s, points, factor, moment, theta);
@@ -527,7 +528,7 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
   if (status == DEA_OK && projected) {
     solve_moments(s, factor, change);
   }
-  double kappa = projected ? constituent->kappa_Pa : 0;
+  double kappa = projected ? part_material->kappa_Pa : 0;
   for (int m = 0; m < s->pressures; m++) {
     predicted[m] = projected ? multiplier[m] + kappa * (theta[m] + share * change[m]) : 0;
   }
@@ -537,7 +538,7 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
       pressure += s->pressure[q][m] * (multiplier[m] + kappa * theta[m]);
       pressure_change += s->pressure[q][m] * kappa * change[m];
     }
-    status = predict_point(constituent, q, &points[q], pressure, pressure_change, field, H[q],
+    status = predict_point(part_material, q, &points[q], pressure, pressure_change, field, H[q],
                            share, predicted + s->pressures + 6 * q);
   }
   return status;
@@ -546,7 +547,8 @@ dea_status dea_hex_predict(const struct dea_element *element, const struct dea_e
 /* ---- mass and metric ---- */
 
 dea_status dea_hex_mass(const struct dea_element *element,
-                        const struct dea_constituent *constituent, const double *X, double *mass)
+                        const struct dea_part_material *part_material, const double *X,
+                        double *mass)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
@@ -554,14 +556,14 @@ dea_status dea_hex_mass(const struct dea_element *element,
   dea_status status = dea_hex_find_points(s, X, rest, points);
   memset(mass, 0, (size_t)(s->nodes * s->nodes) * sizeof *mass);
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
-    double kilograms = constituent->density_kg_per_m3 * points[q].weight;
+    double kilograms = part_material->density_kg_per_m3 * points[q].weight;
     dea_element_add_mass(s->nodes, kilograms, s->value[q], mass);
   }
   return status;
 }
 
 dea_status dea_hex_mass_times(const struct dea_element *element,
-                              const struct dea_constituent *constituent, const double *X,
+                              const struct dea_part_material *part_material, const double *X,
                               const double *v, double *out)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
@@ -570,21 +572,21 @@ dea_status dea_hex_mass_times(const struct dea_element *element,
   dea_status status = dea_hex_find_points(s, X, rest, points);
   memset(out, 0, (size_t)(3 * s->nodes) * sizeof *out);
   for (int q = 0; q < s->gauss && status == DEA_OK; q++) {
-    double kilograms = constituent->density_kg_per_m3 * points[q].weight;
+    double kilograms = part_material->density_kg_per_m3 * points[q].weight;
     dea_element_add_mass_times(s->nodes, kilograms, s->value[q], v, out);
   }
   return status;
 }
 
 dea_status dea_hex_metric(const struct dea_element *element,
-                          const struct dea_constituent *constituent, const double *X,
+                          const struct dea_part_material *part_material, const double *X,
                           double *laplace, double *volume)
 {
   static const double rest[DEA_HEX_DOFS_MAX] = {0};
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX], whole = 0, sum = 0;
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   const struct dea_hex_shape *s = element->basis;
-  (void)constituent;
+  (void)part_material;
   dea_status status = dea_hex_kinematics(s, X, rest, gradient, points);
   if (status != DEA_OK) {
     return status;
@@ -619,7 +621,7 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
                                   struct dea_membrane_state *out)
 {
   const struct dea_hex_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
+  const struct dea_part_material *part_material = in->part_material;
   struct dea_hex_point state[DEA_HEX_GAUSS_MAX];
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
@@ -634,16 +636,16 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
       struct dea_point point;
       const struct dea_hex_point *at = &state[q];
       double w = shape->weight[q];
-      double pressure = pressure_at(shape, constituent, q, in->multiplier, theta);
-      status =
-          dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
-                                dea_constituent_field(constituent, in->voltage_V), false, &point);
+      double pressure = pressure_at(shape, part_material, q, in->multiplier, theta);
+      status = dea_part_material_point(part_material, at->F, at->cof, at->J, pressure,
+                                       dea_part_material_field(part_material, in->voltage_V), false,
+                                       &point);
       if (status == DEA_OK) {
-        dea_viscous_add(constituent, q, at->F, at->cof, at->J, false, &point);
+        dea_viscous_add(part_material, q, at->F, at->cof, at->J, false, &point);
       }
       for (int i = 0; i < 3; i++) {
-        N[2 * i] += w * constituent->thickness_m * point.P[3 * i];
-        N[2 * i + 1] += w * constituent->thickness_m * point.P[3 * i + 1];
+        N[2 * i] += w * part_material->thickness_m * point.P[3 * i];
+        N[2 * i + 1] += w * part_material->thickness_m * point.P[3 * i + 1];
       }
       for (int a = 0; a < 9; a++) {
         F[a] += w * at->F[a];
@@ -736,40 +738,40 @@ static void coupled_field(const struct dea_hex_shape *s, double gradient[3][DEA_
 
 /* P, all of it, and the field at J = 1. E: of a coupled field, NULL for a thin film with
  * thin_V_per_m. */
-static dea_status total_stress(const struct dea_constituent *constituent,
+static dea_status total_stress(const struct dea_part_material *part_material,
                                const struct dea_hex_point *at, double pressure, double thin_V_per_m,
                                const double *E, double P[9], double *field)
 {
   struct dea_point point;
-  dea_status status = dea_constituent_point(constituent, at->F, at->cof, at->J, pressure,
-                                            E == NULL ? thin_V_per_m : 0, false, &point);
+  dea_status status = dea_part_material_point(part_material, at->F, at->cof, at->J, pressure,
+                                              E == NULL ? thin_V_per_m : 0, false, &point);
   if (status != DEA_OK) {
     return status;
   }
   const double *c = at->cof;
   memcpy(P, point.P, 9 * sizeof *P);
-  *field = E != NULL ? add_electric(constituent->permittivity_F_per_m, at, E, P)
+  *field = E != NULL ? add_electric(part_material->permittivity_F_per_m, at, E, P)
                      : fabs(thin_V_per_m) * sqrt(c[2] * c[2] + c[5] * c[5] + c[8] * c[8]);
   return DEA_OK;
 }
 
 /* Values of one Gauss point, and P for the membrane force, as total_stress has it. */
-static dea_status recover_point(const struct dea_constituent *constituent,
+static dea_status recover_point(const struct dea_part_material *part_material,
                                 const struct dea_hex_point *at, double pressure,
                                 double thin_V_per_m, const double *E, double values[DEA_FIT_VALUES],
                                 double P[9])
 {
   struct dea_point point;
   dea_status status =
-      dea_constituent_point(constituent, at->F, at->cof, at->J, pressure, 0, false, &point);
+      dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, 0, false, &point);
   values[15] = point.W; // elastic alone: without the terms of pressure
   double slope, curvature;
-  values[15] -= constituent->p0_Pa * (at->J - 1) +
-                dea_constituent_pointwise(constituent, at->J, &slope, &curvature);
+  values[15] -= part_material->p0_Pa * (at->J - 1) +
+                dea_part_material_pointwise(part_material, at->J, &slope, &curvature);
   memcpy(P, point.P, sizeof point.P);
   values[16] = 0;
   if (status == DEA_OK && (E != NULL || thin_V_per_m != 0)) {
-    status = total_stress(constituent, at, pressure, thin_V_per_m, E, P, &values[16]);
+    status = total_stress(part_material, at, pressure, thin_V_per_m, E, P, &values[16]);
   }
   if (status == DEA_OK) {
     memcpy(values, at->F, sizeof at->F);
@@ -811,19 +813,19 @@ static dea_status find_state(const struct dea_element *element, const struct dea
                              struct hex_points *out)
 {
   const struct dea_hex_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
+  const struct dea_part_material *part_material = in->part_material;
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
   out->coupled = element->type->per_node > 3;
-  out->thin_V_per_m = out->coupled ? 0 : dea_constituent_field(constituent, in->voltage_V);
+  out->thin_V_per_m = out->coupled ? 0 : dea_part_material_field(part_material, in->voltage_V);
   dea_status status = out->coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, out->at)
                                    : dea_hex_find_points(shape, in->X, in->u, out->at);
   if (status == DEA_OK) {
     status = dea_hex_project(shape, out->at, factor, moment, theta);
   }
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    out->pressure[q] = pressure_at(shape, constituent, q, in->multiplier, theta);
+    out->pressure[q] = pressure_at(shape, part_material, q, in->multiplier, theta);
     if (out->coupled) {
       coupled_field(shape, gradient[q], in->potential, in->potential_V_per_m, out->E[q]);
     }
@@ -841,8 +843,9 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
   out->volume_m3 = out->volume_error = 0;
   dea_status status = find_state(element, in, &points);
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
-    status = recover_point(in->constituent, &points.at[q], points.pressure[q], points.thin_V_per_m,
-                           points.coupled ? points.E[q] : NULL, values[q], P[q]);
+    status =
+        recover_point(in->part_material, &points.at[q], points.pressure[q], points.thin_V_per_m,
+                      points.coupled ? points.E[q] : NULL, values[q], P[q]);
     out->volume_m3 += points.at[q].weight;
     out->volume_error = fmax(out->volume_error, fabs(points.at[q].J - 1));
   }
@@ -869,7 +872,7 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
     out->J[q] = at->J;
     out->pressure[q] = points.pressure[q];
     if (stress) {
-      status = total_stress(in->constituent, at, points.pressure[q], points.thin_V_per_m,
+      status = total_stress(in->part_material, at, points.pressure[q], points.thin_V_per_m,
                             points.coupled ? points.E[q] : NULL, out->P[q], &field);
     }
   }
@@ -888,9 +891,9 @@ dea_status dea_hex_create(int order, int order_z, struct dea_element *out)
   return status;
 }
 
-dea_status dea_hex_check(const struct dea_constituent *constituent)
+dea_status dea_hex_check(const struct dea_part_material *part_material)
 {
-  (void)constituent;
+  (void)part_material;
   return DEA_OK;
 }
 

@@ -48,7 +48,7 @@ dea_status dea_hex_project(const struct dea_hex_shape *shape, const struct dea_h
 
 /* What the hexahedron can do (element.h), for the kinds that go on from it. */
 dea_status dea_hex_create(int order, int order_z, struct dea_element *out);
-dea_status dea_hex_check(const struct dea_constituent *constituent);
+dea_status dea_hex_check(const struct dea_part_material *part_material);
 dea_status dea_hex_evaluate(const struct dea_element *element, const struct dea_element_input *in,
                             enum dea_eval_order order, struct dea_element_result *out);
 dea_status dea_hex_constraint(const struct dea_element *element, const struct dea_element_input *in,
@@ -56,9 +56,10 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
 dea_status dea_hex_predict(const struct dea_element *element, const struct dea_element_input *in,
                            const double *step, double share, bool stresses, double *predicted);
 dea_status dea_hex_mass(const struct dea_element *element,
-                        const struct dea_constituent *constituent, const double *X, double *mass);
+                        const struct dea_part_material *part_material, const double *X,
+                        double *mass);
 dea_status dea_hex_mass_times(const struct dea_element *element,
-                              const struct dea_constituent *constituent, const double *X,
+                              const struct dea_part_material *part_material, const double *X,
                               const double *v, double *out);
 /* element->type->motion, but for a potential, with what dea_hex_find_motion has found. */
 dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea_element_input *in,
@@ -66,7 +67,7 @@ dea_status dea_hex_motion_at(const struct dea_element *element, const struct dea
                              const struct dea_hex_point *points, double (*H)[9], double *stiffness,
                              double *mass);
 dea_status dea_hex_metric(const struct dea_element *element,
-                          const struct dea_constituent *constituent, const double *X,
+                          const struct dea_part_material *part_material, const double *X,
                           double *laplace, double *volume);
 dea_status dea_hex_strains(const struct dea_element *element, const struct dea_element_input *in,
                            struct dea_element_strains *out);

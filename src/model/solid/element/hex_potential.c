@@ -160,7 +160,7 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   struct field_work work;
-  double eps = in->constituent->permittivity_F_per_m;
+  double eps = in->part_material->permittivity_F_per_m;
   struct dea_element_input elastic = *in;
   elastic.voltage_V = 0;
   dea_status status = dea_hex_evaluate(element, &elastic, order, out);
@@ -227,7 +227,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
                          const struct dea_element_motion *motion, double *stiffness, double *mass)
 {
   const struct dea_hex_shape *shape = element->basis;
-  const double c = in->potential_V_per_m, eps = in->constituent->permittivity_F_per_m;
+  const double c = in->potential_V_per_m, eps = in->part_material->permittivity_F_per_m;
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX], H[DEA_HEX_GAUSS_MAX][9];
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   struct dea_element_input elastic = *in;
@@ -270,7 +270,7 @@ static dea_status capacity(const struct dea_element *element, const struct dea_e
     }
   }
   cblas_dgemm(CblasRowMajor, CblasTrans, CblasNoTrans, shape->nodes, shape->nodes, 3 * shape->gauss,
-              in->constituent->permittivity_F_per_m, B[0], DEA_HEX_NODES_MAX, B[0],
+              in->part_material->permittivity_F_per_m, B[0], DEA_HEX_NODES_MAX, B[0],
               DEA_HEX_NODES_MAX, 0, L, shape->nodes);
   return DEA_OK;
 }

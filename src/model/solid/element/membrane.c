@@ -122,14 +122,14 @@ static void add_tangent(int nodes, double weight, const double A[36],
 
 /* Where the film has no tension its place has no stiffness across: the tangent gets a little of it,
  * so that what moves there moves evenly. It belongs to no force. */
-static dea_status point_at(const struct dea_constituent *constituent, int q, const double F[6],
+static dea_status point_at(const struct dea_part_material *part_material, int q, const double F[6],
                            double field_V_per_m, struct dea_membrane_point *out)
 {
   static const double little = 1e-6; // of the modulus
-  const double *B = constituent->viscous != NULL ? constituent->viscous + 6 * q : NULL;
-  dea_status status = dea_membrane_point_in_time(constituent, B, F, field_V_per_m, out);
+  const double *B = part_material->viscous != NULL ? part_material->viscous + 6 * q : NULL;
+  dea_status status = dea_membrane_point_in_time(part_material, B, F, field_V_per_m, out);
   for (int a = 0; a < 6 && status == DEA_OK && out->state != DEA_TAUT; a++) {
-    out->A[7 * a] += little * dea_constituent_modulus(constituent);
+    out->A[7 * a] += little * dea_part_material_modulus(part_material);
   }
   return status;
 }
@@ -138,9 +138,9 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
                            enum dea_eval_order order, struct dea_element_result *out)
 {
   const struct dea_flat_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
+  const struct dea_part_material *part_material = in->part_material;
   double gradient[2][DEA_FLAT_NODES_MAX], F[6];
-  double field = dea_constituent_field(constituent, in->voltage_V);
+  double field = dea_part_material_field(part_material, in->voltage_V);
   size_t dofs = 3 * (size_t)shape->nodes;
   struct dea_membrane_point point;
   memset(out->g, 0, dofs * sizeof *out->g);
@@ -148,12 +148,12 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
   memset(out->K, 0, order >= DEA_TANGENT ? dofs * dofs * sizeof *out->K : 0);
   out->energy_J = out->volume_m3 = 0;
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = constituent->thickness_m * gradients_at(shape, q, in->X, gradient);
+    double weight = part_material->thickness_m * gradients_at(shape, q, in->X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
     in_plane_columns(shape->nodes, in->u, gradient, F);
-    dea_status status = point_at(constituent, q, F, field, &point);
+    dea_status status = point_at(part_material, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
@@ -178,36 +178,36 @@ static dea_status membrane_state(const struct dea_element *element,
                                  const struct dea_element_input *in, struct dea_membrane_state *out)
 {
   const struct dea_flat_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
-  double F[6], field = dea_constituent_field(constituent, in->voltage_V);
+  const struct dea_part_material *part_material = in->part_material;
+  double F[6], field = dea_part_material_field(part_material, in->voltage_V);
   out->count = shape->gauss;
   for (int q = 0; q < shape->gauss; q++) {
     struct dea_membrane_point point;
     if (!(columns_at(shape, q, in->X, in->u, F) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = point_at(constituent, q, F, field, &point);
+    dea_status status = point_at(part_material, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
     out->area[q] = point.area;
-    out->tension[q] = constituent->thickness_m * point.tension_Pa[1];
+    out->tension[q] = part_material->thickness_m * point.tension_Pa[1];
     dea_membrane_force(point.P, F, point.area, out->force[q]);
     for (int i = 0; i < 3; i++) {
-      out->force[q][i] *= constituent->thickness_m;
+      out->force[q][i] *= part_material->thickness_m;
     }
   }
   return DEA_OK;
 }
 
 static dea_status neutral_stiffness(const struct dea_element *element,
-                                    const struct dea_constituent *constituent, const double *X,
+                                    const struct dea_part_material *part_material, const double *X,
                                     double *out)
 {
   const struct dea_flat_shape *shape = element->basis;
   double gradient[2][DEA_FLAT_NODES_MAX];
   double modulus =
-      4 * constituent->law->shear_modulus(constituent->param) * constituent->thickness_m;
+      4 * part_material->law->shear_modulus(part_material->param) * part_material->thickness_m;
   memset(out, 0, (size_t)shape->nodes * sizeof *out);
   for (int q = 0; q < shape->gauss; q++) {
     double weight = modulus * gradients_at(shape, q, X, gradient);
@@ -222,7 +222,7 @@ static dea_status neutral_stiffness(const struct dea_element *element,
 }
 
 static dea_status metric(const struct dea_element *element,
-                         const struct dea_constituent *constituent, const double *X,
+                         const struct dea_part_material *part_material, const double *X,
                          double *laplace, double *volume)
 {
   const struct dea_flat_shape *shape = element->basis;
@@ -230,7 +230,7 @@ static dea_status metric(const struct dea_element *element,
   size_t nodes = (size_t)shape->nodes;
   memset(laplace, 0, nodes * nodes * sizeof *laplace);
   for (int q = 0; q < shape->gauss; q++) {
-    double weight = constituent->thickness_m * gradients_at(shape, q, X, gradient);
+    double weight = part_material->thickness_m * gradients_at(shape, q, X, gradient);
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -248,15 +248,15 @@ static dea_status metric(const struct dea_element *element,
   return DEA_OK;
 }
 
-static dea_status mass(const struct dea_element *element, const struct dea_constituent *constituent,
-                       const double *X, double *out)
+static dea_status mass(const struct dea_element *element,
+                       const struct dea_part_material *part_material, const double *X, double *out)
 {
   const struct dea_flat_shape *s = element->basis;
   double gradient[2][DEA_FLAT_NODES_MAX];
   memset(out, 0, (size_t)(s->nodes * s->nodes) * sizeof *out);
   for (int q = 0; q < s->gauss; q++) {
     double area = gradients_at(s, q, X, gradient);
-    double kilograms = constituent->density_kg_per_m3 * constituent->thickness_m * area;
+    double kilograms = part_material->density_kg_per_m3 * part_material->thickness_m * area;
     if (!(area > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -266,7 +266,7 @@ static dea_status mass(const struct dea_element *element, const struct dea_const
 }
 
 static dea_status mass_times(const struct dea_element *element,
-                             const struct dea_constituent *constituent, const double *X,
+                             const struct dea_part_material *part_material, const double *X,
                              const double *v, double *out)
 {
   const struct dea_flat_shape *s = element->basis;
@@ -274,7 +274,7 @@ static dea_status mass_times(const struct dea_element *element,
   memset(out, 0, (size_t)(3 * s->nodes) * sizeof *out);
   for (int q = 0; q < s->gauss; q++) {
     double area = gradients_at(s, q, X, gradient);
-    double kilograms = constituent->density_kg_per_m3 * constituent->thickness_m * area;
+    double kilograms = part_material->density_kg_per_m3 * part_material->thickness_m * area;
     if (!(area > 0)) {
       return DEA_E_DOMAIN;
     }
@@ -287,12 +287,12 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
                          const struct dea_element_motion *motion, double *stiffness, double *mass)
 {
   const struct dea_flat_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
-  const double field = dea_constituent_field(constituent, in->voltage_V);
+  const struct dea_part_material *part_material = in->part_material;
+  const double field = dea_part_material_field(part_material, in->voltage_V);
   *stiffness = *mass = 0;
   for (int q = 0; q < shape->gauss; q++) {
     double gradient[2][DEA_FLAT_NODES_MAX], F[6], H[6] = {0}, here[3];
-    double weight = constituent->thickness_m * gradients_at(shape, q, in->X, gradient);
+    double weight = part_material->thickness_m * gradients_at(shape, q, in->X, gradient);
     struct dea_membrane_point point;
     if (!(weight > 0)) {
       return DEA_E_DOMAIN;
@@ -304,14 +304,14 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
       }
     }
     dea_element_at(shape->nodes, shape->value[q], motion->v, here);
-    dea_status status = point_at(constituent, q, F, field, &point);
+    dea_status status = point_at(part_material, q, F, field, &point);
     if (status != DEA_OK) {
       return status;
     }
     for (int a = 0; a < 36; a++) {
       *stiffness += weight * H[a / 6] * point.A[a] * H[a % 6];
     }
-    *mass += constituent->density_kg_per_m3 * weight *
+    *mass += part_material->density_kg_per_m3 * weight *
              (here[0] * here[0] + here[1] * here[1] + here[2] * here[2]);
   }
   return DEA_OK;
@@ -323,7 +323,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
 static dea_status strains(const struct dea_element *element, const struct dea_element_input *in,
                           struct dea_element_strains *out)
 {
-  const double field = dea_constituent_field(in->constituent, in->voltage_V);
+  const double field = dea_part_material_field(in->part_material, in->voltage_V);
   for (int q = 0; q < element->points; q++) {
     double F[6], area = columns_at(element->basis, q, in->X, in->u, F);
     struct dea_membrane_point point;
@@ -334,8 +334,8 @@ static dea_status strains(const struct dea_element *element, const struct dea_el
                          F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
                          F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
     const bool own =
-        in->constituent->relaxed && point_at(in->constituent, q, F, field, &point) == DEA_OK;
-    out->volume_m3[q] = in->constituent->thickness_m * area;
+        in->part_material->relaxed && point_at(in->part_material, q, F, field, &point) == DEA_OK;
+    out->volume_m3[q] = in->part_material->thickness_m * area;
     dea_viscous_strain_flat(own ? point.own : c, out->C[q], out->inverse[q]);
   }
   return DEA_OK;
@@ -358,12 +358,12 @@ static double complete(const double F[6], double out[9])
   return sqrt(square);
 }
 
-static dea_status recover_point(const struct dea_constituent *constituent, const double F[6],
+static dea_status recover_point(const struct dea_part_material *part_material, const double F[6],
                                 double field_V_per_m, double values[DEA_FIT_VALUES], double P[6])
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
   struct dea_membrane_point point;
-  dea_status status = dea_membrane_point(constituent, F, field_V_per_m, &point);
+  dea_status status = dea_membrane_point(part_material, F, field_V_per_m, &point);
   if (status != DEA_OK || !(complete(F, values) > 0)) {
     return status != DEA_OK ? status : DEA_E_DOMAIN;
   }
@@ -373,8 +373,8 @@ static dea_status recover_point(const struct dea_constituent *constituent, const
     values[9 + m] = p[0] * f[0] + p[1] * f[1];
   }
   values[16] = fabs(field_V_per_m) * point.area;
-  double eps = constituent->permittivity_F_per_m +
-               constituent->permittivity_slope_F_per_m * (sqrt(point.area) - 1);
+  double eps = part_material->permittivity_F_per_m +
+               part_material->permittivity_slope_F_per_m * (sqrt(point.area) - 1);
   values[15] = point.W + 0.5 * eps * values[16] * values[16];
   return DEA_OK;
 }
@@ -385,19 +385,19 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
                           struct dea_recovered *out)
 {
   const struct dea_flat_shape *shape = element->basis;
-  const struct dea_constituent *constituent = in->constituent;
+  const struct dea_part_material *part_material = in->part_material;
   double values[DEA_FLAT_NODES_MAX][DEA_FIT_VALUES], P[DEA_FLAT_NODES_MAX][6], F[6];
-  double field = dea_constituent_field(constituent, in->voltage_V);
+  double field = dea_part_material_field(part_material, in->voltage_V);
   struct dea_gauss_fit fit;
   out->volume_m3 = out->volume_error = 0;
   for (int q = 0; q < shape->gauss; q++) {
     double area = columns_at(shape, q, in->X, in->u, F);
     dea_status status =
-        area > 0 ? recover_point(constituent, F, field, values[q], P[q]) : DEA_E_DOMAIN;
+        area > 0 ? recover_point(part_material, F, field, values[q], P[q]) : DEA_E_DOMAIN;
     if (status != DEA_OK) {
       return status;
     }
-    out->volume_m3 += constituent->thickness_m * area;
+    out->volume_m3 += part_material->thickness_m * area;
   }
   dea_fit_create(shape->order, 0, &fit);
   dea_recovered_set(&fit, values, out);
@@ -406,7 +406,7 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
     for (int q = 0; q < shape->gauss; q++) {
       double share = fit.plane[node % fit.n][q % fit.n] * fit.plane[node / fit.n][q / fit.n];
       for (int m = 0; m < 6; m++) {
-        out->force[node][m] += share * constituent->thickness_m * P[q][m];
+        out->force[node][m] += share * part_material->thickness_m * P[q][m];
       }
     }
   }
@@ -417,7 +417,7 @@ static dea_status state(const struct dea_element *element, const struct dea_elem
                         bool stress, struct dea_element_state *out)
 {
   const struct dea_flat_shape *shape = element->basis;
-  double field = dea_constituent_field(in->constituent, in->voltage_V);
+  double field = dea_part_material_field(in->part_material, in->voltage_V);
   double F[6];
   struct dea_membrane_point point;
   for (int q = 0; q < shape->gauss; q++) {
@@ -425,11 +425,11 @@ static dea_status state(const struct dea_element *element, const struct dea_elem
     if (!(area > 0 && complete(F, out->F[q]) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = stress ? dea_membrane_point(in->constituent, F, field, &point) : DEA_OK;
+    dea_status status = stress ? dea_membrane_point(in->part_material, F, field, &point) : DEA_OK;
     if (status != DEA_OK) {
       return status;
     }
-    out->volume_m3[q] = in->constituent->thickness_m * area;
+    out->volume_m3[q] = in->part_material->thickness_m * area;
     out->J[q] = 1;
     out->pressure[q] = 0;
     for (int i = 0; stress && i < 9; i++) {

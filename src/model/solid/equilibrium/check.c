@@ -32,7 +32,7 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
   const struct dea_element *element = dea_solid_element(s, e);
   double X[DEA_HEX_DOFS_MAX], x[3];
   const struct dea_element_input in = {
-      .constituent = dea_solid_constituent(s, e), .X = X, .u = rest};
+      .part_material = dea_solid_part_material(s, e), .X = X, .u = rest};
   dea_solid_gather(s, e, s->problem.grid->X, X);
   if (element->type->strains(element, &in, strains) == DEA_OK) {
     return DEA_OK;
@@ -50,14 +50,14 @@ static dea_status check_constituents(struct dea_context *ctx, const struct dea_s
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   struct dea_point point;
   for (size_t e = 0; e < p->grid->element_count; e++) {
-    const struct dea_constituent *constituent = dea_solid_constituent(s, e);
-    if ((e == 0 || p->constituent_of[e] != p->constituent_of[e - 1]) &&
-        dea_constituent_point(constituent, one, one, 1, 0, 0, true, &point) != DEA_OK) {
+    const struct dea_part_material *part_material = dea_solid_part_material(s, e);
+    if ((e == 0 || p->part_material_of[e] != p->part_material_of[e - 1]) &&
+        dea_part_material_point(part_material, one, one, 1, 0, 0, true, &point) != DEA_OK) {
       return dea_fail(
           ctx, DEA_E_DOMAIN,
           "the law '%s' ends before the pre-stretch %.4g: take a smaller pre-stretch or "
           "parameters that reach further",
-          constituent->law->name, constituent->pre_stretch[0]);
+          part_material->law->name, part_material->pre_stretch[0]);
     }
   }
   return DEA_OK;

@@ -154,7 +154,7 @@ static dea_status displacement_rate(struct dea_context *ctx, struct dea_solid_co
   for (size_t i = 0; i < t->s->problem.dofs; i++) {
     t->rate[i] += t->held_rate[i];
   }
-  dea_solid_bodies_carry(t->s, t->rate); // those of held_rate belong to where the path began
+  dea_solid_bodies_transfer(t->s, t->rate); // those of held_rate belong to where the path began
   return DEA_OK;
 }
 

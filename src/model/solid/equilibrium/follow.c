@@ -392,7 +392,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
                         (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   w->report->theta_max = dea_solid_theta_max(s);
   DEA_TRY(ctx, find_step(ctx, w));
-  dea_solid_foresee(s, w->f);
+  dea_solid_predict_tangent(s, w->f);
   w->size_first = k == 0 ? w->size : w->size_first;
   w->size_renewed = renewed ? w->size : w->size_renewed;
   bool small = k > 0 && w->size < w->accuracy * w->size_first;

@@ -23,7 +23,7 @@ struct eigen {
   Vec *vectors;     // [count] of them, room for `room`
   PetscReal *value; // [count]
   int *order;       // [count] the k-th lowest
-  PetscInt count, room;
+  PetscInt count, capacity;
   bool below; // the end that is searched: unstable modes
 };
 
@@ -88,7 +88,7 @@ static PetscErrorCode collect(EPS eps, struct eigen *f)
 {
   PetscInt converged;
   CHECK(EPSGetConverged(eps, &converged));
-  for (PetscInt i = 0; i < converged && f->count < f->room; i++) {
+  for (PetscInt i = 0; i < converged && f->count < f->capacity; i++) {
     PetscScalar value;
     CHECK(EPSGetEigenpair(eps, i, &value, NULL, f->vectors[f->count], NULL));
     f->value[f->count] = value;
@@ -161,7 +161,7 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
   f->below = below;
   for (int round = 0; round < o->mode_rounds; round++) {
     PetscInt before = f->count;
-    wanted = wanted < f->room - f->count ? wanted : f->room - f->count;
+    wanted = wanted < f->capacity - f->count ? wanted : f->capacity - f->count;
     if (wanted < 1) {
       break;
     }
@@ -267,15 +267,15 @@ static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size
 static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_mode_metric metric,
                              int unstable, int count)
 {
-  f->room = 3 * (unstable > count ? unstable : count) + 8 * f->solid->settings.mode_extra;
+  f->capacity = 3 * (unstable > count ? unstable : count) + 8 * f->solid->settings.mode_extra;
   f->memory.ctx = ctx;
-  f->order = dea_arena_alloc(&f->memory, (size_t)f->room, sizeof *f->order);
-  f->value = dea_arena_alloc(&f->memory, (size_t)f->room, sizeof *f->value);
+  f->order = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->order);
+  f->value = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->value);
   if (dea_solid_any(f->memory.failed)) {
     return DEA_E_MEMORY;
   }
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
-  DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->room, &f->vectors));
+  DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->capacity, &f->vectors));
   if (unstable > 0) {
     DEA_TRY(ctx, find_end(ctx, f, unstable, true));
   }
@@ -288,7 +288,7 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
 static void release(struct eigen *f)
 {
   if (f->vectors != NULL) {
-    VecDestroyVecs(f->room, &f->vectors);
+    VecDestroyVecs(f->capacity, &f->vectors);
   }
   MatDestroy(&f->B);
   dea_arena_free(&f->memory);

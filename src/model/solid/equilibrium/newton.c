@@ -125,13 +125,13 @@ static dea_status linear_step(struct dea_context *ctx, struct dea_solid *s)
   return DEA_OK;
 }
 
-void dea_solid_foresee(struct dea_solid *s, const double *step)
+void dea_solid_predict_tangent(struct dea_solid *s, const double *step)
 {
-  if (s->found.foresees && step != NULL) {
-    memcpy(s->work.foreseen, step, s->problem.dofs * sizeof *step);
-    s->found.foreseen = true;
+  if (s->found.predicts_tangent && step != NULL) {
+    memcpy(s->work.extrapolated, step, s->problem.dofs * sizeof *step);
+    s->found.extrapolated = true;
   }
-  s->found.foresees = false;
+  s->found.predicts_tangent = false;
 }
 
 /* ---- line search ---- */
@@ -336,7 +336,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       d->report->iterations++;
     }
     DEA_TRY(ctx, linear_step(ctx, s));
-    dea_solid_foresee(s, there == 0 ? s->work.step : NULL);
+    dea_solid_predict_tangent(s, there == 0 ? s->work.step : NULL);
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
     if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
@@ -497,7 +497,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
   struct newton d = {.voltage_V = s->state.voltage_V, .report = report};
   double energy, there = 0;
   s->found.factor_fits = s->found.predicted_fits = false;
-  dea_solid_foresee(s, NULL);
+  dea_solid_predict_tangent(s, NULL);
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   s->work.takes_increment = true;
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);

@@ -18,7 +18,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
 
 /* The first linear step of a way, where that is wanted: the displacements that the tangent at its
  * start foresees for its end; NULL: they are not known. */
-void dea_solid_foresee(struct dea_solid *s, const double *step);
+void dea_solid_predict_tangent(struct dea_solid *s, const double *step);
 
 /* Counts the unstable modes at an equilibrium; a factor without any starts the next step.
  * tangent: K of there has been assembled. */

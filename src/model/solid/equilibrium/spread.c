@@ -16,7 +16,7 @@ static bool wrinkles(const struct dea_solid *s, size_t e)
 {
   static const double none = 1e-12; // of the modulus
   const struct dea_element *element = dea_solid_element(s, e);
-  const struct dea_constituent *film = dea_solid_constituent(s, e);
+  const struct dea_part_material *film = dea_solid_part_material(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
   struct dea_membrane_state state;
@@ -26,7 +26,7 @@ static bool wrinkles(const struct dea_solid *s, size_t e)
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
   bool any = element->type->membrane_state(element, &in, &state) != DEA_OK;
   for (int p = 0; !any && p < state.count; p++) {
-    any = state.tension[p] <= none * dea_constituent_modulus(film) * film->thickness_m;
+    any = state.tension[p] <= none * dea_part_material_modulus(film) * film->thickness_m;
   }
   return any;
 }
@@ -46,19 +46,19 @@ static void hold_heights(struct dea_solid *s)
 /* Whether forces of compression in the plane meet motions without stiffness: K has next to none of
  * them, and they lead further than the solid is wide. films: those that bear compression. */
 static dea_status find_freedom(struct dea_context *ctx, struct dea_solid *s,
-                               const struct dea_constituent *films, bool *free)
+                               const struct dea_part_material *films, bool *free)
 {
   struct dea_solid_problem *p = &s->problem;
-  const struct dea_constituent *own = p->constituents;
+  const struct dea_part_material *own = p->part_materials;
   const size_t nodes = p->grid->node_count;
   double energy, far = 0, wide = 0;
   *free = true;
   if (!s->found.factor_fits) {
     return DEA_OK;
   }
-  p->constituents = films;
+  p->part_materials = films;
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &energy);
-  p->constituents = own;
+  p->part_materials = own;
   DEA_TRY(ctx, status);
   for (size_t k = 0; k < 3 * nodes; k++) {
     s->work.trial[k] = (k % 3 == 2) == dea_solid_turns_body(s, k / 3) ? -s->work.g[k] : 0;
@@ -75,27 +75,27 @@ static dea_status find_freedom(struct dea_context *ctx, struct dea_solid *s,
 /* The equilibrium in the plane of films that bear compression, then that of the films as they are.
  */
 static dea_status spread(struct dea_context *ctx, struct dea_solid *s, unsigned char *held,
-                         struct dea_constituent *stiff, struct dea_solid_report *report)
+                         struct dea_part_material *stiff, struct dea_solid_report *report)
 {
   struct dea_solid_problem *p = &s->problem;
-  const struct dea_constituent *own = p->constituents;
+  const struct dea_part_material *own = p->part_materials;
   const size_t components = 3 * p->grid->node_count;
   struct dea_solid_report flat = {0};
   bool free;
   memcpy(held, p->held, components);
-  memcpy(stiff, own, p->constituent_count * sizeof *stiff);
-  for (size_t i = 0; i < p->constituent_count; i++) {
+  memcpy(stiff, own, p->part_material_count * sizeof *stiff);
+  for (size_t i = 0; i < p->part_material_count; i++) {
     stiff[i].relaxed = false;
   }
   DEA_TRY(ctx, find_freedom(ctx, s, stiff, &free));
   if (!free) {
     return DEA_OK;
   }
-  p->constituents = stiff;
+  p->part_materials = stiff;
   hold_heights(s);
   dea_solid_forget(s);
   dea_status status = dea_solid_equilibrate(ctx, s, &flat);
-  p->constituents = own;
+  p->part_materials = own;
   memcpy(p->held, held, components);
   dea_solid_forget(s);
   return status == DEA_OK ? dea_solid_equilibrate(ctx, s, report) : status;
@@ -114,7 +114,7 @@ dea_status dea_solid_spread(struct dea_context *ctx, struct dea_solid *s,
   if (!dea_solid_any(any)) {
     return DEA_OK;
   }
-  struct dea_constituent *stiff = dea_solid_alloc(ctx, p->constituent_count, sizeof *stiff);
+  struct dea_part_material *stiff = dea_solid_alloc(ctx, p->part_material_count, sizeof *stiff);
   unsigned char *held = dea_solid_alloc(ctx, 3 * p->grid->node_count, sizeof *held);
   dea_status status = stiff != NULL && held != NULL ? DEA_OK : DEA_E_MEMORY;
   dea_solid_state_get(s, path->keep);
@@ -128,7 +128,7 @@ dea_status dea_solid_spread(struct dea_context *ctx, struct dea_solid *s,
     dea_solid_state_set(s, path->keep);
     status = DEA_OK;
   }
-  s->found.foresees = s->found.foreseen = false;
+  s->found.predicts_tangent = s->found.extrapolated = false;
   path->last_V = path->before_last_V; // the path has a bend of another kind
   dea_free(ctx, stiff);
   dea_free(ctx, held);

@@ -4,7 +4,7 @@
 #ifndef DEA_MODEL_SOLID_LOAD_LOAD_H
 #define DEA_MODEL_SOLID_LOAD_LOAD_H
 
-#include "model/solid/point/constituent.h"
+#include "model/solid/point/part_material.h"
 
 #include <stddef.h>
 

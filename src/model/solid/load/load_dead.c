@@ -9,7 +9,7 @@ dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_elemen
                             const void *self, const double acceleration_m_per_s2[3], double *force)
 {
   // rows of the mass of what has one kilogram per volume, or per area of a surface: int N_a
-  static const struct dea_constituent unit = {.density_kg_per_m3 = 1, .thickness_m = 1};
+  static const struct dea_part_material unit = {.density_kg_per_m3 = 1, .thickness_m = 1};
   double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   for (size_t e = 0; e < grid->element_count; e++) {
     double density = density_kg_per_m3(self, grid->region[e], grid->ply[e]);

@@ -35,7 +35,7 @@ struct class
   enum guide guides;
   double normal[2][2], width[2]; // of its sides on curves, into the elements
   double guide[2];               // along a side that stays one of a curve or of the mesh
-  double room;                   // how far elements reach
+  double capacity;               // how far elements reach
   double shift[2];
 };
 
@@ -219,7 +219,7 @@ static void add_side(struct work *w, size_t e, int side, bool last)
       class->width[class->sides] = w->width[of];
     }
     class->sides++;
-    class->room = fmin(class->room, height_over(w, e, side));
+    class->capacity = fmin(class->capacity, height_over(w, e, side));
   } else if (w->guide[of] > class->guides) {
     class->guides = w->guide[of];
     class->guide[0] = last ? -along[0] : along[0];
@@ -260,7 +260,8 @@ static bool find_shift(struct class *class, double scale)
                                                                : wide * mean[i] / size;
     }
   }
-  const double most = fmin(room_share * class->room, longest * fmax(wide, width[class->sides - 1]));
+  const double most =
+      fmin(room_share * class->capacity, longest * fmax(wide, width[class->sides - 1]));
   const double share = scale * fmin(1, most / hypot(d[0], d[1]));
   d[0] *= share;
   d[1] *= share;
@@ -271,7 +272,7 @@ static bool find_shifts(struct work *w)
 {
   bool found = true;
   for (size_t k = 0; k < w->count; k++) {
-    w->classes[k] = (struct class){.room = INFINITY};
+    w->classes[k] = (struct class){.capacity = INFINITY};
   }
   for (size_t k = 0; k < w->count; k++) {
     add_side(w, k / SIDES, (int)(k % SIDES), false);
@@ -424,13 +425,13 @@ static dea_status take_rows(struct dea_context *ctx, struct work *w, struct dea_
   for (size_t k = 0; k < w->count; k++) {
     quads += w->width[k] > 0 ? w->layers->rows : 0;
   }
-  const size_t room = quads * (size_t)w->per;
-  struct dea_plane_mesh *out = dea_plane_mesh_create(ctx, mesh->order, room, quads);
+  const size_t capacity = quads * (size_t)w->per;
+  struct dea_plane_mesh *out = dea_plane_mesh_create(ctx, mesh->order, capacity, quads);
   int *edges = dea_alloc(ctx, mesh->edge_count * (size_t)w->line, sizeof *edges);
   struct dea_places places = {0};
   dea_status status = out != NULL && edges != NULL ? DEA_OK : DEA_E_MEMORY;
   if (status == DEA_OK) {
-    status = dea_places_create(ctx, out->x, room, close_share * size_of(mesh), &places);
+    status = dea_places_create(ctx, out->x, capacity, close_share * size_of(mesh), &places);
   }
   if (status == DEA_OK && fill_well(w, &places, out)) {
     move_edges(w, &places, edges);

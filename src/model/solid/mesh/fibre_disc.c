@@ -130,13 +130,13 @@ static dea_status check_disc(struct dea_context *ctx, const struct dea_fibre_dis
   if (p->fibres == 0) {
     return DEA_OK;
   }
-  double room = fmin(pi / N, 0.5 * pi);
+  double capacity = fmin(pi / N, 0.5 * pi);
   bool fit = p->tip_radius > 0 && p->outer_radius > p->tip_radius * (1 + same) &&
              p->outer_radius <= frame * (1 + same) && p->tip_width > 0 && p->outer_width > 0 &&
              p->tip_width < 2 * p->tip_radius && p->outer_width < 2 * p->outer_radius &&
              p->fibre_thickness > 0;
-  if (!fit || !(asin(0.5 * p->tip_width / p->tip_radius) <= free_share * room) ||
-      !(asin(0.5 * p->outer_width / p->outer_radius) <= free_share * room)) {
+  if (!fit || !(asin(0.5 * p->tip_width / p->tip_radius) <= free_share * capacity) ||
+      !(asin(0.5 * p->outer_width / p->outer_radius) <= free_share * capacity)) {
     return dea_fail(ctx, DEA_E_ARGUMENT,
                     "the mesh of a plate takes fibres that lie between centre and frame and leave "
                     "at least %.0f %% of the film between them",

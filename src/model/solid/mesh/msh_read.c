@@ -58,7 +58,7 @@ struct member {
 
 struct list {
   void *data;
-  size_t count, room;
+  size_t count, capacity;
 };
 
 struct reader {
@@ -94,14 +94,14 @@ static dea_status fault(struct reader *r, size_t line, const char *format, ...)
 /* Room for one more, zeroed; NULL for want of memory. */
 static void *list_add(struct dea_context *ctx, struct list *list, size_t size)
 {
-  if (list->count == list->room) {
-    size_t room = list->room > 0 ? 2 * list->room : 64;
-    void *moved = dea_resize(ctx, list->data, room, size);
+  if (list->count == list->capacity) {
+    size_t capacity = list->capacity > 0 ? 2 * list->capacity : 64;
+    void *moved = dea_resize(ctx, list->data, capacity, size);
     if (moved == NULL) {
       return NULL;
     }
     list->data = moved;
-    list->room = room;
+    list->capacity = capacity;
   }
   void *item = (char *)list->data + list->count++ * size;
   memset(item, 0, size);
@@ -869,13 +869,13 @@ static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh *
   }
   DEA_TRY(r->ctx, check_all(r, unit_m, &s));
   sort_elements(r, &s);
-  size_t room = s.quads * (size_t)((s.order + 1) * (s.order + 1)) + 3; // and one line's
-  *out = dea_plane_mesh_create(r->ctx, s.order, room, s.quads);
+  size_t capacity = s.quads * (size_t)((s.order + 1) * (s.order + 1)) + 3; // and one line's
+  *out = dea_plane_mesh_create(r->ctx, s.order, capacity, s.quads);
   if (*out == NULL) {
     return DEA_E_MEMORY;
   }
   (*out)->quad_count = 0;
-  DEA_TRY(r->ctx, dea_places_create(r->ctx, (*out)->x, room, same * s.size * unit_m, &places));
+  DEA_TRY(r->ctx, dea_places_create(r->ctx, (*out)->x, capacity, same * s.size * unit_m, &places));
   dea_status status = fill(r, &s, unit_m, &places, *out);
   dea_places_release(r->ctx, &places);
   DEA_TRY(r->ctx, status);

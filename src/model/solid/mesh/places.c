@@ -10,10 +10,10 @@ void dea_places_empty(struct dea_places *places)
   places->count = 0;
 }
 
-dea_status dea_places_create(struct dea_context *ctx, double *x, size_t room, double close,
+dea_status dea_places_create(struct dea_context *ctx, double *x, size_t capacity, double close,
                              struct dea_places *out)
 {
-  *out = (struct dea_places){.x = x, .close = close, .table_size = 2 * room + 1};
+  *out = (struct dea_places){.x = x, .close = close, .table_size = 2 * capacity + 1};
   out->table = dea_alloc(ctx, out->table_size, sizeof *out->table);
   if (out->table == NULL) {
     return DEA_E_MEMORY;

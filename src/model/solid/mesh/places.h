@@ -13,7 +13,7 @@ struct dea_places {
 };
 
 /* x: room for [room][2], lent until dea_places_release. DEA_E_MEMORY. */
-dea_status dea_places_create(struct dea_context *ctx, double *x, size_t room, double close,
+dea_status dea_places_create(struct dea_context *ctx, double *x, size_t capacity, double close,
                              struct dea_places *out);
 /* Forgets all nodes. */
 void dea_places_empty(struct dea_places *places);

@@ -289,10 +289,10 @@ static void follow_stiffness(struct dea_solid_time *t)
 {
   struct dea_solid *s = t->solid;
   double most = 0;
-  for (size_t l = 0; l < s->problem.constituent_count && t->variables != NULL; l++) {
-    const struct dea_constituent *constituent = &s->problem.constituents[l];
-    if (constituent->kappa_Pa > 0) {
-      most = fmax(most, t->variables->b_Pa[l] / dea_constituent_modulus(constituent));
+  for (size_t l = 0; l < s->problem.part_material_count && t->variables != NULL; l++) {
+    const struct dea_part_material *part_material = &s->problem.part_materials[l];
+    if (part_material->kappa_Pa > 0) {
+      most = fmax(most, t->variables->b_Pa[l] / dea_part_material_modulus(part_material));
     }
   }
   double factor = exp2(round(log2(1 + most)));
@@ -492,9 +492,9 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
 static double relaxing(const struct dea_solid_time *t)
 {
   double most = 0;
-  for (size_t l = 0; l < t->solid->problem.constituent_count && t->variables != NULL; l++) {
+  for (size_t l = 0; l < t->solid->problem.part_material_count && t->variables != NULL; l++) {
     const struct dea_branches *branches = &t->variables->branches[l];
-    double sum = 0, all = dea_constituent_modulus(&t->solid->problem.constituents[l]);
+    double sum = 0, all = dea_part_material_modulus(&t->solid->problem.part_materials[l]);
     for (size_t i = 0; i < branches->count; i++) {
       sum -= branches->branch[i].modulus_Pa * expm1(-t->step_s / branches->branch[i].time_s);
       all += branches->branch[i].modulus_Pa;

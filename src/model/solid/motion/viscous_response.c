@@ -19,7 +19,7 @@ struct system {
   const struct dea_branches *branches;
   size_t part_count;     // PARTS + different branches
   Mat *part;             // K, M, then what branches add at infinite frequency
-  size_t *constituent;   // [part_count] one that has those
+  size_t *part_material; // [part_count] one that has those
   double complex *share; // [part_count] that each counts at the frequency
   Mat A, factor;         // two rows a row of K: real and imaginary part
   Vec right, answer;
@@ -50,8 +50,8 @@ static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size
   struct dea_solid *s = y->solid;
   struct dea_internal_variables *variables;
   // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): of the caller
-  memset(only, 0, s->problem.constituent_count * sizeof *only);
-  for (size_t l = which; l < s->problem.constituent_count; l++) {
+  memset(only, 0, s->problem.part_material_count * sizeof *only);
+  for (size_t l = which; l < s->problem.part_material_count; l++) {
     if (are_alike(&y->branches[l], &y->branches[which])) {
       only[l] = y->branches[l];
     }
@@ -84,13 +84,13 @@ static dea_status make_parts(struct dea_context *ctx, struct system *y, struct d
   DEA_TRY(ctx, copy_tangent(ctx, y, &y->part[0]));
   DEA_TRY(ctx, dea_solid_create_mass(ctx, y->solid, &y->part[1]));
   y->part_count = PARTS;
-  for (size_t l = 0; l < y->solid->problem.constituent_count; l++) {
+  for (size_t l = 0; l < y->solid->problem.part_material_count; l++) {
     bool made = y->branches[l].count == 0;
     for (size_t p = PARTS; p < y->part_count && !made; p++) {
-      made = are_alike(&y->branches[l], &y->branches[y->constituent[p]]);
+      made = are_alike(&y->branches[l], &y->branches[y->part_material[p]]);
     }
     if (!made) {
-      y->constituent[y->part_count] = l;
+      y->part_material[y->part_count] = l;
       DEA_TRY(ctx, branch_tangent(ctx, y, l, only, &y->part[y->part_count++]));
     }
   }
@@ -117,7 +117,7 @@ static void set_factors(const struct system *y, double w, const struct dea_dampi
   factor[0] = 1 + _Complex_I * (w * damping->stiffness_s);
   factor[1] = -w * w + _Complex_I * (w * damping->mass_per_s);
   for (size_t p = PARTS; p < y->part_count; p++) {
-    factor[p] = share_at(&y->branches[y->constituent[p]], w);
+    factor[p] = share_at(&y->branches[y->part_material[p]], w);
   }
 }
 
@@ -282,7 +282,7 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   const struct dea_solid_problem *p = &s->problem;
   double complex *sum = NULL;
   double *memory = dea_alloc(ctx, 3 * p->dofs, sizeof *memory);
-  struct dea_branches *only = dea_alloc(ctx, p->constituent_count, sizeof *only);
+  struct dea_branches *only = dea_alloc(ctx, p->part_material_count, sizeof *only);
   dea_status status = dea_solid_any(memory == NULL || only == NULL) ? DEA_E_MEMORY : DEA_OK;
   status = status == DEA_OK ? check_stable(ctx, s) : status;
   status = status == DEA_OK ? dea_solid_voltage_force(ctx, s, 0, memory) : status;
@@ -314,7 +314,7 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
                                           void *user)
 {
   const struct taker taker = {take, user};
-  const size_t room = PARTS + s->problem.constituent_count;
+  const size_t capacity = PARTS + s->problem.part_material_count;
   struct system y = {.solid = s, .branches = branches};
   DEA_TRY(ctx, dea_solid_response_check(ctx, s));
   if (s->work.rank_one.count > 0) {
@@ -322,18 +322,18 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
                     "the answer of viscous plies to an excitation does not know enclosed volumes: "
                     "take `viscosity: none` for them, or a history in time (compute.transient)");
   }
-  y.part = dea_alloc(ctx, room, sizeof(Mat));
-  y.constituent = dea_alloc(ctx, room, sizeof *y.constituent);
-  y.share = dea_alloc(ctx, room, sizeof *y.share);
-  const bool lacks = y.part == NULL || y.constituent == NULL || y.share == NULL;
+  y.part = dea_alloc(ctx, capacity, sizeof(Mat));
+  y.part_material = dea_alloc(ctx, capacity, sizeof *y.part_material);
+  y.share = dea_alloc(ctx, capacity, sizeof *y.share);
+  const bool lacks = y.part == NULL || y.part_material == NULL || y.share == NULL;
   const bool any_lacks = dea_solid_any(lacks);
   dea_status status =
       lacks || any_lacks ? DEA_E_MEMORY : respond(ctx, &y, damping, rad_per_s, count, &taker);
-  for (size_t p = 0; p < room && y.part != NULL; p++) {
+  for (size_t p = 0; p < capacity && y.part != NULL; p++) {
     MatDestroy(&y.part[p]);
   }
   dea_free(ctx, y.part);
-  dea_free(ctx, y.constituent);
+  dea_free(ctx, y.part_material);
   dea_free(ctx, y.share);
   MatDestroy(&y.A);
   MatDestroy(&y.factor);

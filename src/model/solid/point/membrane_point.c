@@ -3,9 +3,9 @@
 #include <math.h>
 #include <string.h>
 
-dea_status dea_membrane_check(const struct dea_constituent *constituent)
+dea_status dea_membrane_check(const struct dea_part_material *part_material)
 {
-  return dea_constituent_takes_pressure(constituent) && !constituent->law->anisotropic
+  return dea_part_material_takes_pressure(part_material) && !part_material->law->anisotropic
              ? DEA_OK
              : DEA_E_UNSUPPORTED;
 }
@@ -13,7 +13,7 @@ dea_status dea_membrane_check(const struct dea_constituent *constituent)
 /* A load that comes in over the depth of the film in equal parts makes a shear stress that grows
  * linearly to the bonded face: the mean displacement is that of h/3 under all of it, so h/2 is
  * given 3/2 of the film's shear modulus. */
-dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond)
+dea_status dea_membrane_bond(const struct dea_part_material *film, struct dea_part_material *bond)
 {
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   static const double poisson_ratio = 0.49;
@@ -21,11 +21,11 @@ dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_cons
   struct dea_point point;
   dea_status status = dea_membrane_check(film);
   if (status == DEA_OK) {
-    status = dea_constituent_point(film, one, one, 1, 0, 0, true, &point);
+    status = dea_part_material_point(film, one, one, 1, 0, 0, true, &point);
   }
   if (status == DEA_OK) {
     double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
-    *bond = dea_constituent_bonded((const double[]){2 * mu * (1 + poisson_ratio), poisson_ratio});
+    *bond = dea_part_material_bonded((const double[]){2 * mu * (1 + poisson_ratio), poisson_ratio});
   }
   return status;
 }
@@ -33,27 +33,27 @@ dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_cons
 /* eps = permittivity + slope (sqrt(a) - 1) of the constituent by s = sqrt(a G1 G2), as a material
  * has it.
  */
-static void set_permittivity(const struct dea_constituent *constituent, double G1_G2,
+static void set_permittivity(const struct dea_part_material *part_material, double G1_G2,
                              struct dea_permittivity *out)
 {
-  double slope = constituent->permittivity_slope_F_per_m / sqrt(G1_G2);
+  double slope = part_material->permittivity_slope_F_per_m / sqrt(G1_G2);
   out->slope = slope / DEA_EPSILON_0;
   out->at_rest =
-      (constituent->permittivity_F_per_m - constituent->permittivity_slope_F_per_m + slope) /
+      (part_material->permittivity_F_per_m - part_material->permittivity_slope_F_per_m + slope) /
       DEA_EPSILON_0;
 }
 
 /* S = G S(C) G, and so twice for D. */
-static void pull_back_tensors(const struct dea_constituent *constituent,
+static void pull_back_tensors(const struct dea_part_material *part_material,
                               struct dea_tension_point *t)
 {
-  dea_constituent_pull_back(constituent, t->S, t->S);
+  dea_part_material_pull_back(part_material, t->S, t->S);
   for (int a = 0; a < 3; a++) {
-    dea_constituent_pull_back(constituent, t->D[a], t->D[a]);
+    dea_part_material_pull_back(part_material, t->D[a], t->D[a]);
   }
   for (int b = 0; b < 3; b++) {
     double column[3] = {t->D[0][b], t->D[1][b], t->D[2][b]};
-    dea_constituent_pull_back(constituent, column, column);
+    dea_part_material_pull_back(part_material, column, column);
     for (int a = 0; a < 3; a++) {
       t->D[a][b] = column[a];
     }
@@ -62,11 +62,12 @@ static void pull_back_tensors(const struct dea_constituent *constituent,
 
 /* B and C* of the flat film count like c; those of the unstretched one are G^-1 B G^-1 and G C* G.
  */
-static struct dea_constituent inverse_of(const struct dea_constituent *constituent, double det)
+static struct dea_part_material inverse_of(const struct dea_part_material *part_material,
+                                           double det)
 {
-  const double *G = constituent->pre_stretch, s = constituent->pre_shear;
-  return (struct dea_constituent){.pre_stretch = {G[1] / det, G[0] / det, det},
-                                  .pre_shear = -s / det};
+  const double *G = part_material->pre_stretch, s = part_material->pre_shear;
+  return (struct dea_part_material){.pre_stretch = {G[1] / det, G[0] / det, det},
+                                    .pre_shear = -s / det};
 }
 
 /* Larger and smaller eigenvalue of S C*, over the area. */
@@ -81,27 +82,27 @@ static void set_tensions(const struct dea_tension_point *t, struct dea_membrane_
 }
 
 /* Everything by C of the pre-stretched film, then S and D by that of the flat one. */
-static dea_status evaluate_point(const struct dea_constituent *constituent, const double *viscous,
-                                 const double F[6], double field, struct dea_tension_point *t,
-                                 struct dea_membrane_point *out)
+static dea_status evaluate_point(const struct dea_part_material *part_material,
+                                 const double *viscous, const double F[6], double field,
+                                 struct dea_tension_point *t, struct dea_membrane_point *out)
 {
-  const double *G = constituent->pre_stretch, s = constituent->pre_shear;
+  const double *G = part_material->pre_stretch, s = part_material->pre_shear;
   const double flat_area = G[0] * G[1] - s * s; // over the unstretched one
-  const struct dea_constituent inverse = inverse_of(constituent, flat_area);
+  const struct dea_part_material inverse = inverse_of(part_material, flat_area);
   double C[3] = {F[0] * F[0] + F[2] * F[2] + F[4] * F[4], F[1] * F[1] + F[3] * F[3] + F[5] * F[5],
                  F[0] * F[1] + F[2] * F[3] + F[4] * F[5]};
-  struct dea_material material = {.law = constituent->law};
+  struct dea_material material = {.law = part_material->law};
   struct dea_tension film = {.material = &material, .nominal_field_V_per_m = field / flat_area};
-  memcpy(material.param, constituent->param, constituent->law->param_count * sizeof(double));
-  set_permittivity(constituent, flat_area, &material.permittivity);
-  dea_constituent_pull_back(constituent, C, C);
+  memcpy(material.param, part_material->param, part_material->law->param_count * sizeof(double));
+  set_permittivity(part_material, flat_area, &material.permittivity);
+  dea_part_material_pull_back(part_material, C, C);
   if (viscous != NULL) {
-    dea_constituent_pull_back(&inverse, (const double[]){viscous[0], viscous[1], viscous[5]},
-                              film.B);
+    dea_part_material_pull_back(&inverse, (const double[]){viscous[0], viscous[1], viscous[5]},
+                                film.B);
     film.B_across = viscous[2] * flat_area * flat_area;
   }
   dea_status status =
-      constituent->relaxed ? dea_tension_relaxed(&film, C, t) : dea_tension_taut(&film, C, t);
+      part_material->relaxed ? dea_tension_relaxed(&film, C, t) : dea_tension_taut(&film, C, t);
   if (status != DEA_OK) {
     return status;
   }
@@ -110,25 +111,25 @@ static dea_status evaluate_point(const struct dea_constituent *constituent, cons
   out->state = t->state;
   out->area = sqrt(t->own[0] * t->own[1] - t->own[2] * t->own[2]) / flat_area;
   set_tensions(t, out);
-  dea_constituent_pull_back(&inverse, t->own, out->own);
-  pull_back_tensors(constituent, t);
+  dea_part_material_pull_back(&inverse, t->own, out->own);
+  pull_back_tensors(part_material, t);
   return DEA_OK;
 }
 
 static const int pair_of[2][2] = {{0, 2}, {2, 1}};
 
-dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
+dea_status dea_membrane_point(const struct dea_part_material *part_material, const double F[6],
                               double field_V_per_m, struct dea_membrane_point *out)
 {
-  return dea_membrane_point_in_time(constituent, NULL, F, field_V_per_m, out);
+  return dea_membrane_point_in_time(part_material, NULL, F, field_V_per_m, out);
 }
 
-dea_status dea_membrane_point_in_time(const struct dea_constituent *constituent,
+dea_status dea_membrane_point_in_time(const struct dea_part_material *part_material,
                                       const double *viscous, const double F[6],
                                       double field_V_per_m, struct dea_membrane_point *out)
 {
   struct dea_tension_point t;
-  dea_status status = evaluate_point(constituent, viscous, F, field_V_per_m, &t, out);
+  dea_status status = evaluate_point(part_material, viscous, F, field_V_per_m, &t, out);
   if (status != DEA_OK) {
     return status;
   }

@@ -7,16 +7,16 @@
 #ifndef DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
 #define DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
 
-#include "model/solid/point/constituent.h"
+#include "model/solid/point/part_material.h"
 #include "model/solid/point/tension.h"
 
 /* Whether a membrane can be of it: DEA_E_UNSUPPORTED without an isotropic law. */
-dea_status dea_membrane_check(const struct dea_constituent *constituent);
+dea_status dea_membrane_check(const struct dea_part_material *part_material);
 
 /* What lies between the mid-surface of a film and what is bonded on it, h/2 thick: free of stress
  * at rest, with the shear compliance of the film from there to its bonded face (theory). film:
- * relaxed (dea_constituent_relax). Statuses of dea_membrane_check. */
-dea_status dea_membrane_bond(const struct dea_constituent *film, struct dea_constituent *bond);
+ * relaxed (dea_part_material_relax). Statuses of dea_membrane_check. */
+dea_status dea_membrane_bond(const struct dea_part_material *film, struct dea_part_material *bond);
 
 /* Energy per volume, first Piola-Kirchhoff stress P[2 i + J] and tangent A[6 (2 i + J) + 2 k + L]
  * by F, and the larger and smaller principal tension: Cauchy stress times current over reference
@@ -30,12 +30,12 @@ struct dea_membrane_point {
 };
 
 /* field_V_per_m: V/h, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */
-dea_status dea_membrane_point(const struct dea_constituent *constituent, const double F[6],
+dea_status dea_membrane_point(const struct dea_part_material *part_material, const double F[6],
                               double field_V_per_m, struct dea_membrane_point *out);
 
 /* The same of a step in time, viscous: B of a point (viscous.h), of which 23 and 13 are not used;
  * NULL: none. */
-dea_status dea_membrane_point_in_time(const struct dea_constituent *constituent,
+dea_status dea_membrane_point_in_time(const struct dea_part_material *part_material,
                                       const double *viscous, const double F[6],
                                       double field_V_per_m, struct dea_membrane_point *out);
 

@@ -8,13 +8,13 @@
 /* Components of a symmetric tensor as a matrix. */
 static const int place[9] = {0, 5, 4, 5, 1, 3, 4, 3, 2};
 
-void dea_viscous_add(const struct dea_constituent *constituent, int q, const double F[9],
+void dea_viscous_add(const struct dea_part_material *part_material, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point)
 {
-  if (constituent->viscous == NULL) {
+  if (part_material->viscous == NULL) {
     return;
   }
-  const double *B = constituent->viscous + 6 * q, b = constituent->viscous_Pa;
+  const double *B = part_material->viscous + 6 * q, b = part_material->viscous_Pa;
   double energy = -b * log1p(J - 1), inverse[9]; // F^-T
   for (int a = 0; a < 9; a++) {
     inverse[a] = cof[a] / J;

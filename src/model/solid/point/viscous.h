@@ -15,11 +15,11 @@
 #define DEA_MODEL_SOLID_POINT_VISCOUS_H
 
 #include "material/branch.h"
-#include "model/solid/point/constituent.h"
+#include "model/solid/point/part_material.h"
 
 /* Adds the step of a point q of an element to energy and stress and, if asked for, to the tangent.
  * Nothing to do for a constituent without one. */
-void dea_viscous_add(const struct dea_constituent *constituent, int q, const double F[9],
+void dea_viscous_add(const struct dea_part_material *part_material, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point);
 
 /* C and C^-1 of a film with the metric c of its plane, 11 22 12; J = 1. */

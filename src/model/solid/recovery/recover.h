@@ -22,9 +22,9 @@ struct dea_recover_input {
   const struct dea_grid *grid;
   const struct dea_element_set *elements;
   const enum dea_element_kind *kind;
-  const struct dea_constituent *constituents;
+  const struct dea_part_material *part_materials;
   double bulk_factor;
-  const int *constituent;
+  const int *part_material;
   const bool *active;
   const double *u, *multiplier, *across_V, *potential_V;
 };

@@ -85,7 +85,7 @@ size_t dea_recover_column_end(const struct dea_stacked *stack, size_t count, siz
 /* What an element is asked with. */
 struct asked {
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], potential_V[DEA_HEX_NODES_MAX];
-  struct dea_constituent constituent;
+  struct dea_part_material part_material;
   struct dea_element_input in;
 };
 
@@ -98,10 +98,10 @@ static void ask(const struct dea_recover_input *in, size_t e, struct asked *out)
     memcpy(out->u + 3 * n, in->u + 3 * nodes[n], 3 * sizeof *out->u);
     out->potential_V[n] = in->potential_V != NULL ? in->potential_V[nodes[n]] : 0;
   }
-  out->constituent = in->constituents[in->constituent[e]];
-  out->constituent.kappa_Pa *= in->bulk_factor;
+  out->part_material = in->part_materials[in->part_material[e]];
+  out->part_material.kappa_Pa *= in->bulk_factor;
   out->in = (struct dea_element_input){
-      .constituent = &out->constituent,
+      .part_material = &out->part_material,
       .X = out->X,
       .u = out->u,
       .multiplier = in->multiplier + e * (size_t)in->elements->pressures,
@@ -151,7 +151,7 @@ static void principal(double xx, double yy, double xy, double out[2])
   out[1] = mean - radius;
 }
 
-void dea_recover_plane(const struct dea_constituent *constituent, const double F[9],
+void dea_recover_plane(const struct dea_part_material *part_material, const double F[9],
                        const double force[6], struct dea_plane_state *out)
 {
   const double a[3] = {F[0], F[3], F[6]}, b[3] = {F[1], F[4], F[7]};
@@ -160,11 +160,11 @@ void dea_recover_plane(const struct dea_constituent *constituent, const double F
   double e[2][3], T[2][2], squares[2], cof[9], C[3] = {dot(a, a), dot(b, b), dot(a, b)};
   double length = sqrt(dot(a, a));
   out->area = sqrt(dot(normal, normal));
-  dea_constituent_pull_back(constituent, C, C);
+  dea_part_material_pull_back(part_material, C, C);
   principal(C[0], C[1], C[2], squares);
   out->stretch[0] = sqrt(squares[0]);
   out->stretch[1] = sqrt(fmax(squares[1], 0));
-  out->stretch[2] = constituent->pre_stretch[2] * dea_cofactors(F, cof) / out->area;
+  out->stretch[2] = part_material->pre_stretch[2] * dea_cofactors(F, cof) / out->area;
   for (int i = 0; i < 3; i++) { // an orthonormal basis of the current tangent plane
     e[0][i] = a[i] / length;
   }

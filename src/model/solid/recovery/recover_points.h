@@ -32,7 +32,7 @@ struct dea_plane_state {
   double tension[2]; // principal, per current length: larger, smaller [N/m]
   double area;       // |F_1 x F_2|
 };
-void dea_recover_plane(const struct dea_constituent *constituent, const double F[9],
+void dea_recover_plane(const struct dea_part_material *part_material, const double F[9],
                        const double force[6], struct dea_plane_state *out);
 
 /* Adds a field and writes where its values go; after a failure *status stays and *values is NULL.

@@ -105,7 +105,7 @@ static dea_status add_force(struct work *w, size_t element, double (*force)[6])
 
 static enum dea_part part_of(const struct work *w, size_t k)
 {
-  return w->in->constituents[w->in->constituent[w->stack[k].element]].part;
+  return w->in->part_materials[w->in->part_material[w->stack[k].element]].part;
 }
 
 /* All elements above each other, in the order of the stack. */
@@ -212,7 +212,7 @@ static void fill_point(const struct work *w, size_t p, double *X, const struct f
 {
   const struct dea_recover_input *in = w->in;
   size_t e = w->element[p];
-  const struct dea_constituent *constituent = &in->constituents[in->constituent[e]];
+  const struct dea_part_material *part_material = &in->part_materials[in->part_material[e]];
   struct dea_plane_state plane;
   double mean[SUMS];
   for (int i = 0; i < SUMS; i++) {
@@ -221,7 +221,7 @@ static void fill_point(const struct work *w, size_t p, double *X, const struct f
   memcpy(X, in->grid->X + 3 * w->node[p], 2 * sizeof *X);
   X[2] = mean[HEIGHT];
   memcpy(to->displacement + 3 * p, mean, 3 * sizeof *mean);
-  dea_recover_plane(constituent, mean + 3, mean + FORCE, &plane);
+  dea_recover_plane(part_material, mean + 3, mean + FORCE, &plane);
   memcpy(to->stretch + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
   to->field[p] = mean[FIELD];

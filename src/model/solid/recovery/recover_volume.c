@@ -149,11 +149,11 @@ static void principal(const double m[6], double value[3], double (*axis)[3])
 }
 
 /* Principal stretches of F G. */
-static void principal_stretch(const struct dea_constituent *constituent, const double F[9],
+static void principal_stretch(const struct dea_part_material *part_material, const double F[9],
                               double out[3])
 {
   static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
-  const double *G = constituent->pre_stretch, s = constituent->pre_shear;
+  const double *G = part_material->pre_stretch, s = part_material->pre_shear;
   double C[6] = {0};
   for (int m = 0; m < 6; m++) {
     for (int i = 0; i < 3; i++) {
@@ -161,7 +161,7 @@ static void principal_stretch(const struct dea_constituent *constituent, const d
     }
   }
   double plane[3] = {C[0], C[1], C[3]}, yz = C[4], zx = C[5];
-  dea_constituent_pull_back(constituent, plane, plane);
+  dea_part_material_pull_back(part_material, plane, plane);
   C[0] = plane[0];
   C[1] = plane[1];
   C[2] *= G[2] * G[2];
@@ -236,18 +236,18 @@ static void fill_point(const struct work *w, size_t p, const struct fields *to)
 {
   const struct dea_recover_input *in = w->in;
   size_t e = w->element[p];
-  const struct dea_constituent *constituent = &in->constituents[in->constituent[e]];
+  const struct dea_part_material *part_material = &in->part_materials[in->part_material[e]];
   const double *sum = w->sum[p];
   struct dea_plane_state plane;
   double axis[3][3];
   memcpy(to->displacement + 3 * p, in->u + 3 * w->node[p], 3 * sizeof(double));
-  principal_stretch(constituent, sum, to->stretch + 3 * p);
+  principal_stretch(part_material, sum, to->stretch + 3 * p);
   principal(sum + 9, to->stress + 3 * p, axis);
   for (int k = 0; k < 3; k++) {
     memcpy(to->axis[k] + 3 * p, axis[k], sizeof axis[k]);
   }
   to->energy[p] = sum[15];
-  dea_recover_plane(constituent, sum, sum + FORCE, &plane);
+  dea_recover_plane(part_material, sum, sum + FORCE, &plane);
   memcpy(to->plane + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
   to->field[p] = sum[16];

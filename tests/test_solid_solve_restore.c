@@ -3,8 +3,8 @@
 // ctest: solid
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/adjoint.h"
-#include "model/solid/equilibrium/approach.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/solve_incremental.h"
 #include "model/solid/motion/time.h"
 #include "solid_block.h"
 
@@ -13,7 +13,7 @@
 #include <math.h>
 
 static const struct block strip = {{20, 3, 0.2}, {16, 3, 1}, 2, 2};
-static struct dea_constituent layer = {
+static struct dea_part_material layer = {
     .param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 2e6, .density_kg_per_m3 = 1000};
 
 static int ends(const void *self, const double X[3])
@@ -25,7 +25,7 @@ static int ends(const void *self, const double X[3])
 static struct dea_solid *make(const struct dea_grid *grid)
 {
   layer.law = dea_law_find("neo-hookean");
-  assert_int_equal(dea_constituent_relax(&layer), DEA_OK);
+  assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
   return block_solid(ctx, grid, strip.order_z, &layer, ends);
 }
 
@@ -71,16 +71,16 @@ static void test_another_state(void **state)
   (void)state;
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *s = make(grid);
-  struct dea_solid_stand here;
+  struct dea_solid_saved_state here;
   push(s, grid, 1e-4);
   const double bent = bend(s, grid);
-  assert_int_equal(dea_solid_stand_keep(ctx, s, &here), DEA_OK);
+  assert_int_equal(dea_solid_save_state(ctx, s, &here), DEA_OK);
   push(s, grid, 3.5e-4);
   assert_true(s->found.stiff_factor_fits);
   assert_true(bend(s, grid) > 10 * bent);
-  dea_solid_stand_again(s, &here);
+  dea_solid_restore_state(s, &here);
   assert_close(bend(s, grid), bent, 1e-6, 0);
-  dea_solid_stand_free(&here);
+  dea_solid_saved_state_free(&here);
   dea_solid_destroy(ctx, s);
   dea_grid_destroy(ctx, grid);
 }

@@ -26,7 +26,7 @@ struct dea_context_handle {
 };
 
 /* A value of a design that was set. Both owned. */
-struct door_setting {
+struct api_setting {
   char *key, *value;
 };
 
@@ -34,7 +34,7 @@ struct dea_design_handle {
   dea_context *ctx; // that made it; lent
   char *name, *bytes;
   size_t length; // of bytes, which are the design as it was read
-  struct door_setting *settings;
+  struct api_setting *settings;
   size_t setting_count;
   struct dea_design *inner; // with what was set
   dea_value *values;        // of inner, [inner->values.count]
@@ -50,20 +50,20 @@ struct dea_result_handle {
   struct dea_result *inner;
   dea_array **arrays; // [array_count]
   size_t array_count, array_room;
-  struct door_setting *texts; // [text_count], under their names
+  struct api_setting *texts; // [text_count], under their names
   size_t text_count, text_room;
-  struct door_mesh **meshes; // [mesh_count]
+  struct api_mesh **meshes; // [mesh_count]
   size_t mesh_count;
   struct dea_text summary, svg;
 };
 
 /* A mesh with what its public form points to. */
-struct door_mesh {
+struct api_mesh {
   dea_mesh shown;
   char name[2 * DEA_NAME_SIZE];
   const struct dea_field_mesh *inner; // lent
   struct dea_field_mesh *owned;       // NULL, or inner
-  struct door_mesh *whole;            // made when it is asked for; NULL: not yet
+  struct api_mesh *whole;             // made when it is asked for; NULL: not yet
   dea_cells cells[DEA_MESH_BLOCKS_MAX];
   const dea_cells *cells_at[DEA_MESH_BLOCKS_MAX];
   dea_array arrays[DEA_MESH_FIELDS_MAX];
@@ -72,55 +72,55 @@ struct door_mesh {
 };
 
 /* Begins a call that leaves findings: those of the last one go. */
-struct dea_context *door_begin(dea_context *ctx);
+struct dea_context *api_begin(dea_context *ctx);
 /* DEA_E_ARGUMENT when an object belongs to another context. */
-dea_status door_check_owner(dea_context *ctx, const dea_context *owner, const char *what);
+dea_status api_check_owner(dea_context *ctx, const dea_context *owner, const char *what);
 /* Numbers of a call, as dea.h names them. values: NULL: not given. */
-struct door_numbers {
+struct api_numbers {
   const char *name;
   const double *values; // [count]
   size_t count;
   bool endless; // infinity means something, only NAN does not
 };
 /* DEA_E_ARGUMENT where one is no finite number. */
-dea_status door_check_numbers(dea_context *ctx, const struct door_numbers *numbers, size_t count);
+dea_status api_check_numbers(dea_context *ctx, const struct api_numbers *numbers, size_t count);
 #define DOOR_CHECK(ctx, ...)                                                                       \
-  DEA_TRY((ctx)->inner, door_check_numbers(ctx, (const struct door_numbers[]){__VA_ARGS__},        \
-                                           sizeof((const struct door_numbers[]){__VA_ARGS__}) /    \
-                                               sizeof(struct door_numbers)))
+  DEA_TRY((ctx)->inner, api_check_numbers(ctx, (const struct api_numbers[]){__VA_ARGS__},          \
+                                          sizeof((const struct api_numbers[]){__VA_ARGS__}) /      \
+                                              sizeof(struct api_numbers)))
 /* "there is no WHAT 'NAME'", with the nearest of those that there are. */
-dea_status door_unknown(dea_context *ctx, const char *what, const char *name,
-                        const char *const known[], size_t count);
+dea_status api_unknown(dea_context *ctx, const char *what, const char *name,
+                       const char *const known[], size_t count);
 /* Grows an array by one item of that size: returns where the items are now, NULL without memory. */
-void *door_grow(struct dea_context *ctx, void *items, size_t count, size_t *room, size_t size);
+void *api_grow(struct dea_context *ctx, void *items, size_t count, size_t *capacity, size_t size);
 
 /* A design's own copy of its inner form, and its device; both owned by the caller, also after a
  * failure. Findings of the design are added. */
-dea_status door_design_build(struct dea_context *ctx, const dea_design *design,
-                             struct dea_design **inner, struct dea_device **device);
+dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
+                            struct dea_design **inner, struct dea_device **device);
 /* A design of a text and of what was set, "key=value" a line (NULL: nothing). */
-dea_status door_design_make(dea_context *ctx, const char *name, const char *text, const char *set,
-                            dea_design **out);
+dea_status api_design_make(dea_context *ctx, const char *name, const char *text, const char *set,
+                           dea_design **out);
 /* Settings as overrides; owned by the caller, the texts lent. */
-struct dea_override *door_overrides(struct dea_context *ctx, const struct door_setting *settings,
-                                    size_t count);
+struct dea_override *api_overrides(struct dea_context *ctx, const struct api_setting *settings,
+                                   size_t count);
 
 /* The options with defaults for what the caller does not know. */
-dea_run_options door_run_options(const dea_run_options *options);
+dea_run_options api_run_options(const dea_run_options *options);
 /* DEA_E_ARGUMENT for a model that is none. */
-dea_status door_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out);
+dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out);
 
 /* Fills the list of arrays and texts of a result. */
-dea_status door_result_list(dea_result *result);
+dea_status api_result_list(dea_result *result);
 /* A handle for what was computed; takes design, device and inner (or run), also on failure. */
-dea_status door_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out);
+dea_status api_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out);
 
 /* The public form of a mesh; name: copied. inner: lent, or owned if `own`. */
-dea_status door_mesh_make(struct dea_context *ctx, const char *name, double voltage_V,
-                          struct dea_field_mesh *inner, bool own, struct door_mesh **out);
-void door_mesh_free(struct dea_context *ctx, struct door_mesh *mesh);
+dea_status api_mesh_make(struct dea_context *ctx, const char *name, double voltage_V,
+                         struct dea_field_mesh *inner, bool own, struct api_mesh **out);
+void api_mesh_free(struct dea_context *ctx, struct api_mesh *mesh);
 
 /* Adds the pictures of a fragment of a report as one SVG. */
-void door_svg_add(struct dea_text *out, const char *fragment);
+void api_svg_add(struct dea_text *out, const char *fragment);
 
 #endif

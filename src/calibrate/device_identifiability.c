@@ -122,15 +122,15 @@ static void tell_weak(struct dea_device_fit *fit)
   }
   for (size_t k = s->active; k-- > 0 && fit->weak_count < DEA_FIT_WEAK_MAX;) {
     if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
-      dea_fit_tell_direction(params, fit->param_count, s->direction + k * s->params,
-                             s->singular[k] <= 1e-9 * s->singular[0], "curves",
-                             fit->weak[fit->weak_count++]);
+      dea_fit_identify_direction(params, fit->param_count, s->direction + k * s->params,
+                                 s->singular[k] <= 1e-9 * s->singular[0], "curves",
+                                 fit->weak[fit->weak_count++]);
     }
   }
 }
 
-dea_status dea_device_tell(struct dea_context *ctx, struct dea_device_fit *fit,
-                           const struct dea_device_candidate *candidates, size_t count)
+dea_status dea_device_identify(struct dea_context *ctx, struct dea_device_fit *fit,
+                               const struct dea_device_candidate *candidates, size_t count)
 {
   struct dea_information base, now;
   double scale[DEA_DEVICE_PARAMS_MAX];

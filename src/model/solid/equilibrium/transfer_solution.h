@@ -15,8 +15,8 @@ dea_status dea_solid_untangle(struct dea_context *ctx, struct dea_solid *solid, 
 /* A stable equilibrium at a voltage, with the loads that are asked for, next to displacement_m
  * [node_count][3]: down from there or, where that comes to none, held near to it by springs that
  * fade. Where that finds none *found is false and the solid and *report are as they were. */
-dea_status dea_solid_carry(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                           const double *displacement_m, struct dea_solid_report *report,
-                           bool *found);
+dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid *solid,
+                                       double voltage_V, const double *displacement_m,
+                                       struct dea_solid_report *report, bool *found);
 
 #endif

@@ -1,4 +1,4 @@
-#include "model/solid/equilibrium/approach.h"
+#include "model/solid/equilibrium/solve_incremental.h"
 
 #include "model/solid/assembly/controls.h"
 #include "model/solid/equilibrium/continuation.h"
@@ -17,12 +17,12 @@ struct search {
   const struct dea_solid_watch *watch;
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
-  struct dea_solid_stand start; // where the approach began
-  struct dea_solid_stand limit; // where the path turns back, once that is known
-  bool slack;                   // the film has no tension all over where it began
-  bool leapt;                   // a load step has gone past a limit point to another state
-  bool snapped;                 // the solid has, on the way, to one that is not close by
-  bool went_on;                 // the solid is at a stable equilibrium further on
+  struct dea_solid_saved_state start; // where the approach began
+  struct dea_solid_saved_state limit; // where the path turns back, once that is known
+  bool slack;                         // the film has no tension all over where it began
+  bool leapt;                         // a load step has gone past a limit point to another state
+  bool snapped;                       // the solid has, on the way, to one that is not close by
+  bool went_on;                       // the solid is at a stable equilibrium further on
   bool looks;     // it is known where the solid goes, and only asked what is on the way
   bool bent;      // it looks from a flat film to one that is no more
   bool left;      // its path has led out of the plane of a flat film, so that load steps may
@@ -89,18 +89,20 @@ static bool is_deflected(struct dea_solid *s, double size_m)
   return deflection_m(s, s->state.u) > deflected * size_m;
 }
 
-bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_stand *from, double size_m)
+bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_saved_state *from,
+                          double size_m)
 {
   const bool pushed =
       // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a stand that was kept has its controls
-      from->controls[0] == 0 && !(s->found.foreseen && is_flat(s, s->work.foreseen, size_m));
+      from->controls[0] == 0 &&
+      !(s->found.extrapolated && is_flat(s, s->work.extrapolated, size_m));
   return !pushed && is_flat(s, from->state, size_m) && is_deflected(s, size_m);
 }
 
 // The path ----------------------------------------------------------------------------------------
 
 /* Root of the mean square of the nodes' displacements there. */
-static double size_m(const struct dea_solid *s, const struct dea_solid_stand *at)
+static double size_m(const struct dea_solid *s, const struct dea_solid_saved_state *at)
 {
   size_t count = 3 * s->problem.grid->node_count;
   double sum = 0;
@@ -231,7 +233,7 @@ static dea_status stay_flat(struct dea_context *ctx, struct search *a,
 static dea_status return_to_goal(struct dea_context *ctx, struct search *a)
 {
   *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
-  dea_solid_stand_again(a->s, &a->limit);
+  dea_solid_restore_state(a->s, &a->limit);
   DEA_TRY(ctx, dea_load_steps_solve_to(ctx, a->s, a->goal, a->report));
   a->went_on = a->report->unstable_modes == 0;
   return see(ctx, a, DEA_STOP_PASSED);
@@ -311,12 +313,12 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   return status;
 }
 
-/* The first linear step on the way to that voltage is kept, for dea_solid_strays. */
-static void foresee(struct dea_solid *s, double voltage_V)
+/* The first linear step on the way to that voltage is kept, for dea_solid_left_branch. */
+static void predict_tangent(struct dea_solid *s, double voltage_V)
 {
-  s->found.foresees = true;
-  s->found.foreseen = false;
-  s->found.foreseen_V = voltage_V;
+  s->found.predicts_tangent = true;
+  s->found.extrapolated = false;
+  s->found.extrapolated_V = voltage_V;
 }
 
 /* With a coupled field a taut film is solved in a few iterations, or leaps. */
@@ -358,10 +360,10 @@ static bool has_left(const struct search *a)
  * which its tension holds there as long as the path has any and stays in it. */
 static void step_back(struct search *a, bool taut, bool grew)
 {
-  const bool strays = grew || (!a->report->snapped && dea_solid_strays(a->s, &a->start));
-  if (grew || (taut && (strays || (!a->left && has_left(a))))) {
-    dea_solid_stand_again(a->s, &a->start);
-    a->leapt |= strays;
+  const bool left_branch = grew || (!a->report->snapped && dea_solid_left_branch(a->s, &a->start));
+  if (grew || (taut && (left_branch || (!a->left && has_left(a))))) {
+    dea_solid_restore_state(a->s, &a->start);
+    a->leapt |= left_branch;
   }
 }
 
@@ -386,11 +388,11 @@ static dea_status end_at_limit(struct dea_context *ctx, const struct search *a)
 static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool taut, bool *beyond)
 {
   struct dea_solid *s = a->s;
-  struct dea_solid_stand limit;
+  struct dea_solid_saved_state limit;
   struct dea_solid_report report = {0};
   bool grew = true, close = false;
-  dea_solid_stand_again(s, &a->limit);
-  DEA_TRY(ctx, dea_solid_stand_keep(ctx, s, &limit));
+  dea_solid_restore_state(s, &a->limit);
+  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &limit));
   set_between(s, a->from, a->goal, fmin(a->stop->way + s->settings.load_step_least, 1),
               a->limit.controls);
   const struct dea_solid_settings own = s->settings;
@@ -406,11 +408,11 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool tau
   }
   memcpy(a->limit.controls, limit.controls,
          s->work.load_steps.control_count * sizeof *limit.controls);
-  dea_solid_stand_free(&limit);
+  dea_solid_saved_state_free(&limit);
   *beyond = status == DEA_OK && !grew;
   if (*beyond) {
     a->snapped |= !close || !taut;
-    s->found.foreseen = false;
+    s->found.extrapolated = false;
     *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
     return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
   }
@@ -429,21 +431,22 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool tau
 /* One load step to a share of the way from a->from; *there: it has found a stable state and leapt
  * past no other, and *last then is there too. */
 static dea_status step_near(struct dea_context *ctx, struct search *a, double share,
-                            struct dea_solid_stand *last, bool *there)
+                            struct dea_solid_saved_state *last, bool *there)
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
   set_between(s, a->from, a->goal, share, a->limit.controls);
-  foresee(s, a->limit.controls[0]);
+  predict_tangent(s, a->limit.controls[0]);
   dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
-  bool leaps = status == DEA_OK && !a->slack && !report.snapped && dea_solid_strays(s, last);
+  bool branch_jumps =
+      status == DEA_OK && !a->slack && !report.snapped && dea_solid_left_branch(s, last);
   if (status == DEA_OK && a->slack) {
-    status = see_growth(ctx, a, &leaps);
+    status = see_growth(ctx, a, &branch_jumps);
   }
-  *there = status == DEA_OK && report.unstable_modes == 0 && !leaps;
-  a->leapt |= leaps;
+  *there = status == DEA_OK && report.unstable_modes == 0 && !branch_jumps;
+  a->leapt |= branch_jumps;
   if (!*there) {
-    dea_solid_stand_again(s, last);
+    dea_solid_restore_state(s, last);
     if (dea_solid_may_shorten(status)) {
       dea_context_clear(ctx);
       status = DEA_OK;
@@ -460,12 +463,12 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, double sh
 /* From the last equilibrium that load steps have found on, in halves of what is left, until the
  * state on one side and the failure on the other are `leap_way` apart; then by the path, which
  * alone tells a limit point, or to the goal, where nothing has failed. *there: it is reached. */
-static dea_status close_in(struct dea_context *ctx, struct search *a, struct dea_solid_stand *last,
-                           bool *there)
+static dea_status close_in(struct dea_context *ctx, struct search *a,
+                           struct dea_solid_saved_state *last, bool *there)
 {
   double low = 0, high = 1;
   *there = false;
-  while (high - low > a->s->settings.leap_way * (low > 0 ? high : 1)) {
+  while (high - low > a->s->settings.branch_jump_way * (low > 0 ? high : 1)) {
     bool found;
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
     double next = 0.5 * (low + high);
@@ -505,15 +508,15 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   status = DEA_E_NOT_CONVERGED;
   dea_context_clear(ctx);
   step_back(a, taut, grew);
-  struct dea_solid_stand last;
-  dea_status closed = dea_solid_stand_keep(ctx, s, &last);
+  struct dea_solid_saved_state last;
+  dea_status closed = dea_solid_save_state(ctx, s, &last);
   dea_solid_controls_get(s, a->from);
   dea_solid_controls_goal(s, voltage_V, a->goal);
   if (closed == DEA_OK) {
     closed = close_in(ctx, a, &last, &there);
   }
-  s->found.foreseen = false; // each of its steps has been looked at
-  dea_solid_stand_free(&last);
+  s->found.extrapolated = false; // each of its steps has been looked at
+  dea_solid_saved_state_free(&last);
   DEA_TRY(ctx, closed);
   *on = !there && (a->went_on || a->stop->kind == DEA_STOP_LIMIT);
   return there || *on ? DEA_OK : dea_fail(ctx, status, "%s", why);
@@ -537,7 +540,7 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
     dea_solid_controls_goal(a->s, voltage_V, a->goal);
     DEA_TRY(ctx, search_path(ctx, a));
     a->left |= a->went_on && has_left(a);
-    a->s->found.foreseen = a->s->found.foreseen && !a->went_on; // it has been followed
+    a->s->found.extrapolated = a->s->found.extrapolated && !a->went_on; // it has been followed
     if (!a->went_on && a->stop->kind != DEA_STOP_LIMIT) {
       status = end_by_steps(ctx, a, voltage_V, taut, &on);
       if (status != DEA_OK || !on) {
@@ -569,9 +572,10 @@ static double share_of(const struct dea_solid *s, const double *from, const doub
   return share;
 }
 
-dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                              bool taut, const struct dea_solid_watch *watch,
-                              struct dea_solid_report *report, struct dea_solid_stop *stop)
+dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid *s,
+                                       double voltage_V, bool taut,
+                                       const struct dea_solid_watch *watch,
+                                       struct dea_solid_report *report, struct dea_solid_stop *stop)
 {
   struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .slack = !taut};
   struct dea_arena memory = {.ctx = ctx};
@@ -582,15 +586,15 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
   a.goal = dea_arena_alloc(&memory, s->work.load_steps.control_count, sizeof *a.goal);
   dea_status status = dea_solid_agree(ctx, memory.failed ? DEA_E_MEMORY : DEA_OK);
   if (status == DEA_OK) {
-    status = dea_solid_stand_keep(ctx, s, &a.limit);
+    status = dea_solid_save_state(ctx, s, &a.limit);
   }
   if (status == DEA_OK) {
-    status = dea_solid_stand_keep(ctx, s, &a.start);
+    status = dea_solid_save_state(ctx, s, &a.start);
   }
   if (status == DEA_OK) {
     const int lost = s->settings.lost;
     s->settings.lost = s->settings.approach_lost;
-    foresee(s, voltage_V);
+    predict_tangent(s, voltage_V);
     status = go(ctx, &a, voltage_V, taut);
     report->snapped |= a.snapped;
     if (stop->kind == DEA_STOP_LIMIT) {
@@ -598,8 +602,8 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
     }
     s->settings.lost = lost;
   }
-  dea_solid_stand_free(&a.limit);
-  dea_solid_stand_free(&a.start);
+  dea_solid_saved_state_free(&a.limit);
+  dea_solid_saved_state_free(&a.start);
   dea_arena_free(&memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
@@ -607,7 +611,7 @@ dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *s, doub
 dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                            struct dea_solid_report *report)
 {
-  struct dea_solid_stand from;
+  struct dea_solid_saved_state from;
   struct dea_solid_stop stop;
   char why[160];
   const dea_status failed = dea_load_steps_solve(ctx, s, voltage_V, report);
@@ -617,27 +621,27 @@ dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *s, double 
   }
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
   dea_context_clear(ctx);
-  DEA_TRY(ctx, dea_solid_stand_keep(ctx, s, &from));
-  dea_status status = dea_solid_approach(ctx, s, voltage_V, true, NULL, report, &stop);
+  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &from));
+  dea_status status = dea_solid_solve_incremental(ctx, s, voltage_V, true, NULL, report, &stop);
   report->way = status == DEA_OK ? 1 : way;
   if (status == DEA_E_NO_EQUILIBRIUM) { // it is the limit point's
-    dea_solid_stand_again(s, &from);
+    dea_solid_restore_state(s, &from);
     report->limit = way + stop.way * (1 - way);
   } else if (dea_solid_may_shorten(status)) {
-    dea_solid_stand_again(s, &from);
+    dea_solid_restore_state(s, &from);
     dea_context_clear(ctx);
     status = dea_fail(ctx, failed, "%s", why);
   }
-  dea_solid_stand_free(&from);
+  dea_solid_saved_state_free(&from);
   return status;
 }
 
 // What load steps have gone past ------------------------------------------------------------------
 
-dea_status dea_solid_stand_keep(struct dea_context *ctx, struct dea_solid *s,
-                                struct dea_solid_stand *out)
+dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *s,
+                                struct dea_solid_saved_state *out)
 {
-  *out = (struct dea_solid_stand){.memory = {.ctx = ctx}};
+  *out = (struct dea_solid_saved_state){.memory = {.ctx = ctx}};
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   const struct dea_load_steps *steps = &s->work.load_steps;
   out->state = dea_arena_alloc(&out->memory, steps->state_count, sizeof *out->state);
@@ -648,12 +652,12 @@ dea_status dea_solid_stand_keep(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-void dea_solid_stand_free(struct dea_solid_stand *stand)
+void dea_solid_saved_state_free(struct dea_solid_saved_state *stand)
 {
   dea_arena_free(&stand->memory);
 }
 
-double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_stand *from)
+double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_saved_state *from)
 {
   size_t count = 3 * s->problem.grid->node_count;
   double sum = 0;
@@ -664,20 +668,20 @@ double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_stand
   return sqrt(3 * sum / (double)count);
 }
 
-bool dea_solid_strays(const struct dea_solid *s, const struct dea_solid_stand *from)
+bool dea_solid_left_branch(const struct dea_solid *s, const struct dea_solid_saved_state *from)
 {
-  double V = dea_solid_voltage(s), from_V = from->controls[0], goal_V = s->found.foreseen_V;
+  double V = dea_solid_voltage(s), from_V = from->controls[0], goal_V = s->found.extrapolated_V;
   double share = (V * V - from_V * from_V) / (goal_V * goal_V - from_V * from_V);
   double off = 0, way = 0;
-  for (size_t i = 0; i < 3 * s->problem.grid->node_count && s->found.foreseen; i++) {
-    double step = share * s->work.foreseen[i], beyond = s->state.u[i] - from->state[i] - step;
+  for (size_t i = 0; i < 3 * s->problem.grid->node_count && s->found.extrapolated; i++) {
+    double step = share * s->work.extrapolated[i], beyond = s->state.u[i] - from->state[i] - step;
     off += beyond * beyond;
     way += step * step;
   }
-  return off > way * s->settings.astray * s->settings.astray;
+  return off > way * s->settings.left_branch * s->settings.left_branch;
 }
 
-void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at)
+void dea_solid_restore_state(struct dea_solid *s, const struct dea_solid_saved_state *at)
 {
   dea_solid_state_set(s, at->state);
   dea_solid_controls_set(s, at->controls);
@@ -685,8 +689,8 @@ void dea_solid_stand_again(struct dea_solid *s, const struct dea_solid_stand *at
 }
 
 /* The solid on its side of a leap: near, which it leaps from, and far, where it leaps to. */
-struct leap_ends {
-  struct dea_solid_stand near, far;
+struct branch_jump_ends {
+  struct dea_solid_saved_state near, far;
   double at[2]; // shares of the way
   double whole; // motion between them at first
   bool apart;   // the far one has no state, or the film has grown at once to it
@@ -694,13 +698,13 @@ struct leap_ends {
 
 /* The state that a step has come to takes the place of the end that it belongs to. */
 static dea_status take_end(struct dea_context *ctx, const struct search *a, const double *controls,
-                           struct leap_ends *ends, bool *stays)
+                           struct branch_jump_ends *ends, bool *stays)
 {
   struct dea_solid *s = a->s;
   bool grown = false;
   DEA_TRY(ctx, a->watch->grew(ctx, a->watch->user, &grown));
   *stays = !grown && dea_solid_moved_m(s, &ends->near) < dea_solid_moved_m(s, &ends->far);
-  struct dea_solid_stand *end = *stays ? &ends->near : &ends->far;
+  struct dea_solid_saved_state *end = *stays ? &ends->near : &ends->far;
   dea_solid_state_get(s, end->state);
   memcpy(end->controls, controls, s->work.load_steps.control_count * sizeof *controls);
   ends->apart = *stays ? ends->apart : grown;
@@ -708,8 +712,8 @@ static dea_status take_end(struct dea_context *ctx, const struct search *a, cons
 }
 
 /* Between both ends a share of the way; the solid is then at the near one. */
-static dea_status halve_leap(struct dea_context *ctx, const struct search *a, const double *from,
-                             double share, struct leap_ends *ends)
+static dea_status halve_branch_jump(struct dea_context *ctx, const struct search *a,
+                                    const double *from, double share, struct branch_jump_ends *ends)
 {
   struct dea_solid_report report;
   bool stays = false;
@@ -724,21 +728,21 @@ static dea_status halve_leap(struct dea_context *ctx, const struct search *a, co
   }
   ends->at[stays ? 0 : 1] = share;
   if (!stays) {
-    dea_solid_stand_again(a->s, &ends->near);
+    dea_solid_restore_state(a->s, &ends->near);
   }
   return DEA_OK;
 }
 
 /* Steps that grow from where the path ends, then halves. */
-static dea_status bracket_leap(struct dea_context *ctx, const struct search *a, const double *from,
-                               struct leap_ends *ends)
+static dea_status bracket_branch_jump(struct dea_context *ctx, const struct search *a,
+                                      const double *from, struct branch_jump_ends *ends)
 {
-  const double least = a->s->settings.leap_way;
+  const double least = a->s->settings.branch_jump_way;
   double first = ends->at[0], by = first > 0 ? least : 0.5;
   while (ends->at[1] - ends->at[0] > 1.01 * least) {
     double low = ends->at[0], high = ends->at[1], next = low + by;
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
-    DEA_TRY(ctx, halve_leap(ctx, a, from, next < high ? next : 0.5 * (low + high), ends));
+    DEA_TRY(ctx, halve_branch_jump(ctx, a, from, next < high ? next : 0.5 * (low + high), ends));
     by = ends->at[1] < 1 ? 0.5 * (ends->at[1] - ends->at[0]) : 4 * by;
   }
   return DEA_OK;
@@ -748,77 +752,80 @@ static dea_status bracket_leap(struct dea_context *ctx, const struct search *a, 
  * does not get around, and a long step of it leaps itself - load steps do: the states on both sides
  * of a limit point stay apart however close their voltages come. The solid is then at the nearer
  * one. From the last point of the path; from, to: the ends of the way. */
-static dea_status find_leap(struct dea_context *ctx, struct search *a, const double *from,
-                            const struct dea_solid_stand *to)
+static dea_status find_branch_jump(struct dea_context *ctx, struct search *a, const double *from,
+                                   const struct dea_solid_saved_state *to)
 {
   struct dea_solid *s = a->s;
-  struct leap_ends ends = {.at = {a->stuck ? a->reached : 0, 1}};
-  dea_status status = dea_solid_stand_keep(ctx, s, &ends.near);
+  struct branch_jump_ends ends = {.at = {a->stuck ? a->reached : 0, 1}};
+  dea_status status = dea_solid_save_state(ctx, s, &ends.near);
   if (status == DEA_OK) {
-    dea_solid_stand_again(s, to);
-    status = dea_solid_stand_keep(ctx, s, &ends.far);
-    dea_solid_stand_again(s, &ends.near);
+    dea_solid_restore_state(s, to);
+    status = dea_solid_save_state(ctx, s, &ends.far);
+    dea_solid_restore_state(s, &ends.near);
   }
   if (status == DEA_OK) {
     ends.whole = dea_solid_moved_m(s, &ends.far);
     status = see(ctx, a, DEA_STOP_UNKNOWN);
   }
   if (status == DEA_OK) {
-    status = bracket_leap(ctx, a, from, &ends);
+    status = bracket_branch_jump(ctx, a, from, &ends);
   }
-  bool leaps = status == DEA_OK &&
-               (ends.apart || dea_solid_moved_m(s, &ends.far) > s->settings.leap_jump * ends.whole);
-  if (leaps) {
+  bool branch_jumps =
+      status == DEA_OK &&
+      (ends.apart || dea_solid_moved_m(s, &ends.far) > s->settings.branch_jump_jump * ends.whole);
+  if (branch_jumps) {
     *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(s), ends.at[0], 0};
     status = see(ctx, a, DEA_STOP_NEAR);
   }
-  dea_solid_stand_free(&ends.near);
-  dea_solid_stand_free(&ends.far);
+  dea_solid_saved_state_free(&ends.near);
+  dea_solid_saved_state_free(&ends.far);
   return status;
 }
 
 /* At `from` with room for a search. */
 static dea_status search_back(struct dea_context *ctx, struct search *a, bool leapt,
-                              const struct dea_solid_stand *from, const struct dea_solid_stand *now)
+                              const struct dea_solid_saved_state *from,
+                              const struct dea_solid_saved_state *now)
 {
-  struct dea_solid_stand room;
-  dea_status status = dea_solid_stand_keep(ctx, a->s, &room);
-  a->state = room.state;
-  a->from = room.controls;
+  struct dea_solid_saved_state capacity;
+  dea_status status = dea_solid_save_state(ctx, a->s, &capacity);
+  a->state = capacity.state;
+  a->from = capacity.controls;
   a->goal = now->controls;
   if (status == DEA_OK) {
-    status = dea_solid_stand_keep(ctx, a->s, &a->limit);
+    status = dea_solid_save_state(ctx, a->s, &a->limit);
   }
   if (status == DEA_OK) {
-    dea_solid_stand_again(a->s, from);
+    dea_solid_restore_state(a->s, from);
     status = search_path(ctx, a);
   }
   if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && !a->went_on && (a->stuck || leapt)) {
-    status = find_leap(ctx, a, from->controls, now);
+    status = find_branch_jump(ctx, a, from->controls, now);
   }
-  dea_solid_stand_free(&a->limit);
-  dea_solid_stand_free(&room);
+  dea_solid_saved_state_free(&a->limit);
+  dea_solid_saved_state_free(&capacity);
   return status;
 }
 
-dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *s,
-                               const struct dea_solid_stand *from, bool leapt,
-                               const struct dea_solid_watch *watch, struct dea_solid_report *report,
-                               struct dea_solid_stop *stop, bool *flat)
+dea_status dea_solid_detect_missed_limit_point(struct dea_context *ctx, struct dea_solid *s,
+                                               const struct dea_solid_saved_state *from, bool leapt,
+                                               const struct dea_solid_watch *watch,
+                                               struct dea_solid_report *report,
+                                               struct dea_solid_stop *stop, bool *flat)
 {
   struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .looks = true};
-  struct dea_solid_stand now;
+  struct dea_solid_saved_state now;
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
-  dea_status status = dea_solid_stand_keep(ctx, s, &now);
+  dea_status status = dea_solid_save_state(ctx, s, &now);
   *flat = false;
   if (status == DEA_OK) {
     a.bent = dea_solid_left_plane(s, from, s->problem.length_m);
     status = search_back(ctx, &a, leapt, from, &now);
     *flat = status == DEA_OK && a.went_on;
     if (!*flat) {
-      dea_solid_stand_again(s, &now);
+      dea_solid_restore_state(s, &now);
     }
   }
-  dea_solid_stand_free(&now);
+  dea_solid_saved_state_free(&now);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

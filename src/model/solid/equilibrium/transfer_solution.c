@@ -1,4 +1,4 @@
-#include "model/solid/equilibrium/carry.h"
+#include "model/solid/equilibrium/transfer_solution.h"
 
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/mass.h"
@@ -26,7 +26,7 @@ struct untangling {
 
 static bool is_soft(const struct dea_solid *s, size_t e)
 {
-  return dea_constituent_modulus(dea_solid_constituent(s, e)) <= soft * s->problem.modulus_Pa;
+  return dea_part_material_modulus(dea_solid_part_material(s, e)) <= soft * s->problem.modulus_Pa;
 }
 
 static bool is_inverted(const struct untangling *t, size_t e)
@@ -34,7 +34,7 @@ static bool is_inverted(const struct untangling *t, size_t e)
   const struct dea_element *element = dea_solid_element(t->s, e);
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
   const struct dea_element_input in = {
-      .constituent = dea_solid_constituent(t->s, e), .X = X, .u = u};
+      .part_material = dea_solid_part_material(t->s, e), .X = X, .u = u};
   dea_solid_gather(t->s, e, t->s->problem.grid->X, X);
   dea_solid_gather(t->s, e, t->u, u);
   return element->type->strains(element, &in, t->strains) == DEA_E_DOMAIN;
@@ -318,9 +318,9 @@ static dea_status carry(struct dea_context *ctx, struct dea_solid *s, struct car
   return *found ? DEA_OK : carry_held(ctx, s, c, report, found);
 }
 
-dea_status dea_solid_carry(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                           const double *displacement_m, struct dea_solid_report *report,
-                           bool *found)
+dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid *s,
+                                       double voltage_V, const double *displacement_m,
+                                       struct dea_solid_report *report, bool *found)
 {
   const struct dea_solid_report before = *report;
   const double own = s->settings.bulk_soft;

@@ -8,7 +8,7 @@
 #include <sys/types.h>
 
 /* One of them; zeros: none. */
-struct dea_aside {
+struct dea_worker {
   pid_t process; // while it runs
   int socket;
   struct dea_bytes said; // what has come of it
@@ -16,24 +16,24 @@ struct dea_aside {
 };
 
 /* What another process does: its context, and what it hands back. */
-typedef dea_status (*dea_aside_work)(struct dea_context *ctx, void *user, struct dea_bytes *out);
+typedef dea_status (*dea_worker_work)(struct dea_context *ctx, void *user, struct dea_bytes *out);
 
 /* Begins work in another process, which ends with this one, leaves Ctrl-C to it, and tells no
  * progress; it is interrupted as this one is while that waits. */
-dea_status dea_aside_start(struct dea_context *ctx, dea_aside_work work, void *user,
-                           struct dea_aside *aside);
+dea_status dea_worker_start(struct dea_context *ctx, dea_worker_work work, void *user,
+                            struct dea_worker *aside);
 /* Waits until at most `most` of them [count] run. */
-dea_status dea_aside_wait(struct dea_context *ctx, struct dea_aside *all, size_t count,
-                          size_t most);
+dea_status dea_worker_wait(struct dea_context *ctx, struct dea_worker *all, size_t count,
+                           size_t most);
 /* Whether it has ended, and not with DEA_OK. */
-bool dea_aside_failed(const struct dea_aside *aside);
+bool dea_worker_failed(const struct dea_worker *aside);
 /* Of one that has ended: its status, with its message, after its findings are added to those here;
- * *bytes [*length]: what it has handed back, also where it failed, lent until dea_aside_end.
+ * *bytes [*length]: what it has handed back, also where it failed, lent until dea_worker_end.
  * DEA_E_TOOL where it died. */
-dea_status dea_aside_take(struct dea_context *ctx, const struct dea_aside *aside,
-                          const char **bytes, size_t *length);
+dea_status dea_worker_take(struct dea_context *ctx, const struct dea_worker *aside,
+                           const char **bytes, size_t *length);
 /* Ends it at once if it still runs, and frees what came of it. */
-void dea_aside_end(struct dea_aside *aside);
+void dea_worker_end(struct dea_worker *aside);
 
 // What other pools of processes are made of ------------------------------------------------------
 

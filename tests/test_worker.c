@@ -1,7 +1,7 @@
 /* Work in processes beside this one. */
 // ctest: quick
 #define _POSIX_C_SOURCE 200809L // nanosleep
-#include "base/aside.h"
+#include "base/worker.h"
 #include "testing.h"
 
 #include "context_fixture.h"
@@ -33,12 +33,12 @@ static dea_status work(struct dea_context *context, void *user, struct dea_bytes
   return task->status == DEA_OK ? DEA_OK : dea_fail(context, task->status, "no %g", task->number);
 }
 
-static double taken(const struct dea_aside *aside, dea_status wanted)
+static double taken(const struct dea_worker *aside, dea_status wanted)
 {
   const char *bytes;
   size_t length;
   double number = NAN;
-  assert_int_equal(dea_aside_take(ctx, aside, &bytes, &length), wanted);
+  assert_int_equal(dea_worker_take(ctx, aside, &bytes, &length), wanted);
   assert_true(length == sizeof number || (length == 0 && wanted == DEA_E_TOOL));
   if (length > 0) {
     memcpy(&number, bytes, sizeof number);
@@ -51,15 +51,15 @@ static void test_hands_back(void **state)
 {
   (void)state;
   struct task tasks[] = {{1.5, DEA_OK, false}, {2.5, DEA_E_SLACK, false}, {3.5, DEA_OK, true}};
-  struct dea_aside at[3] = {{0}};
+  struct dea_worker at[3] = {{0}};
   size_t count;
   dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0}, "known");
   for (int i = 0; i < 3; i++) {
-    assert_int_equal(dea_aside_start(ctx, work, &tasks[i], &at[i]), DEA_OK);
+    assert_int_equal(dea_worker_start(ctx, work, &tasks[i], &at[i]), DEA_OK);
   }
-  assert_int_equal(dea_aside_wait(ctx, at, 3, 0), DEA_OK);
-  assert_false(dea_aside_failed(&at[0]));
-  assert_true(dea_aside_failed(&at[1]) && dea_aside_failed(&at[2]));
+  assert_int_equal(dea_worker_wait(ctx, at, 3, 0), DEA_OK);
+  assert_false(dea_worker_failed(&at[0]));
+  assert_true(dea_worker_failed(&at[1]) && dea_worker_failed(&at[2]));
   assert_close(taken(&at[0], DEA_OK), 1.5, 0, 0);
   assert_close(taken(&at[1], DEA_E_SLACK), 2.5, 0, 0);
   assert_string_equal(dea_context_message(ctx), "no 2.5");
@@ -73,8 +73,8 @@ static void test_hands_back(void **state)
               findings[1].location.column == 4);
   assert_string_equal(findings[2].text, "seen: 2.5");
   for (int i = 0; i < 3; i++) {
-    dea_aside_end(&at[i]);
-    assert_false(dea_aside_failed(&at[i]));
+    dea_worker_end(&at[i]);
+    assert_false(dea_worker_failed(&at[i]));
   }
   dea_finding_clear(ctx);
   dea_context_clear(ctx);
@@ -98,23 +98,23 @@ static void test_interrupted(void **state)
   (void)state;
   double number = 7;
   struct task task = {1, DEA_OK, false};
-  struct dea_aside at[3] = {{0}};
+  struct dea_worker at[3] = {{0}};
   volatile sig_atomic_t flag = 0;
-  assert_int_equal(dea_aside_start(ctx, wait_to_stop, &number, &at[0]), DEA_OK);
-  assert_int_equal(dea_aside_start(ctx, work, &task, &at[1]), DEA_OK);
-  assert_int_equal(dea_aside_start(ctx, wait_to_stop, &number, &at[2]), DEA_OK);
-  assert_int_equal(dea_aside_wait(ctx, at, 2, 1), DEA_OK); // the second has ended
-  assert_false(dea_aside_failed(&at[0]) || dea_aside_failed(&at[1]));
+  assert_int_equal(dea_worker_start(ctx, wait_to_stop, &number, &at[0]), DEA_OK);
+  assert_int_equal(dea_worker_start(ctx, work, &task, &at[1]), DEA_OK);
+  assert_int_equal(dea_worker_start(ctx, wait_to_stop, &number, &at[2]), DEA_OK);
+  assert_int_equal(dea_worker_wait(ctx, at, 2, 1), DEA_OK); // the second has ended
+  assert_false(dea_worker_failed(&at[0]) || dea_worker_failed(&at[1]));
   dea_context_set_interrupt(ctx, &flag);
   flag = 1;
-  assert_int_equal(dea_aside_wait(ctx, at, 2, 0), DEA_OK);
+  assert_int_equal(dea_worker_wait(ctx, at, 2, 0), DEA_OK);
   dea_context_set_interrupt(ctx, NULL);
   assert_close(taken(&at[0], DEA_E_INTERRUPTED), 7, 0, 0);
   assert_close(taken(&at[1], DEA_OK), 1, 0, 0);
   const pid_t third = at[2].process;
   assert_true(third > 0);
   for (int i = 0; i < 3; i++) {
-    dea_aside_end(&at[i]);
+    dea_worker_end(&at[i]);
   }
   assert_int_equal(kill(third, 0), -1);
   dea_finding_clear(ctx);

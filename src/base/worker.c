@@ -1,5 +1,5 @@
 #define _GNU_SOURCE // prctl's names, MSG_NOSIGNAL
-#include "base/aside.h"
+#include "base/worker.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -71,7 +71,7 @@ const char *dea_ended_by(int how, char out[DEA_ENDED_BY])
 }
 
 /* The whole of the other process; returns its exit code. */
-static int work_aside(struct dea_context *ctx, dea_aside_work work, void *user, int socket)
+static int work_aside(struct dea_context *ctx, dea_worker_work work, void *user, int socket)
 {
   struct dea_bytes bytes = {.ctx = ctx}, findings = {.ctx = ctx};
   struct head head;
@@ -120,8 +120,8 @@ dea_status dea_fork_beside(struct dea_context *ctx, pid_t *process, int *socket)
   return DEA_OK;
 }
 
-dea_status dea_aside_start(struct dea_context *ctx, dea_aside_work work, void *user,
-                           struct dea_aside *aside)
+dea_status dea_worker_start(struct dea_context *ctx, dea_worker_work work, void *user,
+                            struct dea_worker *aside)
 {
   pid_t process = -1;
   int socket = -1;
@@ -129,12 +129,12 @@ dea_status dea_aside_start(struct dea_context *ctx, dea_aside_work work, void *u
   if (process == 0) {
     _exit(work_aside(ctx, work, user, socket));
   }
-  *aside = (struct dea_aside){process, socket, {.ctx = ctx}, true, false};
+  *aside = (struct dea_worker){process, socket, {.ctx = ctx}, true, false};
   return DEA_OK;
 }
 
 /* Its end; nothing of one that did not hand back all counts. */
-static void bury(struct dea_aside *aside)
+static void bury(struct dea_worker *aside)
 {
   int how = 0;
   while (waitpid(aside->process, &how, 0) < 0 && errno == EINTR) {
@@ -145,7 +145,7 @@ static void bury(struct dea_aside *aside)
 }
 
 /* Some of what it says, or its end. */
-static dea_status hear(struct dea_context *ctx, struct dea_aside *aside)
+static dea_status hear(struct dea_context *ctx, struct dea_worker *aside)
 {
   char chunk[CHUNK];
   const ssize_t n = recv(aside->socket, chunk, sizeof chunk, 0);
@@ -158,7 +158,7 @@ static dea_status hear(struct dea_context *ctx, struct dea_aside *aside)
 }
 
 /* Tells one that this process was interrupted, once. */
-static void tell(const struct dea_context *ctx, struct dea_aside *aside)
+static void tell(const struct dea_context *ctx, struct dea_worker *aside)
 {
   if (!aside->told && dea_interrupted(ctx)) {
     shutdown(aside->socket, SHUT_WR);
@@ -166,7 +166,8 @@ static void tell(const struct dea_context *ctx, struct dea_aside *aside)
   }
 }
 
-dea_status dea_aside_wait(struct dea_context *ctx, struct dea_aside *all, size_t count, size_t most)
+dea_status dea_worker_wait(struct dea_context *ctx, struct dea_worker *all, size_t count,
+                           size_t most)
 {
   struct pollfd polled[ASIDE_MAX];
   size_t at[ASIDE_MAX];
@@ -191,7 +192,7 @@ dea_status dea_aside_wait(struct dea_context *ctx, struct dea_aside *all, size_t
 }
 
 /* false: it has died. */
-static bool read_head(const struct dea_aside *aside, struct head *head)
+static bool read_head(const struct dea_worker *aside, struct head *head)
 {
   const bool whole = aside->said.length >= sizeof *head;
   if (whole) {
@@ -200,7 +201,7 @@ static bool read_head(const struct dea_aside *aside, struct head *head)
   return whole && aside->said.length == sizeof *head + head->bytes + head->findings;
 }
 
-bool dea_aside_failed(const struct dea_aside *aside)
+bool dea_worker_failed(const struct dea_worker *aside)
 {
   struct head head;
   return aside->begun && aside->process == 0 && !(read_head(aside, &head) && head.status == DEA_OK);
@@ -226,8 +227,8 @@ static dea_status take_findings(struct dea_context *ctx, const char *from, size_
   return DEA_OK;
 }
 
-dea_status dea_aside_take(struct dea_context *ctx, const struct dea_aside *aside,
-                          const char **bytes, size_t *length)
+dea_status dea_worker_take(struct dea_context *ctx, const struct dea_worker *aside,
+                           const char **bytes, size_t *length)
 {
   struct head head;
   *bytes = NULL;
@@ -241,7 +242,7 @@ dea_status dea_aside_take(struct dea_context *ctx, const struct dea_aside *aside
   return head.status == DEA_OK ? DEA_OK : dea_fail(ctx, head.status, "%s", head.message);
 }
 
-void dea_aside_end(struct dea_aside *aside)
+void dea_worker_end(struct dea_worker *aside)
 {
   if (aside->process > 0) {
     kill(aside->process, SIGKILL);
@@ -250,5 +251,5 @@ void dea_aside_end(struct dea_aside *aside)
   if (aside->begun) {
     dea_bytes_free(&aside->said);
   }
-  *aside = (struct dea_aside){0};
+  *aside = (struct dea_worker){0};
 }

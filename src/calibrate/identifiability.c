@@ -9,8 +9,9 @@
 
 /* ---- combinations ---- */
 
-void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const double *direction,
-                            bool open, const char *what, char out[DEA_FIT_WEAK_SIZE])
+void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
+                                const double *direction, bool open, const char *what,
+                                char out[DEA_FIT_WEAK_SIZE])
 {
   size_t index[DEA_LSQ_PARAMS_MAX], count = 0;
   double most = 0;
@@ -43,14 +44,14 @@ void dea_fit_tell_direction(const struct dea_fit_param *params, size_t n, const 
   }
 }
 
-void dea_fit_tell_weak(struct dea_fit *fit)
+void dea_fit_identify_weak(struct dea_fit *fit)
 {
   const struct dea_lsq_statistics *s = &fit->statistics;
   for (size_t k = s->active; k-- > 0 && fit->weak_count < DEA_FIT_WEAK_MAX;) {
     if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
-      dea_fit_tell_direction(fit->model.params, fit->model.count, s->direction + k * s->params,
-                             s->singular[k] <= 1e-9 * s->singular[0], "tests",
-                             fit->weak[fit->weak_count++]);
+      dea_fit_identify_direction(fit->model.params, fit->model.count, s->direction + k * s->params,
+                                 s->singular[k] <= 1e-9 * s->singular[0], "tests",
+                                 fit->weak[fit->weak_count++]);
     }
   }
 }
@@ -70,7 +71,7 @@ double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupo
   return NAN;
 }
 
-void dea_fit_tell_stability(struct dea_fit *fit)
+void dea_fit_identify_stability(struct dea_fit *fit)
 {
   struct dea_material material;
   dea_fit_model_material(&fit->model, fit->least_squares.p, &material);
@@ -199,7 +200,7 @@ static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct
   return DEA_OK;
 }
 
-dea_status dea_fit_tell_next(struct dea_context *ctx, struct dea_fit *fit)
+dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
 {
   struct dea_information base;
   double scale[DEA_LSQ_PARAMS_MAX];

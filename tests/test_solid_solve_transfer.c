@@ -5,8 +5,8 @@
 #include "failing_allocator.h"
 #include "solid_block.h"
 
-#include "model/solid/equilibrium/carry.h"
 #include "model/solid/equilibrium/load_steps.h"
+#include "model/solid/equilibrium/transfer_solution.h"
 #include "solid_fixture.h"
 
 #include <stdlib.h>
@@ -46,21 +46,21 @@ static int second_half(const void *self, int region, int ply)
 static dea_status try(struct dea_context *with)
 {
   struct dea_solid_settings settings = dea_solid_settings_default();
-  struct dea_constituent layers[2];
+  struct dea_part_material layers[2];
   for (int i = 0; i < 2; i++) {
-    layers[i] = dea_constituent_bonded((const double[]){2, 0});
-    dea_constituent_set_law(&layers[i], dea_law_find("neo-hookean"),
-                            (const double[]){i == 0 ? 1 : stiff});
+    layers[i] = dea_part_material_bonded((const double[]){2, 0});
+    dea_part_material_set_law(&layers[i], dea_law_find("neo-hookean"),
+                              (const double[]){i == 0 ? 1 : stiff});
     layers[i].kappa_Pa = 100;
     layers[i].permittivity_F_per_m = 1;
     layers[i].thickness_m = strip.size[2];
-    assert_int_equal(dea_constituent_relax(&layers[i]), DEA_OK);
+    assert_int_equal(dea_part_material_relax(&layers[i]), DEA_OK);
   }
   settings.iterations = iterations > 0 ? iterations : settings.iterations;
   const struct dea_solid_options options = {.order_z = strip.order_z,
-                                            .constituent_count = 2,
-                                            .constituents = layers,
-                                            .constituent_of = second_half,
+                                            .part_material_count = 2,
+                                            .part_materials = layers,
+                                            .part_material_of = second_half,
                                             .active = all_active,
                                             .held = clamped_in_plane_strain,
                                             .self = &strip,
@@ -144,7 +144,7 @@ static void test_either_side(void **state)
     crease(0.25);
     crease(0.6875);
     assert_true(is_lost());
-    if (dea_solid_carry(ctx, solid, voltage_V, u, &report, &found) != DEA_OK) {
+    if (dea_solid_transfer_solution(ctx, solid, voltage_V, u, &report, &found) != DEA_OK) {
       fail_msg("%s", dea_context_message(ctx));
     }
     assert_true(found);
@@ -169,7 +169,7 @@ static void test_held(void **state)
   iterations = 0;
   bend(0.8);
   crease(0.25);
-  assert_int_equal(dea_solid_carry(ctx, solid, voltage_V, u, &report, &found), DEA_OK);
+  assert_int_equal(dea_solid_transfer_solution(ctx, solid, voltage_V, u, &report, &found), DEA_OK);
   assert_true(found);
   assert_close(pow(middle_z() / h, 2), 4.0 / 3 * (r - 1), 0.01 * r / (r - 1), 0);
   destroy();
@@ -204,7 +204,8 @@ static void test_what_moves(void **state)
   memcpy(before, u, 3 * grid->node_count * sizeof *before);
   bool found;
   struct dea_solid_report report = {0};
-  assert_int_equal(dea_solid_carry(ctx, solid, critical_V(), u, &report, &found), DEA_OK);
+  assert_int_equal(dea_solid_transfer_solution(ctx, solid, critical_V(), u, &report, &found),
+                   DEA_OK);
   assert_false(found);
   assert_close(dea_solid_voltage(solid), 0, 0, 0);
   assert_close(middle_z(), 0, 0, 0);
@@ -220,7 +221,7 @@ static void carry_it(struct dea_context *failing)
   solid = NULL;
   dea_status status = try(failing);
   if (status == DEA_OK) {
-    status = dea_solid_carry(failing, solid, critical_V(), u, &report, &found);
+    status = dea_solid_transfer_solution(failing, solid, critical_V(), u, &report, &found);
   }
   failing_check(failing, status);
   dea_solid_destroy(failing, solid);

@@ -43,9 +43,11 @@ struct dea_solid_watch {
  * nobody does. taut: the film has tension. A failure leaves the solid at the last equilibrium that
  * was found: DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step,
  * and *stop says what is known. */
-dea_status dea_solid_approach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                              bool taut, const struct dea_solid_watch *watch,
-                              struct dea_solid_report *report, struct dea_solid_stop *stop);
+dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid *solid,
+                                       double voltage_V, bool taut,
+                                       const struct dea_solid_watch *watch,
+                                       struct dea_solid_report *report,
+                                       struct dea_solid_stop *stop);
 
 /* As dea_load_steps_solve, and where load steps fail by the path, whose limit points the solid may
  * pass to a stable state. DEA_E_NO_EQUILIBRIUM: one ends it at report->limit of the way; the solid
@@ -54,28 +56,28 @@ dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *solid, dou
                            struct dea_solid_report *report);
 
 /* Where the solid has been. */
-struct dea_solid_stand {
+struct dea_solid_saved_state {
   struct dea_arena memory;
   double *state, *controls;
 };
 /* out: freed by the caller, also on failure. */
-dea_status dea_solid_stand_keep(struct dea_context *ctx, struct dea_solid *solid,
-                                struct dea_solid_stand *out);
-void dea_solid_stand_free(struct dea_solid_stand *stand);
+dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *solid,
+                                struct dea_solid_saved_state *out);
+void dea_solid_saved_state_free(struct dea_solid_saved_state *stand);
 /* Brings the solid back to there. */
-void dea_solid_stand_again(struct dea_solid *solid, const struct dea_solid_stand *at);
+void dea_solid_restore_state(struct dea_solid *solid, const struct dea_solid_saved_state *at);
 /* Root of the mean square of how far the nodes are from there. */
-double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_stand *from);
+double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_saved_state *from);
 
 /* Whether a film that was flat there, and that the voltage does not push across, is no more, to
  * 1e-6 and 1e-3 of a size. It does not push where the film was flat under one, or where the first
  * linear step from 0 V leaves it flat. */
-bool dea_solid_left_plane(struct dea_solid *solid, const struct dea_solid_stand *from,
+bool dea_solid_left_plane(struct dea_solid *solid, const struct dea_solid_saved_state *from,
                           double size_m);
 
 /* Whether the last approach, which began there, has come farther from where the tangent there saw
  * it go than a path of equilibria leads, up to its limit point; false where that is not known. */
-bool dea_solid_strays(const struct dea_solid *solid, const struct dea_solid_stand *from);
+bool dea_solid_left_branch(const struct dea_solid *solid, const struct dea_solid_saved_state *from);
 
 /* Whether load steps from there to where the solid is have gone past a limit point or a
  * bifurcation: follows the path from there towards the controls as they are. Where the path comes
@@ -84,9 +86,10 @@ bool dea_solid_strays(const struct dea_solid *solid, const struct dea_solid_stan
  * one. The solid is then where it was, unless it has left the plane of a flat film that was taut
  * all along its path to there: it is then at that path's end, *flat, which *report is of. *stop:
  * where, which `watch` has seen last; DEA_STOP_UNKNOWN: there was none, or none was found. */
-dea_status dea_solid_look_back(struct dea_context *ctx, struct dea_solid *solid,
-                               const struct dea_solid_stand *from, bool leapt,
-                               const struct dea_solid_watch *watch, struct dea_solid_report *report,
-                               struct dea_solid_stop *stop, bool *flat);
+dea_status dea_solid_detect_missed_limit_point(struct dea_context *ctx, struct dea_solid *solid,
+                                               const struct dea_solid_saved_state *from, bool leapt,
+                                               const struct dea_solid_watch *watch,
+                                               struct dea_solid_report *report,
+                                               struct dea_solid_stop *stop, bool *flat);
 
 #endif

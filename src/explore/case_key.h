@@ -26,7 +26,7 @@ struct dea_limit {
   double above, below; // SI; NAN: none
 };
 
-struct dea_question {
+struct dea_case_key {
   struct dea_context *ctx;
   struct dea_explore_file *file;
   struct dea_design *design;
@@ -59,29 +59,29 @@ struct dea_question {
   char id[DEA_CASE_ID_SIZE];
   struct dea_case *now; // what is evaluated, while slopes are taken too
   /* Told of each stop of these, as of struct dea_device_model; NULL: nobody. */
-  dea_status (*stood)(struct dea_question *question, struct dea_model *model,
+  dea_status (*stood)(struct dea_case_key *case_key, struct dea_model *model,
                       const struct dea_device *device, size_t stop);
 };
 
 /* Reads a file and resolves it. All that is wrong becomes findings, at its place, before anything
  * is computed; DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
-dea_status dea_question_read(struct dea_context *ctx, const char *file, struct dea_question **out);
-void dea_question_destroy(struct dea_question *question);
+dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct dea_case_key **out);
+void dea_case_key_destroy(struct dea_case_key *case_key);
 /* Whether a design is solved faster from one nearby. */
-bool dea_question_warms(const struct dea_question *question);
+bool dea_case_key_warms(const struct dea_case_key *case_key);
 /* Values that a variable can take lie from *low to *high; false: it has no bounds. */
 bool dea_variable_range(const struct dea_variable *variable, double *low, double *high);
 /* Number of a quantity of the question by its key, or -1. */
-int dea_question_quantity(const struct dea_question *question, const char *key);
+int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key);
 /* Whether a quantity is taken with the tip of compute.force held at its first depth. */
-bool dea_question_is_held(const struct dea_question *question, size_t quantity);
+bool dea_case_key_is_held(const struct dea_case_key *case_key, size_t quantity);
 /* Name of value i of a case: "centre_z_m", with several voltages "centre_z_m@6000". */
-void dea_question_value_name(const struct dea_question *question, size_t i, char *out, size_t size);
+void dea_case_key_value_name(const struct dea_case_key *case_key, size_t i, char *out, size_t size);
 /* The same of the flags at voltage k: "flags", "flags@6000". */
-void dea_question_flags_name(const struct dea_question *question, size_t k, char *out, size_t size);
+void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char *out, size_t size);
 /* A limit's margin at a case's last voltage, over its scale: below 0 it is crossed; NAN: no value.
  */
-double dea_limit_margin(const struct dea_question *question, const struct dea_limit *limit,
+double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
                         const double *q);
 
 #endif

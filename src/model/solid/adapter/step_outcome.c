@@ -1,4 +1,4 @@
-#include "model/solid/adapter/ending.h"
+#include "model/solid/adapter/step_outcome.h"
 
 #include "base/whole.h"
 #include "model/make.h"
@@ -10,11 +10,11 @@
 
 /* More area at once than this, and a limit point may have been passed: along a path that goes on
  * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
-static const double leap = 1.5;
+static const double branch_jump = 1.5;
 /* Neither does what moves so many times as far by its way as in the step before. */
 static const double rush = 5;
 
-static double area_of(const struct dea_ending *e, const struct dea_solid_extremes *film)
+static double area_of(const struct dea_step_outcome *e, const struct dea_solid_extremes *film)
 {
   double V = dea_solid_voltage(e->owner.solid);
   return V > 0 ? film->true_field_V_per_m * e->owner.flat_thickness_m / V : 1;
@@ -22,7 +22,7 @@ static double area_of(const struct dea_ending *e, const struct dea_solid_extreme
 
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
  * largest area stretch. */
-static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
+static dea_status look_at_tension(struct dea_context *ctx, struct dea_step_outcome *e)
 {
   struct dea_solid_extremes film;
   double V = dea_solid_voltage(e->owner.solid);
@@ -42,13 +42,13 @@ static dea_status look_at_tension(struct dea_context *ctx, struct dea_ending *e)
 
 /* Whether the film carries tension all over where it was looked at last: a membrane that is slack
  * has none to rounding. */
-static bool is_taut(const struct dea_ending *e)
+static bool is_taut(const struct dea_step_outcome *e)
 {
   return e->tension[2] > 1e-6 * e->owner.tension_scale_N_per_m;
 }
 
 /* The point where the solid is, as the event at which a solve ends. */
-static dea_status take_event(struct dea_context *ctx, struct dea_ending *e,
+static dea_status take_event(struct dea_context *ctx, struct dea_step_outcome *e,
                              enum dea_event_kind kind)
 {
   dea_status status =
@@ -58,20 +58,20 @@ static dea_status take_event(struct dea_context *ctx, struct dea_ending *e,
   return status;
 }
 
-static void drop_limit(struct dea_ending *e)
+static void drop_limit(struct dea_step_outcome *e)
 {
-  dea_solid_stand_free(&e->at_limit);
-  e->at_limit = (struct dea_solid_stand){.state = NULL};
+  dea_solid_saved_state_free(&e->at_limit);
+  e->at_limit = (struct dea_solid_saved_state){.state = NULL};
 }
 
-void dea_ending_free(struct dea_ending *e)
+void dea_step_outcome_free(struct dea_step_outcome *e)
 {
   drop_limit(e);
 }
 
 /* The voltage at which two points that were looked at after each other have the tension 0 on the
  * line by the square of the voltage. NAN: none. */
-static double slack_V(const struct dea_ending *e, int first)
+static double slack_V(const struct dea_step_outcome *e, int first)
 {
   const double *T = e->tension + first, *at_V = e->tension_V + first, square = at_V[1] * at_V[1];
   return T[0] != T[1] ? sqrt(square + T[1] * (square - at_V[0] * at_V[0]) / (T[0] - T[1])) : NAN;
@@ -79,10 +79,10 @@ static double slack_V(const struct dea_ending *e, int first)
 
 /* Whether the tension of the film, which no step leads on from, is 0 closely beyond by its last two
  * points: the voltage of that as an event. */
-static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e, bool *slack)
+static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_step_outcome *e, bool *slack)
 {
   const double V = dea_solid_voltage(e->owner.solid), beyond = slack_V(e, 1);
-  const double near = 1 + e->owner.solid->settings.leap_way;
+  const double near = 1 + e->owner.solid->settings.branch_jump_way;
   *slack = e->tension_V[2] == V && e->tension_V[1] != V && beyond >= V && beyond <= near * V;
   if (*slack) {
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
@@ -95,13 +95,13 @@ static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_ending *e
  * them: the voltage from their tensions, or those of the two before. */
 static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_stop_kind where)
 {
-  struct dea_ending *e = user;
+  struct dea_step_outcome *e = user;
   double V = dea_solid_voltage(e->owner.solid);
   bool before = is_taut(e);
   bool thins = before || e->leapt; // where it turns unstable: in one place
   if (where == DEA_STOP_LIMIT && e->keeps) {
     drop_limit(e);
-    DEA_TRY(ctx, dea_solid_stand_keep(ctx, e->owner.solid, &e->at_limit));
+    DEA_TRY(ctx, dea_solid_save_state(ctx, e->owner.solid, &e->at_limit));
   }
   if (where == DEA_STOP_PASSED) {
     e->limited = false;
@@ -133,13 +133,13 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
 
 static dea_status has_grown(struct dea_context *ctx, void *user, bool *grew)
 {
-  const struct dea_ending *e = user;
+  const struct dea_step_outcome *e = user;
   struct dea_solid_extremes film;
   dea_status status = dea_solid_extremes(e->owner.solid, e->owner.films, &film);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated on the way");
   }
-  *grew = area_of(e, &film) > leap * fmax(e->area, 1);
+  *grew = area_of(e, &film) > branch_jump * fmax(e->area, 1);
   return DEA_OK;
 }
 
@@ -148,14 +148,14 @@ static bool was_taut(const void *user)
   return is_taut(user);
 }
 
-static struct dea_solid_watch watch_of(struct dea_ending *e)
+static struct dea_solid_watch watch_of(struct dea_step_outcome *e)
 {
   return (struct dea_solid_watch){see_point, has_grown, was_taut, e};
 }
 
 /* A film without tension that turned unstable, or that has lost it on the way that ended here. */
-static dea_status fail_slack(struct dea_context *ctx, const struct dea_ending *e, double voltage_V,
-                             const struct dea_solid_stop *stop)
+static dea_status fail_slack(struct dea_context *ctx, const struct dea_step_outcome *e,
+                             double voltage_V, const struct dea_solid_stop *stop)
 {
   char where[80] = "has no tension", state[120] = "it wrinkles";
   if (e->limited) {
@@ -174,7 +174,7 @@ static dea_status fail_slack(struct dea_context *ctx, const struct dea_ending *e
 }
 
 /* The verdict on a solve that failed on the way to a voltage (docs/theory/stops.md). */
-static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
+static dea_status stopped(struct dea_context *ctx, struct dea_step_outcome *e, double voltage_V,
                           const struct dea_solid_stop *stop, dea_status status)
 {
   char why[160];
@@ -226,8 +226,8 @@ static dea_status stopped(struct dea_context *ctx, struct dea_ending *e, double 
                   1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
 }
 
-static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, double voltage_V,
-                           double before)
+static dea_status say_branch_jump(struct dea_context *ctx, const struct dea_step_outcome *e,
+                                  double voltage_V, double before)
 {
   if (e->has_passed) {
     return dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->passed);
@@ -242,19 +242,20 @@ static dea_status say_leap(struct dea_context *ctx, const struct dea_ending *e, 
 /* Looks for a limit point between there and where the solid is. *share: of the way to it, NAN:
  * there is none, or a point on the way cannot be looked at, as where the law ends. *flat: the
  * solid, which was bent, is in the flat state now, which *report is of. */
-static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
-                            const struct dea_solid_stand *from, bool leapt,
-                            struct dea_solid_report *report, bool *flat, double *share)
+static dea_status detect_missed_limit_point(struct dea_context *ctx, struct dea_step_outcome *e,
+                                            const struct dea_solid_saved_state *from, bool leapt,
+                                            struct dea_solid_report *report, bool *flat,
+                                            double *share)
 {
   struct dea_solid_stop stop;
   const struct dea_solid_watch watch = watch_of(e);
-  const struct dea_ending kept = *e; // what the points of the path change
+  const struct dea_step_outcome kept = *e; // what the points of the path change
   e->limited = false;
   e->leapt = leapt;
   e->tension[2] = e->tension[1]; // as the path begins
   e->tension_V[2] = e->tension_V[1];
-  dea_status status =
-      dea_solid_look_back(ctx, e->owner.solid, from, leapt, &watch, report, &stop, flat);
+  dea_status status = dea_solid_detect_missed_limit_point(ctx, e->owner.solid, from, leapt, &watch,
+                                                          report, &stop, flat);
   const bool looked = status == DEA_OK;
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -262,7 +263,7 @@ static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
   }
   DEA_TRY(ctx, status);
   struct dea_event found = e->limit;
-  const struct dea_solid_stand at_limit = e->at_limit;
+  const struct dea_solid_saved_state at_limit = e->at_limit;
   bool passed =
       looked && stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
   *e = kept;
@@ -276,8 +277,8 @@ static dea_status look_back(struct dea_context *ctx, struct dea_ending *e,
 }
 
 /* Whether the last step moved much farther by its way than the one before; keeps what it did. */
-static bool rushes(struct dea_ending *e, double *rate, double way,
-                   const struct dea_solid_stand *from)
+static bool rushes(struct dea_step_outcome *e, double *rate, double way,
+                   const struct dea_solid_saved_state *from)
 {
   double before = *rate;
   *rate = way != 0 ? dea_solid_moved_m(e->owner.solid, from) / fabs(way) : 0;
@@ -286,8 +287,8 @@ static bool rushes(struct dea_ending *e, double *rate, double way,
 
 /* A membrane that thins at once has no tension in that place, where nothing but the end of its law
  * holds its natural width (docs/theory/membrane.md): that is no state of the film. */
-static dea_status refuse_leap(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
-                              const struct dea_solid_stand *from)
+static dea_status refuse_branch_jump(struct dea_context *ctx, struct dea_step_outcome *e,
+                                     double voltage_V, const struct dea_solid_saved_state *from)
 {
   char stretch[60] = ""; // of a disc
   double area = e->area;
@@ -295,7 +296,7 @@ static dea_status refuse_leap(struct dea_context *ctx, struct dea_ending *e, dou
   e->limited = true;
   e->has_passed = false;
   e->rate[0] = 0;
-  dea_solid_stand_again(e->owner.solid, from);
+  dea_solid_restore_state(e->owner.solid, from);
   DEA_TRY(ctx, look_at_tension(ctx, e));
   if (!isnan(e->limit.point.electrode_stretch)) {
     snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
@@ -309,24 +310,25 @@ static dea_status refuse_leap(struct dea_context *ctx, struct dea_ending *e, dou
 
 /* Where a load step has come to, from a film that was so taut and had that area. On its way it may
  * have followed its path past pull-in and gone down from there. */
-static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, double voltage_V,
-                               const struct dea_solid_stand *from, bool taut, double before,
-                               struct dea_solid_report *report)
+static dea_status look_at_step(struct dea_context *ctx, struct dea_step_outcome *e,
+                               double voltage_V, const struct dea_solid_saved_state *from,
+                               bool taut, double before, struct dea_solid_report *report)
 {
   double share = NAN, from_V = e->from_V;
   bool flat = false;
   const bool seen = e->limited && e->limit.kind == DEA_EVENT_PULL_IN;
   e->limited = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
-  bool thins = from_V >= 0 && voltage_V > from_V && e->area > leap * fmax(before, 1);
+  bool thins = from_V >= 0 && voltage_V > from_V && e->area > branch_jump * fmax(before, 1);
   bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
   bool bent = dea_solid_left_plane(e->owner.solid, from, e->owner.flat_thickness_m);
-  bool strays = voltage_V != from_V && dea_solid_strays(e->owner.solid, from);
+  bool left_branch = voltage_V != from_V && dea_solid_left_branch(e->owner.solid, from);
   if (seen && (thins || (taut && report->snapped))) {
     e->passed = e->limit;
     e->has_passed = true;
-  } else if (thins || (taut && is_taut(e) && (bent || ((rushed || strays) && !report->snapped)))) {
-    DEA_TRY(ctx, look_back(ctx, e, from, thins, report, &flat, &share));
+  } else if (thins ||
+             (taut && is_taut(e) && (bent || ((rushed || left_branch) && !report->snapped)))) {
+    DEA_TRY(ctx, detect_missed_limit_point(ctx, e, from, thins, report, &flat, &share));
   }
   if (flat) { // it has gone past nothing
     DEA_TRY(ctx, look_at_tension(ctx, e));
@@ -334,17 +336,17 @@ static dea_status look_at_step(struct dea_context *ctx, struct dea_ending *e, do
   }
   report->snapped |= bent; // if also straight to a stable state
   if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {
-    return refuse_leap(ctx, e, voltage_V, from);
+    return refuse_branch_jump(ctx, e, voltage_V, from);
   }
   e->leapt = thins || !isnan(share);
-  return e->leapt ? say_leap(ctx, e, voltage_V, before) : DEA_OK;
+  return e->leapt ? say_branch_jump(ctx, e, voltage_V, before) : DEA_OK;
 }
 
 /* One load step. */
-static dea_status step(struct dea_context *ctx, struct dea_ending *e, double from_V,
+static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, double from_V,
                        double voltage_V, struct dea_solid_report *report)
 {
-  struct dea_solid_stand from;
+  struct dea_solid_saved_state from;
   struct dea_solid_stop stop;
   const struct dea_solid_watch watch = watch_of(e);
   e->from_V = from_V;
@@ -352,10 +354,11 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   DEA_TRY(ctx, look_at_tension(ctx, e));
   const bool taut = is_taut(e);
   const double area = e->area; // points on the way have their own
-  dea_status status = dea_solid_stand_keep(ctx, e->owner.solid, &from);
+  dea_status status = dea_solid_save_state(ctx, e->owner.solid, &from);
   if (status == DEA_OK) {
     e->keeps = !e->has_passed;
-    status = dea_solid_approach(ctx, e->owner.solid, voltage_V, taut, &watch, report, &stop);
+    status =
+        dea_solid_solve_incremental(ctx, e->owner.solid, voltage_V, taut, &watch, report, &stop);
     e->keeps = true;
     if (status != DEA_OK) {
       e->rate[0] = 0;
@@ -370,12 +373,12 @@ static dea_status step(struct dea_context *ctx, struct dea_ending *e, double fro
   if (status == DEA_OK && !e->has_passed) {
     drop_limit(e);
   }
-  dea_solid_stand_free(&from);
+  dea_solid_saved_state_free(&from);
   return status;
 }
 
-dea_status dea_ending_watch(struct dea_context *ctx, struct dea_ending *e, double way,
-                            const struct dea_solid_stand *from, double *share)
+dea_status dea_step_outcome_watch(struct dea_context *ctx, struct dea_step_outcome *e, double way,
+                                  const struct dea_solid_saved_state *from, double *share)
 {
   *share = NAN;
   e->has_passed = false;
@@ -384,7 +387,7 @@ dea_status dea_ending_watch(struct dea_context *ctx, struct dea_ending *e, doubl
   if (rushes(e, &e->rate[1], way, from) && is_taut(e)) {
     struct dea_solid_report report;
     bool flat;
-    DEA_TRY(ctx, look_back(ctx, e, from, false, &report, &flat, share));
+    DEA_TRY(ctx, detect_missed_limit_point(ctx, e, from, false, &report, &flat, share));
   }
   return DEA_OK;
 }
@@ -398,8 +401,8 @@ static dea_status say_snap(struct dea_context *ctx, double voltage_V)
                          1e-3 * voltage_V);
 }
 
-dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double from_V,
-                         double voltage_V, struct dea_solid_report *report)
+dea_status dea_step_outcome_go(struct dea_context *ctx, struct dea_step_outcome *e, double from_V,
+                               double voltage_V, struct dea_solid_report *report)
 {
   double way = voltage_V - from_V, at_V = from_V;
   int steps = isfinite(e->owner.step_V)
@@ -421,12 +424,12 @@ dea_status dea_ending_go(struct dea_context *ctx, struct dea_ending *e, double f
   return DEA_OK;
 }
 
-const struct dea_event *dea_ending_limit(const struct dea_ending *e)
+const struct dea_event *dea_step_outcome_limit(const struct dea_step_outcome *e)
 {
   return e->limited ? &e->limit : NULL;
 }
 
-const struct dea_event *dea_ending_passed(const struct dea_ending *e)
+const struct dea_event *dea_step_outcome_passed(const struct dea_step_outcome *e)
 {
   return e->has_passed ? &e->passed : NULL;
 }
