@@ -1,5 +1,5 @@
 """All files that ship against the JSON Schemas of data/schema, and the bad files of
-tests/test_design_errors.c: test_schema_files.sh calls it with the folders of both."""
+tests/design/test_design_errors.c: test_schema_files.sh calls it with the folders of both."""
 
 import json
 import pathlib

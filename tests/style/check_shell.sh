@@ -5,7 +5,7 @@ cd "$1"
 build=$2
 bad=0
 if command -v shellcheck >/dev/null 2>&1; then
-  shellcheck -x -P SCRIPTDIR scripts/demo scripts/test scripts/bench scripts/verify scripts/package scripts/docs scripts/analyse scripts/lib.sh .ci/run tests/*.sh verify/*.sh || bad=1
+  shellcheck -x -P SCRIPTDIR scripts/demo scripts/test scripts/bench scripts/verify scripts/package scripts/docs scripts/analyse scripts/lib.sh .ci/run tests/*/*.sh verify/*.sh || bad=1
 else
   echo "shellcheck is missing"
   exit 77
