@@ -135,7 +135,7 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
       if (isnan(*q) && io->why[0] == '\0' && case_key->quantities[i].is_critical) {
         snprintf(io->why, sizeof io->why, "%s: %.120s", case_key->quantities[i].key, case_key->why);
       } else if (isnan(*q) && io->why[0] == '\0') {
-        snprintf(io->why, sizeof io->why, "the model does not compute %s of this design",
+        snprintf(io->why, sizeof io->why, "the model does not support %s of this design",
                  case_key->quantities[i].key);
       }
     }
@@ -311,7 +311,7 @@ static dea_status take_quantities(struct dea_case_key *case_key)
                case_key->model.type->observe == NULL) {
       DEA_TRY(case_key->ctx,
               dea_finding_add(case_key->ctx, DEA_ERROR, file->quantities[i].location,
-                              "model %s does not compute monitors", case_key->model.type->name));
+                              "model %s does not support monitors", case_key->model.type->name));
     } else if (good) {
       case_key->quantity_count++;
     }

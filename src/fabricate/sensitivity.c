@@ -47,7 +47,7 @@ static dea_status state_at(struct dea_context *ctx, struct solver_state *s, doub
 }
 
 /* Whether the film is taut at a voltage, if its tension goes on as from one point to the next: with
- * the square of the voltage. Of a model that does not compute tension: yes. */
+ * the square of the voltage. Of a model that does not support tension: yes. */
 static bool stays_taut(const struct dea_load_point *from, const struct dea_load_point *to,
                        double voltage_V)
 {

@@ -155,7 +155,7 @@ static dea_status check_times(struct work *w)
                           ? dea_finding_add(w->ctx, DEA_ERROR, kind->location,
                                             "the design plays nothing: it needs drive.waveform")
                           : dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                                            "the model %s does not compute time", w->fit->model));
+                                            "the model %s does not support time", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
     return make_fine(w);
@@ -171,7 +171,7 @@ static dea_status check_tips(struct work *w)
     if (kind->value == DEA_DEVICE_FORCE) {
       DEA_TRY(w->ctx,
               dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                              "the model %s does not compute tip that is held", w->fit->model));
+                              "the model %s does not support tip that is held", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
   }

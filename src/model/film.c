@@ -46,7 +46,7 @@ dea_status dea_film_say_weight(struct dea_context *ctx, const struct dea_device 
 {
   if (device->gravity != DEA_GRAVITY_OFF) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                                 "model %s does not compute weight: its film stays flat (gravity)",
+                                 "model %s does not support weight: its film stays flat (gravity)",
                                  model));
   }
   return DEA_OK;

@@ -78,7 +78,7 @@ dea_status dea_model_create_whole(struct dea_context *ctx, const struct dea_mode
 static dea_status lacks(struct dea_context *ctx, const struct dea_model_type *type,
                         const char *what)
 {
-  return dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' does not compute %s", type->name, what);
+  return dea_fail(ctx, DEA_E_UNSUPPORTED, "the model '%s' does not support %s", type->name, what);
 }
 
 dea_status dea_model_path(struct dea_context *ctx, const struct dea_model_type *type,

@@ -212,12 +212,12 @@ struct dea_model_type {
   dea_status (*profile)(struct dea_context *ctx, struct dea_model *model, struct dea_profile *out);
   /* Brings a tip to `depth_m` beyond touching the flat film (negative: a gap) at the last voltage
    * solved, in steps of its own; later solves keep it there and their points have its force. The
-   * tip of the first call stays. NULL when the model does not compute tips. */
+   * tip of the first call stays. NULL when the model does not support tips. */
   dea_status (*indent)(struct dea_context *ctx, struct dea_model *model,
                        const struct dea_probe *tip, double depth_m, struct dea_load_point *out);
   /* Brings a control to a value at the last voltage solved, in smaller steps where the whole way
    * fails; later solves keep it there. Where there is no equilibrium on the way the model stays at
-   * the last one, with the control that belongs to it. NULL when the model does not compute bodies.
+   * the last one, with the control that belongs to it. NULL when the model does not support bodies.
    */
   dea_status (*move)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_control *control, double value, struct dea_load_point *out);
@@ -227,7 +227,7 @@ struct dea_model_type {
                        double *stiffness_N_per_m4);
   /* Another stable equilibrium at the voltage of the last point: the film is pushed and goes down
    * from there; it may come back to where it was. *found: false where it comes to no stable
-   * equilibrium, or the model does not compute such push, and is then as it was. soften and push
+   * equilibrium, or the model does not support such push, and is then as it was. soften and push
    * are both NULL when the model knows one state only. */
   dea_status (*push)(struct dea_context *ctx, struct dea_model *model, const struct dea_push *push,
                      struct dea_load_point *out, bool *found);

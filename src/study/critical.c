@@ -185,7 +185,7 @@ static dea_status rest(struct search *s, bool *holds)
   s->largest = s->low.value;
   *holds = there && s->low.value > 0;
   if (there && isnan(s->low.value)) {
-    snprintf(s->out->why, sizeof s->out->why, "the model does not compute %s of this device",
+    snprintf(s->out->why, sizeof s->out->why, "the model does not support %s of this device",
              s->ask->kind == DEA_EVENT_SLACK ? "tension" : "breakdown field");
   } else if (there && !*holds) {
     snprintf(s->out->why, sizeof s->out->why, "the film has no tension at rest");
@@ -387,7 +387,7 @@ static dea_status find_buckling(struct search *s)
   double square = NAN, high = INFINITY;
   bool there = false;
   if (s->ask->type->modes == NULL) {
-    snprintf(s->out->why, sizeof s->out->why, "the model does not compute frequencies");
+    snprintf(s->out->why, sizeof s->out->why, "the model does not support frequencies");
     return DEA_OK;
   }
   DEA_TRY(s->ctx, lowest_square(s, 0, &square, &there));

@@ -98,7 +98,7 @@ static dea_status say_unknown(struct dea_context *ctx, const struct dea_study *s
     return DEA_OK;
   }
   return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
-                         "model %s does not compute %s: no study '%s'", model, study->ability,
+                         "model %s does not support %s: no study '%s'", model, study->ability,
                          study->name);
 }
 
@@ -113,7 +113,7 @@ static void add_known_to_none(const struct dea_study *study,
   for (size_t i = 0; i < type_count; i++) {
     dea_text_add(out, "%s%s", i > 0 ? " or " : "", types[i]->name);
   }
-  dea_text_add(out, ", which %s not compute %s", type_count > 1 ? "do" : "does", study->ability);
+  dea_text_add(out, ", which %s not support %s", type_count > 1 ? "do" : "does", study->ability);
   for (size_t i = 0, able = 0; i < count; i++) {
     if (is_known_to(study, all[i], result)) {
       dea_text_add(out, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);

@@ -493,7 +493,7 @@ static dea_status indent(struct dea_context *ctx, const struct dea_design *desig
   if (p->type->indent == NULL) {
     return dea_finding_add(
         ctx, DEA_NOTE, (struct dea_location){0},
-        "model %s does not compute tips: compute.transient.indent is without effect there",
+        "model %s does not support tips: compute.transient.indent is without effect there",
         p->type->name);
   }
   DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, 0));

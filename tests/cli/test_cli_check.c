@@ -141,7 +141,7 @@ static void test_studies_of_no_model(void **state)
   command_write("modal.yaml", text);
   char wanted[200];
   snprintf(wanted, sizeof wanted,
-           "modal.yaml:%zu:3: warning: no study 'modal' of model lumped, which does not compute "
+           "modal.yaml:%zu:3: warning: no study 'modal' of model lumped, which does not support "
            "vibrations; "
            "there is one of 3d (compute.models)\n",
            line);

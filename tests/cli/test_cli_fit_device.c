@@ -76,7 +76,7 @@ static void test_curves(void **state)
          "electrode_edge_u_m: ");
   expect("lumped", free_one,
          "name: s, file: sweep.csv, quantities: [electrode_edge_u_m], kind: force", 3,
-         "mine.yaml:7:72: error: the model lumped does not compute tip");
+         "mine.yaml:7:72: error: the model lumped does not support tip");
   command_write("z.csv", "V (kV),z centre (um)\n1,1\n2,2\n");
   expect("axisymmetric", free_one, "name: s, file: z.csv", 3,
          "the model axisymmetric does not know centre_z_m");

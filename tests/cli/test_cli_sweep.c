@@ -109,7 +109,7 @@ static void test_monitors(void **state)
       {"devices/diaphragm", "midle.z_m", "'midle.z_m' is no quantity; did you mean 'middle_z_m'?"},
       {"devices/diaphragm", "energy_J, energy_J", "mine.yaml:5:24: error: energy_J is there twice"},
       {"devices/diaphragm", "middle.z_m",
-       "mine.yaml:5:14: error: model lumped does not compute monitors"},
+       "mine.yaml:5:14: error: model lumped does not support monitors"},
       {"devices/diaphragm", "capacitanc_F", "did you mean 'capacitance_F'?"},
       {"frdea-4", "middle.z_m", "'middle.z_m' is no quantity"},
   };

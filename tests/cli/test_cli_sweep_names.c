@@ -123,7 +123,8 @@ static void test_permittivity_of_a_ply(void **state)
                 "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
                 "  - {ply: film, side: top, shape: active, channel: drive}\n"
                 "supports: [{edge: film}]\n"
-                "compute: {models: [3d], voltage: {values: [1 V]}, solid: {film: membrane}}\n");
+                "compute: {models: [3d], voltage: {values: [1 V]}, "
+                "solid: {film: membrane, refinement: 2}}\n"); // arcs of parabolas: 1e-5 with 1
   command_write("flat-best.yaml",
                 "dea_explore: 1\nname: flat\ndesign: flat.yaml\nmodel: 3d\nvoltages: [1 V]\n"
                 "quantities: [capacitance_F]\nstarts: 1\nmethod: slsqp\n"

@@ -18,7 +18,7 @@ static void test_force_without_indenter(void **state)
   assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
   assert_int_equal(dea_force_indent(ctx, type, model, design, 0), DEA_E_UNSUPPORTED);
   assert_string_equal(dea_context_message(ctx),
-                      "the model 'axisymmetric' does not compute indenter");
+                      "the model 'axisymmetric' does not support indenter");
   type->destroy(ctx, model);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
@@ -55,7 +55,7 @@ static void test_bare_model(void **state)
   for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++) {
     assert_int_equal(answers[i], DEA_E_UNSUPPORTED);
   }
-  assert_string_equal(dea_context_message(ctx), "the model 'bare' does not compute time");
+  assert_string_equal(dea_context_message(ctx), "the model 'bare' does not support time");
 }
 
 int main(void)

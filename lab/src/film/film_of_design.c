@@ -142,7 +142,7 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
   *out = NULL;
   if (type == NULL || type->advance == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "the simulated bench cannot use model '%s': it %s",
-                    name, type == NULL ? "is not there" : "does not compute time");
+                    name, type == NULL ? "is not there" : "does not support time");
   }
   struct film_model *m = dea_alloc(ctx, 1, sizeof *m);
   if (m == NULL) {
