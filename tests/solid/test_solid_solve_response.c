@@ -331,7 +331,7 @@ static int one_of_many(const void *self, int region, int ply)
   return ply == 0 ? 3 : MANY - 1;
 }
 
-/* Response of the far end at a frequency, of the bender with so many constituents, all of one
+/* Response of the far end at a frequency, of the bender with so many part materials, all of one
  * material; apart: a billionth, by which the branches of each differ. */
 static void respond_with(int part_materials, double apart, double out[1][2][3])
 {

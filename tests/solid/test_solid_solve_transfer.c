@@ -32,7 +32,7 @@ static int clamped_in_plane_strain(const void *self, const double X[3])
   return 2 | (X[0] < 1e-9 || X[0] > block->size[0] - 1e-9 ? 7 : 0);
 }
 
-/* The second constituent is of the same law, and `stiff` times as stiff. */
+/* The second part material is of the same law, and `stiff` times as stiff. */
 static double stiff = 1;
 static int iterations; // of a descent; 0: as many as by default
 

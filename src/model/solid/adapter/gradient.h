@@ -26,8 +26,8 @@ struct dea_gradient_owner {
   dea_status (*monitor_slope)(struct dea_context *ctx, void *model, size_t i, double *out,
                               double *way, bool *known);
   dea_status (*monitors)(struct dea_context *ctx, void *model, double *out);
-  /* Puts mesh, constituents and loads of one side of a change under the solid, whose unknowns stay.
-   * DEA_E_ARGUMENT and DEA_E_UNSUPPORTED where the mesh cannot follow. */
+  /* Puts mesh, part materials and loads of one side of a change under the solid, whose unknowns
+   * stay. DEA_E_ARGUMENT and DEA_E_UNSUPPORTED where the mesh cannot follow. */
   dea_status (*enter)(struct dea_context *ctx, void *model, const struct dea_design_change *change,
                       int side);
   /* The own device, with what its loads hold by multipliers alone, without their penalties. NULL

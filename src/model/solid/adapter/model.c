@@ -84,8 +84,8 @@ struct moved {
   int place, force;
 };
 
-/* What a changed device takes the place of. Mesh, constituents and loads of the changed device are
- * those of a solid of its own, of which nothing is solved. */
+/* What a changed device takes the place of. Mesh, part materials and loads of the changed device
+ * are those of a solid of its own, of which nothing is solved. */
 struct variant {
   struct dea_model own;             // as it was
   struct dea_solid_problem problem; // as it was
@@ -1268,7 +1268,7 @@ static void keep_controls(struct dea_model *model)
   place_loads(&to->problem);
 }
 
-/* Mesh, constituents and loads of a changed device, with a solid that has them. */
+/* Mesh, part materials and loads of a changed device, with a solid that has them. */
 static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_model *own = &model->variant->own;
@@ -1329,7 +1329,7 @@ static dea_status enter_tip(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-/* Mesh, constituents, and loads of a changed device under the solid. */
+/* Mesh, part materials, and loads of a changed device under the solid. */
 static dea_status enter_device(struct dea_context *ctx, struct dea_model *model,
                                const struct dea_device *device)
 {

@@ -17,7 +17,7 @@ static size_t used_constituents(const struct dea_solid *s)
   return count;
 }
 
-/* All numbers that the energy of the constituents depends on. */
+/* All numbers that the energy of the part materials depends on. */
 static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid *s,
                                  struct dea_state *out)
 {
@@ -34,7 +34,7 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
       more += rare[k] != 0;
     }
     if (count + CONSTITUENT_NUMBERS + params + more > capacity) {
-      return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer constituents");
+      return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer part materials");
     }
     memcpy(to + count, own, sizeof own);
     memcpy(to + count + CONSTITUENT_NUMBERS, l->param, params * sizeof *to);

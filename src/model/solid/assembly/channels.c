@@ -104,7 +104,7 @@ static dea_status refuse_coupled(struct dea_context *ctx, const struct dea_solid
 struct sums {
   double *charge_C;      // [channels]
   double *capacitance_F; // [channels][channels]
-  const double *per_s;   // [constituents] conductance over capacitance
+  const double *per_s;   // [part materials] conductance over capacitance
   double *conductance_S;
   double *conductances_S; // [channels][channels]
 };

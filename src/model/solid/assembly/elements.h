@@ -4,7 +4,7 @@
 
 #include "model/solid/assembly/problem.h"
 
-/* Sets problem.kind. DEA_E_UNSUPPORTED for an element that cannot be of its constituent, or has
+/* Sets problem.kind. DEA_E_UNSUPPORTED for an element that cannot be of its part material, or has
  * no potential in a coupled field. */
 dea_status dea_solid_set_kinds(struct dea_context *ctx, struct dea_solid *s);
 

@@ -23,7 +23,7 @@ struct dea_solid_extremes {
                             // of which one is a film, over 4 pi^2 D, D their bending stiffness
   struct dea_reach reach;   // of the films' laws
 };
-/* What a constituent is as a film. */
+/* What a part material is as a film. */
 struct dea_solid_film_data {
   const struct dea_material *material; // NULL: it is no film
   double pre_stretch;                  // root of its area's

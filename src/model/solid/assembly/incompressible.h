@@ -9,7 +9,7 @@
 double dea_solid_theta_max(const struct dea_solid *s);
 /* The multipliers take over kappa theta. */
 void dea_solid_update_multipliers(struct dea_solid *s);
-/* Another kappa of all constituents, factor (a power of 2) times the present one. */
+/* Another kappa of all part materials, factor (a power of 2) times the present one. */
 void dea_solid_scale_bulk_modulus(struct dea_solid *s, double factor);
 /* kappa so small that kappa theta is no pressure, but theta is still found, and back. */
 void dea_solid_drop_bulk_modulus(struct dea_solid *s);

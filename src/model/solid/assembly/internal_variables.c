@@ -26,7 +26,7 @@ static dea_status find_strains(const struct dea_solid *s, size_t e, struct dea_e
 
 /* ---- memory ---- */
 
-/* Gives the elements of constituents with branches their points; returns how many. */
+/* Gives the elements of part materials with branches their points; returns how many. */
 static size_t place_points(const struct dea_solid *s, struct dea_internal_variables *h)
 {
   size_t count = 0;

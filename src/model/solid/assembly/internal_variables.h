@@ -1,4 +1,5 @@
-/* What the branches of a solid's constituents remember, at every Gauss point (docs/theory/time.md).
+/* What the branches of a solid's part materials remember, at every Gauss point
+ * (docs/theory/time.md).
  *
  * Every rank keeps all points: a step costs next to nothing beside its tangents. */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
@@ -8,7 +9,7 @@
 #include "model/solid/assembly/solid.h"
 #include "model/solid/point/viscous.h"
 
-/* Branches of a constituent; none: elastic. */
+/* Branches of a part material; none: elastic. */
 struct dea_branches {
   size_t count;
   struct dea_branch branch[DEA_BRANCHES_MAX];

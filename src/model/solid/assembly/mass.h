@@ -1,5 +1,5 @@
 /* Matrices that do not depend on the state, of numbers between the nodes: the consistent mass of
- * the constituents' densities (docs/theory/vibration.md), the volume lumped to the nodes, and the
+ * the part materials' densities (docs/theory/vibration.md), the volume lumped to the nodes, and the
  * integral of grad : grad that shifts K (docs/theory/branches.md). */
 #ifndef DEA_MODEL_SOLID_ASSEMBLY_MASS_H
 #define DEA_MODEL_SOLID_ASSEMBLY_MASS_H

@@ -5,7 +5,7 @@
 
 struct dea_solid_field {
   double scale_V_per_m; // c: a potential is c psi
-  double permittivity;  // of the first dielectric constituent
+  double permittivity;  // of the first dielectric part material
   double *share;        // [nodes] of the voltage, of held potentials
   double *right;        // [nodes]
   Mat L, factor;        // electric stiffness, held potentials taken out
@@ -22,7 +22,7 @@ static bool has_potential(const struct dea_solid *s, size_t e)
   return dea_solid_element(s, e)->type->capacity != NULL;
 }
 
-/* c and permittivity of the first dielectric constituent. */
+/* c and permittivity of the first dielectric part material. */
 static void set_scale(const struct dea_solid *s, size_t count, struct dea_solid_field *field)
 {
   for (size_t i = 0; i < count && field->permittivity == 0; i++) {

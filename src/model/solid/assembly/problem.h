@@ -19,8 +19,8 @@ struct dea_solid_inertia;
 /* held: where it is; prescribed: at its place; follows: where its body takes it */
 enum { DEA_FREE, DEA_HELD, DEA_PRESCRIBED, DEA_FOLLOWS };
 
-/* What is solved: mesh, constituents, supports, loads. Filled by dea_solid_create (the function is
- * named where it is another) and constant for the solvers; callers change supports and loads.
+/* What is solved: mesh, part materials, supports, loads. Filled by dea_solid_create (the function
+ * is named where it is another) and constant for the solvers; callers change supports and loads.
  *
  * Unknowns of the whole [dofs]: displacements [nodes][3], then, of a coupled field, psi [nodes]. In
  * K they stand node by node, per_node to each. */
@@ -33,7 +33,7 @@ struct dea_solid_problem {
   enum dea_element_kind *kind;                    // [elements] by dea_solid_set_kinds
   const struct dea_part_material *part_materials; // [constituent_count]
   size_t part_material_count;
-  int *part_material_of; // [elements] place in constituents
+  int *part_material_of; // [elements] place in part materials
   int *laminate;     // [elements] the next one above in the same column, which it is bonded to, of
                      // the last the first; by dea_solid_find_laminates
   int (*between)[2]; // [elements] channels at its top and bottom; 0, 0 without electrodes
@@ -75,7 +75,7 @@ struct dea_solid_state {
   double *multiplier; // [elements][elements.pressures] pressures [Pa], by the solvers
   double *theta;      // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
                       // dea_solid_predict writes over it
-  double bulk_factor; // kappa is so many times that of the constituents, a power of 2; at first
+  double bulk_factor; // kappa is so many times that of the part materials, a power of 2; at first
                       // 1, by dea_solid_scale_bulk_modulus and steps in time
   double *force;      // [dofs] dead loads [N] and charges as they stand, by dea_solid_controls_set
   double *force_goal; // [dofs] those that the next solve goes to, by the caller

@@ -150,7 +150,7 @@ bool dea_solid_body_force_way(const struct dea_solid *solid, size_t body, size_t
 dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
                               const struct dea_solid_load *load);
 
-/* out = M v with the consistent mass of the constituents' densities, [node_count][3] both and not
+/* out = M v with the consistent mass of the part materials' densities, [node_count][3] both and not
  * the same memory, what is held included: the forces that accelerations v take, or momenta. All
  * ranks call it and get the whole. */
 dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *solid,

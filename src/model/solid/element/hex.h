@@ -3,7 +3,7 @@
  * Symbol   meaning                                                        unit
  * X, u     place in the stretched flat film, displacement                 m
  * F        dx/dX, x = X + u                                               1
- * G        pre-stretch of a constituent, diagonal, det G = 1: W sees F G        1
+ * G        pre-stretch of a part material, diagonal, det G = 1: W sees F G        1
  * J        det F                                                          1
  * theta    projection of J - 1 on the element's pressure polynomials      1
  * kappa    bulk modulus of the projected part                             Pa
@@ -71,7 +71,7 @@ dea_status dea_hex_metric(const struct dea_element *element,
                           double *laplace, double *volume);
 dea_status dea_hex_strains(const struct dea_element *element, const struct dea_element_input *in,
                            struct dea_element_strains *out);
-/* One element through the thickness of the constituent, thickness_m. */
+/* One element through the thickness of the part material, thickness_m. */
 dea_status dea_hex_membrane_state(const struct dea_element *element,
                                   const struct dea_element_input *in,
                                   struct dea_membrane_state *out);

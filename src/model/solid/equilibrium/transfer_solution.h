@@ -5,7 +5,7 @@
 
 #include "model/solid/assembly/solid.h"
 
-/* Moves nodes of inverted elements of the softest constituents, and of elements around them where
+/* Moves nodes of inverted elements of the softest part materials, and of elements around them where
  * that is not enough, towards the mean of their neighbours' displacements u [node_count][3], until
  * none is inverted. What is held, and what stiffer elements have, stays. *left: elements that are
  * inverted still; u is as it was then. */

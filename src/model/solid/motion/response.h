@@ -31,9 +31,9 @@ void dea_solid_response_destroy(struct dea_context *ctx, struct dea_solid_respon
 void dea_solid_response_at(const struct dea_solid_response *response, size_t node, double rad_per_s,
                            const struct dea_damping *damping, double real[3], double imaginary[3]);
 
-/* Answers of a solid whose constituents have branches (internal_variables.h), solved at each
- * frequency: as branches follow, K goes from its slow to its fast form. branches: [constituents of
- * the solid]; the ratio of the damping is not looked at. out: [count][node_count], real and
+/* Answers of a solid whose part materials have branches (internal_variables.h), solved at each
+ * frequency: as branches follow, K goes from its slow to its fast form. branches: [part materials
+ * of the solid]; the ratio of the damping is not looked at. out: [count][node_count], real and
  * imaginary part [m/V]. Otherwise as a response. */
 dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *solid,
                                      const struct dea_branches *branches,

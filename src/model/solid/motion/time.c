@@ -488,7 +488,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   return DEA_OK;
 }
 
-/* Share of the stiffness that relaxes within a step, of the constituent with most of it. */
+/* Share of the stiffness that relaxes within a step, of the part material with most of it. */
 static double relaxing(const struct dea_solid_time *t)
 {
   double most = 0;

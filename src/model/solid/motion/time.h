@@ -14,8 +14,8 @@
 struct dea_solid_time;
 
 struct dea_solid_time_options {
-  const struct dea_branches *branches; // [constituents of the solid], copied; NULL: elastic
-  bool inertia;                        // by the constituents' densities
+  const struct dea_branches *branches; // [part materials of the solid], copied; NULL: elastic
+  bool inertia;                        // by the part materials' densities
   /* Of the steps with inertia for what they cannot resolve, 0 to 1: 1 damps nothing, 0 takes it
    * away in one step. */
   double spectral_radius;

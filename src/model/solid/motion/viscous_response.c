@@ -12,7 +12,7 @@
 
 enum {
   PARTS = 2
-}; // K without branches, and M; then one for all constituents with the same branches
+}; // K without branches, and M; then one for all part materials with the same branches
 
 struct system {
   struct dea_solid *solid;
@@ -43,7 +43,8 @@ static bool are_alike(const struct dea_branches *a, const struct dea_branches *b
   return alike;
 }
 
-/* What these branches add to K when they are rigid dashpots, in all constituents that have them. */
+/* What these branches add to K when they are rigid dashpots, in all part materials that have them.
+ */
 static dea_status branch_tangent(struct dea_context *ctx, struct system *y, size_t which,
                                  struct dea_branches *only, Mat *out)
 {
@@ -97,7 +98,7 @@ static dea_status make_parts(struct dea_context *ctx, struct system *y, struct d
   return DEA_OK;
 }
 
-/* The share of a constituent's branches that has not followed, 0 slow to 1 fast. */
+/* The share of a part material's branches that has not followed, 0 slow to 1 fast. */
 static double complex share_at(const struct dea_branches *b, double w)
 {
   double complex sum = 0;

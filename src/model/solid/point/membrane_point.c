@@ -30,7 +30,7 @@ dea_status dea_membrane_bond(const struct dea_part_material *film, struct dea_pa
   return status;
 }
 
-/* eps = permittivity + slope (sqrt(a) - 1) of the constituent by s = sqrt(a G1 G2), as a material
+/* eps = permittivity + slope (sqrt(a) - 1) of the part material by s = sqrt(a G1 G2), as a material
  * has it.
  */
 static void set_permittivity(const struct dea_part_material *part_material, double G1_G2,

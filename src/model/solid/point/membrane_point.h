@@ -26,7 +26,7 @@ struct dea_membrane_point {
   double area;          // current over reference area of the film itself: |F_1 x F_2| if taut
   double own[3];        // metric c* of the film itself, 11 22 12: F^T F if taut
   double tension_Pa[2]; // per current length of the film itself
-  enum dea_tension_state state; // DEA_TAUT when the constituent is not relaxed
+  enum dea_tension_state state; // DEA_TAUT when the part material is not relaxed
 };
 
 /* field_V_per_m: V/h, 0 where there is none. DEA_E_DOMAIN beyond the law's domain. */

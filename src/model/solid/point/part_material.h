@@ -5,7 +5,7 @@
  *   W(F G) + p0 (J - 1) + kappa_s/2 ((J^2 - 1)/2 - ln J) - (eps/2) E^2 |F_1 x F_2|^2
  *
  * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md). A
- * constituent of a compressible law (fibre) has W alone of the first line. */
+ * part material of a compressible law (fibre) has W alone of the first line. */
 #ifndef DEA_MODEL_SOLID_POINT_CONSTITUENT_H
 #define DEA_MODEL_SOLID_POINT_CONSTITUENT_H
 
@@ -29,7 +29,7 @@ struct dea_part_material {
   double pre_shear;                // G_12 = G_21: pre-stretches at an angle to the axes
   double p0_Pa, kappa_s_Pa;        // dea_part_material_relax sets them
   double kappa_Pa;                 // bulk modulus of the projected part, of the element
-  double permittivity_F_per_m;     // eps of the flat constituent, 0: no electric energy
+  double permittivity_F_per_m;     // eps of the flat part material, 0: no electric energy
   /* d eps/d sqrt(a), a = |F_1 x F_2|: eps = permittivity + slope (sqrt(a) - 1). */
   double permittivity_slope_F_per_m;
   double thickness_m;       // of all layers together
@@ -63,8 +63,8 @@ static inline double dea_part_material_field(const struct dea_part_material *par
   return voltage_V != 0 ? layers * voltage_V / part_material->thickness_m : 0;
 }
 
-/* G X G of a symmetric tensor of the plane (11 22 12), as C of the flat constituent becomes that of
- * the unstretched one, and its stress that of the flat one. out may be X. */
+/* G X G of a symmetric tensor of the plane (11 22 12), as C of the flat part material becomes that
+ * of the unstretched one, and its stress that of the flat one. out may be X. */
 void dea_part_material_pull_back(const struct dea_part_material *part_material, const double X[3],
                                  double out[3]);
 
@@ -74,8 +74,9 @@ double dea_part_material_modulus(const struct dea_part_material *part_material);
 /* E / (1 - nu^2) of the ground state [Pa], which plates bend with. */
 double dea_part_material_plate_modulus(const struct dea_part_material *part_material);
 
-/* Sets p0 so that the undeformed constituent has no stress through the thickness, and the kappa_s
- * that keeps such a constituent free of false unstable modes. Nothing to do for a compressible law.
+/* Sets p0 so that the undeformed part material has no stress through the thickness, and the kappa_s
+ * that keeps such a part material free of false unstable modes. Nothing to do for a compressible
+ * law.
  */
 dea_status dea_part_material_relax(struct dea_part_material *part_material);
 

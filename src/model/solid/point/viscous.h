@@ -1,4 +1,4 @@
-/* Viscosity of a constituent: springs in series with dashpots beside its law, in steps of time
+/* Viscosity of a part material: springs in series with dashpots beside its law, in steps of time
  * (docs/theory/time.md).
  *
  * Symbol   meaning                                                                     unit
@@ -7,7 +7,7 @@
  * G_i      its shear modulus                                                           Pa
  * B, b     sum_i G_i (e_i A_i + w_0i C^-1) at the begin of the step, sum_i G_i (1 - w_1i)   Pa
  *
- * Energy of a step per volume: 1/2 B : (C - 1) - b ln J. A constituent's pre-stretch G drops out:
+ * Energy of a step per volume: 1/2 B : (C - 1) - b ln J. A part material's pre-stretch G drops out:
  * with A_i counted like C, G A G of the unstretched material, the equations are the same.
  *
  * Symmetric tensors are in the order 11 22 33 23 13 12. */
@@ -18,7 +18,7 @@
 #include "model/solid/point/part_material.h"
 
 /* Adds the step of a point q of an element to energy and stress and, if asked for, to the tangent.
- * Nothing to do for a constituent without one. */
+ * Nothing to do for a part material without one. */
 void dea_viscous_add(const struct dea_part_material *part_material, int q, const double F[9],
                      const double cof[9], double J, bool tangent, struct dea_point *point);
 

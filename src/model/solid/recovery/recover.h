@@ -14,8 +14,8 @@
 #include "model/solid/mesh/grid.h"
 #include "result/field_mesh.h"
 
-/* A solid at an equilibrium. bulk_factor: kappa is so many times that of the constituents; u:
- * [nodes][3]; multiplier: [elements][elements->pressures]; kind, constituent, active: [elements];
+/* A solid at an equilibrium. bulk_factor: kappa is so many times that of the part materials; u:
+ * [nodes][3]; multiplier: [elements][elements->pressures]; kind, part material, active: [elements];
  * across_V: [elements] voltage from bottom to top, 0 without electrodes; potential_V: [nodes], used
  * by kinds with a potential. */
 struct dea_recover_input {
