@@ -93,7 +93,8 @@ static void test_compression_ratio(void **state)
 
 /* The error that a run estimates against a mesh of a quarter of the size, whose own is a twentieth
  * (the exact disc has no thickness: it is as far from that as the default mesh); a finer mesh has
- * less. Where the film is slack none is estimated. */
+ * less. What raises and what lowers the edge is not set off against each other, so that more is
+ * stated than found. Where the film is slack none is estimated. */
 static void test_estimated_error(void **state)
 {
   (void)state;
@@ -105,7 +106,7 @@ static void test_estimated_error(void **state)
   struct dea_load_point fine = solve(solid, &device, &finer, 5e3);
   double found_m = fabs(exact.electrode_edge_u_m - coarse.electrode_edge_u_m);
   assert_true(coarse.electrode_edge_u_error_m > 0.5 * found_m);
-  assert_true(coarse.electrode_edge_u_error_m < 2 * found_m);
+  assert_true(coarse.electrode_edge_u_error_m < 4 * found_m);
   assert_true(fine.electrode_edge_u_error_m < 0.9 * coarse.electrode_edge_u_error_m);
   assert_true(coarse.centre_z_error_m < 1e-9); // it stays flat
   assert_true(isnan(coarse.fibre_tip_z_error_m));
