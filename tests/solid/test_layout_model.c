@@ -526,12 +526,12 @@ static void test_saved_state(void **state)
   assert_int_equal(mine->size, its->size);
   assert_memory_not_equal(mine->bytes, its->bytes, mine->size);
   assert_memory_equal(mark_of(&saved, "mesh")->bytes, mark_of(&other, "mesh")->bytes, 8);
-  type->destroy(ctx, first);
-  first = model_of(device, DEA_FILM_MEMBRANE, 1);
-  z_m = solve(first, 3e3, &a).monitor[0][DEA_OBSERVED_Z]; // a state is no force of its own
+  struct dea_model *third = model_of(device, DEA_FILM_MEMBRANE, 1);
+  z_m = solve(third, 3e3, &a).monitor[0][DEA_OBSERVED_Z]; // a state is no force of its own
   assert_int_equal(type->load(ctx, second, &saved), DEA_OK);
   assert_close(solve(second, 3e3, &b).monitor[0][DEA_OBSERVED_Z], z_m, 1e-7, 0);
-  type->destroy(ctx, first);
+  type->destroy(ctx, third);
+  type->destroy(ctx, first); // whose state was lent
   type->destroy(ctx, second);
   dea_device_destroy(ctx, device);
 }
