@@ -67,17 +67,12 @@ static int take_models(struct dea_cli *cli, const struct dea_command *command,
 /* Says of which quantities there are, or which of them is near. */
 static dea_status no_quantity(struct dea_context *ctx, const char *text)
 {
-  const size_t count = (size_t)dea_column_count(ctx);
   struct dea_text all = {.ctx = ctx};
-  const char **keys = dea_column_keys(ctx);
-  if (keys == NULL) {
-    return DEA_E_MEMORY;
+  const char *nearest;
+  DEA_TRY(ctx, dea_column_nearest(ctx, text, &nearest));
+  for (int c = 0; c < dea_column_count(ctx) && nearest == NULL; c++) {
+    dea_text_add(&all, "%s%s", c > 0 ? ", " : "", dea_column_at(ctx, c)->key);
   }
-  const char *nearest = dea_nearest_name(text, keys, count);
-  for (size_t c = 0; c < count && nearest == NULL; c++) {
-    dea_text_add(&all, "%s%s", c > 0 ? ", " : "", keys[c]);
-  }
-  dea_free(ctx, keys);
   const dea_status status =
       dea_fail(ctx, DEA_E_ARGUMENT, "'%.80s' is not a quantity; %s%s%s", text,
                nearest != NULL ? "did you mean '" : "there are ",

@@ -97,7 +97,7 @@ dea_status cli_layout_print(struct dea_context *ctx, const struct dea_layout *l)
     if (layers > 1) {
       dea_text_add(&text, "%zu layers of ", layers);
     }
-    dea_text_add(&text, "%.6g um", 1e6 * ply->thickness_m / (double)layers);
+    dea_text_add(&text, "%.6g um", 1e6 * dea_ply_stretched_layer_m(ply));
     add_material(&ply->material, &text);
     dea_text_add(&text, "%s", dea_layout_is_dielectric(l, i) ? ", between electrodes" : "");
     DEA_TRY(ctx, cli_row_print(name, strlen(name), &text));

@@ -157,10 +157,14 @@ static inline size_t dea_ply_layers(const struct dea_layout_ply *ply)
 {
   return ply->layers > 1 ? ply->layers : 1;
 }
-/* Thickness of one of them before the pre-stretch. */
+/* Thickness of one of them before the pre-stretch, and after it. */
 static inline double dea_ply_layer_m(const struct dea_layout_ply *ply)
 {
   return ply->thickness_unstretched_m / (double)dea_ply_layers(ply);
+}
+static inline double dea_ply_stretched_layer_m(const struct dea_layout_ply *ply)
+{
+  return ply->thickness_m / (double)dea_ply_layers(ply);
 }
 
 /* Whether a ply is between electrodes of two channels somewhere. */

@@ -68,8 +68,7 @@ static void add_ply(const struct sheet *s, size_t i)
   double area = area_of(s, ply->region);
   double cut =
       film ? 4 * s->w->capacity.blank_m[0] * s->w->capacity.blank_m[1] / stretched_area(ply) : area;
-  double mass =
-      area * ply->thickness_m / (double)dea_ply_layers(ply) * ply->material.density_kg_per_m3;
+  double mass = area * dea_ply_stretched_layer_m(ply) * ply->material.density_kg_per_m3;
   char item[WORDS], note[WORDS], weight[64] = "mass unknown: the material has no density";
   if (mass > 0) {
     snprintf(weight, sizeof weight, "%.4g g of it in the device", 1e3 * mass * (double)count);
@@ -266,8 +265,7 @@ static void add_ply_step(const struct sheet *s, size_t i, enum way way)
     dea_document_add(s->to, DEA_BLOCK_STEP,
                      "Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
                      "%.4g \xc2\xb5m thick%s.",
-                     ply->name, name, stretch, 1e6 * ply->thickness_m / (double)dea_ply_layers(ply),
-                     where);
+                     ply->name, name, stretch, 1e6 * dea_ply_stretched_layer_m(ply), where);
     add_layers(s, i);
     return;
   }
@@ -277,7 +275,7 @@ static void add_ply_step(const struct sheet *s, size_t i, enum way way)
   dea_document_add(s->to, DEA_BLOCK_STEP,
                    "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.", ply->name, name,
                    pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
-                   1e6 * ply->thickness_m / (double)dea_ply_layers(ply), where);
+                   1e6 * dea_ply_stretched_layer_m(ply), where);
   add_layers(s, i);
 }
 

@@ -51,12 +51,8 @@ static dea_status check_quantities(struct reading *r)
     const struct dea_label *label = &r->text->quantities[k];
     const int column = dea_column_find(r->ctx, label->text);
     if (column < 0) {
-      const char **keys = dea_column_keys(r->ctx);
-      if (keys == NULL) {
-        return DEA_E_MEMORY;
-      }
-      const char *nearest = dea_nearest_name(label->text, keys, (size_t)dea_column_count(r->ctx));
-      dea_free(r->ctx, keys);
+      const char *nearest;
+      DEA_TRY(r->ctx, dea_column_nearest(r->ctx, label->text, &nearest));
       DEA_TRY(r->ctx,
               dea_finding_add(r->ctx, DEA_ERROR, label->location, "'%.60s' is not a quantity%s%s%s",
                               label->text, nearest != NULL ? "; did you mean '" : "",

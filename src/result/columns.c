@@ -1,5 +1,7 @@
 #include "result/columns.h"
 
+#include "base/text.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -143,6 +145,14 @@ const char **dea_column_keys(struct dea_context *ctx)
     keys[c] = dea_column_at(ctx, c)->key;
   }
   return keys;
+}
+
+dea_status dea_column_nearest(struct dea_context *ctx, const char *text, const char **out)
+{
+  const char **keys = dea_column_keys(ctx);
+  *out = keys != NULL ? dea_nearest_name(text, keys, (size_t)dea_column_count(ctx)) : NULL;
+  dea_free(ctx, keys);
+  return keys != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
 /* Room for one more column; NULL on failure. */

@@ -41,6 +41,8 @@ const struct dea_column *dea_column_at(const struct dea_context *ctx, int column
 int dea_column_find(const struct dea_context *ctx, const char *key);
 /* Keys of all columns, [dea_column_count]; owned by the caller, NULL on failure. */
 const char **dea_column_keys(struct dea_context *ctx);
+/* Key of a column that a text is near to, for messages; lent until the context dies, NULL: none. */
+dea_status dea_column_nearest(struct dea_context *ctx, const char *text, const char **out);
 /* Adds a column, whose texts are copied, unless there is one of that key. */
 dea_status dea_column_add(struct dea_context *ctx, const struct dea_column *column, int *out);
 /* Name as a part of a key: each run of ASCII characters but letters and digits is one "_". */

@@ -188,15 +188,11 @@ static dea_status find_quantity(struct dea_context *ctx, const struct dea_device
     return DEA_OK;
   }
   char why[200];
-  const char **keys = dea_column_keys(ctx);
-  if (keys == NULL) {
-    return DEA_E_MEMORY;
-  }
-  const char *nearest = dea_nearest_name(label->text, keys, (size_t)dea_column_count(ctx));
+  const char *nearest;
+  DEA_TRY(ctx, dea_column_nearest(ctx, label->text, &nearest));
   snprintf(why, sizeof why, "'%.60s' is no quantity%s%.60s%s", label->text,
            nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
            nearest != NULL ? "'?" : "");
-  dea_free(ctx, keys);
   return dea_refuse(ctx, label->location, why);
 }
 

@@ -88,11 +88,8 @@ static const struct dea_material *film_of(const struct dea_device *device)
 /* How far the device reaches from the origin along an axis. */
 static double reach_of(const struct dea_device *device)
 {
-  const struct dea_layout *l = device->layout;
-  double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY}, reach = 0; // x, y; x, y
-  for (size_t i = 0; i < l->ply_count; i++) {
-    dea_region_grow_box(&l->regions[l->plies[i].region].region, box);
-  }
+  double box[4], reach = 0; // x, y; x, y
+  dea_layout_box_m(device->layout, box);
   for (size_t k = 0; k < 4; k++) {
     reach = isfinite(box[k]) ? fmax(reach, fabs(box[k])) : reach;
   }

@@ -41,17 +41,11 @@ static dea_status find_column(struct dea_context *ctx, const char *monitor,
       (table->column >= 0 && strcmp(dea_column_at(ctx, table->column)->si_unit, "m") == 0)) {
     return DEA_OK;
   }
-  const char **keys = dea_column_keys(ctx);
-  if (keys == NULL) {
-    return DEA_E_MEMORY;
-  }
-  const char *nearest = dea_nearest_name(monitor, keys, (size_t)dea_column_count(ctx));
-  dea_status status =
-      dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is no displacement of a monitor of the film%s%.60s%s",
-               monitor, nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-               nearest != NULL ? "'?" : "");
-  dea_free(ctx, keys);
-  return status;
+  const char *nearest;
+  DEA_TRY(ctx, dea_column_nearest(ctx, monitor, &nearest));
+  return dea_fail(ctx, DEA_E_DESIGN, "'%.60s' is no displacement of a monitor of the film%s%.60s%s",
+                  monitor, nearest != NULL ? "; did you mean '" : "",
+                  nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
 dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_design *design,
