@@ -1,6 +1,6 @@
 /* What the files of the public interface share: the objects behind its handles. */
-#ifndef DEA_API_DOOR_H
-#define DEA_API_DOOR_H
+#ifndef DEA_API_API_H
+#define DEA_API_API_H
 
 #include "base/context.h"
 #include "base/text.h"

@@ -1,7 +1,7 @@
 /* Work in processes beside this one. Each is a copy of this one (fork), so that it has all that was
  * there; what it does is not seen here, but for the bytes and findings that it hands back. */
-#ifndef DEA_BASE_ASIDE_H
-#define DEA_BASE_ASIDE_H
+#ifndef DEA_BASE_WORKER_H
+#define DEA_BASE_WORKER_H
 
 #include "base/bytes.h"
 

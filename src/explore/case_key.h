@@ -1,7 +1,7 @@
 /* What a file of dea sweep asks, resolved: the device as an evaluator, its variables and columns.
  */
-#ifndef DEA_EXPLORE_QUESTION_H
-#define DEA_EXPLORE_QUESTION_H
+#ifndef DEA_EXPLORE_CASE_KEY_H
+#define DEA_EXPLORE_CASE_KEY_H
 
 #include "base/arena.h"
 #include "explore/evaluator.h"

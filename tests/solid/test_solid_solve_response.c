@@ -365,7 +365,7 @@ static void respond_with(int part_materials, double apart, double out[1][2][3])
 
 /* Constituents whose branches are the same are solved for as one, others each by itself: there may
  * be as many as there are. */
-static void test_many_constituents(void **state)
+static void test_many_part_materials(void **state)
 {
   (void)state;
   double one[1][2][3], alike[1][2][3], apart[1][2][3];
@@ -388,7 +388,7 @@ int main(void)
       cmocka_unit_test(test_one_degree_of_freedom),
       cmocka_unit_test(test_branches),
       cmocka_unit_test(test_bender_against_static_solves),
-      cmocka_unit_test(test_many_constituents),
+      cmocka_unit_test(test_many_part_materials),
   };
   return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
 }

@@ -1,6 +1,6 @@
 /* What a part of a material is made of, as the elements take it. */
-#ifndef DEA_MODEL_SOLID_ACTUATOR_CONSTITUENT_OF_MATERIAL_H
-#define DEA_MODEL_SOLID_ACTUATOR_CONSTITUENT_OF_MATERIAL_H
+#ifndef DEA_MODEL_SOLID_ACTUATOR_PART_OF_MATERIAL_H
+#define DEA_MODEL_SOLID_ACTUATOR_PART_OF_MATERIAL_H
 
 #include "model/solid/point/part_material.h"
 

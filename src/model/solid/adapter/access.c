@@ -308,8 +308,8 @@ static dea_status add_bodies(struct dea_context *ctx, const struct dea_solid_spe
 // Parts ------------------------------------------------------------------------------------------
 
 /* Of the compressible law where the part has none. */
-static dea_status make_constituent(struct dea_context *ctx, const struct dea_part_spec *part,
-                                   struct dea_part_material *out)
+static dea_status make_part_material(struct dea_context *ctx, const struct dea_part_spec *part,
+                                     struct dea_part_material *out)
 {
   double l = part->pre_stretch;
   if (part->law == NULL) {
@@ -442,7 +442,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
   }
   DEA_TRY(ctx, take_channels(ctx, spec, object));
   for (size_t i = 0; i < spec->part_count; i++) {
-    DEA_TRY(ctx, make_constituent(ctx, &spec->parts[i], &object->part_materials[i]));
+    DEA_TRY(ctx, make_part_material(ctx, &spec->parts[i], &object->part_materials[i]));
   }
   object->body_count = spec->body_count;
   object->body_told = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));

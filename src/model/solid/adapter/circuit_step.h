@@ -13,8 +13,8 @@ struct dea_circuit_step;
 /* What is driven. All lent. */
 struct dea_driven_solid {
   struct dea_solid *solid;
-  const struct dea_branches *branches; // [constituent_count]
-  const double *leakage_per_s;         // [constituent_count] conductance over capacitance
+  const struct dea_branches *branches; // [part_material_count]
+  const double *leakage_per_s;         // [part_material_count] conductance over capacitance
   /* Channels have currents, which are found. Otherwise there is one, on which the supply is. */
   bool channels;
   double copies;      // of the grid in the device

@@ -43,7 +43,7 @@ struct dea_gradient_owner {
 /* The film of a solid, which every owner asks the same of. All lent. */
 struct dea_gradient_film {
   struct dea_solid *solid;
-  const struct dea_solid_film_data *films; // [constituent_count]
+  const struct dea_solid_film_data *films; // [part_material_count]
   double copies;                           // of the solid in the device
 };
 /* Where the film's extremes are at the equilibrium: those of a changed device are taken there. */

@@ -12,7 +12,7 @@ struct dea_motions {
   size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
   size_t tip;
   bool has_centre, has_tip;
-  const struct dea_branches *branches; // [constituent_count]
+  const struct dea_branches *branches; // [part_material_count]
   size_t part_material_count;
   /* Gets the whole answer of each frequency, per volt; NULL: nodes are all that is wanted. */
   dea_status (*take)(struct dea_context *ctx, void *user, size_t i, const double *real,

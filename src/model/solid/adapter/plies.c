@@ -34,8 +34,8 @@ static dea_status fill_bond(struct dea_context *ctx, const struct dea_layout_mes
                                      "and electrodes only; take compute.solid.film: solid");
 }
 
-static dea_status fill_constituent(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
-                                   size_t i, bool alone, struct dea_part_material *out)
+static dea_status fill_part_material(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                                     size_t i, bool alone, struct dea_part_material *out)
 {
   const struct dea_layout_ply *ply = &mesh->layout->plies[i];
   const struct dea_material *material = &ply->material;
@@ -99,7 +99,7 @@ dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mes
     const bool film = material->law != NULL && ply->kind == DEA_PLY_SHEET;
     DEA_TRY(ctx, ply->kind == DEA_PLY_JOINT
                      ? fill_bond(ctx, mesh, i, out->part_materials)
-                     : fill_constituent(ctx, mesh, i, alone, &out->part_materials[i]));
+                     : fill_part_material(ctx, mesh, i, alone, &out->part_materials[i]));
     out->films[i] = (struct dea_solid_film_data){film ? material : NULL,
                                                  sqrt(ply->pre_stretch[0] * ply->pre_stretch[1])};
     out->leakage_per_s[i] =

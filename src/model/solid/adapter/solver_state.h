@@ -1,8 +1,8 @@
 /* Where a model of a solid stands, whatever device the solid is of: its last equilibrium, and the
  * way to the next one. What model/model.h asks of all such models is done here: their struct
  * dea_model begins with a struct dea_solver_state, which the functions of a type see. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_STANDING_H
-#define DEA_MODEL_SOLID_ADAPTER_STANDING_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_SOLVER_STATE_H
+#define DEA_MODEL_SOLID_ADAPTER_SOLVER_STATE_H
 
 #include "model/solid/adapter/circuit_step.h"
 #include "model/solid/adapter/step_outcome.h"

@@ -5,9 +5,11 @@
 
 #include <string.h>
 
-enum { CONSTITUENT_NUMBERS = 8 }; // beside the parameters of the law, and pre_shear if there is one
+enum {
+  PART_MATERIAL_NUMBERS = 8
+}; // beside the parameters of the law, and pre_shear if there is one
 
-static size_t used_constituents(const struct dea_solid *s)
+static size_t used_part_materials(const struct dea_solid *s)
 {
   const struct dea_solid_problem *p = &s->problem;
   size_t count = 0;
@@ -23,9 +25,9 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
 {
   double *to = out->numbers + out->number_count;
   size_t count = 0, capacity = DEA_STATE_NUMBERS_MAX - out->number_count;
-  for (size_t i = 0; i < used_constituents(s); i++) {
+  for (size_t i = 0; i < used_part_materials(s); i++) {
     const struct dea_part_material *l = &s->problem.part_materials[i];
-    const double own[CONSTITUENT_NUMBERS] = {
+    const double own[PART_MATERIAL_NUMBERS] = {
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
     size_t params = l->law->param_count, more = 0;
@@ -33,12 +35,12 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
     for (int k = 0; k < 2; k++) {
       more += rare[k] != 0;
     }
-    if (count + CONSTITUENT_NUMBERS + params + more > capacity) {
+    if (count + PART_MATERIAL_NUMBERS + params + more > capacity) {
       return dea_fail(ctx, DEA_E_UNSUPPORTED, "the state of a solid takes fewer part materials");
     }
     memcpy(to + count, own, sizeof own);
-    memcpy(to + count + CONSTITUENT_NUMBERS, l->param, params * sizeof *to);
-    count += CONSTITUENT_NUMBERS + params;
+    memcpy(to + count + PART_MATERIAL_NUMBERS, l->param, params * sizeof *to);
+    count += PART_MATERIAL_NUMBERS + params;
     for (int k = 0; k < 2; k++) {
       if (rare[k] != 0) {
         to[count++] = rare[k];

@@ -1,7 +1,7 @@
 /* A solid on its way to a voltage, and the verdict where it does not get there
  * (docs/theory/stops.md). */
-#ifndef DEA_MODEL_SOLID_ADAPTER_ENDING_H
-#define DEA_MODEL_SOLID_ADAPTER_ENDING_H
+#ifndef DEA_MODEL_SOLID_ADAPTER_STEP_OUTCOME_H
+#define DEA_MODEL_SOLID_ADAPTER_STEP_OUTCOME_H
 
 #include "model/solid/assembly/film.h"
 #include "model/solid/equilibrium/solve_incremental.h"
@@ -10,7 +10,7 @@
 /* Whose solid it is. */
 struct dea_step_outcome_owner {
   struct dea_solid *solid;
-  const struct dea_solid_film_data *films; // [constituent_count]
+  const struct dea_solid_film_data *films; // [part_material_count]
   void *model;
   /* Where the solid is, at that voltage. */
   dea_status (*point)(struct dea_context *ctx, void *model, double voltage_V,

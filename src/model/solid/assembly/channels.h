@@ -19,7 +19,7 @@ void dea_solid_channel_voltages(const struct dea_solid *solid, double *voltage_V
 dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, double *charge_C);
 
 /* Current over the voltage of the whole through films whose conductance is so many times their
- * capacitance, per_s [constituent_count]. DEA_E_UNSUPPORTED for a coupled field. */
+ * capacitance, per_s [part_material_count]. DEA_E_UNSUPPORTED for a coupled field. */
 dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *solid,
                                  const double *per_s, double *conductance_S);
 

@@ -28,7 +28,7 @@ struct dea_solid_film_data {
   const struct dea_material *material; // NULL: it is no film
   double pre_stretch;                  // root of its area's
 };
-/* films: [constituent_count]. */
+/* films: [part_material_count]. */
 dea_status dea_solid_extremes(struct dea_solid *solid, const struct dea_solid_film_data *films,
                               struct dea_solid_extremes *out);
 

@@ -17,10 +17,10 @@ struct dea_branches {
 
 struct dea_internal_variables {
   struct dea_arena memory;       // of all arrays
-  struct dea_branches *branches; // [constituent_count]
+  struct dea_branches *branches; // [part_material_count]
   size_t *first;                 // [elements] its first point; SIZE_MAX: elastic
-  struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [constituent_count] of the step
-  double *b_Pa;                                      // [constituent_count] of the step
+  struct dea_branch_step (*steps)[DEA_BRANCHES_MAX]; // [part_material_count] of the step
+  double *b_Pa;                                      // [part_material_count] of the step
   double *B;                                         // [points][6] of the step
   double (*inverse)[6];                              // [points] C^-1 at the accepted state
   double (*inverse_next)[6];                         // at the end of the step that is tried
@@ -30,7 +30,7 @@ struct dea_internal_variables {
 /* What an element is of, with its kappa and the step of its branches. */
 struct dea_part_material dea_solid_part_material_at(const struct dea_solid *solid, size_t e);
 
-/* branches: [constituent_count of the solid]. The film was held as it is for long: A = C^-1. out:
+/* branches: [part_material_count of the solid]. The film was held as it is for long: A = C^-1. out:
  * owned by the caller, NULL on failure. */
 dea_status dea_internal_variables_create(struct dea_context *ctx, const struct dea_solid *solid,
                                          const struct dea_branches *branches,

@@ -31,7 +31,7 @@ struct dea_solid_problem {
 
   struct dea_element_set elements;                // all kinds at the orders of the grid
   enum dea_element_kind *kind;                    // [elements] by dea_solid_set_kinds
-  const struct dea_part_material *part_materials; // [constituent_count]
+  const struct dea_part_material *part_materials; // [part_material_count]
   size_t part_material_count;
   int *part_material_of; // [elements] place in part materials
   int *laminate;     // [elements] the next one above in the same column, which it is bonded to, of

@@ -36,7 +36,7 @@ struct dea_solid_options {
   enum dea_solid_field_kind field;
   size_t part_material_count;
   const struct dea_part_material *part_materials; // copied
-  /* Constituent of an element (NULL: the first of all), and whether it lies between electrodes
+  /* Part material of an element (NULL: the first of all), and whether it lies between electrodes
    * (NULL: none does; with a coupled field: for what fields and extremes report by V/h). */
   int (*part_material_of)(const void *self, int region, int ply);
   bool (*active)(const void *self, int region, int ply);

@@ -44,7 +44,7 @@ static dea_status check_element(struct dea_context *ctx, const struct dea_solid 
                   e, x[0], x[1], x[2]);
 }
 
-static dea_status check_constituents(struct dea_context *ctx, const struct dea_solid *s)
+static dea_status check_part_materials(struct dea_context *ctx, const struct dea_solid *s)
 {
   const struct dea_solid_problem *p = &s->problem;
   static const double one[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -230,7 +230,7 @@ dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *s)
   }
   dea_free(ctx, strains);
   DEA_TRY(ctx, status);
-  DEA_TRY(ctx, check_constituents(ctx, s));
+  DEA_TRY(ctx, check_part_materials(ctx, s));
   if (s->problem.load_count == 0) { // springs and tips may hold what nothing else does
     DEA_TRY(ctx, check_bodies(ctx, s));
     DEA_TRY(ctx, check_supports(ctx, s));

@@ -1,7 +1,7 @@
 /* To the next voltage by load steps, and where they end along the path of equilibria to the cause
  * (docs/theory/stops.md). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_APPROACH_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_APPROACH_H
+#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_SOLVE_INCREMENTAL_H
+#define DEA_MODEL_SOLID_EQUILIBRIUM_SOLVE_INCREMENTAL_H
 
 #include "base/arena.h"
 #include "model/solid/assembly/solid.h"

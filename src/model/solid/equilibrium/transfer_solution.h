@@ -1,7 +1,7 @@
 /* A state of one mesh on another: from displacements of whatever origin to the equilibrium that is
  * nearest to them (docs/theory/states.md). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_CARRY_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_CARRY_H
+#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_TRANSFER_SOLUTION_H
+#define DEA_MODEL_SOLID_EQUILIBRIUM_TRANSFER_SOLUTION_H
 
 #include "model/solid/assembly/solid.h"
 

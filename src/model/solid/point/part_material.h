@@ -6,8 +6,8 @@
  *
  * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md). A
  * part material of a compressible law (fibre) has W alone of the first line. */
-#ifndef DEA_MODEL_SOLID_POINT_CONSTITUENT_H
-#define DEA_MODEL_SOLID_POINT_CONSTITUENT_H
+#ifndef DEA_MODEL_SOLID_POINT_PART_MATERIAL_H
+#define DEA_MODEL_SOLID_POINT_PART_MATERIAL_H
 
 #include "material/material.h"
 #include "material/point.h"
