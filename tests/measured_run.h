@@ -4,7 +4,7 @@
 
 #include "command.h"
 #include "fake_result.h"
-#include "output/run_folder.h"
+#include "job/run_folder.h"
 
 static const double film_m = 15e-3;
 

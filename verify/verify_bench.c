@@ -2,9 +2,9 @@
  * reduced; what comes out is laid beside what the film does by study "transient" of model lumped,
  * which knows nothing of the bench. */
 #include "base/file.h"
+#include "compare/compare_set.h"
 #include "drive/drive.h"
 #include "film/film_of_design.h"
-#include "output/compare_set.h"
 #include "protocol/protocol.h"
 #include "reduce/output.h"
 #include "result/result.h"

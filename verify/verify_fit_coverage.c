@@ -1,6 +1,6 @@
 /* How often the error bars of dea fit hold the truth: synthetic data sets of three materials, with
  * noise that is white or runs together, fitted as the command fits them. */
-#include "calibrate/fit.h"
+#include "identify/fit.h"
 #include "verify.h"
 
 #include <stdint.h>

@@ -4,8 +4,8 @@
 #include "failing_allocator.h"
 
 #include "command.h"
+#include "io/csv.h"
 #include "lab_signals.h"
-#include "output/csv.h"
 #include "reduce/output.h"
 
 #include <stdbool.h>

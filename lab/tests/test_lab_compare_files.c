@@ -2,9 +2,9 @@
  * allocations. */
 // ctest: quick, heavy
 #define _GNU_SOURCE // mkdtemp
+#include "compare/compare_set.h"
 #include "failing_allocator.h"
 #include "measured_run.h"
-#include "output/compare_set.h"
 
 static void test_all_curves_are_in_one_figure(void **state)
 {

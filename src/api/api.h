@@ -5,8 +5,8 @@
 #include "base/context.h"
 #include "base/text.h"
 #include "design/design.h"
+#include "io/results_h5.h"
 #include "model/model.h"
-#include "output/results_h5.h"
 #include "result/result.h"
 
 #define DEA_INSIDE

@@ -4,8 +4,8 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
+#include "figures/device_drawing.h"
 #include "job/job.h"
-#include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 #include "study/study.h"
 

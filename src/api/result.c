@@ -2,11 +2,11 @@
 #include "api/api.h"
 
 #include "base/write_file.h"
+#include "figures/figure.h"
+#include "io/summary.h"
 #include "job/design_of_run.h"
-#include "output/figure.h"
-#include "output/report/plot_svg.h"
-#include "output/run_folder.h"
-#include "output/summary.h"
+#include "job/run_folder.h"
+#include "plot/plot_svg.h"
 #include "result/columns.h"
 
 #include <math.h>

@@ -4,8 +4,8 @@
 #include "base/write_file.h"
 #include "cli/print_layout.h"
 #include "device/device.h"
+#include "figures/device_drawing.h"
 #include "job/job.h"
-#include "output/drawing/device_drawing.h"
 #include "study/design_file.h"
 #include "study/study.h"
 

@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/write_file.h"
-#include "output/compare_set.h"
-#include "output/figure.h"
-#include "output/results_h5.h"
+#include "compare/compare_set.h"
+#include "figures/figure.h"
+#include "io/results_h5.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,10 @@
 #include "cli/cli.h"
 #include "cli/print_fit.h"
+#include "io/breakdown_fit.h"
+#include "io/device_fit_files.h"
+#include "io/fit_files.h"
+#include "io/life_fit.h"
 #include "job/device_fit.h"
-#include "output/breakdown_fit.h"
-#include "output/device_fit_files.h"
-#include "output/fit_files.h"
-#include "output/life_fit.h"
 
 struct request {
   const char *file, *output;

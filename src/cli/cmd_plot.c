@@ -2,9 +2,9 @@
 
 #include "base/file.h"
 #include "base/write_file.h"
-#include "output/figure.h"
-#include "output/results_h5.h"
-#include "output/run_folder.h"
+#include "figures/figure.h"
+#include "io/results_h5.h"
+#include "job/run_folder.h"
 
 #include <math.h>
 

@@ -1,10 +1,10 @@
 #include "cli/bench.h"
 #include "cli/cli.h"
 
-#include "calibrate/breakdown_file.h"
-#include "calibrate/device_file.h"
-#include "calibrate/life_file.h"
 #include "explore/explore_file.h"
+#include "identify/breakdown_file.h"
+#include "identify/device_file.h"
+#include "identify/life_file.h"
 #include "study/design_file.h"
 
 struct request {

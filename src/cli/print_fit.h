@@ -2,9 +2,9 @@
 #ifndef DEA_CLI_PRINT_FIT_H
 #define DEA_CLI_PRINT_FIT_H
 
-#include "calibrate/device_fit.h"
-#include "output/breakdown_fit.h"
-#include "output/life_fit.h"
+#include "identify/device_fit.h"
+#include "io/breakdown_fit.h"
+#include "io/life_fit.h"
 
 void cli_print_fit(const struct dea_fit *fit);
 void cli_print_device_fit(const struct dea_device_fit *fit);

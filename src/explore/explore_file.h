@@ -3,7 +3,7 @@
 #ifndef DEA_EXPLORE_EXPLORE_FILE_H
 #define DEA_EXPLORE_EXPLORE_FILE_H
 
-#include "calibrate/device_file.h"
+#include "identify/device_file.h"
 
 enum {
   DEA_EXPLORE_VERSION = 1,

@@ -2,7 +2,7 @@
 #ifndef DEA_FABRICATE_CANVAS_H
 #define DEA_FABRICATE_CANVAS_H
 
-#include "output/drawing/canvas.h"
+#include "figures/canvas.h"
 
 /* Path of the module that draws with cairo into out[size]; false when it is not here. */
 bool dea_canvas_find(char *out, size_t size);

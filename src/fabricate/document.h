@@ -4,7 +4,7 @@
 #define DEA_FABRICATE_DOCUMENT_H
 
 #include "base/text.h"
-#include "output/drawing/canvas.h"
+#include "figures/canvas.h"
 
 enum { DEA_CELLS_MAX = 6 };
 

@@ -1,7 +1,7 @@
 #include "fabricate/pages.h"
 
 #include "base/file.h"
-#include "output/drawing/dimensions.h"
+#include "figures/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>

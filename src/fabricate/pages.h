@@ -3,7 +3,7 @@
 #define DEA_FABRICATE_PAGES_H
 
 #include "fabricate/workshop.h"
-#include "output/drawing/canvas.h"
+#include "figures/canvas.h"
 
 /* Draws all pages on a canvas that begins with a page of dea_pages_first_size. */
 void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);

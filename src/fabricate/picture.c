@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "fabricate/layout_parts.h"
 #include "fabricate/parts.h"
-#include "output/drawing/device_drawing.h"
+#include "figures/device_drawing.h"
 
 #include <math.h>
 #include <stdio.h>

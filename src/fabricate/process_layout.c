@@ -4,7 +4,7 @@
 #include "fabricate/process.h"
 #include "fabricate/process_parts.h"
 #include "fabricate/sensitivity.h"
-#include "output/drawing/dimensions.h"
+#include "figures/dimensions.h"
 
 #include <math.h>
 #include <stdio.h>

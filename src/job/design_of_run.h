@@ -2,7 +2,7 @@
 #ifndef DEA_JOB_DESIGN_OF_RUN_H
 #define DEA_JOB_DESIGN_OF_RUN_H
 
-#include "output/results_h5.h"
+#include "io/results_h5.h"
 
 /* design, device: owned by the caller; after a failure (as of dea_design_read_memory and
  * dea_device_build) those that could be made, or NULL. */

@@ -4,7 +4,7 @@
 #ifndef DEA_JOB_DEVICE_FIT_H
 #define DEA_JOB_DEVICE_FIT_H
 
-#include "calibrate/device_fit.h"
+#include "identify/device_fit.h"
 
 /* Reads design and measurements, which count from the fit file's folder, and fits. file: lent for
  * as long as the result. DEA_E_DESIGN or DEA_E_IO after findings, else as models and least squares

@@ -4,8 +4,8 @@
 #include "base/file.h"
 #include "base/units.h"
 #include "base/write_file.h"
-#include "output/csv.h"
-#include "output/measured.h"
+#include "compare/measured.h"
+#include "io/csv.h"
 #include "result/provenance.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef DEA_JOB_DEVICE_FIT_MODEL_H
 #define DEA_JOB_DEVICE_FIT_MODEL_H
 
-#include "calibrate/device_fit.h"
+#include "identify/device_fit.h"
 #include "model/model.h"
 #include "study/device_param.h"
 

@@ -2,7 +2,7 @@
 #include "job/job.h"
 
 #include "base/write_file.h"
-#include "output/run_folder.h"
+#include "job/run_folder.h"
 #include "result/provenance.h"
 #include "study/rerun.h"
 #include "study/uncertainty.h"

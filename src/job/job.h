@@ -3,7 +3,7 @@
 #define DEA_JOB_JOB_H
 
 #include "base/folder_lock.h"
-#include "output/checkpoint.h"
+#include "io/checkpoint.h"
 #include "result/result.h"
 
 /* What is to be run. All lent. */

@@ -2,7 +2,7 @@
 #ifndef DEA_JOB_REPORT_H
 #define DEA_JOB_REPORT_H
 
-#include "output/report/report.h"
+#include "report/report.h"
 
 /* Reads the runs (folders, or results.h5 files) and writes one page of them as dea_report_write
  * does. Nothing is written into the runs: the studies operating-map and load-line of model lumped,

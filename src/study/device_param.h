@@ -3,8 +3,8 @@
 #ifndef DEA_STUDY_DEVICE_PARAM_H
 #define DEA_STUDY_DEVICE_PARAM_H
 
-#include "calibrate/device_fit.h"
 #include "device/device.h"
+#include "identify/device_fit.h"
 
 /* A design and its device, where parameters are looked up. */
 struct dea_device_param_source {

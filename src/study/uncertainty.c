@@ -15,7 +15,7 @@
 #include "base/correlations.h"
 #include "base/schema.h"
 #include "base/yaml_write.h"
-#include "calibrate/fit_head.h"
+#include "identify/fit_head.h"
 #include "result/observation.h"
 #include "study/material_numbers.h"
 #include "study/rerun.h"

@@ -2,8 +2,8 @@
 #define _GNU_SOURCE
 #include "fake_result.h"
 #include "fake_surface.h"
+#include "io/results_h5.h"
 #include "octave.h"
-#include "output/results_h5.h"
 
 /* A result with a group of each kind that a file can have. */
 static void write_all(const struct dea_design *design)

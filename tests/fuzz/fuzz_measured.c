@@ -1,7 +1,7 @@
 /* Fuzz target: the folder of a reduced measurement. The first byte says which of its files the rest
  * is; the others are good. */
 #define _GNU_SOURCE // mkdtemp
-#include "output/measured.h"
+#include "compare/measured.h"
 
 #include <stdint.h>
 #include <stdio.h>

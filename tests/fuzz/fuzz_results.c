@@ -2,7 +2,7 @@
 #define _GNU_SOURCE // mkdtemp
 #include "../fake_result.h"
 #include "fuzz_h5.h"
-#include "output/results_h5.h"
+#include "io/results_h5.h"
 
 static struct dea_design design;
 static struct dea_result *result;

@@ -1,6 +1,6 @@
 /* Fuzz target: a saved state of a model that says something else than was saved (fuzz_h5.h). */
 #define _GNU_SOURCE // mkdtemp
-#include "output/state_file.h"
+#include "io/state_file.h"
 
 #include "fuzz_h5.h"
 

@@ -1,8 +1,8 @@
 /* The catalogue: every material of the tree reads, and own directories go first. */
 #define _POSIX_C_SOURCE 200809L // setenv, mkdtemp
-#include "calibrate/coupon.h"
 #include "command.h"
 #include "device/device.h"
+#include "identify/coupon.h"
 #include "material/catalogue.h"
 #include "material/plane.h"
 

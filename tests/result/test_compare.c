@@ -3,7 +3,7 @@
 #define _GNU_SOURCE // mkdtemp
 #include "command.h"
 #include "fake_result.h"
-#include "output/run_folder.h"
+#include "job/run_folder.h"
 
 #include <jansson.h>
 

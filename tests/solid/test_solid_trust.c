@@ -2,8 +2,8 @@
 // ctest: solid
 #define _GNU_SOURCE // mkdtemp
 #include "command.h"
+#include "io/results_h5.h"
 #include "material/material.h"
-#include "output/results_h5.h"
 #include "result/columns.h"
 
 #include <jansson.h>

@@ -3,7 +3,7 @@
 // ctest: slow, heavy
 #include "design_text.h"
 #include "devices.h"
-#include "output/summary.h"
+#include "io/summary.h"
 #include "result/result.h"
 #include "study/study.h"
 

@@ -3,9 +3,9 @@
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
-#include "output/results_h5.h"
-#include "output/run_folder.h"
-#include "output/summary.h"
+#include "io/results_h5.h"
+#include "io/summary.h"
+#include "job/run_folder.h"
 #include "study/study.h"
 
 #include "own_folder.h"

@@ -4,10 +4,10 @@
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
-#include "output/csv.h"
-#include "output/results_h5.h"
-#include "output/run_folder.h"
-#include "output/summary.h"
+#include "io/csv.h"
+#include "io/results_h5.h"
+#include "io/summary.h"
+#include "job/run_folder.h"
 #include "result/compare.h"
 #include "study/rerun.h"
 

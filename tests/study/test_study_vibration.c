@@ -3,8 +3,8 @@
 #define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "fake_surface.h"
-#include "output/results_h5.h"
-#include "output/run_folder.h"
+#include "io/results_h5.h"
+#include "job/run_folder.h"
 #include "own_folder.h"
 #include "study/design_file.h"
 #include "study/study.h"

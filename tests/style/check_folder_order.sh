@@ -1,6 +1,6 @@
 #!/bin/sh
 # A file of src/X includes headers of X and of the folders before X only, and so do the rooms of
-# model/solid and of lab/src; one model knows nothing of another, output nothing of models, and of
+# model/solid and of lab/src; one model knows nothing of another, figures to report nothing of models, and of
 # studies their figures only. No file of src includes one of lab. The bench knows no design, device
 # or model, but for `film`, which fills its interface of a film. See ARCHITECTURE.md.
 set -eu
@@ -8,7 +8,7 @@ cd "$1/src"
 # shellcheck disable=SC2016 # awk's own
 find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {
-    n = split("base table plot material waveform geometry design device result calibrate model study output job explore fabricate api cli", order, " ")
+    n = split("base table plot material waveform geometry design device result identify model study figures io compare report job explore fabricate api cli", order, " ")
     for (i = 1; i <= n; i++) { rank[order[i]] = i }
     n = split("point element mesh load recovery actuator assembly equilibrium motion adapter", order, " ")
     for (i = 1; i <= n; i++) { room[order[i]] = i } # of model/solid
@@ -24,8 +24,8 @@ find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
       print FILENAME ":" FNR ": \"" header "\" should name its folder"; bad = 1
     } else if (rank[its] > rank[mine]) {
       print FILENAME ":" FNR ": " mine " must not depend on " its; bad = 1
-    } else if (mine == "output" && its ~ /^(model|study)$/ && header != "study/figures.h") {
-      print FILENAME ":" FNR ": output solves nothing; it must not depend on " header; bad = 1
+    } else if (mine ~ /^(figures|io|compare|report)$/ && its ~ /^(model|study)$/ && header != "study/figures.h") {
+      print FILENAME ":" FNR ": " mine " solves nothing; it must not depend on " header; bad = 1
     } else if (mine == "model" && its == "model" && header ~ /^model\/.*\// &&
                part(FILENAME, 2) != part(header, 2)) {
       print FILENAME ":" FNR ": must not depend on the model " part(header, 2); bad = 1

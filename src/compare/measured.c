@@ -1,0 +1,232 @@
+#include "compare/measured.h"
+
+#include "base/write_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_STD, PROFILE_COLUMNS };
+
+static const struct dea_csv_wanted profile_columns[PROFILE_COLUMNS] = {
+    [PROFILE_V] =
+        {.name = "v", .title = "V (kV)", .measure = {"V", "1 kV"}, .needed = true, .filled = true},
+    [PROFILE_X] =
+        {.name = "x", .title = "x (mm)", .measure = {"m", "1 mm"}, .needed = true, .filled = true},
+    [PROFILE_Z] = {.name = "z", .title = "z (um)", .measure = {"m", "1 um"}, .needed = true},
+    [PROFILE_STD] = {.name = "z std", .title = "z std (um)", .measure = {"m", "1 um"}},
+};
+
+static const struct dea_csv_wanted history_columns[DEA_MEASURED_COLUMNS] = {
+    [DEA_MEASURED_TIME] = {.name = "time",
+                           .title = "time (s)",
+                           .measure = {"s", "1 s"},
+                           .needed = true,
+                           .filled = true},
+    [DEA_MEASURED_VOLTAGE] = {.name = "v", .title = "V (kV)", .measure = {"V", "1 kV"}},
+    [DEA_MEASURED_CENTRE] = {.name = "z centre",
+                             .title = "z centre (um)",
+                             .measure = {"m", "1 um"}},
+    [DEA_MEASURED_TIP] = {.name = "z fibre tip",
+                          .title = "z fibre tip (um)",
+                          .measure = {"m", "1 um"}},
+    [DEA_MEASURED_FORCE] = {.name = "force", .title = "force (mN)", .measure = {"N", "1 mN"}},
+};
+
+int dea_measured_point_column(enum dea_measured_column column)
+{
+  static const char *const keys[DEA_MEASURED_COLUMNS] = {
+      [DEA_MEASURED_VOLTAGE] = "voltage_V",
+      [DEA_MEASURED_CENTRE] = "centre_z_m",
+      [DEA_MEASURED_TIP] = "fibre_tip_z_m",
+      [DEA_MEASURED_FORCE] = "force_N",
+  };
+  return keys[column] != NULL ? dea_point_column_find(keys[column]) : -1;
+}
+
+/* True when folder/name is there. */
+static bool holds(const char *folder, const char *name)
+{
+  char path[4096];
+  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+  return length > 0 && (size_t)length < sizeof path && dea_path_exists(path);
+}
+
+bool dea_measured_is_folder(const char *path)
+{
+  return dea_path_is_folder(path) && holds(path, "measurement.csv") && !holds(path, "results.h5");
+}
+
+/* Rows are out of order: a finding at the one that is, and DEA_E_IO. */
+static dea_status out_of_order(struct dea_context *ctx, const struct dea_csv_columns *rows,
+                               size_t row, const char *what)
+{
+  DEA_TRY(ctx,
+          dea_finding_add(ctx, DEA_ERROR, (struct dea_location){rows->file, rows->line[row], 1},
+                          "%s from the row before to this one", what));
+  return dea_fail(ctx, DEA_E_IO, "%s cannot be used: its rows are out of order", rows->file);
+}
+
+/* Whether a row begins a profile, whose first row so far is `start`: another voltage, or x from its
+ * beginning on. */
+static bool begins(const struct dea_csv_columns *rows, size_t start, size_t row)
+{
+  return row == 0 || rows->values[PROFILE_V][row] != rows->values[PROFILE_V][start] ||
+         rows->values[PROFILE_X][row] <= rows->values[PROFILE_X][start];
+}
+
+/* Counts the profiles, and checks that x rises in each. */
+static dea_status count_profiles(struct dea_context *ctx, const struct dea_csv_columns *rows,
+                                 size_t *count)
+{
+  size_t start = 0;
+  *count = 0;
+  for (size_t i = 0; i < rows->rows; i++) {
+    if (begins(rows, start, i)) {
+      start = i;
+      ++*count;
+    } else if (!(rows->values[PROFILE_X][i] > rows->values[PROFILE_X][i - 1])) {
+      return out_of_order(ctx, rows, i, "x does not rise");
+    }
+  }
+  return DEA_OK;
+}
+
+static dea_status part_profiles(struct dea_context *ctx, struct dea_measured *m)
+{
+  const struct dea_csv_columns *rows = &m->profile_rows;
+  size_t count, start = 0;
+  DEA_TRY(ctx, count_profiles(ctx, rows, &count));
+  m->profiles = dea_alloc(ctx, count, sizeof *m->profiles);
+  if (m->profiles == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < rows->rows; i++) {
+    if (begins(rows, start, i)) {
+      const double *std = rows->values[PROFILE_STD];
+      start = i;
+      m->profiles[m->profile_count++] = (struct dea_measured_profile){
+          .voltage_V = rows->values[PROFILE_V][i],
+          .x_m = rows->values[PROFILE_X] + i,
+          .z_m = rows->values[PROFILE_Z] + i,
+          .z_std_m = std != NULL ? std + i : NULL,
+      };
+    }
+    m->profiles[m->profile_count - 1].count++;
+  }
+  return DEA_OK;
+}
+
+static dea_status check_history(struct dea_context *ctx, const struct dea_csv_columns *history)
+{
+  const double *time = history->values[DEA_MEASURED_TIME];
+  for (size_t i = 1; i < history->rows; i++) {
+    if (!(time[i] >= time[i - 1])) {
+      return out_of_order(ctx, history, i, "the time falls");
+    }
+  }
+  return DEA_OK;
+}
+
+/* Reads folder/name where it is there. */
+static dea_status read_rows(struct dea_context *ctx, const char *folder, const char *name,
+                            const struct dea_csv_wanted *wanted, size_t count,
+                            struct dea_csv_columns *out)
+{
+  if (!holds(folder, name)) {
+    return DEA_OK;
+  }
+  char *path = dea_path_join(ctx, folder, name);
+  dea_status status =
+      path != NULL ? dea_csv_columns_read(ctx, path, wanted, count, out) : DEA_E_MEMORY;
+  dea_free(ctx, path);
+  return status;
+}
+
+static dea_status read_folder(struct dea_context *ctx, const char *path, struct dea_measured *m)
+{
+  char *points = dea_path_join(ctx, path, "measurement.csv");
+  dea_status status = points != NULL ? dea_measurement_read(ctx, points, &m->points) : DEA_E_MEMORY;
+  dea_free(ctx, points);
+  DEA_TRY(ctx, status);
+  DEA_TRY(ctx,
+          read_rows(ctx, path, "profiles.csv", profile_columns, PROFILE_COLUMNS, &m->profile_rows));
+  DEA_TRY(ctx, part_profiles(ctx, m));
+  DEA_TRY(ctx,
+          read_rows(ctx, path, "history.csv", history_columns, DEA_MEASURED_COLUMNS, &m->history));
+  return check_history(ctx, &m->history);
+}
+
+dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct dea_measured **out)
+{
+  struct dea_measured *m = dea_alloc(ctx, 1, sizeof *m);
+  *out = NULL;
+  if (m == NULL) {
+    return DEA_E_MEMORY;
+  }
+  m->path = dea_intern(ctx, path);
+  dea_status status = m->path == NULL            ? DEA_E_MEMORY
+                      : dea_path_is_folder(path) ? read_folder(ctx, path, m)
+                                                 : dea_measurement_read(ctx, path, &m->points);
+  if (status != DEA_OK) {
+    dea_measured_destroy(ctx, m);
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  *out = m;
+  return DEA_OK;
+}
+
+static void turn_point(struct dea_load_point *p)
+{
+  if (p->voltage_V < 0) {
+    p->voltage_V = -p->voltage_V;
+    p->source_voltage_V = -p->source_voltage_V;
+    p->charge_C = -p->charge_C;
+    p->current_A = -p->current_A;
+  }
+}
+
+/* Whether voltages are below 0 by more than the noise of a monitor. */
+static bool is_negative(const struct dea_curve *points)
+{
+  static const double noise = 0.01; // of the largest size
+  double lowest_V = 0, largest_V = 0;
+  for (size_t i = 0; i < points->count; i++) {
+    lowest_V = fmin(lowest_V, points->points[i].voltage_V);
+    largest_V = fmax(largest_V, fabs(points->points[i].voltage_V));
+  }
+  return lowest_V < -noise * largest_V;
+}
+
+dea_status dea_measurement_fold(struct dea_context *ctx, struct dea_measurement *points)
+{
+  if (!is_negative(&points->curve)) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < points->curve.count; i++) {
+    turn_point(&points->curve.points[i]);
+  }
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){points->file, 0, 0},
+                         "voltages below 0 stand at their size: the response of a film does not "
+                         "know the sign");
+}
+
+dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured)
+{
+  const bool negative = is_negative(&measured->points->curve);
+  for (size_t i = 0; i < measured->profile_count && negative; i++) {
+    measured->profiles[i].voltage_V = fabs(measured->profiles[i].voltage_V);
+  }
+  return dea_measurement_fold(ctx, measured->points);
+}
+
+void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured)
+{
+  if (measured != NULL) {
+    dea_measurement_destroy(ctx, measured->points);
+    dea_csv_columns_free(ctx, &measured->profile_rows);
+    dea_csv_columns_free(ctx, &measured->history);
+    dea_free(ctx, measured->profiles);
+    dea_free(ctx, measured);
+  }
+}

@@ -1,0 +1,54 @@
+/* What was measured of an actuator: the folder that `dea reduce` writes, or a table alone. */
+#ifndef DEA_COMPARE_MEASURED_H
+#define DEA_COMPARE_MEASURED_H
+
+#include "io/csv.h"
+#include "table/columns.h"
+
+/* Mean profile of a voltage against rest; arrays [count] lent from the table. */
+struct dea_measured_profile {
+  double voltage_V;
+  size_t count;
+  const double *x_m;     // from the film's centre, rising
+  const double *z_m;     // positive to the fibres; NAN: no valid point
+  const double *z_std_m; // from cycle to cycle; NULL or NAN: unknown
+};
+
+/* Columns of the history; x of dea_csv_columns.values. */
+enum dea_measured_column {
+  DEA_MEASURED_TIME,
+  DEA_MEASURED_VOLTAGE,
+  DEA_MEASURED_CENTRE,
+  DEA_MEASURED_TIP,
+  DEA_MEASURED_FORCE,
+  DEA_MEASURED_COLUMNS
+};
+
+struct dea_measured {
+  const char *path;                      // interned
+  struct dea_measurement *points;        // quantities against the voltage
+  struct dea_csv_columns profile_rows;   // of all profiles
+  struct dea_measured_profile *profiles; // owned, in the order of the file
+  size_t profile_count;
+  struct dea_csv_columns history; // times never fall; rows 0: none
+};
+
+/* True for a folder that holds measurement.csv and no results of a run. */
+bool dea_measured_is_folder(const char *path);
+/* Reads a folder: measurement.csv (dea_measurement_read), and where they are there profiles.csv
+ * ('V (kV)', 'x (mm)', 'z (um)', 'z std (um)') and history.csv ('time (s)' and any of 'V (kV)', 'z
+ * centre (um)', 'z fibre tip (um)', 'force (mN)'). A path that is no folder is the first of these
+ * files alone. All errors become findings with their place; DEA_E_IO then. out: owned by the
+ * caller, NULL on failure. */
+dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct dea_measured **out);
+/* Voltages below 0 become their size, and charges and currents there turn round, for curves of a
+ * model: the response of a film does not know the sign. With a note; not where they are but noise
+ * about 0. */
+dea_status dea_measurement_fold(struct dea_context *ctx, struct dea_measurement *points);
+/* The same with the profiles; the history stays. */
+dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured);
+void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured);
+/* Column of dea_point_columns that a column of the history is; -1: none (the time). */
+int dea_measured_point_column(enum dea_measured_column column);
+
+#endif

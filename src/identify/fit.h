@@ -1,0 +1,132 @@
+/* A fit of a material: the law and its branches, error bars, what the measurements cannot tell.
+ *
+ * docs/theory/fit.md says how each number is found, docs/fit.md how it is used. */
+#ifndef DEA_IDENTIFY_FIT_H
+#define DEA_IDENTIFY_FIT_H
+
+#include "base/text.h"
+#include "identify/fit_model.h"
+
+enum { DEA_FIT_NEXT_MAX = 5, DEA_FIT_WEAK_MAX = 4, DEA_FIT_WEAK_SIZE = 400 };
+/* A law that is stable over the range of the tests is taken before one that is not, unless that one
+ * foretells held-out tests so many times better; and laws that foretell them so many times as badly
+ * at most are compared where no test was made. */
+#define DEA_FIT_STABLE_FACTOR 2.0
+enum { DEA_FIT_WEAK_CONDITION = 1000 }; // singular values that far below the largest are told
+
+/* A parameter as found, in its unit. */
+struct dea_fit_value {
+  double value;
+  double std;       // standard uncertainty; NAN: fixed or at a bound, INFINITY: not determined
+  double low, high; // 68 % interval by its profile, NAN: not computed, infinite: open
+  bool fixed, at_bound, bends; // bends: the profile is not that of the normal form
+};
+
+/* A law of the list. */
+struct dea_fit_candidate {
+  char name[DEA_NAME_SIZE];
+  bool failed; // it could not be fitted; `why`
+  char why[160];
+  size_t free_count, branch_count;
+  double chi2, aicc; // of all rows
+  /* Root mean square of what it misses of tests that were held out, NAN: none. It is what a law is
+   * chosen by: in uncertainties where they are known, else over the largest stress of all tests. */
+  double held_out;
+  double
+      held_out_share; // the same over the largest stress of each test, whatever uncertainties say
+  enum dea_coupon_mode unstable_mode;
+  double
+      unstable_from; // lowest stretch of the range of the tests where it is not stable, NAN: none
+};
+
+/* A test beside the fit; arrays [series->rows]. */
+struct dea_fit_curve {
+  const struct dea_fit_series *series;
+  double *stress_Pa,
+      *std_Pa; // of the law, and the standard uncertainty that the parameters give it; INFINITY:
+               // not determined
+  double lag, effective;  // of a test that was fitted: correlation of neighbours, rows that count
+  double rms_Pa, largest; // misfit [Pa], NAN of a prediction; largest share of the own stress
+};
+
+struct dea_fit_stability {
+  enum dea_coupon_mode mode;
+  bool measured;        // a test of that mode was fitted
+  double to;            // stretch up to which it was looked at
+  double unstable_from; // NAN: stable
+};
+
+/* How far laws that foretell held-out tests about as well are apart where no test was made. */
+struct dea_fit_spread {
+  enum dea_coupon_mode mode;
+  double stretch; // with the I1 that the tests reach
+  char other[DEA_NAME_SIZE];
+  double share; // largest difference from the law that was taken, over its stress
+};
+
+/* What one more test would do. */
+struct dea_fit_next {
+  char what[80];
+  double shrink; // factor on the mean error bar (geometric mean over the free parameters)
+};
+
+struct dea_fit {
+  const struct dea_fit_file *file; // lent
+  const struct dea_fit_series *series;
+  size_t series_count;
+  struct dea_fit_candidate candidates[DEA_FIT_LAWS_MAX];
+  size_t candidate_count, chosen;
+  struct dea_fit_model model;
+  struct dea_fit_value values[DEA_LSQ_PARAMS_MAX];
+  struct dea_lsq_fit least_squares;
+  struct dea_lsq_statistics statistics;
+  bool scale_known;                               // uncertainties were given
+  double scatter_Pa;                              // root mean square misfit where they were not
+  char weak[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE]; // combinations that are not told apart, in words
+  size_t weak_count;
+  struct dea_fit_curve *curves; // [series_count]
+  struct dea_fit_stability stability[DEA_COUPON_MODES];
+  struct dea_fit_spread
+      spreads[DEA_COUPON_MODES]; // of modes without a test, where there is another
+  size_t spread_count;
+  struct dea_fit_next next[DEA_FIT_NEXT_MAX]; // the best first
+  size_t next_count;
+  double stretch_min, stretch_max, I1_max; // of the rows that were fitted
+  struct dea_arena memory;
+};
+
+struct dea_fit_options {
+  bool profile; // profiles of all parameters, not only where the normal form is poor
+};
+
+/* Fits; file and series: lent for as long as the result. Status as the model and the least squares
+ * give it; DEA_E_DESIGN after findings. out: owned by the caller, NULL on failure. */
+dea_status dea_fit_run(struct dea_context *ctx, const struct dea_fit_file *file,
+                       const struct dea_fit_series *series, size_t series_count,
+                       const struct dea_fit_options *options, struct dea_fit **out);
+void dea_fit_destroy(struct dea_context *ctx, struct dea_fit *fit);
+
+// Parts -------------------------------------------------------------------------------------------
+
+/* The interval of parameter j by its profile, where the normal form is poor or for `all`: sets
+ * bends, low and high of the value. */
+dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
+                           const struct dea_lsq_fit *fit,
+                           const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
+                           bool all, struct dea_fit_value *value);
+/* A direction that the measurements (`what`: "tests") do not hold, or hardly: of two parameters of
+ * one unit what they do hold, else the direction in units of the scales. */
+void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
+                                const double *direction, bool open, const char *what,
+                                char out[DEA_FIT_WEAK_SIZE]);
+/* The weak combinations in words, where the law ends to be stable, and the next test. */
+void dea_fit_identify_weak(struct dea_fit *fit);
+void dea_fit_identify_stability(struct dea_fit *fit);
+/* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */
+double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
+                             double to);
+/* Stretch of a mode, at least 1, with that I1. */
+double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1);
+dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit);
+
+#endif

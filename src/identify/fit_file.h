@@ -1,0 +1,71 @@
+/* A fit file: which law, which parameters are free, which tests. */
+#ifndef DEA_IDENTIFY_FIT_FILE_H
+#define DEA_IDENTIFY_FIT_FILE_H
+
+#include "identify/coupon.h"
+#include "identify/fit_head.h"
+
+enum {
+  DEA_FIT_TESTS_MAX = 16,
+  DEA_FIT_LAWS_MAX = 8,
+};
+
+enum dea_fit_kind { // the first three: slow, or in time where times or a rate are given
+  DEA_FIT_UNIAXIAL,
+  DEA_FIT_PLANAR,
+  DEA_FIT_EQUIBIAXIAL,
+  DEA_FIT_RELAXATION,
+  DEA_FIT_CYCLIC,
+  DEA_FIT_CREEP, // compared by the stress that its measured stretches take
+  DEA_FIT_KINDS
+};
+extern const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1]; // ended by NULL
+
+enum dea_fit_use { DEA_FIT_USED, DEA_FIT_CHECKED, DEA_FIT_PREDICTED };
+
+/* Columns of a test's file. */
+enum dea_fit_column {
+  DEA_FIT_TIME,
+  DEA_FIT_STRETCH,
+  DEA_FIT_DISPLACEMENT,
+  DEA_FIT_STRESS,
+  DEA_FIT_FORCE,
+  DEA_FIT_STRESS_STD,
+  DEA_FIT_FORCE_STD,
+  DEA_FIT_COLUMNS
+};
+/* Name in a fit file, unit and an example of a title. */
+extern const struct dea_fit_column_type {
+  const char *key, *unit, *example;
+} dea_fit_columns[DEA_FIT_COLUMNS];
+
+/* A test as written. */
+struct dea_fit_test {
+  struct dea_label name, file;
+  struct dea_choice kind, mode, use; // enum dea_fit_kind, dea_coupon_mode, dea_fit_use
+  struct dea_label columns[DEA_FIT_COLUMNS];
+  struct dea_quantity length_m, section_m2, relative, absolute_Pa, rate_per_s, ramp_s, stretch;
+};
+
+struct dea_fit_file {
+  struct dea_fit_head head;
+  struct dea_label material, branches;
+  struct dea_quantity temperature_K; // of the tests; absent: unknown
+  struct dea_label laws[DEA_FIT_LAWS_MAX];
+  size_t law_count;
+  struct dea_quantity branch_s[DEA_BRANCHES_MAX];
+  size_t branch_time_count;
+  struct dea_fit_parameter_text parameters[DEA_LAW_PARAM_MAX];
+  size_t parameter_count;
+  struct dea_fit_test tests[DEA_FIT_TESTS_MAX];
+  size_t test_count;
+};
+
+extern const struct dea_record dea_fit_record;
+
+/* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
+ * failure. */
+dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out);
+void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit);
+
+#endif

@@ -1,0 +1,91 @@
+/* What the fit files of materials and of devices have in common, and how both are read. */
+#ifndef DEA_IDENTIFY_FIT_HEAD_H
+#define DEA_IDENTIFY_FIT_HEAD_H
+
+#include "base/schema.h"
+
+#include <stddef.h>
+
+enum { DEA_FIT_VERSION = 1 };
+
+/* First member of both. */
+struct dea_fit_head {
+  const char *file; // interned
+  char sha256[65];
+  struct dea_quantity version;
+  struct dea_label name, title, source;
+  struct dea_yaml *document; // owned
+};
+
+struct dea_fit_parameter_text {
+  struct dea_label name, start, low, high, prior, prior_std;
+  struct dea_choice fixed;
+};
+
+/* Rows of both tables: the first keys of a file ... */
+#define DEA_FIT_HEAD_AT(member) offsetof(struct dea_fit_head, member)
+#define DEA_FIT_HEAD_FIELDS(name_doc, name_example, title_absent, title_doc, title_example)        \
+  {.key = "dea_fit",                                                                               \
+   .kind = DEA_FIELD_INTEGER,                                                                      \
+   .offset = DEA_FIT_HEAD_AT(version),                                                             \
+   .unit = "1",                                                                                    \
+   .min = DEA_FIT_VERSION,                                                                         \
+   .max = DEA_FIT_VERSION,                                                                         \
+   .required = true,                                                                               \
+   .doc = "version of the format",                                                                 \
+   .example = "1"},                                                                                \
+      {.key = "name",                                                                              \
+       .kind = DEA_FIELD_LABEL,                                                                    \
+       .offset = DEA_FIT_HEAD_AT(name),                                                            \
+       .required = true,                                                                           \
+       .doc = name_doc,                                                                            \
+       .example = name_example},                                                                   \
+      {.key = "title",                                                                             \
+       .kind = DEA_FIELD_LABEL,                                                                    \
+       .offset = DEA_FIT_HEAD_AT(title),                                                           \
+       .absent_text = title_absent,                                                                \
+       .doc = title_doc,                                                                           \
+       .example = title_example},                                                                  \
+  {                                                                                                \
+    .key = "source", .kind = DEA_FIELD_LABEL, .offset = DEA_FIT_HEAD_AT(source),                   \
+    .absent_text = "none", .doc = "where the measurements come from",                              \
+    .example = "our lab, June 2026"                                                                \
+  }
+
+/* ... and those of a parameter: a text, and whether it keeps its start. */
+#define DEA_FIT_PARAMETER_FIELD(word, meaning, shown, without)                                     \
+  {                                                                                                \
+    .key = #word, .kind = DEA_FIELD_LABEL,                                                         \
+    .offset = offsetof(struct dea_fit_parameter_text, word), .doc = meaning, .example = shown,     \
+    .absent_text = without                                                                         \
+  }
+#define DEA_FIT_FIXED_FIELD                                                                        \
+  {                                                                                                \
+    .key = "fixed", .kind = DEA_FIELD_CHOICE,                                                      \
+    .offset = offsetof(struct dea_fit_parameter_text, fixed), .choices = dea_no_yes,               \
+    .default_text = "no", .doc = "whether it keeps its start", .example = "yes"                    \
+  }
+
+/* Whether a file has a key, by which the kinds of fit files are told apart: `design` of a device,
+ * `breakdown` of breakdown tests, `life` of life tests, none of a material. Status as of reading.
+ */
+dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const char *key, bool *out);
+
+/* Reads a file into a new struct of `size` bytes that begins with its head; check: what the table
+ * cannot say, asked where the table is kept. Errors are findings with their places; DEA_E_DESIGN
+ * then. out: owned by the caller, NULL on failure. */
+dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
+                             const struct dea_record *record, size_t size,
+                             dea_status (*check)(struct dea_context *ctx, const void *fit),
+                             void **out);
+/* fit: begins with its head, or NULL. */
+void dea_fit_head_destroy(struct dea_context *ctx, void *fit);
+
+/* A finding where the name of what a fit writes cannot be that of a file. */
+dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name);
+/* A finding for each name that stands twice. items: [count] of `size` bytes that begin with their
+ * name; what: "test". */
+dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_t count,
+                               size_t size, const char *what);
+
+#endif

@@ -1,0 +1,72 @@
+/* A law with branches as a problem of least squares: parameters, residuals over the tests, a start.
+ */
+#ifndef DEA_IDENTIFY_FIT_MODEL_H
+#define DEA_IDENTIFY_FIT_MODEL_H
+
+#include "identify/fit_data.h"
+#include "identify/least_squares.h"
+
+enum { DEA_FIT_PARAM_NAME = 128 };
+
+/* A parameter. Numbers are those that the search sees: the logarithm of a relaxation time. */
+struct dea_fit_param {
+  char name[DEA_FIT_PARAM_NAME];    // "c1", "modulus 2", "time 2"
+  const char *unit;                 // of the value: "Pa", "1", "s"
+  bool fixed, logarithmic, started; // started: the file says where the search begins
+  bool locks; // the tests reach where the chains would be fully stretched at `low`
+  double start, low, high, scale;
+  double limit; // of a coefficient of either sign: beyond it, it could only cancel another one
+  double prior, prior_std; // NAN: none
+};
+
+/* What a fit file says of a parameter, over what stands in it already (unit, limits, scale). Errors
+ * are findings at the text's places. */
+dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
+                              struct dea_fit_param *param);
+
+/* The first law_count parameters are the law's, in its order; then modulus and time of each branch.
+ */
+struct dea_fit_model {
+  char name[DEA_NAME_SIZE]; // as asked for: "ogden-2"
+  const struct dea_law *law;
+  struct dea_fit_param params[DEA_LSQ_PARAMS_MAX];
+  size_t count, law_count, branch_count;
+};
+
+/* The tests that are fitted, all or but a part of one. */
+struct dea_fit_rows {
+  const struct dea_fit_series *series; // [count]
+  size_t count;
+  size_t without, from, to; // rows from..to - 1 of series `without` are left out
+  double std_Pa;            // of rows without an uncertainty of their own
+};
+
+/* Model of that name ("yeoh", "ogden-2": the parameters whose keys end in 1 and 2) with what the
+ * file says of its parameters. Errors are findings, DEA_E_DESIGN then. */
+dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file *file,
+                              const struct dea_label *name, const struct dea_fit_series *series,
+                              size_t series_count, struct dea_fit_model *out);
+/* Adds branches between two times; times_s: fixed ones, NULL: free. */
+void dea_fit_model_branches(struct dea_fit_model *model, size_t count, double from_s, double to_s,
+                            const struct dea_quantity *times);
+/* Free parameters. */
+size_t dea_fit_model_free(const struct dea_fit_model *model);
+/* The material at p. */
+void dea_fit_model_material(const struct dea_fit_model *model, const double *p,
+                            struct dea_material *out);
+/* Whether a series counts as fitted: its test is for that. */
+bool dea_fit_series_used(const struct dea_fit_series *series);
+
+/* Finds the minimum: moduli by linear least squares over a grid of the other parameters, on few
+ * rows; from the best of them with a shear modulus at rest above 0 by variable projection (G. H.
+ * Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413-432), and then over all rows. */
+dea_status dea_fit_model_solve(struct dea_context *ctx, const struct dea_fit_model *model,
+                               const struct dea_fit_rows *rows, struct dea_lsq_fit *out);
+/* The problem that the above solves; memory of the arena, which has to outlive it. */
+dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_model *model,
+                                 const struct dea_fit_rows *rows, struct dea_lsq_problem *out);
+/* Stresses of one series as "residuals", for their derivatives by the parameters. */
+dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_model *model,
+                                const struct dea_fit_series *series, struct dea_lsq_problem *out);
+
+#endif

@@ -1,0 +1,222 @@
+/* What a fit says beyond its numbers: combinations of parameters that the tests do not tell apart,
+ * where the law ends to be stable, and which test would tell most. */
+#include "identify/fit.h"
+#include "identify/information.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- combinations ---- */
+
+void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
+                                const double *direction, bool open, const char *what,
+                                char out[DEA_FIT_WEAK_SIZE])
+{
+  size_t index[DEA_LSQ_PARAMS_MAX], count = 0;
+  double most = 0;
+  for (size_t j = 0; j < n; j++) {
+    most = fmax(most, fabs(direction[j] / params[j].scale));
+  }
+  for (size_t j = 0; j < n; j++) {
+    if (fabs(direction[j] / params[j].scale) > 0.05 * most) {
+      index[count++] = j;
+    }
+  }
+  const char *hold = open ? "determine only" : "hold little more than";
+  if (count == 1) {
+    snprintf(out, DEA_FIT_WEAK_SIZE, "the %s hardly determine %s", what, params[index[0]].name);
+    return;
+  }
+  if (count == 2 && strcmp(params[index[0]].unit, params[index[1]].unit) == 0) {
+    const double share = -direction[index[0]] / direction[index[1]]; // a + share b stays
+    snprintf(out, DEA_FIT_WEAK_SIZE, "the %s %s %s %c %.3g %s", what, hold, params[index[0]].name,
+             share > 0 ? '+' : '-', fabs(share), params[index[1]].name);
+    return;
+  }
+  size_t used = (size_t)snprintf(out, DEA_FIT_WEAK_SIZE, "the %s %s notice a change of", what,
+                                 open ? "do not" : "hardly");
+  for (size_t k = 0; k < count && used < 160; k++) {
+    const double part = direction[index[k]] / direction[index[0]];
+    const double ratio = params[index[k]].scale / params[index[0]].scale;
+    used += (size_t)snprintf(out + used, DEA_FIT_WEAK_SIZE - used, "%s %+.2g x %s",
+                             k > 0 ? "," : "", part / ratio, params[index[k]].name);
+  }
+}
+
+void dea_fit_identify_weak(struct dea_fit *fit)
+{
+  const struct dea_lsq_statistics *s = &fit->statistics;
+  for (size_t k = s->active; k-- > 0 && fit->weak_count < DEA_FIT_WEAK_MAX;) {
+    if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
+      dea_fit_identify_direction(fit->model.params, fit->model.count, s->direction + k * s->params,
+                                 s->singular[k] <= 1e-9 * s->singular[0], "tests",
+                                 fit->weak[fit->weak_count++]);
+    }
+  }
+}
+
+/* ---- stability ---- */
+
+double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,
+                             double to)
+{
+  enum { STEPS = 200 };
+  for (int k = 0; k <= STEPS; k++) {
+    const double l = 1 + (to - 1) * k / STEPS;
+    if (!dea_coupon_is_stable(material, l, dea_coupon_across(mode, l))) {
+      return l;
+    }
+  }
+  return NAN;
+}
+
+void dea_fit_identify_stability(struct dea_fit *fit)
+{
+  struct dea_material material;
+  dea_fit_model_material(&fit->model, fit->least_squares.p, &material);
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    struct dea_fit_stability *stability = &fit->stability[mode];
+    *stability = (struct dea_fit_stability){.mode = (enum dea_coupon_mode)mode, .to = 1};
+    for (size_t s = 0; s < fit->series_count; s++) {
+      const struct dea_fit_series *series = &fit->series[s];
+      if (dea_fit_series_used(series) && (int)series->coupon.mode == mode) {
+        stability->measured = true;
+        for (size_t i = 0; i < series->rows; i++) {
+          stability->to = fmax(stability->to, series->stretch[i]);
+        }
+      }
+    }
+    if (!stability->measured) {
+      stability->to =
+          fmax(fit->stretch_max, dea_fit_stretch_as_far((enum dea_coupon_mode)mode, fit->I1_max));
+    }
+    stability->unstable_from =
+        dea_fit_unstable_from(&material, (enum dea_coupon_mode)mode, stability->to);
+  }
+}
+
+/* ---- the next test ---- */
+
+enum { NEXT_ROWS = 10 };
+
+double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1)
+{
+  double low = 1, high = fmax(sqrt(I1), 2);
+  for (int k = 0; k < 60; k++) {
+    const double l = 0.5 * (low + high);
+    if (dea_coupon_I1(mode, l) < I1) {
+      low = l;
+    } else {
+      high = l;
+    }
+  }
+  return low;
+}
+
+/* A test that could be made, with ten rows up to the I1 that the data reach. */
+static dea_status propose(struct dea_arena *arena, const struct dea_fit *fit, int which,
+                          double longest_s, struct dea_fit_series *series, char what[80])
+{
+  double *stretch = dea_arena_alloc(arena, NEXT_ROWS, sizeof *stretch);
+  double *time = dea_arena_alloc(arena, NEXT_ROWS, sizeof *time);
+  DEA_TRY(arena->ctx, dea_arena_status(arena));
+  const bool relaxation = which == DEA_COUPON_MODES;
+  const enum dea_coupon_mode mode = relaxation ? DEA_UNIAXIAL : (enum dea_coupon_mode)which;
+  const double to = dea_fit_stretch_as_far(mode, fit->I1_max);
+  for (size_t i = 0; i < NEXT_ROWS; i++) {
+    const double x = (double)(i + 1) / NEXT_ROWS;
+    stretch[i] = relaxation ? to : 1 + (to - 1) * x;
+    time[i] = longest_s * pow(10, 1 - 4 * (1 - x)); // four decades, to ten times as long
+  }
+  *series = (struct dea_fit_series){.rows = NEXT_ROWS, .stretch = stretch, .time_s = time};
+  series->coupon = (struct dea_coupon){.mode = mode, .rows = NEXT_ROWS, .stretch = stretch};
+  if (relaxation) {
+    snprintf(what, 80, "relaxation at %.3g for %.3g s", to, 10 * longest_s);
+    return dea_coupon_follow(arena, time, time[0], &series->coupon);
+  }
+  snprintf(what, 80, "%s to %.3g, slowly", dea_coupon_mode_names[mode], to);
+  return DEA_OK;
+}
+
+/* Median share of the stress that its standard uncertainty has; a mean does here. */
+static double relative_uncertainty(const struct dea_fit *fit)
+{
+  double sum = 0;
+  size_t count = 0;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_series *series = &fit->series[s];
+    for (size_t i = 0; i < series->rows && dea_fit_series_used(series); i++) {
+      const double std = isnan(series->std_Pa[i]) ? fit->scatter_Pa : series->std_Pa[i];
+      sum += log(std / fabs(series->stress_Pa[i]));
+      count++;
+    }
+  }
+  return exp(sum / (double)count) * sqrt(fit->statistics.variance);
+}
+
+static double longest_time(const struct dea_fit *fit)
+{
+  double most = 0;
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_series *series = &fit->series[s];
+    if (series->time_s != NULL && series->rows > 0 && dea_fit_series_used(series)) {
+      most = fmax(most, series->time_s[series->rows - 1]);
+    }
+  }
+  return most;
+}
+
+static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct dea_fit *fit,
+                        int which, const struct dea_information *base)
+{
+  const size_t n = fit->model.count;
+  struct dea_fit_series series;
+  struct dea_lsq_problem problem;
+  struct dea_fit_next next;
+  struct dea_information now = *base;
+  double stress[NEXT_ROWS], variance[DEA_LSQ_PARAMS_MAX];
+  DEA_TRY(ctx, propose(arena, fit, which, longest_time(fit), &series, next.what));
+  double *J = dea_arena_alloc(arena, NEXT_ROWS * n, sizeof *J);
+  DEA_TRY(ctx, dea_fit_model_stress(arena, &fit->model, &series, &problem));
+  if (problem.residual(problem.user, fit->least_squares.p, stress) != DEA_OK ||
+      dea_lsq_jacobian(ctx, &problem, fit->least_squares.p, J) != DEA_OK) {
+    dea_context_clear(ctx);
+    return DEA_OK; // beyond the law: no advice
+  }
+  const double share = relative_uncertainty(fit);
+  for (size_t k = 0; k < NEXT_ROWS * n; k++) {
+    J[k] /= share * fmax(fabs(stress[k % NEXT_ROWS]), 1e-12);
+  }
+  dea_information_add(&now, J, NEXT_ROWS, 1);
+  const double gain =
+      dea_information_factor(&now, variance) - dea_information_factor(base, variance);
+  next.shrink = exp(-0.5 * gain / (double)base->count);
+  size_t at = fit->next_count++;
+  for (; at > 0 && fit->next[at - 1].shrink > next.shrink; at--) {
+    fit->next[at] = fit->next[at - 1];
+  }
+  fit->next[at] = next;
+  return DEA_OK;
+}
+
+dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit)
+{
+  struct dea_information base;
+  double scale[DEA_LSQ_PARAMS_MAX];
+  struct dea_arena arena = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
+    return DEA_OK;
+  }
+  for (size_t j = 0; j < fit->model.count; j++) {
+    scale[j] = fit->model.params[j].scale;
+  }
+  dea_information_start(&fit->least_squares, fit->statistics.variance, scale, &base);
+  const int last = fit->model.branch_count > 0 ? DEA_COUPON_MODES : DEA_COUPON_MODES - 1;
+  for (int which = 0; which <= last && status == DEA_OK; which++) {
+    status = weigh(ctx, &arena, fit, which, &base);
+  }
+  dea_arena_free(&arena);
+  return status;
+}

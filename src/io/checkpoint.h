@@ -1,0 +1,42 @@
+/* What a run keeps while it goes: results.h5 and the state of the model after every point, and the
+ * fields that the design asks for. So an end at any time costs one point, and the run can go on. */
+#ifndef DEA_IO_CHECKPOINT_H
+#define DEA_IO_CHECKPOINT_H
+
+#include "result/checkpoint.h"
+
+/* The name of the folder of fields within a run folder. */
+#define DEA_FIELD_FOLDER "fields"
+
+struct dea_keep;
+
+/* For a run into a folder that exists. directory: copied. out: owned by the caller. */
+dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
+                                 struct dea_keep **out);
+void dea_checkpoint_destroy(struct dea_context *ctx, struct dea_keep *keep);
+/* For result->checkpoint; lent. Models that are quick (without fields or a state) leave nothing on
+ * the way; a model whose curve has points starts from its state in the folder. */
+const struct dea_checkpoint_sink *dea_checkpoint_get_sink(const struct dea_keep *keep);
+
+/* Whether a model could not go on from its state: the folder is another run's then and has to stay
+ * as it is. NULL is fine. */
+bool dea_checkpoint_refused(const struct dea_keep *keep);
+
+/* Brings the sweeps of models that left a state in the folder, up to the point of that state, into
+ * a result that has its design: they go on from there. DEA_E_IO when there is no such run or it
+ * cannot be read, DEA_E_DESIGN when its voltages up to there are not those of the design, with the
+ * place of the voltages. */
+dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory,
+                                  struct dea_result *result);
+
+/* Shapes of modes that a result has, as fields for ParaView: fields/MODEL_modal_0000.vtu, one for
+ * each voltage. */
+dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_result *result,
+                                 const char *directory);
+
+/* Removes what a model has kept in a folder: its state, and the fields of a sweep of that many
+ * points. */
+void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const char *model,
+                           size_t count);
+
+#endif

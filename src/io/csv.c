@@ -1,0 +1,359 @@
+#include "io/csv.h"
+
+#include "base/write_file.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+void dea_column_title(const struct dea_column *column, char *out, size_t size)
+{
+  if (strcmp(column->display_unit, "1") == 0) {
+    snprintf(out, size, "%s", column->header);
+  } else {
+    snprintf(out, size, "%s (%s)", column->header, column->display_unit);
+  }
+}
+
+static void add_number(struct dea_text *text, double value)
+{
+  if (!isnan(value)) {
+    dea_text_add(text, "%.12g", value);
+  }
+}
+
+/* Columns that are written: [count] of them hold a number at some point. */
+struct used {
+  struct dea_context *ctx;
+  int count;
+  bool *columns; // owned
+};
+
+static dea_status used_create(struct dea_context *ctx, struct used *out)
+{
+  *out = (struct used){.ctx = ctx, .count = dea_column_count(ctx)};
+  out->columns = dea_alloc(ctx, (size_t)out->count, sizeof *out->columns);
+  return out->columns != NULL ? DEA_OK : DEA_E_MEMORY;
+}
+
+/* Adds to what is used already. */
+static void mark_used(const struct dea_load_point *points, size_t count, struct used *used)
+{
+  for (int c = 0; c < used->count; c++) {
+    used->columns[c] = used->columns[c] || dea_points_have(points, count, c);
+  }
+}
+
+/* Columns of standard uncertainties, behind all others: the titles (point SIZE_MAX) or a row. */
+static void add_std(struct dea_text *text, const struct dea_curve *curve, size_t point)
+{
+  for (int c = 0; curve->std != NULL && c < dea_column_count(text->ctx); c++) {
+    const struct dea_column *column = dea_column_at(text->ctx, c);
+    const bool bare = strcmp(column->display_unit, "1") == 0;
+    if (!dea_points_have(curve->std, curve->count, c)) {
+      continue;
+    }
+    dea_text_add(text, ",");
+    if (point == SIZE_MAX) {
+      char title[DEA_COLUMN_TITLE_SIZE];
+      snprintf(title, sizeof title, "%s std%s%s%s", column->header, bare ? "" : " (",
+               bare ? "" : column->display_unit, bare ? "" : ")");
+      dea_csv_add_name(text, title);
+    } else {
+      add_number(text, dea_point_get(&curve->std[point], c) * fabs(column->factor));
+    }
+  }
+}
+
+/* Without the end of the line. */
+static void add_header(struct dea_text *text, const struct used *used)
+{
+  for (int c = 0; c < used->count; c++) {
+    if (used->columns[c]) {
+      char title[DEA_COLUMN_TITLE_SIZE];
+      dea_column_title(dea_column_at(used->ctx, c), title, sizeof title);
+      dea_csv_add_name(text, title);
+      dea_text_add(text, ",");
+    }
+  }
+  dea_text_add(text, "stable,unstable_modes,trusted,flags");
+}
+
+/* Without the end of the line. */
+static void add_point(struct dea_text *text, const struct used *used,
+                      const struct dea_load_point *point)
+{
+  for (int c = 0; c < used->count; c++) {
+    if (used->columns[c]) {
+      add_number(text, dea_point_get(point, c) * dea_column_at(used->ctx, c)->factor);
+      dea_text_add(text, ",");
+    }
+  }
+  char words[DEA_FLAGS_SIZE];
+  dea_text_add(text, "%d,%d,%d,%s", point->stable, point->unstable_modes,
+               dea_load_point_trusted(point), dea_flags_text(dea_load_point_flags(point), words));
+}
+
+dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
+                               const char *directory)
+{
+  struct used used;
+  DEA_TRY(ctx, used_create(ctx, &used));
+  mark_used(curve->points, curve->count, &used);
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  add_header(&text, &used);
+  add_std(&text, curve, SIZE_MAX);
+  dea_text_add(&text, "\n");
+  for (size_t i = 0; i < curve->count; i++) {
+    add_point(&text, &used, &curve->points[i]);
+    add_std(&text, curve, i);
+    dea_text_add(&text, "\n");
+  }
+  dea_c_locale_leave(before);
+  char name[2 * DEA_NAME_SIZE + 8];
+  snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
+  dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  dea_free(ctx, used.columns);
+  return status;
+}
+
+dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve *curve,
+                                const char *directory)
+{
+  if (curve->event_count == 0) {
+    return DEA_OK;
+  }
+  struct used used;
+  DEA_TRY(ctx, used_create(ctx, &used));
+  for (size_t i = 0; i < curve->event_count; i++) {
+    mark_used(&curve->events[i].point, 1, &used);
+  }
+  void *before = dea_c_locale_enter();
+  struct dea_text text = {.ctx = ctx};
+  dea_text_add(&text, "event,");
+  add_header(&text, &used);
+  dea_text_add(&text, "\n");
+  for (size_t i = 0; i < curve->event_count; i++) {
+    dea_text_add(&text, "%s,", dea_event_name(curve->events[i].kind));
+    add_point(&text, &used, &curve->events[i].point);
+    dea_text_add(&text, "\n");
+  }
+  dea_c_locale_leave(before);
+  char name[2 * DEA_NAME_SIZE + 16];
+  snprintf(name, sizeof name, "%s_%s_events.csv", curve->model, curve->kind);
+  dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  dea_free(ctx, used.columns);
+  return status;
+}
+
+/* Header of a table of profiles; first: what stands before the voltage. */
+static void add_profile_header(struct dea_text *text, const char *first)
+{
+  dea_text_add(text, "%sV (kV)", first);
+  for (int c = 0; c < DEA_PROFILE_COLUMNS; c++) {
+    char title[DEA_COLUMN_TITLE_SIZE];
+    dea_column_title(&dea_profile_columns[c], title, sizeof title);
+    dea_text_add(text, ",%s", title);
+  }
+  dea_text_add(text, "\n");
+}
+
+/* name: in front of each line, "" for none. */
+static void add_profile(struct dea_text *text, const char *name,
+                        const struct dea_profile_record *record)
+{
+  for (size_t i = 0; i < record->count; i++) {
+    if (name[0] != '\0') {
+      dea_csv_add_name(text, name);
+      dea_text_add(text, ",");
+    }
+    add_number(text, record->voltage_V * 1e-3);
+    for (size_t c = 0; c < DEA_PROFILE_COLUMNS; c++) {
+      dea_text_add(text, ",");
+      add_number(text, record->columns[c * record->count + i] * dea_profile_columns[c].factor);
+    }
+    dea_text_add(text, "\n");
+  }
+}
+
+dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                  const char *model, const char *directory)
+{
+  struct dea_text text = {.ctx = ctx};
+  bool any = false;
+  add_profile_header(&text, "");
+  void *before = dea_c_locale_enter();
+  for (size_t i = 0; i < result->profile_count; i++) {
+    if (strcmp(result->profiles[i].model, model) == 0) {
+      any = true;
+      add_profile(&text, "", &result->profiles[i]);
+    }
+  }
+  dea_c_locale_leave(before);
+  char name[DEA_NAME_SIZE + 16];
+  snprintf(name, sizeof name, "%s_profiles.csv", model);
+  dea_status status = any ? dea_text_write(ctx, &text, directory, name) : DEA_OK;
+  dea_text_free(&text);
+  return status;
+}
+
+// Variants ---------------------------------------------------------------------------------------
+
+static void add_variant(struct dea_text *text, const struct used *used, bool meshes,
+                        const struct dea_variant *variant)
+{
+  for (size_t i = 0; i < variant->curve.count; i++) {
+    dea_csv_add_name(text, variant->name);
+    dea_text_add(text, ",");
+    if (meshes) {
+      add_number(text, variant->refinement);
+      dea_text_add(text, ",%zu,%zu,%zu,", variant->size.elements, variant->size.nodes,
+                   variant->size.unknowns);
+    }
+    add_number(text, variant->wall_s);
+    dea_text_add(text, ",");
+    add_point(text, used, &variant->curve.points[i]);
+    dea_text_add(text, "\n");
+  }
+}
+
+dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
+                                  const char *model, const char *study, const char *directory)
+{
+  struct used used;
+  bool any = false, meshes = false;
+  DEA_TRY(ctx, used_create(ctx, &used));
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (dea_variant_is(&result->variants[i], model, study)) {
+      any = true;
+      meshes = meshes || result->variants[i].size.nodes > 0;
+      mark_used(result->variants[i].curve.points, result->variants[i].curve.count, &used);
+    }
+  }
+  if (!any) {
+    dea_free(ctx, used.columns);
+    return DEA_OK;
+  }
+  struct dea_text text = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  dea_text_add(&text, "name,%stime (s),", meshes ? "refinement,elements,nodes,unknowns," : "");
+  add_header(&text, &used);
+  dea_text_add(&text, "\n");
+  for (size_t i = 0; i < result->variant_count; i++) {
+    if (dea_variant_is(&result->variants[i], model, study)) {
+      add_variant(&text, &used, meshes, &result->variants[i]);
+    }
+  }
+  dea_c_locale_leave(before);
+  char name[2 * DEA_NAME_SIZE + 8];
+  snprintf(name, sizeof name, "%s_%s.csv", model, study);
+  dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  dea_free(ctx, used.columns);
+  return status;
+}
+
+dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct dea_result *result,
+                                          const char *model, const char *study,
+                                          const char *directory)
+{
+  struct dea_text text = {.ctx = ctx};
+  bool any = false;
+  void *before = dea_c_locale_enter();
+  add_profile_header(&text, "name,");
+  for (size_t i = 0; i < result->variant_count; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    if (dea_variant_is(variant, model, study) && variant->profile.count > 0) {
+      any = true;
+      add_profile(&text, variant->name, &variant->profile);
+    }
+  }
+  dea_c_locale_leave(before);
+  char name[2 * DEA_NAME_SIZE + 16];
+  snprintf(name, sizeof name, "%s_%s_profiles.csv", model, study);
+  dea_status status = any ? dea_text_write(ctx, &text, directory, name) : DEA_OK;
+  dea_text_free(&text);
+  return status;
+}
+
+// Tables of studies -------------------------------------------------------------------------------
+
+static bool in_csv(const struct dea_result_column *column)
+{
+  return (column->hidden & DEA_IN_CSV) == 0 && column->kind != DEA_CELL_POINTS;
+}
+
+/* "level 2 (kV)": the title of the number-th column of a list; 0: of a column that is none. */
+static void add_list_title(const struct dea_result_column *column, size_t number,
+                           struct dea_text *out)
+{
+  char title[96];
+  struct dea_result_column one = *column;
+  if (number > 0) {
+    snprintf(title, sizeof title, "%s %zu", column->title, number);
+    one.title = title;
+  }
+  dea_result_table_column_title(&one, out);
+}
+
+/* Header (row SIZE_MAX) or a row. */
+static void add_table_row(struct dea_text *text, const struct dea_result_table *table, size_t row)
+{
+  bool first = true;
+  for (size_t c = 0; c < table->type.column_count; c++) {
+    const struct dea_result_column *column = &table->type.columns[c];
+    for (size_t k = 0; k < dea_result_table_values(table, c) && in_csv(column);
+         k++, first = false) {
+      struct dea_text cell = {.ctx = text->ctx};
+      if (row == SIZE_MAX) {
+        add_list_title(column, dea_result_table_values(table, c) > 1 ? k + 1 : 0, &cell);
+      } else {
+        dea_result_table_cell_text(table, row, c, k, 12, &cell);
+      }
+      dea_text_add(text, "%s", first ? "" : ",");
+      dea_csv_add_name(text, dea_text_get(&cell));
+      text->failed = text->failed || cell.failed;
+      dea_text_free(&cell);
+    }
+  }
+  dea_text_add(text, "\n");
+}
+
+dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
+                               const char *directory)
+{
+  struct dea_text text = {.ctx = ctx};
+  char name[DEA_RESULT_TABLE_FILE_SIZE];
+  if ((table->type.where & DEA_IN_CSV) == 0) {
+    return DEA_OK;
+  }
+  void *before = dea_c_locale_enter();
+  add_table_row(&text, table, SIZE_MAX);
+  for (size_t row = 0; row < table->row_count; row++) {
+    add_table_row(&text, table, row);
+  }
+  dea_c_locale_leave(before);
+  dea_csv_table_name(table, name);
+  dea_status status = dea_text_write(ctx, &text, directory, name);
+  dea_text_free(&text);
+  return status;
+}
+
+void dea_csv_table_name(const struct dea_result_table *table, char out[DEA_RESULT_TABLE_FILE_SIZE])
+{
+  snprintf(out, DEA_RESULT_TABLE_FILE_SIZE, "%s_%s_%s.csv", table->model, table->type.study,
+           table->type.name);
+}
+
+bool dea_csv_has(const struct dea_result *result)
+{
+  bool any = result->curve_count + result->variant_count + result->profile_count > 0;
+  for (size_t i = 0; i < result->table_count; i++) {
+    any = any || (result->tables[i].type.where & DEA_IN_CSV) != 0;
+  }
+  return any;
+}

@@ -1,0 +1,155 @@
+#include "io/fit_common.h"
+
+#include "base/version.h"
+#include "base/write_file.h"
+#include "plot/gnuplot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+const char *const dea_fit_use_names[] = {"fit", "check", "predict"};
+
+void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
+                         dea_status (*run)(void *fit, const void *file), dea_status *status)
+{
+  struct dea_arena *fit = dea_alloc(ctx, 1, size);
+  if (fit == NULL) {
+    *status = DEA_E_MEMORY;
+    return NULL;
+  }
+  fit->ctx = ctx;
+  *status = run(fit, file);
+  if (*status != DEA_OK) {
+    dea_fit_frame_destroy(ctx, fit);
+    *status = dea_fail_chain(ctx, *status, __func__, __FILE__, __LINE__);
+    return NULL;
+  }
+  return fit;
+}
+
+void dea_fit_frame_destroy(struct dea_context *ctx, void *fit)
+{
+  if (fit != NULL) {
+    dea_arena_free(fit);
+    dea_free(ctx, fit);
+  }
+}
+
+void dea_fit_add_field(struct dea_text *out, double value)
+{
+  if (isfinite(value)) {
+    dea_text_add(out, ",%.8g", value);
+  } else {
+    dea_text_add(out, ",");
+  }
+}
+
+// JSON --------------------------------------------------------------------------------------------
+
+json_t *dea_fit_json_begin(const struct dea_fit_head *head, const char *command)
+{
+  json_t *root = json_object();
+  json_object_set_new(root, "schema", json_integer(DEA_FIT_JSON_SCHEMA));
+  dea_json_put_text(root, "program", "dea " DEA_VERSION);
+  dea_json_put_text(root, "command", command);
+  dea_json_put_text(root, "file", head->file);
+  dea_json_put_text(root, "sha256", head->sha256);
+  return root;
+}
+
+void dea_fit_json_value(json_t *object, const struct dea_fit_value *value)
+{
+  dea_json_put(object, "value", value->value);
+  dea_json_put(object, "standard_uncertainty", value->std);
+  dea_json_put(object, "interval_low", value->low);
+  dea_json_put(object, "interval_high", value->high);
+  json_object_set_new(object, "fixed", json_boolean(value->fixed));
+  json_object_set_new(object, "at_bound", json_boolean(value->at_bound));
+  json_object_set_new(object, "determined", json_boolean(!isinf(value->std)));
+  json_object_set_new(object, "interval_bends", json_boolean(value->bends));
+}
+
+void dea_fit_json_statistics(json_t *root, bool known, const char *scatter_key, double scatter,
+                             const struct dea_lsq_fit *least_squares,
+                             const struct dea_lsq_statistics *statistics)
+{
+  const size_t n = statistics->params;
+  json_t *rows = json_array();
+  for (size_t j = 0; j < n; j++) {
+    json_t *row = json_array();
+    for (size_t l = 0; l < n; l++) {
+      json_array_append_new(row, json_real(statistics->correlation[j * n + l]));
+    }
+    json_array_append_new(rows, row);
+  }
+  json_object_set_new(root, "correlations", rows);
+  json_object_set_new(root, "uncertainty_given", json_boolean(known));
+  dea_json_put(root, scatter_key, known ? NAN : scatter);
+  dea_json_put(root, "chi_square", known ? least_squares->chi2 : NAN);
+  dea_json_put(root, "reduced_chi_square", known ? statistics->reduced_chi2 : NAN);
+  json_object_set_new(root, "widened", json_boolean(statistics->widened));
+  dea_json_put_count(root, "rows", least_squares->rows);
+  dea_json_put(root, "effective_rows", statistics->effective_rows);
+  dea_json_put(root, "condition", statistics->condition);
+}
+
+void dea_fit_json_rows(json_t *object, const char *file, const char *sha256, size_t rows,
+                       size_t slack_rows, double lag, double effective)
+{
+  dea_json_put_text(object, "file", file);
+  dea_json_put_text(object, "sha256", sha256);
+  dea_json_put_count(object, "rows", rows);
+  dea_json_put_count(object, "slack_rows", slack_rows);
+  dea_json_put(object, "neighbour_correlation", lag);
+  dea_json_put(object, "effective_rows", effective);
+}
+
+void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], size_t weak_count,
+                         const char *next_key, const char *word, const struct dea_fit_next *next,
+                         size_t next_count)
+{
+  json_t *combinations = json_array(), *measurements = json_array();
+  for (size_t k = 0; k < weak_count; k++) {
+    json_array_append_new(combinations, json_string(weak[k]));
+  }
+  for (size_t k = 0; k < next_count; k++) {
+    json_t *row = json_object();
+    dea_json_put_text(row, word, next[k].what);
+    dea_json_put(row, "error_bars_times", next[k].shrink);
+    json_array_append_new(measurements, row);
+  }
+  json_object_set_new(object, "weak", combinations);
+  json_object_set_new(object, next_key, measurements);
+}
+
+// The folder --------------------------------------------------------------------------------------
+
+dea_status dea_fit_folder_make(struct dea_context *ctx, const char *directory, const char *name,
+                               const char *const figures[], size_t figure_count, bool force)
+{
+  char file[DEA_NAME_SIZE + 8];
+  snprintf(file, sizeof file, "%.63s.yaml", name);
+  DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, file, force));
+  DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, "fit.json", force));
+  DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, "fit.csv", force));
+  for (size_t k = 0; k < figure_count; k++) {
+    DEA_TRY(ctx, dea_gnuplot_make_way(ctx, directory, figures[k], force));
+  }
+  return dea_folder_make(ctx, directory);
+}
+
+dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,
+                                const struct dea_text *yaml, const struct dea_text *csv,
+                                json_t *root)
+{
+  char file[DEA_NAME_SIZE + 8], *json = NULL;
+  snprintf(file, sizeof file, "%.63s.yaml", name);
+  dea_status status = dea_json_text(ctx, root, &json);
+  if (status == DEA_OK && yaml != NULL) {
+    status = dea_text_write(ctx, yaml, directory, file);
+  }
+  status = status == DEA_OK ? dea_text_write(ctx, csv, directory, "fit.csv") : status;
+  status = status == DEA_OK ? dea_text_file_write(ctx, directory, "fit.json", json) : status;
+  dea_free(ctx, json);
+  return status;
+}

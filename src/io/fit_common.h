@@ -1,0 +1,50 @@
+/* What the files of a fit of a material and of a device have in common. */
+#ifndef DEA_IO_FIT_COMMON_H
+#define DEA_IO_FIT_COMMON_H
+
+#include "base/arena.h"
+#include "base/json.h"
+#include "identify/fit.h"
+
+enum { DEA_FIT_JSON_SCHEMA = 1 };
+
+/* Words of enum dea_fit_use. */
+extern const char *const dea_fit_use_names[];
+
+/* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
+ * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */
+void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
+                         dea_status (*run)(void *fit, const void *file), dea_status *status);
+/* NULL is fine. */
+void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);
+
+/* Adds ",1.25", with nothing behind the comma where the value is no number. */
+void dea_fit_add_field(struct dea_text *out, double value);
+
+/* A new fit.json with program, command (NULL: none) and fit file. */
+json_t *dea_fit_json_begin(const struct dea_fit_head *head, const char *command);
+/* Adds value, uncertainty, interval and what is said of them. */
+void dea_fit_json_value(json_t *object, const struct dea_fit_value *value);
+/* Adds "correlations", chi-square, rows, condition. scatter_key: of the scatter, where no
+ * uncertainty was given (known). */
+void dea_fit_json_statistics(json_t *root, bool known, const char *scatter_key, double scatter,
+                             const struct dea_lsq_fit *least_squares,
+                             const struct dea_lsq_statistics *statistics);
+/* Adds file, hash and number of rows of measurements, and how many of them count. */
+void dea_fit_json_rows(json_t *object, const char *file, const char *sha256, size_t rows,
+                       size_t slack_rows, double lag, double effective);
+/* Adds "weak", and the next measurements as `next_key`, each called `word`. */
+void dea_fit_json_advice(json_t *object, const char weak[][DEA_FIT_WEAK_SIZE], size_t weak_count,
+                         const char *next_key, const char *word, const struct dea_fit_next *next,
+                         size_t next_count);
+
+/* Makes the folder and takes fit.json, fit.csv, NAME.yaml and the figures of an earlier fit out of
+ * it; DEA_E_IO when it has one and force is not set. */
+dea_status dea_fit_folder_make(struct dea_context *ctx, const char *directory, const char *name,
+                               const char *const figures[], size_t figure_count, bool force);
+/* Writes NAME.yaml (yaml NULL: none), fit.csv and fit.json; root: taken. */
+dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,
+                                const struct dea_text *yaml, const struct dea_text *csv,
+                                json_t *root);
+
+#endif

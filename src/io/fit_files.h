@@ -1,0 +1,37 @@
+/* A fit and its files: the tests as they are read, the material, CSV, JSON and figures. */
+#ifndef DEA_IO_FIT_FILES_H
+#define DEA_IO_FIT_FILES_H
+
+#include "base/json.h"
+#include "identify/fit.h"
+#include "plot/plot.h"
+
+/* The tests of a fit file, in its order. */
+struct dea_fit_tests {
+  struct dea_fit_series series[DEA_FIT_TESTS_MAX];
+  size_t count;
+  struct dea_arena memory;
+};
+
+/* Reads the CSV files of all tests, named from the fit file's folder. All errors become findings
+ * with their places; DEA_E_IO then, or DEA_E_DESIGN. out: freed by the caller after success. */
+dea_status dea_fit_tests_read(struct dea_context *ctx, const struct dea_fit_file *file,
+                              struct dea_fit_tests *out);
+void dea_fit_tests_free(struct dea_fit_tests *tests);
+
+/* Adds "yeoh.yaml": the material as the catalogue reads it. What is not fitted comes from the
+ * catalogue's material that the fit file names. */
+dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *fit,
+                                struct dea_text *out);
+/* All of it; command: NULL for none. */
+json_t *dea_fit_json(const struct dea_fit *fit, const char *command);
+
+/* Makes the folder and takes the files of an earlier fit out of it; DEA_E_IO when it has one and
+ * force is not set. */
+dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *file,
+                          const char *directory, bool force);
+/* Writes NAME.yaml, fit.csv, fit.json and the figures. */
+dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit, const char *command,
+                         const struct dea_plot_format *format, const char *directory);
+
+#endif

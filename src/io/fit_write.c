@@ -1,0 +1,408 @@
+#include "base/file.h"
+#include "base/version.h"
+#include "base/write_file.h"
+#include "figures/fit_figures.h"
+#include "io/csv.h"
+#include "io/fit_common.h"
+#include "io/fit_files.h"
+#include "material/catalogue.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- the material ---- */
+
+/* Adds a text as YAML. */
+static void add_quoted(struct dea_text *out, const char *text)
+{
+  dea_text_add(out, "\"");
+  for (const char *c = text; *c != '\0'; c++) {
+    dea_text_add(out, *c == '"' || *c == '\\' ? "\\%c" : *c == '\n' ? " " : "%c", *c);
+  }
+  dea_text_add(out, "\"");
+}
+
+static void add_key(struct dea_text *out, const char *indent, const char *key, const char *text)
+{
+  if (text != NULL && text[0] != '\0') {
+    dea_text_add(out, "%s%s: ", indent, key);
+    add_quoted(out, text);
+    dea_text_add(out, "\n");
+  }
+}
+
+static void add_temperature(struct dea_text *out, const char *indent,
+                            const struct dea_quantity *temperature)
+{
+  if (!isnan(temperature->si)) {
+    dea_text_add(out, "%stemperature: %.10g K\n", indent, temperature->si);
+  }
+}
+
+static void add_notes(struct dea_text *out, const char *indent, const struct dea_data_notes *notes)
+{
+  add_key(out, indent, "source", notes->source);
+  add_key(out, indent, "uncertainty", notes->uncertainty);
+  add_key(out, indent, "range", notes->range);
+  add_temperature(out, indent, &notes->temperature_K);
+  add_key(out, indent, "note", notes->note);
+}
+
+/* This fit and its files, with their hashes. */
+static void add_source(struct dea_text *out, const char *indent, const struct dea_fit *fit)
+{
+  struct dea_text source = {.ctx = out->ctx};
+  if (fit->file->head.source.text[0] != '\0') {
+    dea_text_add(&source, "%s; ", fit->file->head.source.text);
+  }
+  dea_text_add(&source, "dea %s fit of %s (SHA-256 %s) to", DEA_VERSION,
+               dea_path_name(fit->file->head.file), fit->file->head.sha256);
+  const char *separator = " ";
+  for (size_t s = 0; s < fit->series_count; s++) {
+    if (dea_fit_series_used(&fit->series[s])) {
+      dea_text_add(&source, "%s%s (%s)", separator, dea_path_name(fit->series[s].file),
+                   fit->series[s].sha256);
+      separator = ", ";
+    }
+  }
+  add_key(out, indent, "source", dea_text_get(&source));
+  add_temperature(out, indent, &fit->file->temperature_K);
+  out->failed = out->failed || source.failed;
+  dea_text_free(&source);
+}
+
+static const char *unit_text(const char *unit)
+{
+  return strcmp(unit, "1") == 0 ? "" : unit;
+}
+
+static void add_value(struct dea_text *out, const char *separator, const char *key, double value,
+                      const char *unit)
+{
+  dea_text_add(out, "%s%s: %.10g%s%s", separator, key, value, unit_text(unit)[0] != '\0' ? " " : "",
+               unit_text(unit));
+}
+
+static bool has_std(const struct dea_fit *fit, size_t j)
+{
+  return isfinite(fit->values[j].std) && fit->values[j].std > 0;
+}
+
+static void add_law(struct dea_text *out, const struct dea_fit *fit)
+{
+  const struct dea_fit_model *model = &fit->model;
+  const size_t n = model->count;
+  dea_text_add(out, "laws:\n  - id: fit\n    law: %s\n    parameters: {", model->law->name);
+  for (size_t j = 0; j < model->law_count; j++) {
+    add_value(out, j > 0 ? ", " : "", model->params[j].name, fit->values[j].value,
+              model->params[j].unit);
+  }
+  dea_text_add(out, "}\n");
+  size_t known = 0;
+  for (size_t j = 0; j < model->law_count; j++) {
+    if (has_std(fit, j)) {
+      add_value(out, known++ > 0 ? ", " : "    standard_uncertainties: {", model->params[j].name,
+                fit->values[j].std, model->params[j].unit);
+    }
+  }
+  dea_text_add(out, known > 0 ? "}\n" : "");
+  const char *separator = "    correlations: [";
+  for (size_t j = 0; j < model->law_count; j++) {
+    for (size_t l = 0; l < j; l++) {
+      if (has_std(fit, j) && has_std(fit, l)) {
+        dea_text_add(out, "%s%.6f", separator, fit->statistics.correlation[j * n + l]);
+        separator = ", ";
+      }
+    }
+  }
+  dea_text_add(out, known > 1 ? "]\n" : "");
+  dea_text_add(out, "    stretch_range: [%.6g, %.6g]\n", fit->stretch_min, fit->stretch_max);
+  add_source(out, "    ", fit);
+  struct dea_text note = {.ctx = out->ctx};
+  for (size_t k = 0; k < fit->weak_count; k++) {
+    dea_text_add(&note, "%s%s", k > 0 ? "; " : "", fit->weak[k]);
+  }
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    if (!isnan(fit->stability[mode].unstable_from)) {
+      dea_text_add(&note, "%snot stable in %s tension from the stretch %.3g on",
+                   note.length > 0 ? "; " : "", dea_coupon_mode_names[mode],
+                   fit->stability[mode].unstable_from);
+    }
+  }
+  add_key(out, "    ", "note", dea_text_get(&note));
+  out->failed = out->failed || note.failed;
+  dea_text_free(&note);
+}
+
+static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
+{
+  bool any = false;
+  for (size_t b = 0; b < fit->model.branch_count; b++) {
+    const size_t j = fit->model.law_count + 2 * b;
+    if (fit->values[j].value <= 0) { // a branch that the data do not want
+      continue;
+    }
+    dea_text_add(out, any ? "" : "viscosity:\n  - id: fit\n    branches:\n");
+    any = true;
+    add_value(out, "      - {", "modulus", fit->values[j].value, "Pa");
+    add_value(out, ", ", "time", fit->values[j + 1].value, "s");
+    if (has_std(fit, j)) {
+      add_value(out, ", ", "modulus_uncertainty", fit->values[j].std, "Pa");
+    }
+    if (has_std(fit, j + 1)) {
+      add_value(out, ", ", "time_uncertainty", fit->values[j + 1].std, "s");
+    }
+    dea_text_add(out, "}\n");
+  }
+  if (any) {
+    add_source(out, "    ", fit);
+    dea_text_add(out, "    note: belongs to the law fit\n");
+  }
+}
+
+/* A range, where it is known. unit: with a space in front. */
+static void add_range(struct dea_text *out, const char *indent, const char *key,
+                      const struct dea_data_range *range, const char *unit)
+{
+  if (range->count == 2) {
+    dea_text_add(out, "%s%s: [%.10g%s, %.10g%s]\n", indent, key, range->limits[0].si, unit,
+                 range->limits[1].si, unit);
+  }
+}
+
+static void add_values(struct dea_text *out, const char *indent,
+                       const struct dea_data_range *values, const char *unit)
+{
+  add_range(out, indent, "value_range", values, unit);
+}
+
+static void add_given(struct dea_text *out, const char *key, const struct dea_quantity *value,
+                      const char *unit)
+{
+  if (!isnan(value->si)) {
+    dea_text_add(out, "    %s: %.10g%s\n", key, value->si, unit);
+  }
+}
+
+static void add_breakdown(struct dea_text *out, const struct dea_material_data *data)
+{
+  dea_text_add(out, data->breakdown_count > 0 ? "breakdown:\n" : "");
+  for (size_t i = 0; i < data->breakdown_count; i++) {
+    const struct dea_breakdown_set *set = &data->breakdown[i];
+    dea_text_add(out, "  - id: %s\n    at_rest: %.10g V/m\n", set->id.text,
+                 set->at_rest_V_per_m.si);
+    add_values(out, "    ", &set->values, " V/m");
+    add_given(out, "exponent", &set->exponent, "");
+    add_given(out, "thickness_exponent", &set->thickness_exponent, "");
+    add_given(out, "reference_thickness", &set->thickness_m, " m");
+    add_given(out, "weibull_shape", &set->weibull_shape, "");
+    add_given(out, "reference_area", &set->area_m2, " m^2");
+    if (set->electrode_factor.origin != DEA_DEFAULT) {
+      add_given(out, "electrode_factor", &set->electrode_factor, "");
+    }
+    add_range(out, "    ", "stretch_range", &set->range, "");
+    add_notes(out, "    ", &set->notes);
+  }
+}
+
+/* What was not fitted, as the catalogue has it. */
+static void add_rest(struct dea_text *out, const struct dea_material_data *data)
+{
+  if (data->has_density) {
+    dea_text_add(out, "density:\n  value: %.10g kg/m^3\n", data->density.value_kg_per_m3.si);
+    add_values(out, "  ", &data->density.values, " kg/m^3");
+    add_notes(out, "  ", &data->density.notes);
+  }
+  dea_text_add(out, data->permittivity_count > 0 ? "permittivity:\n" : "");
+  for (size_t i = 0; i < data->permittivity_count; i++) {
+    const struct dea_permittivity_set *set = &data->permittivity[i];
+    dea_text_add(out, "  - id: %s\n    at_rest: %.10g\n    slope: %.10g\n", set->id.text,
+                 set->at_rest.si, set->slope.si);
+    add_values(out, "    ", &set->values, "");
+    add_range(out, "    ", "stretch_range", &set->range, "");
+    add_notes(out, "    ", &set->notes);
+  }
+  add_breakdown(out, data);
+  if (data->has_resistivity) {
+    dea_text_add(out, "resistivity:\n  value: %.10g ohm m\n", data->resistivity.value_ohm_m.si);
+    add_values(out, "  ", &data->resistivity.values, " ohm m");
+    add_notes(out, "  ", &data->resistivity.notes);
+  }
+}
+
+dea_status dea_fit_material_add(struct dea_context *ctx, const struct dea_fit *fit,
+                                struct dea_text *out)
+{
+  const struct dea_fit_file *file = fit->file;
+  struct dea_catalogue_entry *entry = NULL;
+  if (file->material.text[0] != '\0') {
+    DEA_TRY(ctx, dea_catalogue_read(ctx, file->material.text, file->material.location, &entry));
+  }
+  dea_text_add(out,
+               "# Written by dea fit. For dea to find it, DEA_MATERIALS names the folder that this "
+               "file is in.\ndea_material: 1\nname: %s\n",
+               file->head.name.text);
+  add_key(out, "", "title", file->head.title.text);
+  dea_text_add(out, "kind: elastomer\n");
+  add_law(out, fit);
+  add_viscosity(out, fit);
+  if (entry != NULL) {
+    add_rest(out, &entry->data);
+  }
+  dea_catalogue_destroy(ctx, entry);
+  return out->failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* ---- CSV and JSON ---- */
+
+static void add_rows(struct dea_text *out, const struct dea_fit_curve *curve)
+{
+  const struct dea_fit_series *series = curve->series;
+  for (size_t i = 0; i < series->rows; i++) {
+    dea_csv_add_name(out, series->test->name.text);
+    dea_text_add(out, ",%s,%zu", dea_fit_use_names[series->test->use.value], series->line[i]);
+    dea_fit_add_field(out, series->time_s != NULL ? series->time_s[i] : NAN);
+    dea_fit_add_field(out, series->stretch[i]);
+    dea_fit_add_field(out, 1e-3 * series->stress_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * series->std_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * curve->stress_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * curve->std_Pa[i]);
+    dea_fit_add_field(out, 1e-3 * (curve->stress_Pa[i] - series->stress_Pa[i]));
+    dea_text_add(out, "\n");
+  }
+}
+
+static json_t *values_json(const struct dea_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t j = 0; j < fit->model.count; j++) {
+    json_t *object = json_object();
+    dea_json_put_text(object, "name", fit->model.params[j].name);
+    dea_json_put_text(object, "unit", fit->model.params[j].unit);
+    dea_fit_json_value(object, &fit->values[j]);
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *laws_json(const struct dea_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t i = 0; i < fit->candidate_count; i++) {
+    const struct dea_fit_candidate *candidate = &fit->candidates[i];
+    json_t *object = json_object();
+    dea_json_put_text(object, "law", candidate->name);
+    json_object_set_new(object, "failed", json_boolean(candidate->failed));
+    if (candidate->failed) {
+      dea_json_put_text(object, "why", candidate->why);
+    } else {
+      dea_json_put_count(object, "free_parameters", candidate->free_count);
+      dea_json_put_count(object, "branches", candidate->branch_count);
+      dea_json_put(object, "chi_square", candidate->chi2);
+      dea_json_put(object, "aicc", candidate->aicc);
+      dea_json_put(object, "held_out", candidate->held_out);
+      dea_json_put(object, "held_out_share", candidate->held_out_share);
+      dea_json_put(object, "unstable_from", candidate->unstable_from);
+    }
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *tests_json(const struct dea_fit *fit)
+{
+  json_t *array = json_array();
+  for (size_t s = 0; s < fit->series_count; s++) {
+    const struct dea_fit_curve *curve = &fit->curves[s];
+    json_t *object = json_object();
+    dea_json_put_text(object, "name", curve->series->test->name.text);
+    dea_json_put_text(object, "use", dea_fit_use_names[curve->series->test->use.value]);
+    dea_json_put_text(object, "kind", dea_fit_kind_names[curve->series->test->kind.value]);
+    dea_fit_json_rows(object, curve->series->file, curve->series->sha256, curve->series->rows,
+                      curve->series->slack, curve->lag, curve->effective);
+    dea_json_put_count(object, "repeated_rows", curve->series->repeated);
+    dea_json_put(object, "rms_Pa", curve->rms_Pa);
+    dea_json_put(object, "largest_relative", curve->largest);
+    json_array_append_new(array, object);
+  }
+  return array;
+}
+
+static json_t *advice_json(const struct dea_fit *fit)
+{
+  json_t *object = json_object(), *stability = json_array(), *spreads = json_array();
+  dea_fit_json_advice(object, fit->weak, fit->weak_count, "next_tests", "test", fit->next,
+                      fit->next_count);
+  for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
+    json_t *row = json_object();
+    dea_json_put_text(row, "mode", dea_coupon_mode_names[mode]);
+    json_object_set_new(row, "measured", json_boolean(fit->stability[mode].measured));
+    dea_json_put(row, "to_stretch", fit->stability[mode].to);
+    dea_json_put(row, "unstable_from", fit->stability[mode].unstable_from);
+    json_array_append_new(stability, row);
+  }
+  json_object_set_new(object, "stability", stability);
+  for (size_t k = 0; k < fit->spread_count; k++) {
+    json_t *row = json_object();
+    dea_json_put_text(row, "mode", dea_coupon_mode_names[fit->spreads[k].mode]);
+    dea_json_put(row, "stretch", fit->spreads[k].stretch);
+    dea_json_put_text(row, "other_law", fit->spreads[k].other);
+    dea_json_put(row, "differs_by_share", fit->spreads[k].share);
+    json_array_append_new(spreads, row);
+  }
+  json_object_set_new(object, "not_measured", spreads);
+  return object;
+}
+
+json_t *dea_fit_json(const struct dea_fit *fit, const char *command)
+{
+  json_t *root = dea_fit_json_begin(&fit->file->head, command);
+  dea_json_put_text(root, "material", fit->file->head.name.text);
+  dea_json_put_text(root, "law", fit->model.law->name);
+  json_object_set_new(root, "laws", laws_json(fit));
+  json_object_set_new(root, "parameters", values_json(fit));
+  dea_fit_json_statistics(root, fit->scale_known, "scatter_Pa", fit->scatter_Pa,
+                          &fit->least_squares, &fit->statistics);
+  json_object_set_new(root, "tests", tests_json(fit));
+  json_object_set_new(root, "advice", advice_json(fit));
+  return root;
+}
+
+/* ---- the folder ---- */
+
+dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *file,
+                          const char *directory, bool force)
+{
+  static const char *const figures[] = {"fit", "fit_time"};
+  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, 2, force);
+}
+
+static dea_status write_texts(struct dea_context *ctx, const struct dea_fit *fit,
+                              const char *command, const char *directory)
+{
+  struct dea_text csv = {.ctx = ctx}, material = {.ctx = ctx};
+  dea_text_add(&csv, "test,use,line,time (s),stretch,stress (kPa),stress std (kPa),fit (kPa),"
+                     "fit std (kPa),residual (kPa)\n");
+  for (size_t s = 0; s < fit->series_count; s++) {
+    add_rows(&csv, &fit->curves[s]);
+  }
+  dea_status status = dea_fit_material_add(ctx, fit, &material);
+  if (status == DEA_OK) {
+    status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, &material, &csv,
+                                  dea_fit_json(fit, command));
+  }
+  dea_text_free(&material);
+  dea_text_free(&csv);
+  return status;
+}
+
+dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit, const char *command,
+                         const struct dea_plot_format *format, const char *directory)
+{
+  void *before = dea_c_locale_enter();
+  dea_status status = write_texts(ctx, fit, command, directory);
+  dea_c_locale_leave(before);
+  DEA_TRY(ctx, status);
+  return dea_fit_draw(ctx, fit, format, directory);
+}

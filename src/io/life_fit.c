@@ -1,0 +1,441 @@
+#include "io/life_fit.h"
+
+#include "base/csv_line.h"
+#include "base/file.h"
+#include "base/write_file.h"
+#include "figures/weibull_picture.h"
+#include "io/fit_common.h"
+#include "table/columns.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *const dea_life_end_names[DEA_LIFE_ENDS] = {"survived", "stroke", "leakage", "breakdown",
+                                                       "as told"};
+
+/* ---- the specimens ---- */
+
+enum column {
+  END,
+  UNDER_VOLTAGE,
+  CHARGE,
+  ASKED,
+  DISPLACEMENT,
+  FORCE,
+  LEAKAGE,
+  BREAKDOWNS,
+  ENDED,
+  COLUMNS
+};
+
+/* life.csv of `dea reduce`. */
+static const struct dea_csv_wanted wanted[COLUMNS] = {
+    [END] = {.name = "end",
+             .title = "end (s)",
+             .measure = {"s", "1 s"},
+             .needed = true,
+             .filled = true},
+    [UNDER_VOLTAGE] = {.name = "under voltage",
+                       .title = "under voltage (s)",
+                       .measure = {"s", "1 s"},
+                       .needed = true,
+                       .filled = true},
+    [CHARGE] = {.name = "charge", .title = "charge (uC)", .measure = {"C", "1 uC"}},
+    [ASKED] = {.name = "asked v",
+               .title = "asked V (kV)",
+               .measure = {"V", "1 kV"},
+               .needed = true,
+               .filled = true},
+    [DISPLACEMENT] = {.name = "displacement",
+                      .title = "displacement (um)",
+                      .measure = {"m", "1 um"}},
+    [FORCE] = {.name = "force", .title = "force (mN)", .measure = {"N", "1 mN"}},
+    [LEAKAGE] = {.name = "leakage", .title = "leakage (nA)", .measure = {"A", "1 nA"}},
+    [BREAKDOWNS] = {.name = "breakdowns", .title = "breakdowns", .measure = {"1", "1"}},
+    [ENDED] = {.name = "ended early", .title = "ended early", .measure = {"1", "1"}},
+};
+
+struct specimen {
+  struct dea_csv_columns parts[DEA_LIFE_PARTS_MAX];
+  size_t count; // of parts
+  struct dea_life_rows rows;
+};
+
+static dea_status read_part(struct dea_context *ctx, const struct dea_life_file *file,
+                            const char *folder, struct dea_csv_columns *out)
+{
+  char *beside = dea_path_beside(ctx, file->head.file, folder);
+  char *path = beside != NULL ? dea_path_join(ctx, beside, "life.csv") : NULL;
+  dea_status status =
+      path != NULL ? dea_csv_columns_read(ctx, path, wanted, COLUMNS, out) : DEA_E_MEMORY;
+  dea_free(ctx, path);
+  dea_free(ctx, beside);
+  return status;
+}
+
+static double at(const struct dea_csv_columns *part, enum column column, size_t i)
+{
+  return part->values[column] != NULL ? part->values[column][i] : (double)NAN;
+}
+
+/* What the stroke of all recordings is: that of the first. */
+static enum column stroke_of(const struct specimen *s)
+{
+  return s->parts[0].values[DISPLACEMENT] != NULL || s->parts[0].values[FORCE] == NULL
+             ? DISPLACEMENT
+             : FORCE;
+}
+
+/* The cycles of all recordings one behind the other: clocks go on where the one before ended. */
+static void join_parts(struct specimen *s)
+{
+  static const enum column clocks[DEA_LIFE_CLOCKS] = {COLUMNS, END, UNDER_VOLTAGE, CHARGE};
+  const enum column stroke = stroke_of(s);
+  double so_far[DEA_LIFE_CLOCKS] = {0};
+  size_t n = 0;
+  for (size_t p = 0; p < s->count; p++) {
+    const struct dea_csv_columns *part = &s->parts[p];
+    for (size_t i = 0; i < part->rows; i++, n++) {
+      s->rows.clock[DEA_LIFE_CYCLES][n] = (double)(n + 1);
+      for (int k = DEA_LIFE_TIME; k < DEA_LIFE_CLOCKS; k++) {
+        s->rows.clock[k][n] = so_far[k] + at(part, clocks[k], i);
+      }
+      s->rows.asked_V[n] = at(part, ASKED, i);
+      s->rows.stroke[n] = at(part, stroke, i);
+      s->rows.leakage_A[n] = at(part, LEAKAGE, i);
+      s->rows.breakdown[n] = at(part, BREAKDOWNS, i);
+    }
+    for (int k = DEA_LIFE_TIME; k < DEA_LIFE_CLOCKS && part->rows > 0; k++) {
+      so_far[k] = s->rows.clock[k][n - 1];
+    }
+  }
+  s->rows.count = n;
+}
+
+/* Memory for all rows in one piece, owned by the caller through clock[0]. */
+static dea_status make_rows(struct dea_context *ctx, struct specimen *s)
+{
+  size_t n = 0;
+  for (size_t p = 0; p < s->count; p++) {
+    n += s->parts[p].rows;
+  }
+  double *values = dea_alloc(ctx, n > 0 ? n : 1, (DEA_LIFE_CLOCKS + 4) * sizeof *values);
+  if (values == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t k = 0; k < DEA_LIFE_CLOCKS; k++) {
+    s->rows.clock[k] = values + k * n;
+  }
+  s->rows.asked_V = values + DEA_LIFE_CLOCKS * n;
+  s->rows.stroke = s->rows.asked_V + n;
+  s->rows.leakage_A = s->rows.stroke + n;
+  s->rows.breakdown = s->rows.leakage_A + n;
+  return DEA_OK;
+}
+
+/* What a criterion asks for and the table does not have is an error: it would never act. */
+static dea_status check_columns(struct dea_context *ctx, const struct dea_life_file *file,
+                                const struct dea_life_specimen *own, const struct specimen *s)
+{
+  for (size_t p = 0; p < s->count; p++) {
+    const struct dea_csv_columns *part = &s->parts[p];
+    const bool strokes = file->stroke_loss.origin != DEA_ABSENT;
+    const char *lacks = strokes && part->values[DISPLACEMENT] == NULL && part->values[FORCE] == NULL
+                            ? "stroke, which stroke_loss asks for"
+                        : strokes && part->values[stroke_of(s)] == NULL
+                            ? stroke_of(s) == FORCE
+                                  ? "force, which is the stroke of the first"
+                                  : "displacement, which is the stroke of the first"
+                        : file->leakage_A.origin != DEA_ABSENT && part->values[LEAKAGE] == NULL
+                            ? "current, which largest_leakage asks for"
+                        : file->clock.value == DEA_LIFE_CHARGE && part->values[CHARGE] == NULL
+                            ? "current, which the clock 'charge' asks for"
+                        : file->clock.value == DEA_LIFE_CHARGE && part->rows > 0 &&
+                                isnan(part->values[CHARGE][part->rows - 1])
+                            ? "known charge, which the clock 'charge' asks for"
+                            : NULL;
+    if (lacks != NULL) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, own->reduced[p].location, "'%.80s' has no %s",
+                                   own->reduced[p].text, lacks));
+    }
+  }
+  return s->rows.count > 0 ? DEA_OK
+                           : dea_finding_add(ctx, DEA_ERROR, own->name.location,
+                                             "'%.60s' has no completed cycle", own->name.text);
+}
+
+static dea_status judge(struct dea_context *ctx, const struct dea_life_file *file,
+                        const struct dea_life_specimen *own, const struct specimen *s,
+                        struct dea_life *out)
+{
+  const struct dea_life_criterion criterion = {
+      .stroke_loss = file->stroke_loss.origin != DEA_ABSENT ? file->stroke_loss.si : (double)NAN,
+      .leakage_A = file->leakage_A.origin != DEA_ABSENT ? file->leakage_A.si : (double)NAN,
+      .breakdown = file->breakdown.value == 1,
+      .reference_cycles = (size_t)file->reference_cycles.si,
+      .lasting = (size_t)file->lasting.si,
+  };
+  const struct dea_csv_columns *last = &s->parts[s->count - 1];
+  dea_life_judge(&s->rows, &criterion, out);
+  if (file->stroke_loss.origin != DEA_ABSENT && isnan(out->first_stroke)) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, own->name.location,
+                                 "'%.60s' has fewer than %zu cycles with a stroke at its largest "
+                                 "voltage (reference_cycles): its stroke is not judged",
+                                 own->name.text, criterion.reference_cycles));
+  }
+  if (out->end == DEA_LIFE_SURVIVED && own->failed.value == 1) {
+    out->end = DEA_LIFE_TOLD;
+  } else if (out->end == DEA_LIFE_SURVIVED && last->rows > 0 &&
+             at(last, ENDED, last->rows - 1) > 0) {
+    return dea_finding_add(ctx, DEA_WARNING, own->name.location,
+                           "the last recording of '%.60s' ended early, and no criterion says why: "
+                           "it counts as a survivor; write 'failed: yes' where it was the specimen",
+                           own->name.text);
+  }
+  return DEA_OK;
+}
+
+static dea_status read_specimen(struct dea_context *ctx, const struct dea_life_file *file,
+                                const struct dea_life_specimen *own, struct dea_life *out)
+{
+  struct specimen *s = dea_alloc(ctx, 1, sizeof *s);
+  if (s == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = DEA_OK;
+  for (size_t p = 0; p < own->reduced_count && status == DEA_OK; p++) {
+    status = read_part(ctx, file, own->reduced[p].text, &s->parts[p]);
+    s->count += status == DEA_OK ? 1 : 0;
+  }
+  const size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  status = status == DEA_OK ? make_rows(ctx, s) : status;
+  if (status == DEA_OK) {
+    join_parts(s);
+    status = check_columns(ctx, file, own, s);
+  }
+  if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) > errors) {
+    status = dea_fail(ctx, DEA_E_IO, "specimen '%.60s' cannot be judged", own->name.text);
+  }
+  status = status == DEA_OK ? judge(ctx, file, own, s, out) : status;
+  for (size_t p = 0; p < s->count; p++) {
+    dea_csv_columns_free(ctx, &s->parts[p]);
+  }
+  dea_free(ctx, s->rows.clock[0]);
+  dea_free(ctx, s);
+  return status;
+}
+
+/* A life that was given: of the other clocks nothing is known. */
+static struct dea_life given_life(const struct dea_life_file *file,
+                                  const struct dea_life_specimen *own)
+{
+  const int clock = file->clock.value;
+  struct dea_life life = {.end = own->failed.value == 1 ? DEA_LIFE_TOLD : DEA_LIFE_SURVIVED,
+                          .first_stroke = NAN,
+                          .last_stroke = NAN};
+  for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+    life.clock[k] = k == clock ? own->life.si / dea_life_clock_factors[k] : (double)NAN;
+  }
+  return life;
+}
+
+/* ---- the law ---- */
+
+static dea_status find_law(struct dea_context *ctx, struct dea_life_fit *fit)
+{
+  const size_t n = fit->rows;
+  double *ones = dea_arena_alloc(&fit->memory, n, sizeof *ones);
+  DEA_TRY(ctx, dea_arena_status(&fit->memory));
+  for (size_t i = 0; i < n; i++) {
+    ones[i] = 1;
+  }
+  const struct dea_weibull_data data = {
+      .rows = n,
+      .field_V_per_m = fit->value,
+      .stretch = ones,
+      .thickness_m = ones,
+      .area_m2 = ones,
+      .survived = fit->survived,
+      .thickness0_m = 1,
+      .area0_m2 = 1,
+      .held = {[DEA_WEIBULL_STRETCH] = true, [DEA_WEIBULL_THICKNESS] = true},
+  };
+  fit->has_law = true;
+  return dea_weibull_solve(ctx, &data, &fit->fit);
+}
+
+/* Whether two failed at different lives: a law has two numbers. */
+static bool tells_law(const struct dea_life_fit *fit)
+{
+  double low = INFINITY, high = 0;
+  for (size_t i = 0; i < fit->rows; i++) {
+    low = fit->survived[i] ? low : fmin(low, fit->value[i]);
+    high = fit->survived[i] ? high : fmax(high, fit->value[i]);
+  }
+  return high > low;
+}
+
+static dea_status run(void *made, const void *data)
+{
+  struct dea_life_fit *fit = made;
+  struct dea_context *ctx = fit->memory.ctx;
+  const struct dea_life_file *file = fit->file = data;
+  const size_t n = fit->rows = file->specimen_count;
+  fit->lives = dea_arena_alloc(&fit->memory, n, sizeof *fit->lives);
+  fit->value = dea_arena_alloc(&fit->memory, n, sizeof *fit->value);
+  fit->survived = dea_arena_alloc(&fit->memory, n, sizeof *fit->survived);
+  DEA_TRY(ctx, dea_arena_status(&fit->memory));
+  for (size_t i = 0; i < n; i++) {
+    const struct dea_life_specimen *own = &file->specimens[i];
+    if (own->reduced_count > 0) {
+      DEA_TRY(ctx, read_specimen(ctx, file, own, &fit->lives[i]));
+    } else {
+      fit->lives[i] = given_life(file, own);
+    }
+    fit->value[i] = fit->lives[i].clock[file->clock.value];
+    fit->survived[i] = fit->lives[i].end == DEA_LIFE_SURVIVED;
+    fit->failed += fit->survived[i] ? 0 : 1;
+    if (!(fit->value[i] > 0)) {
+      return dea_fail(ctx, DEA_E_IO, "the life of '%.60s' is not known by the clock '%s'",
+                      own->name.text, dea_life_clock_names[file->clock.value]);
+    }
+  }
+  return tells_law(fit) ? find_law(ctx, fit) : DEA_OK;
+}
+
+dea_status dea_life_fit_run(struct dea_context *ctx, const struct dea_life_file *file,
+                            struct dea_life_fit **out)
+{
+  dea_status status;
+  *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);
+  return status;
+}
+
+void dea_life_fit_destroy(struct dea_context *ctx, struct dea_life_fit *fit)
+{
+  dea_fit_frame_destroy(ctx, fit);
+}
+
+double dea_life_fit_bound(const struct dea_life_fit *fit, double *life)
+{
+  *life = INFINITY;
+  for (size_t i = 0; i < fit->rows; i++) {
+    *life = fmin(*life, fit->value[i]);
+  }
+  return fit->failed == 0 ? -expm1(log(0.05) / (double)fit->rows) : (double)NAN;
+}
+
+/* ---- CSV and JSON ---- */
+
+static void add_rows(struct dea_text *csv, const struct dea_life_fit *fit)
+{
+  dea_text_add(csv, "specimen,failed,why,cycles,time (h),under voltage (h),charge (mC),"
+                    "last over first stroke,chance of a shorter life by the law\n");
+  for (size_t i = 0; i < fit->rows; i++) {
+    const struct dea_life *life = &fit->lives[i];
+    dea_csv_add_name(csv, fit->file->specimens[i].name.text);
+    dea_text_add(csv, ",%d,%s", !fit->survived[i], dea_life_end_names[life->end]);
+    for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+      dea_fit_add_field(csv, dea_life_clock_factors[k] * life->clock[k]);
+    }
+    double std;
+    dea_fit_add_field(csv, fabs(life->last_stroke) / life->first_stroke);
+    dea_fit_add_field(csv, fit->has_law
+                               ? -expm1(-exp(dea_weibull_z(&fit->fit, fit->value[i], &std)))
+                               : (double)NAN);
+    dea_text_add(csv, "\n");
+  }
+}
+
+static json_t *specimens_json(const struct dea_life_fit *fit)
+{
+  static const char *const keys[DEA_LIFE_CLOCKS] = {"cycles", "time_s", "under_voltage_s",
+                                                    "charge_C"};
+  json_t *list = json_array();
+  for (size_t i = 0; i < fit->rows; i++) {
+    const struct dea_life *life = &fit->lives[i];
+    json_t *object = json_object();
+    dea_json_put_text(object, "name", fit->file->specimens[i].name.text);
+    dea_json_put_text(object, "end", dea_life_end_names[life->end]);
+    for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
+      dea_json_put(object, keys[k], life->clock[k]);
+    }
+    dea_json_put(object, "first_stroke", life->first_stroke);
+    dea_json_put(object, "last_stroke", life->last_stroke);
+    json_array_append_new(list, object);
+  }
+  return list;
+}
+
+json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command)
+{
+  static const char *const keys[2] = {"scale", "shape"};
+  const struct dea_life_file *file = fit->file;
+  json_t *root = dea_fit_json_begin(&file->head, command), *list = json_array();
+  dea_json_put_text(root, "clock", dea_life_clock_names[file->clock.value]);
+  dea_json_put_count(root, "specimens", fit->rows);
+  dea_json_put_count(root, "failed", fit->failed);
+  json_object_set_new(root, "lives", specimens_json(fit));
+  for (size_t k = 0; k < 2 && fit->has_law; k++) {
+    json_t *object = json_object();
+    dea_json_put_text(object, "name", keys[k]);
+    dea_json_put(object, "value", fit->fit.value[k]);
+    dea_json_put(object, "standard_uncertainty", fit->fit.std[k]);
+    dea_json_put(object, "interval_low", fit->fit.low[k]);
+    dea_json_put(object, "interval_high", fit->fit.high[k]);
+    json_array_append_new(list, object);
+  }
+  json_object_set_new(root, "parameters", list);
+  if (fit->has_law) {
+    dea_json_put(root, "log_likelihood", fit->fit.log_likelihood);
+    dea_json_put(root, "scale_low_95", fit->fit.low_95);
+    dea_json_put(root, "scale_high_95", fit->fit.high_95);
+  }
+  return root;
+}
+
+/* ---- the folder ---- */
+
+dea_status dea_life_fit_folder(struct dea_context *ctx, const struct dea_life_file *file,
+                               const char *directory, bool force)
+{
+  static const char *const figures[] = {"fit"};
+  return dea_fit_folder_make(ctx, directory, file->head.name.text, figures, 1, force);
+}
+
+static dea_status draw(struct dea_context *ctx, const struct dea_life_fit *fit,
+                       const struct dea_plot_format *format, const char *directory)
+{
+  static const char *const labels[DEA_LIFE_CLOCKS] = {
+      "Cycles", "Time (h)", "Time under voltage (h)", "Charge brought to the film (mC)"};
+  const int clock = fit->file->clock.value;
+  const struct dea_weibull_picture picture = {
+      .caption = "share of specimens that have failed over their life, and Weibull's law of it",
+      .x_label = labels[clock],
+      .y_label = "Specimens failed (%)",
+      .points = "failed",
+      .logarithmic = true,
+      .factor = dea_life_clock_factors[clock],
+      .rows = fit->rows,
+      .values = fit->value,
+      .survived = fit->survived,
+      .fit = &fit->fit,
+  };
+  return dea_weibull_draw(ctx, &picture, format, directory);
+}
+
+dea_status dea_life_fit_write(struct dea_context *ctx, const struct dea_life_fit *fit,
+                              const char *command, const struct dea_plot_format *format,
+                              const char *directory)
+{
+  struct dea_text csv = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  add_rows(&csv, fit);
+  dea_c_locale_leave(before);
+  dea_status status = dea_fit_folder_write(ctx, directory, fit->file->head.name.text, NULL, &csv,
+                                           dea_life_fit_json(fit, command));
+  dea_text_free(&csv);
+  DEA_TRY(ctx, status);
+  return fit->has_law ? draw(ctx, fit, format, directory) : DEA_OK;
+}

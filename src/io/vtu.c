@@ -1,0 +1,346 @@
+#include "io/vtu.h"
+
+#include "base/bytes.h"
+#include "base/version.h"
+#include "base/write_file.h"
+#include "result/copies.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { CELL_NODES_MAX = 27 };
+
+/* ---- cells ---- */
+
+/* A way to write elements: VTK's number of the type, and how many cells of how many nodes. A node
+ * is its place [i, j, k] on the lattice of the cell. */
+struct cell_type {
+  unsigned char number;
+  int order, nodes;
+  signed char at[CELL_NODES_MAX][3];
+};
+
+static const struct cell_type quad = {9, 1, 4, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+static const struct cell_type biquadratic_quad = {28,
+                                                  2,
+                                                  9,
+                                                  {{0, 0, 0},
+                                                   {2, 0, 0},
+                                                   {2, 2, 0},
+                                                   {0, 2, 0},
+                                                   {1, 0, 0},
+                                                   {2, 1, 0},
+                                                   {1, 2, 0},
+                                                   {0, 1, 0},
+                                                   {1, 1, 0}}};
+static const struct cell_type hexahedron = {
+    12,
+    1,
+    8,
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+/* Corners, then edges (bottom, top, upright), faces (-x +x -y +y -z +z), middle. */
+static const struct cell_type triquadratic_hexahedron = {
+    29, 2, 27, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2},
+                {0, 2, 2}, {1, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {1, 0, 2}, {2, 1, 2},
+                {1, 2, 2}, {0, 1, 2}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {0, 1, 1},
+                {2, 1, 1}, {1, 0, 1}, {1, 2, 1}, {1, 1, 0}, {1, 1, 2}, {1, 1, 1}}};
+
+static const struct cell_type *cell_type_of(const struct dea_mesh_block *block)
+{
+  if (block->order_z == 0) {
+    return block->order == 2 ? &biquadratic_quad : &quad;
+  }
+  return block->order == 2 && block->order_z == 2 ? &triquadratic_hexahedron : &hexahedron;
+}
+
+/* Cells along the plane's axes, and through the thickness, that an element becomes. */
+static int pieces(const struct dea_mesh_block *block)
+{
+  return block->order / cell_type_of(block)->order;
+}
+
+static int pieces_z(const struct dea_mesh_block *block)
+{
+  return block->order_z == 0 ? 1 : block->order_z / cell_type_of(block)->order;
+}
+
+static size_t cells_of(const struct dea_mesh_block *block)
+{
+  return (size_t)(pieces(block) * pieces(block) * pieces_z(block));
+}
+
+/* ---- arrays ---- */
+
+/* Everything that is written. */
+struct grid {
+  const struct dea_field_mesh *mesh;
+  size_t copies, points, cells, nodes; // of all copies; nodes: of all cells
+};
+
+static void add_vectors(struct dea_bytes *out, const struct grid *grid, const double *values,
+                        bool doubles)
+{
+  for (size_t c = 0; c < grid->copies; c++) {
+    const struct dea_copy copy = dea_copy_at(grid->mesh, c);
+    for (size_t p = 0; p < grid->mesh->point_count; p++) {
+      double moved[3];
+      dea_copy_move(&copy, values + 3 * p, moved);
+      for (int i = 0; i < 3; i++) {
+        if (doubles) {
+          dea_bytes_add_f64(out, moved[i]);
+        } else {
+          dea_bytes_add_f32(out, (float)moved[i]);
+        }
+      }
+    }
+  }
+}
+
+/* Values of points, or of cells, each as often as its element has pieces. */
+static void add_values(struct dea_bytes *out, const struct grid *grid,
+                       const struct dea_mesh_field *field)
+{
+  const struct dea_field_mesh *mesh = grid->mesh;
+  size_t n = (size_t)field->components;
+  for (size_t c = 0; c < grid->copies; c++) {
+    for (size_t i = 0; i < mesh->point_count * n && !field->of_cells; i++) {
+      dea_bytes_add_f32(out, (float)field->values[i]);
+    }
+    const double *values = field->values;
+    for (size_t b = 0; b < mesh->block_count && field->of_cells; b++) {
+      for (size_t e = 0; e < mesh->blocks[b].count; e++, values += n) {
+        for (size_t k = 0; k < cells_of(&mesh->blocks[b]) * n; k++) {
+          dea_bytes_add_f32(out, (float)values[k % n]);
+        }
+      }
+    }
+  }
+}
+
+static bool is_double(const struct dea_mesh_field *field)
+{
+  return field->kind == DEA_MESH_VECTOR;
+}
+
+static void add_field(struct dea_bytes *out, const struct grid *grid,
+                      const struct dea_mesh_field *field)
+{
+  if (field->kind == DEA_MESH_VALUES || field->of_cells) {
+    add_values(out, grid, field);
+  } else {
+    add_vectors(out, grid, field->values, is_double(field));
+  }
+}
+
+/* One cell of an element: the piece at [from]. In a mirrored copy the first axis is turned round,
+ * so that the cell does not stand inside out. */
+static void add_cell(struct dea_bytes *out, const struct dea_mesh_block *block, const int *nodes,
+                     const int from[3], bool mirrored, size_t first_point)
+{
+  const struct cell_type *type = cell_type_of(block);
+  int row = block->order + 1;
+  for (int n = 0; n < type->nodes; n++) {
+    int i = from[0] + type->at[n][0], j = from[1] + type->at[n][1], k = from[2] + type->at[n][2];
+    int node = nodes[(k * row + j) * row + (mirrored ? block->order - i : i)];
+    dea_bytes_add_i32(out, (int32_t)(first_point + (size_t)node));
+  }
+}
+
+static void add_connectivity(struct dea_bytes *out, const struct grid *grid)
+{
+  const struct dea_field_mesh *mesh = grid->mesh;
+  for (size_t c = 0; c < grid->copies; c++) {
+    for (size_t b = 0; b < mesh->block_count; b++) {
+      const struct dea_mesh_block *block = &mesh->blocks[b];
+      int n = pieces(block), nz = pieces_z(block), order = cell_type_of(block)->order;
+      for (size_t e = 0; e < block->count; e++) {
+        const int *nodes = block->nodes + e * (size_t)dea_mesh_block_nodes(block);
+        for (int k = 0; k < n * n * nz; k++) {
+          const int from[3] = {order * (k % n), order * (k / n % n), order * (k / (n * n))};
+          add_cell(out, block, nodes, from, c % 2 == 1, c * mesh->point_count);
+        }
+      }
+    }
+  }
+}
+
+static void add_offsets(struct dea_bytes *out, const struct grid *grid)
+{
+  int32_t end = 0;
+  for (size_t c = 0; c < grid->copies; c++) {
+    for (size_t b = 0; b < grid->mesh->block_count; b++) {
+      const struct dea_mesh_block *block = &grid->mesh->blocks[b];
+      for (size_t k = 0; k < block->count * cells_of(block); k++) {
+        end += cell_type_of(block)->nodes;
+        dea_bytes_add_i32(out, end);
+      }
+    }
+  }
+}
+
+static void add_types(struct dea_bytes *out, const struct grid *grid)
+{
+  for (size_t c = 0; c < grid->copies; c++) {
+    for (size_t b = 0; b < grid->mesh->block_count; b++) {
+      const struct dea_mesh_block *block = &grid->mesh->blocks[b];
+      for (size_t k = 0; k < block->count * cells_of(block); k++) {
+        dea_bytes_add_u8(out, cell_type_of(block)->number);
+      }
+    }
+  }
+}
+
+static void add_copies(struct dea_bytes *out, const struct grid *grid)
+{
+  for (size_t c = 0; c < grid->copies; c++) {
+    for (size_t k = 0; k < grid->cells / grid->copies; k++) {
+      dea_bytes_add_i32(out, (int32_t)c);
+    }
+  }
+}
+
+/* ---- file ---- */
+
+/* Text in front, and how far the arrays behind it have come. */
+struct file {
+  struct dea_text head;
+  struct dea_bytes data;
+  size_t block; // where the size of the open array stands
+};
+
+static void open_array(struct file *file, const char *type, const char *name, int components)
+{
+  dea_text_add(&file->head,
+               "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
+               "offset=\"%zu\"/>\n",
+               type, name, components, file->data.length);
+  file->block = file->data.length;
+  dea_bytes_add_u64(&file->data, 0);
+}
+
+static void close_array(struct file *file)
+{
+  dea_bytes_set_u64(&file->data, file->block, file->data.length - file->block - 8);
+}
+
+static void add_fields(struct file *file, const struct grid *grid, bool of_cells)
+{
+  const char *section = of_cells ? "CellData" : "PointData";
+  dea_text_add(&file->head, "<%s>\n", section);
+  for (size_t i = 0; i < grid->mesh->field_count; i++) {
+    const struct dea_mesh_field *field = &grid->mesh->fields[i];
+    if (field->of_cells == of_cells) {
+      open_array(file, is_double(field) ? "Float64" : "Float32", field->name, field->components);
+      add_field(&file->data, grid, field);
+      close_array(file);
+    }
+  }
+  if (of_cells) {
+    open_array(file, "Int32", "copy", 1);
+    add_copies(&file->data, grid);
+    close_array(file);
+  }
+  dea_text_add(&file->head, "</%s>\n", section);
+}
+
+static void add_cells(struct file *file, const struct grid *grid)
+{
+  dea_text_add(&file->head, "<Points>\n");
+  open_array(file, "Float64", "Points", 3);
+  add_vectors(&file->data, grid, grid->mesh->X, true);
+  close_array(file);
+  dea_text_add(&file->head, "</Points>\n<Cells>\n");
+  open_array(file, "Int32", "connectivity", 1);
+  add_connectivity(&file->data, grid);
+  close_array(file);
+  open_array(file, "Int32", "offsets", 1);
+  add_offsets(&file->data, grid);
+  close_array(file);
+  open_array(file, "UInt8", "types", 1);
+  add_types(&file->data, grid);
+  close_array(file);
+  dea_text_add(&file->head, "</Cells>\n");
+}
+
+static void build(struct file *file, const struct grid *grid, double voltage_V)
+{
+  dea_text_add(
+      &file->head,
+      "<?xml version=\"1.0\"?>\n<!-- dea %s; SI units; places in the stretched flat film "
+      "-->\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n<DataArray "
+      "type=\"Float64\" Name=\"voltage_V\" NumberOfTuples=\"1\" format=\"ascii\">%.17g"
+      "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n",
+      DEA_VERSION, voltage_V, grid->points, grid->cells);
+  add_fields(file, grid, false);
+  add_fields(file, grid, true);
+  add_cells(file, grid);
+  dea_text_add(&file->head, "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+}
+
+static dea_status count(struct dea_context *ctx, const struct dea_field_mesh *mesh, bool whole,
+                        struct grid *out)
+{
+  *out = (struct grid){.mesh = mesh, .copies = whole ? dea_copy_count(mesh) : 1};
+  for (size_t b = 0; b < mesh->block_count; b++) {
+    const struct dea_mesh_block *block = &mesh->blocks[b];
+    size_t cells = block->count * cells_of(block) * out->copies;
+    out->cells += cells;
+    out->nodes += cells * (size_t)cell_type_of(block)->nodes;
+  }
+  out->points = mesh->point_count * out->copies;
+  if (out->nodes > INT32_MAX) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "a VTU file takes at most %d nodes of cells",
+                    INT32_MAX);
+  }
+  return DEA_OK;
+}
+
+dea_status dea_vtu_write(struct dea_context *ctx, const struct dea_field_mesh *mesh,
+                         double voltage_V, bool whole, const char *path)
+{
+  struct grid grid;
+  DEA_TRY(ctx, count(ctx, mesh, whole, &grid));
+  struct file file = {.head = {.ctx = ctx}, .data = {.ctx = ctx}};
+  struct dea_bytes all = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  build(&file, &grid, voltage_V);
+  dea_c_locale_leave(before);
+  const char tail[] = "\n</AppendedData>\n</VTKFile>\n";
+  dea_bytes_reserve(&all, file.head.length + file.data.length + sizeof tail);
+  dea_bytes_add(&all, dea_text_get(&file.head), file.head.length);
+  dea_bytes_add(&all, file.data.data, file.data.length);
+  dea_bytes_add(&all, tail, sizeof tail - 1);
+  dea_status status = file.head.failed || file.data.failed || all.failed
+                          ? DEA_E_MEMORY
+                          : dea_file_write(ctx, path, all.data, all.length);
+  dea_text_free(&file.head);
+  dea_bytes_free(&file.data);
+  dea_bytes_free(&all);
+  return status;
+}
+
+dea_status dea_pvd_write(struct dea_context *ctx, const struct dea_pvd_entry *entries,
+                         size_t entry_count, const char *path)
+{
+  bool rising = true;
+  for (size_t i = 1; i < entry_count; i++) {
+    rising = rising && entries[i].voltage_V > entries[i - 1].voltage_V;
+  }
+  struct dea_text text = {.ctx = ctx};
+  void *before = dea_c_locale_enter();
+  dea_text_add(&text,
+               "<?xml version=\"1.0\"?>\n<!-- dea %s; time: %s -->\n<VTKFile type=\"Collection\" "
+               "version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
+               DEA_VERSION, rising ? "voltage in V" : "number of the point in the sweep");
+  for (size_t i = 0; i < entry_count; i++) {
+    dea_text_add(&text, "<DataSet timestep=\"%.10g\" group=\"\" part=\"0\" file=\"%s\"/>\n",
+                 rising ? entries[i].voltage_V : (double)i, entries[i].file);
+  }
+  dea_text_add(&text, "</Collection>\n</VTKFile>\n");
+  dea_c_locale_leave(before);
+  dea_status status =
+      text.failed ? DEA_E_MEMORY : dea_file_write(ctx, path, dea_text_get(&text), text.length);
+  dea_text_free(&text);
+  return status;
+}

@@ -1,0 +1,215 @@
+#define _XOPEN_SOURCE 700 // lstat, realpath
+#include "job/run_folder.h"
+
+#include "base/write_file.h"
+#include "figures/figure.h"
+#include "io/checkpoint.h"
+#include "io/csv.h"
+#include "io/export.h"
+#include "io/results_h5.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const struct dea_export *const exports[] = {
+#define EXPORT_ROW(name) &dea_export_##name,
+    DEA_EXPORT_LIST(EXPORT_ROW)
+#undef EXPORT_ROW
+};
+enum { EXPORT_COUNT = sizeof exports / sizeof exports[0] };
+
+/* A folder of results that is a link would have files removed and written elsewhere. */
+static dea_status refuse_link(struct dea_context *ctx, const char *directory, const char *name)
+{
+  struct stat info;
+  char *path = dea_path_join(ctx, directory, name);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  bool link = lstat(path, &info) == 0 && S_ISLNK(info.st_mode);
+  dea_free(ctx, path);
+  return !link ? DEA_OK
+               : dea_fail(ctx, DEA_E_IO,
+                          "%s/%s is a link to another place, which --force does not follow",
+                          directory, name);
+}
+
+dea_status dea_run_folder_prepare(struct dea_context *ctx, const char *directory, bool force)
+{
+  // Also a user's own file of such a name would be lost.
+  for (size_t i = EXPORT_COUNT; i-- > 0 && !force;) {
+    if (exports[i]->file != NULL) {
+      DEA_TRY(ctx, dea_path_refuse(ctx, directory, exports[i]->file));
+    }
+  }
+  if (!force) {
+    DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIGURE_FOLDER));
+    DEA_TRY(ctx, dea_path_refuse(ctx, directory, DEA_FIELD_FOLDER));
+  }
+  DEA_TRY(ctx, refuse_link(ctx, directory, DEA_FIGURE_FOLDER));
+  DEA_TRY(ctx, refuse_link(ctx, directory, DEA_FIELD_FOLDER));
+  DEA_TRY(ctx, dea_folder_make(ctx, directory));
+  if (access(directory, W_OK) != 0) {
+    return dea_fail(ctx, DEA_E_IO, "the folder %s cannot be written to", directory);
+  }
+  return DEA_OK;
+}
+
+bool dea_run_folder_is_of(struct dea_context *ctx, const char *directory,
+                          const struct dea_design *design)
+{
+  struct dea_run *old = NULL;
+  bool same = dea_run_read(ctx, directory, &old) == DEA_OK;
+  if (same) {
+    char *was = realpath(old->design_file, NULL), *is = realpath(design->file, NULL);
+    same = was != NULL && is != NULL && strcmp(was, is) == 0 &&
+           strcmp(old->title, design->title.text) == 0;
+    free(was);
+    free(is);
+  }
+  dea_run_destroy(ctx, old);
+  dea_context_clear(ctx);
+  return same;
+}
+
+/* All that is in a folder into another one, and folders that are in both likewise. */
+static dea_status move_all(struct dea_context *ctx, const char *from, const char *to)
+{
+  dea_status status = DEA_OK;
+  DIR *folder = opendir(from);
+  for (const struct dirent *e;
+       folder != NULL && status == DEA_OK && (e = readdir(folder)) != NULL;) {
+    if (strcmp(e->d_name, ".") == 0 || strcmp(e->d_name, "..") == 0) {
+      continue;
+    }
+    char *old = dea_path_join(ctx, from, e->d_name), *new = dea_path_join(ctx, to, e->d_name);
+    if (old == NULL || new == NULL) {
+      status = DEA_E_MEMORY;
+    } else if (rename(old, new) != 0) {
+      status = dea_path_is_folder(old) && dea_path_is_folder(new)
+                   ? move_all(ctx, old, new)
+                   : dea_fail(ctx, DEA_E_IO, "cannot move %s to %s: %s", old, new, strerror(errno));
+    }
+    dea_free(ctx, old);
+    dea_free(ctx, new);
+  }
+  if (folder != NULL) {
+    closedir(folder);
+  }
+  rmdir(from);
+  return status;
+}
+
+dea_status dea_run_folder_replace(struct dea_context *ctx, const char *directory, const char *by)
+{
+  dea_run_folder_clear(ctx, directory);
+  DEA_TRY(ctx, move_all(ctx, by, directory));
+  return DEA_OK;
+}
+
+static void forget_figures(struct dea_context *ctx, const char *directory)
+{
+  static const char *const outcomes[] = {"gp", "dat", "svg", "pdf", "png", "gif"};
+  const struct dea_figure *figure;
+  for (size_t f = 0; (figure = dea_figure_get(f)) != NULL; f++) {
+    for (size_t e = 0; e < sizeof outcomes / sizeof outcomes[0]; e++) {
+      char name[128];
+      snprintf(name, sizeof name, DEA_FIGURE_FOLDER "/%s.%s", figure->name, outcomes[e]);
+      dea_path_forget(ctx, directory, name);
+    }
+  }
+  char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
+  if (folder != NULL) {
+    rmdir(folder); // one with other files in it stays
+  }
+  dea_free(ctx, folder);
+}
+
+void dea_run_folder_clear(struct dea_context *ctx, const char *directory)
+{
+  struct dea_run *old;
+  if (dea_run_read(ctx, directory, &old) == DEA_OK) {
+    for (size_t i = 0; i < old->result->curve_count; i++) {
+      const struct dea_curve *curve = &old->result->curves[i];
+      char name[2 * DEA_NAME_SIZE + 32];
+      snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
+      dea_path_forget(ctx, directory, name);
+      snprintf(name, sizeof name, "%s_%s_events.csv", curve->model, curve->kind);
+      dea_path_forget(ctx, directory, name);
+      snprintf(name, sizeof name, "%s_profiles.csv", curve->model);
+      dea_path_forget(ctx, directory, name);
+      dea_checkpoint_forget(ctx, directory, curve->model, curve->count);
+      snprintf(name, sizeof name, "%s_%s", curve->model, curve->kind); // shapes of modes
+      dea_checkpoint_forget(ctx, directory, name, curve->count);
+    }
+    for (size_t i = 0; i < old->result->variant_count; i++) {
+      const struct dea_curve *curve = &old->result->variants[i].curve;
+      char name[2 * DEA_NAME_SIZE + 32];
+      snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
+      dea_path_forget(ctx, directory, name);
+      snprintf(name, sizeof name, "%s_%s_profiles.csv", curve->model, curve->kind);
+      dea_path_forget(ctx, directory, name);
+    }
+    for (size_t i = 0; i < old->result->table_count; i++) {
+      char name[DEA_RESULT_TABLE_FILE_SIZE];
+      dea_csv_table_name(&old->result->tables[i], name);
+      dea_path_forget(ctx, directory, name);
+    }
+    dea_run_destroy(ctx, old);
+  }
+  dea_context_clear(ctx);
+  forget_figures(ctx, directory);
+  for (size_t i = 0; i < EXPORT_COUNT; i++) {
+    if (exports[i]->file != NULL) {
+      dea_path_forget(ctx, directory, exports[i]->file);
+    }
+  }
+}
+
+static dea_status write_figures(struct dea_context *ctx, const struct dea_result *result,
+                                const char *directory)
+{
+  const struct dea_design *design = result->design;
+  struct dea_figure_options options = {.format = {.width_m = 0.085}, .voltage_V = NAN};
+  if (design != NULL) {
+    options.format.svg = design->report.svg;
+    options.format.pdf = design->report.pdf;
+    options.format.png = design->report.png;
+    double width_m = design->report.width_m.si;
+    options.format.width_m = width_m > 0.0 ? width_m : options.format.width_m;
+  }
+  char *folder = dea_path_join(ctx, directory, DEA_FIGURE_FOLDER);
+  if (folder == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_figures_write(ctx, result, folder, &options, NULL);
+  dea_free(ctx, folder);
+  return status;
+}
+
+dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result *result,
+                                const char *directory, const struct dea_run_folder_options *options)
+{
+  const struct dea_run_folder_options standard = {.force = false};
+  const struct dea_run_folder_options *o = options != NULL ? options : &standard;
+  if (!o->started) {
+    DEA_TRY(ctx, dea_run_folder_prepare(ctx, directory, o->force));
+    if (o->force) {
+      dea_run_folder_clear(ctx, directory);
+    }
+  }
+  for (size_t i = 0; i < EXPORT_COUNT; i++) {
+    DEA_TRY(ctx, exports[i]->write(ctx, result, directory));
+  }
+  DEA_TRY(ctx, dea_checkpoint_shapes(ctx, result, directory));
+  if (!o->no_figures) {
+    DEA_TRY(ctx, write_figures(ctx, result, directory));
+  }
+  return DEA_OK;
+}

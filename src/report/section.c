@@ -1,0 +1,94 @@
+/* How sections and tables begin and end. */
+#include "report/section.h"
+
+#include <string.h>
+
+enum { TABLE_COLUMNS_MAX = 64 };
+
+void dea_section_begin(struct dea_report *report, const char *name, int number, const char *title)
+{
+  int level = number > 0 ? report->level : 2;
+  dea_text_add(&report->text,
+               "<section id=\"%s-%d\" aria-labelledby=\"%s-%d-h\"><h%d id=\"%s-%d-h\">", name,
+               number, name, number, level, name, number);
+  dea_html_text(&report->text, title);
+  dea_text_add(&report->text, "</h%d>", level);
+}
+
+void dea_section_end(struct dea_report *report)
+{
+  dea_text_add(&report->text, "</section>\n");
+}
+
+void dea_section_heading(struct dea_report *report, const char *text)
+{
+  dea_html_element(&report->text, report->level == 2 ? "h3 class=\"part\"" : "h4 class=\"part\"",
+                   text);
+}
+
+void dea_table_begin(struct dea_report *report, const char *caption, const char *header)
+{
+  struct dea_text *out = &report->text;
+  report->table = out->length;
+  dea_text_add(out, "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"");
+  dea_html_text(out, caption);
+  dea_text_add(out, "\"><table><caption>");
+  dea_html_text(out, caption);
+  dea_text_add(out, "</caption><thead><tr>%s</tr></thead><tbody>", header);
+}
+
+/* End of the cell that begins there; NULL: none does. blank: it has nothing to read, or a dash. */
+static char *cell_end(char *cell, bool *blank)
+{
+  if (strncmp(cell, "<td", 3) != 0 && strncmp(cell, "<th", 3) != 0) {
+    return NULL;
+  }
+  char *inside = strchr(cell, '>'), *end = strstr(cell, cell[2] == 'd' ? "</td>" : "</th>");
+  if (inside == NULL || end == NULL) {
+    return NULL;
+  }
+  inside++;
+  *blank = inside == end || (end - inside == 3 && memcmp(inside, "\342\200\223", 3) == 0);
+  return end + strlen("</td>");
+}
+
+/* First cell of the next row; NULL: there is no row more. */
+static char *next_row(char *from)
+{
+  char *row = strstr(from, "<tr");
+  row = row != NULL ? strchr(row, '>') : NULL;
+  return row != NULL ? row + 1 : NULL;
+}
+
+void dea_table_end(struct dea_report *report)
+{
+  struct dea_text *out = &report->text;
+  bool used[TABLE_COLUMNS_MAX] = {false}, blank = false;
+  dea_text_add(out, "</tbody></table></div>");
+  char *table = out->failed ? NULL : strstr(out->data + report->table, "<thead>");
+  if (table == NULL || strstr(table, "span=") != NULL) {
+    return;
+  }
+  char *body = strstr(table, "<tbody>");
+  for (char *cell = next_row(body); cell != NULL; cell = next_row(cell)) {
+    size_t column = 0;
+    for (char *end; (end = cell_end(cell, &blank)) != NULL; cell = end, column++) {
+      if (column == TABLE_COLUMNS_MAX) {
+        return;
+      }
+      used[column] = used[column] || !blank;
+    }
+  }
+  char *to = table, *from = table; // what is kept moves to the front
+  for (char *cell = next_row(table); cell != NULL; cell = next_row(cell)) {
+    size_t column = 0;
+    for (char *end; (end = cell_end(cell, &blank)) != NULL; cell = end, column++) {
+      size_t before = (size_t)(cell - from), own = used[column] ? (size_t)(end - cell) : 0;
+      memmove(to, from, before + own);
+      to += before + own;
+      from = end;
+    }
+  }
+  memmove(to, from, strlen(from) + 1);
+  out->length = (size_t)(to - out->data) + strlen(to);
+}

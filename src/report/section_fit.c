@@ -1,0 +1,237 @@
+/* A fit that belongs to the runs: what `dea fit` wrote into its folder (docs/fit.md). */
+#include "base/file.h"
+#include "base/json.h"
+#include "base/write_file.h"
+#include "report/section.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { FILE_MAX = 64 << 20, DIGITS = 6 };
+
+static double number_of(const json_t *object, const char *key)
+{
+  const json_t *value = json_object_get(object, key);
+  return json_is_number(value) ? json_number_value(value) : (double)NAN;
+}
+
+static void add_fact(struct dea_text *out, const char *what, const json_t *root, const char *key)
+{
+  const char *text = json_string_value(json_object_get(root, key));
+  if (text != NULL && text[0] != '\0') {
+    dea_text_add(out, "<dt>%s</dt>", what);
+    dea_html_element(out, "dd", text);
+  }
+}
+
+static void add_facts(struct dea_text *out, const json_t *root)
+{
+  static const char *const files[] = {"tests", "curves"};
+  dea_text_add(out, "<dl class=\"facts\">");
+  add_fact(out, "Material", root, "material");
+  add_fact(out, "Law", root, "law");
+  add_fact(out, "Device", root, "name");
+  add_fact(out, "Model", root, "model");
+  add_fact(out, "Fit file", root, "file");
+  add_fact(out, "SHA-256 of the fit file", root, "sha256");
+  add_fact(out, "Design that was meant", root, "design");
+  add_fact(out, "Films", root, "tests");
+  add_fact(out, "SHA-256 of the films", root, "tests_sha256");
+  for (size_t k = 0; k < sizeof files / sizeof files[0]; k++) {
+    const json_t *list = json_object_get(root, files[k]);
+    for (size_t i = 0; i < json_array_size(list); i++) {
+      add_fact(out, "Measurement", json_array_get(list, i), "file");
+      add_fact(out, "its SHA-256", json_array_get(list, i), "sha256");
+    }
+  }
+  add_fact(out, "Program", root, "program");
+  add_fact(out, "Command", root, "command");
+  dea_text_add(out, "</dl>");
+}
+
+/* How well a value is known where its number does not say it. */
+static const char *known_as(const json_t *value)
+{
+  return json_is_true(json_object_get(value, "fixed"))         ? "fixed"
+         : json_is_true(json_object_get(value, "at_bound"))    ? "at its bound"
+         : json_is_false(json_object_get(value, "determined")) ? "not determined"
+                                                               : NULL;
+}
+
+static void add_parameters(struct dea_report *report, const json_t *list)
+{
+  struct dea_text *out = &report->text;
+  dea_table_begin(report, "What was fitted, with one standard uncertainty",
+                  "<th scope=\"col\">parameter</th><th scope=\"col\">unit</th><th scope=\"col\">as "
+                  "designed</th><th scope=\"col\">value</th><th scope=\"col\">&plusmn;</th><th "
+                  "scope=\"col\">68 %: from</th><th scope=\"col\">to</th>");
+  for (size_t i = 0; i < json_array_size(list); i++) {
+    const json_t *value = json_array_get(list, i);
+    const char *known = known_as(value);
+    dea_text_add(out, "<tr>");
+    dea_html_element(out, "th scope=\"row\"", json_string_value(json_object_get(value, "name")));
+    dea_html_element(out, "td", json_string_value(json_object_get(value, "unit")));
+    dea_html_cell(out, number_of(value, "designed"), DIGITS);
+    dea_html_cell(out, number_of(value, "value"), DIGITS);
+    if (known != NULL) {
+      dea_html_element(out, "td", known);
+    } else {
+      dea_html_cell(out, number_of(value, "standard_uncertainty"), 3);
+    }
+    dea_html_cell(out, number_of(value, "interval_low"), DIGITS);
+    dea_html_cell(out, number_of(value, "interval_high"), DIGITS);
+    dea_text_add(out, "</tr>");
+  }
+  dea_table_end(report);
+}
+
+static void add_correlations(struct dea_report *report, const json_t *root)
+{
+  struct dea_text *out = &report->text;
+  const json_t *names = json_object_get(root, "parameters");
+  const json_t *rows = json_object_get(root, "correlations");
+  if (json_array_size(rows) < 2) {
+    return;
+  }
+  struct dea_text header = {.ctx = out->ctx};
+  dea_text_add(&header, "<th scope=\"col\"></th>");
+  for (size_t i = 0; i < json_array_size(names); i++) {
+    dea_html_element(&header, "th scope=\"col\"",
+                     json_string_value(json_object_get(json_array_get(names, i), "name")));
+  }
+  dea_table_begin(report, "Correlations", dea_text_get(&header));
+  out->failed = out->failed || header.failed;
+  dea_text_free(&header);
+  for (size_t i = 0; i < json_array_size(rows); i++) {
+    const json_t *row = json_array_get(rows, i);
+    dea_text_add(out, "<tr>");
+    dea_html_element(out, "th scope=\"row\"",
+                     json_string_value(json_object_get(json_array_get(names, i), "name")));
+    for (size_t k = 0; k < json_array_size(row); k++) {
+      dea_html_cell(out, json_number_value(json_array_get(row, k)), 3);
+    }
+    dea_text_add(out, "</tr>");
+  }
+  dea_table_end(report);
+}
+
+/* What the measurements cannot tell, and what would. */
+static void add_advice(struct dea_text *out, const json_t *root)
+{
+  static const char *const next[][2] = {{"next_tests", "test"},
+                                        {"next_measurements", "measurement"}};
+  const json_t *advice = json_object_get(root, "advice");
+  const json_t *weak = json_object_get(advice, "weak");
+  const json_t *pairs = json_object_get(advice, "not_told_apart");
+  dea_text_add(out, "<ul>");
+  if (json_is_false(json_object_get(root, "slack_settled"))) {
+    dea_text_add(out, "<li>Which rows are slack did not settle: the values found would have others "
+                      "left out than were</li>");
+  }
+  for (size_t i = 0; i < json_array_size(weak); i++) {
+    dea_html_element(out, "li", json_string_value(json_array_get(weak, i)));
+  }
+  for (size_t i = 0; i < json_array_size(pairs); i++) {
+    const json_t *pair = json_array_get(pairs, i);
+    const char *tells = json_string_value(json_object_get(pair, "would_tell"));
+    dea_text_add(out, "<li>");
+    dea_html_text(out, json_string_value(json_object_get(pair, "first")));
+    dea_text_add(out, " and ");
+    dea_html_text(out, json_string_value(json_object_get(pair, "second")));
+    dea_text_add(out, " are not told apart%s",
+                 tells != NULL && tells[0] != '\0' ? "; this would tell: " : "");
+    dea_html_text(out, tells);
+    dea_text_add(out, "</li>");
+  }
+  for (size_t k = 0; k < 2; k++) {
+    const json_t *first = json_array_get(json_object_get(advice, next[k][0]), 0);
+    if (first != NULL) {
+      dea_text_add(out, "<li>the %s that would tell most: ", next[k][1]);
+      dea_html_text(out, json_string_value(json_object_get(first, next[k][1])));
+      dea_text_add(out, " (error bars times ");
+      dea_html_number(out, number_of(first, "error_bars_times"), 2);
+      dea_text_add(out, ")</li>");
+    }
+  }
+  dea_text_add(out, "</ul>");
+}
+
+/* A figure of the folder; nothing where there is none of that name. */
+static dea_status add_figure(struct dea_report *report, const char *folder, const char *name,
+                             const char *what)
+{
+  struct dea_text *out = &report->text;
+  char file[96], *bytes = NULL;
+  size_t length;
+  snprintf(file, sizeof file, "%.80s.svg", name);
+  char *path = dea_path_join(report->ctx, folder, file);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = DEA_OK;
+  if (dea_path_exists(path)) {
+    status = dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length);
+  }
+  if (status == DEA_OK && bytes != NULL) {
+    dea_text_add(out, "<figure><img alt=\"");
+    dea_html_text(out, what);
+    dea_text_add(out, "\" src=\"data:image/svg+xml;base64,");
+    dea_html_base64(out, bytes, length);
+    dea_text_add(out, "\"/><figcaption>");
+    dea_html_text(out, what);
+    dea_text_add(out, "</figcaption></figure>");
+  }
+  dea_free(report->ctx, bytes);
+  dea_free(report->ctx, path);
+  return status;
+}
+
+static dea_status add_figures(struct dea_report *report, const char *folder)
+{
+  dea_text_add(&report->text, "<div class=\"plots\">");
+  DEA_TRY(report->ctx, add_figure(report, folder, "fit", "measurements and fit"));
+  DEA_TRY(report->ctx, add_figure(report, folder, "fit_time", "measurements and fit over time"));
+  for (int c = 0; c < dea_column_count(report->ctx); c++) {
+    char name[80], what[128];
+    snprintf(name, sizeof name, "fit_%.60s", dea_column_at(report->ctx, c)->key);
+    snprintf(what, sizeof what, "%.60s: measured, as fitted, as designed",
+             dea_column_at(report->ctx, c)->header);
+    DEA_TRY(report->ctx, add_figure(report, folder, name, what));
+    snprintf(name, sizeof name, "fit_time_%.60s", dea_column_at(report->ctx, c)->key);
+    DEA_TRY(report->ctx, add_figure(report, folder, name, what));
+  }
+  dea_text_add(&report->text, "</div>");
+  return DEA_OK;
+}
+
+dea_status dea_section_fit(struct dea_report *report)
+{
+  const char *folder = report->options->fit;
+  char *bytes;
+  size_t length;
+  if (folder == NULL) {
+    return DEA_OK;
+  }
+  char *path = dea_path_join(report->ctx, folder, "fit.json");
+  dea_status status =
+      path != NULL ? dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length) : DEA_E_MEMORY;
+  dea_free(report->ctx, path);
+  DEA_TRY(report->ctx, status);
+  json_t *root = json_loadb(bytes, length, 0, NULL);
+  dea_free(report->ctx, bytes);
+  if (!json_is_object(root) || !json_is_array(json_object_get(root, "parameters"))) {
+    json_decref(root);
+    return dea_fail(report->ctx, DEA_E_IO, "%s holds no fit: its fit.json is not one of dea fit",
+                    folder);
+  }
+  dea_section_begin(report, "fit", 0, "Fit to measurements");
+  add_parameters(report, json_object_get(root, "parameters"));
+  add_advice(&report->text, root);
+  status = add_figures(report, folder);
+  add_correlations(report, root);
+  add_facts(&report->text, root);
+  dea_section_end(report);
+  json_decref(root);
+  return status;
+}

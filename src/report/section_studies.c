@@ -1,0 +1,215 @@
+/* What studies have made tables of, a section each: its figures and its tables, without knowing the
+ * study. */
+#include "figures/figure.h"
+#include "plot/plot_svg.h"
+#include "report/section.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DIGITS = 5, ERROR_DIGITS = 2 };
+
+static bool is_shown(const struct dea_result_table *table)
+{
+  return table->row_count > 0 && (table->type.where & DEA_IN_SCREEN) != 0;
+}
+
+/* First table of a study that a section shows; NULL: none. */
+static const struct dea_result_table *first_table(const struct dea_result *result,
+                                                  const char *study)
+{
+  for (size_t i = 0; i < result->table_count; i++) {
+    if (is_shown(&result->tables[i]) && strcmp(result->tables[i].type.study, study) == 0) {
+      return &result->tables[i];
+    }
+  }
+  return NULL;
+}
+
+// Figures ----------------------------------------------------------------------------------------
+
+/* Adds a figure; the notes of a plot that was not asked for are nobody's. */
+static dea_status add_figure(struct dea_report *report, const struct dea_figure *figure,
+                             const struct dea_result *result)
+{
+  struct dea_plot *plot;
+  DEA_TRY(report->ctx, dea_plot_create(report->ctx, figure->name, figure->caption, &plot));
+  dea_status status = figure->build(report->ctx, result, plot);
+  if (status == DEA_OK && dea_plot_shows(plot)) {
+    dea_plot_add_svg(&report->text, plot, ++report->figures);
+  }
+  dea_plot_destroy(report->ctx, plot);
+  return status;
+}
+
+static bool has_tables(const struct dea_result *result, const char *study)
+{
+  bool found = false;
+  for (size_t i = 0; i < result->table_count && !found; i++) {
+    found = result->tables[i].row_count > 0 && strcmp(result->tables[i].type.study, study) == 0;
+  }
+  return found;
+}
+
+/* Whether it is one of the study; for NULL whether no study has a section that it stands in. */
+static bool belongs(const struct dea_figure *figure, const struct dea_result *result,
+                    const char *study)
+{
+  if (study == NULL) {
+    return figure->study == NULL || !has_tables(result, figure->study);
+  }
+  return figure->study != NULL && strcmp(figure->study, study) == 0;
+}
+
+dea_status dea_section_figures(struct dea_report *report, const struct dea_report_run *run,
+                               const char *study)
+{
+  const struct dea_figure *figure;
+  dea_text_add(&report->text, "<div class=\"plots\">");
+  for (size_t i = 0; (figure = dea_figure_get(i)) != NULL; i++) {
+    if (figure->build != NULL && belongs(figure, run->run->result, study)) {
+      DEA_TRY(report->ctx, add_figure(report, figure, run->run->result));
+    }
+  }
+  dea_text_add(&report->text, "</div>");
+  return DEA_OK;
+}
+
+// Tables -----------------------------------------------------------------------------------------
+
+static bool on_page(const struct dea_result_column *column)
+{
+  return (column->hidden & DEA_IN_SCREEN) == 0 && column->kind != DEA_CELL_POINTS;
+}
+
+static bool is_text(const struct dea_result_column *column)
+{
+  return column->kind == DEA_CELL_TEXT || column->kind == DEA_CELL_QUANTITY;
+}
+
+static void add_header(struct dea_text *out, const struct dea_result_table *table)
+{
+  for (size_t c = 0; c < table->type.column_count; c++) {
+    const struct dea_result_column *column = &table->type.columns[c];
+    struct dea_text title = {.ctx = out->ctx};
+    if (on_page(column)) {
+      dea_result_table_column_title(column, &title);
+      dea_text_add(out, "<th scope=\"col\"%s colspan=\"%zu\" title=\"",
+                   is_text(column) ? "" : " class=\"n\"", dea_result_table_values(table, c));
+      dea_html_text(out, column->meaning);
+      dea_text_add(out, "\">");
+      dea_html_text(out, dea_text_get(&title));
+      dea_text_add(out, "</th>");
+    }
+    out->failed = out->failed || title.failed;
+    dea_text_free(&title);
+  }
+}
+
+/* With the unit of its quantity where the title cannot say it. */
+static void add_cell(struct dea_text *out, const struct dea_result_table *table, size_t row,
+                     size_t c, size_t value)
+{
+  const struct dea_result_column *column = &table->type.columns[c];
+  const struct dea_column *quantity = dea_result_table_quantity(table, row);
+  struct dea_text cell = {.ctx = out->ctx};
+  bool error = column->list && column->display_unit != NULL; // in per cent
+  dea_result_table_cell_text(table, row, c, value, error ? ERROR_DIGITS : DIGITS, &cell);
+  if (cell.length > 0 && column->kind == DEA_CELL_VALUE && quantity != NULL &&
+      strcmp(quantity->display_unit, "1") != 0) {
+    dea_text_add(&cell, " %s", quantity->display_unit);
+  }
+  dea_html_element(out, is_text(column) ? "td" : "td class=\"n\"", dea_text_get(&cell));
+  out->failed = out->failed || cell.failed;
+  dea_text_free(&cell);
+}
+
+static void add_rows(struct dea_report *report, const struct dea_result_table *table,
+                     const char *caption)
+{
+  struct dea_text *out = &report->text, header = {.ctx = report->ctx};
+  add_header(&header, table);
+  dea_table_begin(report, caption, dea_text_get(&header));
+  for (size_t row = 0; row < table->row_count; row++) {
+    dea_text_add(out, "<tr>");
+    for (size_t c = 0; c < table->type.column_count; c++) {
+      for (size_t k = 0; k < dea_result_table_values(table, c) && on_page(&table->type.columns[c]);
+           k++) {
+        add_cell(out, table, row, c, k);
+      }
+    }
+    dea_text_add(out, "</tr>");
+  }
+  dea_table_end(report);
+  out->failed = out->failed || header.failed;
+  dea_text_free(&header);
+}
+
+/* A table of one row: cards, and below them what fills lines. */
+static void add_facts(struct dea_report *report, const struct dea_result_table *table)
+{
+  struct dea_text *out = &report->text;
+  for (int words = 0; words < 2; words++) {
+    dea_text_add(out, words == 0 ? "<dl class=\"cards\">" : "</dl>");
+    for (size_t c = 0; c < table->type.column_count; c++) {
+      const struct dea_result_column *column = &table->type.columns[c];
+      const char *unit = column->display_unit != NULL ? column->display_unit : "1";
+      struct dea_text cell = {.ctx = report->ctx};
+      dea_result_table_cell_text(table, 0, c, 0, DIGITS, &cell);
+      bool lines = strchr(dea_text_get(&cell), '\n') != NULL;
+      bool wanted = on_page(column) && cell.length > 0 && lines == (words == 1);
+      if (wanted && words == 1) {
+        dea_html_element(out, "p class=\"verdict\"", dea_text_get(&cell));
+      } else if (wanted) {
+        dea_text_add(out, "<div class=\"card\"><dt>");
+        dea_html_text(out, column->title);
+        dea_text_add(out, "</dt><dd>");
+        dea_html_text(out, dea_text_get(&cell));
+        dea_text_add(out, " <span class=\"unit\">");
+        dea_html_text(out, strcmp(unit, "1") != 0 ? unit : "");
+        dea_text_add(out, "</span></dd></div>");
+      }
+      out->failed = out->failed || cell.failed;
+      dea_text_free(&cell);
+    }
+  }
+}
+
+static dea_status add_study(struct dea_report *report, const struct dea_report_run *run,
+                            const char *study)
+{
+  const struct dea_result *result = run->run->result;
+  char title[DEA_NAME_SIZE], caption[2 * DEA_NAME_SIZE + 64];
+  snprintf(title, sizeof title, "%s", study);
+  title[0] = (char)toupper((unsigned char)title[0]);
+  dea_section_begin(report, study, run->number, title);
+  DEA_TRY(report->ctx, dea_section_figures(report, run, study));
+  for (size_t i = 0; i < result->table_count; i++) {
+    const struct dea_result_table *table = &result->tables[i];
+    if (!is_shown(table) || strcmp(table->type.study, study) != 0) {
+      continue;
+    }
+    snprintf(caption, sizeof caption, "%s: %s", table->model, table->type.title);
+    if (table->type.one_row) {
+      dea_section_heading(report, caption);
+      add_facts(report, table);
+    } else {
+      add_rows(report, table, caption);
+    }
+  }
+  dea_section_end(report);
+  return DEA_OK;
+}
+
+dea_status dea_section_studies(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  for (size_t i = 0; i < result->table_count; i++) {
+    const struct dea_result_table *table = &result->tables[i];
+    if (table == first_table(result, table->type.study)) {
+      DEA_TRY(report->ctx, add_study(report, run, table->type.study));
+    }
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,380 @@
+/* Is it fit for the finger: displacement and force against thresholds of touch (paper section 5.2),
+ * and the load line of model lumped, as study load-line found it, against a fingertip.
+ *
+ * Reaches are quasi-static; study "frequency" says what is left of a motion at 5 to 10 Hz. */
+#include "plot/plot_svg.h"
+#include "report/section.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LINES = 4, DRAWN = 5 }; // load lines; one of so many points of each
+
+static const struct threshold {
+  const char *what, *source;
+  bool force;
+  double least; // m or N
+} thresholds[] = {
+    {"felt at the tip of the thumb", "paper section 5.2, its reference 31", false, 30e-6},
+    {"felt at the fingertip, at 5 to 10 Hz", "paper section 5.2, its reference 32", true, 10e-3},
+    {"device made for touch: displacement", "paper section 5.2, its reference 33", false, 450e-6},
+    {"device made for touch: force", "paper section 5.2, its reference 33", true, 14e-3},
+};
+enum { THRESHOLDS = sizeof thresholds / sizeof thresholds[0] };
+
+/* What a model reaches; NAN: it does not say. */
+struct reach {
+  const char *model;
+  double displacement_m, displacement_V, force_N, force_V;
+  const char *how;                        // the force was found
+  bool bound;                             // both are upper bounds
+  bool displacement_broken, force_broken; // beyond the film's breakdown field
+};
+
+/* Largest displacement of the centre, where the finger lies, over points to be
+ * trusted. */
+static void find_displacement(const struct dea_curve *sweep, struct reach *out)
+{
+  for (size_t i = 0; i < sweep->count; i++) {
+    const struct dea_load_point *p = &sweep->points[i];
+    if (dea_load_point_trusted(p) && isfinite(p->centre_z_m) &&
+        !(fabs(p->centre_z_m - sweep->points[0].centre_z_m) <= out->displacement_m)) {
+      out->displacement_m = fabs(p->centre_z_m - sweep->points[0].centre_z_m);
+      out->displacement_V = p->voltage_V;
+      out->displacement_broken = p->breakdown_margin < 0;
+    }
+  }
+}
+
+/* Largest force of the sweep; of study force the largest change at a depth that is held. */
+static void find_force(const struct dea_result *result, struct reach *out)
+{
+  const struct dea_curve *sweep = dea_result_find(result, out->model, "sweep");
+  const struct dea_curve *held = dea_result_find(result, out->model, "force");
+  for (size_t i = 0; held != NULL && i < held->count; i++) {
+    for (size_t k = 0; k < i; k++) {
+      const struct dea_load_point *a = &held->points[k], *b = &held->points[i];
+      double change = fabs(b->force_N - a->force_N);
+      if (a->voltage_V == 0 && dea_load_point_trusted(b) &&
+          fabs(a->tip_depth_m - b->tip_depth_m) < 1e-9 && !(change <= out->force_N)) {
+        out->force_N = change;
+        out->force_V = b->voltage_V;
+        out->force_broken = b->breakdown_margin < 0;
+        out->how = "change of the force on a tip that is held";
+      }
+    }
+  }
+  for (size_t i = 0; held == NULL && sweep != NULL && i < sweep->count; i++) {
+    if (dea_load_point_trusted(&sweep->points[i]) && !(sweep->points[i].force_N <= out->force_N) &&
+        isfinite(sweep->points[i].force_N)) {
+      out->force_N = sweep->points[i].force_N;
+      out->force_V = sweep->points[i].voltage_V;
+      out->force_broken = sweep->points[i].breakdown_margin < 0;
+      out->how = "largest of the load line";
+    }
+  }
+}
+
+static void add_row(struct dea_text *out, const struct threshold *t, const struct reach *r)
+{
+  double has = t->force ? r->force_N : r->displacement_m, factor = t->force ? 1e3 : 1e6;
+  const char *unit = t->force ? "mN" : "\302\265m";
+  if (!isfinite(has)) {
+    return;
+  }
+  dea_text_add(out, "<tr><th scope=\"row\">%s</th><td class=\"n\">%g %s</td>", t->what,
+               factor * t->least, unit);
+  dea_html_element(out, "td", r->model);
+  dea_text_add(out, "<td class=\"n\">");
+  dea_html_number(out, factor * has, 3);
+  dea_text_add(out, " %s</td><td class=\"n\">", unit);
+  dea_html_number(out, 1e-3 * (t->force ? r->force_V : r->displacement_V), 4);
+  dea_text_add(out, " kV</td><td class=\"n\">");
+  dea_html_number(out, has / t->least, 3);
+  bool enough = has >= t->least, broken = t->force ? r->force_broken : r->displacement_broken;
+  dea_text_add(out, "</td><td class=\"%s\">%s%s%s</td><td>%s%s%s</td></tr>",
+               !enough              ? "bad"
+               : r->bound || broken ? ""
+                                    : "good",
+               enough ? "above" : "below", enough && r->bound ? ", but an upper bound" : "",
+               enough && broken ? ", but beyond the breakdown field" : "", t->source,
+               t->force ? "; " : "", t->force ? r->how : "");
+}
+
+// Load line ---------------------------------------------------------------------------------------
+
+/* A line: rows [first, end) of the study's table, of one voltage, rising in height. */
+struct load_line {
+  const struct dea_result_table *table;
+  size_t first, end;
+  double voltage_V;
+};
+
+static double height_m(const struct load_line *line, size_t row)
+{
+  return dea_result_table_number(line->table, row, "height_m", 0);
+}
+
+static double force_N(const struct load_line *line, size_t row)
+{
+  return dea_result_table_number(line->table, row, "force_N", 0);
+}
+
+/* The line that begins at a row. */
+static struct load_line line_from(const struct dea_result_table *table, size_t first)
+{
+  struct load_line line = {table, first, first + 1,
+                           dea_result_table_number(table, first, "voltage_V", 0)};
+  while (line.end < table->row_count &&
+         dea_result_table_number(table, line.end, "voltage_V", 0) == line.voltage_V) {
+    line.end++;
+  }
+  return line;
+}
+
+/* Force between the points of a line: the cubic through the two on each side (Lagrange). */
+static double force_between(const struct load_line *line, size_t above, double z)
+{
+  enum { NEAR = 4 };
+  size_t from = above > line->first + 2 ? above - 2 : line->first;
+  double force = 0;
+  from = from + NEAR > line->end ? line->end - NEAR : from;
+  for (size_t i = from; i < from + NEAR; i++) {
+    double weight = 1;
+    for (size_t k = from; k < from + NEAR; k++) {
+      weight *= k != i ? (z - height_m(line, k)) / (height_m(line, i) - height_m(line, k)) : 1;
+    }
+    force += weight * force_N(line, i);
+  }
+  return force;
+}
+
+/* Height at which the actuator's force is that of a spring that it pushes; 0 when the spring is
+ * stiffer than all of the line, whose largest F/z goes to *stiffest. */
+static double meet(const struct load_line *line, double k, double *stiffest)
+{
+  size_t above = line->first; // the first point beyond which the spring is always the stronger
+  *stiffest = 0;
+  for (size_t row = line->first + 1; row < line->end; row++) {
+    double z = height_m(line, row), force = force_N(line, row);
+    *stiffest = fmax(*stiffest, force / z);
+    above = force > k * z ? row + 1 : above;
+  }
+  if (above == line->first || above >= line->end || line->end - line->first < 4) {
+    return 0;
+  }
+  double low = height_m(line, above - 1), high = height_m(line, above);
+  for (int i = 0; i < 60; i++) {
+    double middle = 0.5 * (low + high);
+    *(force_between(line, above, middle) > k * middle ? &low : &high) = middle;
+  }
+  return low;
+}
+
+static void add_meeting(struct dea_text *out, const struct load_line *line, double k)
+{
+  double stiffest, z = meet(line, k, &stiffest);
+  dea_text_add(out, "<p>A fingertip taken as a spring of ");
+  dea_html_number(out, 1e-3 * k, 3);
+  dea_text_add(out, " N/mm (an assumption: real ones stiffen as they are pressed) that touches the "
+                    "flat film is ");
+  if (z > 0) {
+    dea_text_add(out, "moved by ");
+    dea_html_number(out, 1e6 * z, 3);
+    dea_text_add(out, " \302\265m with ");
+    dea_html_number(out, 1e3 * k * z, 3);
+    dea_text_add(out, " mN");
+  } else {
+    dea_text_add(out, "not moved");
+  }
+  dea_text_add(out, " at ");
+  dea_html_number(out, 1e-3 * line->voltage_V, 3);
+  dea_text_add(out, " kV. Rods that lie flat begin without force, so that what is stiffer than ");
+  dea_html_number(out, 1e-3 * stiffest, 2);
+  dea_text_add(out, " N/mm stays where it is; all this by model lumped, whose force is an upper "
+                    "bound.</p>");
+}
+
+static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel, size_t number,
+                           const struct load_line *line)
+{
+  size_t count = (line->end - line->first + DRAWN - 1) / DRAWN;
+  struct dea_series *series;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  series->colour = (enum dea_colour)number;
+  snprintf(series->title, sizeof series->title, "%.3g kV", 1e-3 * line->voltage_V);
+  for (size_t i = 0; i < count; i++) {
+    series->values[i] = 1e6 * height_m(line, line->first + DRAWN * i);
+    series->values[count + i] = 1e3 * force_N(line, line->first + DRAWN * i);
+  }
+  return DEA_OK;
+}
+
+static dea_status add_finger(struct dea_report *report, struct dea_panel *panel, double k,
+                             double highest)
+{
+  struct dea_series *finger;
+  double top = 0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    for (size_t i = 0; i < panel->series[s].count; i++) {
+      top = fmax(top, panel->series[s].values[panel->series[s].count + i]);
+    }
+  }
+  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, 2, &finger));
+  finger->style = DEA_DASHED;
+  finger->colour = DEA_BLACK;
+  snprintf(finger->title, sizeof finger->title, "fingertip, %.3g N/mm", 1e-3 * k);
+  finger->values[0] = finger->values[2] = 0;
+  finger->values[1] = 1e6 * fmin(highest, 1e-3 * top / k);
+  finger->values[3] = k * finger->values[1] * 1e-3;
+  snprintf(panel->x_label, sizeof panel->x_label, "Height {/:Italic z} (\302\265m)");
+  snprintf(panel->y_label, sizeof panel->y_label, "Force (mN)");
+  return DEA_OK;
+}
+
+/* The lines in a plot; *last: that of the highest voltage. */
+static dea_status draw_lines(struct dea_report *report, const struct dea_result_table *table,
+                             struct dea_plot *plot, struct load_line *last)
+{
+  double k = report->options->finger_N_per_m, highest = 0;
+  size_t number = 0;
+  for (size_t row = 0; row < table->row_count && number < LINES; row = last->end) {
+    *last = line_from(table, row);
+    highest = fmax(highest, height_m(last, last->end - 1));
+    DEA_TRY(report->ctx, add_line(report->ctx, &plot->panels[0], number++, last));
+  }
+  return add_finger(report, &plot->panels[0], k, highest);
+}
+
+static dea_status add_load_line(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result_table *table =
+      dea_result_find_table(run->run->result, "lumped", "load-line", "forces");
+  double k = report->options->finger_N_per_m;
+  if (table == NULL || table->row_count == 0 || !(k > 0)) {
+    return DEA_OK;
+  }
+  struct load_line last = line_from(table, 0);
+  struct dea_plot *plot;
+  DEA_TRY(report->ctx, dea_plot_create(report->ctx, "touch",
+                                       "load line of model lumped against a fingertip", &plot));
+  dea_status status = draw_lines(report, table, plot, &last);
+  if (status == DEA_OK) {
+    dea_text_add(&report->text, "<div class=\"plots\">");
+    dea_plot_add_svg(&report->text, plot, ++report->figures);
+    add_meeting(&report->text, &last, k);
+    dea_text_add(&report->text, "</div>");
+  }
+  dea_plot_destroy(report->ctx, plot);
+  return status;
+}
+
+// Frequency ---------------------------------------------------------------------------------------
+
+static const double touch_Hz = 10; // the faster end of what the thresholds speak of
+
+/* Points [first, end) of one bias, rising in frequency: amplitude of the centre at touch_Hz over
+ * that at the lowest frequency, straight between the points; NAN outside them. */
+static double left_at_touch(const struct dea_load_point *points, size_t first, size_t end)
+{
+  for (size_t i = first; i + 1 < end; i++) {
+    const struct dea_load_point *a = &points[i], *b = &points[i + 1];
+    if (a->frequency_Hz <= touch_Hz && touch_Hz <= b->frequency_Hz) {
+      double share = (touch_Hz - a->frequency_Hz) / (b->frequency_Hz - a->frequency_Hz);
+      return (a->centre_amplitude_m + share * (b->centre_amplitude_m - a->centre_amplitude_m)) /
+             points[first].centre_amplitude_m;
+    }
+  }
+  return NAN;
+}
+
+/* A sentence for each bias of study frequency whose points reach touch_Hz; returns their number. */
+static size_t add_frequency(struct dea_text *out, const struct dea_result *result,
+                            const char *model)
+{
+  const struct dea_curve *curve = dea_result_find(result, model, "frequency");
+  size_t said = 0;
+  for (size_t first = 0, end = 0; curve != NULL && first < curve->count; first = end) {
+    const struct dea_load_point *points = curve->points;
+    end = first + 1;
+    while (end < curve->count && points[end].voltage_V == points[first].voltage_V &&
+           points[end].frequency_Hz > points[end - 1].frequency_Hz) {
+      end++;
+    }
+    double left = left_at_touch(points, first, end);
+    if (isfinite(left)) {
+      dea_text_add(out, "%s about ", said++ > 0 ? ";" : " Of a small AC excitation of the voltage");
+      dea_html_number(out, 1e-3 * points[first].voltage_V, 3);
+      dea_text_add(out, " kV the centre follows at 10 Hz by ");
+      dea_html_number(out, left, 4);
+      dea_text_add(out, " times its motion at ");
+      dea_html_number(out, points[first].frequency_Hz, 2);
+      dea_text_add(out, " Hz");
+    }
+  }
+  if (said > 0) {
+    dea_text_add(out, " (study frequency of model ");
+    dea_html_text(out, model);
+    dea_text_add(out, ").");
+  }
+  return said;
+}
+
+static void add_introduction(struct dea_text *out, const struct dea_result *result,
+                             const char *const models[], size_t count)
+{
+  size_t said = 0;
+  dea_text_add(out, "<p>Displacement of the centre and force, against thresholds of touch. "
+                    "<strong>Quasi-static</strong>.");
+  for (size_t m = 0; m < count; m++) {
+    said += add_frequency(out, result, models[m]);
+  }
+  dea_text_add(out, "%s</p>",
+               said > 0 ? ""
+                        : " The run says nothing of 5 to 10 Hz, where viscosity takes some of both "
+                          "(study frequency does).");
+}
+
+dea_status dea_section_touch(struct dea_report *report, const struct dea_report_run *run)
+{
+  const struct dea_result *result = run->run->result;
+  const char *models[DEA_DESIGN_MODELS_MAX];
+  size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
+  struct reach reaches[DEA_DESIGN_MODELS_MAX];
+  bool any = false;
+  for (size_t m = 0; m < count; m++) {
+    const struct dea_curve *sweep = dea_result_find(result, models[m], "sweep");
+    reaches[m] = (struct reach){.model = models[m],
+                                .displacement_m = NAN,
+                                .displacement_V = NAN,
+                                .force_N = NAN,
+                                .force_V = NAN,
+                                .how = "",
+                                .bound = strcmp(models[m], "lumped") == 0};
+    if (sweep != NULL) {
+      find_displacement(sweep, &reaches[m]);
+    }
+    find_force(result, &reaches[m]);
+    any = any || isfinite(reaches[m].displacement_m) || isfinite(reaches[m].force_N);
+  }
+  if (!any) {
+    return DEA_OK;
+  }
+  dea_section_begin(report, "touch", run->number, "Touch: can a finger feel it?");
+  add_introduction(&report->text, result, models, count);
+  dea_table_begin(report, "Thresholds of touch and what this actuator reaches",
+                  "<th scope=\"col\">Threshold</th><th scope=\"col\" class=\"n\">Needed</th>"
+                  "<th scope=\"col\">Model</th><th scope=\"col\" class=\"n\">Reached</th>"
+                  "<th scope=\"col\" class=\"n\">at</th><th scope=\"col\" class=\"n\">Ratio</th>"
+                  "<th scope=\"col\">Verdict</th><th scope=\"col\">Source; how</th>");
+  for (size_t t = 0; t < THRESHOLDS; t++) {
+    for (size_t m = 0; m < count; m++) {
+      add_row(&report->text, &thresholds[t], &reaches[m]);
+    }
+  }
+  dea_table_end(report);
+  DEA_TRY(report->ctx, add_load_line(report, run));
+  dea_section_end(report);
+  return DEA_OK;
+}

@@ -1,0 +1,501 @@
+/* The page of dea report in a browser: it opens from disk without an error and without a request,
+ * its sliders move what they say, and what it computes is what the command computes. */
+// ctest: browser, nightly
+#define _GNU_SOURCE // mkdtemp
+#include "browser.h"
+#include "command.h"
+#include "fake_result.h"
+#include "fake_surface.h"
+#include "io/results_h5.h"
+
+static struct browser browser;
+static struct dea_context *ctx;
+
+static int set_up(void **state)
+{
+  if (dea_context_create(NULL, &ctx) != DEA_OK || command_set_up(state) != 0) {
+    return -1;
+  }
+  browser_start(&browser, DEA_CHROMIUM, command_folder);
+  return 0;
+}
+
+static int tear_down(void **state)
+{
+  browser_stop(&browser);
+  dea_context_destroy(ctx);
+  return command_tear_down(state);
+}
+
+static void open_page(const char *name)
+{
+  char path[700];
+  snprintf(path, sizeof path, "%s/%s", command_folder, name);
+  browser_open(&browser, path);
+  browser_ready(&browser);
+}
+
+static void assert_quiet(void)
+{
+  if (browser.trouble[0] != '\0') {
+    fail_msg("%s", browser.trouble);
+  }
+  assert_int_equal(browser.requests, 1); // the page itself
+}
+
+static void assert_holds(const char *expression)
+{
+  if (browser_number(&browser, expression) != 1) {
+    fail_msg("not so in the page: %s", expression);
+  }
+}
+
+// What a design says is text ----------------------------------------------------------------------
+
+static void test_text_is_text(void **state)
+{
+  (void)state;
+  command_write("evil.yaml",
+                "dea: 1\n"
+                "title: '</title><script>alert(1)</script><img src=x onerror=alert(2)>'\n"
+                "film: {material: '<svg onload=alert(3)>', thickness: 100 um}\n"
+                "pre_stretch: 1.5\n"
+                "frame: {inner_diameter: 30 mm}\n"
+                "electrodes: {radius: 3.75 mm stretched}\n"
+                "materials:\n"
+                "  - name: '<svg onload=alert(3)>'\n"
+                "    kind: elastomer\n"
+                "    laws:\n"
+                "      - {id: '</script><script>alert(4)</script>', law: neo-hookean,\n"
+                "         parameters: {mu: 100 kPa}, source: '\"><script>alert(5)</script>'}\n"
+                "    permittivity: [{id: one, at_rest: 2.8, source: none}]\n"
+                "compute: {models: [lumped], voltage: {from: 0 kV, to: 1 kV, step: 0.5 kV}}\n");
+  assert_int_equal(command_run("run evil.yaml --no-figures -o evil.run"), 0);
+  assert_int_equal(command_run("report evil.run -o evil.html"), 0);
+  open_page("evil.html");
+  assert_quiet();
+  assert_holds(
+      "document.title === '</title><script>alert(1)</script><img src=x onerror=alert(2)>'");
+  assert_holds("document.querySelector('h1').textContent === document.title");
+  assert_holds("document.querySelectorAll('img, iframe, object, embed, link').length === 0");
+  assert_holds("document.querySelectorAll('script:not([type])').length === 1");
+  assert_holds("document.body.textContent.includes('<svg onload=alert(3)>')");
+}
+
+// The example -------------------------------------------------------------------------------------
+
+static void open_example(void)
+{
+  static bool made;
+  if (!made) {
+    assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures -o a.run --set "
+                                 "'compute.voltage={from: 0 kV, to: 8 kV, step: 0.5 kV}'"),
+                     0);
+    assert_int_equal(command_run("report a.run -o a.html"), 0);
+    made = true;
+  }
+  open_page("a.html");
+}
+
+static void set_scheme(const char *scheme)
+{
+  browser_do(
+      &browser, "Emulation.setEmulatedMedia",
+      json_pack("{s:[{s:s, s:s}]}", "features", "name", "prefers-color-scheme", "value", scheme));
+}
+
+static void test_opens_without_a_request(void **state)
+{
+  (void)state;
+  open_example();
+  assert_quiet();
+  assert_holds("document.querySelectorAll('figure.plot svg.chart').length >= 7");
+  assert_holds("document.querySelectorAll('nav a').length >= 8");
+  // each link has its target, each image its words, each id is there once
+  assert_holds("[...document.querySelectorAll('a')].every((a) => "
+               "document.querySelector(a.getAttribute('href')) !== null)");
+  assert_holds("[...document.querySelectorAll('svg[role=img]')].every((s) => "
+               "s.getAttribute('aria-label') || "
+               "document.getElementById(s.getAttribute('aria-labelledby')) !== null)");
+  assert_holds("new Set([...document.querySelectorAll('[id]')].map((e) => e.id)).size === "
+               "document.querySelectorAll('[id]').length");
+  assert_holds("[...document.querySelectorAll('table')].every((t) => t.closest('.scroll'))");
+  // the style has arrived: its hash is that of the policy
+  assert_holds("getComputedStyle(document.querySelector('.cards')).display === 'grid'");
+  set_scheme("dark");
+  assert_holds("getComputedStyle(document.body).backgroundColor === 'rgb(15, 19, 25)'");
+  // narrow: nothing but tables that scroll is wider than the window
+  browser_do(&browser, "Emulation.setDeviceMetricsOverride",
+             json_pack("{s:i, s:i, s:i, s:b}", "width", 390, "height", 800, "deviceScaleFactor", 1,
+                       "mobile", 0));
+  assert_holds("document.documentElement.scrollWidth <= 390");
+  assert_quiet();
+}
+
+/* WCAG 2.1, 1.4.3: the ratio of luminances of all text that is seen to what lies behind it. */
+static void test_contrast(void **state)
+{
+  (void)state;
+  static const char worst[] =
+      "(() => { const rgb = (c) => c.match(/[\\d.]+/g).map(Number); "
+      "const L = (c) => { const [r, g, b] = c.map((v) => { v /= 255; return v <= 0.03928 ? v / "
+      "12.92 "
+      ": ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; }; "
+      "const back = (e) => { for (; e; e = e.parentElement) { const c = "
+      "rgb(getComputedStyle(e).backgroundColor); if (c.length < 4 || c[3] > 0) { return c; } } "
+      "return [255, 255, 255]; }; "
+      "let worst = 21, count = 0; document.querySelectorAll('details').forEach((d) => { d.open = "
+      "true; }); for (const e of document.querySelectorAll('body *')) { "
+      "if (![...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim()) || "
+      "e.closest('script, style, svg.device, .map') || !e.checkVisibility()) { continue; } "
+      "const s = getComputedStyle(e); const c = rgb(e.closest('svg') ? s.fill : s.color); "
+      "const [a, b] = [L(c.slice(0, 3)), L(back(e).slice(0, 3))]; "
+      "const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05); count++; "
+      "const large = parseFloat(s.fontSize) >= 24 || (parseFloat(s.fontSize) >= 18.7 && "
+      "s.fontWeight >= 700); worst = Math.min(worst, large ? ratio * 1.5 : ratio); } "
+      "return count > 200 ? worst : 0; })()";
+  static const char *const schemes[] = {"light", "dark"};
+  open_example();
+  for (int k = 0; k < 2; k++) {
+    set_scheme(schemes[k]);
+    assert_true(browser_number(&browser, worst) >= 4.5);
+  }
+  assert_quiet();
+}
+
+static void press_tab(void)
+{
+  static const char *const kinds[] = {"rawKeyDown", "keyUp"};
+  for (int k = 0; k < 2; k++) {
+    browser_do(&browser, "Input.dispatchKeyEvent",
+               json_pack("{s:s, s:s, s:s, s:i}", "type", kinds[k], "key", "Tab", "code", "Tab",
+                         "windowsVirtualKeyCode", 9));
+  }
+}
+
+/* The tabulator visits all that can be used, in the order of the page; each says what it is, and is
+ * seen to have the focus. */
+static void test_keyboard(void **state)
+{
+  (void)state;
+  open_example();
+  assert_holds("(() => { window.stops = [...document.querySelectorAll('a[href], button, select, "
+               "input, summary, canvas[tabindex], [tabindex=\"0\"]')].filter((e) => "
+               "e.checkVisibility() && !e.disabled); return stops.length > 20 && "
+               "document.querySelectorAll('[tabindex]:not([tabindex=\"0\"], "
+               "[tabindex=\"-1\"])').length === 0; })()");
+  assert_holds("stops.every((e) => e.textContent.trim() || e.getAttribute('aria-label') || "
+               "e.closest('label') || (e.labels && e.labels.length > 0))");
+  int count = (int)browser_number(&browser, "stops.length");
+  for (int k = 0; k < count; k++) {
+    press_tab();
+    if (browser_number(&browser, "stops.indexOf(document.activeElement)") != k) {
+      json_t *where = browser_value(&browser, "document.activeElement.outerHTML.slice(0, 200)");
+      fail_msg("stop %d of %d is %s", k, count, json_string_value(where));
+    }
+    assert_holds("parseFloat(getComputedStyle(document.activeElement).outlineWidth) > 0");
+  }
+  assert_quiet();
+}
+
+/* What says nothing is not there: columns without a value, rows without a number. */
+static void test_no_empty_columns(void **state)
+{
+  (void)state;
+  open_example();
+  assert_holds("(() => { const tables = [...document.querySelectorAll('table')].filter((t) => "
+               "t.querySelector('[colspan]') === null); return tables.length > 4 && "
+               "tables.every((t) => [...t.tHead.rows[0].cells].every((head, c) => "
+               "[...t.tBodies[0].rows].some((row) => !['', '\u2013']"
+               ".includes(row.cells[c].textContent.trim())))); })()");
+  assert_holds("[...document.querySelectorAll('table')].every((t) => [...t.rows].every((row) => "
+               "row.cells.length === t.rows[0].cells.length || t.querySelector('[colspan]')))");
+}
+
+static void test_network_is_shut(void **state)
+{
+  (void)state;
+  open_example();
+  assert_holds("fetch('data:text/plain,x').then(() => 0, () => 1)");
+  assert_holds("new Promise((done) => { const s = document.createElement('script'); "
+               "s.textContent = 'window.ran = 1'; document.body.append(s); "
+               "done(window.ran === undefined ? 1 : 0); })");
+}
+
+static void test_values_under_the_pointer(void **state)
+{
+  (void)state;
+  open_example();
+  // the same voltage on all curves; that of the drawing is what the table of points says
+  assert_holds(
+      "(() => { dea.setVoltage(6, null); const text = (n) => [...document.querySelectorAll("
+      "'.readout')][n].textContent; return text(0).includes('6') && "
+      "text(0).includes('lumped, strain') && text(1).includes('axisymmetric'); })()");
+  json_t *shown = browser_value(
+      &browser,
+      "[...document.querySelectorAll('.readout')][0].querySelectorAll('b')[1].textContent");
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --json --model lumped --set "
+                               "'compute.voltage={from: 0 kV, to: 6 kV, step: 6 kV}'"),
+                   0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  const json_t *point = json_array_get(json_object_get(run, "points"), 1);
+  double stretch = json_number_value(json_object_get(point, "electrode_stretch"));
+  assert_close(atof(json_string_value(shown)), 100 * (stretch - 1), 1e-3, 0);
+  json_decref(shown);
+  json_decref(run);
+  assert_quiet();
+}
+
+/* The map's limit at the design's own pre-stretch is that of the path, and the ratio of the
+ * displacement to the threshold of touch that of the numbers. */
+static void test_map_and_touch(void **state)
+{
+  (void)state;
+  open_example();
+  static const char map[] =
+      "(() => { const figure = document.querySelector('[id^=map] figure'); const { series } = "
+      "JSON.parse(figure.querySelector('.numbers').textContent)[0]; const { v: [x, y] } = "
+      "series.find((s) => s.t.startsWith('breakdown')); const i = x.findIndex((at) => at > 1.5); "
+      "return y[i - 1] + (1.5 - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]); })()";
+  static const char ratio[] = "Number([...document.querySelectorAll('[id^=touch] tbody tr')][0]"
+                              ".children[5].textContent)";
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --json --model lumped --set "
+                               "'compute.voltage={from: 0 kV, to: 8 kV, step: 8 kV}'"),
+                   0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  double breakdown_V =
+      json_number_value(json_object_get(json_object_get(run, "limits"), "breakdown_voltage_V"));
+  const json_t *last = json_array_get(json_object_get(run, "points"), 1);
+  double z = json_number_value(json_object_get(last, "centre_z_m"));
+  assert_close(browser_number(&browser, map), 1e-3 * breakdown_V, 2e-3,
+               0);                                                   // linear between columns
+  assert_close(browser_number(&browser, ratio), z / 30e-6, 5e-3, 0); // three digits
+  json_decref(run);
+}
+
+// The explorer ------------------------------------------------------------------------------------
+
+/* What the command says of a model at a voltage, with values of the design changed. */
+static json_t *command_point(const char *model, const char *sets, double voltage_V)
+{
+  char arguments[1000];
+  snprintf(arguments, sizeof arguments,
+           "run @/examples/frdea-4.yaml --json --study sweep --model %s %s --set "
+           "'compute.voltage={from: 0 V, to: %.17g V, step: %.17g V}'",
+           model, sets, voltage_V, voltage_V / 4);
+  if (command_run(arguments) != 0) {
+    fail_msg("%s", command_err);
+  }
+  json_t *run = json_loads(command_out, 0, NULL);
+  json_t *points = json_object_get(run, "points");
+  assert_int_equal(json_array_size(points), 5);
+  json_t *point = json_incref(json_array_get(points, 4));
+  json_decref(run);
+  return point;
+}
+
+static void test_explorer_computes_what_the_command_computes(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *model, *sets, *values;
+    double voltage_V;
+  } cases[] = {
+      {"lumped", "", "", 6000},
+      {"axisymmetric", "", "", 7300},
+      {"lumped", "--set pre_stretch=2.1", "pre_stretch: 2.1", 4100},
+      {"axisymmetric", "--set film.thickness=63um --set frame.inner_diameter=44mm",
+       "thickness_m: 63e-6, frame_radius_m: 22e-3", 2900},
+      {"lumped", "--set 'electrodes.diameter=7 mm unstretched' --set pre_stretch=1.2",
+       "electrode_radius_m: 3.5e-3, pre_stretch: 1.2", 5000},
+  };
+  open_example();
+  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
+    skip(); // built without the compiler for it
+  }
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char expression[400];
+    snprintf(expression, sizeof expression, "dea.explorers[0].solve('%s', {voltage_V: %.17g%s%s})",
+             cases[i].model, cases[i].voltage_V, cases[i].values[0] != '\0' ? ", " : "",
+             cases[i].values);
+    json_t *page = browser_value(&browser, expression);
+    json_t *wanted = command_point(cases[i].model, cases[i].sets, cases[i].voltage_V);
+    const char *key;
+    json_t *value;
+    size_t compared = 0;
+    json_object_foreach(wanted, key, value)
+    {
+      if (json_is_real(value) && strcmp(key, "pull_in_distance_V") != 0) {
+        double there = json_number_value(json_object_get(page, key));
+        double here = json_number_value(value);
+        if (!(fabs(there - here) <= 1e-9 * fabs(here))) {
+          fail_msg("case %zu, %s: %.15g in the page, %.15g by the command", i, key, there, here);
+        }
+        compared++;
+      }
+    }
+    assert_true(compared >= 9);
+    json_decref(page);
+    json_decref(wanted);
+  }
+  assert_quiet();
+}
+
+static void test_explorer_follows_its_sliders(void **state)
+{
+  (void)state;
+  open_example();
+  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
+    skip();
+  }
+  static const char move[] =
+      "(async () => { const host = document.querySelector('.explorer'); "
+      "const cell = () => host.querySelector('tbody td').textContent; const before = cell(); "
+      "const input = host.querySelectorAll('input')[1]; input.value = 2; "
+      "input.dispatchEvent(new Event('input')); "
+      "await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); "
+      "return before !== cell() && host.querySelectorAll('.plot svg').length >= 3; })()";
+  assert_holds(move);
+  // every material of the list can be computed; each has the browser's time for itself
+  int count =
+      (int)browser_number(&browser, "document.querySelector('.explorer select').options.length");
+  assert_true(count > 2);
+  for (int k = 0; k < count; k++) {
+    char choose[500];
+    snprintf(choose, sizeof choose,
+             "(async () => { const host = document.querySelector('.explorer'); "
+             "const select = host.querySelector('select'); select.value = %d; "
+             "select.dispatchEvent(new Event('change')); "
+             "await new Promise((done) => requestAnimationFrame(() => "
+             "requestAnimationFrame(done))); "
+             "return host.querySelector('.warning').hidden; })()",
+             k);
+    assert_holds(choose);
+  }
+  assert_quiet();
+}
+
+static void test_map_of_two_parameters(void **state)
+{
+  (void)state;
+  open_example();
+  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
+    skip();
+  }
+  assert_holds("(async () => { document.querySelector('.explorer details').open = true; "
+               "await dea.explorers[0].map(); const map = document.querySelector('.map'); "
+               "const before = map.querySelector('.plot').innerHTML; "
+               "const [across, up] = map.querySelectorAll('select'); across.value = 2; "
+               "across.dispatchEvent(new Event('change')); "
+               "for (let i = 0; i < 300 && !map.querySelector('.readout').textContent"
+               ".startsWith('Colours'); i++) { await new Promise((d) => setTimeout(d, 20)); } "
+               "return map.querySelectorAll('rect').length > 1000 && "
+               "map.querySelector('.plot').innerHTML !== before && "
+               "map.textContent.includes('breakdown'); })()");
+  // a slider of no axis: the map waits for it; one of an axis moves the ring alone
+  assert_holds("(async () => { const host = document.querySelector('.explorer'); const map = "
+               "host.querySelector('.map'); const cells = () => map.querySelector('.plot')"
+               ".innerHTML; const wait = async (done) => { for (let i = 0; i < 400 && !done(); i++)"
+               " { await new Promise((d) => setTimeout(d, 20)); } return done(); }; "
+               "const move = (k, share) => { const input = host.querySelectorAll('input')[k]; "
+               "input.value = Number(input.min) + share * (input.max - input.min); "
+               "input.dispatchEvent(new Event('input')); }; "
+               "const before = cells(); move(4, 0.9); "
+               "if (!await wait(() => map.classList.contains('stale'))) { return 'not stale'; } "
+               "if (!await wait(() => !map.classList.contains('stale') && cells() !== before)) { "
+               "return 'not computed again'; } const after = cells(); move(0, 0.3); "
+               "return wait(() => cells() !== after && !map.classList.contains('stale')); })()");
+  assert_quiet();
+}
+
+// The membrane ------------------------------------------------------------------------------------
+
+enum { STEPS = 3 };
+static const double step_V[STEPS] = {0, 3000, 6000};
+
+static void write_membrane(void)
+{
+  const struct dea_design design = fake_design();
+  struct dea_result *result;
+  char path[700];
+  assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
+  for (size_t i = 0; i < STEPS; i++) {
+    assert_int_equal(
+        dea_result_add_surface(ctx, result, "3d", i, step_V[i], fake_surface(ctx, step_V[i])),
+        DEA_OK);
+  }
+  snprintf(path, sizeof path, "%s/film.h5", command_folder);
+  assert_int_equal(dea_results_h5_write(ctx, result, path), DEA_OK);
+  dea_result_destroy(ctx, result);
+  assert_int_equal(command_run("report film.h5 -o film.html"), 0);
+}
+
+static void test_membrane_is_the_surface(void **state)
+{
+  (void)state;
+  write_membrane();
+  open_page("film.html");
+  assert_quiet();
+  assert_holds("dea.films.length === 1 && dea.films[0].film.voltages.length === 3");
+  struct dea_field_mesh *mesh = fake_surface(ctx, step_V[2]);
+  double range = browser_number(&browser, "dea.films[0].film.channels[2].high - "
+                                          "dea.films[0].film.channels[2].low");
+  for (size_t p = 0; p < mesh->point_count; p += 17) {
+    char expression[120];
+    double wanted = fake_height_m(mesh->X[3 * p], mesh->X[3 * p + 1], step_V[2]);
+    snprintf(expression, sizeof expression, "dea.films[0].film.channels[2].steps[2][%zu]", p);
+    assert_close(browser_number(&browser, expression), wanted, 0, range / 65535);
+    snprintf(expression, sizeof expression, "dea.films[0].film.y[%zu]", p);
+    assert_close(browser_number(&browser, expression), mesh->X[3 * p + 1], 0,
+                 2 * fake_radius_m / 65535);
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+}
+
+static void test_slider_moves_the_membrane(void **state)
+{
+  (void)state;
+  write_membrane();
+  open_page("film.html");
+  assert_holds("document.querySelector('.membrane canvas') !== null"); // WebGL is there
+  assert_holds("(() => { const { canvas } = dea.films[0]; const slider = "
+               "document.querySelector('.membrane input'); const words = () => "
+               "document.querySelector('.membrane .readout').textContent; "
+               "const before = [canvas.toDataURL(), words()]; slider.value = 1; "
+               "slider.dispatchEvent(new Event('input')); "
+               "return canvas.toDataURL() !== before[0] && words() !== before[1] && "
+               "words().startsWith('3 kV'); })()");
+  // the colour of the electrode's middle is not the background's
+  assert_holds(
+      "(() => { const { canvas } = dea.films[0]; const small = "
+      "document.createElement('canvas'); small.width = small.height = 1; const c = "
+      "small.getContext('2d'); c.drawImage(canvas, canvas.width / 2, canvas.height / 2, 1, "
+      "1, 0, 0, 1, 1); return c.getImageData(0, 0, 1, 1).data[3] === 255; })()");
+  // arrow keys turn it; a voltage chosen on a curve moves it
+  assert_holds("(() => { const { canvas, state } = dea.films[0]; const before = state.turn; "
+               "canvas.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' })); "
+               "return state.turn !== before; })()");
+  assert_holds("(() => { dea.setVoltage(1.5, null); return Math.abs(dea.films[0].state.at - 0.5) < "
+               "1e-9; })()");
+  assert_quiet();
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_text_is_text),
+      cmocka_unit_test(test_opens_without_a_request),
+      cmocka_unit_test(test_contrast),
+      cmocka_unit_test(test_keyboard),
+      cmocka_unit_test(test_no_empty_columns),
+      cmocka_unit_test(test_network_is_shut),
+      cmocka_unit_test(test_values_under_the_pointer),
+      cmocka_unit_test(test_map_and_touch),
+      cmocka_unit_test(test_explorer_computes_what_the_command_computes),
+      cmocka_unit_test(test_explorer_follows_its_sliders),
+      cmocka_unit_test(test_map_of_two_parameters),
+      cmocka_unit_test(test_membrane_is_the_surface),
+      cmocka_unit_test(test_slider_moves_the_membrane),
+  };
+  return cmocka_run_group_tests(tests, set_up, tear_down);
+}
