@@ -38,11 +38,17 @@ static dea_status see(struct dea_context *ctx, const struct search *a,
 }
 
 /* Whether a film without tension has grown at once to where the solid is: nothing but the end of
- * its law holds it there, so that it is no state (docs/theory/membrane.md). */
-static dea_status see_growth(struct dea_context *ctx, const struct search *a, bool *grew)
+ * its law holds it there, so that it is no state (docs/theory/membrane.md). steps: what brought it
+ * there, which may have failed further on; returned if this look does not fail. */
+static dea_status see_growth(struct dea_context *ctx, const struct search *a, dea_status steps,
+                             bool *grew)
 {
   *grew = false;
-  return a->slack && a->watch != NULL ? a->watch->grew(ctx, a->watch->user, grew) : DEA_OK;
+  if (!a->slack || a->watch == NULL || (steps != DEA_OK && !dea_solid_may_shorten(steps))) {
+    return steps;
+  }
+  DEA_TRY(ctx, a->watch->grew(ctx, a->watch->user, grew));
+  return steps;
 }
 
 // Flat films -------------------------------------------------------------------------------------
@@ -158,11 +164,8 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
     dea_solid_controls_set(s, a->goal);
   }
   dea_solid_forget(s);
-  bool grew = false;
-  dea_status status = dea_solid_descend_unstable(ctx, s, 0, &report);
-  if (status == DEA_OK) {
-    status = see_growth(ctx, a, &grew);
-  }
+  bool grew;
+  dea_status status = see_growth(ctx, a, dea_solid_descend_unstable(ctx, s, 0, &report), &grew);
   if (status == DEA_OK && report.unstable_modes == 0 && !grew) {
     *a->report = report;
     a->went_on = true;
@@ -257,7 +260,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
       return a->looks || a->stop->way < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
     bool grew;
-    DEA_TRY(ctx, see_growth(ctx, a, &grew));
+    DEA_TRY(ctx, see_growth(ctx, a, DEA_OK, &grew));
     DEA_TRY(ctx, grew ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path thins at once") : DEA_OK);
     DEA_TRY(ctx, see(ctx, a, DEA_STOP_UNKNOWN));
     DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
@@ -441,7 +444,7 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, double sh
   bool branch_jumps =
       status == DEA_OK && !a->slack && !report.snapped && dea_solid_left_branch(s, last);
   if (status == DEA_OK && a->slack) {
-    status = see_growth(ctx, a, &branch_jumps);
+    status = see_growth(ctx, a, DEA_OK, &branch_jumps);
   }
   *there = status == DEA_OK && report.unstable_modes == 0 && !branch_jumps;
   a->leapt |= branch_jumps;
@@ -494,12 +497,10 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   struct dea_solid *s = a->s;
   char why[160];
   bool there = false;
-  bool grew = false;
+  bool grew;
   dea_status status =
       dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.approach_part_least, a->report);
-  if (status == DEA_OK) {
-    status = see_growth(ctx, a, &grew);
-  }
+  status = see_growth(ctx, a, status, &grew);
   *on = false;
   if (!grew && (status != DEA_E_NOT_CONVERGED || !taut)) {
     return status;
@@ -527,11 +528,8 @@ static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V
 {
   for (int i = 0; i < a->s->settings.approach_rounds; i++) {
     bool on;
-    bool grew = false;
-    dea_status status = try_steps(ctx, a, voltage_V, taut);
-    if (status == DEA_OK) {
-      status = see_growth(ctx, a, &grew);
-    }
+    bool grew;
+    dea_status status = see_growth(ctx, a, try_steps(ctx, a, voltage_V, taut), &grew);
     if (!grew && !dea_solid_may_shorten(status)) {
       return status;
     }
