@@ -500,6 +500,10 @@ static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double
   bool grew;
   dea_status status =
       dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.approach_part_least, a->report);
+  if (status == DEA_E_DOMAIN) { // no path leads there: closer to where the law ends
+    dea_context_clear(ctx);
+    status = dea_load_steps_solve(ctx, s, voltage_V, a->report);
+  }
   status = see_growth(ctx, a, status, &grew);
   *on = false;
   if (!grew && (status != DEA_E_NOT_CONVERGED || !taut)) {
