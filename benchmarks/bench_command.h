@@ -2,7 +2,7 @@
 #ifndef DEA_BENCH_BENCH_COMMAND_H
 #define DEA_BENCH_BENCH_COMMAND_H
 
-#include "bench.h"
+#include "timing.h"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -2,8 +2,8 @@
 #ifndef BENCH_FACTORISATIONS_H
 #define BENCH_FACTORISATIONS_H
 
-#include "bench.h"
 #include "model/solid/assembly/ranks.h"
+#include "timing.h"
 
 #include <petscsys.h>
 

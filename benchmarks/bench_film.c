@@ -1,7 +1,7 @@
 /* An 80-point sweep and the whole path of the disc of benchmark 4 by the models of a film. */
 #include "../tests/devices.h"
-#include "bench.h"
 #include "model/model.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdlib.h>

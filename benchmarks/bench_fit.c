@@ -1,6 +1,6 @@
 /* How long a fit of five parameters to 3000 points takes, with its error bars. */
-#include "bench.h"
 #include "identify/fit.h"
+#include "timing.h"
 
 #include <stdint.h>
 #include <string.h>

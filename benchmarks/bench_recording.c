@@ -7,7 +7,7 @@
  * --paced: an instrument of its own thread hands the blocks over in real time through a ring of one
  * second; what does not fit in would be lost. Prints the largest backlog. */
 #define _XOPEN_SOURCE 700 // mkdtemp
-#include "bench.h"
+#include "timing.h"
 
 #include "recording/recorder.h"
 

@@ -1,7 +1,7 @@
 /* A hexahedron of 27 nodes, film with field, on one core: residual and tangent; and how much less
  * the energy alone takes, of which a line search needs many. */
-#include "bench.h"
 #include "model/solid/element/hex.h"
+#include "timing.h"
 
 #include <string.h>
 

@@ -5,9 +5,9 @@
  *
  * Each size is a process of its own, so that its memory is its own: the program runs itself as
  * "bench_solid_solve one UNKNOWNS", also under mpirun. DEA_BENCH_LARGE adds 300000. */
-#include "bench.h"
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/matrix.h"
+#include "timing.h"
 
 #include <math.h>
 #include <string.h>

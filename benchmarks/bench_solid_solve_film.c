@@ -2,9 +2,9 @@
  * against a solid one on the same, the default mesh of the plane. Model made and sweep to 6 kV, and
  * on to 8 kV, where the film wrinkles. Times are the processor's: other work on the machine counts
  * less. */
-#include "bench.h"
 #include "model/model.h"
 #include "study/design_file.h"
+#include "timing.h"
 
 #include <math.h>
 

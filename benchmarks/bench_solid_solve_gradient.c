@@ -3,11 +3,11 @@
  * with the search for its mode, and of the capacitance. The paper's actuator with four fibres, a
  * sector, whose lowest mode is single, with the field V/h and with a coupled one. Times are the
  * processor's: other work on the machine counts less. */
-#include "bench.h"
 #include "model/model.h"
 #include "result/columns.h"
 #include "study/design_file.h"
 #include "study/design_gradient.h"
+#include "timing.h"
 
 #include <math.h>
 

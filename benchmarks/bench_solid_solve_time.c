@@ -1,8 +1,8 @@
 /* The paper's actuator with four fibres, as built, to 6 kV in steps of 0.5 kV: what a step in time
  * costs beside an equilibrium, elastic, with branches, with inertia. Times are the processor's. */
-#include "bench.h"
 #include "model/model.h"
 #include "study/design_file.h"
+#include "timing.h"
 
 #include <math.h>
 

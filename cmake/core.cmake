@@ -18,10 +18,10 @@ __attribute__((export_name(\"f\"))) int f(void) { return pow(x, 2) > 1; }\n")
   set(DEA_WASM_WORKS ${works} CACHE INTERNAL "clang compiles for WebAssembly")
 endif()
 if(DEA_WASM_WORKS)
-  set(core_sources ${PROJECT_SOURCE_DIR}/web/explorer.c ${PROJECT_SOURCE_DIR}/web/dense.c)
-  foreach(name IN ITEMS base/context base/status base/quadrature material/law material/plane device/check model/film model/make
-      result/load_point model/path model/alpha model/circuit material/branch model/lumped/balance model/lumped/motion
-      model/lumped/lift model/lumped/model)
+  set(core_sources ${PROJECT_SOURCE_DIR}/web/explorer.c ${PROJECT_SOURCE_DIR}/web/dense_wasm.c)
+  foreach(name IN ITEMS base/context base/status base/quadrature material/law material/plane device/device_check model/film model/make
+      result/load_point model/equilibrium_path model/alpha model/circuit material/branch model/lumped/balance model/lumped/motion
+      model/lumped/lift model/lumped/lumped_model)
     list(APPEND core_sources ${CMAKE_CURRENT_SOURCE_DIR}/${name}.c)
   endforeach()
   file(GLOB core_found CONFIGURE_DEPENDS material/law_*.c model/axisymmetric/*.c)

@@ -2,7 +2,7 @@
 #ifndef DEA_TESTS_FAB_SENSITIVITY_H
 #define DEA_TESTS_FAB_SENSITIVITY_H
 
-#include "fabricate/sensitivity.h"
+#include "fabricate/tolerance_effect.h"
 #include "model/model.h"
 #include "workshop_fixture.h"
 

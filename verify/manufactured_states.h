@@ -4,7 +4,7 @@
 
 #include "manufactured.h"
 
-#include "model/solid/adapter/state.h"
+#include "model/solid/adapter/solid_state.h"
 #include "model/solid/element/hex.h"
 #include "model/solid/equilibrium/load_steps.h"
 

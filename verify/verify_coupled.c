@@ -4,7 +4,7 @@
  * exact fringe of two plates that end inside a film. */
 #include "verify.h"
 
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/mesh/cuts.h"
 

@@ -5,7 +5,7 @@
 #include "manufactured_states.h"
 
 #include "model/model.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/mesh/gmsh.h"
 
 /* ---- meshes ---- */

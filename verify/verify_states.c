@@ -5,8 +5,8 @@
 
 #include "design/design.h"
 #include "model/model.h"
-#include "result/convergence.h"
 #include "result/result.h"
+#include "result/richardson.h"
 #include "study/design_file.h"
 #include "study/study.h"
 

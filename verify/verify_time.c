@@ -1,8 +1,8 @@
 /* Solids in time: creep, delayed pull-in, order of the steps, vibration, balance of energy. */
-#include "bodies.h"
+#include "film_blocks.h"
 
 #include "model/model.h"
-#include "model/solid/adapter/state.h"
+#include "model/solid/adapter/solid_state.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/motion/response.h"
 

@@ -1,8 +1,9 @@
-/* The SHVPS as a supply of line_supply.h, and `dea drive` on it. _GNU_SOURCE before all headers. */
+/* The SHVPS as a supply of fake_line_supply.h, and `dea drive` on it. _GNU_SOURCE before all
+ * headers. */
 #ifndef DEA_TESTS_SHVPS_SUPPLY_H
 #define DEA_TESTS_SHVPS_SUPPLY_H
 
-#include "line_supply.h"
+#include "fake_line_supply.h"
 #include "supply_drive.h"
 
 static const double shvps_range_V = 2500;

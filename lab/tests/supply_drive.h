@@ -4,7 +4,7 @@
 #define DEA_TESTS_SUPPLY_DRIVE_H
 
 #include "command.h"
-#include "supply.h"
+#include "fake_supply.h"
 
 #include <signal.h>
 #include <stdbool.h>

@@ -3,7 +3,7 @@
 #define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "first_root.h"
-#include "protocol/export.h"
+#include "protocol/protocol_export.h"
 #include "protocol_text.h"
 #include "study/design_file.h"
 

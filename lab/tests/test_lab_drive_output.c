@@ -4,7 +4,7 @@
 #include "drive/drive.h"
 #include "drive/drive_output.h"
 #include "drive/drive_watch.h"
-#include "protocol/export.h"
+#include "protocol/protocol_export.h"
 #include "protocol_text.h"
 
 #include <math.h>

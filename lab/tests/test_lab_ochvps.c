@@ -4,7 +4,7 @@
 #define _GNU_SOURCE // posix_openpt, ptsname_r
 #include "supply_drive.h"
 
-#include "line_supply.h"
+#include "fake_line_supply.h"
 
 static void answer(struct line_supply *s, const char *command, char out[LINE_SUPPLY_ANSWER])
 {

@@ -3,8 +3,8 @@
 // ctest: supply
 #define _GNU_SOURCE
 #include "drive/drive_loop.h"
+#include "fake_supply.h"
 #include "protocol_text.h"
-#include "supply.h"
 
 enum lie {
   HONEST,

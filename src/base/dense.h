@@ -1,5 +1,5 @@
 /* Small dense systems, of at most DEA_DENSE_MAX unknowns. Here LAPACK does it (dense.c); a page's
- * explorer has web/dense.c in its place. */
+ * explorer has web/dense_wasm.c in its place. */
 #ifndef DEA_BASE_DENSE_H
 #define DEA_BASE_DENSE_H
 

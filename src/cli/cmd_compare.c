@@ -3,7 +3,7 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "compare/compare_set.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "io/results_h5.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "cli/data_files.h"
 #include "explore/optimise.h"
-#include "fabricate/canvas.h"
+#include "fabricate/cairo_canvas.h"
 #include "geometry/boolean.h"
 #include "material/catalogue.h"
 #include "model/model.h"

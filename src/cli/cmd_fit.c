@@ -4,7 +4,7 @@
 #include "io/device_fit_files.h"
 #include "io/fit_files.h"
 #include "io/life_fit.h"
-#include "job/device_fit.h"
+#include "job/device_fit_run.h"
 
 struct request {
   const char *file, *output;

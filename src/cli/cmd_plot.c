@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "base/write_file.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "io/results_h5.h"
 #include "job/run_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include "base/file.h"
 #include "base/write_file.h"
-#include "job/report.h"
+#include "job/report_runs.h"
 
 #include <stdint.h>
 #include <stdio.h>

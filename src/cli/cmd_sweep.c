@@ -2,8 +2,8 @@
 #define _DEFAULT_SOURCE // readlink
 #include "cli/cli.h"
 
+#include "explore/explore_sweep.h"
 #include "explore/slurm.h"
-#include "explore/sweep.h"
 
 #include <stdio.h>
 #include <stdlib.h>

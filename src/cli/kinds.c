@@ -3,7 +3,7 @@
 #include "cli/bench.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "material/catalogue.h"
 #include "model/model.h"
 #include "result/columns.h"

@@ -1,6 +1,6 @@
 #include "compare/compare_set.h"
 
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 
 #include <math.h>
 #include <stdio.h>

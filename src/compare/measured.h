@@ -3,7 +3,7 @@
 #define DEA_COMPARE_MEASURED_H
 
 #include "io/csv.h"
-#include "table/columns.h"
+#include "table/csv_columns.h"
 
 /* Mean profile of a voltage against rest; arrays [count] lent from the table. */
 struct dea_measured_profile {

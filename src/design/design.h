@@ -1,8 +1,8 @@
 /* The design: what a user wrote, checked for form, in SI, each value with its place.
  *
  * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is
- * what the models see. The schema (one table, design/schema.c) says key, unit, range, default and
- * meaning of every member. */
+ * what the models see. The schema (one table, design/design_schema.c) says key, unit, range,
+ * default and meaning of every member. */
 #ifndef DEA_DESIGN_DESIGN_H
 #define DEA_DESIGN_DESIGN_H
 

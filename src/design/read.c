@@ -1,7 +1,7 @@
 #include "design/read.h"
 #include "base/file.h"
 #include "base/file_kind.h"
-#include "design/schema.h"
+#include "design/design_schema.h"
 
 #include <math.h>
 #include <stdio.h>

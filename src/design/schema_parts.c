@@ -1,7 +1,7 @@
 /* Keys of the general form of a design (docs/theory/devices.md). */
 #include "design/schema_parts.h"
 
-#include "design/schema.h"
+#include "design/design_schema.h"
 
 #include <stddef.h>
 

@@ -1,5 +1,5 @@
 /* Keys of `compute.solid`. */
-#include "design/schema.h"
+#include "design/design_schema.h"
 
 #include <stddef.h>
 

@@ -1,6 +1,6 @@
 #include "device/identity.h"
 
-#include "material/identity.h"
+#include "material/material_identity.h"
 
 #include <math.h>
 #include <string.h>

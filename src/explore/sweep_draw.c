@@ -1,6 +1,6 @@
 /* Figures of a sweep: of samples at several voltages the band of each quantity's curve. */
-#include "explore/statistics.h"
-#include "explore/sweep.h"
+#include "explore/explore_sweep.h"
+#include "explore/sample_statistics.h"
 #include "plot/gnuplot.h"
 #include "plot/plot.h"
 #include "result/columns.h"

@@ -1,8 +1,8 @@
 /* The tables of a sweep: one row a case, and what samples say. */
 #include "base/h5.h"
 #include "base/write_file.h"
-#include "explore/statistics.h"
-#include "explore/sweep.h"
+#include "explore/explore_sweep.h"
+#include "explore/sample_statistics.h"
 #include "result/columns.h"
 
 #include <math.h>

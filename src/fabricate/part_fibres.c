@@ -1,6 +1,6 @@
 /* The fibres in their holder, of one sheet: each hangs on a tab, which is cut once it is bonded. A
  * fibre that the frame holds goes on as an anchor that lies on the ring. */
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* The film as it is cut from the roll, with the grid from which its stretch is measured. */
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 
 #include <math.h>
 

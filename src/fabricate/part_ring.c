@@ -1,6 +1,6 @@
 /* The frame that holds the pre-stretch: a ring with holes over the alignment marks and a window to
  * the pad of the bottom electrode. */
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 
 #include <math.h>
 

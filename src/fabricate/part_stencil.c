@@ -1,7 +1,7 @@
 /* Stencils of the electrodes, for the unstretched film: disc, lead and pad as one opening. The
  * bottom electrode is printed first, onto the face that then lies down, so its stencil is seen from
  * there. */
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* The template: what the stretched film has to look like, printed on paper and laid under it. */
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 
 static void build(const struct dea_fab_geometry *plan, struct dea_part *part)
 {

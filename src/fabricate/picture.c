@@ -2,7 +2,7 @@
 
 #include "base/file.h"
 #include "fabricate/layout_parts.h"
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 #include "figures/device_drawing.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 #include "fabricate/process.h"
 
 #include "base/file.h"
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 #include "fabricate/process_parts.h"
-#include "fabricate/sensitivity.h"
+#include "fabricate/tolerance_effect.h"
 #include "figures/dimensions.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "fabricate/layout_parts.h"
 #include "fabricate/process.h"
 #include "fabricate/process_parts.h"
-#include "fabricate/sensitivity.h"
+#include "fabricate/tolerance_effect.h"
 #include "figures/dimensions.h"
 
 #include <math.h>

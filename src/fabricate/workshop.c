@@ -1,7 +1,7 @@
 #include "fabricate/workshop.h"
 
 #include "fabricate/layout_parts.h"
-#include "fabricate/parts.h"
+#include "fabricate/part_list.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef DEA_FIGURES_COLOUR_MAP_H
 #define DEA_FIGURES_COLOUR_MAP_H
 
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "figures/surface_lattice.h"
 #include "result/trust.h"
 

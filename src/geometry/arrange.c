@@ -1,5 +1,5 @@
 /* Which contour is an outline and which a hole: by how often a ray from it meets the others. */
-#include "geometry/pieces.h"
+#include "geometry/contour_pieces.h"
 
 #include <math.h>
 #include <stdint.h>

@@ -8,8 +8,8 @@
 #include "geometry/boolean.h"
 
 #include "base/module.h"
+#include "geometry/contour_pieces.h"
 #include "geometry/overlay.h"
-#include "geometry/pieces.h"
 #include "geometry/point_map.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* A layer of a drawing as a region: ends of lines are joined, contours arranged. */
 #define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "base/text.h"
+#include "geometry/contour_pieces.h"
 #include "geometry/drawing.h"
-#include "geometry/pieces.h"
 #include "geometry/point_map.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* What is wrong with contours, and where. */
 #include "base/rounded.h"
-#include "geometry/pieces.h"
+#include "geometry/contour_pieces.h"
 
 #include <math.h>
 #include <stdio.h>

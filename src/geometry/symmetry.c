@@ -1,7 +1,7 @@
 /* Symmetry of regions (docs/theory/geometry.md, "Symmetry"). */
 #include "geometry/symmetry.h"
 
-#include "geometry/pieces.h"
+#include "geometry/contour_pieces.h"
 
 #include <math.h>
 #include <stdint.h>

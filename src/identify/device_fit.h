@@ -1,4 +1,4 @@
-/* A fit of a device to its measured curves: plain data that job/device_fit.c fills and output
+/* A fit of a device to its measured curves: plain data that job/device_fit_run.c fills and output
  * writes. Least squares and statistics are those of materials (docs/theory/fit.md). */
 #ifndef DEA_IDENTIFY_DEVICE_FIT_H
 #define DEA_IDENTIFY_DEVICE_FIT_H

@@ -8,7 +8,7 @@
 #include "io/fit_common.h"
 #include "material/catalogue.h"
 #include "result/provenance.h"
-#include "table/columns.h"
+#include "table/csv_columns.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #ifndef DEA_IO_CHECKPOINT_H
 #define DEA_IO_CHECKPOINT_H
 
-#include "result/checkpoint.h"
+#include "result/checkpoint_sink.h"
 
 /* The name of the folder of fields within a run folder. */
 #define DEA_FIELD_FOLDER "fields"

@@ -2,7 +2,7 @@
 #include "io/csv.h"
 
 #include "base/csv_line.h"
-#include "table/columns.h"
+#include "table/csv_columns.h"
 #include "table/fields.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "io/fit_files.h"
 #include "result/provenance.h"
-#include "table/columns.h"
+#include "table/csv_columns.h"
 
 #include <stdio.h>
 #include <string.h>

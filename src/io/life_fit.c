@@ -5,7 +5,7 @@
 #include "base/write_file.h"
 #include "figures/weibull_picture.h"
 #include "io/fit_common.h"
-#include "table/columns.h"
+#include "table/csv_columns.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Parts of a fit of a device (device_fit.h). */
+/* Parts of a fit of a device (device_fit_run.h). */
 #ifndef DEA_JOB_DEVICE_FIT_PARTS_H
 #define DEA_JOB_DEVICE_FIT_PARTS_H
 

@@ -2,7 +2,7 @@
 #include "job/run_folder.h"
 
 #include "base/write_file.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
 #include "io/export.h"

@@ -1,5 +1,5 @@
 /* Curves: the figures of a run, and those of several runs beside each other. */
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "plot/plot_svg.h"
 #include "report/section.h"
 #include "result/observation.h"

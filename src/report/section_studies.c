@@ -1,6 +1,6 @@
 /* What studies have made tables of, a section each: its figures and its tables, without knowing the
  * study. */
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "plot/plot_svg.h"
 #include "report/section.h"
 

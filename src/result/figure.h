@@ -6,7 +6,7 @@
 #include "plot/plot.h"
 #include "result/result.h"
 
-struct dea_figure_options; // figures/figure.h
+struct dea_figure_options; // figures/run_figures.h
 
 struct dea_figure {
   const char *name; // of its files: "displacement"

@@ -68,7 +68,7 @@ struct dea_provenance {
   char *command;         // command line; owned, may be NULL
 };
 
-struct dea_checkpoint_sink; // result/checkpoint.h
+struct dea_checkpoint_sink; // result/checkpoint_sink.h
 struct dea_rerun;           // study/rerun.h
 
 struct dea_result {

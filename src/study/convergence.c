@@ -1,7 +1,7 @@
 /* Study "convergence": the same device on ever finer meshes, at a few voltages. What the sequence
- * of answers says of each mesh is found in result/convergence.h. */
-#include "result/convergence.h"
+ * of answers says of each mesh is found in result/richardson.h. */
 #include "base/schema.h"
+#include "result/richardson.h"
 #include "study/study.h"
 #include "study/variant.h"
 

@@ -1,6 +1,6 @@
 #include "study/design_file.h"
 
-#include "design/file.h"
+#include "design/design_sections.h"
 #include "model/model.h"
 #include "study/study.h"
 

@@ -2,7 +2,7 @@
 #ifndef DEA_STUDY_DESIGN_FILE_H
 #define DEA_STUDY_DESIGN_FILE_H
 
-#include "design/schema.h"
+#include "design/design_schema.h"
 
 /* Reads and checks a file. All findings go to the context with file:line:column; any error gives
  * DEA_E_DESIGN (DEA_E_IO when the file cannot be read at all) after the whole file was looked at.

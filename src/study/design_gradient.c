@@ -1,6 +1,6 @@
 #include "study/design_gradient.h"
 
-#include "design/schema.h"
+#include "design/design_schema.h"
 #include "device/geometry.h"
 #include "result/columns.h"
 #include "study/part_numbers.h"

@@ -2,7 +2,7 @@
  * a curve that has points already goes on after them.
  */
 #include "device/identity.h"
-#include "result/checkpoint.h"
+#include "result/checkpoint_sink.h"
 #include "result/trust.h"
 #include "study/observe.h"
 #include "study/study.h"

@@ -2,8 +2,8 @@
 #ifndef DEA_TABLE_CSV_DIALECT_H
 #define DEA_TABLE_CSV_DIALECT_H
 
+#include "table/imported_table.h"
 #include "table/slices.h"
-#include "table/table.h"
 
 enum { DEA_CSV_TITLES_MAX = 4 };
 

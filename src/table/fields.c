@@ -2,7 +2,7 @@
 
 #include "base/csv_line.h"
 #include "base/file.h"
-#include "table/csv.h"
+#include "table/csv_text.h"
 #include "table/text_file.h"
 #include "table/titles.h"
 

@@ -2,8 +2,8 @@
 #ifndef DEA_TABLE_TEXT_FILE_H
 #define DEA_TABLE_TEXT_FILE_H
 
+#include "table/imported_table.h"
 #include "table/slices.h"
-#include "table/table.h"
 
 /* Hands the bytes as text to a reader: without a byte order mark, UTF-16 with one as UTF-8, and so
  * text of Shift-JIS, GB 18030 and Windows-1251. UTF-8 and Latin-1 stay as they are: what is not

@@ -1,6 +1,6 @@
 /* Waveform "table": times and voltages from a CSV file, straight in between. */
 #include "base/file.h"
-#include "table/columns.h"
+#include "table/csv_columns.h"
 #include "waveform/wave_make.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "explore/order.h"
 #include "explore/plan.h"
 #include "explore/pool.h"
-#include "explore/statistics.h"
+#include "explore/sample_statistics.h"
 #include "explore/store.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "fake_surface.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "figures/surface_lattice.h"
 #include "io/results_h5.h"
 

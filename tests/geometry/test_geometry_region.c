@@ -1,6 +1,6 @@
 /* Regions of lines and arcs: measures, shapes, copies and what is wrong with contours. */
 #include "failing_allocator.h"
-#include "geometry/pieces.h"
+#include "geometry/contour_pieces.h"
 #include "geometry/shape.h"
 #include "message_fixture.h"
 

@@ -2,7 +2,7 @@
 /* A device fitted to its curves: closed form, coverage, what cannot be told apart, slack. */
 // ctest: quick, heavy
 #include "design_text.h"
-#include "job/device_fit.h"
+#include "job/device_fit_run.h"
 #include "model/model.h"
 
 #include <stdint.h>

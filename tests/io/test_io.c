@@ -6,7 +6,7 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "figures/colour_map.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "io/csv.h"
 #include "io/results_h5.h"
 #include "io/summary.h"

@@ -1,7 +1,7 @@
 /* The calls of `dea run` (models, paths, studies): each allocation failed in turn. */
 #include "devices.h"
 #include "failing_allocator.h"
-#include "model/path.h"
+#include "model/equilibrium_path.h"
 #include "study/study.h"
 
 static struct dea_device device;

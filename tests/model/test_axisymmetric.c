@@ -2,8 +2,8 @@
 #include "context_fixture.h"
 #include "devices.h"
 #include "model/axisymmetric/disc.h"
+#include "model/equilibrium_path.h"
 #include "model/model.h"
-#include "model/path.h"
 #include "testing.h"
 
 static struct dea_load_point solve_at(const struct dea_device *device, double voltage_V)

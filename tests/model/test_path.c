@@ -1,8 +1,8 @@
 /* Arc-length paths: the homogeneous ideal dielectric elastomer (benchmark 2), free and under a dead
  * load, against its closed form. */
 #include "devices.h"
+#include "model/equilibrium_path.h"
 #include "model/film.h"
-#include "model/path.h"
 #include "testing.h"
 
 /* A free film under an equibiaxial nominal stress; the unknown is the stretch. */

@@ -6,7 +6,7 @@
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "io/results_h5.h"
-#include "job/report.h"
+#include "job/report_runs.h"
 #include "job/run_folder.h"
 #include "plot/axis.h"
 #include "plot/plot.h"

@@ -1,7 +1,7 @@
 /* Electrodes on several voltages: a stack, charge by channel, reciprocity, charge and force. */
 // ctest: solid
 #include "model/solid/assembly/channels.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/response.h"
 #include "testing.h"

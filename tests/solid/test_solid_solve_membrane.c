@@ -2,7 +2,7 @@
 // ctest: solid
 #include "devices.h"
 #include "model/model.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/element/membrane.h"
 #include "model/solid/equilibrium/load_steps.h"

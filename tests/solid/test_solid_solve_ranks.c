@@ -4,7 +4,7 @@
 #define _GNU_SOURCE // mkdtemp, popen
 #include "command.h"
 #include "devices.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
 #include "quarter_grid.h"

@@ -1,6 +1,6 @@
 /* A coupled solid that is solved in a moment, for builds with sanitizers: fibres, a load, local
  * axes, orders 1 and 2. */
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/solid.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "quarter_grid.h"

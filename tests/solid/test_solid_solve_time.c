@@ -1,7 +1,7 @@
 /* Steps in time of solids: creep, order, energy, vibration. Creep to pull-in: verify_time. */
 // ctest: solid
 #include "material/material.h"
-#include "model/solid/adapter/state.h"
+#include "model/solid/adapter/solid_state.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/motion/time.h"
 #include "solid_block.h"

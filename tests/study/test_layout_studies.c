@@ -1,7 +1,7 @@
 /* Studies of a device made of plies by its monitors: against the same computed by hand. */
 // ctest: solid
 #include "design_text.h"
-#include "result/convergence.h"
+#include "result/richardson.h"
 #include "study/observe.h"
 #include "study/rerun.h"
 #include "testing.h"

@@ -6,7 +6,7 @@
 #include "io/results_h5.h"
 #include "io/summary.h"
 #include "job/run_folder.h"
-#include "result/convergence.h"
+#include "result/richardson.h"
 #include "study/study.h"
 
 #include "own_folder.h"

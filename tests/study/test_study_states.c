@@ -1,6 +1,6 @@
 /* Study "states" with a model of two wells, whose states are roots of a cubic. */
 #include "design_text.h"
-#include "figures/figure.h"
+#include "figures/run_figures.h"
 #include "result/result.h"
 #include "study/study.h"
 #include "testing.h"

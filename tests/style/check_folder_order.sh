@@ -2,9 +2,16 @@
 # A file of src/X includes headers of X and of the folders before X only, and so do the rooms of
 # model/solid and of lab/src; one model knows nothing of another, figures to report nothing of models, and of
 # studies their figures only. No file of src includes one of lab. The bench knows no design, device
-# or model, but for `film`, which fills its interface of a film. See ARCHITECTURE.md.
+# or model, but for `film`, which fills its interface of a film. No two files of C have one name. See
+# ARCHITECTURE.md.
 set -eu
-cd "$1/src"
+cd "$1"
+twice=$(find src lab tests benchmarks verify web matlab -name '*.[ch]' ! -path 'tests/fuzz/*/*' | sed 's|.*/||' | sort | uniq -d)
+if [ -n "$twice" ]; then
+  echo "name of several files: $twice"
+  exit 1
+fi
+cd src
 # shellcheck disable=SC2016 # awk's own
 find . -name '*.[ch]' | sed 's|^\./||' | xargs awk '
   BEGIN {

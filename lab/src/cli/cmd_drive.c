@@ -7,7 +7,7 @@
 #include "drive/drive.h"
 #include "film/film_of_design.h"
 #include "instrument/instrument.h"
-#include "protocol/export.h"
+#include "protocol/protocol_export.h"
 #include "recording/recorder.h"
 
 #include <math.h>

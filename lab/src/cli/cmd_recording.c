@@ -1,7 +1,7 @@
 #include "cli/cli.h"
 
 #include "base/json.h"
-#include "recording/table.h"
+#include "recording/recording_csv.h"
 
 #include <math.h>
 #include <string.h>

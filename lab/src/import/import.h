@@ -6,7 +6,7 @@
 
 #include "base/schema.h"
 #include "recording/recording.h"
-#include "table/table.h"
+#include "table/imported_table.h"
 
 struct dea_importer {
   const char *name;    // "csv"

@@ -1,5 +1,5 @@
 #include "import/import.h"
-#include "table/csv.h"
+#include "table/csv_text.h"
 #include "table/text_file.h"
 
 static bool recognise(const char *file, const unsigned char *head, size_t length)

@@ -1,7 +1,7 @@
 /* A recording of a table. */
 #include "base/text.h"
-#include "import/clock.h"
 #include "import/mapping.h"
+#include "import/sample_times.h"
 
 #include <math.h>
 #include <stdio.h>

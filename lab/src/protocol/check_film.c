@@ -1,5 +1,5 @@
 /* What a sequence does to the film: its field, and whether there is an equilibrium at all. */
-#include "protocol/check.h"
+#include "protocol/protocol_check.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Keys that would switch an interlock off without a word: limits that nothing can exceed, that take
  * too long, or that an input cannot see. The numbers are derived in docs/theory/interlocks.md. */
-#include "protocol/check.h"
+#include "protocol/protocol_check.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* The specimen's own file: what it stands, which no option of a command changes. */
 #include "base/file.h"
 #include "base/schema_value.h"
-#include "protocol/schema.h"
+#include "protocol/protocol_schema.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* How a step of the sequence is called in messages, where the file says it, and what repeats in it.
  */
-#include "protocol/check.h"
+#include "protocol/protocol_check.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "base/write_file.h"
 #include "recording/disk.h"
-#include "recording/layout.h"
+#include "recording/recording_layout.h"
 #include "recording/series.h"
 
 #include <stdio.h>

@@ -4,7 +4,7 @@
 
 #include "reduce/reduce.h"
 
-// order.c: statistics of order -------------------------------------------------------------------
+// order_statistics.c ----------------------------------------------------------------------------
 
 /* Value that a share (0 to 1) of the values lies below; they are reordered and none is NAN. NAN
  * without any. */
@@ -140,7 +140,7 @@ dea_status dea_lag_find(struct dea_context *ctx, const struct dea_channel *volta
                         const struct dea_channel *series, struct dea_span span,
                         struct dea_lag *out);
 
-// statistics.c -----------------------------------------------------------------------------------
+// window_statistics.c ---------------------------------------------------------------------------
 
 /* Values of all cycles for one series; noise: of rest and of active parts. values: [count] with a
  * step of `stride` bytes. */
@@ -201,7 +201,7 @@ double dea_shape_index(const double *r_m, const double *z_m, size_t points,
                        double electrode_radius_m, double film_radius_m, double *work,
                        double *uncertainty);
 
-// force.c ----------------------------------------------------------------------------------------
+// force_offset.c --------------------------------------------------------------------------------
 
 /* Mean of the first samples before a time (at most the first half of that); NAN without. */
 double dea_force_offset(const struct dea_channel *force, double before_s, double *scratch);

@@ -2,7 +2,7 @@
 #include "model/solid_access.h"
 
 #include "base/module.h"
-#include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/solid_fields.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/continuation.h"

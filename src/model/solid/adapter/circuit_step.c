@@ -2,7 +2,7 @@
 
 #include "base/arena.h"
 #include "model/solid/assembly/channels.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/newton.h"
 

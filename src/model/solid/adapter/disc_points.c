@@ -1,6 +1,6 @@
 #include "model/solid/adapter/disc_points.h"
 
-#include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/solid_fields.h"
 #include "model/solid/assembly/problem.h"
 
 #include <math.h>

@@ -6,7 +6,7 @@
 
 #include "model/model.h"
 #include "model/solid/adapter/step_outcome.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 
 /* Whose solid it is. */
 struct dea_gradient_owner {

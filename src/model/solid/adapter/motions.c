@@ -1,6 +1,6 @@
 #include "model/solid/adapter/motions.h"
 
-#include "model/solid/adapter/fields.h"
+#include "model/solid/adapter/solid_fields.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/motion/response.h"
 

@@ -3,7 +3,7 @@
 #define DEA_MODEL_SOLID_ADAPTER_PLIES_H
 
 #include "model/solid/actuator/layout_mesh.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/internal_variables.h"
 
 struct dea_plies {

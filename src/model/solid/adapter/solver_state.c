@@ -1,6 +1,6 @@
 #include "model/solid/adapter/solver_state.h"
 
-#include "model/solid/adapter/state.h"
+#include "model/solid/adapter/solid_state.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/load_steps.h"

@@ -3,7 +3,7 @@
 #ifndef DEA_MODEL_SOLID_ADAPTER_STEP_OUTCOME_H
 #define DEA_MODEL_SOLID_ADAPTER_STEP_OUTCOME_H
 
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/equilibrium/solve_incremental.h"
 #include "result/load_point.h"
 

@@ -2,7 +2,7 @@
 #include "model/solid/element/hex.h"
 
 #include "base/quadrature.h"
-#include "model/solid/element/fit.h"
+#include "model/solid/element/gauss_to_nodes.h"
 #include "model/solid/element/hex_tensor.h"
 #include "model/solid/point/membrane_point.h"
 #include "model/solid/point/viscous.h"

@@ -3,7 +3,7 @@
 #include "model/solid/element/membrane.h"
 
 #include "base/quadrature.h"
-#include "model/solid/element/fit.h"
+#include "model/solid/element/gauss_to_nodes.h"
 #include "model/solid/point/viscous.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
-#include "model/solid/equilibrium/check.h"
+#include "model/solid/equilibrium/presolve_check.h"
 
 #include <slepceps.h>
 

@@ -5,7 +5,7 @@
 #include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/controls.h"
-#include "model/solid/assembly/film.h"
+#include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/incompressible.h"
 #include "model/solid/assembly/potential.h"
 #include "model/solid/equilibrium/load_steps.h"

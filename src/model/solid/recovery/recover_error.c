@@ -2,7 +2,7 @@
 #include "model/solid/recovery/recover_error.h"
 
 #include "base/quadrature.h"
-#include "model/solid/element/fit.h"
+#include "model/solid/element/gauss_to_nodes.h"
 #include "model/solid/recovery/recover_points.h"
 #include "model/solid/recovery/recover_second.h"
 

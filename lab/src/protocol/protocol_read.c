@@ -1,0 +1,417 @@
+/* Reading protocols. */
+#include "base/file.h"
+#include "base/file_kind.h"
+#include "base/schema_value.h"
+#include "base/text.h"
+#include "base/units.h"
+#include "protocol/protocol_schema.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Channels ---------------------------------------------------------------------------------------
+
+/* What is due in `per_volt` and `at_zero` of each kind. */
+static const char *const examples[DEA_CHANNEL_KINDS] = {
+    [DEA_CHANNEL_COMMAND] = "1 kV", [DEA_CHANNEL_VOLTAGE] = "1 kV",
+    [DEA_CHANNEL_CURRENT] = "1 mA", [DEA_CHANNEL_DISPLACEMENT] = "0.2 mm",
+    [DEA_CHANNEL_FORCE] = "0.05 N", [DEA_CHANNEL_OTHER] = "1",
+};
+
+static bool ends_with(const char *text, const char *end)
+{
+  size_t length = strlen(text), tail = strlen(end);
+  return length >= tail && strcmp(text + length - tail, end) == 0;
+}
+
+/* A number in the unit of an input's quantity; of others in the unit that it names. */
+static dea_status read_scale(const struct dea_reader *reader,
+                             const struct dea_protocol_input *input, const char *key,
+                             const struct dea_label *text, double *out)
+{
+  char number[DEA_TITLE_SIZE], why[DEA_WHY_SIZE];
+  bool other = input->kind.value == DEA_CHANNEL_OTHER;
+  size_t length = strlen(text->text), unit = strlen(input->unit.text);
+  if (strcmp(key, "per_volt") == 0 && ends_with(text->text, "/V") &&
+      !ends_with(input->unit.text, "/V")) {
+    length -= 2; // 'per volt' said twice: '2.5 mm/V'
+  }
+  if (other && unit > 0 && length > unit &&
+      strncmp(text->text + length - unit, input->unit.text, unit) == 0) {
+    length -= unit;
+    while (length > 0 && text->text[length - 1] == ' ') {
+      length--;
+    }
+  }
+  snprintf(number, sizeof number, "%.*s", (int)length, text->text);
+  const struct dea_measure due = {other ? "1" : dea_channel_meanings[input->kind.value].si_unit,
+                                  examples[input->kind.value]};
+  if (dea_units_read(reader->ctx, number, due, out, why)) {
+    return DEA_OK;
+  }
+  return why[0] == '\0' ? dea_context_status(reader->ctx)
+                        : dea_schema_error(reader, text->location, "%s: %s", key, why);
+}
+
+static dea_status take_input(const struct dea_reader *reader, struct dea_protocol_input *input)
+{
+  if (input->kind.value < 0) {
+    return DEA_OK; // already an error
+  }
+  input->kind.value += DEA_CHANNEL_COMMAND + 1; // the choices begin after it
+  if (strlen(input->name.text) >= DEA_CHANNEL_NAME_SIZE ||
+      strlen(input->unit.text) >= DEA_CHANNEL_NAME_SIZE) {
+    DEA_TRY(reader->ctx, dea_schema_error(reader, input->name.location,
+                                          "a channel's name and unit have at most %d bytes",
+                                          DEA_CHANNEL_NAME_SIZE - 1));
+  }
+  if (input->unit.text[0] != '\0' && input->kind.value != DEA_CHANNEL_OTHER) {
+    DEA_TRY(reader->ctx,
+            dea_schema_error(reader, input->unit.location,
+                             "unit: only of a quantity `other`; the recording keeps %s in %s",
+                             dea_channel_names[input->kind.value],
+                             dea_channel_meanings[input->kind.value].si_unit));
+  }
+  input->per_volt = 1;
+  if (input->per_volt_text.origin != DEA_ABSENT) {
+    DEA_TRY(reader->ctx,
+            read_scale(reader, input, "per_volt", &input->per_volt_text, &input->per_volt));
+    if (input->per_volt == 0) {
+      DEA_TRY(reader->ctx,
+              dea_schema_error(reader, input->per_volt_text.location,
+                               "per_volt must not be 0, not '%.60s'", input->per_volt_text.text));
+    }
+  }
+  if (input->at_zero_text.origin != DEA_ABSENT) {
+    DEA_TRY(reader->ctx,
+            read_scale(reader, input, "at_zero", &input->at_zero_text, &input->at_zero));
+  }
+  return DEA_OK;
+}
+
+/* Names and terminals are unique. */
+static dea_status take_inputs(const struct dea_reader *reader, struct dea_protocol_raw *raw)
+{
+  struct dea_protocol *protocol = &raw->protocol;
+  for (size_t i = 0; i < protocol->input_count; i++) {
+    struct dea_protocol_input *input = &raw->inputs[i];
+    DEA_TRY(reader->ctx, take_input(reader, input));
+    for (size_t k = 0; k < i; k++) {
+      const struct dea_protocol_input *other = &raw->inputs[k];
+      if (input->name.text[0] != '\0' && strcmp(input->name.text, other->name.text) == 0) {
+        DEA_TRY(reader->ctx, dea_schema_error(reader, input->name.location,
+                                              "the channel in line %zu has the name '%.60s' too",
+                                              other->name.location.line, input->name.text));
+      }
+      if (input->terminal.text[0] != '\0' &&
+          strcmp(input->terminal.text, other->terminal.text) == 0) {
+        DEA_TRY(reader->ctx,
+                dea_schema_error(reader, input->terminal.location,
+                                 "the channel '%.60s' is connected to the input '%.60s' too",
+                                 other->name.text, input->terminal.text));
+      }
+    }
+  }
+  return DEA_OK;
+}
+
+// Sequence ---------------------------------------------------------------------------------------
+
+static dea_status count_cycles(struct dea_context *ctx, struct dea_protocol_step *step)
+{
+  struct dea_wave_cycle cycle;
+  size_t low = 0, high = 1;
+  while (dea_waveform_cycle(step->waveform, high - 1, &cycle)) {
+    low = high;
+    high *= 2;
+  }
+  while (high - low > 1) { // the cycle number low - 1 is there, number high - 1 is not
+    size_t middle = low + (high - low) / 2;
+    *(dea_waveform_cycle(step->waveform, middle - 1, &cycle) ? &low : &high) = middle;
+  }
+  step->cycles = low > 0 ? low : 1;
+  if (step->waveform->end_s > 0) {
+    return DEA_OK;
+  }
+  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): each step has its section
+  return dea_finding_add(ctx, DEA_ERROR, step->section->location,
+                         "this waveform takes no time; give it a duration");
+}
+
+/* What every step begins at; longer than numbers can count is an error. */
+static dea_status take_clock(struct dea_context *ctx, struct dea_protocol_raw *raw)
+{
+  static const double cycles_max = 1e9;
+  double start_s = 0, cycles = 0;
+  for (size_t i = 0; i < raw->protocol.step_count; i++) {
+    struct dea_protocol_step *step = &raw->steps[i];
+    step->start_s = start_s;
+    step->first_cycle = (size_t)cycles;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): called without errors only
+    start_s += step->repeat.si * step->waveform->end_s + step->pause_s.si;
+    cycles += step->repeat.si * (double)step->cycles;
+    if (cycles > cycles_max) {
+      return dea_finding_add(ctx, DEA_ERROR, step->repeat.location,
+                             "the sequence has more than %g cycles", cycles_max);
+    }
+  }
+  return DEA_OK;
+}
+
+/* errors: their number before the file was read. */
+static dea_status take_sequence(const struct dea_reader *reader, struct dea_protocol_raw *raw,
+                                size_t errors)
+{
+  struct dea_context *ctx = reader->ctx;
+  struct dea_protocol *protocol = &raw->protocol;
+  const struct dea_node *root = dea_yaml_root(protocol->document);
+  if (raw->waveform != NULL) {
+    protocol->step_count = 1;
+    raw->steps[0] = (struct dea_protocol_step){
+        .section = raw->waveform,
+        .repeat = {1, DEA_DEFAULT, raw->waveform->key_place},
+        .pause_s = {0, DEA_DEFAULT, raw->waveform->key_place},
+    };
+  } else if (protocol->step_count == 0 && dea_node_find(root, "sequence") == NULL &&
+             dea_node_find(root, "waveform") == NULL) {
+    return dea_schema_error(reader, root->location,
+                            "the file lacks what is to be played; write for example 'waveform: "
+                            "{kind: square, high: 7 kV, frequency: 0.5 Hz}', or a 'sequence' of "
+                            "such steps");
+  }
+  for (size_t i = 0; i < protocol->step_count; i++) {
+    char path[DEA_PATH_SIZE] = "waveform";
+    if (raw->waveform == NULL) {
+      snprintf(path, sizeof path, "sequence[%zu].waveform", i);
+    }
+    if (raw->steps[i].section != NULL) {
+      DEA_TRY(ctx, dea_waveform_read(reader, raw->steps[i].section, path, protocol->file,
+                                     &raw->steps[i].waveform));
+    }
+    if (raw->steps[i].waveform != NULL) {
+      struct dea_wave_extent extent;
+      dea_waveform_extent(raw->steps[i].waveform, &extent);
+      raw->steps[i].lowest_V = extent.lowest_V;
+      raw->steps[i].highest_V = extent.highest_V;
+      DEA_TRY(ctx, count_cycles(ctx, &raw->steps[i]));
+    }
+  }
+  // A step may lack its waveform, or a number of it.
+  return dea_finding_count(ctx, DEA_ERROR) == errors ? take_clock(ctx, raw) : DEA_OK;
+}
+
+// Design, instruments ----------------------------------------------------------------------------
+
+/* The design that the file names: what is wrong in it stands at its own places. */
+static dea_status take_design(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                              struct dea_protocol *protocol)
+{
+  size_t length;
+  if (protocol->design_file.text[0] == '\0') {
+    return DEA_OK;
+  }
+  char *path = dea_path_beside(ctx, protocol->file, protocol->design_file.text);
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &protocol->design_text, &length);
+  if (status == DEA_E_IO) {
+    status = dea_finding_add(ctx, DEA_ERROR, protocol->design_file.location,
+                             "design: %s; a path counts from the protocol's folder",
+                             dea_context_message(ctx));
+  } else if (status == DEA_OK) {
+    status = films->read(ctx, path, protocol->design_text, length, &protocol->film);
+  }
+  dea_free(ctx, path);
+  return status == DEA_E_DESIGN ? DEA_OK : status; // counted with the others
+}
+
+static dea_status take_instruments(struct dea_context *ctx, struct dea_protocol *protocol)
+{
+  for (size_t i = 0; i < protocol->instrument_count; i++) {
+    char path[48];
+    snprintf(path, sizeof path, "instruments[%zu]", i);
+    protocol->instruments[i].path = dea_intern(ctx, path);
+    if (protocol->instruments[i].path == NULL) {
+      return DEA_E_MEMORY;
+    }
+  }
+  protocol->sim.path = "sim";
+  return DEA_OK;
+}
+
+/* What has no default of its own. */
+static dea_status take_amplifier(struct dea_context *ctx, struct dea_protocol *protocol)
+{
+  const struct dea_quantity *highest = &protocol->amplifier.highest_V;
+  if (protocol->amplifier.lowest_V.origin == DEA_ABSENT && highest->origin != DEA_ABSENT) {
+    protocol->amplifier.lowest_V =
+        (struct dea_quantity){-highest->si, DEA_DEFAULT, highest->location};
+  }
+  if (protocol->input_count + 1 > DEA_CHANNELS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "more channels than a recording can have");
+  }
+  return DEA_OK;
+}
+
+// The whole file ---------------------------------------------------------------------------------
+
+static dea_status parse(struct dea_context *ctx, struct dea_protocol *protocol, size_t length,
+                        const struct dea_override *overrides, size_t override_count)
+{
+  struct dea_text said = {.ctx = ctx};
+  DEA_TRY(ctx, dea_yaml_parse(ctx, protocol->file, protocol->text, length, &protocol->document));
+  for (size_t i = 0; i < override_count; i++) {
+    dea_status status =
+        dea_yaml_override(ctx, protocol->document, overrides[i].key, overrides[i].value);
+    if (status != DEA_OK && status != DEA_E_DESIGN) {
+      dea_text_free(&said);
+      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+    }
+    dea_text_add(&said, "%s%s=%s", i > 0 ? "; " : "", overrides[i].key, overrides[i].value);
+  }
+  protocol->overrides = said.data;
+  return said.failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+/* The simulated bench is always there: what is not said of it has defaults. */
+static dea_status complete_sim(struct dea_context *ctx, struct dea_yaml *document)
+{
+  const struct dea_node *root = dea_yaml_root(document), *sim;
+  if (root->kind != DEA_NODE_SECTION) {
+    return DEA_OK;
+  }
+  sim = dea_node_find(root, "sim");
+  if (sim != NULL && (sim->kind != DEA_NODE_SECTION || dea_node_find(sim, "kind") != NULL)) {
+    return DEA_OK;
+  }
+  return dea_yaml_override(ctx, document, "sim.kind", "sim");
+}
+
+static dea_status copy_lists(struct dea_context *ctx, struct dea_protocol_raw *raw)
+{
+  struct dea_protocol *protocol = &raw->protocol;
+  protocol->inputs = dea_alloc(ctx, protocol->input_count, sizeof *protocol->inputs);
+  protocol->steps = dea_alloc(ctx, protocol->step_count, sizeof *protocol->steps);
+  if (protocol->inputs == NULL || protocol->steps == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(protocol->inputs, raw->inputs, protocol->input_count * sizeof *protocol->inputs);
+  memcpy(protocol->steps, raw->steps, protocol->step_count * sizeof *protocol->steps);
+  return DEA_OK;
+}
+
+/* Fills *raw; what it owns is in raw->protocol and in its steps, also after a failure. */
+static dea_status read_raw(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                           const char *file, const char *text, size_t length,
+                           const struct dea_override *overrides, size_t override_count,
+                           struct dea_protocol_raw *raw)
+{
+  struct dea_protocol *protocol = &raw->protocol;
+  size_t errors = dea_finding_count(ctx, DEA_ERROR);
+  protocol->file = dea_intern(ctx, file);
+  protocol->text = dea_alloc(ctx, length + 1, 1);
+  if (protocol->file == NULL || protocol->text == NULL) {
+    return DEA_E_MEMORY;
+  }
+  memcpy(protocol->text, text, length);
+  DEA_TRY(ctx, parse(ctx, protocol, length, overrides, override_count));
+  DEA_TRY(ctx, complete_sim(ctx, protocol->document));
+  const struct dea_node *root = dea_yaml_root(protocol->document);
+  const struct dea_reader reader = {ctx, protocol->document, &protocol->values};
+  DEA_TRY(ctx, dea_file_kind_check(ctx, protocol->document, "dea-protocol"));
+  DEA_TRY(ctx, dea_schema_read(&reader, &dea_protocol_record, root, "", raw));
+  if (films == NULL) { // 0 V waits for no other file
+    protocol->step_count = 0;
+    protocol->specimen.highest_V = (struct dea_quantity){.si = NAN, .origin = DEA_ABSENT};
+  } else if (root->kind == DEA_NODE_SECTION) {
+    DEA_TRY(ctx, take_sequence(&reader, raw, errors));
+  }
+  if (root->kind == DEA_NODE_SECTION) {
+    DEA_TRY(ctx, take_inputs(&reader, raw));
+    DEA_TRY(ctx, take_amplifier(ctx, protocol));
+    DEA_TRY(ctx, take_instruments(ctx, protocol));
+  }
+  if (root->kind == DEA_NODE_SECTION && films != NULL) {
+    DEA_TRY(ctx, take_design(ctx, films, protocol));
+    DEA_TRY(ctx,
+            dea_specimen_read(ctx, protocol->file, &protocol->specimen_file, &protocol->specimen));
+  }
+  size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
+  if (found > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", file, found, found > 1 ? "s" : "");
+  }
+  return copy_lists(ctx, raw);
+}
+
+/* Frees what a protocol owns but its steps' waveforms. */
+static void clear(struct dea_context *ctx, struct dea_protocol *protocol)
+{
+  if (protocol->film != NULL) {
+    protocol->film->type->destroy(ctx, protocol->film);
+  }
+  dea_free(ctx, protocol->text);
+  dea_free(ctx, protocol->design_text);
+  dea_free(ctx, protocol->overrides);
+  dea_free(ctx, protocol->steps);
+  dea_free(ctx, protocol->inputs);
+  dea_listing_free(ctx, &protocol->values);
+  dea_yaml_destroy(ctx, protocol->document);
+}
+
+static void clear_steps(struct dea_protocol_step *steps, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    dea_waveform_destroy(steps[i].waveform);
+  }
+}
+
+dea_status dea_protocol_read_memory(struct dea_context *ctx,
+                                    const struct dea_bench_film_type *films, const char *file,
+                                    const char *text, size_t length,
+                                    const struct dea_override *overrides, size_t override_count,
+                                    struct dea_protocol **out)
+{
+  *out = NULL;
+  struct dea_protocol_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
+  if (raw == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = read_raw(ctx, films, file, text, length, overrides, override_count, raw);
+  if (status == DEA_OK) {
+    *out = dea_alloc(ctx, 1, sizeof **out);
+    status = *out != NULL ? DEA_OK : DEA_E_MEMORY;
+  }
+  if (status == DEA_OK) {
+    **out = raw->protocol;
+  } else {
+    clear_steps(raw->steps, DEA_PROTOCOL_STEPS_MAX);
+    clear(ctx, &raw->protocol);
+  }
+  dea_free(ctx, raw);
+  return status == DEA_OK ? status : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
+dea_status dea_protocol_read(struct dea_context *ctx, const struct dea_bench_film_type *films,
+                             const char *file, const struct dea_override *overrides,
+                             size_t override_count, struct dea_protocol **out)
+{
+  char *text;
+  size_t length;
+  *out = NULL;
+  DEA_TRY(ctx, dea_file_read(ctx, file, DEA_YAML_SIZE_MAX, &text, &length));
+  dea_status status =
+      dea_protocol_read_memory(ctx, films, file, text, length, overrides, override_count, out);
+  dea_free(ctx, text);
+  return status;
+}
+
+void dea_protocol_destroy(struct dea_context *ctx, struct dea_protocol *protocol)
+{
+  if (protocol != NULL) {
+    clear_steps(protocol->steps, protocol->step_count);
+    clear(ctx, protocol);
+    dea_free(ctx, protocol);
+  }
+}

@@ -1,0 +1,512 @@
+/* Results of the public interface: what studies left, as named arrays and texts. */
+#include "api/api.h"
+
+#include "base/write_file.h"
+#include "figures/run_figures.h"
+#include "io/summary.h"
+#include "job/design_of_run.h"
+#include "job/run_folder.h"
+#include "plot/plot_svg.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+dea_run_options api_run_options(const dea_run_options *options)
+{
+  dea_run_options all = DEA_RUN_OPTIONS_INIT;
+  if (options != NULL) { // of an older or a newer caller
+    memcpy(&all, options, options->size < sizeof all ? options->size : sizeof all);
+  }
+  return all;
+}
+
+enum { NAME_SIZE = 4 * DEA_NAME_SIZE };
+
+// The list ---------------------------------------------------------------------------------------
+
+/* An array in the list; its numbers are owned with it. */
+struct listed_array {
+  dea_array shown;
+  char name[NAME_SIZE];
+  double values[];
+};
+
+/* A list being filled, and where in it. */
+struct filling {
+  dea_result *result;
+  char folder[NAME_SIZE]; // "lumped/sweep"
+  dea_status status;
+};
+
+/* Adds an array of that many numbers, to be filled by the caller; NULL after a failure. */
+static double *add_array(struct filling *f, const struct dea_column *column, size_t count)
+{
+  struct dea_context *ctx = f->result->ctx->inner;
+  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->arrays, f->result->array_count,
+                                               &f->result->array_room, sizeof *f->result->arrays)
+                                    : NULL;
+  if (moved != NULL) {
+    f->result->arrays = moved;
+  }
+  struct listed_array *array =
+      moved != NULL && count < SIZE_MAX / 16
+          ? dea_alloc(ctx, 1, sizeof *array + count * sizeof array->values[0])
+          : NULL;
+  if (array == NULL) {
+    f->status = DEA_E_MEMORY;
+    return NULL;
+  }
+  snprintf(array->name, sizeof array->name, "%.*s/%s", NAME_SIZE / 2, f->folder, column->key);
+  array->shown = (dea_array){.name = array->name,
+                             .unit = column->si_unit,
+                             .meaning = column->meaning,
+                             .rank = 1,
+                             .shape = {count, 1, 1},
+                             .data = array->values};
+  f->result->arrays[f->result->array_count++] = &array->shown;
+  return array->values;
+}
+
+static void add_text(struct filling *f, const char *key, const char *text)
+{
+  struct dea_context *ctx = f->result->ctx->inner;
+  void *moved = f->status == DEA_OK ? api_grow(ctx, f->result->texts, f->result->text_count,
+                                               &f->result->text_room, sizeof *f->result->texts)
+                                    : NULL;
+  if (moved == NULL) {
+    f->status = DEA_E_MEMORY;
+    return;
+  }
+  char name[NAME_SIZE];
+  snprintf(name, sizeof name, "%.*s%s%s", NAME_SIZE / 2, f->folder, f->folder[0] != '\0' ? "/" : "",
+           key);
+  struct api_setting *entry = &((struct api_setting *)moved)[f->result->text_count];
+  f->result->texts = moved;
+  *entry = (struct api_setting){dea_copy_text(ctx, name, SIZE_MAX),
+                                dea_copy_text(ctx, text != NULL ? text : "", SIZE_MAX)};
+  f->result->text_count++;
+  if (entry->key == NULL || entry->value == NULL) {
+    f->status = DEA_E_MEMORY;
+  }
+}
+
+static void enter(struct filling *f, const char *format, ...) DEA_PRINTF(2, 3);
+static void enter(struct filling *f, const char *format, ...)
+{
+  va_list args;
+  va_start(args, format);
+  vsnprintf(f->folder, sizeof f->folder, format, args);
+  va_end(args);
+}
+
+/* Points, `stride` bytes from one to the next: a column of those quantities that some point has. */
+static void add_points(struct filling *f, const struct dea_load_point *points, size_t stride,
+                       size_t count)
+{
+  const char *bytes = (const char *)points;
+  const struct dea_context *ctx = f->result->ctx->inner;
+  for (int c = 0; c < dea_column_count(ctx) && count > 0; c++) {
+    bool any = false;
+    for (size_t i = 0; i < count && !any; i++) {
+      const void *at = bytes + i * stride;
+      any = !isnan(dea_point_get(at, c));
+    }
+    double *values = any ? add_array(f, dea_column_at(ctx, c), count) : NULL;
+    for (size_t i = 0; i < count && values != NULL; i++) {
+      values[i] = dea_point_get((const void *)(bytes + i * stride), c);
+    }
+  }
+  for (int k = 0; k < DEA_POINT_STATES && count > 0; k++) {
+    const struct dea_point_state *state = &dea_point_states[k];
+    const struct dea_column column = {state->key, "1", "1", 1, state->key, state->meaning};
+    double *values = add_array(f, &column, count);
+    for (size_t i = 0; i < count && values != NULL; i++) {
+      values[i] = state->get((const void *)(bytes + i * stride));
+    }
+  }
+}
+
+/* Events of one kind after the other, each under its name. */
+static void add_events(struct filling *f, const struct dea_curve *curve, const char *folder)
+{
+  for (int kind = DEA_EVENT_PULL_IN; kind <= (int)DEA_EVENT_BREAKDOWN; kind++) {
+    struct dea_load_point *points =
+        dea_alloc(f->result->ctx->inner, curve->event_count, sizeof *points);
+    size_t count = 0;
+    if (points == NULL) {
+      f->status = DEA_E_MEMORY;
+      return;
+    }
+    for (size_t i = 0; i < curve->event_count; i++) {
+      if ((int)curve->events[i].kind == kind) {
+        points[count++] = curve->events[i].point;
+      }
+    }
+    enter(f, "%s/%s", folder, dea_event_name((enum dea_event_kind)kind));
+    add_points(f, points, sizeof *points, count);
+    dea_free(f->result->ctx->inner, points);
+  }
+}
+
+static void add_curve(struct filling *f, const struct dea_curve *curve, const char *folder)
+{
+  enter(f, "%s", folder);
+  add_points(f, curve->points, sizeof *curve->points, curve->count);
+  add_text(f, "status", dea_status_name(curve->status));
+  add_text(f, "stopped", curve->stopped);
+  add_events(f, curve, folder);
+}
+
+static void add_profile(struct filling *f, const struct dea_profile_record *record)
+{
+  for (int c = 0; c < DEA_PROFILE_COLUMNS && record->count > 0; c++) {
+    double *values = add_array(f, &dea_profile_columns[c], record->count);
+    if (values != NULL) {
+      memcpy(values, record->columns + (size_t)c * record->count, record->count * sizeof *values);
+    }
+  }
+}
+
+static void add_profiles(struct filling *f, const struct dea_result *inner)
+{
+  static const struct dea_column voltage = {"voltage_V", "V", "kV",
+                                            1e-3,        "V", "voltage between the electrodes"};
+  for (size_t i = 0; i < inner->profile_count; i++) {
+    const struct dea_profile_record *record = &inner->profiles[i];
+    size_t number = 0;
+    for (size_t k = 0; k < i; k++) {
+      number += strcmp(inner->profiles[k].model, record->model) == 0;
+    }
+    enter(f, "%s/profiles/%04zu", record->model, number);
+    add_profile(f, record);
+    double *values = add_array(f, &voltage, 1);
+    if (values != NULL) {
+      values[0] = record->voltage_V;
+    }
+  }
+}
+
+static void add_number(struct filling *f, const char *key, const char *unit, const char *meaning,
+                       double value)
+{
+  const struct dea_column column = {key, unit, unit, 1, key, meaning};
+  double *values = isnan(value) ? NULL : add_array(f, &column, 1);
+  if (values != NULL) {
+    values[0] = value;
+  }
+}
+
+static void add_variants(struct filling *f, const struct dea_result *inner)
+{
+  for (size_t i = 0; i < inner->variant_count; i++) {
+    const struct dea_variant *variant = &inner->variants[i];
+    char folder[NAME_SIZE];
+    size_t number = 0;
+    for (size_t k = 0; k < i; k++) {
+      number += dea_variant_is(&inner->variants[k], variant->curve.model, variant->curve.kind);
+    }
+    snprintf(folder, sizeof folder, "%s/%s/%04zu", variant->curve.model, variant->curve.kind,
+             number);
+    add_curve(f, &variant->curve, folder);
+    enter(f, "%s", folder);
+    add_text(f, "name", variant->name);
+    add_number(f, "refinement", "1", "refinement of the mesh", variant->refinement);
+    add_number(f, "unknowns", "1", "unknowns of the system",
+               variant->size.unknowns > 0 ? (double)variant->size.unknowns : NAN);
+    add_number(f, "wall_s", "s", "time that it took", variant->wall_s);
+    enter(f, "%s/profile", folder);
+    add_profile(f, &variant->profile);
+  }
+}
+
+static void add_texts(struct filling *f)
+{
+  const dea_result *result = f->result;
+  const struct dea_provenance *p = &result->inner->provenance;
+  f->folder[0] = '\0';
+  add_text(f, "title", result->run != NULL ? result->run->title : result->design->title.text);
+  add_text(f, "file", result->run != NULL ? result->run->design_file : result->design->file);
+  add_text(f, "design", p->input);
+  add_text(f, "set", p->overrides);
+  add_text(f, "program", p->program);
+  add_text(f, "libraries", p->libraries);
+  add_text(f, "started", p->started);
+  add_text(f, "sha256", p->input_sha256);
+}
+
+static void add_meshes(struct filling *f)
+{
+  dea_result *result = f->result;
+  const struct dea_result *inner = result->inner;
+  result->meshes = dea_alloc(result->ctx->inner, inner->surface_count, sizeof *result->meshes);
+  f->status = result->meshes == NULL ? DEA_E_MEMORY : f->status;
+  for (size_t i = 0; i < inner->surface_count && f->status == DEA_OK; i++) {
+    const struct dea_surface_record *record = &inner->surfaces[i];
+    char name[2 * DEA_NAME_SIZE];
+    snprintf(name, sizeof name, "%s/surface/%04zu", record->model, record->point);
+    f->status = api_mesh_make(result->ctx->inner, name, record->voltage_V, record->mesh, false,
+                              &result->meshes[i]);
+    result->mesh_count += f->status == DEA_OK;
+  }
+}
+
+dea_status api_result_list(dea_result *result)
+{
+  struct filling f = {.result = result, .status = DEA_OK};
+  const struct dea_result *inner = result->inner;
+  add_texts(&f);
+  for (size_t i = 0; i < inner->curve_count; i++) {
+    char folder[NAME_SIZE];
+    snprintf(folder, sizeof folder, "%s/%s", inner->curves[i].model, inner->curves[i].kind);
+    add_curve(&f, &inner->curves[i], folder);
+  }
+  add_profiles(&f, inner);
+  add_variants(&f, inner);
+  add_meshes(&f);
+  return f.status;
+}
+
+// Handles ----------------------------------------------------------------------------------------
+
+void dea_result_free(dea_result *result)
+{
+  if (result == NULL) {
+    return;
+  }
+  struct dea_context *ctx = result->ctx->inner;
+  for (size_t i = 0; i < result->array_count; i++) {
+    dea_free(ctx, result->arrays[i]);
+  }
+  for (size_t i = 0; i < result->text_count; i++) {
+    dea_free(ctx, result->texts[i].key);
+    dea_free(ctx, result->texts[i].value);
+  }
+  for (size_t i = 0; i < result->mesh_count; i++) {
+    api_mesh_free(ctx, result->meshes[i]);
+  }
+  dea_free(ctx, result->arrays);
+  dea_free(ctx, result->texts);
+  dea_free(ctx, result->meshes);
+  dea_text_free(&result->summary);
+  dea_text_free(&result->svg);
+  if (result->run != NULL) {
+    dea_run_destroy(ctx, result->run);
+  } else {
+    dea_result_destroy(ctx, result->inner);
+  }
+  dea_device_destroy(ctx, result->device);
+  dea_design_destroy(ctx, result->design);
+  dea_free(ctx, result);
+}
+
+dea_status api_result_make(dea_context *ctx, struct dea_result_handle contents, dea_result **out)
+{
+  struct dea_context *inner = ctx->inner;
+  dea_result *result = dea_alloc(inner, 1, sizeof *result);
+  *out = NULL;
+  contents.ctx = ctx;
+  contents.summary.ctx = contents.svg.ctx = inner;
+  if (result == NULL) {
+    if (contents.run != NULL) {
+      dea_run_destroy(inner, contents.run);
+    } else {
+      dea_result_destroy(inner, contents.inner);
+    }
+    dea_device_destroy(inner, contents.device);
+    dea_design_destroy(inner, contents.design);
+    return DEA_E_MEMORY;
+  }
+  *result = contents;
+  dea_status status = api_result_list(result);
+  if (status != DEA_OK) {
+    dea_result_free(result);
+    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
+  }
+  *out = result;
+  return DEA_OK;
+}
+
+const dea_array *dea_result_array_at(const dea_result *result, size_t index)
+{
+  return index < result->array_count ? result->arrays[index] : NULL;
+}
+
+dea_status dea_result_array(dea_context *ctx, const dea_result *result, const char *name,
+                            const dea_array **out)
+{
+  const char *key = strrchr(name, '/');
+  const int column = key != NULL ? dea_column_find(ctx->inner, key + 1) : -1; // "hub_z"
+  *out = NULL;
+  for (size_t i = 0; i < result->array_count; i++) {
+    const char *full = result->arrays[i]->name;
+    const size_t folder = key != NULL ? (size_t)(key + 1 - name) : 0;
+    if (strcmp(full, name) == 0 ||
+        (column >= 0 && strncmp(full, name, folder) == 0 &&
+         strcmp(full + folder, dea_column_at(ctx->inner, column)->key) == 0)) {
+      *out = result->arrays[i];
+      return DEA_OK;
+    }
+  }
+  const char **known = dea_alloc(ctx->inner, result->array_count, sizeof *known);
+  if (known == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < result->array_count; i++) {
+    known[i] = result->arrays[i]->name;
+  }
+  dea_status status = api_unknown(ctx, "array", name, known, result->array_count);
+  dea_free(ctx->inner, known);
+  return status;
+}
+
+static dea_status get_summary(dea_context *ctx, dea_result *result, const char **out)
+{
+  DEA_TRY(ctx->inner, api_check_owner(ctx, result->ctx, "result"));
+  if (result->summary.length == 0) {
+    char *text;
+    DEA_TRY(ctx->inner, dea_summary_text(ctx->inner, result->inner, &text));
+    dea_text_add(&result->summary, "%s", text);
+    dea_free(ctx->inner, text);
+  }
+  *out = dea_text_get(&result->summary);
+  return result->summary.failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+dea_status dea_result_text(dea_context *ctx, dea_result *result, const char *name, const char **out)
+{
+  *out = NULL;
+  if (strcmp(name, "summary") == 0) {
+    return get_summary(ctx, result, out);
+  }
+  for (size_t i = 0; i < result->text_count; i++) {
+    if (strcmp(result->texts[i].key, name) == 0) {
+      *out = result->texts[i].value;
+      return DEA_OK;
+    }
+  }
+  return api_unknown(ctx, "text", name, NULL, 0);
+}
+
+// Figures and files ------------------------------------------------------------------------------
+
+/* Draws a figure into svg; nothing when it has nothing to show. */
+static dea_status draw(struct dea_context *ctx, const struct dea_result *inner,
+                       const struct dea_figure *figure, struct dea_text *svg)
+{
+  struct dea_plot *plot;
+  struct dea_text fragment = {.ctx = ctx};
+  DEA_TRY(ctx, dea_plot_create(ctx, figure->name, figure->caption, &plot));
+  dea_status status = figure->build(ctx, inner, plot);
+  if (status == DEA_OK && dea_plot_shows(plot)) {
+    void *locale = dea_c_locale_enter();
+    dea_plot_add_svg(&fragment, plot, 1);
+    api_svg_add(svg, dea_text_get(&fragment));
+    dea_c_locale_leave(locale);
+    status = fragment.failed || svg->failed ? DEA_E_MEMORY : DEA_OK;
+  }
+  dea_text_free(&fragment);
+  dea_plot_destroy(ctx, plot);
+  return status;
+}
+
+dea_status dea_result_svg(dea_context *ctx, dea_result *result, const char *figure,
+                          const char **out)
+{
+  const char *known[DEA_FIGURES_MAX];
+  size_t count = dea_figure_names(true, known);
+  const struct dea_figure *one;
+  bool found = figure[0] == '\0';
+  *out = NULL;
+  DEA_TRY(ctx->inner, api_check_owner(ctx, result->ctx, "result"));
+  dea_text_free(&result->svg);
+  for (size_t i = 0; (one = dea_figure_get(i)) != NULL && result->svg.length == 0; i++) {
+    if (one->build != NULL && (figure[0] == '\0' || strcmp(one->name, figure) == 0)) {
+      found = true;
+      DEA_TRY(ctx->inner, draw(ctx->inner, result->inner, one, &result->svg));
+    }
+  }
+  if (!found) {
+    return api_unknown(ctx, "figure", figure, known, count);
+  }
+  if (result->svg.length == 0) {
+    return dea_fail(ctx->inner, DEA_E_ARGUMENT, "the result has nothing to show in figure '%.60s'",
+                    figure);
+  }
+  *out = dea_text_get(&result->svg);
+  return DEA_OK;
+}
+
+dea_status dea_result_write(dea_context *ctx, const dea_result *result, const char *folder,
+                            const dea_run_options *options)
+{
+  const dea_run_options all = api_run_options(options);
+  const struct dea_run_folder_options inner = {.force = all.replace != 0,
+                                               .no_figures = all.no_figures != 0};
+  DEA_TRY(ctx->inner, dea_run_folder_prepare(ctx->inner, folder, inner.force));
+  DEA_TRY(ctx->inner, dea_run_folder_write(ctx->inner, result->inner, folder, &inner));
+  return DEA_OK;
+}
+
+dea_status dea_result_save(dea_context *ctx, const dea_result *result, const char *path)
+{
+  DEA_TRY(ctx->inner, dea_results_h5_write(ctx->inner, result->inner, path));
+  return DEA_OK;
+}
+
+/* The design that was computed, read again; one that this version does not understand is left out,
+ * with a note. */
+static dea_status read_design(struct dea_context *ctx, struct dea_result_handle *contents)
+{
+  dea_status status = dea_design_of_run(ctx, contents->run, &contents->design, &contents->device);
+  if (status == DEA_OK) {
+    contents->inner->design = contents->design;
+    contents->inner->device = contents->device;
+    return DEA_OK;
+  }
+  dea_device_destroy(ctx, contents->device);
+  dea_design_destroy(ctx, contents->design);
+  contents->device = NULL;
+  contents->design = NULL;
+  if (status == DEA_E_MEMORY) {
+    return status;
+  }
+  dea_finding_clear(ctx);
+  dea_context_clear(ctx);
+  return dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                         "the design of this result is not understood by this version");
+}
+
+dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
+{
+  struct dea_context *inner = api_begin(ctx);
+  struct dea_result_handle contents = {.ctx = ctx};
+  *out = NULL;
+  DEA_TRY(inner, dea_run_read(inner, path, &contents.run));
+  contents.inner = contents.run->result;
+  dea_status status = read_design(inner, &contents);
+  if (status != DEA_OK) {
+    dea_run_destroy(inner, contents.run);
+    return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
+  }
+  DEA_TRY(inner, api_result_make(ctx, contents, out));
+  return DEA_OK;
+}
+
+dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_design **out)
+{
+  const struct dea_provenance *p = &result->inner->provenance;
+  *out = NULL;
+  api_begin(ctx);
+  if (p->input == NULL) {
+    return dea_fail(ctx->inner, DEA_E_UNSUPPORTED, "the result does not have its design");
+  }
+  DEA_TRY(ctx->inner,
+          api_design_make(ctx,
+                          result->run != NULL ? result->run->design_file : result->design->file,
+                          p->input, p->overrides, out));
+  return DEA_OK;
+}

@@ -1,0 +1,409 @@
+/* The table of all keys of a design file: `dea schema` prints it, the reader reads with it. */
+#include "design/design_schema.h"
+
+#include <assert.h>
+#include <stddef.h>
+#include <string.h>
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define AT(member) offsetof(struct dea_design_raw, design.member)
+#define RAW(member) offsetof(struct dea_design_raw, member)
+
+enum { RADIUS_GROUP = 1, VOLTAGE_GROUP, FIELDS_GROUP };
+
+static const struct dea_field film_fields[] = {
+    DEA_LABEL_ROW(
+        "material", AT(film.material), "elastosil-2030",
+        "material of the film, from `dea materials` or this file's `materials`, or in one line",
+        .required = true, .or_section = true),
+    DEA_LABEL_ROW("law", AT(film.law), "yeoh-178", "id of the material's set of law parameters",
+                  .absent_text = "the material's first"),
+    DEA_LABEL_ROW("permittivity", AT(film.permittivity), "constant",
+                  "id of the material's permittivity", .absent_text = "the material's first"),
+    DEA_LABEL_ROW("breakdown", AT(film.breakdown), "datasheet",
+                  "id of the material's breakdown field", .absent_text = "the material's first"),
+    DEA_LABEL_ROW("viscosity", AT(film.viscosity), "none",
+                  "id of the material's viscosity, for studies in time; none: without",
+                  .absent_text = "the material's first"),
+    DEA_NUMBER_ROW("thickness", AT(film.thickness_m), "m", "100 um",
+                   "thickness of the unstretched film", .above_min = true, .max = 0.01,
+                   .required = true),
+};
+
+static const struct dea_field frame_fields[] = {
+    {.key = "inner_diameter",
+     .kind = DEA_FIELD_STRETCHED,
+     .offset = AT(frame.radius_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 2,
+     .scale = 0.5,
+     .required = true,
+     .group = RADIUS_GROUP,
+     .option = 1,
+     .doc = "inner diameter of the rigid frame (a length of the stretched film)",
+     .example = "30 mm"},
+    {.key = "inner_radius",
+     .kind = DEA_FIELD_STRETCHED,
+     .offset = AT(frame.radius_m),
+     .unit = "m",
+     .above_min = true,
+     .max = 1,
+     .group = RADIUS_GROUP,
+     .option = 2,
+     .doc = "inner radius of the rigid frame (a length of the stretched film)",
+     .example = "15 mm"},
+};
+
+static const struct dea_field electrode_fields[] = {
+    {.key = "diameter",
+     .kind = DEA_FIELD_INPLANE,
+     .offset = AT(electrodes.radius),
+     .unit = "m",
+     .above_min = true,
+     .max = 2,
+     .scale = 0.5,
+     .required = true,
+     .group = RADIUS_GROUP,
+     .option = 1,
+     .doc = "diameter of the electrodes",
+     .example = "5 mm unstretched"},
+    {.key = "radius",
+     .kind = DEA_FIELD_INPLANE,
+     .offset = AT(electrodes.radius),
+     .unit = "m",
+     .above_min = true,
+     .max = 1,
+     .group = RADIUS_GROUP,
+     .option = 2,
+     .doc = "radius of the electrodes",
+     .example = "3.75 mm stretched"},
+    DEA_LABEL_ROW("material", AT(electrodes.material), "carbon-silicone-electrode",
+                  "material of the electrodes", .or_section = true, .absent_text = "none"),
+    DEA_NUMBER_ROW("thickness", AT(electrodes.thickness_m), "m", "10 um",
+                   "thickness of each electrode; 0: without stiffness", .max = 0.01,
+                   .default_text = "0 um"),
+};
+
+static const struct dea_field voltage_fields[] = {
+    DEA_NUMBER_ROW("from", RAW(from_V), "V", "0 kV", "first voltage", .max = 1e6,
+                   .default_text = "0 kV", .group = VOLTAGE_GROUP, .option = 1),
+    DEA_NUMBER_ROW("to", RAW(to_V), "V", "8 kV", "last voltage; below `from` the sweep goes down",
+                   .max = 1e6, .default_text = "8 kV", .group = VOLTAGE_GROUP, .option = 1),
+    DEA_NUMBER_ROW("step", RAW(step_V), "V", "0.1 kV", "step between voltages", .above_min = true,
+                   .max = 1e6, .default_text = "0.1 kV", .group = VOLTAGE_GROUP, .option = 1),
+    DEA_CHOICE_ROW("back", RAW(back), dea_no_yes, "yes",
+                   "whether the sweep goes back the same way: snap-through shows as hysteresis",
+                   .default_text = "no"),
+    DEA_NUMBER_ROW("values", RAW(voltages_V), "V", "[0 kV, 1 kV, 2 kV]",
+                   "the voltages themselves, in the order to be computed", .max = 1e6,
+                   .group = VOLTAGE_GROUP, .option = 2, .list_min = 1,
+                   .list_max = DEA_DESIGN_VOLTAGES_MAX, .element_size = sizeof(struct dea_quantity),
+                   .count_offset = RAW(voltage_count)),
+};
+
+static const struct dea_field path_fields[] = {
+    DEA_NUMBER_ROW("max_stretch", AT(compute.path_max_stretch), "1", "2.2",
+                   "total stretch of the electrode, pre-stretch included, at which the path ends",
+                   .min = 1, .above_min = true, .max = 20,
+                   .absent_text = "1.5 x pre_stretch, or all voltages"),
+};
+
+static const struct dea_record voltage_record = {"voltage", "voltages of a sweep", voltage_fields,
+                                                 COUNT(voltage_fields)};
+static const struct dea_record path_record = {
+    "path", "equilibrium path through pull-in and snap-through", path_fields, COUNT(path_fields)};
+
+// In the order of enum dea_coverage_by.
+static const char *const coverage_ways[] = {"radius", "area", NULL};
+
+static const struct dea_field compute_fields[] = {
+    DEA_LABEL_ROW("models", AT(compute.models), "[lumped, axisymmetric]", "models to be computed",
+                  .default_text = "[lumped, axisymmetric]", .list_min = 1,
+                  .list_max = DEA_DESIGN_MODELS_MAX, .element_size = sizeof(struct dea_label),
+                  .count_offset = AT(compute.model_count)),
+    {.key = "voltage",
+     .kind = DEA_FIELD_RECORD,
+     .record = &voltage_record,
+     .doc = "voltages of the sweep"},
+    {.key = "path", .kind = DEA_FIELD_RECORD, .record = &path_record, .doc = "equilibrium path"},
+    {.key = "solid",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_solid_record,
+     .doc = "mesh of model 3d"},
+    {.key = "compare",
+     .kind = DEA_FIELD_RECORD,
+     .offset = AT(compute.compare),
+     .record = &dea_compare_record,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_VARIANTS_MAX,
+     .element_size = sizeof(struct dea_design_variant),
+     .count_offset = AT(compute.compare_count),
+     .absent_text = "none",
+     .doc = "study compare-design: other designs in one figure with this one"},
+    DEA_CHOICE_ROW(
+        "coverage_by", AT(compute.coverage_by), coverage_ways, "radius",
+        "coverage of paper eq 17: ratio of the radii or of the areas of electrode and frame",
+        .default_text = "radius"),
+    DEA_NUMBER_ROW("coverage", AT(compute.coverage), "1", "0.2",
+                   "coverage itself; takes the place of coverage_by", .above_min = true, .max = 1,
+                   .below_max = true, .absent_text = "from coverage_by"),
+};
+
+// In the order of the DEA_FIGURE_* constants.
+static const char *const figure_formats[] = {"svg", "pdf", "png", NULL};
+
+// In the order of enum dea_fields_at and enum dea_fields_of.
+static const char *const fields_at[] = {"all", "last", "none", NULL};
+static const char *const fields_of[] = {"whole", "sector", NULL};
+
+static const struct dea_field report_fields[] = {
+    DEA_CHOICE_ROW(
+        "figures", RAW(figures), figure_formats, "[svg, pdf]",
+        "formats of the figures; those of a run that is done: dea plot RUN --format LIST",
+        .default_text = "[svg]", .list_min = 0, .list_max = DEA_FIGURE_COUNT,
+        .element_size = sizeof(struct dea_choice), .count_offset = RAW(figure_count)),
+    DEA_NUMBER_ROW("width", AT(report.width_m), "m", "85 mm", "width of a figure", .min = 0.02,
+                   .max = 1, .default_text = "85 mm"),
+    DEA_CHOICE_ROW(
+        "fields", AT(report.fields), fields_at, "all",
+        "voltages of the sweep at which a 3D model leaves its fields, for ParaView (some MB each)",
+        .default_text = "last", .group = FIELDS_GROUP, .option = 1),
+    DEA_NUMBER_ROW("fields_at", RAW(fields_at_V), "V", "[4 kV, 6 kV]", "these voltages themselves",
+                   .max = 1e6, .group = FIELDS_GROUP, .option = 2, .list_min = 1,
+                   .list_max = DEA_DESIGN_FIELDS_MAX, .element_size = sizeof(struct dea_quantity),
+                   .count_offset = RAW(fields_at_count)),
+    DEA_CHOICE_ROW(
+        "fields_of", AT(report.fields_of), fields_of, "sector",
+        "fields of the whole actuator, with mirrored copies, or of the part that was computed",
+        .default_text = "whole"),
+};
+
+static const struct dea_record film_record = {"film", "the dielectric film", film_fields,
+                                              COUNT(film_fields)};
+static const struct dea_record frame_record = {"frame", "the frame that holds the pre-stretch",
+                                               frame_fields, COUNT(frame_fields)};
+static const struct dea_record electrodes_record = {
+    "electrodes", "a disc on both faces of the film", electrode_fields, COUNT(electrode_fields)};
+static const struct dea_record compute_record = {"compute", "what to compute", compute_fields,
+                                                 COUNT(compute_fields)};
+static const struct dea_record report_record = {"report", "how to report", report_fields,
+                                                COUNT(report_fields)};
+
+static const char *const gravities[] = {"off", "fibres_up", "fibres_down", NULL}; // dea_gravity
+
+static const struct dea_field design_fields[] = {
+    DEA_INTEGER_ROW("dea", RAW(version), "1", "version of the format of design files",
+                    .min = DEA_DESIGN_VERSION, .max = DEA_DESIGN_VERSION, .required = true),
+    DEA_LABEL_ROW("title", AT(title), "Actuator with four fibres",
+                  "what the design is, for figures and reports", .absent_text = "none",
+                  .one_line = true),
+    {.key = "film",
+     .kind = DEA_FIELD_RECORD,
+     .record = &film_record,
+     .required = true,
+     .doc = "the dielectric film"},
+    DEA_NUMBER_ROW("pre_stretch", AT(pre_stretch), "1", "1.5",
+                   "equibiaxial stretch at which the frame holds the film; 1: none", .min = 1,
+                   .max = 10, .required = true),
+    {.key = "frame",
+     .kind = DEA_FIELD_RECORD,
+     .record = &frame_record,
+     .required = true,
+     .doc = "the frame that holds the pre-stretch"},
+    {.key = "electrodes",
+     .kind = DEA_FIELD_RECORD,
+     .record = &electrodes_record,
+     .required = true,
+     .doc = "a disc on both faces of the film"},
+    {.key = "fibres",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_fibres_record,
+     .present_offset = AT(has_fibres),
+     .absent_text = "none",
+     .doc = "radial fibres on the upper face; without this section there are none"},
+    DEA_CHOICE_ROW("gravity", AT(gravity), gravities, "fibres_up",
+                   "weight, and which way the side of the fibres faces (3d); without fibres: +z",
+                   .default_text = "off"),
+    DEA_NUMBER_ROW("temperature", AT(temperature_K), "K", "23 degC",
+                   "temperature of the device: chooses among sets of a material that were measured "
+                   "at different ones",
+                   .min = 100, .max = 600, .absent_text = "unknown"),
+    {.key = "drive",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_drive_record,
+     .doc = "waveform and supply for what happens in time"},
+    {.key = "materials",
+     .kind = DEA_FIELD_RECORD,
+     .offset = RAW(materials),
+     .record = &dea_material_inline_record,
+     .list_min = 1,
+     .list_max = DEA_DESIGN_MATERIALS_MAX,
+     .element_size = sizeof(struct dea_material_data),
+     .count_offset = AT(material_count),
+     .absent_text = "none of its own",
+     .doc = "materials of this design; they go before those of the catalogue"},
+    {.key = "compute",
+     .kind = DEA_FIELD_RECORD,
+     .record = &compute_record,
+     .doc = "what to compute"},
+    {.key = "fabrication",
+     .kind = DEA_FIELD_RECORD,
+     .record = &dea_fabrication_record,
+     .doc = "what `dea fab` needs to make files for the workshop"},
+    {.key = "report", .kind = DEA_FIELD_RECORD, .record = &report_record, .doc = "how to report"},
+};
+
+static const struct dea_record design_record = {"design file",
+                                                "design of a dielectric elastomer actuator",
+                                                design_fields, COUNT(design_fields)};
+
+/* The row of a study's section. */
+static struct dea_field section_field(const struct dea_design_section *section, size_t index)
+{
+  size_t at = AT(compute.settings) + index * sizeof(struct dea_settings);
+  return (struct dea_field){.key = section->key,
+                            .kind = DEA_FIELD_SETTINGS,
+                            .offset = at + offsetof(struct dea_settings, values),
+                            .present_offset = at + offsetof(struct dea_settings, written),
+                            .element_size = section->size,
+                            .record = section->record,
+                            .doc = section->record->doc};
+}
+
+/* Keys of the short form that the general one has not, and what to write there. */
+static const struct dea_field not_general[] = {
+    {.key = "film",
+     .elsewhere = "'film' belongs to the short form of a disc; here a film is one of the 'plies', "
+                  "with its shape and its own pre_stretch"},
+    {.key = "pre_stretch",
+     .elsewhere = "'pre_stretch' belongs to the short form of a disc; here each of the 'plies' has "
+                  "its own, along one axis or two"},
+    {.key = "frame",
+     .elsewhere = "'frame' belongs to the short form of a disc; here a rigid frame is one of the "
+                  "'supports', such as '{edge: film}', and a flexible one is one of the 'plies'"},
+    {.key = "fibres",
+     .elsewhere =
+         "'fibres' belongs to the short form of a disc; here a fibre is one of the 'plies', "
+         "with a shape such as a rectangle, a strip, or an array or polar of them"},
+    {.key = "stripes",
+     .elsewhere = "there are no 'stripes': they are one of the 'plies', with a shape of kind array "
+                  "of rectangles"},
+    {.key = "layers", .elsewhere = "layers are the 'plies' here"},
+    {.key = "hub", .elsewhere = "a hub is one of the 'bodies' here, with its shape"},
+};
+
+#define ONLY_GENERAL(word, what)                                                                   \
+  {                                                                                                \
+    .key = word, .elsewhere =                                                                      \
+                     "'" word "' belongs to the general form of a design, which lists " what       \
+                     " (docs/design-file.md); this file is of the short form of a "                \
+                     "disc in a frame, because it has no 'plies'"                                  \
+  }
+/* The other way round. */
+static const struct dea_field not_short[] = {
+    ONLY_GENERAL("shapes", "shapes, and 'plies' of them"),
+    ONLY_GENERAL("channels", "'plies', and electrodes with their channels"),
+    ONLY_GENERAL("supports", "'plies', and supports that hold them"),
+    ONLY_GENERAL("bodies", "'plies', and rigid bodies"),
+    ONLY_GENERAL("springs", "'plies', and rigid bodies with springs"),
+    ONLY_GENERAL("pressures", "'plies', and pressures on them"),
+    ONLY_GENERAL("monitors", "'plies', and monitors"),
+    ONLY_GENERAL("stripes", "'plies', of which one can be an array of stripes"),
+    ONLY_GENERAL("layers", "'plies'"),
+    ONLY_GENERAL("hub", "'plies', and rigid bodies such as a hub"),
+};
+
+static const char *const general_gravities[] = {"off", "top_up", "top_down", NULL}; // dea_gravity
+
+/* Fields of a form that are those of the other one, or differ a little. */
+static bool is_of(const struct dea_field *fields, size_t count, const char *key)
+{
+  for (size_t i = 0; i < count; i++) {
+    if (strcmp(fields[i].key, key) == 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* `compute` with the sections of studies, into a form whose rows of the top are there. */
+static void fill_compute(const struct dea_design_sections *sections, bool general,
+                         struct dea_design_form *out)
+{
+  size_t count = 0;
+  out->compute_record = compute_record;
+  for (size_t i = 0; i < COUNT(compute_fields); i++) {
+    if (!general || strncmp(compute_fields[i].key, "coverage", strlen("coverage")) != 0) {
+      out->compute[count++] = compute_fields[i];
+    }
+  }
+  if (general) {
+    out->compute[0].default_text = "[3d]"; // the only one that knows more than a disc
+    out->compute[0].example = "[3d]";
+  }
+  for (size_t i = 0; i < sections->count && i < DEA_DESIGN_SECTIONS_MAX; i++) {
+    out->compute[count++] = section_field(sections->items[i], i);
+  }
+  out->compute_record.fields = out->compute;
+  out->compute_record.field_count = count;
+  for (size_t i = 0; i < out->record.field_count; i++) {
+    if (out->top[i].record == &compute_record) {
+      out->top[i].record = &out->compute_record;
+    }
+  }
+  out->record.fields = out->top;
+}
+
+static void add_fields(struct dea_design_form *out, const struct dea_field *fields, size_t count)
+{
+  memcpy(out->top + out->record.field_count, fields, count * sizeof *fields);
+  out->record.field_count += count;
+}
+
+static void fill_general(const struct dea_shape_schema *shapes, struct dea_design_form *out)
+{
+  out->record =
+      (struct dea_record){"design file", "design of any actuator of flat layers", NULL, 0};
+  for (size_t i = 0; i < COUNT(design_fields); i++) {
+    const char *key = design_fields[i].key;
+    if (strcmp(key, "gravity") == 0) { // the parts come before it
+      add_fields(out, dea_parts_fields, dea_parts_field_count);
+    }
+    if (!is_of(not_general, COUNT(not_general), key) &&
+        !is_of(dea_parts_fields, dea_parts_field_count, key)) {
+      add_fields(out, &design_fields[i], 1);
+    }
+  }
+  for (size_t i = 0; i < out->record.field_count; i++) {
+    struct dea_field *field = &out->top[i];
+    if (strcmp(field->key, "gravity") == 0) {
+      field->choices = general_gravities;
+      field->doc = "weight, and which way the top of the plies faces";
+      field->example = "top_up";
+    } else if (strcmp(field->key, "fabrication") == 0) {
+      field->record = &dea_fabrication_general_record;
+    } else if (strcmp(field->key, "shapes") == 0) {
+      field->kinds = shapes->kinds;
+    }
+  }
+  add_fields(out, not_general, COUNT(not_general));
+}
+
+void dea_design_schema_fill(const struct dea_design_sections *sections,
+                            struct dea_design_schema *out)
+{
+  static_assert(COUNT(design_fields) + COUNT(not_short) <= DEA_DESIGN_TOP_MAX, "room for the top");
+  static_assert(COUNT(design_fields) + COUNT(not_general) + 9 <= DEA_DESIGN_TOP_MAX,
+                "room for the top with all parts");
+  static_assert(COUNT(compute_fields) + DEA_DESIGN_SECTIONS_MAX <= DEA_DESIGN_COMPUTE_MAX,
+                "room for all of compute");
+  dea_shape_schema_fill(&out->shapes);
+  out->disc.record = design_record;
+  out->disc.record.field_count = 0;
+  add_fields(&out->disc, design_fields, COUNT(design_fields));
+  add_fields(&out->disc, not_short, COUNT(not_short));
+  fill_general(&out->shapes, &out->general);
+  fill_compute(sections, false, &out->disc);
+  fill_compute(sections, true, &out->general);
+}

@@ -1,0 +1,49 @@
+/* The schema of a design file: the table, and the struct that it fills. */
+#ifndef DEA_DESIGN_DESIGN_SCHEMA_H
+#define DEA_DESIGN_DESIGN_SCHEMA_H
+
+#include "base/schema.h"
+#include "design/design.h"
+#include "design/schema_parts.h"
+
+enum { DEA_FIGURE_SVG, DEA_FIGURE_PDF, DEA_FIGURE_PNG, DEA_FIGURE_COUNT };
+
+/* A design as the table reads it, before what is derived from several values. */
+struct dea_design_raw {
+  struct dea_design design;
+  struct dea_quantity version;
+  struct dea_quantity from_V, to_V, step_V;
+  struct dea_choice back; // 1: the sweep returns
+  struct dea_quantity voltages_V[DEA_DESIGN_VOLTAGES_MAX];
+  size_t voltage_count;
+  struct dea_choice figures[DEA_FIGURE_COUNT];
+  size_t figure_count;
+  struct dea_quantity fields_at_V[DEA_DESIGN_FIELDS_MAX];
+  size_t fields_at_count;
+  struct dea_material_data materials[DEA_DESIGN_MATERIALS_MAX];
+  struct dea_parts_raw parts; // of the general form
+};
+
+/* Parts of the table that have files of their own; base as below. */
+extern const struct dea_record dea_fibres_record, dea_solid_record, dea_fabrication_record,
+    dea_fabrication_general_record, dea_drive_record;
+/* base: a struct dea_design_variant. */
+extern const struct dea_record dea_compare_record;
+
+enum { DEA_DESIGN_TOP_MAX = 40, DEA_DESIGN_COMPUTE_MAX = 32 };
+
+/* The table of one form of a design file; record's base: a struct dea_design_raw. */
+struct dea_design_form {
+  struct dea_record record, compute_record;
+  struct dea_field top[DEA_DESIGN_TOP_MAX], compute[DEA_DESIGN_COMPUTE_MAX];
+};
+/* Tables of a design file with sections of studies: of the short form, which describes a disc in a
+ * frame, and of the general one, which lists parts. They point to each other: not to be copied. */
+struct dea_design_schema {
+  struct dea_design_form disc, general;
+  struct dea_shape_schema shapes;
+};
+void dea_design_schema_fill(const struct dea_design_sections *sections,
+                            struct dea_design_schema *out);
+
+#endif

@@ -1,0 +1,222 @@
+#include "explore/explore_sweep.h"
+
+#include "explore/order.h"
+#include "explore/pool.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SHARES = 8 }; // blocks of a shard, at least, where there are so many cases
+
+/* Places [next, end) of the order that a process works at. */
+struct stretch {
+  size_t next, end;
+};
+
+struct work {
+  const struct dea_case_key *case_key;
+  const struct dea_sweep_options *options;
+  struct dea_sweep_report *report;
+  const struct dea_plan *plan;
+  struct dea_order order;
+  struct dea_store *store;
+  struct stretch *stretches; // [processes]
+  size_t next;               // place that nobody has got
+  size_t block;              // places of a shard between those of others
+};
+
+static const double *numbers(const struct work *w, size_t i)
+{
+  return w->plan->p + i * w->case_key->variable_count;
+}
+
+/* Whether a place of the order is of this shard: blocks of it go round. */
+static bool is_mine(const struct work *w, size_t place)
+{
+  const struct dea_shard *shard = &w->options->shard;
+  return place / w->block % shard->parts == shard->part - 1;
+}
+
+static bool is_open(const struct work *w, size_t place)
+{
+  return is_mine(w, place) && dea_store_find(w->store, numbers(w, w->order.cases[place])) == NULL;
+}
+
+/* The longest stretch gives its second half away. */
+static void share(struct work *w, struct stretch *own)
+{
+  struct stretch *longest = own;
+  for (size_t k = 0; k < w->options->processes; k++) {
+    struct stretch *other = &w->stretches[k];
+    longest = other->end - other->next > longest->end - longest->next ? other : longest;
+  }
+  *own = (struct stretch){longest->end - (longest->end - longest->next + 1) / 2, longest->end};
+  longest->end = own->next;
+}
+
+/* Moves a process to its next place that is open: on its stretch, else on one that nobody has got,
+ * else on a share of another's. false: there is none. */
+static bool move_on(struct work *w, struct stretch *own)
+{
+  for (;;) {
+    while (own->next < own->end && !is_open(w, own->next)) {
+      own->next++;
+    }
+    if (own->next < own->end) {
+      return true;
+    }
+    while (w->next < w->plan->count && !is_open(w, w->next)) {
+      w->next++;
+    }
+    if (w->next < w->plan->count) {
+      *own = (struct stretch){w->next, w->next + 1};
+      while (own->end < w->plan->count &&
+             w->order.first[own->end] == w->order.first[own->next]) { // the group
+        own->end++;
+      }
+      w->next = own->end;
+    } else {
+      share(w, own);
+      if (own->next == own->end) {
+        return false;
+      }
+    }
+  }
+}
+
+/* The next case of this shard that is not done: neighbours to the same process. */
+static bool next_case(void *user, struct dea_case *out)
+{
+  struct work *w = user;
+  struct stretch *own = &w->stretches[out->process];
+  if (!move_on(w, own)) {
+    return false;
+  }
+  const size_t i = w->order.cases[own->next], size = w->case_key->variable_count * sizeof *out->p;
+  const double *near = numbers(w, w->order.first[own->next]);
+  const struct dea_case *done = dea_store_find(w->store, near);
+  out->number = i;
+  memcpy(out->p, numbers(w, i), size);
+  memcpy(out->near, near, size);
+  // nobody begins where one has failed, perhaps with its process
+  out->has_near = w->order.group > 1 && (done == NULL || done->why[0] == '\0');
+  own->next++;
+  return true;
+}
+
+static dea_status keep(void *user, const struct dea_case *done)
+{
+  struct work *w = user;
+  DEA_TRY(w->case_key->ctx, dea_store_add(w->store, done));
+  w->report->now++;
+  dea_progress(w->case_key->ctx, "designs", w->report->before + w->report->now,
+               w->report->of_shard);
+  return DEA_OK;
+}
+
+static dea_status evaluate_all(struct work *w)
+{
+  struct dea_pool *pool;
+  for (size_t i = 0; i < w->plan->count; i++) {
+    if (is_mine(w, i)) {
+      w->report->of_shard++;
+      w->report->before += is_open(w, i) ? 0U : 1U;
+    }
+  }
+  DEA_TRY(w->case_key->ctx,
+          dea_pool_create(w->case_key->ctx, &w->case_key->evaluator, w->options->processes, &pool));
+  dea_status status = dea_pool_run(pool, next_case, keep, w);
+  dea_pool_destroy(pool);
+  return status;
+}
+
+/* Evaluates what is open, groups after each other. */
+static dea_status evaluate(struct work *w)
+{
+  struct dea_context *ctx = w->case_key->ctx;
+  DEA_TRY(ctx, dea_order_make(w->case_key, w->plan, &w->order));
+  w->block = w->plan->count / (SHARES * w->options->shard.parts);
+  w->block = w->block < 1 ? 1 : w->block > w->order.group ? w->order.group : w->block;
+  w->stretches = dea_alloc(ctx, w->options->processes, sizeof *w->stretches);
+  dea_status status = w->stretches != NULL ? evaluate_all(w) : DEA_E_MEMORY;
+  dea_free(ctx, w->stretches);
+  dea_order_free(ctx, &w->order);
+  return status;
+}
+
+/* Adds what a case's numbers are flagged with. */
+static void count_flags(const struct dea_case_key *case_key, const struct dea_case *done,
+                        struct dea_sweep_report *report)
+{
+  for (size_t f = 0; f < DEA_FLAG_COUNT; f++) {
+    size_t k = 0;
+    while (k < case_key->voltage_count && (done->marks[k] >> f & 1U) == 0) {
+      k++;
+    }
+    if (k < case_key->voltage_count) {
+      const double from_V = case_key->voltages_V[k];
+      report->flagged_from_V[f] =
+          report->flagged[f] == 0 ? from_V : fmin(report->flagged_from_V[f], from_V);
+      report->flagged[f]++;
+    }
+  }
+}
+
+/* How much of the plan is there, and why some of it failed. */
+static void count(struct work *w)
+{
+  struct dea_sweep_report *report = w->report;
+  const struct dea_case *reason = NULL;
+  size_t votes = 0; // Boyer and Moore's: a reason of more than half is left
+  for (size_t i = 0; i < w->plan->count; i++) {
+    const struct dea_case *done = dea_store_find(w->store, numbers(w, i));
+    report->there += done != NULL ? 1U : 0U;
+    if (done != NULL) {
+      count_flags(w->case_key, done, report);
+    }
+    if (done == NULL || done->why[0] == '\0') {
+      continue;
+    }
+    report->failed++;
+    reason = votes == 0 ? done : reason;
+    votes = strncmp(done->why, reason->why, 40) == 0 ? votes + 1 : votes - 1;
+  }
+  snprintf(report->why, sizeof report->why, "%s", reason != NULL ? reason->why : "");
+  report->planned = w->plan->count;
+  report->torn = dea_store_torn(w->store);
+}
+
+static dea_status run(struct work *w)
+{
+  struct dea_context *ctx = w->case_key->ctx;
+  const struct dea_sweep_options *options = w->options;
+  if (options->force) {
+    DEA_TRY(ctx, dea_store_remove(ctx, options->folder));
+  }
+  DEA_TRY(ctx, dea_store_open(ctx, options->folder, w->case_key->hash, &w->case_key->evaluator,
+                              options->merge ? NULL : &options->shard, &w->store));
+  dea_status status = options->merge ? DEA_OK : evaluate(w);
+  char message[512];
+  snprintf(message, sizeof message, "%.511s", dea_context_message(ctx));
+  count(w);
+  if (status != DEA_E_MEMORY && (options->merge || options->shard.parts == 1)) {
+    DEA_TRY(ctx,
+            dea_sweep_write(w->case_key, w->plan, w->store, &options->format, options->folder));
+    w->report->written = true;
+  }
+  return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
+}
+
+dea_status dea_sweep_run(const struct dea_case_key *case_key,
+                         const struct dea_sweep_options *options, struct dea_sweep_report *report)
+{
+  struct dea_plan plan;
+  *report = (struct dea_sweep_report){0};
+  DEA_TRY(case_key->ctx, dea_plan_make(case_key, &plan));
+  struct work w = {.case_key = case_key, .options = options, .report = report, .plan = &plan};
+  dea_status status = run(&w);
+  dea_store_close(w.store);
+  dea_free(case_key->ctx, plan.p);
+  return status;
+}

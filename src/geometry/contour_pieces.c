@@ -1,0 +1,96 @@
+#include "geometry/contour_pieces.h"
+
+#include <math.h>
+
+static dea_status build_tree(struct dea_context *ctx, struct dea_pieces *p)
+{
+  struct dea_box *boxes = dea_arena_alloc(&p->arena, p->count, sizeof *boxes);
+  double all[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+  if (boxes == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < p->count; i++) {
+    boxes[i] = (struct dea_box){{INFINITY, INFINITY, -INFINITY, -INFINITY}, i};
+    dea_piece_grow_box(&p->piece[i], boxes[i].side);
+    dea_piece_grow_box(&p->piece[i], all);
+  }
+  p->size_m = p->count > 0 ? hypot(all[2] - all[0], all[3] - all[1]) : 0;
+  p->snap_m = DEA_GEOMETRY_SNAP * p->size_m;
+  return dea_box_tree_build(ctx, boxes, p->count, &p->tree);
+}
+
+dea_status dea_pieces_build(struct dea_context *ctx, const struct dea_region *const regions[],
+                            size_t count, struct dea_pieces *out)
+{
+  struct dea_pieces *p = out;
+  *p = (struct dea_pieces){.arena = {.ctx = ctx}};
+  size_t total = 0, contours = 0;
+  for (size_t r = 0; r < count; r++) {
+    total += regions[r] != NULL ? regions[r]->vertex_count : 0;
+  }
+  p->piece = dea_arena_alloc(&p->arena, total, sizeof *p->piece);
+  p->contour = dea_arena_alloc(&p->arena, total, sizeof *p->contour);
+  p->next = dea_arena_alloc(&p->arena, total, sizeof *p->next);
+  p->start = dea_arena_alloc(&p->arena, total, sizeof *p->start);
+  for (size_t r = 0; r < count && !p->arena.failed; r++) {
+    for (size_t c = 0; regions[r] != NULL && c < regions[r]->contour_count; c++, contours++) {
+      const struct dea_contour contour = dea_region_contour(regions[r], c);
+      size_t first = p->count;
+      for (size_t i = 0; i < contour.count; i++, p->count++) {
+        p->piece[p->count] = dea_contour_piece(&contour, i);
+        p->contour[p->count] = contours;
+        p->next[p->count] = first + (i + 1) % contour.count;
+        p->start[p->count] = contour.vertex[i];
+      }
+    }
+  }
+  dea_status status = dea_arena_status(&p->arena);
+  if (status == DEA_OK) {
+    status = build_tree(ctx, p);
+  }
+  if (status != DEA_OK) {
+    dea_pieces_free(p);
+  }
+  return status;
+}
+
+void dea_pieces_free(struct dea_pieces *pieces)
+{
+  if (pieces->arena.ctx != NULL) {
+    dea_box_tree_free(pieces->arena.ctx, &pieces->tree);
+  }
+  dea_arena_free(&pieces->arena);
+}
+
+bool dea_pieces_next(const struct dea_pieces *pieces, const double box[4], size_t *cursor,
+                     size_t *found)
+{
+  double d = pieces->snap_m;
+  const double wide[4] = {box[0] - d, box[1] - d, box[2] + d, box[3] + d};
+  return dea_box_tree_next(&pieces->tree, wide, cursor, found);
+}
+
+/* Whether a piece lies beside a line. */
+static bool beside(const struct dea_piece *line, const struct dea_piece *p, double snap)
+{
+  double tx = (line->to[0] - line->from[0]) / line->length_m;
+  double ty = (line->to[1] - line->from[1]) / line->length_m;
+  if (p->arc) {
+    double off = tx * (p->centre[1] - line->from[1]) - ty * (p->centre[0] - line->from[0]);
+    return fabs(off) > p->radius_m + snap;
+  }
+  double from = tx * (p->from[1] - line->from[1]) - ty * (p->from[0] - line->from[0]);
+  double to = tx * (p->to[1] - line->from[1]) - ty * (p->to[0] - line->from[0]);
+  return fmin(from, to) > snap || fmax(from, to) < -snap;
+}
+
+bool dea_pieces_apart(const struct dea_pieces *pieces, size_t i, size_t j)
+{
+  const struct dea_piece *a = &pieces->piece[i], *b = &pieces->piece[j];
+  double snap = 2 * pieces->snap_m;
+  if (a->arc && b->arc) {
+    double d = hypot(a->centre[0] - b->centre[0], a->centre[1] - b->centre[1]);
+    return d > a->radius_m + b->radius_m + snap || d < fabs(a->radius_m - b->radius_m) - snap;
+  }
+  return (!a->arc && beside(a, b, snap)) || (!b->arc && beside(b, a, snap));
+}

@@ -1,0 +1,185 @@
+#include "job/report_runs.h"
+
+#include "base/file.h"
+#include "base/write_file.h"
+#include "job/design_of_run.h"
+#include "study/study.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { SUMMARY_MAX = 1 << 28 };
+
+// A run as the report reads it: results, design, notes --------------------------------------------
+
+/* First error found, or the message of the failure; owned by the caller. */
+static char *reason(struct dea_context *ctx)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  const char *text = dea_context_message(ctx);
+  for (size_t i = 0; i < count; i++) {
+    if (findings[i].severity == DEA_ERROR) {
+      text = findings[i].text;
+      break;
+    }
+  }
+  return dea_copy_text(ctx, text, strlen(text));
+}
+
+static dea_status add_note(struct dea_context *ctx, struct dea_report_run *run, const char *text)
+{
+  char **moved = dea_resize(ctx, run->notes, run->note_count + 1, sizeof *moved);
+  if (moved == NULL) {
+    return DEA_E_MEMORY;
+  }
+  run->notes = moved;
+  moved[run->note_count] = dea_copy_text(ctx, text, strlen(text));
+  if (moved[run->note_count] == NULL) {
+    return DEA_E_MEMORY;
+  }
+  run->note_count++;
+  return DEA_OK;
+}
+
+/* The notes of summary.json, when the run is a folder that has one: all that the run said. */
+static dea_status read_summary(struct dea_context *ctx, struct dea_report_run *out, bool *found)
+{
+  *found = false;
+  char *path = dea_path_join(ctx, out->path, "summary.json"), *bytes = NULL;
+  size_t length;
+  if (path == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_status status = DEA_OK;
+  if (dea_path_exists(path) && dea_file_read(ctx, path, SUMMARY_MAX, &bytes, &length) == DEA_OK) {
+    json_t *root = json_loadb(bytes, length, 0, NULL);
+    const json_t *notes = json_object_get(root, "notes");
+    *found = json_is_array(notes);
+    for (size_t i = 0; i < json_array_size(notes) && status == DEA_OK; i++) {
+      const char *note = json_string_value(json_array_get(notes, i));
+      status = note != NULL ? add_note(ctx, out, note) : DEA_OK;
+    }
+    json_decref(root);
+  }
+  dea_context_clear(ctx);
+  dea_free(ctx, bytes);
+  dea_free(ctx, path);
+  return status;
+}
+
+/* Without a summary: what reading the design says again. */
+static dea_status take_findings(struct dea_context *ctx, struct dea_report_run *out)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(ctx, &count);
+  for (size_t i = 0; i < count; i++) {
+    if (findings[i].severity != DEA_ERROR) {
+      DEA_TRY(ctx, add_note(ctx, out, findings[i].text));
+    }
+  }
+  return DEA_OK;
+}
+
+static void name_run(struct dea_report_run *out)
+{
+  const char *file = out->run->design_file, *slash = strrchr(file, '/');
+  file = out->run->title[0] != '\0' ? out->run->title : slash != NULL ? slash + 1 : file;
+  snprintf(out->title, sizeof out->title, "%.*s", (int)sizeof out->title - 1, file);
+}
+
+/* Reads a run, its design, its notes. */
+static dea_status open_run(struct dea_context *ctx, const char *path, int number,
+                           struct dea_report_run *out)
+{
+  *out = (struct dea_report_run){.path = path, .number = number};
+  dea_finding_clear(ctx);
+  DEA_TRY(ctx, dea_run_read(ctx, path, &out->run));
+  name_run(out);
+  dea_status status = dea_design_of_run(ctx, out->run, &out->design, &out->device);
+  if (status == DEA_E_MEMORY) {
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  if (status != DEA_OK) {
+    out->missing = reason(ctx);
+    dea_context_clear(ctx);
+    if (out->missing == NULL) {
+      return DEA_E_MEMORY;
+    }
+  } else {
+    out->run->result->design = out->design;
+    out->run->result->device = out->device;
+  }
+  bool found = false;
+  if (dea_path_is_folder(path)) {
+    DEA_TRY(ctx, read_summary(ctx, out, &found));
+  }
+  if (!found) {
+    DEA_TRY(ctx, take_findings(ctx, out));
+  }
+  dea_finding_clear(ctx); // they stand in the page
+  return DEA_OK;
+}
+
+static void close_run(struct dea_context *ctx, struct dea_report_run *run)
+{
+  for (size_t i = 0; i < run->note_count; i++) {
+    dea_free(ctx, run->notes[i]);
+  }
+  dea_free(ctx, run->notes);
+  dea_free(ctx, run->missing);
+  dea_run_destroy(ctx, run->run);
+  dea_device_destroy(ctx, run->device);
+  dea_design_destroy(ctx, run->design);
+}
+
+// What the page shows beyond what the run has -----------------------------------------------------
+
+/* Studies of model lumped that a run may have and the page always shows. */
+static dea_status complete(struct dea_context *ctx, const struct dea_report_options *options,
+                           struct dea_result *result)
+{
+  static const char model[] = "lumped", map[] = "operating-map", line[] = "load-line";
+  const char *names[2];
+  size_t count = 0;
+  if (result->device == NULL || !result->device->disc) { // these are of a disc
+    return DEA_OK;
+  }
+  if (dea_result_find_table(result, model, map, "") == NULL) {
+    names[count++] = map;
+  }
+  if (options->finger_N_per_m > 0 && dea_result_find(result, model, "sweep") != NULL &&
+      dea_result_find_table(result, model, line, "forces") == NULL) {
+    names[count++] = line;
+  }
+  if (count > 0) {
+    DEA_TRY(ctx, dea_study_run(ctx, dea_model_find(model), names, count, result));
+  }
+  dea_finding_clear(ctx); // what the model says of itself, the page says too
+  return DEA_OK;
+}
+
+dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], size_t count,
+                          const struct dea_report_options *options, const char *path)
+{
+  struct dea_report_run opened[DEA_REPORT_RUNS_MAX] = {{0}};
+  if (count == 0 || count > DEA_REPORT_RUNS_MAX) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "a report takes 1 to %d runs, not %zu",
+                    DEA_REPORT_RUNS_MAX, count);
+  }
+  void *before = dea_c_locale_enter();
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    status = open_run(ctx, runs[i], (int)i + 1, &opened[i]);
+    status = status == DEA_OK ? complete(ctx, options, opened[i].run->result) : status;
+  }
+  dea_c_locale_leave(before);
+  if (status == DEA_OK) {
+    status = dea_report_write(ctx, opened, count, options, path);
+  }
+  for (size_t i = 0; i < count; i++) {
+    close_run(ctx, &opened[i]);
+  }
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}

@@ -1,0 +1,48 @@
+/* Monitors and channels of a layout at an equilibrium of its solid. */
+#ifndef DEA_MODEL_SOLID_ADAPTER_SOLID_OBSERVE_H
+#define DEA_MODEL_SOLID_ADAPTER_SOLID_OBSERVE_H
+
+#include "model/solid/actuator/layout_mesh.h"
+#include "model/solid/assembly/solid.h"
+#include "model/solid/load/loads.h"
+#include "model/solid/recovery/recover_error.h"
+#include "result/observation.h"
+
+struct dea_observer; // where each monitor is on the mesh, and its last values
+
+/* mesh: lent, outlives the observer. A monitor off its ply is a finding at its place and
+ * DEA_E_DESIGN. pressures: [pressure_count], of the solid's loads, NULL where none of it is meshed;
+ * lent. out: owned by the caller, NULL on failure. */
+dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
+                               struct dea_pressure *const *pressures, struct dea_observer **out);
+void dea_observer_destroy(struct dea_context *ctx, struct dea_observer *observer);
+/* *out lends from the observer until the next call. */
+dea_status dea_observer_take(struct dea_context *ctx, struct dea_observer *observer,
+                             struct dea_solid *solid, struct dea_observation *out);
+
+/* Puts the currents of the channels' sources, [channels of the layout], into what was taken. */
+void dea_observer_set_currents(struct dea_observer *observer, const double *current_A);
+
+/* How much the monitors' motions change by a small motion v [3 node_count] from where the solid is,
+ * out [monitor_count][DEA_OBSERVED_MOTIONS]; NAN as in an observation. The solid stays as it is. */
+dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observer *observer,
+                                      struct dea_solid *solid, const double *v, double *out);
+
+/* How a motion of a monitor changes with each displacement, from where the solid is: weight
+ * [3 node_count]. false: that is not known of this motion (forces). */
+bool dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
+                           enum dea_observed motion, double *weight);
+
+/* Where a motion of a point or a line is read, 0 to 2 of them; 0 of other monitors. */
+size_t dea_observer_probes(const struct dea_observer *observer, struct dea_solid *solid,
+                           size_t monitor, enum dea_observed motion,
+                           struct dea_recover_probe out[2]);
+
+/* The motion that a force or moment of a body's monitor does work along, way [3 node_count], 0
+ * before: it is way . R, with the forces R on what is held. false: not one of these, or not known
+ * (a
+ * moment on a body that may turn). */
+bool dea_observer_force_way(const struct dea_observer *observer, const struct dea_solid *solid,
+                            size_t monitor, enum dea_observed motion, double *way);
+
+#endif

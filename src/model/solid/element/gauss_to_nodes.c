@@ -1,0 +1,105 @@
+#include "model/solid/element/gauss_to_nodes.h"
+
+#include "base/quadrature.h"
+
+#include <string.h>
+
+/* Legendre polynomials up to degree 2. */
+static double legendre(int degree, double x)
+{
+  return degree == 0 ? 1 : degree == 1 ? x : 0.5 * (3 * x * x - 1);
+}
+
+static void fit_line(int order, int degree, double fit[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX])
+{
+  double nodes[DEA_FIT_LINE_MAX], x[DEA_FIT_LINE_MAX], w[DEA_FIT_LINE_MAX];
+  dea_lobatto_nodes((size_t)order, nodes);
+  dea_gauss_rule((size_t)order + 1, x, w);
+  for (int i = 0; i <= order; i++) {
+    for (int q = 0; q <= order; q++) {
+      fit[i][q] = 0;
+      for (int a = 0; a <= degree; a++) {
+        fit[i][q] += (a + 0.5) * legendre(a, nodes[i]) * legendre(a, x[q]) * w[q];
+      }
+    }
+  }
+}
+
+void dea_fit_create(int order, int order_z, struct dea_gauss_fit *out)
+{
+  out->n = order + 1;
+  out->nz = order_z + 1;
+  fit_line(order, order - 1, out->plane);
+  if (order_z > 0) {
+    fit_line(order_z, order_z > 1 ? order_z - 1 : 1, out->z);
+  } else {
+    out->z[0][0] = 1;
+  }
+}
+
+static void back_line(int order, double fit[DEA_FIT_LINE_MAX][DEA_FIT_LINE_MAX])
+{
+  size_t count = (size_t)order + 1;
+  double nodes[DEA_FIT_LINE_MAX], x[DEA_FIT_LINE_MAX], w[DEA_FIT_LINE_MAX];
+  double slope[DEA_FIT_LINE_MAX];
+  dea_lobatto_nodes((size_t)order, nodes);
+  dea_gauss_rule(count, x, w);
+  for (size_t q = 0; q < count; q++) {
+    dea_lagrange(count, nodes, x[q], fit[q], slope);
+  }
+}
+
+void dea_fit_create_back(int order, int order_z, struct dea_gauss_fit *out)
+{
+  out->n = order + 1;
+  out->nz = order_z + 1;
+  back_line(order, out->plane);
+  if (order_z > 0) {
+    back_line(order_z, out->z);
+  } else {
+    out->z[0][0] = 1;
+  }
+}
+
+/* Along the second axis of [outer][n][inner], in place; rows of a table of struct dea_gauss_fit. */
+static void fit_axis(const double *fit, int outer, int n, int inner, double *values)
+{
+  for (int o = 0; o < outer; o++) {
+    double *line = values + o * n * inner;
+    for (int x = 0; x < inner; x++) {
+      double sum[DEA_FIT_LINE_MAX] = {0};
+      for (int i = 0; i < n; i++) {
+        for (int q = 0; q < n; q++) {
+          sum[i] += fit[i * DEA_FIT_LINE_MAX + q] * line[q * inner + x];
+        }
+      }
+      for (int i = 0; i < n; i++) {
+        line[i * inner + x] = sum[i];
+      }
+    }
+  }
+}
+
+void dea_fit_nodes(const struct dea_gauss_fit *fit, int width, const double *at, double *out)
+{
+  int n = fit->n, nz = fit->nz;
+  memcpy(out, at, (size_t)(n * n * nz * width) * sizeof *out);
+  fit_axis(fit->plane[0], nz * n, n, width, out);
+  fit_axis(fit->plane[0], nz, n, n * width, out);
+  fit_axis(fit->z[0], 1, nz, n * n * width, out);
+}
+
+void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
+                       struct dea_recovered *out)
+{
+  double value[DEA_HEX_NODES_MAX][DEA_FIT_VALUES];
+  out->plane_nodes = fit->n * fit->n;
+  out->nodes = out->plane_nodes * fit->nz;
+  dea_fit_nodes(fit, DEA_FIT_VALUES, at[0], value[0]);
+  for (int node = 0; node < out->nodes; node++) {
+    memcpy(out->F[node], value[node], sizeof out->F[node]);
+    memcpy(out->stress[node], value[node] + 9, sizeof out->stress[node]);
+    out->energy[node] = value[node][15];
+    out->field[node] = value[node][16];
+  }
+}
