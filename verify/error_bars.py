@@ -2,10 +2,11 @@
 on 40 devices, 20 of them of plies. Arguments: as of trust.py, whose runs and limits these are; --jobs N: devices at once."""
 
 import concurrent.futures
+import csv
 import math
 import sys
 
-from trust import JOBS, MESHES, MESHES_PLIES, ONLY, SHORT, SMALL, WELL_KNOWN, design_rows
+from trust import JOBS, MESHES, MESHES_PLIES, ONLY, ROOT, SHORT, SMALL, WELL_KNOWN, design_rows
 
 NEGLIGIBLE = 1e-3  # of the quantity: with less found and estimated, a number is not counted for effectivities
 SMALLEST = {"um": 1e-2, "1": 1e-6}  # what changes by less on finer meshes is not seen
@@ -179,25 +180,26 @@ half the voltage and at the voltage that is written, with the default mesh, whos
 
 * **Limit** and **+-**, how far that may be off: as in [trust.md](trust.md), of discs from elements of order 2, of order 3, and of half
   the size in all directions; of plies from elements of half and a third of the size in all directions. Where +- is above a third of
-  what is found, that is known to be at most the sum of both, and the effectivity has a `~`.
+  what is found, that is known to be at most the sum of both.
 * **Inside**: the limit is no farther from the value of the default mesh than the error that is stated.
 * **Effectivity**: stated over found. Numbers whose error is both stated and found to be below {negligible:g} % of the motion
-  count as inside or not, and not for the effectivity (in brackets).
-* Values in um (stretches: 1), errors in % of the motion.
+  count as inside or not, and not for the effectivity.
+* All rows are in [error-bars.csv](error-bars.csv): values in um (stretches: 1), errors in % of the motion.
 
 | numbers of | count | inside | of those that matter | least effectivity | 5 % | 25 % | median | 75 % | 95 % | largest | between {low:g} and {high:g} |
 |---|---|---|---|---|---|---|---|---|---|---|---|"""
 
 
-def print_rows(rows):
-    print("\n| device | kV | quantity | default mesh | limit | found (%) | +- (%) | stated (%) | effectivity | inside |\n"
-          "|---|---|---|---|---|---|---|---|---|---|")
-    for r in rows:
-        digits = ".5f" if is_stretch(r) else ".3f"
-        ratio = f"{r[6] / found(r):.2f}" + ("" if is_known(r) else " ~")
-        errors = " | ".join(f"{100 * x / moved(r):.3f}" for x in (found(r), r[5], r[6]))
-        print(f"| {r[0]} | {r[1]:g} | {r[2]} | {r[3]:{digits}} | {r[4]:{digits}} | {errors} | "
-              f"{ratio if matters(r) else f'({ratio})'} | {'yes' if found(r) <= r[6] else 'no'} |")
+def write_rows(rows):
+    with open(ROOT / "docs/verification/error-bars.csv", "w", encoding="utf-8", newline="") as table:
+        out = csv.writer(table, lineterminator="\n")
+        out.writerow(("device", "kV", "quantity", "default mesh", "limit", "found (%)", "+- (%)", "stated (%)", "effectivity",
+                      "found known to a third", "matters", "inside"))
+        for r in rows:
+            digits = ".5f" if is_stretch(r) else ".3f"
+            out.writerow((r[0], f"{r[1]:g}", r[2], f"{r[3]:{digits}}", f"{r[4]:{digits}}",
+                          *(f"{100 * x / moved(r):.3f}" for x in (found(r), r[5], r[6])), f"{r[6] / found(r):.2f}",
+                          *("yes" if word else "no" for word in (is_known(r), matters(r), found(r) <= r[6]))))
 
 
 def main():
@@ -221,7 +223,8 @@ def main():
         if some:
             shares[name] = summary(name, some)
             summary(name + ", found error known to a third", [r for r in some if is_known(r)])
-    print_rows(rows)
+    if not SMALL and ONLY is None:
+        write_rows(rows)
     if min(shares.get(name, 1) for name in ("plies", "all")) < 0.95:
         sys.exit("too many numbers are outside of their stated error")
 
