@@ -195,6 +195,50 @@ static void add_plies(const struct dea_device *d, bool membrane, struct dea_layo
   l->support_count = 1;
 }
 
+/* Whether fibres are bonded to a film that is a surface: they begin at the bond's upper face. */
+static size_t ply_below_fibres(const struct dea_layout *l, size_t film)
+{
+  const bool bond = film + 1 < l->ply_count && l->plies[film + 1].kind == DEA_PLY_JOINT;
+  return bond ? film + 1 : film;
+}
+
+dea_status dea_disc_layout_own_monitors(struct dea_context *ctx, const struct dea_device *d,
+                                        size_t film, struct dea_layout *l)
+{
+  enum { OWN_MAX = 4 };
+  const double c = cos(d->angle_rad), s = sin(d->angle_rad), *centre = d->centre_m;
+  const double half = d->angle_rad + pi / (d->fibre_count > 0 ? d->fibre_count : 4);
+  const double a = d->electrode_radius_m, tip = d->fibre_tip_radius_m;
+  const double edge[2] = {centre[0] + a * cos(half), centre[1] + a * sin(half)};
+  const struct dea_layout_monitor all[OWN_MAX] = {
+      {.name = "centre", .at_m = {{centre[0], centre[1]}}, .level = DEA_LEVEL_MIDDLE},
+      {.name = "electrode edge",
+       .kind = DEA_MONITOR_RADIUS,
+       .at_m = {{edge[0], edge[1]}, {centre[0], centre[1]}},
+       .level = DEA_LEVEL_MIDDLE},
+      {.name = "electrode",
+       .kind = DEA_MONITOR_RADIUS,
+       .at_m = {{edge[0], edge[1]}, {centre[0], centre[1]}},
+       .level = DEA_LEVEL_MIDDLE},
+      {.name = "fibre tip",
+       .at_m = {{centre[0] + tip * c, centre[1] + tip * s}},
+       .level = DEA_LEVEL_TOP}};
+  struct dea_layout_monitor *monitors =
+      dea_arena_alloc(&l->memory, l->monitor_count + OWN_MAX, sizeof *monitors);
+  DEA_TRY(ctx, dea_arena_status(&l->memory));
+  for (size_t i = 0; i < l->monitor_count; i++) {
+    monitors[i] = l->monitors[i];
+  }
+  l->disc_monitor_count = d->fibre_count > 0 ? OWN_MAX : OWN_MAX - 1;
+  for (size_t i = 0; i < l->disc_monitor_count; i++) {
+    monitors[l->monitor_count + i] = all[i];
+    monitors[l->monitor_count + i].ply =
+        all[i].level == DEA_LEVEL_TOP ? ply_below_fibres(l, film) : film;
+  }
+  l->monitors = monitors;
+  return DEA_OK;
+}
+
 static dea_status fill(struct dea_context *ctx, const struct dea_device *d, bool membrane,
                        struct dea_layout *l)
 {
@@ -225,7 +269,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_device *d, bool
     l->gravity_m_per_s2[2] =
         (d->gravity == DEA_GRAVITY_FIBRES_UP ? -1 : 1) * DEA_STANDARD_GRAVITY_M_PER_S2;
   }
-  return DEA_OK;
+  return dea_disc_layout_own_monitors(ctx, d, l->electrodes[0].ply, l);
 }
 
 dea_status dea_disc_layout_create(struct dea_context *ctx, const struct dea_device *d,

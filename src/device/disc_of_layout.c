@@ -337,6 +337,7 @@ dea_status dea_disc_layout_add_monitors(struct dea_context *ctx, const struct de
   to->monitors = dea_arena_alloc(&to->memory, l->monitor_count, sizeof *to->monitors);
   DEA_TRY(ctx, dea_arena_status(&to->memory));
   to->monitor_count = l->monitor_count;
+  DEA_TRY(ctx, dea_disc_layout_own_monitors(ctx, device, to->electrodes[0].ply, to));
   for (size_t i = 0; i < l->monitor_count; i++) {
     struct dea_layout_monitor *monitor = &to->monitors[i];
     *monitor = l->monitors[i];
@@ -387,7 +388,11 @@ dea_status dea_device_find_disc(struct dea_context *ctx, struct dea_device *devi
     disc = (struct dea_device){.layout = device->layout, .gravity = device->gravity};
   }
   *device = disc;
-  return status == DEA_E_DESIGN ? DEA_OK : status;
+  device->layout->disc_monitor_count = 0;
+  return status == DEA_OK ? dea_disc_layout_own_monitors(
+                                ctx, device, device->layout->electrodes[0].ply, device->layout)
+         : status == DEA_E_DESIGN ? DEA_OK
+                                  : status;
 }
 
 dea_status dea_device_require_disc(struct dea_context *ctx, const struct dea_device *device)

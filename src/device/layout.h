@@ -117,19 +117,28 @@ struct dea_layout_pressure {
 };
 
 enum dea_layout_monitor_kind {
-  DEA_MONITOR_POINT,  // of a ply's middle surface
+  DEA_MONITOR_POINT,  // of a ply
   DEA_MONITOR_LINE,   // two points: their distance
+  DEA_MONITOR_RADIUS, // a point, seen from another one that stays: outwards
   DEA_MONITOR_REGION, // of a ply's middle surface
   DEA_MONITOR_BODY,
   DEA_MONITOR_VOLUME, // below a face with a pressure
+};
+
+/* Where in a ply a point is. */
+enum dea_monitor_level {
+  DEA_LEVEL_FACES,  // the mean of the lower and the upper face
+  DEA_LEVEL_MIDDLE, // the middle plane
+  DEA_LEVEL_TOP,    // the upper face
 };
 
 /* What results are reported of. */
 struct dea_layout_monitor {
   const char *name;
   enum dea_layout_monitor_kind kind;
-  double at_m[2][2]; // a point, or the two of a line
+  double at_m[2][2]; // a point, or the two of a line, or a point and the centre of its radius
   size_t ply;        // of these and of a region
+  enum dea_monitor_level level; // of these
   size_t region, body, pressure;
   struct dea_location location;
 };
@@ -145,9 +154,10 @@ struct dea_layout {
   struct dea_layout_body *bodies;
   struct dea_layout_spring *springs;
   struct dea_layout_pressure *pressures;
-  struct dea_layout_monitor *monitors;
+  struct dea_layout_monitor *monitors; // [monitor_count + disc_monitor_count]
   size_t region_count, ply_count, electrode_count, channel_count, support_count, body_count;
   size_t spring_count, pressure_count, monitor_count;
+  size_t disc_monitor_count;    // those that a disc brings: columns of load points, without others
   double gravity_m_per_s2[3];   // acceleration of free fall; 0: without weight
   struct dea_symmetry symmetry; // of all of it
   bool symmetry_found;          // it was looked for

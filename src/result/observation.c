@@ -33,6 +33,7 @@ const struct dea_column dea_observed_columns[DEA_OBSERVED_COUNT] = {
     TURN("x"),
     TURN("y"),
     TURN("z"),
+    LENGTH("u_m", "u", "displacement outwards"),
     RATIO("stretch", "stretch", "length of a line over its flat one"),
     RATIO("stretch_x", "stretch x", "mean stretch of a region along x"),
     RATIO("stretch_y", "stretch y", "mean stretch of a region along y"),
@@ -82,6 +83,8 @@ bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed obser
     return observed <= DEA_OBSERVED_Z;
   case DEA_MONITOR_LINE:
     return observed == DEA_OBSERVED_STRETCH;
+  case DEA_MONITOR_RADIUS:
+    return observed == DEA_OBSERVED_OUTWARDS || observed == DEA_OBSERVED_STRETCH;
   case DEA_MONITOR_REGION:
     return observed <= DEA_OBSERVED_Z ||
            (observed >= DEA_OBSERVED_STRETCH_X && observed <= DEA_OBSERVED_AREA_STRETCH);
@@ -142,6 +145,21 @@ static bool has_error(enum dea_observed observed)
 {
   return observed <= DEA_OBSERVED_Z || observed == DEA_OBSERVED_STRETCH ||
          observed == DEA_OBSERVED_AREA_STRETCH;
+}
+
+int dea_observed_of_disc(const struct dea_layout_monitor *monitor, enum dea_observed *observed)
+{
+  char part[DEA_KEY_PART_SIZE], key[2 * DEA_NAME_SIZE];
+  dea_key_part(monitor->name, part);
+  for (int k = 0; k < DEA_OBSERVED_COUNT; k++) {
+    snprintf(key, sizeof key, "%s_%s", part, dea_observed_columns[k].key);
+    const int column = dea_point_column_find(key);
+    if (column >= 0 && dea_observed_has(monitor->kind, (enum dea_observed)k)) {
+      *observed = (enum dea_observed)k;
+      return column;
+    }
+  }
+  return -1;
 }
 
 struct listing {

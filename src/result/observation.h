@@ -19,7 +19,8 @@ enum dea_observed {
   DEA_OBSERVED_TURN_X, // of a body, rotation vector
   DEA_OBSERVED_TURN_Y,
   DEA_OBSERVED_TURN_Z,
-  DEA_OBSERVED_STRETCH, // of a line
+  DEA_OBSERVED_OUTWARDS, // of a radius, displacement
+  DEA_OBSERVED_STRETCH,  // of a line or radius
   DEA_OBSERVED_STRETCH_X,
   DEA_OBSERVED_STRETCH_Y,
   DEA_OBSERVED_AREA_STRETCH,
@@ -53,6 +54,8 @@ struct dea_channel_values {
 extern const struct dea_column dea_observed_columns[DEA_OBSERVED_COUNT];
 /* Whether a monitor of a kind has such a quantity. */
 bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed observed);
+/* The quantity of a monitor that a disc brings which is a column of load points: "centre_z_m". */
+int dea_observed_of_disc(const struct dea_layout_monitor *monitor, enum dea_observed *observed);
 
 /* Whether a column is of a monitor's or channel's quantity of that key, NULL: of any: "hub_z_m" of
  * "z_m", not of an error; and the length of the monitor's name in its title. */

@@ -3,6 +3,7 @@
 #include "model/solid/adapter/solid_fields.h"
 #include "model/solid/equilibrium/modes.h"
 #include "model/solid/motion/response.h"
+#include "result/columns.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -40,6 +41,7 @@ static dea_status fill_points(struct dea_context *ctx, const struct dea_motions 
                               const struct dea_load_point *at, size_t count, const double *square,
                               const double *vector, double *work, struct dea_load_point *points)
 {
+  const int centre = dea_point_column_find("centre_z_m");
   size_t dofs = 3 * m->grid->node_count;
   for (size_t k = 0; k < count; k++) {
     const double *v = vector + k * dofs;
@@ -47,9 +49,7 @@ static dea_status fill_points(struct dea_context *ctx, const struct dea_motions 
     *p = *at;
     p->mode = (double)(k + 1);
     p->frequency_Hz = copysign(sqrt(fabs(square[k])), square[k]) / (2 * pi);
-    if (m->has_centre) {
-      p->mode_centre = 0.5 * (v[3 * m->centre + 2] + v[3 * m->centre_twin + 2]) / largest(v, dofs);
-    }
+    p->mode_centre = dea_observer_column(m->observer, centre, v) / largest(v, dofs);
     DEA_TRY(ctx, out_of_plane(ctx, m, v, work, &p->mode_out_of_plane));
   }
   return DEA_OK;
@@ -143,46 +143,57 @@ static bool is_viscous(const struct dea_motions *m)
   return any;
 }
 
-enum { CENTRE, TWIN, TIP, PROBES };
+/* What takes the whole answers of a response. */
+struct answers {
+  const struct dea_motions *motions;
+  struct dea_load_point *points;
+};
 
-/* z of the probes by the frequency, real and imaginary part in the third component. */
-typedef double answer[2][3];
-
-/* Gives away the whole answers of a response. */
-static dea_status take_whole(struct dea_context *ctx, const struct dea_motions *m,
-                             const struct dea_solid_response *response,
-                             const struct dea_damping *damping, const double *rad_per_s,
-                             size_t count)
+static void find_amplitude(const struct dea_motions *m, const char *key, const double *real,
+                           const double *imaginary, double ripple_V, double *amplitude_m,
+                           double *phase_rad)
 {
+  const int column = dea_point_column_find(key);
+  const double re = dea_observer_column(m->observer, column, real);
+  const double im = dea_observer_column(m->observer, column, imaginary);
+  *amplitude_m = ripple_V * hypot(re, im);
+  *phase_rad = atan2(im, re);
+}
+
+/* Of one frequency, per volt. */
+static dea_status take(struct dea_context *ctx, void *user, size_t i, const double *real,
+                       const double *imaginary)
+{
+  const struct answers *to = user;
+  const struct dea_motions *m = to->motions;
+  struct dea_load_point *p = &to->points[i];
+  find_amplitude(m, "centre_z_m", real, imaginary, p->ripple_V, &p->centre_amplitude_m,
+                 &p->centre_phase_rad);
+  find_amplitude(m, "fibre_tip_z_m", real, imaginary, p->ripple_V, &p->fibre_tip_amplitude_m,
+                 &p->fibre_tip_phase_rad);
+  return m->take != NULL ? m->take(ctx, m->user, i, real, imaginary) : DEA_OK;
+}
+
+static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m,
+                            const struct dea_damping *damping, const double *rad_per_s,
+                            size_t count, struct answers *out)
+{
+  struct dea_solid_response *response;
   size_t nodes = m->grid->node_count;
+  double highest = 0;
+  for (size_t i = 0; i < count; i++) {
+    highest = fmax(highest, rad_per_s[i]);
+  }
+  DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, highest, &response));
   double *real = dea_solid_alloc(ctx, 6 * nodes, sizeof *real), *imaginary = real + 3 * nodes;
   dea_status status = real == NULL ? DEA_E_MEMORY : DEA_OK;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     for (size_t n = 0; n < nodes; n++) {
       dea_solid_response_at(response, n, rad_per_s[i], damping, real + 3 * n, imaginary + 3 * n);
     }
-    status = m->take(ctx, m->user, i, real, imaginary);
+    status = take(ctx, out, i, real, imaginary);
   }
   dea_free(ctx, real);
-  return status;
-}
-
-static dea_status superpose(struct dea_context *ctx, const struct dea_motions *m,
-                            const struct dea_damping *damping, const double *rad_per_s,
-                            size_t count, const size_t nodes[PROBES], answer *out)
-{
-  struct dea_solid_response *response;
-  double highest = 0;
-  for (size_t i = 0; i < count; i++) {
-    highest = fmax(highest, rad_per_s[i]);
-  }
-  DEA_TRY(ctx, dea_solid_response_create(ctx, m->solid, highest, &response));
-  for (size_t i = 0; i < count * PROBES && m->has_centre; i++) {
-    dea_solid_response_at(response, nodes[i % PROBES], rad_per_s[i / PROBES], damping, out[i][0],
-                          out[i][1]);
-  }
-  dea_status status =
-      m->take != NULL ? take_whole(ctx, m, response, damping, rad_per_s, count) : DEA_OK;
   dea_solid_response_destroy(ctx, response);
   return status;
 }
@@ -210,28 +221,13 @@ static dea_status spread_ratio(struct dea_context *ctx, const struct dea_motions
 
 static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *m,
                              const struct dea_damping *damping, const double *rad_per_s,
-                             size_t count, const size_t nodes[PROBES], answer *out)
+                             size_t count, struct answers *out)
 {
   struct dea_damping spread = *damping;
   DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
-  if (m->take != NULL) {
-    DEA_TRY(ctx, dea_solid_respond_viscous_each(ctx, m->solid, m->branches, &spread, rad_per_s,
-                                                count, m->take, m->user));
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s, count,
-                                         nodes, PROBES, out));
+  DEA_TRY(ctx, dea_solid_respond_viscous_each(ctx, m->solid, m->branches, &spread, rad_per_s, count,
+                                              take, out));
   return DEA_OK;
-}
-
-static void amplitude_of(answer first, answer second, double ripple_V, double *amplitude_m,
-                         double *phase_rad)
-{
-  // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): both have answered
-  double re = 0.5 * (first[0][2] + second[0][2]);
-  double im = 0.5 * (first[1][2] + second[1][2]);
-  *amplitude_m = ripple_V * hypot(re, im);
-  *phase_rad = atan2(im, re);
 }
 
 dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions *m,
@@ -242,32 +238,19 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
 {
   const struct dea_damping damping = {excitation->damping_ratio, excitation->damping_mass_per_s,
                                       excitation->damping_stiffness_s};
-  const size_t nodes[PROBES] = {m->centre, m->centre_twin, m->tip};
-  double *rad_per_s = dea_alloc(ctx, count, sizeof *rad_per_s);
-  answer *out = dea_alloc(ctx, count * PROBES, sizeof *out);
-  dea_status status = dea_solid_any(rad_per_s == NULL || out == NULL) ? DEA_E_MEMORY : DEA_OK;
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): else there is an error
+  struct answers out = {m, points};
+  double *rad_per_s = dea_solid_alloc(ctx, count, sizeof *rad_per_s);
+  if (rad_per_s == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < count; i++) {
     rad_per_s[i] = 2 * pi * frequency_Hz[i];
+    points[i] = *at;
+    points[i].frequency_Hz = frequency_Hz[i];
+    points[i].ripple_V = excitation->amplitude_V;
   }
-  if (status == DEA_OK) {
-    status =
-        (is_viscous(m) ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, nodes, out);
-  }
-  for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    answer *z = out + i * PROBES;
-    struct dea_load_point *p = &points[i];
-    *p = *at;
-    p->frequency_Hz = frequency_Hz[i];
-    p->ripple_V = excitation->amplitude_V;
-    if (m->has_centre) {
-      amplitude_of(z[CENTRE], z[TWIN], p->ripple_V, &p->centre_amplitude_m, &p->centre_phase_rad);
-    }
-    if (m->has_tip) {
-      amplitude_of(z[TIP], z[TIP], p->ripple_V, &p->fibre_tip_amplitude_m, &p->fibre_tip_phase_rad);
-    }
-  }
+  const dea_status status =
+      (is_viscous(m) ? solve_each : superpose)(ctx, m, &damping, rad_per_s, count, &out);
   dea_free(ctx, rad_per_s);
-  dea_free(ctx, out);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -3,18 +3,17 @@
 #define DEA_MODEL_SOLID_ADAPTER_MOTIONS_H
 
 #include "model/model.h"
+#include "model/solid/adapter/solid_observe.h"
 #include "model/solid/assembly/internal_variables.h"
 
-/* A solid with the nodes that are reported. */
+/* A solid and what is reported of it. */
 struct dea_motions {
   struct dea_solid *solid;
   const struct dea_grid *grid;
-  size_t centre, centre_twin; // on both sides of the film's middle plane, or one node twice
-  size_t tip;
-  bool has_centre, has_tip;
+  const struct dea_observer *observer; // of what is reported of a disc
   const struct dea_branches *branches; // [part_material_count]
   size_t part_material_count;
-  /* Gets the whole answer of each frequency, per volt; NULL: nodes are all that is wanted. */
+  /* Gets the whole answer of each frequency, per volt; NULL: it is not wanted. */
   dea_status (*take)(struct dea_context *ctx, void *user, size_t i, const double *real,
                      const double *imaginary);
   void *user;

@@ -6,7 +6,6 @@
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/adapt.h"
 #include "model/solid/adapter/buckling_branch.h"
-#include "model/solid/adapter/disc_points.h"
 #include "model/solid/adapter/gradient.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
@@ -44,8 +43,7 @@ struct dea_model {
   struct dea_solver_state at; // first (solver_state.h)
   const struct dea_device *device;
   const struct dea_layout *layout; // of the mesh
-  bool disc;                       // on a mesh of blocks: it has monitors of its own
-  struct dea_disc_points points;   // of a disc
+  bool disc;                       // on a mesh of blocks
   struct dea_model_settings settings;
   struct dea_adapt_pass *passes; // [pass_count] that led to its mesh; NULL: none
   size_t pass_count;
@@ -699,18 +697,23 @@ static dea_status say_mesh(struct dea_context *ctx, const struct dea_model *mode
   return DEA_OK;
 }
 
+/* Of a disc; NAN of what is none. */
+static double centre_z(const struct dea_model *model, const double *u)
+{
+  return dea_observer_column(model->observer, dea_point_column_find("centre_z_m"), u);
+}
+
 /* Where the weight alone brings the film of a disc. */
 static dea_status say_sag(struct dea_context *ctx, const struct dea_model *model)
 {
-  struct dea_load_point point;
-  if (model->disc && has_weight(model->layout)) {
-    dea_disc_points_describe(&model->points, dea_solid_displacement(model->solid), &point);
-    DEA_TRY(ctx, dea_finding_add(
-                     ctx, DEA_NOTE, (struct dea_location){0},
-                     "model 3d: with its weight the centre is at z = %.4g um without voltage, "
-                     "where the sweep starts (gravity: fibres_%s)",
-                     1e6 * point.centre_z_m,
-                     model->device->gravity == DEA_GRAVITY_FIBRES_UP ? "up" : "down"));
+  const double centre_z_m = centre_z(model, dea_solid_displacement(model->solid));
+  if (!isnan(centre_z_m) && has_weight(model->layout)) {
+    DEA_TRY(ctx,
+            dea_finding_add(
+                ctx, DEA_NOTE, (struct dea_location){0},
+                "model 3d: with its weight the centre is at z = %.4g um without voltage, "
+                "where the sweep starts (gravity: fibres_%s)",
+                1e6 * centre_z_m, model->device->gravity == DEA_GRAVITY_FIBRES_UP ? "up" : "down"));
   }
   return DEA_OK;
 }
@@ -800,9 +803,6 @@ static void look_at_mesh_places(struct dea_model *model)
   const struct dea_layout_mesh *mesh = &model->mesh;
   model->layout = mesh->layout;
   model->disc = mesh->plate.order > 0;
-  if (model->disc) {
-    dea_disc_points_find(mesh, &model->points);
-  }
 }
 
 static void find_band(struct dea_model *model)
@@ -919,9 +919,7 @@ static void describe(const struct dea_model *model, double voltage_V, struct dea
   out->lowest_z_m = find_height(model, -1).z_m;
   out->nominal_field_V_per_m = voltage_V / model->plies.thinnest_m;
   out->energy_J = model->copies * (model->at.report.energy_J - model->at.rest_energy_J);
-  if (model->disc) {
-    dea_disc_points_describe(&model->points, dea_solid_displacement(model->solid), out);
-  }
+  dea_observer_describe(model->observer, dea_solid_displacement(model->solid), out);
   if (model->indent != NULL) {
     out->tip_depth_m = model->indent->depth_m;
     out->force_N = dea_indent_force(model->indent, dea_solid_displacement(model->solid));
@@ -955,9 +953,7 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   out->capacitance_F = model->copies * capacitance_F;
   out->unstable_modes = model->at.report.unstable_modes;
   out->stable = out->unstable_modes == 0;
-  if (model->disc) {
-    DEA_TRY(ctx, dea_disc_points_errors(ctx, &model->points, model->solid, out));
-  }
+  DEA_TRY(ctx, dea_observer_errors(ctx, model->observer, model->solid, out));
   return DEA_OK;
 }
 
@@ -983,10 +979,9 @@ static void note_states(struct dea_model *model, bool left)
 /* Height that tells the side that the film is on. */
 static double middle_z(const struct dea_model *model)
 {
-  const double *u = dea_solid_displacement(model->solid);
+  const double centre_m = centre_z(model, dea_solid_displacement(model->solid));
   const double high_m = find_height(model, 1).z_m, low_m = find_height(model, -1).z_m;
-  return model->disc ? u[3 * model->points.centre[0] + 2]
-                     : (fabs(high_m) > fabs(low_m) ? high_m : low_m);
+  return !isnan(centre_m) ? centre_m : (fabs(high_m) > fabs(low_m) ? high_m : low_m);
 }
 
 /* To the side that the design asks for, where there is a state. */
@@ -1430,7 +1425,7 @@ static dea_status slope(struct dea_context *ctx, void *self, int column, double 
                            pressures + dea_solid_pressure_count(model->solid));
   } else if (strcmp(key, "tip_depth_m") == 0) { // of no unknown
     *known = model->indent != NULL;
-  } else if (!model->disc || !dea_disc_points_weigh(&model->points, key, out)) {
+  } else if (!dea_observer_column_gradient(model->observer, model->solid, column, out)) {
     DEA_TRY(ctx, dea_gradient_film_slope(ctx, &film, &model->variant->places, column, out,
                                          pressures, known));
   }
@@ -1681,11 +1676,7 @@ static dea_status find_motions(struct dea_context *ctx, const struct dea_model *
 {
   *out = (struct dea_motions){.solid = model->solid,
                               .grid = model->mesh.grid,
-                              .centre = model->points.centre[0],
-                              .centre_twin = model->points.centre[1],
-                              .tip = model->points.tip,
-                              .has_centre = model->disc,
-                              .has_tip = model->points.has_fibres,
+                              .observer = model->observer,
                               .branches = model->plies.branches,
                               .part_material_count = model->layout->ply_count};
   DEA_TRY(ctx, check_mass(ctx, model));
@@ -1847,9 +1838,11 @@ static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
     if (weight == NULL) {
       return DEA_E_MEMORY;
     }
-    dea_disc_points_weigh(&model->points, "electrode_edge_u_m", weight);
+    dea_observer_column_gradient(model->observer, model->solid,
+                                 dea_point_column_find("electrode_edge_u_m"), weight);
     end.weight = weight;
-    end.value = (options->max_stretch / model->device->pre_stretch - 1) * model->points.radius_m;
+    end.value =
+        (options->max_stretch / model->device->pre_stretch - 1) * model->device->electrode_radius_m;
   }
   dea_status status = dea_solver_state_path(ctx, &model->at, options, &end, points, events, user);
   dea_free(ctx, weight);

@@ -1,30 +1,40 @@
 #include "model/solid/adapter/solid_observe.h"
 
 #include "base/quadrature.h"
+#include "model/solid/adapter/solid_fields.h"
 #include "model/solid/assembly/channels.h"
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/problem.h"
+#include "result/columns.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { PLANE_MAX = DEA_ELEMENT_LEVEL_MAX };
 
-/* A point of a ply's middle surface: the mean of its lower and its upper face. */
+/* A point of a ply: the mean of two layers of its nodes, or one of them twice. */
 struct probe {
   int count;
-  int node[2][PLANE_MAX]; // of the lowest and the highest element of the ply there
+  int node[2][PLANE_MAX];
   double weight[PLANE_MAX];
   size_t element; // one of the ply there, and where in it
   double at[2];
   size_t copy; // of the sector, that the point lies in
 };
 
+/* The column of load points that a monitor of a disc is, and that of its error, or -1. */
+struct of_disc {
+  int column, error_column;
+  enum dea_observed motion;
+};
+
 struct dea_observer {
   struct dea_arena memory;
   const struct dea_layout_mesh *mesh;
   struct dea_pressure *const *pressures;
-  struct probe (*probes)[2]; // [monitor_count] of points and lines
+  size_t count;              // of all monitors, those of a disc too
+  struct of_disc *of_disc;   // [disc_monitor_count]
+  struct probe (*probes)[2]; // [count] of points and lines
   double (*monitor)[DEA_OBSERVED_COUNT];
   double (*body)[DEA_OBSERVED_COUNT];
   struct dea_channel_values *channel;
@@ -154,42 +164,62 @@ static struct dea_motion back_to_sector(const struct dea_layout_mesh *mesh, size
   return out;
 }
 
+/* How near a layer of nodes comes to what is wanted below (side 0) or above: of the middle plane
+ * the nearest ones to both sides, or itself. */
+static double nearness(enum dea_monitor_level level, int side, double z_m, double middle_m,
+                       double near_m)
+{
+  const bool here = side == 0 ? z_m <= middle_m + near_m : z_m >= middle_m - near_m;
+  switch (level) {
+  case DEA_LEVEL_TOP:
+    return z_m;
+  case DEA_LEVEL_MIDDLE:
+    return here ? -fabs(z_m - middle_m) : -INFINITY;
+  default:
+    return side == 0 ? -z_m : z_m;
+  }
+}
+
 /* In the sector itself. */
-static bool find_in_sector(const struct dea_layout_mesh *mesh, size_t ply, const double x_m[2],
-                           struct probe *out)
+static bool find_in_sector(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
+                           const double x_m[2], struct probe *out)
 {
   const struct dea_grid *grid = mesh->grid;
-  double low = INFINITY, high = -INFINITY;
+  const double *face_m = mesh->face_m[m->ply], middle_m = 0.5 * (face_m[0] + face_m[1]);
+  const double near_m = 1e-6 * mesh->layout->plies[m->ply].thickness_m;
+  double best[2] = {-INFINITY, -INFINITY};
   out->count = 0;
   for (size_t e = 0; e < grid->element_count; e++) {
-    const int *face[2];
+    const int *face[2], per = (grid->order + 1) * (grid->order + 1);
     double at[2], slope[PLANE_MAX][2];
     faces(grid, e, &face[0], &face[1]);
-    if ((size_t)grid->ply[e] != ply || !could_be_in(grid, face[0], x_m) ||
+    if ((size_t)grid->ply[e] != m->ply || !could_be_in(grid, face[0], x_m) ||
         !locate(grid, face[0], x_m, at)) {
       continue;
     }
-    double z[2] = {grid->X[3 * face[0][0] + 2], grid->X[3 * face[1][0] + 2]};
-    if (out->count > 0 && z[0] >= low && z[1] <= high) {
-      continue; // on the side of one that was found
+    for (int k = 0; k < 2 * grid->levels[e]; k++) { // those on the side of one found are no nearer
+      const int *layer = face[0] + k / 2 * per;
+      const double near = nearness(m->level, k % 2, grid->X[3 * layer[0] + 2], middle_m, near_m);
+      if (near > best[k % 2]) { // elements above each other have the same places
+        best[k % 2] = near;
+        out->count = per;
+        out->element = e;
+        memcpy(out->at, at, sizeof out->at);
+        memcpy(out->node[k % 2], layer, (size_t)per * sizeof *layer);
+        basis(grid->order, at, out->weight, slope);
+      }
     }
-    out->count = (grid->order + 1) * (grid->order + 1);
-    out->element = e;
-    memcpy(out->at, at, sizeof out->at);
-    basis(grid->order, at, out->weight, slope);
-    for (int n = 0; n < out->count; n++) { // elements above each other have the same places
-      out->node[0][n] = z[0] < low ? face[0][n] : out->node[0][n];
-      out->node[1][n] = z[1] > high ? face[1][n] : out->node[1][n];
-    }
-    low = fmin(low, z[0]);
-    high = fmax(high, z[1]);
+  }
+  for (int n = 0; n < out->count; n++) { // at a node without what is left of rounding
+    const double nearest = round(out->weight[n]);
+    out->weight[n] = fabs(out->weight[n] - nearest) < 1e-12 ? nearest : out->weight[n];
   }
   return out->count > 0;
 }
 
 /* A point of any copy of the sector, reflected into it. */
-static bool find_probe(const struct dea_layout_mesh *mesh, size_t ply, const double x_m[2],
-                       struct probe *out)
+static bool find_probe(const struct dea_layout_mesh *mesh, const struct dea_layout_monitor *m,
+                       const double x_m[2], struct probe *out)
 {
   const double *centre = mesh->sector.centre_m, from[2] = {x_m[0] - centre[0], x_m[1] - centre[1]};
   for (size_t k = 0; k < dea_layout_sector_copies(&mesh->sector); k++) {
@@ -201,7 +231,7 @@ static bool find_probe(const struct dea_layout_mesh *mesh, size_t ply, const dou
       x[1] += centre[1];
     }
     out->copy = k;
-    if (find_in_sector(mesh, ply, x, out)) {
+    if (find_in_sector(mesh, m, x, out)) {
       return true;
     }
   }
@@ -212,11 +242,13 @@ static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
 {
   const struct dea_layout *l = o->mesh->layout;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  for (size_t i = 0; i < l->monitor_count; i++) {
+  for (size_t i = 0; i < o->count; i++) {
     const struct dea_layout_monitor *m = &l->monitors[i];
-    int points = m->kind == DEA_MONITOR_POINT ? 1 : m->kind == DEA_MONITOR_LINE ? 2 : 0;
+    const int points = m->kind == DEA_MONITOR_LINE                                     ? 2
+                       : m->kind == DEA_MONITOR_POINT || m->kind == DEA_MONITOR_RADIUS ? 1
+                                                                                       : 0;
     for (int k = 0; k < points; k++) {
-      if (!find_probe(o->mesh, m->ply, m->at_m[k], &o->probes[i][k])) {
+      if (!find_probe(o->mesh, m, m->at_m[k], &o->probes[i][k])) {
         DEA_TRY(ctx,
                 dea_finding_add(ctx, DEA_ERROR, m->location,
                                 "monitor '%s': the ply '%s' is not at (%.6g, %.6g) mm", m->name,
@@ -229,6 +261,16 @@ static dea_status find_probes(struct dea_context *ctx, struct dea_observer *o)
              : dea_fail(ctx, DEA_E_DESIGN, "a monitor is off its ply");
 }
 
+static void find_columns(const struct dea_context *ctx, struct dea_observer *o)
+{
+  const struct dea_layout *l = o->mesh->layout;
+  for (size_t i = 0; i < l->disc_monitor_count; i++) {
+    struct of_disc *of = &o->of_disc[i];
+    of->column = dea_observed_of_disc(&l->monitors[l->monitor_count + i], &of->motion);
+    of->error_column = dea_point_error_column(ctx, of->column);
+  }
+}
+
 dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                                struct dea_pressure *const *pressures, struct dea_observer **out)
 {
@@ -239,7 +281,9 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
     return DEA_E_MEMORY;
   }
   *o = (struct dea_observer){.memory = {.ctx = ctx}, .mesh = mesh, .pressures = pressures};
-  o->probes = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->probes);
+  o->count = l->monitor_count + l->disc_monitor_count;
+  o->of_disc = dea_arena_alloc(&o->memory, l->disc_monitor_count, sizeof *o->of_disc);
+  o->probes = dea_arena_alloc(&o->memory, o->count + 1, sizeof *o->probes);
   o->monitor = dea_arena_alloc(&o->memory, l->monitor_count + 1, sizeof *o->monitor);
   o->body = dea_arena_alloc(&o->memory, l->body_count + 1, sizeof *o->body);
   o->channel = dea_arena_alloc(&o->memory, l->channel_count, sizeof *o->channel);
@@ -247,6 +291,7 @@ dea_status dea_observer_create(struct dea_context *ctx, const struct dea_layout_
   o->work = dea_arena_alloc(&o->memory, (o->channel_count + 2) * o->channel_count, sizeof(double));
   dea_status status = dea_arena_status(&o->memory);
   if (status == DEA_OK) {
+    find_columns(ctx, o);
     status = find_probes(ctx, o);
   }
   if (status != DEA_OK) {
@@ -288,6 +333,17 @@ static void displacement_at(const struct dea_layout_mesh *mesh, const struct pro
     struct dea_motion copy = dea_layout_sector_copy(&mesh->sector, probe->copy);
     dea_layout_sector_turn(&copy, out, out);
   }
+}
+
+/* Outwards from the centre of a radius, whose length it returns. */
+static double radius_of(const struct dea_layout_monitor *m, double along[3])
+{
+  const double d[2] = {m->at_m[0][0] - m->at_m[1][0], m->at_m[0][1] - m->at_m[1][1]};
+  const double length = hypot(d[0], d[1]);
+  along[0] = d[0] / length;
+  along[1] = d[1] / length;
+  along[2] = 0;
+  return length;
 }
 
 static double length_of(const double v[3])
@@ -449,6 +505,94 @@ static void observe_volume(const struct dea_observer *o, size_t pressure, const 
   }
 }
 
+/* A point's displacement, or of a radius what that is outwards, and its stretch. */
+static void observe_point(const struct dea_observer *o, size_t monitor, const double *u,
+                          double *values)
+{
+  const struct dea_layout_monitor *m = &o->mesh->layout->monitors[monitor];
+  double v[3], along[3];
+  displacement_at(o->mesh, &o->probes[monitor][0], u, v);
+  if (m->kind == DEA_MONITOR_POINT) {
+    memcpy(values + DEA_OBSERVED_X, v, sizeof v);
+    return;
+  }
+  const double length = radius_of(m, along);
+  values[DEA_OBSERVED_OUTWARDS] = v[0] * along[0] + v[1] * along[1];
+  values[DEA_OBSERVED_STRETCH] = 1 + values[DEA_OBSERVED_OUTWARDS] / length;
+}
+
+/* The monitor of a disc that is a column; SIZE_MAX: none is. */
+static size_t of_column(const struct dea_observer *o, int column)
+{
+  const struct dea_layout *l = o->mesh->layout;
+  for (size_t i = 0; i < l->disc_monitor_count; i++) {
+    if (o->of_disc[i].column == column) {
+      return l->monitor_count + i;
+    }
+  }
+  return SIZE_MAX;
+}
+
+double dea_observer_column(const struct dea_observer *o, int column, const double *u)
+{
+  double values[DEA_OBSERVED_COUNT];
+  const size_t i = of_column(o, column);
+  if (i == SIZE_MAX) {
+    return NAN;
+  }
+  observe_point(o, i, u, values);
+  return values[o->of_disc[i - o->mesh->layout->monitor_count].motion];
+}
+
+void dea_observer_describe(const struct dea_observer *o, const double *u,
+                           struct dea_load_point *out)
+{
+  for (size_t i = 0; i < o->mesh->layout->disc_monitor_count; i++) {
+    const int column = o->of_disc[i].column;
+    dea_point_set(out, column, dea_observer_column(o, column, u));
+  }
+}
+
+bool dea_observer_column_gradient(struct dea_observer *o, struct dea_solid *solid, int column,
+                                  double *weight)
+{
+  const size_t i = of_column(o, column);
+  return i != SIZE_MAX &&
+         dea_observer_gradient(o, solid, i, o->of_disc[i - o->mesh->layout->monitor_count].motion,
+                               weight);
+}
+
+dea_status dea_observer_errors(struct dea_context *ctx, struct dea_observer *o,
+                               struct dea_solid *solid, struct dea_load_point *out)
+{
+  enum { MOST = 4 };
+  const size_t count = o->mesh->layout->disc_monitor_count, dofs = solid->problem.dofs;
+  struct dea_solid_quantity each[MOST];
+  double error[MOST];
+  int columns[MOST];
+  size_t asked = 0;
+  if (count == 0 || !dea_load_point_trusted(out) || out->voltage_V == 0) {
+    return DEA_OK;
+  }
+  double *weights = dea_solid_alloc(ctx, MOST * dofs, sizeof *weights);
+  if (weights == NULL) {
+    return DEA_E_MEMORY;
+  }
+  for (size_t i = 0; i < count && asked < MOST; i++) {
+    if (o->of_disc[i].error_column >= 0) {
+      each[asked] = (struct dea_solid_quantity){.weight = weights + asked * dofs};
+      dea_observer_column_gradient(o, solid, o->of_disc[i].column, weights + asked * dofs);
+      columns[asked++] = o->of_disc[i].error_column;
+    }
+  }
+  const dea_status status = dea_solid_errors(ctx, solid, each, asked, error, NULL);
+  for (size_t k = 0; k < asked && status == DEA_OK; k++) {
+    dea_point_set(out, columns[k], error[k]);
+  }
+  dea_free(ctx, weights);
+  return status;
+}
+
 static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
 {
   const struct dea_layout *l = o->mesh->layout;
@@ -463,7 +607,8 @@ static void observe_monitors(struct dea_observer *o, struct dea_solid *solid)
     nothing_observed(values);
     switch (m->kind) {
     case DEA_MONITOR_POINT:
-      displacement_at(o->mesh, &o->probes[i][0], u, values);
+    case DEA_MONITOR_RADIUS:
+      observe_point(o, i, u, values);
       break;
     case DEA_MONITOR_LINE:
       values[DEA_OBSERVED_STRETCH] = 1 / line_between(o->mesh, m, o->probes[i], u, now);
@@ -558,6 +703,12 @@ static size_t ways_of_probes(const struct dea_observer *o, const double *u, size
     for (int i = 0; i < 3; i++) {
       along[p][i] = count == 1 ? i == (int)(motion - DEA_OBSERVED_X)
                                : (p == 0 ? -1 : 1) * now[i] / (size * flat);
+    }
+    if (m->kind == DEA_MONITOR_RADIUS) {
+      const double length = radius_of(m, along[p]);
+      for (int i = 0; i < 3; i++) {
+        along[p][i] /= motion == DEA_OBSERVED_STRETCH ? length : 1;
+      }
     }
     if (probes[p].copy > 0) {
       const struct dea_motion back = back_to_sector(o->mesh, probes[p].copy);
@@ -738,8 +889,9 @@ static double gradient_of_region(const struct dea_layout_mesh *mesh,
 static bool knows_gradient(enum dea_layout_monitor_kind kind, enum dea_observed motion)
 {
   const bool shift = motion <= DEA_OBSERVED_Z;
-  return kind == DEA_MONITOR_POINT  ? shift
-         : kind == DEA_MONITOR_LINE ? motion == DEA_OBSERVED_STRETCH
+  return kind == DEA_MONITOR_POINT    ? shift
+         : kind == DEA_MONITOR_RADIUS ? dea_observed_has(kind, motion)
+         : kind == DEA_MONITOR_LINE   ? motion == DEA_OBSERVED_STRETCH
          : kind == DEA_MONITOR_REGION
              ? shift || (motion >= DEA_OBSERVED_STRETCH_X && motion <= DEA_OBSERVED_AREA_STRETCH)
          : kind == DEA_MONITOR_VOLUME ? motion == DEA_OBSERVED_VOLUME
@@ -776,6 +928,7 @@ bool dea_observer_gradient(struct dea_observer *o, struct dea_solid *solid, size
   switch (m->kind) {
   case DEA_MONITOR_POINT:
   case DEA_MONITOR_LINE:
+  case DEA_MONITOR_RADIUS:
     gradient_of_probes(o, dea_solid_displacement(solid), monitor, motion, weight);
     break;
   case DEA_MONITOR_REGION: {

@@ -33,6 +33,18 @@ dea_status dea_observer_differentiate(struct dea_context *ctx, struct dea_observ
 bool dea_observer_gradient(struct dea_observer *observer, struct dea_solid *solid, size_t monitor,
                            enum dea_observed motion, double *weight);
 
+/* The monitors that a disc brings, which are columns of load points (device/disc_layout.h): all of
+ * them at displacements u; one of them, NAN: the column is none; how it changes with each
+ * displacement, weight [3 node_count], false: the column is none; and their estimated errors at the
+ * solid's equilibrium, if the point is one of which they say something. */
+void dea_observer_describe(const struct dea_observer *observer, const double *u,
+                           struct dea_load_point *out);
+double dea_observer_column(const struct dea_observer *observer, int column, const double *u);
+bool dea_observer_column_gradient(struct dea_observer *observer, struct dea_solid *solid,
+                                  int column, double *weight);
+dea_status dea_observer_errors(struct dea_context *ctx, struct dea_observer *observer,
+                               struct dea_solid *solid, struct dea_load_point *out);
+
 /* Where a motion of a point or a line is read, 0 to 2 of them; 0 of other monitors. */
 size_t dea_observer_probes(const struct dea_observer *observer, struct dea_solid *solid,
                            size_t monitor, enum dea_observed motion,
