@@ -77,7 +77,6 @@ static const char *const quantities[] = {"force_N",
 enum {
   QUANTITIES = COUNT(quantities),
   FORCE = 0,
-  FIELD = 4,
   CAPACITANCE = 7,
   FREQUENCY = 9,
   FOLLOWING = 10, // the voltage, where the stretch is held
@@ -116,12 +115,12 @@ static const struct dea_result_column slope_columns[] = {
     {.key = "quantity",
      .kind = DEA_CELL_QUANTITY,
      .title = "quantity",
-     .meaning = "of load points"},
+     .meaning = "of load points, or of a monitor"},
     {.key = "value", .kind = DEA_CELL_VALUE, .title = "quantity's value", .meaning = "there"},
     SLOPE,
     {.key = "elasticity",
      .title = "per cent by one per cent",
-     .meaning = "d ln(quantity) / d ln(number)"},
+     .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
     DEA_NUMBER_TOLERANCE,
     {.key = "change",
      .kind = DEA_CELL_VALUE,
@@ -131,6 +130,7 @@ static const struct dea_result_column slope_columns[] = {
     TIP_DEPTH,
     HELD_STRETCH,
     FLAGS,
+    LOADED,
 };
 static const struct dea_result_table_type slope_table = {.study = study_name,
                                                          .name = "slopes",
@@ -143,8 +143,11 @@ static const struct dea_result_column matter_columns[] = {
     VOLTAGE,
     TIP_DEPTH,
     HELD_STRETCH,
+    LOADED,
+    DEA_TEXT_COLUMN("quantity", "quantity", "that the rows are sorted by: motion of a monitor"),
     DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
     DEA_TEXT_COLUMN("number_text", "value", "of the number"),
+    ELASTICITY("change", "changes it by, %"),
     ELASTICITY("force_N", "force, %"),
     ELASTICITY("fibre_tip_z_m", "z tip, %"),
     ELASTICITY("centre_z_m", "z centre, %"),
@@ -158,8 +161,7 @@ static const struct dea_result_column matter_columns[] = {
     ELASTICITY("voltage", "voltage, %"),
     DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
     DEA_TEXT_COLUMN("change_text", "changes",
-                    "by the tolerance, of the displacement that comes first in the row, or of the "
-                    "voltage"),
+                    "by the tolerance, of the quantity that the rows are sorted by"),
     FLAGS,
 };
 static const struct dea_result_table_type matter_table = {.study = study_name,
@@ -168,56 +170,6 @@ static const struct dea_result_table_type matter_table = {.study = study_name,
                                                           .where = DEA_IN_SCREEN,
                                                           .columns = matter_columns,
                                                           .column_count = COUNT(matter_columns)};
-
-/* Of what has monitors: their main motions are quantities too, which go by their names. */
-static const struct dea_result_column part_slope_columns[] = {
-    VOLTAGE,
-    DEA_NUMBER_IN_ROW,
-    DEA_TEXT_COLUMN("quantity", "quantity", "of load points, or of a monitor: middle_z_m"),
-    {.key = "value", .title = "quantity's value", .meaning = "there, in SI"},
-    SLOPE,
-    {.key = "elasticity",
-     .title = "per cent by one per cent",
-     .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
-    DEA_NUMBER_TOLERANCE,
-    {.key = "change", .title = "change by tolerance", .meaning = "of the quantity, in SI"},
-    MODE,
-    LOADED,
-    FLAGS,
-};
-static const struct dea_result_table_type part_slope_table = {
-    .study = study_name,
-    .name = "slopes",
-    .title = "slopes by the design's numbers",
-    .where = DEA_IN_JSON | DEA_IN_CSV,
-    .columns = part_slope_columns,
-    .column_count = COUNT(part_slope_columns)};
-
-static const struct dea_result_column part_matter_columns[] = {
-    VOLTAGE,
-    LOADED,
-    DEA_TEXT_COLUMN("quantity", "quantity",
-                    "that the rows are sorted by: main motion of a monitor"),
-    DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
-    DEA_TEXT_COLUMN("number_text", "value", "of the number"),
-    ELASTICITY("change", "changes it by, %"),
-    ELASTICITY("true_field_V_per_m", "field, %"),
-    ELASTICITY("breakdown_margin", "margin, %"),
-    ELASTICITY("min_tension_N_per_m", "tension, %"),
-    ELASTICITY("capacitance_F", "capacitance, %"),
-    ELASTICITY("energy_J", "energy, %"),
-    ELASTICITY("frequency_Hz", "frequency, %"),
-    DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
-    DEA_TEXT_COLUMN("change_text", "changes", "of the row's quantity, by the tolerance"),
-    FLAGS,
-};
-static const struct dea_result_table_type part_matter_table = {.study = study_name,
-                                                               .name = "matters",
-                                                               .title = "what matters",
-                                                               .where = DEA_IN_SCREEN,
-                                                               .columns = part_matter_columns,
-                                                               .column_count =
-                                                                   COUNT(part_matter_columns)};
 
 // Study ------------------------------------------------------------------------------------------
 
@@ -228,12 +180,12 @@ struct stop {
   struct dea_load_point point;
   const struct dea_layout *layout; // with monitors or that is no disc; NULL: none
   int columns[QUANTITIES];
-  size_t width;                    // quantities: QUANTITIES, monitors, then higher modes
-  size_t seen;                     // of these without the modes
-  size_t *monitors;                // [seen - QUANTITIES]
-  enum dea_observed *motion;       // [seen - QUANTITIES] main ones
-  const struct dea_column **shown; // [seen - QUANTITIES] their columns
-  double *motion_value;            // [seen - QUANTITIES]
+  size_t width;              // quantities: QUANTITIES, monitors, then higher modes
+  size_t seen;               // of these without the modes
+  size_t *monitors;          // [seen - QUANTITIES]
+  enum dea_observed *motion; // [seen - QUANTITIES] main ones
+  int *shown;                // [seen - QUANTITIES] their columns
+  double *motion_value;      // [seen - QUANTITIES]
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   size_t number_count;
   bool is_pressed;
@@ -263,11 +215,10 @@ static double mode_number(const struct stop *stop, size_t quantity)
                                   : NAN;
 }
 
-/* Of load points; -1 of what a monitor shows. */
 static int column_of(const struct stop *stop, size_t quantity)
 {
   return quantity < QUANTITIES   ? stop->columns[quantity]
-         : quantity < stop->seen ? -1
+         : quantity < stop->seen ? stop->shown[quantity - QUANTITIES]
                                  : stop->columns[FREQUENCY];
 }
 
@@ -318,26 +269,26 @@ static const char *flags_of(const struct stop *stop, char out[DEA_FLAGS_SIZE])
   return dea_flags_text(dea_load_point_flags(&stop->point), out);
 }
 
-static struct dea_tolerated tolerate(const struct stop *stop, size_t quantity, size_t i)
-{
-  const char *unit = quantity < QUANTITIES ? dea_point_columns[stop->columns[quantity]].si_unit
-                                           : stop->shown[quantity - QUANTITIES]->si_unit;
-  return dea_number_tolerated(&stop->numbers[i], slope_of(stop, i, quantity), unit);
-}
-
 static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
                              size_t i, struct dea_result_table *table)
 {
   const struct dea_design_number *number = &stop->numbers[i];
-  struct dea_result_table_value row[COUNT(matter_columns)] = {{.number = stop->voltage_V},
-                                                              {.number = depth_of(stop)},
-                                                              {.number = held_by(stop)},
-                                                              {.text = number->key}};
-  const struct dea_tolerated tolerated = tolerate(stop, lead, i);
+  const struct dea_column *column = dea_column_at(ctx, column_of(stop, lead));
+  const bool seen = stop->layout != NULL;
+  const struct dea_tolerated tolerated =
+      dea_number_tolerated(number, slope_of(stop, i, lead), column->si_unit);
   char value[48], flags[DEA_FLAGS_SIZE];
-  size_t n = 4;
   dea_number_text(number->value, number->unit, value, sizeof value);
-  row[n++].text = value;
+  struct dea_result_table_value row[COUNT(matter_columns)] = {
+      {.number = stop->voltage_V},
+      {.number = depth_of(stop)},
+      {.number = held_by(stop)},
+      {.number = loaded_to(stop)},
+      {.number = NAN, .text = seen ? column->key : ""}, // hidden where it is empty
+      {.text = number->key},
+      {.text = value},
+      {.number = seen ? elasticity(stop, i, lead) : NAN}};
+  size_t n = 8;
   for (size_t k = 0; k < QUANTITIES; k++) {
     row[n++].number = elasticity(stop, i, k);
   }
@@ -349,11 +300,8 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
 }
 
 /* Numbers by how much they matter to a quantity, most first, and last those that only the frequency
- * depends on; `put` adds the row of one. */
+ * depends on. */
 static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, size_t lead,
-                             dea_status (*put)(struct dea_context *ctx, const struct stop *stop,
-                                               size_t lead, size_t number,
-                                               struct dea_result_table *table),
                              struct dea_result_table *table)
 {
   static const double least = 1e-100;
@@ -367,78 +315,41 @@ static dea_status put_sorted(struct dea_context *ctx, const struct stop *stop, s
   }
   const size_t count = dea_numbers_order(size, stop->number_count, order);
   for (size_t n = 0; n < count; n++) {
-    DEA_TRY(ctx, put(ctx, stop, lead, order[n], table));
+    DEA_TRY(ctx, put_matter(ctx, stop, lead, order[n], table));
   }
   return DEA_OK;
 }
 
-/* The key of a column. */
-static void name_of(const struct stop *stop, size_t quantity, char *out, size_t size)
-{
-  const int column = column_of(stop, quantity);
-  snprintf(out, size, "%s",
-           column >= 0 ? dea_point_columns[column].key : stop->shown[quantity - QUANTITIES]->key);
-}
-
-/* All slopes; the table of what has monitors has one column less: none of held stretches. */
 static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                              struct dea_result_table *table)
 {
-  char name[80], flags[DEA_FLAGS_SIZE];
+  char flags[DEA_FLAGS_SIZE];
   flags_of(stop, flags);
   for (size_t i = 0; i < stop->number_count * stop->width; i++) {
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
     const double slope = slope_of(stop, n, k);
-    const int column = column_of(stop, k);
-    name_of(stop, k, name, sizeof name);
     const struct dea_result_table_value row[] = {
         {.number = stop->voltage_V},
         {.text = number->key},
         {.number = number->value},
         {.text = number->unit},
-        {.number = column >= 0 ? (double)column : NAN, .text = name},
+        {.number = (double)column_of(stop, k)},
         {.number = value_of(stop, k)},
         {.number = slope},
         {.number = elasticity(stop, n, k)},
         {.number = number->tolerance},
         {.number = slope * number->tolerance},
         {.number = mode_number(stop, k)},
-        {.number = stop->layout != NULL ? loaded_to(stop) : depth_of(stop)},
-        stop->layout != NULL ? (struct dea_result_table_value){.text = flags}
-                             : (struct dea_result_table_value){.number = held_by(stop)},
-        {.text = flags}, // beyond the table of a device of plies
+        {.number = depth_of(stop)},
+        {.number = held_by(stop)},
+        {.text = flags},
+        {.number = loaded_to(stop)},
     };
     if (!isnan(slope)) {
       DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
     }
   }
-  return DEA_OK;
-}
-
-static dea_status put_part_matter(struct dea_context *ctx, const struct stop *stop, size_t lead,
-                                  size_t i, struct dea_result_table *table)
-{
-  const struct dea_design_number *number = &stop->numbers[i];
-  char quantity[80], value[48], flags[DEA_FLAGS_SIZE];
-  name_of(stop, lead, quantity, sizeof quantity);
-  dea_number_text(number->value, number->unit, value, sizeof value);
-  struct dea_result_table_value row[COUNT(part_matter_columns)] = {
-      {.number = stop->voltage_V},
-      {.number = loaded_to(stop)},
-      {.text = quantity},
-      {.text = number->key},
-      {.text = value},
-      {.number = elasticity(stop, i, lead)}};
-  const struct dea_tolerated tolerated = tolerate(stop, lead, i);
-  size_t n = 6;
-  for (size_t k = FIELD; k < FOLLOWING; k++) {
-    row[n++].number = elasticity(stop, i, k);
-  }
-  row[n++].text = tolerated.tolerance;
-  row[n++].text = tolerated.change;
-  row[n++].text = flags_of(stop, flags);
-  DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
   return DEA_OK;
 }
 
@@ -484,7 +395,7 @@ static dea_status find_monitors(struct dea_context *ctx, const struct dea_model_
   for (size_t k = 0; k < column_count; k++) {
     const struct dea_monitor_column *c = &columns[k];
     if (c->source == DEA_OF_MONITOR && c->number == stop->motion[c->index]) {
-      stop->shown[c->index] = dea_column_at(ctx, c->column);
+      stop->shown[c->index] = c->column;
     }
   }
   return DEA_OK;
@@ -601,33 +512,18 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   return DEA_OK;
 }
 
-/* Its rows of both tables, of a device with a layout to look at: first by what each monitor shows,
- * or without monitors by the capacitance. */
-static dea_status put_part_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
-                                struct dea_result *result)
-{
-  struct dea_result_table *table;
-  const bool seen = stop->seen > QUANTITIES;
-  DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_matter_table, model, &table));
-  for (size_t k = seen ? QUANTITIES : CAPACITANCE; k < (seen ? stop->seen : CAPACITANCE + 1); k++) {
-    DEA_TRY(ctx, put_sorted(ctx, stop, k, put_part_matter, table));
-  }
-  DEA_TRY(ctx, dea_result_get_table(ctx, result, &part_slope_table, model, &table));
-  DEA_TRY(ctx, put_slopes(ctx, stop, table));
-  return DEA_OK;
-}
-
-/* Its rows of both tables. */
+/* Its rows of both tables. Those of what has monitors, or is no disc, are sorted by what each
+ * monitor shows, or without monitors by the capacitance. */
 static dea_status put_stop(struct dea_context *ctx, const char *model, const struct stop *stop,
                            struct dea_result *result)
 {
   struct dea_result_table *table;
-  if (stop->layout != NULL) {
-    DEA_TRY(ctx, put_part_stop(ctx, model, stop, result));
-    return DEA_OK;
-  }
+  const bool seen = stop->seen > QUANTITIES;
+  const size_t first = seen ? QUANTITIES : stop->layout != NULL ? CAPACITANCE : leading(stop);
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
-  DEA_TRY(ctx, put_sorted(ctx, stop, leading(stop), put_matter, table));
+  for (size_t k = first; k < (seen ? stop->seen : first + 1); k++) {
+    DEA_TRY(ctx, put_sorted(ctx, stop, k, table));
+  }
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
   DEA_TRY(ctx, put_slopes(ctx, stop, table));
   return DEA_OK;
