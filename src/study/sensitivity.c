@@ -129,8 +129,8 @@ static const struct dea_result_column slope_columns[] = {
     MODE,
     TIP_DEPTH,
     HELD_STRETCH,
-    FLAGS,
     LOADED,
+    FLAGS,
 };
 static const struct dea_result_table_type slope_table = {.study = study_name,
                                                          .name = "slopes",
@@ -343,8 +343,8 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
         {.number = mode_number(stop, k)},
         {.number = depth_of(stop)},
         {.number = held_by(stop)},
-        {.text = flags},
         {.number = loaded_to(stop)},
+        {.text = flags},
     };
     if (!isnan(slope)) {
       DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
