@@ -1,5 +1,4 @@
-/* One context for all tests of a program: cmocka_run_group_tests(tests, context_set_up,
- * context_tear_down). */
+/* One context for all tests of a program: TESTS(context_set_up, context_tear_down). */
 #ifndef DEA_TESTS_CONTEXT_FIXTURE_H
 #define DEA_TESTS_CONTEXT_FIXTURE_H
 

@@ -1,5 +1,5 @@
 /* One context and the solver of solids for all tests of a program:
- * cmocka_run_group_tests(tests, solid_set_up, solid_tear_down). */
+ * TESTS(solid_set_up, solid_tear_down). */
 #ifndef DEA_TESTS_SOLID_FIXTURE_H
 #define DEA_TESTS_SOLID_FIXTURE_H
 

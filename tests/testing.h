@@ -24,6 +24,50 @@
 #define SANITIZED 0
 #endif
 
+enum { TESTS_MAX = 64 };
+static struct CMUnitTest tests_[TESTS_MAX]; // of this program, in the order of its file
+static size_t test_count_;
+
+static inline void add_test(const char *name, CMUnitTestFunction test)
+{
+  if (test_count_ == TESTS_MAX) {
+    abort();
+  }
+  tests_[test_count_++] = (struct CMUnitTest){.name = name, .test_func = test};
+}
+
+/* Group fixtures, and those of each test; NULL: none. */
+static inline int run_all_each(CMFixtureFunction first, CMFixtureFunction last,
+                               CMFixtureFunction before, CMFixtureFunction after)
+{
+  for (size_t i = 0; i < test_count_; i++) {
+    tests_[i].setup_func = before;
+    tests_[i].teardown_func = after;
+  }
+  return cmocka_run_group_tests(tests_, first, last);
+}
+
+static inline int run_all(CMFixtureFunction first, CMFixtureFunction last)
+{
+  return run_all_each(first, last, NULL, NULL);
+}
+
+/* TEST(name) { ... } is a test of the program; TESTS, or TESTS_EACH, at the end of the file is the
+ * main function that runs them. */
+#define TEST(name)                                                                                 \
+  static void name(void **state);                                                                  \
+  __attribute__((constructor)) static void add_##name(void)                                        \
+  {                                                                                                \
+    add_test(#name, name);                                                                         \
+  }                                                                                                \
+  static void name(__attribute__((unused)) void **state)
+#define TESTS_EACH(set_up, tear_down, before, after)                                               \
+  int main(void)                                                                                   \
+  {                                                                                                \
+    return run_all_each(set_up, tear_down, before, after);                                         \
+  }
+#define TESTS(set_up, tear_down) TESTS_EACH(set_up, tear_down, NULL, NULL)
+
 /* For a case that is about a number, found by code that other cases of the program run too. */
 static inline void skip_sanitized(void)
 {

@@ -1,5 +1,5 @@
-/* One workshop at a time, made from the text of a design; cmocka_run_group_tests(tests,
- * workshop_set_up, workshop_tear_down). */
+/* One workshop at a time, made from the text of a design; TESTS(workshop_set_up,
+ * workshop_tear_down). */
 #ifndef DEA_TESTS_WORKSHOP_FIXTURE_H
 #define DEA_TESTS_WORKSHOP_FIXTURE_H
 

@@ -6,9 +6,8 @@
 
 #define EXAMPLE "@/examples/bench/cyclic.yaml"
 
-static void test_dry_run(void **state)
+TEST(test_dry_run)
 {
-  (void)state;
   assert_int_equal(command_run("drive " EXAMPLE), 0);
   assert_contains(command_out, "0 kV to 8 kV, 135 cycles in 270 s");
   assert_contains(command_out, "270000 of 3 channels at 1000 a second");
@@ -19,9 +18,8 @@ static void test_dry_run(void **state)
 }
 
 /* What plays the voltage is called so, whatever keys its kind has. */
-static void test_who_plays(void **state)
+TEST(test_who_plays)
 {
-  (void)state;
   assert_int_equal(
       command_run("drive " EXAMPLE " --set channels=null --set 'amplifier.min_voltage=0 V' --set "
                   "'instruments=[{kind: shvps, device: /dev/ttyACM0}, {kind: scpi, address: a, "
@@ -35,9 +33,8 @@ static void test_who_plays(void **state)
 }
 
 /* The paper's 16 kV for the film of 200 um are more than its amplifier gives. */
-static void test_too_much(void **state)
+TEST(test_too_much)
 {
-  (void)state;
   assert_int_equal(command_run("drive " EXAMPLE " --set sequence=null --set "
                                "'waveform={kind: ramp, to: 16 kV, duration: 8 s}'"),
                    6);
@@ -50,9 +47,8 @@ static void test_too_much(void **state)
   assert_int_equal(command_run("recording no.h5"), 5); // nothing was recorded
 }
 
-static void test_json(void **state)
+TEST(test_json)
 {
-  (void)state;
   json_error_t error;
   assert_int_equal(command_run("drive " EXAMPLE " --json --set safety.largest_field=300V/um"), 6);
   json_t *json = json_loads(command_out, 0, &error);
@@ -65,9 +61,8 @@ static void test_json(void **state)
 }
 
 /* On the simulated bench, and not over what is there. */
-static void test_simulated(void **state)
+TEST(test_simulated)
 {
-  (void)state;
   json_error_t error;
   static const char text[] = "drive " EXAMPLE "  --set "
                              "'sequence=[{waveform: {kind: staircase, values: [2 kV, 3 kV], "
@@ -102,9 +97,8 @@ static void test_simulated(void **state)
 }
 
 /* It pulls the voltage down while the ramp still asks for more, which the current explains. */
-static void test_breakdown(void **state)
+TEST(test_breakdown)
 {
-  (void)state;
   assert_int_equal(
       command_run("drive " EXAMPLE " --sim -o b.h5 --set sim.breakdown_voltage=2.5kV "
                   "--set 'sequence=[{waveform: {kind: ramp, to: 4 kV, duration: 1 s}}]'"),
@@ -113,9 +107,8 @@ static void test_breakdown(void **state)
   assert_contains(command_out, "ended early       the current is ");
 }
 
-static void test_usage(void **state)
+TEST(test_usage)
 {
-  (void)state;
   static const struct {
     const char *arguments, *part;
     int code;
@@ -140,9 +133,8 @@ static void test_usage(void **state)
   }
 }
 
-static void test_schema(void **state)
+TEST(test_schema)
 {
-  (void)state;
   assert_int_equal(command_run("schema --protocol"), 0);
   assert_contains(command_out, "amplifier.max_voltage");
   assert_contains(command_out, "safety.largest_field");
@@ -154,13 +146,4 @@ static void test_schema(void **state)
   assert_int_equal(command_run("schema --protocol --material"), 2);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dry_run),   cmocka_unit_test(test_who_plays),
-      cmocka_unit_test(test_too_much),  cmocka_unit_test(test_json),
-      cmocka_unit_test(test_simulated), cmocka_unit_test(test_breakdown),
-      cmocka_unit_test(test_usage),     cmocka_unit_test(test_schema),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

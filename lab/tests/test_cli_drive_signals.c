@@ -99,9 +99,8 @@ static double wait_for_fall(struct dea_context *ctx, const char *name, double be
   return last_V;
 }
 
-static void test_signals_ramp_down(void **state)
+TEST(test_signals_ramp_down)
 {
-  (void)state;
   struct dea_context *ctx;
   int status;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
@@ -137,9 +136,8 @@ static void test_signals_ramp_down(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_killed_drive(void **state)
+TEST(test_killed_drive)
 {
-  (void)state;
   struct dea_context *ctx;
   int status;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
@@ -160,9 +158,8 @@ static void test_killed_drive(void **state)
 }
 
 /* None of these may end or stop the program: they bring the voltage down too, or change nothing. */
-static void test_other_signals(void **state)
+TEST(test_other_signals)
 {
-  (void)state;
   static const struct {
     int number;
     bool ends;
@@ -203,9 +200,8 @@ static void test_other_signals(void **state)
 
 /* A terminal that takes no more (held by Ctrl-S, its connection gone) gets no progress; the voltage
  * comes down nevertheless. */
-static void test_held_terminal(void **state)
+TEST(test_held_terminal)
 {
-  (void)state;
   struct dea_context *ctx;
   int status, master = posix_openpt(O_RDWR | O_NOCTTY);
   char taken[4096];
@@ -244,9 +240,8 @@ static void test_held_terminal(void **state)
 }
 
 /* A second drive does not take away the file of the first; and who lost it says so. */
-static void test_two_into_one_file(void **state)
+TEST(test_two_into_one_file)
 {
-  (void)state;
   struct dea_context *ctx;
   int status;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
@@ -274,12 +269,4 @@ static void test_two_into_one_file(void **state)
   dea_context_destroy(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_signals_ramp_down), cmocka_unit_test(test_killed_drive),
-      cmocka_unit_test(test_other_signals),     cmocka_unit_test(test_held_terminal),
-      cmocka_unit_test(test_two_into_one_file),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

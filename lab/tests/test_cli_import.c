@@ -5,9 +5,8 @@
 
 #include <jansson.h>
 
-static void test_list(void **state)
+TEST(test_list)
 {
-  (void)state;
   command_write("a.csv", "Time (s),HV (kV),x\n0,0,1\n0.5,1,1\n1,2,1\n");
   assert_int_equal(command_run("import --list a.csv"), 0);
   assert_contains(command_out, "csv, 3 columns");
@@ -27,9 +26,8 @@ static void test_list(void **state)
   assert_contains(command_out, "voltage (by its name and unit); 2 missing");
 }
 
-static void test_recording(void **state)
+TEST(test_recording)
 {
-  (void)state;
   char file[600];
   struct dea_context *ctx;
   struct dea_recording *recording;
@@ -64,9 +62,8 @@ static void test_recording(void **state)
   assert_contains(command_out, "b.h5");
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   static const struct {
     const char *arguments;
     int code;
@@ -100,9 +97,8 @@ static void test_errors(void **state)
 
 /* What is written replaces neither what is read nor a pipe, with --force too, under a given name or
  * the usual one. */
-static void test_what_is_not_replaced(void **state)
+TEST(test_what_is_not_replaced)
 {
-  (void)state;
   static const struct {
     const char *arguments, *part;
   } cases[] = {
@@ -144,13 +140,4 @@ static void test_what_is_not_replaced(void **state)
   assert_int_equal(command_run("check design.yaml --svg drawing.svg"), 0); // of its own making
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_list),
-      cmocka_unit_test(test_recording),
-      cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_what_is_not_replaced),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

@@ -36,9 +36,8 @@ static void record(const char *name, bool killed)
   assert_int_equal(status, 0);
 }
 
-static void test_what_is_in_it(void **state)
+TEST(test_what_is_in_it)
 {
-  (void)state;
   record("whole.h5", false);
   assert_int_equal(command_run("recording whole.h5"), 0);
   assert_contains(command_out, "complete       yes");
@@ -64,9 +63,8 @@ static void test_what_is_in_it(void **state)
 
 /* What a recording is called cannot look like a line of what is known of it, nor reach the
  * terminal, whoever wrote it. */
-static void test_names_are_no_lines(void **state)
+TEST(test_names_are_no_lines)
 {
-  (void)state;
   static const struct dea_recorder_channel channel = {
       .name = "v\x1b[31m\nw", .kind = DEA_CHANNEL_VOLTAGE, .interval_s = 1e-3, .filter_Hz = NAN};
   const struct dea_recorder_options options = {
@@ -89,9 +87,8 @@ static void test_names_are_no_lines(void **state)
 }
 
 /* A protocol's title may have several lines, and becomes one. */
-static void test_title_of_lines(void **state)
+TEST(test_title_of_lines)
 {
-  (void)state;
   command_write("lines.yaml", "dea-protocol: 1\n"
                               "title: \"x\\noutput         at 0 V (2 V read back)\"\n"
                               "design: " DEA_SOURCE_DIR "/examples/frdea-4.yaml\n"
@@ -106,9 +103,8 @@ static void test_title_of_lines(void **state)
   assert_contains(command_out, "title          x output         at 0 V (2 V read back)\n");
 }
 
-static void test_killed_one_is_rescued(void **state)
+TEST(test_killed_one_is_rescued)
 {
-  (void)state;
   record("killed.h5", true);
   assert_int_equal(command_run("recording killed.h5 -o copy.h5 --csv tables"), 0);
   assert_contains(command_out, "no: its program was killed");
@@ -119,9 +115,8 @@ static void test_killed_one_is_rescued(void **state)
   assert_contains(command_err, "exists");
 }
 
-static void test_tables(void **state)
+TEST(test_tables)
 {
-  (void)state;
   double time_s, voltage_kV;
   int used;
   record("table.h5", false);
@@ -162,9 +157,8 @@ static void test_tables(void **state)
 }
 
 /* Another program's displacements beside the voltage, on the voltage's clock. */
-static void test_two_become_one(void **state)
+TEST(test_two_become_one)
 {
-  (void)state;
   command_write("v.csv", "time (s),V (kV)\n0,0\n0.1,1\n0.2,2\n");
   command_write("z.csv", "time (s),z (mm)\n5,0\n5.25,0.1\n");
   assert_int_equal(command_run("import v.csv"), 0);
@@ -191,9 +185,8 @@ static void test_two_become_one(void **state)
   json_decref(json);
 }
 
-static void test_what_is_no_recording(void **state)
+TEST(test_what_is_no_recording)
 {
-  (void)state;
   command_write("text.h5", "no recording at all");
   assert_int_equal(command_run("recording text.h5"), 5);
   assert_contains(command_err, "text.h5 is no recording; dea import makes one");
@@ -204,16 +197,4 @@ static void test_what_is_no_recording(void **state)
   assert_int_equal(command_run("recording a b"), 2);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_in_it),
-      cmocka_unit_test(test_names_are_no_lines),
-      cmocka_unit_test(test_title_of_lines),
-      cmocka_unit_test(test_killed_one_is_rescued),
-      cmocka_unit_test(test_tables),
-      cmocka_unit_test(test_two_become_one),
-      cmocka_unit_test(test_what_is_no_recording),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

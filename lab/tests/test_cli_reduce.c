@@ -73,9 +73,8 @@ static void read_measurement(const char *folder, struct dea_measurement **out)
   }
 }
 
-static void test_tables(void **state)
+TEST(test_tables)
 {
-  (void)state;
   assert_int_equal(command_run("reduce bench.h5 " RADII "-o tables --format svg"), 0);
   assert_contains(command_out, "6.000      4");
   assert_contains(command_out, "1 discharge: spikes above");
@@ -117,9 +116,8 @@ static void test_tables(void **state)
   assert_contains(command_out, "discharge,");
 }
 
-static void test_json(void **state)
+TEST(test_json)
 {
-  (void)state;
   assert_int_equal(command_run("reduce bench.h5 " RADII "-o json --json --format png"), 0);
   json_t *root = json_loads(command_out, 0, NULL);
   assert_non_null(root);
@@ -135,9 +133,8 @@ static void test_json(void **state)
 }
 
 /* An embedded or named design gives the radii; a reduction is not replaced by chance. */
-static void test_design_and_folder(void **state)
+TEST(test_design_and_folder)
 {
-  (void)state;
   assert_int_equal(command_run("reduce bench.h5 --design @/examples/frdea-4.yaml"), 0);
   assert_contains(command_out, "fibre tips at");
   assert_contains(command_out, "bench.reduced");
@@ -147,9 +144,8 @@ static void test_design_and_folder(void **state)
   assert_contains(command_err, "--tip-radius");
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   const struct {
     const char *arguments, *says;
     int code;
@@ -174,9 +170,8 @@ static void test_errors(void **state)
 
 /* Thinned rows keep every edge: each sample between two others that differ from it is near a row.
  */
-static void test_history_keeps_edges(void **state)
+TEST(test_history_keeps_edges)
 {
-  (void)state;
   struct dea_recording r = bench();
   struct dea_reduction *reduction;
   struct dea_reduced_series all, few;
@@ -208,9 +203,8 @@ static void test_history_keeps_edges(void **state)
 }
 
 /* The axis of a recording that did not begin at 0. */
-static void test_history_from_its_begin(void **state)
+TEST(test_history_from_its_begin)
 {
-  (void)state;
   char path[600];
   const struct dea_plot_format none = {.width_m = 85e-3};
   struct dea_recording r = bench();
@@ -236,9 +230,8 @@ static void test_history_from_its_begin(void **state)
 }
 
 /* Of ten voltages below 0, with rest, eight are shown, the largest among them and without rest. */
-static void test_figures_of_negative_voltages(void **state)
+TEST(test_figures_of_negative_voltages)
 {
-  (void)state;
   char path[600];
   const struct dea_plot_format none = {.width_m = 85e-3};
   struct signal_bench b = signal_bench_plain();
@@ -289,9 +282,8 @@ static dea_status write_kept(struct dea_context *ctx)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.rate_Hz = 20.0;
   b.frame_Hz = 5.0;
@@ -304,17 +296,4 @@ static void test_memory(void **state)
   signal_free(&kept);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_tables),
-      cmocka_unit_test(test_json),
-      cmocka_unit_test(test_design_and_folder),
-      cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_history_keeps_edges),
-      cmocka_unit_test(test_history_from_its_begin),
-      cmocka_unit_test(test_figures_of_negative_voltages),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, write_bench, remove_bench);
-}
+TESTS(write_bench, remove_bench)

@@ -58,22 +58,19 @@ static void check(const char *kind, double step_V)
   assert_non_null(strstr(command_out, "at 0 V"));
 }
 
-static void test_nidaqmx(void **state)
+TEST(test_nidaqmx)
 {
-  (void)state;
   check("nidaqmx", 1e-12);
 }
 
-static void test_comedi(void **state)
+TEST(test_comedi)
 {
-  (void)state;
   check("comedi", 1.01 * 20.0 / 65535);
 }
 
 /* A protocol from elsewhere that brings its own library: its code does not run, armed or not. */
-static void test_library_that_nobody_listed(void **state)
+TEST(test_library_that_nobody_listed)
 {
-  (void)state;
   static const char *const wrong[] = {"libraries: [other.so]\n", "libraries: [./own.so]\n",
                                       "libraries: x\n", ""};
   char text[4096], list[2048];
@@ -106,11 +103,6 @@ static void test_library_that_nobody_listed(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_nidaqmx),
-      cmocka_unit_test(test_comedi),
-      cmocka_unit_test(test_library_that_nobody_listed),
-  };
   return setenv("XDG_CONFIG_HOME", DEA_FAKE_FOLDER "/config", 1) != 0 ||
-         cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+         run_all(command_set_up, command_tear_down);
 }

@@ -45,9 +45,8 @@ static double field_at(const char *design_file, double voltage_V, double most, d
 }
 
 /* What a new user copies needs no override: the margin of the material holds. */
-static void test_first_example_is_inside_the_margin(void **state)
+TEST(test_first_example_is_inside_the_margin)
 {
-  (void)state;
   struct dea_protocol *p;
   double stretch;
   dea_finding_clear(ctx);
@@ -67,9 +66,8 @@ static void test_first_example_is_inside_the_margin(void **state)
 }
 
 /* The paper's protocol may be played once its field is allowed. */
-static void test_example_passes(void **state)
+TEST(test_example_passes)
 {
-  (void)state;
   struct dea_protocol *p;
   double stretch;
   dea_finding_clear(ctx);
@@ -114,9 +112,8 @@ static void check_refusals(const struct refusal *refusals, size_t count)
   }
 }
 
-static void test_refusals(void **state)
+TEST(test_refusals)
 {
-  (void)state;
   static const struct refusal refusals[] = {
       {PROTOCOL_HEAD CHANNELS
        "sequence:\n"
@@ -199,9 +196,8 @@ static void test_refusals(void **state)
 #define PLAYS_8_KV "waveform: {kind: constant, voltage: 8 kV}\n"
 
 /* Keys that would switch an interlock off without a word. */
-static void test_interlocks_cannot_be_switched_off(void **state)
+TEST(test_interlocks_cannot_be_switched_off)
 {
-  (void)state;
   static const struct refusal refusals[] = {
       {TRIPS("trip_time: 1000 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
        "refused: a fault would last 1e+03 s until safety.trip_time ends it, by when the amplifier "
@@ -275,9 +271,8 @@ static void test_interlocks_cannot_be_switched_off(void **state)
 }
 
 /* What is allowed is just below. */
-static void test_interlocks_at_their_bounds(void **state)
+TEST(test_interlocks_at_their_bounds)
 {
-  (void)state;
   static const char *const good[] = {
       TRIPS("trip_time: 0.1 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
       TRIPS("trip_time: 0 s") AMPLIFIER("10 mA") CHANNELS PLAYS_8_KV,
@@ -298,9 +293,8 @@ static void test_interlocks_at_their_bounds(void **state)
 
 /* The specimen's file is stronger than the protocol, than options, and than what comes to a wire.
  */
-static void test_specimen(void **state)
+TEST(test_specimen)
 {
-  (void)state;
   static const char text[] = "dea-protocol: 1\nspecimen: f12.yaml\n" PROTOCOL_AMPLIFIER CHANNELS
                              "waveform: {kind: square, low: -6 kV, high: 5 kV, frequency: 1 Hz}\n";
   struct dea_protocol *p;
@@ -343,9 +337,8 @@ static void test_specimen(void **state)
 /* What is allowed is where the field reaches it: 80 V/um s^1.5 of this film, over the margin. */
 /* 2.01 kV and 2010 V differ by rounding: a sine between 0 V and the double of it is no negative
  * voltage, neither when it is checked nor just before the wire. 1 mV is. */
-static void test_rounding_is_no_voltage(void **state)
+TEST(test_rounding_is_no_voltage)
 {
-  (void)state;
   static const char text[] =
       "dea-protocol: 1\n"
       "amplifier: {gain: 1000, max_voltage: 10 kV, min_voltage: 0 V}\n"
@@ -363,9 +356,8 @@ static void test_rounding_is_no_voltage(void **state)
   }
 }
 
-static void test_allowed_voltage(void **state)
+TEST(test_allowed_voltage)
 {
-  (void)state;
   double stretch, voltage_kV = 0;
   assert_int_equal(check(HEAD_WITHOUT_FIELD CHANNELS "waveform: {kind: constant, voltage: 6 kV}\n"),
                    DEA_E_INTERLOCK);
@@ -380,9 +372,8 @@ static void test_allowed_voltage(void **state)
 }
 
 /* A soft film without fibres that pulls in before the asked voltage. */
-static void test_pull_in(void **state)
+TEST(test_pull_in)
 {
-  (void)state;
   static const char soft[] =
       "dea: 1\nfilm: {material: soft, thickness: 100 um}\npre_stretch: 1.1\n"
       "frame: {inner_diameter: 30 mm}\nelectrodes: {diameter: 6 mm stretched}\n"
@@ -410,9 +401,8 @@ static void test_pull_in(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-static void test_warnings(void **state)
+TEST(test_warnings)
 {
-  (void)state;
   static const struct refusal warnings[] = {
       {"dea-protocol: 1\namplifier: {gain: 1000, max_voltage: 10 kV}\n"
        "waveform: {kind: constant, voltage: 1 kV}\n",
@@ -486,9 +476,8 @@ static dea_status check_in_folder(struct dea_context *context)
 }
 
 /* An input that shows voltage_error above what is asked is fine. */
-static void test_input_that_shows_more(void **state)
+TEST(test_input_that_shows_more)
 {
-  (void)state;
   assert_int_equal(
       check(PROTOCOL_HEAD
             "channels:\n"
@@ -499,9 +488,8 @@ static void test_input_that_shows_more(void **state)
 }
 
 /* 2 pi f C V of a sine, on both sides of 60 % and of 90 % of the amplifier's current. */
-static void test_current_that_charging_takes(void **state)
+TEST(test_current_that_charging_takes)
 {
-  (void)state;
   static const struct {
     double share;
     enum dea_severity severity;
@@ -525,9 +513,8 @@ static void test_current_that_charging_takes(void **state)
   }
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   check(HEAD_WITHOUT_FIELD CHANNELS "waveform: {kind: constant, voltage: 6 kV}\n");
   assert_true(failing_ends(check_in_folder, DEA_E_INTERLOCK) > 10); // there was something to fail
 }
@@ -546,9 +533,8 @@ static dea_status export_in_folder(struct dea_context *context)
   return status;
 }
 
-static void test_export_memory(void **state)
+TEST(test_export_memory)
 {
-  (void)state;
   dea_protocol_destroy(ctx, good_protocol(ctx, PROTOCOL_HEAD CHANNELS
                                           "waveform: {kind: constant, voltage: 1 kV, "
                                           "duration: 20 ms}\n"));
@@ -556,23 +542,4 @@ static void test_export_memory(void **state)
   assert_true(there("export/README.txt") && there("export/play_matlab.m"));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_first_example_is_inside_the_margin),
-      cmocka_unit_test(test_example_passes),
-      cmocka_unit_test(test_refusals),
-      cmocka_unit_test(test_rounding_is_no_voltage),
-      cmocka_unit_test(test_allowed_voltage),
-      cmocka_unit_test(test_pull_in),
-      cmocka_unit_test(test_interlocks_cannot_be_switched_off),
-      cmocka_unit_test(test_interlocks_at_their_bounds),
-      cmocka_unit_test(test_specimen),
-      cmocka_unit_test(test_warnings),
-      cmocka_unit_test(test_input_that_shows_more),
-      cmocka_unit_test(test_current_that_charging_takes),
-      cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_export_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

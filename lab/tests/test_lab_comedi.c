@@ -18,9 +18,8 @@ static dea_status begin(struct daq_bench *b)
   return emulator_open(ctx, &b->protocol, b->text, &b->instrument);
 }
 
-static void test_plays_and_measures(void **state)
+TEST(test_plays_and_measures)
 {
-  (void)state;
   static struct daq_bench b;
   daq_bench_begin(&b, library);
   assert_int_equal(begin(&b), DEA_OK);
@@ -46,9 +45,8 @@ static void test_plays_and_measures(void **state)
   daq_bench_end(ctx, &b);
 }
 
-static void test_starts_with_first_sample(void **state)
+TEST(test_starts_with_first_sample)
 {
-  (void)state;
   static struct daq_bench b;
   static const double volts[300] = {1, -10, 10};
   daq_bench_begin(&b, library);
@@ -65,9 +63,8 @@ static void test_starts_with_first_sample(void **state)
 }
 
 /* By its calibration a board has no number for the ends of its range: what is nearest is played. */
-static void test_calibration_beyond_the_numbers(void **state)
+TEST(test_calibration_beyond_the_numbers)
 {
-  (void)state;
   static const double volts[300] = {1, -10, 10};
   for (double offset = -3; offset <= 3; offset += 6) {
     static struct daq_bench b;
@@ -85,9 +82,8 @@ static void test_calibration_beyond_the_numbers(void **state)
 }
 
 /* A calibration that cannot be right is refused before anything is played by it. */
-static void test_calibration_that_cannot_be(void **state)
+TEST(test_calibration_that_cannot_be)
 {
-  (void)state;
   static const double offsets[] = {NAN, INFINITY, -20000, 20000};
   for (size_t i = 0; i < sizeof offsets / sizeof offsets[0]; i++) {
     static struct daq_bench b;
@@ -99,9 +95,8 @@ static void test_calibration_that_cannot_be(void **state)
   }
 }
 
-static void test_runs_dry(void **state)
+TEST(test_runs_dry)
 {
-  (void)state;
   static struct daq_bench b;
   double volts[100] = {0};
   daq_bench_begin(&b, library);
@@ -118,9 +113,8 @@ static void test_runs_dry(void **state)
   assert_close(b.fake->level_V, 0, 0, step_V);
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   static const struct {
     const char *function, *message;
   } cases[] = {
@@ -159,9 +153,8 @@ static void test_errors(void **state)
   }
 }
 
-static void test_what_it_has_not(void **state)
+TEST(test_what_it_has_not)
 {
-  (void)state;
   static struct daq_bench b;
   daq_bench_begin(&b, library);
   b.fake->rate_factor = 1.0001;
@@ -194,23 +187,9 @@ static void test_what_it_has_not(void **state)
   daq_bench_end(ctx, &b);
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   daq_bench_check_memory("comedi", library);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays_and_measures),
-      cmocka_unit_test(test_starts_with_first_sample),
-      cmocka_unit_test(test_calibration_beyond_the_numbers),
-      cmocka_unit_test(test_calibration_that_cannot_be),
-      cmocka_unit_test(test_runs_dry),
-      cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_what_it_has_not),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

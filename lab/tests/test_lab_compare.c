@@ -40,9 +40,8 @@ static const json_t *find(const json_t *root, const char *list, const char *a, c
 
 // Tests -------------------------------------------------------------------------------------------
 
-static void test_misfits_against_the_voltage(void **state)
+TEST(test_misfits_against_the_voltage)
 {
-  (void)state;
   assert_int_equal(command_run("compare run red --json"), 0);
   json_t *root = printed();
   const json_t *lumped = find(root, "comparisons", "lumped", "");
@@ -69,9 +68,8 @@ static void test_misfits_against_the_voltage(void **state)
   json_decref(root);
 }
 
-static void test_profiles_within_the_film(void **state)
+TEST(test_profiles_within_the_film)
 {
-  (void)state;
   assert_int_equal(command_run("compare run red --json"), 0);
   json_t *root = printed();
   const json_t *along = find(root, "profiles", "3d", "along a fibre");
@@ -89,9 +87,8 @@ static void test_profiles_within_the_film(void **state)
   json_decref(root);
 }
 
-static void test_history_on_one_clock(void **state)
+TEST(test_history_on_one_clock)
 {
-  (void)state;
   assert_int_equal(command_run("compare run red --json"), 0);
   json_t *root = printed();
   const json_t *h = find(root, "histories", "lumped", "");
@@ -127,9 +124,8 @@ static struct dea_voltage_track staircase(double start_s, const double *high, in
   return (struct dea_voltage_track){time, voltage, n};
 }
 
-static void test_clock_looks_for_pulses_of_its_height(void **state)
+TEST(test_clock_looks_for_pulses_of_its_height)
 {
-  (void)state;
   enum { ROOM = 3000 };
   static double time[2][ROOM], voltage[2][ROOM];
   static const double all[] = {1000, 1000, 2000, 2000, -4000, -4000, 8000, 8000};
@@ -164,9 +160,8 @@ static void test_clock_looks_for_pulses_of_its_height(void **state)
   assert_int_equal(shift.edges, 0);
 }
 
-static void test_a_run_as_the_reference_of_several(void **state)
+TEST(test_a_run_as_the_reference_of_several)
 {
-  (void)state;
   assert_int_equal(command_run("compare run run2 run --tolerance 0%"), 0);
   assert_contains(command_out, "run2, axisymmetric");
   assert_int_equal(command_run("compare run run2 --model 3d:lumped --model lumped --json "
@@ -184,9 +179,8 @@ static void test_a_run_as_the_reference_of_several(void **state)
   assert_contains(command_err, "run has no curve of model 'alpha'");
 }
 
-static void test_tolerance_and_quantity(void **state)
+TEST(test_tolerance_and_quantity)
 {
-  (void)state;
   assert_int_equal(command_run("compare run red --model lumped --tolerance 8%"), 0); // 30 of 380
   assert_int_equal(command_run("compare run red --model lumped --tolerance 7%"), 1);
   assert_contains(command_err, "centre_z_m of lumped differs by 7.89 % of its range");
@@ -201,9 +195,8 @@ static void test_tolerance_and_quantity(void **state)
   assert_int_equal(command_run("compare run"), 2);
 }
 
-static void test_opposite_signs_are_said(void **state)
+TEST(test_opposite_signs_are_said)
 {
-  (void)state;
   command_folder_make("below");
   command_write("below/measurement.csv", "V (kV),z centre (um)\n2,-190\n4,-420\n");
   assert_int_equal(command_run("compare run below --json"), 0);
@@ -217,16 +210,4 @@ static void test_opposite_signs_are_said(void **state)
   json_decref(root);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_misfits_against_the_voltage),
-      cmocka_unit_test(test_profiles_within_the_film),
-      cmocka_unit_test(test_history_on_one_clock),
-      cmocka_unit_test(test_clock_looks_for_pulses_of_its_height),
-      cmocka_unit_test(test_a_run_as_the_reference_of_several),
-      cmocka_unit_test(test_tolerance_and_quantity),
-      cmocka_unit_test(test_opposite_signs_are_said),
-  };
-  return cmocka_run_group_tests(tests, compare_set_up, command_tear_down);
-}
+TESTS(compare_set_up, command_tear_down)

@@ -6,9 +6,8 @@
 #include "failing_allocator.h"
 #include "measured_run.h"
 
-static void test_all_curves_are_in_one_figure(void **state)
+TEST(test_all_curves_are_in_one_figure)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   assert_int_equal(command_run("compare run run2 red --model lumped --model 3d -o fig "
                                "--format svg,png"),
@@ -42,9 +41,8 @@ static void test_all_curves_are_in_one_figure(void **state)
 }
 
 /* Of a pair the model is drawn whole, also where nothing was measured. */
-static void test_pair_shows_the_whole_model(void **state)
+TEST(test_pair_shows_the_whole_model)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   double last_kV = 0;
   command_write("few.csv", "V (kV),z centre (um),z centre std (um)\n2,190,3\n4,420,5\n");
@@ -73,9 +71,8 @@ static void is_bad(const char *name, const char *text, const char *message)
   assert_contains(command_err, message);
 }
 
-static void test_bad_files_with_their_places(void **state)
+TEST(test_bad_files_with_their_places)
 {
-  (void)state;
   command_folder_make("bad");
   is_bad("measurement.csv", "V (kV),z centre (um)\n1,x\n",
          "measurement.csv:2:3: error: 'x' is not");
@@ -109,9 +106,8 @@ static void test_bad_files_with_their_places(void **state)
   assert_int_equal(command_run("compare run empty"), 5);
 }
 
-static void test_many_errors_are_cut(void **state)
+TEST(test_many_errors_are_cut)
 {
-  (void)state;
   FILE *file = open_table("bad/history.csv");
   fputs("time (s),V (kV)\n", file);
   for (int i = 0; i < 1000; i++) {
@@ -176,9 +172,8 @@ static void compare_monitors_once(struct dea_context *ctx)
   dea_arena_free(&memory);
 }
 
-static void test_with_failing_allocations(void **state)
+TEST(test_with_failing_allocations)
 {
-  (void)state;
   command_folder_make("small");
   command_write("small/measurement.csv", points);
   command_write("small/profiles.csv", "V (kV),x (mm),z (um)\n2,0,20\n2,1,19\n4,0,40\n");
@@ -188,9 +183,8 @@ static void test_with_failing_allocations(void **state)
 }
 
 /* A film driven below 0 is compared as one driven above it; noise about 0 is left as it is. */
-static void test_negative_voltages(void **state)
+TEST(test_negative_voltages)
 {
-  (void)state;
   static char above[COMMAND_TEXT_MAX];
   command_folder_make("above");
   command_folder_make("below");
@@ -224,15 +218,4 @@ static void test_negative_voltages(void **state)
   assert_null(strstr(command_err, "below 0"));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_all_curves_are_in_one_figure),
-      cmocka_unit_test(test_pair_shows_the_whole_model),
-      cmocka_unit_test(test_bad_files_with_their_places),
-      cmocka_unit_test(test_many_errors_are_cut),
-      cmocka_unit_test(test_negative_voltages),
-      cmocka_unit_test(test_with_failing_allocations),
-  };
-  return cmocka_run_group_tests(tests, compare_set_up, command_tear_down);
-}
+TESTS(compare_set_up, command_tear_down)

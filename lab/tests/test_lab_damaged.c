@@ -51,9 +51,8 @@ static bool read_damaged(const char *name)
   return true;
 }
 
-static void test_cut_files(void **state)
+TEST(test_cut_files)
 {
-  (void)state;
   size_t length;
   make("uncut.h5", false, 40, NULL);
   unsigned char *bytes = load("uncut.h5", &length);
@@ -65,9 +64,8 @@ static void test_cut_files(void **state)
 }
 
 /* A file of a killed program that was cut too: values of before the cut, or nothing. */
-static void test_cut_files_of_killed_programs(void **state)
+TEST(test_cut_files_of_killed_programs)
 {
-  (void)state;
   size_t length, read = 0;
   struct dea_recorder *recorder;
   assert_int_equal(sample_create(ctx, in_folder("open.h5"), false, 0, &recorder), DEA_OK);
@@ -89,9 +87,8 @@ static void test_cut_files_of_killed_programs(void **state)
   assert_true(read > 2);
 }
 
-static void test_flipped_bytes(void **state)
+TEST(test_flipped_bytes)
 {
-  (void)state;
   size_t length, refused = 0;
   make("right.h5", false, 2, NULL);
   unsigned char *bytes = load("right.h5", &length);
@@ -109,9 +106,8 @@ static void test_flipped_bytes(void **state)
   assert_true(refused > 20);
 }
 
-static void test_other_files_are_refused(void **state)
+TEST(test_other_files_are_refused)
 {
-  (void)state;
   save("text.h5", (const unsigned char *)"not at all", 10);
   assert_false(read_damaged("text.h5"));
   assert_false(read_damaged("nowhere.h5"));
@@ -202,9 +198,8 @@ static void wild_cycle(hid_t file)
   H5Dclose(cycles);
 }
 
-static void test_hostile_contents_are_refused(void **state)
+TEST(test_hostile_contents_are_refused)
 {
-  (void)state;
   static const change_fn changes[] = {no_state,
                                       no_time,
                                       state_of_numbers,
@@ -230,9 +225,8 @@ static void test_hostile_contents_are_refused(void **state)
 }
 
 /* Chunks that the index does not have: the samples before them stay. */
-static void test_missing_chunks_end_a_channel(void **state)
+TEST(test_missing_chunks_end_a_channel)
 {
-  (void)state;
   make("sparse.h5", true, 2, NULL);
   hid_t file = H5Fopen(in_folder("sparse.h5"), H5F_ACC_RDWR, H5P_DEFAULT);
   const hsize_t more = 16384 + 10;
@@ -272,18 +266,16 @@ static dea_status write_short(struct dea_context *context)
   return status != DEA_OK ? status : finished;
 }
 
-static void test_out_of_memory(void **state)
+TEST(test_out_of_memory)
 {
-  (void)state;
   make("whole.h5", false, 2, NULL);
   assert_true(failing_ends(read_whole, DEA_OK) > 10);
   assert_true(failing_ends(write_short, DEA_OK) > 5);
 }
 
 /* A disk that is full: every call says so, nothing hangs, and what was flushed is readable. */
-static void test_full_disk(void **state)
+TEST(test_full_disk)
 {
-  (void)state;
   struct rlimit before, small;
   struct dea_recorder *recorder;
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -322,9 +314,8 @@ static void test_full_disk(void **state)
 
 /* Another program cuts off the file that is being written: that is an error, not a wait, and HDF5
  * is left as it should be. */
-static void test_cut_while_it_is_written(void **state)
+TEST(test_cut_while_it_is_written)
 {
-  (void)state;
   static const long sizes[] = {0, 3000, 5000, 20000, 60000};
   for (size_t k = 0; k < 2 * sizeof sizes / sizeof sizes[0]; k++) {
     struct dea_recorder *recorder;
@@ -384,9 +375,8 @@ static void virtual_data(hid_t file)
 }
 
 /* What lies in another file, here a pipe that nobody writes to, is not followed. */
-static void test_other_files_are_not_followed(void **state)
+TEST(test_other_files_are_not_followed)
 {
-  (void)state;
   static const change_fn changes[] = {link_outside, link_outside_of_any_name, data_outside,
                                       virtual_data};
   assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
@@ -401,19 +391,4 @@ static void test_other_files_are_not_followed(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(test_cut_files, nothing_open),
-      cmocka_unit_test_teardown(test_cut_files_of_killed_programs, nothing_open),
-      cmocka_unit_test_teardown(test_flipped_bytes, nothing_open),
-      cmocka_unit_test_teardown(test_other_files_are_refused, nothing_open),
-      cmocka_unit_test_teardown(test_hostile_contents_are_refused, nothing_open),
-      cmocka_unit_test_teardown(test_missing_chunks_end_a_channel, nothing_open),
-      cmocka_unit_test_teardown(test_out_of_memory, nothing_open),
-      cmocka_unit_test_teardown(test_full_disk, nothing_open),
-      cmocka_unit_test_teardown(test_cut_while_it_is_written, nothing_open),
-      cmocka_unit_test_teardown(test_other_files_are_not_followed, nothing_open),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_EACH(set_up, tear_down, NULL, nothing_open)

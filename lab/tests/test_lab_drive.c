@@ -23,9 +23,8 @@ int clock_gettime(clockid_t clock, struct timespec *out)
 
 // What is played ---------------------------------------------------------------------------------
 
-static void test_plays_and_records_the_protocol(void **state)
+TEST(test_plays_and_records_the_protocol)
 {
-  (void)state;
   struct trial t;
   trial_open(&t, SQUARE CHANNELS, &fake_good);
   trial_play(&t, true);
@@ -55,9 +54,8 @@ static void test_plays_and_records_the_protocol(void **state)
   trial_close(&t);
 }
 
-static void test_instruments_of_any_pace(void **state)
+TEST(test_instruments_of_any_pace)
 {
-  (void)state;
   static const size_t paces[] = {1, 7, 64, 5000};
   for (size_t k = 0; k < 4; k++) {
     struct trial t;
@@ -73,9 +71,8 @@ static void test_instruments_of_any_pace(void **state)
   }
 }
 
-static void test_without_channels_the_clock_paces(void **state)
+TEST(test_without_channels_the_clock_paces)
 {
-  (void)state;
   struct trial t;
   struct fake_script script = fake_good;
   script.inputs = false;
@@ -90,9 +87,8 @@ static void test_without_channels_the_clock_paces(void **state)
 }
 
 /* A DAQ without channels that takes its time to start plays to its end before it is stopped. */
-static void test_slow_start_without_channels(void **state)
+TEST(test_slow_start_without_channels)
 {
-  (void)state;
   struct trial t;
   struct fake_script script = fake_good;
   script.inputs = false;
@@ -105,9 +101,8 @@ static void test_slow_start_without_channels(void **state)
 }
 
 /* The clock of a sensor begins with that of a DAQ, however long that takes to start. */
-static void test_slow_start_and_a_sensor(void **state)
+TEST(test_slow_start_and_a_sensor)
 {
-  (void)state;
   struct trial t;
   struct fake_script script = fake_good;
   script.start_s = 0.2;
@@ -145,9 +140,8 @@ static void expect_ramp(const struct fake_script *script, bool sensor, long fail
   trial_close(&t);
 }
 
-static void test_signals(void **state)
+TEST(test_signals)
 {
-  (void)state;
   for (long put = 0; put < 22; put++) {
     struct fake_script script = fake_good;
     script.interrupt_put = put;
@@ -157,9 +151,8 @@ static void test_signals(void **state)
 }
 
 /* Nothing is given to an output that has come to the end of the sequence and may have run dry. */
-static void test_faults_at_the_end(void **state)
+TEST(test_faults_at_the_end)
 {
-  (void)state;
   for (int trips = 0; trips < 2; trips++) {
     struct trial t;
     struct fake_script script = fake_good;
@@ -175,9 +168,8 @@ static void test_faults_at_the_end(void **state)
   }
 }
 
-static void test_current_trips(void **state)
+TEST(test_current_trips)
 {
-  (void)state;
   for (long from = 0; from < 700; from += 61) {
     struct fake_script script = fake_good;
     script.current_from = from;
@@ -186,9 +178,8 @@ static void test_current_trips(void **state)
 }
 
 /* What pulls the voltage down ends with it: a current that goes on at 0 V explains nothing. */
-static void test_film_that_breaks_down(void **state)
+TEST(test_film_that_breaks_down)
 {
-  (void)state;
   for (int goes_on = 0; goes_on < 2; goes_on++) {
     struct trial t;
     struct fake_script script = fake_good;
@@ -207,9 +198,8 @@ static void test_film_that_breaks_down(void **state)
   }
 }
 
-static void test_wrong_voltage_trips(void **state)
+TEST(test_wrong_voltage_trips)
 {
-  (void)state;
   for (long from = 0; from < 700; from += 53) {
     struct fake_script script = fake_good;
     script.voltage_from = from;
@@ -217,9 +207,8 @@ static void test_wrong_voltage_trips(void **state)
   }
 }
 
-static void test_lost_samples_do_not_end_it_but_silence_does(void **state)
+TEST(test_lost_samples_do_not_end_it_but_silence_does)
 {
-  (void)state;
   struct trial t;
   struct fake_script script = fake_good;
   script.missing_from = 130;
@@ -234,17 +223,15 @@ static void test_lost_samples_do_not_end_it_but_silence_does(void **state)
   expect_ramp(&script, true, -1, DEA_E_INTERLOCK, "has given no value");
 }
 
-static void test_lost_sensor(void **state)
+TEST(test_lost_sensor)
 {
-  (void)state;
   for (long frame = 0; frame < 36; frame += 7) {
     expect_ramp(&fake_good, true, frame, DEA_E_INSTRUMENT, "the fake sensor has failed");
   }
 }
 
-static void test_inputs_ahead_of_the_output(void **state)
+TEST(test_inputs_ahead_of_the_output)
 {
-  (void)state;
   struct fake_script script = fake_good;
   struct trial t;
   script.ahead_put = 9;
@@ -258,9 +245,8 @@ static void test_inputs_ahead_of_the_output(void **state)
 }
 
 /* The playing instrument itself fails: nothing can be put any more, it is stopped at once. */
-static void test_failed_daq_is_stopped(void **state)
+TEST(test_failed_daq_is_stopped)
 {
-  (void)state;
   for (long k = 0; k < 15; k++) {
     for (int put = 0; put < 2; put++) {
       struct trial t;
@@ -289,9 +275,8 @@ static void test_failed_daq_is_stopped(void **state)
   trial_close(&t);
 }
 
-static void test_failed_start(void **state)
+TEST(test_failed_start)
 {
-  (void)state;
   for (int of_sensor = 0; of_sensor < 2; of_sensor++) {
     struct trial t;
     struct fake_script script = fake_good;
@@ -308,9 +293,8 @@ static void test_failed_start(void **state)
 }
 
 /* Inputs of one instrument, output of another: without the inputs the ramp goes on. */
-static void test_reader_apart_from_the_player(void **state)
+TEST(test_reader_apart_from_the_player)
 {
-  (void)state;
   for (long fail = -1; fail < 30; fail += 10) {
     struct trial t;
     struct fake_script script = fake_good;
@@ -342,9 +326,8 @@ static void test_reader_apart_from_the_player(void **state)
   }
 }
 
-static void test_full_disk_ramps_down(void **state)
+TEST(test_full_disk_ramps_down)
 {
-  (void)state;
   struct rlimit before, small;
   struct trial t;
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -371,9 +354,8 @@ static void fill_the_disk(void)
 }
 
 /* The disk is full when the ramp begins: it goes on to 0 V, and what came first is told first. */
-static void test_disk_that_fills_in_the_ramp(void **state)
+TEST(test_disk_that_fills_in_the_ramp)
 {
-  (void)state;
   struct rlimit before;
   struct fake_script script = fake_good;
   struct trial t;
@@ -409,9 +391,8 @@ static void play_without_memory(struct dea_context *context)
   check_ramp(t->daq);
 }
 
-static void test_out_of_memory(void **state)
+TEST(test_out_of_memory)
 {
-  (void)state;
   struct trial t;
   trial_open(&t, SQUARE CHANNELS, &fake_good);
   memory_trial = &t;
@@ -419,9 +400,8 @@ static void test_out_of_memory(void **state)
   trial_close(&t);
 }
 
-static void test_frames_without_time_are_counted(void **state)
+TEST(test_frames_without_time_are_counted)
 {
-  (void)state;
   struct trial t;
   trial_open(&t, SQUARE CHANNELS, &fake_good);
   t.sensor.wrong_frame = 8;
@@ -433,9 +413,8 @@ static void test_frames_without_time_are_counted(void **state)
 
 /* What is noticed while it plays stands in the recording, and in its copy; a leakage current that
  * rises ends it, ten times below trip_current. */
-static void test_leak_that_rises(void **state)
+TEST(test_leak_that_rises)
 {
-  (void)state;
   static const char text[] =
       "dea-protocol: 1\n" PROTOCOL_AMPLIFIER
       "safety: {ramp: 20 kV/s, trip_current: 2 mA, voltage_error: 300 V, leak_time: 0.5 s}\n"
@@ -474,9 +453,8 @@ static void test_leak_that_rises(void **state)
 
 /* A current that an instrument reads has no value any more: said after 10 s, the ramp after 60 s.
  */
-static void test_reading_without_values(void **state)
+TEST(test_reading_without_values)
 {
-  (void)state;
   static const double values[] = {NAN, 1e-6};
   for (int k = 0; k < 2; k++) {
     struct trial t;
@@ -503,9 +481,8 @@ static void test_reading_without_values(void **state)
   }
 }
 
-static void test_benches_that_cannot_play(void **state)
+TEST(test_benches_that_cannot_play)
 {
-  (void)state;
   struct trial t;
   struct fake_daq *second = malloc(sizeof *second);
   assert_non_null(second);
@@ -535,32 +512,4 @@ static void test_benches_that_cannot_play(void **state)
   free(second);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays_and_records_the_protocol),
-      cmocka_unit_test(test_instruments_of_any_pace),
-      cmocka_unit_test(test_without_channels_the_clock_paces),
-      cmocka_unit_test(test_slow_start_without_channels),
-      cmocka_unit_test(test_slow_start_and_a_sensor),
-      cmocka_unit_test(test_signals),
-      cmocka_unit_test(test_faults_at_the_end),
-      cmocka_unit_test(test_current_trips),
-      cmocka_unit_test(test_film_that_breaks_down),
-      cmocka_unit_test(test_wrong_voltage_trips),
-      cmocka_unit_test(test_lost_samples_do_not_end_it_but_silence_does),
-      cmocka_unit_test(test_lost_sensor),
-      cmocka_unit_test(test_inputs_ahead_of_the_output),
-      cmocka_unit_test(test_failed_daq_is_stopped),
-      cmocka_unit_test(test_failed_start),
-      cmocka_unit_test(test_reader_apart_from_the_player),
-      cmocka_unit_test(test_full_disk_ramps_down),
-      cmocka_unit_test(test_disk_that_fills_in_the_ramp),
-      cmocka_unit_test(test_out_of_memory),
-      cmocka_unit_test(test_frames_without_time_are_counted),
-      cmocka_unit_test(test_leak_that_rises),
-      cmocka_unit_test(test_reading_without_values),
-      cmocka_unit_test(test_benches_that_cannot_play),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

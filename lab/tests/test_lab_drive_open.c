@@ -23,9 +23,8 @@ static void serve(struct emulator *e, int connection)
   }
 }
 
-static void test_stops_what_was_opened(void **state)
+TEST(test_stops_what_was_opened)
 {
-  (void)state;
   struct emulator supply = {0};
   struct dea_drive_report report;
   const struct dea_drive_options options = {.file = in_folder("none.h5")};
@@ -51,8 +50,4 @@ static void test_stops_what_was_opened(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_stops_what_was_opened)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -10,9 +10,8 @@
 #include <math.h>
 
 /* A rate and a frequency that share no factor: a sample at or after each corner has its value. */
-static void test_corners_fall_on_samples(void **state)
+TEST(test_corners_fall_on_samples)
 {
-  (void)state;
   static const double rates[] = {1000, 999, 333.3, 12345.678};
   for (size_t k = 0; k < 4; k++) {
     struct dea_protocol *p = good_protocol(
@@ -48,9 +47,8 @@ static void test_corners_fall_on_samples(void **state)
 
 /* What the scripts of an export play is what `dea drive` plays, sample by sample: with corners that
  * fall on samples but for rounding, on either side of them. */
-static void test_export_plays_the_same(void **state)
+TEST(test_export_plays_the_same)
 {
-  (void)state;
   static const struct {
     double rate_Hz;
     const char *wave;
@@ -101,9 +99,8 @@ static void test_export_plays_the_same(void **state)
 
 /* A slow ramp is one of the longest time that the protocol allows: 2 kV by 50 V/s in 1 s, not 40.
  */
-static void test_longest_ramp(void **state)
+TEST(test_longest_ramp)
 {
-  (void)state;
   struct dea_drive_output output;
   double asked_V[3000];
   struct dea_protocol *p =
@@ -122,9 +119,8 @@ static void test_longest_ramp(void **state)
 }
 
 /* From any sample on the ramp goes down by 5 V a sample, from either sign. */
-static void test_ramp_from_any_sample(void **state)
+TEST(test_ramp_from_any_sample)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(ctx, WATCHED);
   for (size_t from = 0; from <= 2000; from += 125) {
     struct dea_drive_output output;
@@ -165,9 +161,8 @@ static long watch(const struct dea_protocol *p, double settle_s, long late, doub
   return -1;
 }
 
-static void test_what_ends_a_measurement(void **state)
+TEST(test_what_ends_a_measurement)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(ctx, WATCHED);
   // the amplifier may be late by what it needs to settle, and not by much more
   assert_int_equal(watch(p, 0.02, 20, 0, 0, 0), -1);
@@ -219,9 +214,8 @@ static long watch_arcs(const struct dea_protocol *p, double capacitance_F, const
 }
 
 /* None of these is ever above the limit for trip_time, 5 ms. */
-static void test_arcs_that_come_and_go(void **state)
+TEST(test_arcs_that_come_and_go)
 {
-  (void)state;
   static const struct {
     struct arcs arcs;
     long latest; // sample at which it has ended
@@ -253,9 +247,8 @@ static void test_arcs_that_come_and_go(void **state)
 
 /* What a healthy film draws: a jump by 4 kV is 0.29 uC of 73.7 pF, which a sample may show as the
  * amplifier's 10 mA for all of its time; and what is below the limit. */
-static void test_charging_is_no_arc(void **state)
+TEST(test_charging_is_no_arc)
 {
-  (void)state;
   static const struct arcs healthy[] = {
       {0, 1, 0, 1000, 1, 10e-3},       // 0.5 Hz
       {0, 1, 0, 50, 1, 10e-3},         // 10 Hz
@@ -280,9 +273,8 @@ static void test_charging_is_no_arc(void **state)
 }
 
 /* The paper's cyclic protocol: a film whose charging is met by a sample in full at each jump. */
-static void test_examples_do_not_trip(void **state)
+TEST(test_examples_do_not_trip)
 {
-  (void)state;
   static const char *const files[] = {"cyclic", "force"};
   for (size_t f = 0; f < 2; f++) {
     char file[256], why[DEA_WHY_ENDED_SIZE] = "";
@@ -309,9 +301,8 @@ static void test_examples_do_not_trip(void **state)
 }
 
 /* More than the amplifier or the specimen may ever see ends it, whatever voltage_error allows. */
-static void test_voltage_above_the_cap(void **state)
+TEST(test_voltage_above_the_cap)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(ctx, WATCHED);
   char why[DEA_WHY_ENDED_SIZE];
   struct dea_drive_watch w;
@@ -330,9 +321,8 @@ static void test_voltage_above_the_cap(void **state)
 }
 
 /* Less than voltage_error, for 5 s: half of the time at 2 kV, half at rest. */
-static void test_read_back_that_is_off(void **state)
+TEST(test_read_back_that_is_off)
 {
-  (void)state;
   static const double shares[] = {0.93, 1.07, 0.96, 1.04};
   static struct dea_drive_watch w;
   struct dea_protocol *p = good_protocol(ctx, WATCHED);
@@ -357,9 +347,8 @@ static void test_read_back_that_is_off(void **state)
 /* A current that has ended it, and goes on, hides no voltage channel behind it: one that shows 0 V
  * while 2 kV are asked says nothing of the output, whichever of them the protocol names first. Nor
  * does the voltage hide the current. */
-static void test_no_channel_hides_another(void **state)
+TEST(test_no_channel_hides_another)
 {
-  (void)state;
   for (int voltage = 0; voltage < 2; voltage++) { // number of its channel
     struct dea_protocol *p = good_protocol(
         ctx, voltage == 0 ? WATCHED
@@ -391,9 +380,8 @@ static void test_no_channel_hides_another(void **state)
  * followed until then is believed at the end, and the current says why it ended. It is not believed
  * if it showed 0 V before, or also without that current, or more than was asked; nor if it never
  * was looked at away from 0 V. */
-static void test_film_that_pulls_down(void **state)
+TEST(test_film_that_pulls_down)
 {
-  (void)state;
   static const struct {
     double off_s, until_s, shows_V; // the channel shows that from .. on; the current ends then
     bool contradicted;
@@ -428,9 +416,8 @@ static void test_film_that_pulls_down(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-static void test_run_checks_first(void **state)
+TEST(test_run_checks_first)
 {
-  (void)state;
   struct dea_drive_report report;
   const struct dea_drive_options options = {.file = in_folder("none.h5")};
   struct dea_protocol *p =
@@ -445,16 +432,4 @@ static void test_run_checks_first(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_corners_fall_on_samples),  cmocka_unit_test(test_export_plays_the_same),
-      cmocka_unit_test(test_ramp_from_any_sample),     cmocka_unit_test(test_longest_ramp),
-      cmocka_unit_test(test_what_ends_a_measurement),  cmocka_unit_test(test_arcs_that_come_and_go),
-      cmocka_unit_test(test_charging_is_no_arc),       cmocka_unit_test(test_examples_do_not_trip),
-      cmocka_unit_test(test_voltage_above_the_cap),    cmocka_unit_test(test_read_back_that_is_off),
-      cmocka_unit_test(test_no_channel_hides_another), cmocka_unit_test(test_film_that_pulls_down),
-      cmocka_unit_test(test_run_checks_first),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

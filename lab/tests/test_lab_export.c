@@ -77,9 +77,8 @@ static size_t recorded(void)
   return lines - 1;
 }
 
-static void test_waveform(void **state)
+TEST(test_waveform)
 {
-  (void)state;
   make_files();
   command_read("ex/waveform.csv", command_out);
   const char *at = command_out;
@@ -112,9 +111,8 @@ static void check_reading_back(void)
   assert_contains(command_out, "0 to 800 um"); // 0.05 x 4 V^2 x 1 mm/V
 }
 
-static void test_python(void **state)
+TEST(test_python)
 {
-  (void)state;
   make_files();
   assert_int_equal(run_script("", PYTHON), 0);
   assert_contains(log_text, "output Dev7/ao0 -10 10\ninput Dev7/ai0 -10 10\ninput Dev7/ai1");
@@ -171,9 +169,8 @@ static void check_interlocks(const char *program)
   assert_null(strstr(log_text, "queued"));
 }
 
-static void test_python_ends_at_zero(void **state)
+TEST(test_python_ends_at_zero)
 {
-  (void)state;
   static const struct {
     const char *environment, *part;
   } ways[] = {
@@ -201,9 +198,8 @@ static bool no_octave(void)
   return system("octave-cli --version >/dev/null 2>&1") != 0;
 }
 
-static void test_matlab(void **state)
+TEST(test_matlab)
 {
-  (void)state;
   if (no_octave()) {
     skip();
   }
@@ -229,9 +225,8 @@ static void test_matlab(void **state)
   assert_contains(command_out, "0 to 800 um");
 }
 
-static void test_matlab_ends_at_zero(void **state)
+TEST(test_matlab_ends_at_zero)
 {
-  (void)state;
   static const struct {
     const char *environment, *part;
   } ways[] = {
@@ -252,9 +247,8 @@ static void test_matlab_ends_at_zero(void **state)
 }
 
 /* What a protocol calls things stays a text within quotes, in both languages. */
-static void test_quotes_in_names(void **state)
+TEST(test_quotes_in_names)
 {
-  (void)state;
   command_write("quotes.yaml",
                 "dea-protocol: 1\n"
                 "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: 1, frequency: 1 Hz}\n"
@@ -286,9 +280,8 @@ static void test_quotes_in_names(void **state)
 
 /* Channels that the files could not tell apart are numbered: by signs that are left out, by letters
  * that are none of a variable's, by their unit alone, by what the files have beside them. */
-static void test_names_stay_apart(void **state)
+TEST(test_names_stay_apart)
 {
-  (void)state;
   static const char head[] =
       "dea-protocol: 1\n"
       "waveform: {kind: triangle, low: 0 kV, high: 2 kV, cycles: 1, frequency: 1 Hz}\n"
@@ -336,16 +329,4 @@ static void test_names_stay_apart(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_waveform),
-      cmocka_unit_test(test_python),
-      cmocka_unit_test(test_python_ends_at_zero),
-      cmocka_unit_test(test_matlab),
-      cmocka_unit_test(test_matlab_ends_at_zero),
-      cmocka_unit_test(test_quotes_in_names),
-      cmocka_unit_test(test_names_stay_apart),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

@@ -310,9 +310,8 @@ static void write_table(const char *path)
 static unsigned first_seed = 1;
 static const char *table, *meter_table;
 
-static void test_faults_at_random_moments(void **state)
+TEST(test_faults_at_random_moments)
 {
-  (void)state;
   pthread_t threads[TOGETHER];
   size_t wrong = 0;
   runs = calloc(run_count, sizeof *runs);
@@ -615,9 +614,8 @@ static void write_meter_table(const char *path)
 
 /* Whatever meter and output do: "at 0 V" is said of an output that is there, and one that does
  * something else than what was asked is noticed. */
-static void test_meters_that_lie(void **state)
+TEST(test_meters_that_lie)
 {
-  (void)state;
   pthread_t threads[METERS_TOGETHER];
   size_t wrong = 0;
   meters = calloc(meter_count, sizeof *meters);
@@ -656,8 +654,6 @@ static void test_meters_that_lie(void **state)
 
 int main(int count, char **arguments)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_faults_at_random_moments),
-                                     cmocka_unit_test(test_meters_that_lie)};
   const struct CMUnitTest lies[] = {cmocka_unit_test(test_meters_that_lie)};
   prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
   bool only_meters = count > 1 && strcmp(arguments[1], "meters") == 0;
@@ -668,5 +664,5 @@ int main(int count, char **arguments)
   first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
   *(only_meters ? &meter_table : &table) = count > 3 ? arguments[3] : NULL;
   return only_meters ? cmocka_run_group_tests(lies, command_set_up, supply_tear_down)
-                     : cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
+                     : run_all(command_set_up, supply_tear_down);
 }

@@ -157,9 +157,8 @@ static bool is_said(const char *text)
 }
 
 /* 1.8e8 V/m over a margin of 1.2 are 1500 V. */
-static void test_check(void **state)
+TEST(test_check)
 {
-  (void)state;
   static const struct {
     double high_V;
     dea_status status;
@@ -188,9 +187,8 @@ static void test_check(void **state)
 }
 
 /* The amplifier climbs by 5 V a sample: C dV/dt and what leaks meanwhile, Q/tau. */
-static void test_bench(void **state)
+TEST(test_bench)
 {
-  (void)state;
   const struct dea_sim_settings settings = {.model = "capacitor",
                                             .breakdown_V = (double)NAN,
                                             .breakdown_s = (double)NAN,
@@ -220,9 +218,8 @@ static void test_bench(void **state)
 }
 
 /* Beyond pull-in it breaks down, and is a short circuit from then on. */
-static void test_breakdown(void **state)
+TEST(test_breakdown)
 {
-  (void)state;
   const struct dea_sim_settings settings = {.model = "capacitor",
                                             .breakdown_V = (double)NAN,
                                             .breakdown_s = (double)NAN,
@@ -240,12 +237,4 @@ static void test_breakdown(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_check),
-      cmocka_unit_test(test_bench),
-      cmocka_unit_test(test_breakdown),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

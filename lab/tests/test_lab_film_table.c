@@ -72,9 +72,8 @@ static struct dea_bench_point go(struct dea_bench_model *model, double length_s,
 
 /* Without a resistance the hub is where a sweep has it, also between the voltages of the table and
  * whatever the sign. */
-static void test_hub_of_a_sweep(void **state)
+TEST(test_hub_of_a_sweep)
 {
-  (void)state;
   static const char *const sweep[] = {"sweep"};
   struct dea_design *design;
   struct dea_device *device;
@@ -101,9 +100,8 @@ static void test_hub_of_a_sweep(void **state)
 }
 
 /* At small voltages the film does not move: it is charged as a capacitor is. */
-static void test_charge(void **state)
+TEST(test_charge)
 {
-  (void)state;
   const double R = 1e7, to_V = 10;
   struct dea_bench_model *model = open_at_rest(R, INFINITY);
   double error = 0, time_s = 0, V = 0;
@@ -126,9 +124,8 @@ static void test_charge(void **state)
   dea_film_of_design.close(ctx, model);
 }
 
-static void test_no_such_monitor(void **state)
+TEST(test_no_such_monitor)
 {
-  (void)state;
   struct dea_bench_model *model;
   assert_int_equal(dea_film_of_design.open(ctx, film, "lumped", "hub_zm", &model), DEA_E_DESIGN);
   assert_non_null(strstr(dea_context_message(ctx), "did you mean 'hub_z_m'?"));
@@ -138,9 +135,8 @@ static void test_no_such_monitor(void **state)
 }
 
 /* What the checks ask: the field that is allowed, and that the film has an equilibrium. */
-static void test_checks(void **state)
+TEST(test_checks)
 {
-  (void)state;
   struct dea_bench_model *model;
   struct dea_bench_point at;
   double pull_in_V;
@@ -158,13 +154,4 @@ static void test_checks(void **state)
   dea_film_of_design.close(ctx, model);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hub_of_a_sweep),
-      cmocka_unit_test(test_charge),
-      cmocka_unit_test(test_no_such_monitor),
-      cmocka_unit_test(test_checks),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

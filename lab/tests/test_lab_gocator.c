@@ -106,9 +106,8 @@ static void end(struct bench *b)
   b->sensor.status = 1;
 }
 
-static void test_frames(void **state)
+TEST(test_frames)
 {
-  (void)state;
   static struct bench b;
   static const size_t fragments[] = {0, 1, 7};
   b.sensor.status = 1;
@@ -144,9 +143,8 @@ static void test_frames(void **state)
   }
 }
 
-static void test_invalid_and_other_grid(void **state)
+TEST(test_invalid_and_other_grid)
 {
-  (void)state;
   static struct bench b;
   static const int16_t line[] = {0, 10, 20, -32768, 40, 50, 60, 70, 80, 90};
   memset(&b, 0, sizeof b);
@@ -181,9 +179,8 @@ static void test_invalid_and_other_grid(void **state)
   end(&b);
 }
 
-static void test_start_and_stop(void **state)
+TEST(test_start_and_stop)
 {
-  (void)state;
   static struct bench b;
   static const struct {
     int status;
@@ -215,9 +212,8 @@ static void test_start_and_stop(void **state)
   }
 }
 
-static void test_goes_silent(void **state)
+TEST(test_goes_silent)
 {
-  (void)state;
   static struct bench b;
   memset(&b, 0, sizeof b);
   b.sensor.status = 1; // not one frame
@@ -233,9 +229,8 @@ static void test_goes_silent(void **state)
   end(&b);
 }
 
-static void test_hangs_up(void **state)
+TEST(test_hangs_up)
 {
-  (void)state;
   static struct bench b;
   memset(&b, 0, sizeof b);
   gocator_frame(&b.frames[0], 0, 0);
@@ -258,9 +253,8 @@ static void test_hangs_up(void **state)
   }
 }
 
-static void test_garbage(void **state)
+TEST(test_garbage)
 {
-  (void)state;
   static struct bench b;
   memset(&b, 0, sizeof b);
   b.sensor.status = 1;
@@ -309,9 +303,8 @@ static void serve_without_end(struct emulator *e, int connection)
 
 /* A time that cannot be, of the frame before the start or of the one after it, leaves no other that
  * counts: that is silence, which ends it, and not a recording without profiles. */
-static void test_times_that_cannot_be(void **state)
+TEST(test_times_that_cannot_be)
 {
-  (void)state;
   static struct bench b;
   for (int wrong = 0; wrong < 2; wrong++) {
     memset(&b, 0, sizeof b);
@@ -329,9 +322,8 @@ static void test_times_that_cannot_be(void **state)
   }
 }
 
-static void test_not_there(void **state)
+TEST(test_not_there)
 {
-  (void)state;
   static struct bench b;
   memset(&b, 0, sizeof b);
   snprintf(b.text, sizeof b.text, usual, emulator_no_port(), emulator_no_port());
@@ -365,9 +357,8 @@ static const char polled[] =
     "kind: gocator\naddress: 127.0.0.1\nport: %d\nmode: polled\nstart: no\ntimeout: 5 s\n"
     "interval: 5 ms\nmeasurements: [{name: centre, id: 3}, {name: tip, id: 7}]\n";
 
-static void test_polled(void **state)
+TEST(test_polled)
 {
-  (void)state;
   static struct bench b;
   for (size_t fragment = 0; fragment < 3; fragment++) {
     memset(&b, 0, sizeof b);
@@ -390,9 +381,8 @@ static void test_polled(void **state)
   }
 }
 
-static void test_clock(void **state)
+TEST(test_clock)
 {
-  (void)state;
   static struct bench b;
   memset(&b, 0, sizeof b);
   b.sensor.text[0] = "OK,M00,03,V151290,D0,M01,07,V18520,D0\r\n";
@@ -401,9 +391,8 @@ static void test_clock(void **state)
   end(&b);
 }
 
-static void test_text(void **state)
+TEST(test_text)
 {
-  (void)state;
   static struct bench b;
   static const char text[] =
       "kind: gocator\naddress: 127.0.0.1\nport: %d\nmode: text\ntimeout: 0.5 s\n"
@@ -424,9 +413,8 @@ static void test_text(void **state)
   assert_string_equal(b.data.log, "Start\r\nStop\r\n");
 }
 
-static void test_wrong_keys(void **state)
+TEST(test_wrong_keys)
 {
-  (void)state;
   static const char *const cases[][2] = {
       {"kind: gocator\nmode: text\n", "without profiles it needs its 'measurements'"},
       {"kind: gocator\nmeasurements: [{name: a, id: 1}, {name: b, id: 1}]\n",
@@ -458,9 +446,8 @@ static void work(struct dea_context *context)
   }
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   struct bench *b = &memory_bench;
   b->sensor.status = 1;
   gocator_frame(&b->frames[0], 0, 0);
@@ -474,22 +461,4 @@ static void test_memory(void **state)
   emulator_stop(&b->control);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_frames),
-      cmocka_unit_test(test_invalid_and_other_grid),
-      cmocka_unit_test(test_start_and_stop),
-      cmocka_unit_test(test_goes_silent),
-      cmocka_unit_test(test_hangs_up),
-      cmocka_unit_test(test_garbage),
-      cmocka_unit_test(test_times_that_cannot_be),
-      cmocka_unit_test(test_not_there),
-      cmocka_unit_test(test_polled),
-      cmocka_unit_test(test_clock),
-      cmocka_unit_test(test_text),
-      cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -23,9 +23,8 @@ static size_t count_events(struct dea_gdp *g, const struct gocator_bytes *b, siz
   return odd;
 }
 
-static void test_messages(void **state)
+TEST(test_messages)
 {
-  (void)state;
   static struct gocator_bytes b;
   static struct dea_gdp g;
   static const double x_um[] = {-20, -10, 0, 10, 20};
@@ -51,9 +50,8 @@ static void test_messages(void **state)
 }
 
 /* Every field of the messages made wrong by itself: odd or broken, never more than is there. */
-static void test_odd_messages(void **state)
+TEST(test_odd_messages)
 {
-  (void)state;
   static struct gocator_bytes good, b;
   static struct dea_gdp g;
   gocator_frame(&good, 0, 1);
@@ -84,9 +82,8 @@ static void test_odd_messages(void **state)
   assert_int_equal(seen[DEA_GDP_BROKEN], 1);
 }
 
-static void test_text_line(void **state)
+TEST(test_text_line)
 {
-  (void)state;
   static const struct {
     const char *line;
     size_t count;
@@ -122,12 +119,4 @@ static void test_text_line(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_messages),
-      cmocka_unit_test(test_odd_messages),
-      cmocka_unit_test(test_text_line),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

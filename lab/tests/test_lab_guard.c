@@ -21,9 +21,8 @@ static double comes_down(struct supply *s, double within_s)
   return INFINITY;
 }
 
-static void test_killed(void **state)
+TEST(test_killed)
 {
-  (void)state;
   static const int signals[] = {SIGKILL, SIGSEGV, SIGABRT, SIGBUS};
   static struct supply s;
   for (size_t i = 0; i < 4; i++) {
@@ -48,9 +47,8 @@ static void test_killed(void **state)
 }
 
 /* A second program neither arms the supply nor disturbs the first. */
-static void test_one_supply_one_program(void **state)
+TEST(test_one_supply_one_program)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -70,9 +68,8 @@ static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
 
 /* By another name, of which nothing is kept: neither driven beside the first one, nor said to be at
  * 0 V when it was told that. */
-static void test_two_names_of_one_supply(void **state)
+TEST(test_two_names_of_one_supply)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -100,9 +97,8 @@ static void test_two_names_of_one_supply(void **state)
 }
 
 /* The guard is not in the way of a clean end, nor of Ctrl-C of a terminal. */
-static void test_interrupted(void **state)
+TEST(test_interrupted)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -116,9 +112,8 @@ static void test_interrupted(void **state)
 }
 
 /* A program that is stopped gives no sign of life. When it goes on it plays nothing more. */
-static void test_stopped(void **state)
+TEST(test_stopped)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -139,9 +134,8 @@ static void test_stopped(void **state)
 
 /* Away for longer than the queue, and back before the guard takes over: the voltage goes on from
  * where it stands, and down along the ramp of 4 kV/s; the waveform is at 2 kV by then. */
-static void test_stall_is_no_jump(void **state)
+TEST(test_stall_is_no_jump)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -174,9 +168,8 @@ static void test_stall_is_no_jump(void **state)
 }
 
 /* A guard that is killed or stopped guards nothing: that ends the measurement, along the ramp. */
-static void test_guard_that_is_gone(void **state)
+TEST(test_guard_that_is_gone)
 {
-  (void)state;
   static const int signals[] = {SIGKILL, SIGSTOP};
   static struct supply s;
   for (size_t i = 0; i < 2; i++) {
@@ -195,9 +188,8 @@ static void test_guard_that_is_gone(void **state)
 
 /* The computer dies, and the guard with it: the supply's own watchdog is fed while all is well,
  * disarmed at the end, and switches off when nobody feeds it. */
-static void test_watchdog_of_the_supply(void **state)
+TEST(test_watchdog_of_the_supply)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){.watchdog_s = 1.5};
   supply_start(&s);
@@ -225,9 +217,8 @@ static void test_watchdog_of_the_supply(void **state)
 
 /* Deaf for 8 s, and then it obeys again: the guard, which has gone on after the program's end,
  * brings it to 0 V and says so; the next measurement waits until somebody has looked. */
-static void test_deaf_for_a_while(void **state)
+TEST(test_deaf_for_a_while)
 {
-  (void)state;
   static const struct supply_wrong deaf = {.deaf = true}, good = {0};
   static struct supply s;
   s = (struct supply){0};
@@ -268,9 +259,8 @@ static void swap(struct supply *there, struct supply *next)
 
 /* The address is another supply's all at once, which is at 0 V: that says nothing of this one, not
  * to the program, nor to `--zero`, nor to the guard of one that was killed. */
-static void test_neighbour(void **state)
+TEST(test_neighbour)
 {
-  (void)state;
   static struct supply s, neighbour;
   for (int killed = 0; killed < 2; killed++) {
     s = (struct supply){.serial = 1};
@@ -305,9 +295,8 @@ static void test_neighbour(void **state)
 
 /* Asked for by somebody while it plays: it ends along its ramp, and then the supply is looked at.
  */
-static void test_zero_while_it_plays(void **state)
+TEST(test_zero_while_it_plays)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -323,20 +312,4 @@ static void test_zero_while_it_plays(void **state)
   supply_stop(&s);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_killed),
-      cmocka_unit_test(test_one_supply_one_program),
-      cmocka_unit_test(test_two_names_of_one_supply),
-      cmocka_unit_test(test_interrupted),
-      cmocka_unit_test(test_stopped),
-      cmocka_unit_test(test_stall_is_no_jump),
-      cmocka_unit_test(test_watchdog_of_the_supply),
-      cmocka_unit_test(test_neighbour),
-      cmocka_unit_test(test_deaf_for_a_while),
-      cmocka_unit_test(test_zero_while_it_plays),
-      cmocka_unit_test(test_guard_that_is_gone),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
-}
+TESTS(command_set_up, supply_tear_down)

@@ -5,9 +5,8 @@
 static const double t3[] = {0, 0.001, 0.002}, v3[] = {0, 0.5, -1.25e3};
 
 /* Different texts of the same two columns. */
-static void test_dialects(void **state)
+TEST(test_dialects)
 {
-  (void)state;
   static const char *const texts[] = {
       "Time (s),Voltage (kV)\n0,0\n0.001,0.5\n0.002,-1.25E+03\n",
       "Time [s];Voltage [kV]\r\n0,000;0,0\r\n0,001;0,5\r\n0,002;-1,25e3\r\n",
@@ -41,9 +40,8 @@ static void test_dialects(void **state)
   }
 }
 
-static void test_encodings(void **state)
+TEST(test_encodings)
 {
-  (void)state;
   static const unsigned char latin[] = "Zeit (s);Strom (\xb5"
                                        "A)\n0;1,5\n1;2,5\n";
   static const double current[] = {1.5, 2.5};
@@ -71,9 +69,8 @@ static void test_encodings(void **state)
 }
 
 /* Lines of old Macintosh programs end with a carriage return alone. */
-static void test_carriage_returns(void **state)
+TEST(test_carriage_returns)
 {
-  (void)state;
   static const double t[] = {0, 0.5, 1}, v[] = {1.5, 2.5, 3};
   struct dea_table *table = read_text("cr.csv", "Time (s),V (kV)\r0,1.5\r0.5,2.5\r1.0,3\r");
   assert_column(table, "Time", "s", t, 3);
@@ -82,9 +79,8 @@ static void test_carriage_returns(void **state)
 }
 
 /* Times with a zone: those of winter and summer differ in name only. */
-static void test_zones(void **state)
+TEST(test_zones)
 {
-  (void)state;
   static const double t[] = {0, 1, 2.5, 4};
   struct dea_table *table =
       read_text("zone.csv", "Timestamp,V (kV)\n2026-03-29T01:59:59+01:00,1\n"
@@ -94,9 +90,8 @@ static void test_zones(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_missing_values(void **state)
+TEST(test_missing_values)
 {
-  (void)state;
   static const double v[] = {1, NAN, NAN, NAN, NAN, NAN, 2};
   struct dea_table *table = read_text(
       "missing.csv", "t,V (V),x\n0,1,1\n1,,1\n2,NaN,1\n3,-nan,1\n4,OL,1\n5,1.#QNAN,1\n6,2,1\n");
@@ -106,9 +101,8 @@ static void test_missing_values(void **state)
 
 /* Rows of missing values above the first number, and below the last one, are rows: without a column
  * of times all that follows would come too early. */
-static void test_rows_of_missing_values(void **state)
+TEST(test_rows_of_missing_values)
 {
-  (void)state;
   enum { ROWS = 2500 }; // more than the dialect is found in
   static char text[ROWS * 16];
   size_t n = (size_t)sprintf(text, "V (kV),note,I (uA)\nnan,ok,nan\nOL,ok,nan\n");
@@ -132,9 +126,8 @@ static void test_rows_of_missing_values(void **state)
 }
 
 /* To the last bit: against strtod in the C locale. */
-static void test_numbers_exact(void **state)
+TEST(test_numbers_exact)
 {
-  (void)state;
   static const char *const numbers[] = {"0.1",
                                         "1e-7",
                                         "123456789.123456789",
@@ -161,9 +154,8 @@ static void test_numbers_exact(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_headers(void **state)
+TEST(test_headers)
 {
-  (void)state;
   struct dea_table *table = read_text("no.csv", "0,1\n1,2\n");
   assert_string_equal(table->columns[0].name, "column 1");
   dea_table_destroy(ctx, table);
@@ -185,9 +177,8 @@ static void test_headers(void **state)
 
 /* Titles with line breaks in quotes (Alt+Enter in Excel) are none, rather than those of other
  * columns. */
-static void test_titles_of_two_lines(void **state)
+TEST(test_titles_of_two_lines)
 {
-  (void)state;
   static const double t[] = {0.5, 1.5};
   struct dea_table *table =
       read_text("quoted.csv", "\"Time\n(s)\",\"Voltage\n(kV)\"\n0.5,1\n1.5,2\n");
@@ -196,9 +187,8 @@ static void test_titles_of_two_lines(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_text_columns_and_rates(void **state)
+TEST(test_text_columns_and_rates)
 {
-  (void)state;
   static const double v[] = {1, 2};
   struct dea_table *table = read_text(
       "text.csv", "Sample rate: 2 kHz\nDate;V (V)\n2023-05-01 10:00;1\n2023-05-01 10:01;2\n");
@@ -217,9 +207,8 @@ static void test_text_columns_and_rates(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   static const struct refused cases[] = {
       {"t;V\n0;1,234.5\n1;2,345.6\n", 2, "'1,234.5' has marks between thousands"},
       {"t,V\n0,\"1,234.5\"\n1,\"2,345.6\"\n", 2, "between thousands"},
@@ -242,9 +231,8 @@ static void test_refused(void **state)
 }
 
 /* Lines that differ after the part that the dialect was found in. */
-static void test_late_errors(void **state)
+TEST(test_late_errors)
 {
-  (void)state;
   static char text[40000];
   size_t n = (size_t)snprintf(text, sizeof text, "t,V\n");
   for (int i = 0; i < 2500; i++) {
@@ -268,30 +256,11 @@ static void read_once(struct dea_context *own)
   read_again(own, "memory.csv");
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   const char *text = "Scope\nrate;100 Hz\nTime (s);Voltage (kV);note\n0;0;a\n1;0,5;b\n2;1;c\n";
   write_bytes("memory.csv", text, strlen(text));
   assert_true(failing_each(read_once) > 10);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dialects),
-      cmocka_unit_test(test_encodings),
-      cmocka_unit_test(test_carriage_returns),
-      cmocka_unit_test(test_zones),
-      cmocka_unit_test(test_missing_values),
-      cmocka_unit_test(test_rows_of_missing_values),
-      cmocka_unit_test(test_numbers_exact),
-      cmocka_unit_test(test_headers),
-      cmocka_unit_test(test_titles_of_two_lines),
-      cmocka_unit_test(test_text_columns_and_rates),
-      cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_late_errors),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

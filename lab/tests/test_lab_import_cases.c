@@ -66,9 +66,8 @@ static void assert_error(const char *name, size_t line, const char *part)
 }
 
 /* Separators at the ends of rows that the titles do not have. */
-static void test_trailing_blanks(void **state)
+TEST(test_trailing_blanks)
 {
-  (void)state;
   static const char *const names[] = {"comma", "ds1204b", "semi", "tab"};
   static const double v2[] = {1, 1.5, 2}, v4[] = {2, 2.5, 3};
   for (size_t i = 0; i < 4; i++) {
@@ -84,9 +83,8 @@ static void test_trailing_blanks(void **state)
 }
 
 /* A data logger whose milliseconds stand in a column of their own, with words over the range. */
-static void test_graphtec(void **state)
+TEST(test_graphtec)
 {
-  (void)state;
   static const char *const names[] = {"gl240", "gl240-en", "gl980", "over", "sign-space"};
   for (size_t i = 0; i < 5; i++) {
     char name[64];
@@ -108,9 +106,8 @@ static void test_graphtec(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
-static void test_repeated_rows(void **state)
+TEST(test_repeated_rows)
 {
-  (void)state;
   assert_error("duplicate-row/first-twice.csv", 0, "row 2 repeats the time of row 1: take one out");
   assert_error("duplicate-row/last-twice.csv", 0, "row 4 repeats the time of row 3: take one out");
   assert_error("duplicate-row/one-in-the-middle.csv", 0,
@@ -118,9 +115,8 @@ static void test_repeated_rows(void **state)
 }
 
 /* The first field with marks between thousands is quoted with its line. */
-static void test_thousands(void **state)
+TEST(test_thousands)
 {
-  (void)state;
   assert_error("thousands/de-thousands.csv", 3, "'1.000' has marks between thousands");
   assert_error("thousands/french-space.csv", 3, "'1 000' has marks between thousands");
   assert_error("thousands/late.csv", 6, "'1.002.000' has marks between thousands");
@@ -131,9 +127,8 @@ static void test_thousands(void **state)
 }
 
 /* A column that a mapping names is never left out in silence. */
-static void test_named_column_of_text(void **state)
+TEST(test_named_column_of_text)
 {
-  (void)state;
   struct dea_table *table = read_text("t.csv", "t (s),V (kV),F (N)\n0,1,1\n1,sat,1\n2,sat,1\n");
   struct dea_mapping *mapping = map_text("dea-import: 1\ncolumns:\n  - {column: V, as: voltage}\n");
   struct dea_recording *recording;
@@ -144,9 +139,8 @@ static void test_named_column_of_text(void **state)
 }
 
 /* Letters of Shift-JIS hold bytes of ASCII that are no words; full-width units are units. */
-static void test_encodings(void **state)
+TEST(test_encodings)
 {
-  (void)state;
   static const char *const names[] = {"laser-mm", "fullwidth-unit"};
   static const double kilovolt[] = {0, 1e3, 2e3}, mm[] = {0, 1e-4, 2e-4};
   for (size_t i = 0; i < 2; i++) {
@@ -182,12 +176,4 @@ static void test_encodings(void **state)
                "letters in an encoding that is not known: save as UTF-8");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_trailing_blanks), cmocka_unit_test(test_graphtec),
-      cmocka_unit_test(test_repeated_rows),   cmocka_unit_test(test_thousands),
-      cmocka_unit_test(test_encodings),       cmocka_unit_test(test_named_column_of_text),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

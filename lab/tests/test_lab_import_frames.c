@@ -25,9 +25,8 @@ static void assert_pull(struct dea_recording *recording, const char *way, const 
 }
 
 /* Instron Bluehill: "key : value" lines, quoted titles, a line of units. */
-static void test_bluehill(void **state)
+TEST(test_bluehill)
 {
-  (void)state;
   assert_pull(record_file("vhb 10x20 mm 1 mm.csv",
                           "\"Test Method : Tensile.im_tens\"\r\n\"Sample name : VHB 4910\"\r\n"
                           "\"Width : 10.00 mm\"\r\n\"Rate 1 : 100 mm/min\"\r\n\r\n"
@@ -44,9 +43,8 @@ static void test_bluehill(void **state)
 }
 
 /* JSON of TRIOS: columns by key, rows in any order of keys, columns of text, a missing value. */
-static void test_trios(void **state)
+TEST(test_trios)
 {
-  (void)state;
 #define TRIOS_HEADERS                                                                              \
   "\"ColumnHeaders\": {\"Step_id\": {\"DisplayName\": \"Step\", \"ValueType\": \"Uuid\"},"         \
   "\"Time_s\": {\"DisplayName\": \"Time\", \"ValueType\": \"Number\", \"Unit\": {\"Name\": "       \
@@ -80,9 +78,8 @@ static void test_trios(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_trios_that_is_wrong(void **state)
+TEST(test_trios_that_is_wrong)
 {
-  (void)state;
   static const struct {
     const char *text, *says;
   } wrong[] = {
@@ -109,9 +106,8 @@ static void test_trios_that_is_wrong(void **state)
 }
 
 /* Decimal commas, semicolons, Latin-1, kN. */
-static void test_decimal_comma(void **state)
+TEST(test_decimal_comma)
 {
-  (void)state;
   assert_pull(record_file("zug.csv",
                           "\"Pr\xfc"
                           "fmethode : Zug.im_tens\"\r\n\"Vorkraft : 0,01 N\"\r\n\r\n"
@@ -128,9 +124,8 @@ static void test_decimal_comma(void **state)
 }
 
 /* GB18030 as it is saved in China, each number in quotes: names are letters, not noise. */
-static void test_gb18030(void **state)
+TEST(test_gb18030)
 {
-  (void)state;
   static const char bytes[] = "\"\xca\xd4\xd1\xe9\xb7\xbd\xb7\xa8\",\"\xc0\xad\xc9\xec\"\r\n"
                               "\"\xca\xb1\xbc\xe4\",\"\xce\xbb\xd2\xc6\",\"\xc1\xa6\"\r\n"
                               "\"(s)\",\"(mm)\",\"(N)\"\r\n"
@@ -153,9 +148,8 @@ static void test_gb18030(void **state)
 }
 
 /* A clock beside the force, once with a date and across midnight, once without. */
-static void test_times_as_text(void **state)
+TEST(test_times_as_text)
 {
-  (void)state;
   static const char *const times[][4] = {{"2026-02-28 23:59:59.9", "2026-03-01 00:00:00.0",
                                           "2026-03-01 00:00:00.1", "2026-03-01 00:00:00.2"},
                                          {"28.02.2024 23:59:59,9", "29.02.2024 00:00:00,0",
@@ -180,9 +174,8 @@ static void test_times_as_text(void **state)
 
 /* Whole seconds of faster rows are no clock; numbers are the better one; what changes its form in
  * the middle is an error; a date that is two is text. */
-static void test_other_times(void **state)
+TEST(test_other_times)
 {
-  (void)state;
   static const double t[] = {0, 0.5, 1}, f[] = {1, 2, 3};
   struct dea_table *table = read_text("a.csv", "Clock,F (N)\n10:00:00,1\n10:00:00,2\n10:00:01,3\n");
   assert_int_equal(table->column_count, 1);
@@ -204,9 +197,8 @@ static void test_other_times(void **state)
 }
 
 /* Days between dates against a count day by day. */
-static void test_days(void **state)
+TEST(test_days)
 {
-  (void)state;
   static const int lengths[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   double wanted = 0;
   for (int year = 1970; year < 2110; year++) {
@@ -226,17 +218,4 @@ static void test_days(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bluehill),
-      cmocka_unit_test(test_trios),
-      cmocka_unit_test(test_trios_that_is_wrong),
-      cmocka_unit_test(test_decimal_comma),
-      cmocka_unit_test(test_gb18030),
-      cmocka_unit_test(test_times_as_text),
-      cmocka_unit_test(test_other_times),
-      cmocka_unit_test(test_days),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

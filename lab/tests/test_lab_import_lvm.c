@@ -24,9 +24,8 @@ static void check_clock(const struct dea_table *table, const char *name, double 
   assert_close(column->interval, interval, 1e-12, 0);
 }
 
-static void test_no_times(void **state)
+TEST(test_no_times)
 {
-  (void)state;
   struct dea_table *table =
       read_text("no.lvm", HEADER("No", "No", "") SEGMENT("3\t3", "10:00:00.5", "0.25", "0.001")
                               TITLES "\t0.0\t-1\tstart\n\t1.5\t2E-3\n\t3.0\t4\n");
@@ -46,9 +45,8 @@ static void test_no_times(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_one_column_of_times(void **state)
+TEST(test_one_column_of_times)
 {
-  (void)state;
   static const double t[] = {0, 0.1, 0.35};
   struct dea_table *table =
       read_text("one.lvm", HEADER("One", "No", "") SEGMENT("3\t3", "10:00:00", "0", "1.0") TITLES
@@ -60,9 +58,8 @@ static void test_one_column_of_times(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_times_for_each(void **state)
+TEST(test_times_for_each)
 {
-  (void)state;
   static const double t2[] = {5, 6};
   struct dea_table *table =
       read_text("multi.lvm",
@@ -76,9 +73,8 @@ static void test_times_for_each(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_commas(void **state)
+TEST(test_commas)
 {
-  (void)state;
   struct dea_table *table = read_text(
       "comma.lvm",
       "LabVIEW Measurement\t\r\nSeparator\tTab\r\nDecimal_Separator\t,\r\nMulti_Headings\tNo\r\n"
@@ -96,9 +92,8 @@ static void test_commas(void **state)
 }
 
 /* Segments that follow one another are one measurement; a gap gives every sample its time. */
-static void test_segments(void **state)
+TEST(test_segments)
 {
-  (void)state;
   static const double both[] = {0, 1.5, 3, 0, 1.5}, t[] = {0, 0.5, 1, 9.5, 10};
   struct dea_table *table =
       read_text("follow.lvm", HEADER("No", "Yes", "") SEGMENT("3\t3", "10:00:00", "0", "0.5") TITLES
@@ -120,9 +115,8 @@ static void test_segments(void **state)
 
 /* Segments of several days, by their dates: later in the morning than the first one in the evening,
  * and at the same time of day. */
-static void test_segments_of_days(void **state)
+TEST(test_segments_of_days)
 {
-  (void)state;
   static const double t[] = {0, 1, 46800, 46801, 169200, 169201};
   struct dea_table *table = read_text(
       "days.lvm", HEADER("One", "Yes", "") DATED("2024/02/28", "2\t2", "20:00:00", "0", "1") TITLES
@@ -135,9 +129,8 @@ static void test_segments_of_days(void **state)
 
 /* Segments whose X0 goes on by itself (absolute times, or seconds since the first): their clock is
  * not added to that. */
-static void test_segments_that_count_on(void **state)
+TEST(test_segments_that_count_on)
 {
-  (void)state;
   static const double both[] = {0, 1.5, 0, 1.5}, t[] = {100, 100.5, 110, 110.5};
   struct dea_table *table = read_text(
       "on.lvm", HEADER("No", "Yes", "") SEGMENT("2\t2", "10:00:00", "3765000000", "0.5") TITLES
@@ -153,9 +146,8 @@ static void test_segments_that_count_on(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_special_blocks_and_missing(void **state)
+TEST(test_special_blocks_and_missing)
 {
-  (void)state;
   static const double v[] = {0, NAN, 3};
   struct dea_table *table = read_text(
       "special.lvm",
@@ -167,9 +159,8 @@ static void test_special_blocks_and_missing(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   static const struct refused cases[] = {
       {"LabVIEW Measurement\nSeparator\tTab\n", 0, "no line ***End_of_Header***"},
       {"LabVIEW Measurement\n***End_of_Header***\n", 0, "no segment"},
@@ -228,9 +219,8 @@ static void check_case(const char *name, size_t count, const struct wanted *want
 }
 
 /* Every channel has its own number of samples, start and step. */
-static void test_own_clocks(void **state)
+TEST(test_own_clocks)
 {
-  (void)state;
   static const struct wanted two_rates[] = {{"HV", "kV", 0, 0.1, 0, 0.1, 10, 0, 0},
                                             {"Laser", "mm", 0.5, 0.2, 0, 0.01, 5, 0, 0}};
   static const struct wanted shorter[] = {{"HV", "kV", 0, 0.2, 0, 0.1, 3, 0, 0},
@@ -246,9 +236,8 @@ static void test_own_clocks(void **state)
 }
 
 /* Of X_Columns Multi every column has a field in the header. */
-static void test_multi_headers(void **state)
+TEST(test_multi_headers)
 {
-  (void)state;
   static const struct wanted one[] = {{"HV", "kV", 0, 0.1, 0, 0.5, 4, 0, 0},
                                       {"Displacement", "mm", 0, 0.1, 0, 0.25, 4, 0, 0},
                                       {"Force", "mN", 0, 0.1, 0, 2, 4, 0, 0}};
@@ -268,9 +257,8 @@ static void test_multi_headers(void **state)
 }
 
 /* Channels of two rates with a pause: each has times of its own. */
-static void test_two_rates_with_a_gap(void **state)
+TEST(test_two_rates_with_a_gap)
 {
-  (void)state;
 #define TWO_RATES(time, rows)                                                                      \
   "Channels\t2\nSamples\t4\t2\nTime\t" time "\t" time "\nX0\t0\t0.5\nDelta_X\t0.5\t1\n"            \
   "***End_of_Header***\n" TITLES rows "\n"
@@ -293,22 +281,9 @@ static void read_once(struct dea_context *own)
   read_again(own, "gap.lvm");
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_each(read_once) > 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_no_times),         cmocka_unit_test(test_one_column_of_times),
-      cmocka_unit_test(test_times_for_each),   cmocka_unit_test(test_commas),
-      cmocka_unit_test(test_segments),         cmocka_unit_test(test_segments_that_count_on),
-      cmocka_unit_test(test_segments_of_days), cmocka_unit_test(test_special_blocks_and_missing),
-      cmocka_unit_test(test_refused),          cmocka_unit_test(test_own_clocks),
-      cmocka_unit_test(test_multi_headers),    cmocka_unit_test(test_two_rates_with_a_gap),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

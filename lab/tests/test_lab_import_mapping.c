@@ -24,9 +24,8 @@ static void assert_channel(const struct dea_recording *recording, const char *na
   }
 }
 
-static void test_guesses(void **state)
+TEST(test_guesses)
 {
-  (void)state;
   static const double v[] = {0, 500, 1000}, i[] = {1e-6, 2e-6, 3e-6}, z[] = {0, 1e-5, 2e-5},
                       f[] = {0.001, 0.002, 0.003}, c[] = {0, 510, 1020};
   struct dea_recording *recording =
@@ -71,9 +70,8 @@ static void test_guesses(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
-static void test_mapping(void **state)
+TEST(test_mapping)
 {
-  (void)state;
   static const double v[] = {100, 1100, -900}, z[] = {-0.0025, -0.0015, -0.0005}, x[] = {5, 6, 7};
   struct dea_recording *recording = record_text(
       "Dev1/ai0,Dev1/ai1,k,junk\n0,0,5,1\n1,1,6,1\n-1,2,7,1\n",
@@ -120,9 +118,8 @@ static void test_mapping(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
-static void test_profile(void **state)
+TEST(test_profile)
 {
-  (void)state;
   const char *text = "t (s),z1,z2,z3,zero\n0,1,2,3,9\n0.5,4,5,6,9\n";
   for (int turned = 0; turned < 2; turned++) {
     struct dea_recording *recording = record_text(
@@ -149,9 +146,8 @@ static void test_profile(void **state)
 }
 
 /* What is wrong in a mapping, with its place; table NULL: already when it is read. */
-static void test_mapping_errors(void **state)
+TEST(test_mapping_errors)
 {
-  (void)state;
   static const struct {
     const char *table, *map;
     size_t line;
@@ -208,9 +204,8 @@ static void test_mapping_errors(void **state)
   }
 }
 
-static void test_clock_errors(void **state)
+TEST(test_clock_errors)
 {
-  (void)state;
   static const struct {
     const char *text, *part;
   } cases[] = {
@@ -242,9 +237,8 @@ static void test_clock_errors(void **state)
 
 /* Columns on clocks of their own end where their times do: the shorter ones are blank from there
  * on. Rows without a time and without a value say nothing. */
-static void test_rows_without_a_time(void **state)
+TEST(test_rows_without_a_time)
 {
-  (void)state;
   struct dea_recording *recording = record_text(
       "t1 (s),V (kV),t2 (ms),z (um)\n,,,\n0,1,0,5\n1,2,500,6\n,,1000,\n2,,,\n3,4,,\n", NULL);
   const struct dea_channel *v = &recording->channels[0], *z = &recording->channels[1];
@@ -263,9 +257,8 @@ static void test_rows_without_a_time(void **state)
 }
 
 /* A column in ms that is always the same is no clock. */
-static void test_constant_times(void **state)
+TEST(test_constant_times)
 {
-  (void)state;
   struct dea_recording *recording =
       record_text("Time (s),Exposure (ms),V (kV)\n0,3,1\n1,3,2\n2,3,3\n", NULL);
   assert_int_equal(recording->channel_count, 1);
@@ -274,9 +267,8 @@ static void test_constant_times(void **state)
 }
 
 /* Times written with few digits are uniform; a lost sample is not. Since 1970 becomes since 0. */
-static void test_jitter(void **state)
+TEST(test_jitter)
 {
-  (void)state;
   struct dea_recording *recording =
       record_text("t (s),V (kV)\n0.000000,1\n0.000333,2\n0.000667,3\n0.001000,4\n", NULL);
   assert_close(recording->channels[0].interval_s, 1.0 / 3000, 1e-6, 0);
@@ -291,9 +283,8 @@ static void test_jitter(void **state)
 }
 
 /* Times of day count from their first, which must be the same moment in both files. */
-static void test_join_of_times_of_day(void **state)
+TEST(test_join_of_times_of_day)
 {
-  (void)state;
   static const struct {
     const char *other;
     bool same;
@@ -319,9 +310,8 @@ static void test_join_of_times_of_day(void **state)
   dea_context_clear(ctx);
 }
 
-static void test_join(void **state)
+TEST(test_join)
 {
-  (void)state;
   struct dea_table *a = read_text("a.csv", "t (s),V (kV)\n0,1\n1,2\n2,3\n");
   struct dea_table *b = read_text("b.csv", "time (ms),F (mN)\n0,4\n1000,5\n2000,6\n");
   assert_int_equal(dea_table_join(ctx, a, b), DEA_OK);
@@ -342,9 +332,8 @@ static void test_join(void **state)
   "% Model:              disc.mph\n% Version:            COMSOL 5.6.0.280\n"                       \
   "% Date:               May 3 2023, 10:00\n% Dimension:          1\n% Nodes:              3\n"
 
-static void test_comsol(void **state)
+TEST(test_comsol)
 {
-  (void)state;
   static const double x[] = {0, 0.5, 1}, w[] = {1e-3, -2.5e-2, NAN}, w2[] = {5, 6, 7};
   struct dea_table *table = read_text(
       "comsol.txt", COMSOL "% Expressions:        2\n% Description:        Displacement field\n"
@@ -373,9 +362,8 @@ static void test_comsol(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_comsol_sections(void **state)
+TEST(test_comsol_sections)
 {
-  (void)state;
   static const double x[] = {0, 0.5, 1}, w[] = {5, 6, 7};
   struct dea_table *table =
       read_text("sections.txt",
@@ -407,24 +395,11 @@ static void record_once(struct dea_context *own)
   dea_mapping_destroy(own, mapping);
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   const char *text = "t (s),V (kV),z1,z2\n0,1,1,1\n1,2,1,2\n3,3,1,2\n";
   write_bytes("memory.csv", text, strlen(text));
   assert_true(failing_each(record_once) > 20);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_guesses),        cmocka_unit_test(test_mapping),
-      cmocka_unit_test(test_profile),        cmocka_unit_test(test_mapping_errors),
-      cmocka_unit_test(test_clock_errors),   cmocka_unit_test(test_rows_without_a_time),
-      cmocka_unit_test(test_constant_times), cmocka_unit_test(test_jitter),
-      cmocka_unit_test(test_join),           cmocka_unit_test(test_join_of_times_of_day),
-      cmocka_unit_test(test_comsol),         cmocka_unit_test(test_comsol_sections),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

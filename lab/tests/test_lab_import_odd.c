@@ -36,9 +36,8 @@ static void refused(const char *name, const char *text, const char *said)
   assert_null(recording);
 }
 
-static void test_thousands(void **state)
+TEST(test_thousands)
 {
-  (void)state;
   refused("a.csv", "Time (s)\tVoltage (V)\n0\t900\n1\t1,000\n2\t1,100\n", "between thousands");
   refused("b.csv", "Time (s);Voltage (V)\n0;900\n1;1.000\n2;-1.100\n", "between thousands");
   refused("c.csv", "Time (s),Voltage (V)\n0,\"1,000\"\n1,\"2,000\"\n", "between thousands");
@@ -51,9 +50,8 @@ static void test_thousands(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_times_of_unknown_unit(void **state)
+TEST(test_times_of_unknown_unit)
 {
-  (void)state;
   struct dea_recording *recording;
   refused("ms.csv", "timestamp,V (kV)\n1795341781250,1\n1795341781260,2\n", "ms since 1970");
   refused("us.csv", "time,V (kV)\n1795341781250000,1\n1795341781260000,2\n", "us since 1970");
@@ -69,9 +67,8 @@ static void test_times_of_unknown_unit(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
-static void test_units_in_titles(void **state)
+TEST(test_units_in_titles)
 {
-  (void)state;
   static const char *const titles[] = {
       "Time_\xb5s,Force_\xb5N",     "Time_\xce\xbcs,Force_\xce\xbcN", "Time: us,Force: uN",
       "Time {us},Force {uN}",       "Time <us>,Force <uN>",           "Time us,Force uN",
@@ -94,9 +91,8 @@ static void test_units_in_titles(void **state)
 }
 
 /* Units that are not known, and columns with a unit that hold no numbers. */
-static void test_odd_units(void **state)
+TEST(test_odd_units)
 {
-  (void)state;
   struct dea_recording *recording;
   const char *odd = "its unit is not known";
   static const char *const left[] = {"Current (ma)", "Voltage (kVpp)",  "z (m/s)",
@@ -128,9 +124,8 @@ static void test_odd_units(void **state)
 }
 
 /* What oscilloscopes write where a sample is beyond the screen. */
-static void test_overflow(void **state)
+TEST(test_overflow)
 {
-  (void)state;
   static const double v[] = {1, NAN, NAN, NAN, 2, 1e37, 1e39};
   struct dea_table *table = read_text(
       "over.csv", "t (s),V (V)\n0,1\n1,9.9E+37\n2,9.91E37\n3,-9.9e37\n4,2\n5,1e37\n6,1e39\n");
@@ -139,9 +134,8 @@ static void test_overflow(void **state)
 }
 
 /* Rows above a repeated head, beside a column of dates. */
-static void test_dates_and_two_tables(void **state)
+TEST(test_dates_and_two_tables)
 {
-  (void)state;
   refused("two.csv",
           "Date;Time (s);V (kV)\n22.11.2026;0;1,5\n22.11.2026;1;2,5\n"
           "Date;Time (s);V (kV)\n22.11.2026;2;3,5\n22.11.2026;3;4,5\n",
@@ -156,9 +150,8 @@ static void test_dates_and_two_tables(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_lvm_segments_of_other_channels(void **state)
+TEST(test_lvm_segments_of_other_channels)
 {
-  (void)state;
 #define SEGMENT(name, t)                                                                           \
   "Channels\t1\nSamples\t2\nX_Dimension\tTime\nX0\t0\nDelta_X\t1\n***End_of_Header***\n"           \
   "X_Value\t" name "\tComment\n" t
@@ -171,9 +164,8 @@ static void test_lvm_segments_of_other_channels(void **state)
 }
 
 /* Each channel takes the times of its own struct, wherever they stand. */
-static void test_times_of_their_struct(void **state)
+TEST(test_times_of_their_struct)
 {
-  (void)state;
   struct dea_recording *r;
   assert_int_equal(record("two.csv",
                           "t (s),s.time (s),s.voltage (V),voltage (V)\n0,0,1,5\n1,0.5,2,6\n"
@@ -187,17 +179,4 @@ static void test_times_of_their_struct(void **state)
   dea_recording_destroy(ctx, r);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_thousands),
-      cmocka_unit_test(test_times_of_unknown_unit),
-      cmocka_unit_test(test_units_in_titles),
-      cmocka_unit_test(test_overflow),
-      cmocka_unit_test(test_odd_units),
-      cmocka_unit_test(test_dates_and_two_tables),
-      cmocka_unit_test(test_lvm_segments_of_other_channels),
-      cmocka_unit_test(test_times_of_their_struct),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

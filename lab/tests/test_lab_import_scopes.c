@@ -39,9 +39,8 @@ static void assert_both(struct dea_recording *recording, const char *first, cons
   "Vertical Units,V,,000000.002000000000,  " d ",\r\n"
 
 /* TDS: a file a channel, with its header beside the first samples. */
-static void test_beside(void **state)
+TEST(test_beside)
 {
-  (void)state;
   struct dea_table *table = read_text("F0000CH1.CSV", TDS("CH1", "0.00", "1.50", "3.00", "1.50"));
   struct dea_table *other = read_text("F0000CH2.CSV", TDS("CH2", "0.01", "0.02", "0.03", "0.02"));
   assert_string_equal(table->format, "tektronix");
@@ -72,9 +71,8 @@ static void test_beside(void **state)
 }
 
 /* Where the samples begin and how far apart they are, at the end of the names or below them. */
-static void test_start_and_increment(void **state)
+TEST(test_start_and_increment)
 {
-  (void)state;
   assert_both(record_file("ds1.csv",
                           "X,CH1,CH2,Start,Increment,\r\n"
                           "Sequence,VOLT,VOLT,-1.000000e-03,1.000000e-03\r\n"
@@ -122,9 +120,8 @@ static void test_start_and_increment(void **state)
 }
 
 /* With lines above the numbers, as other text. */
-static void test_lines_above(void **state)
+TEST(test_lines_above)
 {
-  (void)state;
   assert_both(record_file("dpo.csv",
                           "Model,MSO2024\r\nPoint Format,Y,\r\nHorizontal Units,S,\r\n"
                           "Sample Interval,1e-03,\r\nRecord Length,4,\r\nProbe Attenuation,1,1\r\n"
@@ -188,12 +185,4 @@ static void test_lines_above(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_beside),
-      cmocka_unit_test(test_start_and_increment),
-      cmocka_unit_test(test_lines_above),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

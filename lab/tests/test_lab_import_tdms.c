@@ -114,9 +114,8 @@ static void put_bench(unsigned contents)
   begin_raw();
 }
 
-static void test_segments(void **state)
+TEST(test_segments)
 {
-  (void)state;
   static const double hv[] = {1.5, -2.25, 3, 4, 5, 6, 7, 8}, ai[] = {-1, 300, 7, 8};
   for (unsigned endian = 0; endian <= BIG; endian += BIG) {
     begin_file();
@@ -155,9 +154,8 @@ static void test_segments(void **state)
   }
 }
 
-static void test_interleaved(void **state)
+TEST(test_interleaved)
 {
-  (void)state;
   static const double hv[] = {1, 2, 3}, ai[] = {10, 20, 30};
   begin_file();
   put_bench(METADATA | NEW_LIST | RAW | INTERLEAVED);
@@ -172,9 +170,8 @@ static void test_interleaved(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_types(void **state)
+TEST(test_types)
 {
-  (void)state;
   static const struct {
     unsigned type, size;
     uint64_t bits;
@@ -207,9 +204,8 @@ static void test_types(void **state)
   }
 }
 
-static void test_times_and_texts(void **state)
+TEST(test_times_and_texts)
 {
-  (void)state;
   static const double t[] = {0, 0.25}, v[] = {5, 6};
   begin_file();
   begin_segment(METADATA | NEW_LIST | RAW);
@@ -243,9 +239,8 @@ static void test_times_and_texts(void **state)
 }
 
 /* Two devices with times of their own: the second one began a quarter of a second later. */
-static void test_times_of_two_devices(void **state)
+TEST(test_times_of_two_devices)
 {
-  (void)state;
   static const double t[] = {0, 0.5}, late[] = {0.25, 0.75};
   begin_file();
   begin_segment(METADATA | NEW_LIST | RAW);
@@ -274,9 +269,8 @@ static void put_time_property(const char *name, uint64_t seconds, uint64_t fract
 
 /* Waveforms of two devices, the second of which was started 2.5 s later; one does not say when.
  * What is appended writes the time again. */
-static void test_waveforms_of_two_devices(void **state)
+TEST(test_waveforms_of_two_devices)
 {
-  (void)state;
   static const double starts[] = {0.5, 3.0, 0.5};
   static const char *const names[] = {"/'a'/'V'", "/'b'/'z'", "/'c'/'F'"};
   begin_file();
@@ -308,9 +302,8 @@ static void test_waveforms_of_two_devices(void **state)
 
 /* A program that crashed leaves -1 as the length of its last segment. */
 /* Raw values with a linear scale in their properties; one that was applied already; another one. */
-static void test_scales(void **state)
+TEST(test_scales)
 {
-  (void)state;
   static const double scaled[] = {0.5, 151}, raw[] = {-1, 300};
   static const struct {
     const char *type, *status;
@@ -343,9 +336,8 @@ static void test_scales(void **state)
   }
 }
 
-static void test_crashed(void **state)
+TEST(test_crashed)
 {
-  (void)state;
   static const double hv[] = {1, 2, 3};
   begin_file();
   put_bench(METADATA | NEW_LIST | RAW);
@@ -366,9 +358,8 @@ static void test_crashed(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   begin_file();
   put_bench(METADATA | NEW_LIST | RAW | DAQMX);
   end_segment();
@@ -417,9 +408,8 @@ static void test_refused(void **state)
 }
 
 /* Every cut of a file is read as far as it goes, or refused; never beyond its end. */
-static void test_cuts(void **state)
+TEST(test_cuts)
 {
-  (void)state;
   begin_file();
   put_bench(METADATA | NEW_LIST | RAW);
   put_double(1);
@@ -572,9 +562,8 @@ static void check_layout(const struct layout *l, size_t done)
 /* Both byte orders, interleaved or not, one segment or many, of one chunk or many, with a shorter
  * chunk at the end that holds the same share of each channel, and of a program that was ended in
  * the midst of each channel. */
-static void test_layouts(void **state)
+TEST(test_layouts)
 {
-  (void)state;
   static const unsigned contents[] = {0, BIG, INTERLEAVED, INTERLEAVED | BIG};
   static const struct layout layouts[] = {
       {0, 1500, 1, 0, false, SIZE_MAX},  {0, 1, 1500, 0, false, SIZE_MAX},
@@ -612,9 +601,8 @@ static void check_case(const char *name, size_t count, const struct dea_table_co
 
 /* Files whose first segment holds more values than bytes of metadata, and closed ones whose last
  * chunk is short, as LabVIEW writes and reads them. */
-static void test_cases(void **state)
+TEST(test_cases)
 {
-  (void)state;
   static double one[1000], two[1000], small_one[1000], small_two[1000];
   for (size_t i = 0; i < 1000; i++) {
     one[i] = (double)i;
@@ -642,9 +630,8 @@ static void test_cases(void **state)
 }
 
 /* A closed segment that ends within a value, or with other shares, is read as far as it goes. */
-static void test_uneven_end(void **state)
+TEST(test_uneven_end)
 {
-  (void)state;
   struct layout l = {.chunk = 100, .chunks = 2, .last = 100, .cut = 1234};
   put_layout(&l);
   struct dea_table *table = read_bytes("uneven.tdms", bytes, length);
@@ -660,9 +647,8 @@ static void read_once(struct dea_context *own)
 }
 
 /* Names of channels are kept up to 511 bytes, which is more than any of them should have. */
-static void test_long_names(void **state)
+TEST(test_long_names)
 {
-  (void)state;
   for (int letters = 509; letters < 514; letters++) {
     char name[640], wanted[600];
     memset(wanted, 'n', sizeof wanted);
@@ -684,30 +670,9 @@ static void test_long_names(void **state)
   }
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_each(read_once) > 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_segments),
-      cmocka_unit_test(test_interleaved),
-      cmocka_unit_test(test_types),
-      cmocka_unit_test(test_times_and_texts),
-      cmocka_unit_test(test_times_of_two_devices),
-      cmocka_unit_test(test_waveforms_of_two_devices),
-      cmocka_unit_test(test_crashed),
-      cmocka_unit_test(test_scales),
-      cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_cuts),
-      cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_long_names),
-      cmocka_unit_test(test_layouts),
-      cmocka_unit_test(test_cases),
-      cmocka_unit_test(test_uneven_end),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -84,9 +84,8 @@ static uint32_t kill_after(const char *file, uint32_t calls, double wait_s)
 
 static uint32_t kill_count = KILLS, seed;
 
-static void test_killed_recordings_keep_what_was_announced(void **state)
+TEST(test_killed_recordings_keep_what_was_announced)
 {
-  (void)state;
   size_t kept = 0;
   for (uint32_t k = 0; k < kill_count; k++) {
     struct dea_recording *recording;
@@ -140,9 +139,8 @@ static size_t record_some(const char *file, long writes, bool *all)
 }
 
 /* The same without chance: an end after each single write that reaches the disk. */
-static void test_every_write_may_be_the_last(void **state)
+TEST(test_every_write_may_be_the_last)
 {
-  (void)state;
   const char *file = in_folder("writes.h5");
   bool all = false;
   long n = 0;
@@ -163,9 +161,6 @@ static void test_every_write_may_be_the_last(void **state)
 
 int main(int count, char **arguments)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_write_may_be_the_last),
-      cmocka_unit_test(test_killed_recordings_keep_what_was_announced)};
   const struct CMUnitTest many[] = {
       cmocka_unit_test(test_killed_recordings_keep_what_was_announced)};
   if (count > 1) {
@@ -173,5 +168,5 @@ int main(int count, char **arguments)
     seed = count > 2 ? (uint32_t)strtoul(arguments[2], NULL, 10) : 1;
     return cmocka_run_group_tests(many, set_up, tear_down);
   }
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return run_all(set_up, tear_down);
 }

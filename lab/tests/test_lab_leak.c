@@ -105,9 +105,8 @@ static const struct film healthy = {100e-12, 50, 3, 0, 1e9, 0, 1, 3};
 
 /* What is learned, in numbers: the lower quartile of 10 to 20 uA, and the median 3 of what their
  * differences (2, -1, 4, -2, 7, -6, 2) are away from their median, 2. */
-static void test_what_is_learned(void **state)
+TEST(test_what_is_learned)
 {
-  (void)state;
   static const double visits_uA[] = {10, 12, 11, 15, 13, 20, 14, 16, 16};
   static struct dea_leak_watch watch;
   struct dea_protocol *p = good_protocol(ctx, STAYS);
@@ -130,9 +129,8 @@ static void test_what_is_learned(void **state)
 }
 
 /* Charging, spikes at jumps, noise, and a slow rise by half: no fault. */
-static void test_healthy_films(void **state)
+TEST(test_healthy_films)
 {
-  (void)state;
   for (size_t w = 0; w < WAVES; w++) {
     for (int k = 0; k < 3; k++) {
       struct film film = healthy;
@@ -151,9 +149,8 @@ static void test_healthy_films(void **state)
 
 /* Three times as much, for good: found within leak_time of 5 s under voltage, at least in the parts
  * of a cycle where it is seen; for a second under voltage it is nothing. */
-static void test_step(void **state)
+TEST(test_step)
 {
-  (void)state;
   static const double within_s[WAVES] = {15, 15, 700, 160, 10}; // of the clock
   static const double short_s[WAVES] = {2, 2, 4, 20, 2};
   for (size_t w = 0; w < WAVES; w++) {
@@ -172,9 +169,8 @@ static void test_step(void **state)
 }
 
 /* Doubling every 40 cycles: the base line follows a little, and is left behind. */
-static void test_leak_that_grows(void **state)
+TEST(test_leak_that_grows)
 {
-  (void)state;
   struct film film = healthy;
   film.grows_per_s = log(2) / 80;
   struct outcome out = play(SQUARE, &film, 1000);
@@ -184,9 +180,8 @@ static void test_leak_that_grows(void **state)
 
 /* Ever so slowly: ageing is followed to twice the first base line, and ends at twice that, far
  * below the fixed limit; whoever grows more slowly is found at the same current. */
-static void test_drift_hides_no_fault(void **state)
+TEST(test_drift_hides_no_fault)
 {
-  (void)state;
   for (int k = 1; k <= 4; k *= 2) {
     struct film film = healthy;
     film.grows_per_s = log(2) / (2000 * k); // a thousand cycles and more
@@ -201,9 +196,8 @@ static void test_drift_hides_no_fault(void **state)
 
 /* A film that fails while the base line is learned, one that leaks half of what is allowed at all,
  * and one whose current is nothing but noise. */
-static void test_learning_on_a_bad_film(void **state)
+TEST(test_learning_on_a_bad_film)
 {
-  (void)state;
   struct film film = healthy;
   film.grows_per_s = log(6) / 16; // six times as much after the first eight cycles
   struct outcome out = play(SQUARE, &film, 100);
@@ -228,9 +222,8 @@ static void test_learning_on_a_bad_film(void **state)
 }
 
 /* What does not repeat has no base line, and charging it is no fault. */
-static void test_what_does_not_repeat(void **state)
+TEST(test_what_does_not_repeat)
 {
-  (void)state;
   static const char ramp[] =
       BENCH "sequence:\n"
             "  - {waveform: {kind: ramp, to: 2 kV, duration: 100 s}}\n"
@@ -253,9 +246,8 @@ static void test_what_does_not_repeat(void **state)
 
 /* The paper's staircase of 15 cycles at each voltage: each has its base line, and the next voltage,
  * at which more leaks, is no rise; ten times as much in the middle of the last ones is. */
-static void test_staircase(void **state)
+TEST(test_staircase)
 {
-  (void)state;
   static const char stairs[] =
       BENCH "waveform: {kind: staircase, values: [0.5 kV, 1 kV, 2 kV], frequency: 0.5 Hz, cycles: "
             "15}\n";
@@ -279,9 +271,8 @@ static void test_staircase(void **state)
 }
 
 /* The watch of a drive: what it notices, and that the fixed limit holds before and after. */
-static void test_fixed_limit_stays(void **state)
+TEST(test_fixed_limit_stays)
 {
-  (void)state;
   static struct dea_drive_watch w;
   struct dea_protocol *p = good_protocol(ctx, SQUARE);
   for (int k = 0; k < 2; k++) {
@@ -306,9 +297,8 @@ static void test_fixed_limit_stays(void **state)
 
 /* Two weeks of a life test of a slow triangle, a sample a tenth of a second: an ageing film is none
  * that fails, and one that begins to in the last week is found on that day. */
-static void test_weeks(void **state)
+TEST(test_weeks)
 {
-  (void)state;
   static const char life[] =
       "dea-protocol: 1\n" PROTOCOL_AMPLIFIER "safety: {trip_current: 1 mA, trip_time: 0.1 s}\n"
       "rate: 10 Hz\n"
@@ -325,19 +315,4 @@ static void test_weeks(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_is_learned),
-      cmocka_unit_test(test_healthy_films),
-      cmocka_unit_test(test_step),
-      cmocka_unit_test(test_leak_that_grows),
-      cmocka_unit_test(test_drift_hides_no_fault),
-      cmocka_unit_test(test_learning_on_a_bad_film),
-      cmocka_unit_test(test_what_does_not_repeat),
-      cmocka_unit_test(test_staircase),
-      cmocka_unit_test(test_fixed_limit_stays),
-      cmocka_unit_test(test_weeks),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -44,9 +44,8 @@ static void begin(struct line_supply *s, const char *waveform, const char *more)
 }
 
 /* Asked for between two pulses: the program that plays them ends, and no pulse comes any more. */
-static void test_zero_between_pulses(void **state)
+TEST(test_zero_between_pulses)
 {
-  (void)state;
   static struct line_supply s;
   begin(&s, pulses, PATIENT ", interval: 60 s");
   pid_t child = shvps_arm("pulses.h5");
@@ -65,9 +64,8 @@ static void test_zero_between_pulses(void **state)
 }
 
 /* On its way up: along its own ramp, and no command before the last one was answered. */
-static void test_zero_while_it_plays(void **state)
+TEST(test_zero_while_it_plays)
 {
-  (void)state;
   static struct line_supply s;
   begin(&s, triangle, PATIENT);
   pid_t child = shvps_arm("up.h5");
@@ -84,9 +82,8 @@ static void test_zero_while_it_plays(void **state)
 }
 
 /* The guard of a program that was killed, and two at once who want 0 V: one after the other. */
-static void test_guard_and_zero_take_turns(void **state)
+TEST(test_guard_and_zero_take_turns)
 {
-  (void)state;
   static struct line_supply s;
   begin(&s, triangle, PATIENT);
   pid_t child = shvps_arm("killed.h5");
@@ -107,9 +104,8 @@ static void test_guard_and_zero_take_turns(void **state)
 
 /* A guard that cannot believe what answers, as the supply was switched off and on, gives it to
  * somebody who has looked, and goes. */
-static void test_guard_gives_the_supply_away(void **state)
+TEST(test_guard_gives_the_supply_away)
 {
-  (void)state;
   static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
   static struct line_supply s;
   begin(&s, triangle, PATIENT);
@@ -138,9 +134,8 @@ static void test_guard_gives_the_supply_away(void **state)
 
 /* One that is stopped, and whose guard waits for long, goes on one day: 0 V is commanded, and
  * nothing is said to be at 0 V. */
-static void test_zero_beside_a_stopped_program(void **state)
+TEST(test_zero_beside_a_stopped_program)
 {
-  (void)state;
   static struct line_supply s;
   shvps_safety = "zero_time: 1 s, guard_time: 2 s, longest_ramp: 1 s";
   begin(&s, triangle, PATIENT ", interval: 60 s");
@@ -165,9 +160,8 @@ static void test_zero_beside_a_stopped_program(void **state)
 }
 
 /* Another name of the same line is another supply to who knows only names. */
-static void test_two_names_of_one_line(void **state)
+TEST(test_two_names_of_one_line)
 {
-  (void)state;
   static struct line_supply s;
   char folder[] = "/tmp/dea-line-XXXXXX", link[64], in_use[64];
   begin(&s, triangle, PATIENT);
@@ -195,13 +189,5 @@ static void test_two_names_of_one_line(void **state)
 int main(void)
 {
   shvps_safety = patient;
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_zero_between_pulses),
-      cmocka_unit_test(test_zero_while_it_plays),
-      cmocka_unit_test(test_guard_and_zero_take_turns),
-      cmocka_unit_test(test_guard_gives_the_supply_away),
-      cmocka_unit_test(test_zero_beside_a_stopped_program),
-      cmocka_unit_test(test_two_names_of_one_line),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
+  return run_all(command_set_up, supply_tear_down);
 }

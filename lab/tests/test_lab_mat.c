@@ -22,9 +22,8 @@ static void fill(void)
   values[8] = -INFINITY;
 }
 
-static void test_octave_reads_version_5(void **state)
+TEST(test_octave_reads_version_5)
 {
-  (void)state;
   fill();
   double rate = 1e4;
   const struct dea_mat_variable variables[] = {
@@ -46,9 +45,8 @@ static void test_octave_reads_version_5(void **state)
          "assert(isempty(empty) && ischar(empty))");
 }
 
-static void test_same_bytes(void **state)
+TEST(test_same_bytes)
 {
-  (void)state;
   char a[8192], b[8192];
   const struct dea_mat_variable variable = {.name = "t", .values = values, .count = 100};
   for (int i = 0; i < 2; i++) {
@@ -61,9 +59,8 @@ static void test_same_bytes(void **state)
   assert_memory_equal(a, b, 900);
 }
 
-static void test_names(void **state)
+TEST(test_names)
 {
-  (void)state;
   // the last one has 64 letters
   static const char *const bad[] = {
       "",    "1st", "_a",
@@ -76,17 +73,15 @@ static void test_names(void **state)
   }
 }
 
-static void test_too_large(void **state)
+TEST(test_too_large)
 {
-  (void)state;
   const struct dea_mat_variable variable = {.name = "v", .values = values, .count = 268435456};
   assert_int_equal(dea_mat_write(ctx, in_folder("v.mat"), &variable, 1, DEA_MAT_5), DEA_E_ARGUMENT);
   assert_non_null(strstr(dea_context_message(ctx), "7.3"));
 }
 
-static void test_no_place(void **state)
+TEST(test_no_place)
 {
-  (void)state;
   const struct dea_mat_variable variable = {.name = "v", .values = values, .count = COUNT};
   for (enum dea_mat_version v = DEA_MAT_5; v <= DEA_MAT_73; v++) {
     assert_int_equal(dea_mat_write(ctx, in_folder("no/v.mat"), &variable, 1, v), DEA_E_IO);
@@ -126,9 +121,8 @@ static void copy_as(const char *from, const char *to, size_t most, const char *m
 }
 
 /* Known by their first bytes, whatever their name; version 4 by its name. */
-static void test_recognised(void **state)
+TEST(test_recognised)
 {
-  (void)state;
   size_t columns;
   const struct dea_mat_variable variables[] = {{.name = "t", .values = values, .count = 20},
                                                {.name = "v", .values = values, .count = 20}};
@@ -165,9 +159,8 @@ static void test_recognised(void **state)
 }
 
 /* libmatio takes what is cut off for the end of the file. */
-static void test_cut_off(void **state)
+TEST(test_cut_off)
 {
-  (void)state;
   size_t columns;
   const struct dea_mat_variable variables[] = {{.name = "t", .values = values, .count = 20},
                                                {.name = "v", .values = values, .count = 20}};
@@ -185,9 +178,8 @@ static void test_cut_off(void **state)
 }
 
 /* Files that made libmatio take gigabytes of memory: each is refused before. */
-static void test_claims(void **state)
+TEST(test_claims)
 {
-  (void)state;
   static const char *const names[] = {"version", "order", "opaque", "sparse", "sparse-alone"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     char file[512];
@@ -202,9 +194,8 @@ static void test_claims(void **state)
 
 /* What a file of version 7.3 names in another one, here a pipe that nobody writes to, is not
  * followed: libmatio would wait for it. */
-static void test_other_files(void **state)
+TEST(test_other_files)
 {
-  (void)state;
   size_t columns;
   const struct dea_mat_variable variable = {.name = "v", .values = values, .count = 20};
   fill();
@@ -221,9 +212,8 @@ static void test_other_files(void **state)
 
 /* A file of PicoScope: Tstart is the time of its first sample, before the trigger; beside a mapping
  * that gives the rate too. */
-static void test_start_before_the_trigger(void **state)
+TEST(test_start_before_the_trigger)
 {
-  (void)state;
   static const char *const maps[] = {
       "dea-import: 1\ncolumns:\n  - {column: A, as: voltage, per_unit: 1 kV}\n",
       "dea-import: 1\nrate: 500 Hz\ncolumns:\n  - {column: A, as: voltage, per_unit: 1 kV}\n"};
@@ -247,19 +237,4 @@ static void test_start_before_the_trigger(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_octave_reads_version_5),
-      cmocka_unit_test(test_same_bytes),
-      cmocka_unit_test(test_names),
-      cmocka_unit_test(test_too_large),
-      cmocka_unit_test(test_recognised),
-      cmocka_unit_test(test_cut_off),
-      cmocka_unit_test(test_claims),
-      cmocka_unit_test(test_no_place),
-      cmocka_unit_test(test_other_files),
-      cmocka_unit_test(test_start_before_the_trigger),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -15,9 +15,8 @@ static dea_status begin(struct daq_bench *b)
   return emulator_open(ctx, &b->protocol, b->text, &b->instrument);
 }
 
-static void test_plays_and_measures(void **state)
+TEST(test_plays_and_measures)
 {
-  (void)state;
   static struct daq_bench b;
   daq_bench_begin(&b, library);
   assert_int_equal(begin(&b), DEA_OK);
@@ -47,9 +46,8 @@ static void test_plays_and_measures(void **state)
   daq_bench_end(ctx, &b);
 }
 
-static void test_starts_with_first_sample(void **state)
+TEST(test_starts_with_first_sample)
 {
-  (void)state;
   static struct daq_bench b;
   static const double volts[300] = {1};
   daq_bench_begin(&b, library);
@@ -68,9 +66,8 @@ static void test_starts_with_first_sample(void **state)
   daq_bench_end(ctx, &b);
 }
 
-static void test_runs_dry(void **state)
+TEST(test_runs_dry)
 {
-  (void)state;
   static struct daq_bench b;
   double volts[100] = {0};
   daq_bench_begin(&b, library);
@@ -90,9 +87,8 @@ static void test_runs_dry(void **state)
   assert_close(b.fake->level_V, 0, 0, 0);
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   static const struct {
     const char *function, *message;
     int code;
@@ -135,9 +131,8 @@ static void test_errors(void **state)
   }
 }
 
-static void test_rate(void **state)
+TEST(test_rate)
 {
-  (void)state;
   static struct daq_bench b;
   daq_bench_begin(&b, library);
   b.fake->rate_factor = 1.0001;
@@ -146,9 +141,8 @@ static void test_rate(void **state)
   daq_bench_end(ctx, &b);
 }
 
-static void test_no_library(void **state)
+TEST(test_no_library)
 {
-  (void)state;
   struct dea_protocol protocol = {.rate_Hz.si = 1000};
   struct dea_instrument *instrument;
   daq_bench_allow();
@@ -162,22 +156,9 @@ static void test_no_library(void **state)
                  "NI-DAQmx has no function DAQmxCreateTask");
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   daq_bench_check_memory("nidaqmx", library);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays_and_measures),
-      cmocka_unit_test(test_starts_with_first_sample),
-      cmocka_unit_test(test_runs_dry),
-      cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_rate),
-      cmocka_unit_test(test_no_library),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

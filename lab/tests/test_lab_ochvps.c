@@ -54,9 +54,8 @@ static pid_t arm(void)
   return supply_begin(arguments);
 }
 
-static void test_plays(void **state)
+TEST(test_plays)
 {
-  (void)state;
   static struct line_supply s;
   s = (struct line_supply){0};
   begin(&s, "SM1 1 255 1 100 0 0 0");
@@ -73,9 +72,8 @@ static void test_plays(void **state)
   line_supply_stop(&s);
 }
 
-static void test_faults(void **state)
+TEST(test_faults)
 {
-  (void)state;
   static const struct {
     enum line_supply_fault fault;
     const char *message;
@@ -97,9 +95,8 @@ static void test_faults(void **state)
   }
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   static const char *const wrong[] = {"SHV 3000", "SM1 1 255\\rSHV 3000", "EStop"};
   static const char *const dry[] = {"drive", "p.yaml", NULL};
   static struct line_supply s;
@@ -119,12 +116,4 @@ static void test_refused(void **state)
   line_supply_stop(&s);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays),
-      cmocka_unit_test(test_faults),
-      cmocka_unit_test(test_refused),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
-}
+TESTS(command_set_up, supply_tear_down)

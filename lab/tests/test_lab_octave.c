@@ -44,9 +44,8 @@ static void check(const char *name, const char *v, const char *z)
   dea_table_destroy(ctx, table);
 }
 
-static void test_mat(void **state)
+TEST(test_mat)
 {
-  (void)state;
   octave(NUMBERS "data.v = v'; data.deep.z = z; save('-v6', 'six.mat', 't', 'data');"
                  "save('-v7', 'seven.mat', 't', 'data'); save('-v4', 'four.mat', 't', 'v', 'z')");
   numbers_back();
@@ -56,9 +55,8 @@ static void test_mat(void **state)
 }
 
 /* MATLAB's variables carry units in their names only. */
-static void test_mat_units(void **state)
+TEST(test_mat_units)
 {
-  (void)state;
   octave(NUMBERS
          "data.voltage_kV = v; z_um = [z z]; save('-v6', 'units.mat', 't', 'data', 'z_um')");
   numbers_back();
@@ -69,9 +67,8 @@ static void test_mat_units(void **state)
   dea_table_destroy(ctx, table);
 }
 
-static void test_mat_classes(void **state)
+TEST(test_mat_classes)
 {
-  (void)state;
   static const double i8[] = {-128, 127}, u16[] = {0, 65535}, b[] = {1, 0}, m1[] = {1, 3, 5},
                       m2[] = {2, 4, 6}, s[] = {0.5, -0.25}, i64[] = {-4503599627370497.0, 5};
   octave("a = int8([-128 127]); b = uint16([0; 65535]); c = [true false]; d = single([0.5 -0.25]);"
@@ -97,9 +94,8 @@ static void test_mat_classes(void **state)
 }
 
 /* HDF5 is in our library and once more below libmatio: both are used one after the other. */
-static void test_mat_73(void **state)
+TEST(test_mat_73)
 {
-  (void)state;
   const struct dea_mat_variable variables[] = {
       {.name = "t", .values = time_s, .count = COUNT},
       {.name = "v", .values = voltage, .count = COUNT},
@@ -138,9 +134,8 @@ static void test_mat_73(void **state)
   assert_true(is_said(DEA_NOTE, "'log' is an object"));
 }
 
-static void test_damaged_mat(void **state)
+TEST(test_damaged_mat)
 {
-  (void)state;
   static unsigned char bytes[1 << 16];
   octave(NUMBERS "save('-v6', 'whole.mat', 't', 'v')");
   FILE *file = fopen(in_folder("whole.mat"), "rb");
@@ -158,9 +153,8 @@ static void test_damaged_mat(void **state)
 }
 
 /* All digits of a double: 17 of them come back as they were. */
-static void test_csv(void **state)
+TEST(test_csv)
 {
-  (void)state;
   octave(NUMBERS "dlmwrite('semicolon.csv', [t v z], 'delimiter', ';', 'precision', '%.17g');"
                  "dlmwrite('tab.txt', [t v z], 'delimiter', '\\t', 'precision', '%.17g');"
                  "csvwrite('comma.csv', [t v z], 'precision', '%.17g');"
@@ -182,12 +176,4 @@ static void test_csv(void **state)
   dea_table_destroy(ctx, table);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_mat),         cmocka_unit_test(test_mat_units),
-      cmocka_unit_test(test_mat_classes), cmocka_unit_test(test_mat_73),
-      cmocka_unit_test(test_damaged_mat), cmocka_unit_test(test_csv),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -194,9 +194,8 @@ static struct cut make_cut(const char *file, int mode, unsigned seed)
   return cut;
 }
 
-static void test_power_cuts(void **state)
+TEST(test_power_cuts)
 {
-  (void)state;
   char file[700];
   size_t wrong = 0, broken = 0;
   record(in_folder("whole.h5"));
@@ -233,10 +232,9 @@ static void test_power_cuts(void **state)
 
 int main(int count, char **arguments)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_power_cuts)};
   cut_count = count > 1 ? (size_t)strtoul(arguments[1], NULL, 10) : cut_count;
   first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
   table_name = count > 3 ? arguments[3] : NULL;
   mode_count += count > 1 ? 1 : 0;
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return run_all(set_up, tear_down);
 }

@@ -20,9 +20,8 @@ static struct dea_protocol *read_example(const char *name)
 }
 
 /* The paper's measurement (section 3.2): 9 voltages, 15 cycles each, 0.5 Hz, half of it on. */
-static void test_cyclic_example(void **state)
+TEST(test_cyclic_example)
 {
-  (void)state;
   struct dea_protocol *p = read_example("cyclic.yaml");
   assert_close(dea_protocol_duration_s(p), 270, 0, 0);
   assert_int_equal(dea_protocol_cycles(p), 135);
@@ -60,9 +59,8 @@ static void test_cyclic_example(void **state)
   "  - {waveform: {kind: chirp, mean: 1 kV, amplitude: 500 V, from: 1 Hz, to: 9 Hz, duration: 2 "  \
   "s}}\n"
 
-static void test_steps_follow_each_other(void **state)
+TEST(test_steps_follow_each_other)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(ctx, TWO_STEPS);
   double each = 3 / 0.7, second = 4 * each + 2;
   struct dea_recorded_cycle cycle;
@@ -89,9 +87,8 @@ static void test_steps_follow_each_other(void **state)
 }
 
 /* Corners rise, are all there, and the value at each is that after it. */
-static void test_corners(void **state)
+TEST(test_corners)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(
       ctx, PROTOCOL_HEAD "sequence: [{waveform: {kind: square, high: 3 kV, frequency: 0.3 Hz, "
                          "duty: 37 %, cycles: 7}, repeat: 1000, pause: 1 s}]\n");
@@ -110,9 +107,8 @@ static void test_corners(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-static void test_waveform_alone_and_overrides(void **state)
+TEST(test_waveform_alone_and_overrides)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(
       ctx, PROTOCOL_HEAD "waveform: {kind: sine, amplitude: 2 kV, frequency: 5 Hz}\n");
   assert_int_equal(p->step_count, 1);
@@ -130,9 +126,8 @@ static void test_waveform_alone_and_overrides(void **state)
 #define SQUARE "waveform: {kind: square, high: 3 kV, frequency: 1 Hz}\n"
 
 /* What is wrong in a file, a part of what is said, and where. */
-static void test_errors_have_places(void **state)
+TEST(test_errors_have_places)
 {
-  (void)state;
   static const struct {
     const char *text, *part;
     size_t line, column;
@@ -200,9 +195,8 @@ static void test_errors_have_places(void **state)
 }
 
 /* Errors beyond those that are kept still end the reading: nothing is made of what is left out. */
-static void test_many_errors(void **state)
+TEST(test_many_errors)
 {
-  (void)state;
   struct dea_text text = {.ctx = ctx};
   struct dea_protocol *p;
   dea_finding_clear(ctx);
@@ -220,9 +214,8 @@ static void test_many_errors(void **state)
 }
 
 /* Errors of the design stand in the design, and the protocol is not read. */
-static void test_wrong_design(void **state)
+TEST(test_wrong_design)
 {
-  (void)state;
   struct dea_protocol *p;
   dea_finding_clear(ctx);
   write_in_folder("design.yaml", "dea: 1\nfilm: {material: x}\n");
@@ -237,9 +230,8 @@ static void test_wrong_design(void **state)
                    DEA_E_IO);
 }
 
-static void test_channels(void **state)
+TEST(test_channels)
 {
-  (void)state;
   struct dea_protocol *p = good_protocol(
       ctx, PROTOCOL_HEAD SQUARE
       "channels:\n"
@@ -269,25 +261,10 @@ static dea_status read_two_steps(struct dea_context *context)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   dea_protocol_destroy(ctx, good_protocol(ctx, TWO_STEPS));
   assert_true(failing_ends(read_two_steps, DEA_OK) > 10); // there was something to fail
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cyclic_example),
-      cmocka_unit_test(test_steps_follow_each_other),
-      cmocka_unit_test(test_corners),
-      cmocka_unit_test(test_waveform_alone_and_overrides),
-      cmocka_unit_test(test_errors_have_places),
-      cmocka_unit_test(test_many_errors),
-      cmocka_unit_test(test_wrong_design),
-      cmocka_unit_test(test_channels),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

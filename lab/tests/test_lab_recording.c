@@ -4,9 +4,8 @@
 
 #include <string.h>
 
-static void test_recording_comes_back_as_it_was(void **state)
+TEST(test_recording_comes_back_as_it_was)
 {
-  (void)state;
   for (int plain = 0; plain < 2; plain++) {
     make("whole.h5", plain, 200, NULL);
     struct dea_recording *recording = must_read("whole.h5");
@@ -24,9 +23,8 @@ static void test_recording_comes_back_as_it_was(void **state)
   }
 }
 
-static void test_index_of_a_time(void **state)
+TEST(test_index_of_a_time)
 {
-  (void)state;
   double times[] = {1, 2, 2.5, 7};
   struct dea_channel channel = {.start_s = 10, .interval_s = 0.5, .count = 4};
   assert_int_equal(dea_channel_index(&channel, 9), 0);
@@ -39,9 +37,8 @@ static void test_index_of_a_time(void **state)
   assert_int_equal(dea_channel_index(&channel, 2.6), 3);
 }
 
-static void test_early_end_is_told(void **state)
+TEST(test_early_end_is_told)
 {
-  (void)state;
   make("early.h5", false, 3, "the current was above 200 uA");
   struct dea_recording *recording = must_read("early.h5");
   assert_false(recording->complete);
@@ -63,9 +60,8 @@ static void test_early_end_is_told(void **state)
 }
 
 /* Programs with HDF5 1.8 read what has the first superblock. */
-static void test_copy_is_of_the_old_format(void **state)
+TEST(test_copy_is_of_the_old_format)
 {
-  (void)state;
   unsigned char head[9] = {0};
   make("plain.h5", true, 1, NULL);
   FILE *file = fopen(in_folder("plain.h5"), "rb");
@@ -76,9 +72,8 @@ static void test_copy_is_of_the_old_format(void **state)
 }
 
 /* What a reader in another program sees while the file is being written. */
-static void test_reading_while_recording(void **state)
+TEST(test_reading_while_recording)
 {
-  (void)state;
   struct dea_recorder *recorder;
   char command[1500];
   assert_int_equal(sample_create(ctx, in_folder("live.h5"), false, 100, &recorder), DEA_OK);
@@ -94,9 +89,8 @@ static void test_reading_while_recording(void **state)
   assert_int_equal(dea_recorder_finish(recorder, NULL), DEA_OK);
 }
 
-static void test_wrong_calls_are_refused_and_harm_nothing(void **state)
+TEST(test_wrong_calls_are_refused_and_harm_nothing)
 {
-  (void)state;
   struct dea_recorder *recorder, *second;
   const double zero = 0;
   assert_int_equal(sample_create(ctx, in_folder("calls.h5"), false, 0, &recorder), DEA_OK);
@@ -116,9 +110,8 @@ static void test_wrong_calls_are_refused_and_harm_nothing(void **state)
   dea_recording_destroy(ctx, recording);
 }
 
-static void test_names_and_options(void **state)
+TEST(test_names_and_options)
 {
-  (void)state;
   struct dea_recorder_channel channels[] = {{"a/b", DEA_CHANNEL_OTHER, "", 0, 1, NAN, 0, 0},
                                             {"a_b", DEA_CHANNEL_OTHER, "1/s", 0, 1, NAN, 0, 0},
                                             {".", DEA_CHANNEL_OTHER, NULL, 0, 1, NAN, 0, 0},
@@ -239,9 +232,8 @@ static void make_foreign(const char *name, const struct foreign *f)
   H5Fclose(file);
 }
 
-static void test_of_other_programs(void **state)
+TEST(test_of_other_programs)
 {
-  (void)state;
   const struct foreign read[] = {{true, true, false, H5T_IEEE_F64LE, "V", ""},
                                  {true, false, true, H5T_IEEE_F64LE, "V", ""},
                                  {false, false, false, H5T_IEEE_F32BE, "V", ""},
@@ -286,17 +278,4 @@ static void test_of_other_programs(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(test_recording_comes_back_as_it_was, nothing_open),
-      cmocka_unit_test_teardown(test_index_of_a_time, nothing_open),
-      cmocka_unit_test_teardown(test_early_end_is_told, nothing_open),
-      cmocka_unit_test_teardown(test_copy_is_of_the_old_format, nothing_open),
-      cmocka_unit_test_teardown(test_reading_while_recording, nothing_open),
-      cmocka_unit_test_teardown(test_wrong_calls_are_refused_and_harm_nothing, nothing_open),
-      cmocka_unit_test_teardown(test_names_and_options, nothing_open),
-      cmocka_unit_test_teardown(test_of_other_programs, nothing_open),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_EACH(set_up, tear_down, NULL, nothing_open)

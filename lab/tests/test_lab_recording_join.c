@@ -54,9 +54,8 @@ static struct dea_recording *laser_new(void)
 }
 
 /* All that was in the second is on the first one's clock, also after it was written and read. */
-static void test_on_one_clock(void **state)
+TEST(test_on_one_clock)
 {
-  (void)state;
   make("drive.h5", false, CYCLES, NULL);
   struct dea_recording *drive = must_read("drive.h5"), *laser = laser_new();
   assert_int_equal(dea_recording_join(ctx, drive, laser, after_s), DEA_OK);
@@ -92,9 +91,8 @@ static void test_on_one_clock(void **state)
 
 /* What the first one lacks comes from the second: profiles, cycles, texts; a killed part makes the
  * whole one that was. */
-static void test_what_the_first_lacks(void **state)
+TEST(test_what_the_first_lacks)
 {
-  (void)state;
   make("early.h5", false, CYCLES, "the current was above 200 uA");
   struct dea_recording *laser = laser_new(), *drive = must_read("early.h5");
   const double start_s = drive->cycles[0].start_s, frame_s = drive->profiles.time_s[1];
@@ -114,9 +112,8 @@ static void test_what_the_first_lacks(void **state)
 
 /* Channels that happen to have the same clock keep their lengths, also of a drive that ended early.
  */
-static void test_other_lengths(void **state)
+TEST(test_other_lengths)
 {
-  (void)state;
   enum { MANY = 5000 };
   make("early.h5", false, CYCLES, "the current was above 200 uA");
   struct dea_recording *drive = must_read("early.h5"), *laser = laser_new();
@@ -151,9 +148,8 @@ static void assert_refused(struct dea_recording *recording, struct dea_recording
   assert_int_not_equal(other->channel_count, 0);
 }
 
-static void test_what_cannot_be_joined(void **state)
+TEST(test_what_cannot_be_joined)
 {
-  (void)state;
   make("a.h5", false, CYCLES, NULL);
   struct dea_recording *a = must_read("a.h5"), *b = must_read("a.h5"), *laser = laser_new();
   assert_refused(a, b, "both have profiles");
@@ -192,20 +188,9 @@ static dea_status join_two(struct dea_context *own)
   return status;
 }
 
-static void test_without_memory(void **state)
+TEST(test_without_memory)
 {
-  (void)state;
   assert_true(failing_ends(join_two, DEA_OK) > 10);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test_teardown(test_on_one_clock, nothing_open),
-      cmocka_unit_test_teardown(test_what_the_first_lacks, nothing_open),
-      cmocka_unit_test_teardown(test_other_lengths, nothing_open),
-      cmocka_unit_test_teardown(test_what_cannot_be_joined, nothing_open),
-      cmocka_unit_test_teardown(test_without_memory, nothing_open),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS_EACH(set_up, tear_down, NULL, nothing_open)

@@ -32,21 +32,18 @@ static void pulls_of(double rho, const char *what)
   signal_check_pulls(name, &level);
 }
 
-static void test_uncertainty_of_independent_samples(void **state)
+TEST(test_uncertainty_of_independent_samples)
 {
-  (void)state;
   pulls_of(0.0, "independent");
 }
 
-static void test_uncertainty_of_correlated_samples(void **state)
+TEST(test_uncertainty_of_correlated_samples)
 {
-  (void)state;
   pulls_of(0.7, "correlated");
 }
 
-static void test_uncertainty_of_profiles(void **state)
+TEST(test_uncertainty_of_profiles)
 {
-  (void)state;
   struct signal_pulls centre = {0}, tip = {0};
   struct signal_bench b = line_laser();
   struct dea_reduce_options options = plain;
@@ -72,9 +69,8 @@ static void test_uncertainty_of_profiles(void **state)
 
 // The frame --------------------------------------------------------------------------------------
 
-static void test_frame_is_found_and_taken_off(void **state)
+TEST(test_frame_is_found_and_taken_off)
 {
-  (void)state;
   struct signal_bench b = line_laser();
   b.points = 800;
   for (int known = 0; known < 2; known++) {
@@ -107,9 +103,8 @@ static void test_frame_is_found_and_taken_off(void **state)
 }
 
 /* Frames that lie higher and lower in turn, by as much: the scatter of their offsets. */
-static void test_scatter_of_the_frames(void **state)
+TEST(test_scatter_of_the_frames)
 {
-  (void)state;
   struct signal_bench b = line_laser();
   b.point_sigma = b.common_sigma = b.drift_per_s = b.outliers = b.lost = 0.0;
   struct dea_reduce_options options = plain;
@@ -133,9 +128,8 @@ static void test_scatter_of_the_frames(void **state)
   signal_free(&r);
 }
 
-static void test_line_beside_the_centre_is_said(void **state)
+TEST(test_line_beside_the_centre_is_said)
 {
-  (void)state;
   struct signal_bench b = line_laser();
   struct dea_reduce_options options = plain;
   b.film_m = 14e-3; // a chord of a film of 15 mm
@@ -148,9 +142,8 @@ static void test_line_beside_the_centre_is_said(void **state)
   signal_free(&r);
 }
 
-static void test_without_frame_the_outer_film_levels(void **state)
+TEST(test_without_frame_the_outer_film_levels)
 {
-  (void)state;
   struct signal_bench b = line_laser();
   b.framed = false;
   b.drift_per_s = 0.0;
@@ -169,9 +162,8 @@ static void test_without_frame_the_outer_film_levels(void **state)
   signal_free(&r);
 }
 
-static void test_shape(void **state)
+TEST(test_shape)
 {
-  (void)state;
   const double cones[] = {0.0, 0.5, 1.0};
   for (int k = 0; k < 3; k++) {
     struct signal_bench b = line_laser();
@@ -212,9 +204,8 @@ static void check_levels(const struct signal_bench *b, const struct dea_reductio
   }
 }
 
-static void test_levels_with_and_without_a_list(void **state)
+TEST(test_levels_with_and_without_a_list)
 {
-  (void)state;
   for (int k = 0; k < 4; k++) {
     struct signal_bench b = signal_bench_plain();
     b.level_count = 8;
@@ -243,9 +234,8 @@ static void test_levels_with_and_without_a_list(void **state)
 }
 
 /* A level of 0 V has no edges; its cycles are where the others have theirs. */
-static void test_cycles_at_rest(void **state)
+TEST(test_cycles_at_rest)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.level_count = 3;
   b.levels_V[0] = 0.0;
@@ -298,9 +288,8 @@ static double both_signs(double t)
   return fmod(t, 2.0) < 1.0 ? 0.0 : fmod(t, 4.0) < 2.0 ? 3000.0 : -3000.0;
 }
 
-static void test_other_waveforms(void **state)
+TEST(test_other_waveforms)
 {
-  (void)state;
   const struct {
     double (*voltage)(double);
     size_t levels, cycles;
@@ -330,9 +319,8 @@ static void test_other_waveforms(void **state)
 }
 
 /* Creep that goes on through the active part, and a rise between two samples. */
-static void test_creep_and_fast_rise(void **state)
+TEST(test_creep_and_fast_rise)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.displacement = true;
   b.tau_s = 1e-4;
@@ -352,9 +340,8 @@ static void test_creep_and_fast_rise(void **state)
 
 /* A displacement whose clock was put wrongly beside the voltage's is told, with how far it is off;
  * one that lags as films do is not. */
-static void test_clocks_that_do_not_agree(void **state)
+TEST(test_clocks_that_do_not_agree)
 {
-  (void)state;
   static const struct {
     double off_s;
     const char *said; // NULL: nothing
@@ -389,9 +376,8 @@ static void test_clocks_that_do_not_agree(void **state)
 
 /* A film of 4 ms behind a filter of 17 ms: the time is the filter's, which is said; one of its own
  * is not doubted. */
-static void test_rise_of_the_filter(void **state)
+TEST(test_rise_of_the_filter)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.rate_Hz = 2000.0;
   b.tau_s = 0.002;
@@ -413,23 +399,4 @@ static void test_rise_of_the_filter(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_uncertainty_of_independent_samples),
-      cmocka_unit_test(test_uncertainty_of_correlated_samples),
-      cmocka_unit_test(test_uncertainty_of_profiles),
-      cmocka_unit_test(test_frame_is_found_and_taken_off),
-      cmocka_unit_test(test_scatter_of_the_frames),
-      cmocka_unit_test(test_line_beside_the_centre_is_said),
-      cmocka_unit_test(test_without_frame_the_outer_film_levels),
-      cmocka_unit_test(test_shape),
-      cmocka_unit_test(test_levels_with_and_without_a_list),
-      cmocka_unit_test(test_cycles_at_rest),
-      cmocka_unit_test(test_other_waveforms),
-      cmocka_unit_test(test_creep_and_fast_rise),
-      cmocka_unit_test(test_clocks_that_do_not_agree),
-      cmocka_unit_test(test_rise_of_the_filter),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -5,9 +5,8 @@
 #include "lab_reduced.h"
 #include "reduce/output.h"
 
-static void test_clipped_sensor_is_said(void **state)
+TEST(test_clipped_sensor_is_said)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.displacement = true;
   b.sigma = 1e-6;
@@ -25,9 +24,8 @@ static void test_clipped_sensor_is_said(void **state)
 }
 
 /* Few frames in a part, and an outlier in one of them that no neighbour shows. */
-static void test_outlier_among_few_frames(void **state)
+TEST(test_outlier_among_few_frames)
 {
-  (void)state;
   struct signal_bench b = line_laser();
   b.frame_Hz = 20.0; // four are averaged
   b.cycles = 6;
@@ -55,9 +53,8 @@ static void test_outlier_among_few_frames(void **state)
 
 // Little or nothing ------------------------------------------------------------------------------
 
-static void test_without_voltage(void **state)
+TEST(test_without_voltage)
 {
-  (void)state;
   struct dea_recording r = {.file = "", .title = ""};
   struct dea_reduction *out;
   assert_int_equal(dea_reduce(ctx, &r, NULL, &out), DEA_E_IO);
@@ -65,9 +62,8 @@ static void test_without_voltage(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "no voltage"));
 }
 
-static void test_little(void **state)
+TEST(test_little)
 {
-  (void)state;
   const size_t counts[] = {1, 2, 3, 9, 50};
   for (size_t k = 0; k < 5; k++) {
     for (int what = 0; what < 4; what++) {
@@ -95,9 +91,8 @@ static void test_little(void **state)
 /* 4 samples a part: of the last fifth there is none, which is said; of the last 60 % two, which
  * tell no noise, so that the only cycle at 4 kV has no uncertainty of its own. In means.csv it has
  * that of the others, and they keep theirs. */
-static void test_few_samples_and_a_single_cycle(void **state)
+TEST(test_few_samples_and_a_single_cycle)
 {
-  (void)state;
   enum { CYCLES = 7, COUNT = 8 * CYCLES + 4 };
   static const double expected[][2] = {{2, 200}, {4, 800}};
   struct dea_recording r = two_channels(4.0, COUNT);
@@ -140,9 +135,8 @@ static void test_few_samples_and_a_single_cycle(void **state)
 
 /* The amplifier's input in place of what was asked, one of the other sign, and one that was not
  * used: the measured voltage tells the cycles, and no breakdown. */
-static void test_asked_voltage_of_something_else(void **state)
+TEST(test_asked_voltage_of_something_else)
 {
-  (void)state;
   static const double factors[] = {1.0, 1e-3, -1.0, 0.0};
   for (size_t k = 0; k < 4; k++) {
     struct signal_bench b = signal_bench_plain();
@@ -170,9 +164,8 @@ static void test_asked_voltage_of_something_else(void **state)
 }
 
 /* Of two lasers the first is reduced, and the other one named. */
-static void test_two_channels_of_one_kind(void **state)
+TEST(test_two_channels_of_one_kind)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.displacement = true;
   struct dea_recording r = signal_record(&b, 1);
@@ -188,9 +181,8 @@ static void test_two_channels_of_one_kind(void **state)
 }
 
 /* A breakdown whose voltage swings to the other side is one of the asked voltage. */
-static void test_breakdown_that_swings(void **state)
+TEST(test_breakdown_that_swings)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.voltage = true;
   struct dea_recording r = signal_record(&b, 1);
@@ -211,9 +203,8 @@ static void test_breakdown_that_swings(void **state)
 
 /* Ramps of 1 s to 1, 2, ... 5 kV on 500 pF: of low voltages much of the ramp is within what counts
  * as rest or as held, and the voltage at both ends of a window is that of its charge. */
-static void test_capacitance_by_slow_ramps(void **state)
+TEST(test_capacitance_by_slow_ramps)
 {
-  (void)state;
   enum { RATE = 500, LEVELS = 5, COUNT = RATE * (1 + 6 * LEVELS) };
   static const double film_F = 500e-12;
   struct dea_recording r = two_channels(RATE, COUNT);
@@ -240,9 +231,8 @@ static void test_capacitance_by_slow_ramps(void **state)
 
 /* Cycles at 0 V behind others, on for 1.5 of 2 s: their parts are those of the first one, whose
  * rest before it is longer than theirs. */
-static void test_quiet_cycles_behind_others(void **state)
+TEST(test_quiet_cycles_behind_others)
 {
-  (void)state;
   enum { RATE = 100, CYCLES = 8, COUNT = 28 * RATE };
   static struct dea_recorded_cycle list[CYCLES];
   struct dea_recording r = two_channels(RATE, COUNT);
@@ -272,9 +262,8 @@ static void test_quiet_cycles_behind_others(void **state)
 }
 
 /* A clock that counts from a moment days before: history.csv has every sample. */
-static void test_times_far_from_zero(void **state)
+TEST(test_times_far_from_zero)
 {
-  (void)state;
   struct signal_bench b = signal_bench_plain();
   b.displacement = b.voltage = true;
   struct dea_recording r = signal_record(&b, 1);
@@ -294,9 +283,8 @@ static void test_times_far_from_zero(void **state)
   signal_free(&r);
 }
 
-static void test_empty_profiles(void **state)
+TEST(test_empty_profiles)
 {
-  (void)state;
   for (int k = 0; k < 3; k++) {
     struct signal_bench b = line_laser();
     b.points = k == 1 ? 8 : 100;
@@ -328,9 +316,8 @@ static dea_status reduce_whole(struct dea_context *own)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   struct signal_bench b = line_laser();
   b.points = 100;
   b.frame_Hz = 10.0;
@@ -346,22 +333,4 @@ static void test_memory(void **state)
   signal_free(&whole);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_clipped_sensor_is_said),
-      cmocka_unit_test(test_outlier_among_few_frames),
-      cmocka_unit_test(test_without_voltage),
-      cmocka_unit_test(test_little),
-      cmocka_unit_test(test_few_samples_and_a_single_cycle),
-      cmocka_unit_test(test_asked_voltage_of_something_else),
-      cmocka_unit_test(test_quiet_cycles_behind_others),
-      cmocka_unit_test(test_breakdown_that_swings),
-      cmocka_unit_test(test_capacitance_by_slow_ramps),
-      cmocka_unit_test(test_two_channels_of_one_kind),
-      cmocka_unit_test(test_times_far_from_zero),
-      cmocka_unit_test(test_empty_profiles),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -12,9 +12,8 @@ static int by_value(const void *a, const void *b)
   return (x > y) - (x < y);
 }
 
-static void test_median_is_that_of_a_sorted_list(void **state)
+TEST(test_median_is_that_of_a_sorted_list)
 {
-  (void)state;
   uint64_t seed = 4;
   for (size_t n = 1; n < 60; n++) {
     double values[60], sorted[60];
@@ -33,9 +32,8 @@ static void test_median_is_that_of_a_sorted_list(void **state)
   assert_true(isnan(dea_median(holes + 3, 0)));
 }
 
-static void test_running_median(void **state)
+TEST(test_running_median)
 {
-  (void)state;
   enum { N = 97 };
   uint64_t seed = 9;
   double values[N], out[N];
@@ -56,9 +54,8 @@ static void test_running_median(void **state)
   }
 }
 
-static void test_spread_is_sigma_of_normal_noise(void **state)
+TEST(test_spread_is_sigma_of_normal_noise)
 {
-  (void)state;
   enum { N = 20000 };
   static double values[N];
   uint64_t seed = 1;
@@ -68,9 +65,8 @@ static void test_spread_is_sigma_of_normal_noise(void **state)
   assert_close(dea_spread(values, N, 5.0), 2.0, 0.2, 0.0); // and 2 within 2 % without those
 }
 
-static void test_filter_has_its_cutoff_and_no_delay(void **state)
+TEST(test_filter_has_its_cutoff_and_no_delay)
 {
-  (void)state;
   enum { N = 20000 };
   static double in[N], out[N];
   const double cutoff_Hz = 10.0, rate_Hz = 10000.0;
@@ -103,9 +99,8 @@ static void test_filter_has_its_cutoff_and_no_delay(void **state)
   assert_true(dea_filter_reach(0.0) == 0.0 && dea_filter_reach(NAN) == 0.0);
 }
 
-static void test_a_list_grows(void **state)
+TEST(test_a_list_grows)
 {
-  (void)state;
   size_t capacity = 0;
   size_t *list = NULL;
   for (size_t n = 0; n < 1000; n++) {
@@ -132,9 +127,8 @@ static double variance_of_mean(double rho, size_t n)
   return sum / (double)n;
 }
 
-static void test_noise_of_a_mean(void **state)
+TEST(test_noise_of_a_mean)
 {
-  (void)state;
   enum { N = 12000, SPANS = 60 };
   static double values[N];
   const double rhos[] = {0.0, 0.5, 0.9};
@@ -162,9 +156,8 @@ static void test_noise_of_a_mean(void **state)
 
 /* Of short windows the lines take much of the noise along; what they took is given back: means of
  * two neighbours, whose covariances are 1 and 1/2. */
-static void test_noise_in_short_windows(void **state)
+TEST(test_noise_in_short_windows)
 {
-  (void)state;
   enum { WINDOWS = 8000, EACH = 16, N = WINDOWS * EACH };
   static double values[N];
   static struct dea_span spans[WINDOWS];
@@ -190,9 +183,8 @@ static void test_noise_in_short_windows(void **state)
 
 // Edges ------------------------------------------------------------------------------------------
 
-static void test_edges_in_a_gap(void **state)
+TEST(test_edges_in_a_gap)
 {
-  (void)state;
   enum { N = 700 };
   static double x[N], z[N], work[3 * N];
   uint64_t seed = 5;
@@ -216,9 +208,8 @@ static void test_edges_in_a_gap(void **state)
 }
 
 /* A cable beside the film is a step too, but not at the frame's distance. */
-static void test_edges_beside_a_cable(void **state)
+TEST(test_edges_beside_a_cable)
 {
-  (void)state;
   enum { N = 700 };
   static double x[N], z[N], work[3 * N];
   uint64_t seed = 6;
@@ -272,18 +263,16 @@ static size_t discharges(const struct currents *c, struct dea_discharge **found,
   return count;
 }
 
-static void test_threshold_follows_the_number_of_samples(void **state)
+TEST(test_threshold_follows_the_number_of_samples)
 {
-  (void)state;
   for (size_t n = 1000; n <= 100000000; n *= 10) {
     double k = dea_discharge_threshold(n);
     assert_close((double)n * erfc(k / sqrt(2.0)), 0.1, 1e-6, 0.0);
   }
 }
 
-static void test_discharges_are_found(void **state)
+TEST(test_discharges_are_found)
 {
-  (void)state;
   static struct currents c;
   const double sigma = 20e-9;
   size_t others = 0;
@@ -322,9 +311,8 @@ static void test_discharges_are_found(void **state)
 
 /* Charging currents are no discharges: 4 false ones at most are expected of 40 recordings. A coarse
  * converter, in every fourth, adds none. */
-static void test_nothing_is_found_in_quiet(void **state)
+TEST(test_nothing_is_found_in_quiet)
 {
-  (void)state;
   static struct currents c;
   size_t all = 0;
   for (uint64_t seed = 1; seed <= 40; seed++) {
@@ -342,9 +330,8 @@ static void test_nothing_is_found_in_quiet(void **state)
 }
 
 /* Under a voltage that never rests the leakage is taken off the whole. */
-static void test_discharge_on_a_ramp(void **state)
+TEST(test_discharge_on_a_ramp)
 {
-  (void)state;
   static struct currents c;
   const double sigma = 20e-9;
   fill_currents(&c, sigma, 9);
@@ -364,9 +351,8 @@ static void test_discharge_on_a_ramp(void **state)
 }
 
 /* Slow ramps: what charges at their foot, within the tolerance of a plateau, is no discharge. */
-static void test_nothing_is_found_on_slow_ramps(void **state)
+TEST(test_nothing_is_found_on_slow_ramps)
 {
-  (void)state;
   static struct currents c;
   const double sigma = 2e-9, film_F = 300e-12, ramp_s = 0.3;
   for (uint64_t turn = 1; turn <= 8; turn++) {
@@ -392,9 +378,8 @@ static void test_nothing_is_found_on_slow_ramps(void **state)
   }
 }
 
-static void test_breakdown(void **state)
+TEST(test_breakdown)
 {
-  (void)state;
   static struct currents c;
   fill_currents(&c, 20e-9, 8);
   for (size_t k = (size_t)(13.4 * I_RATE); k < I_COUNT; k++) { // shorted from there on
@@ -419,9 +404,8 @@ static void test_breakdown(void **state)
 
 /* Seconds under voltage against those counted by hand: a square of 2 s, at rest every other second,
  * with a lost sample, the other sign, and an offset that a film idles at. */
-static void test_time_under_voltage(void **state)
+TEST(test_time_under_voltage)
 {
-  (void)state;
   double values[80];
   for (size_t i = 0; i < 80; i++) { // 10 Hz
     values[i] = i % 20 < 10 ? 0.0 : i < 40 ? 2000.0 : -2000.0;
@@ -450,9 +434,8 @@ static void test_time_under_voltage(void **state)
 
 /* A trapezoid on a film whose capacitance grows with the voltage, with leakage and a monitor that
  * is off: the charge between two equal ramps is that of the film alone. */
-static void test_charge_between_equal_ramps(void **state)
+TEST(test_charge_between_equal_ramps)
 {
-  (void)state;
   enum { RATE = 1000, COUNT = 4000 };
   static const double C0_F = 30e-12, grows_per_V2 = 2e-8, high_V = 3000, leak_ohm = 1e12;
   static double volts[COUNT], amperes[COUNT];
@@ -488,9 +471,8 @@ static void test_charge_between_equal_ramps(void **state)
 
 /* A cycle whose own charge is not known (a lost sample, an unequal ramp) takes what the capacitance
  * says of its voltage; without any the charge is not known. */
-static void test_charge_of_cycles_without_one(void **state)
+TEST(test_charge_of_cycles_without_one)
 {
-  (void)state;
   enum { RATE = 1000, COUNT = 6000 };
   static const double film_F = 30e-12, high_V = 3000;
   static double volts[COUNT], amperes[COUNT];
@@ -527,9 +509,8 @@ static void test_charge_of_cycles_without_one(void **state)
 }
 
 /* The stretch is told against the voltage nearest to 0, whatever its sign. */
-static void test_sensed_stretch_of_either_sign(void **state)
+TEST(test_sensed_stretch_of_either_sign)
 {
-  (void)state;
   for (int sign = -1; sign <= 1; sign += 2) {
     struct dea_reduced_cycle cycles[2] = {{.capacitance_F = 16e-12}, {.capacitance_F = 100e-12}};
     const size_t high = sign < 0 ? 0 : 1;
@@ -547,9 +528,8 @@ static void test_sensed_stretch_of_either_sign(void **state)
 }
 
 /* Steps of 50 V up to 6 kV, each below 1 % of that: no level spans more than 1 %. */
-static void test_small_steps_are_no_one_level(void **state)
+TEST(test_small_steps_are_no_one_level)
 {
-  (void)state;
   enum { STEPS = 120 };
   static struct dea_reduced_cycle cycles[STEPS];
   struct dea_voltage_level *levels;
@@ -567,9 +547,8 @@ static void test_small_steps_are_no_one_level(void **state)
 }
 
 /* Two pulses of 5 ms in two minutes, without noise: fewer samples than the quantiles look at. */
-static void test_rare_pulses(void **state)
+TEST(test_rare_pulses)
 {
-  (void)state;
   enum { COUNT = 120000 };
   static double volts[COUNT];
   for (size_t i = 0; i < 5; i++) {
@@ -586,9 +565,8 @@ static void test_rare_pulses(void **state)
   dea_free(ctx, list.parts);
 }
 
-static void test_rise_of_a_straight_line(void **state)
+TEST(test_rise_of_a_straight_line)
 {
-  (void)state;
   double values[40];
   struct dea_channel c = {.interval_s = 0.1, .values = values, .count = 40};
   for (size_t i = 0; i < 40; i++) { // 0 to 1 from 1.04 s to 2.04 s
@@ -609,31 +587,4 @@ static void test_rise_of_a_straight_line(void **state)
   assert_close(end_s, 1.1, 1e-12, 0.0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_median_is_that_of_a_sorted_list),
-      cmocka_unit_test(test_running_median),
-      cmocka_unit_test(test_spread_is_sigma_of_normal_noise),
-      cmocka_unit_test(test_filter_has_its_cutoff_and_no_delay),
-      cmocka_unit_test(test_a_list_grows),
-      cmocka_unit_test(test_noise_of_a_mean),
-      cmocka_unit_test(test_noise_in_short_windows),
-      cmocka_unit_test(test_edges_in_a_gap),
-      cmocka_unit_test(test_edges_beside_a_cable),
-      cmocka_unit_test(test_threshold_follows_the_number_of_samples),
-      cmocka_unit_test(test_discharges_are_found),
-      cmocka_unit_test(test_nothing_is_found_in_quiet),
-      cmocka_unit_test(test_discharge_on_a_ramp),
-      cmocka_unit_test(test_nothing_is_found_on_slow_ramps),
-      cmocka_unit_test(test_breakdown),
-      cmocka_unit_test(test_time_under_voltage),
-      cmocka_unit_test(test_charge_between_equal_ramps),
-      cmocka_unit_test(test_charge_of_cycles_without_one),
-      cmocka_unit_test(test_sensed_stretch_of_either_sign),
-      cmocka_unit_test(test_small_steps_are_no_one_level),
-      cmocka_unit_test(test_rare_pulses),
-      cmocka_unit_test(test_rise_of_a_straight_line),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

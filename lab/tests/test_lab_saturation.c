@@ -9,9 +9,8 @@
 #include "reduce/reduce.h"
 
 /* The laser shows +-1.5 mm; the film moves 0.5, 1.1 and 1.6 mm. */
-static void test_too_small_range(void **state)
+TEST(test_too_small_range)
 {
-  (void)state;
   static const struct dea_override sets[] = {
       {"sequence", "[{waveform: {kind: staircase, from: 0 kV, to: 3 kV, step: 1 kV, cycles: 3, "
                    "frequency: 2 Hz}}]"},
@@ -52,8 +51,4 @@ static void test_too_small_range(void **state)
   dea_protocol_destroy(ctx, protocol);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_too_small_range)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

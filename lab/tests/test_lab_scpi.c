@@ -130,9 +130,8 @@ static void end(struct bench *b)
   emulator_stop(&b->emulator);
 }
 
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
-  (void)state;
   static const struct {
     const char *text;
     double value; // NAN: no number
@@ -187,9 +186,8 @@ static void test_numbers(void **state)
   }
 }
 
-static void test_units_behind_numbers(void **state)
+TEST(test_units_behind_numbers)
 {
-  (void)state;
   static const char *const units[][2] = {{" +10.000 nA", "+10.000 nA"},
                                          {"1E-9NADC,+3secs", "1E-9 A"},
                                          {"-2.5E+3VDC", "-2.5E+3 V"},
@@ -208,9 +206,8 @@ static void test_units_behind_numbers(void **state)
   }
 }
 
-static void test_voltages_and_errors(void **state)
+TEST(test_voltages_and_errors)
 {
-  (void)state;
   static const struct {
     const char *text;
     double in_V, in_kV; // NAN: no voltage
@@ -254,9 +251,8 @@ static void test_voltages_and_errors(void **state)
   assert_false(dea_scpi_error("1e30,\"x\"", &code, &text));
 }
 
-static void test_reads(void **state)
+TEST(test_reads)
 {
-  (void)state;
   static struct bench b;
   static const size_t fragments[] = {0, 1, 2, 5};
   for (size_t f = 0; f < sizeof fragments / sizeof fragments[0]; f++) {
@@ -285,9 +281,8 @@ static void test_reads(void **state)
   }
 }
 
-static void test_plays(void **state)
+TEST(test_plays)
 {
-  (void)state;
   static const char plays[] =
       "kind: scpi\naddress: 127.0.0.1\nport: %d\ntimeout: 5 s\n"
       "output: \"SOUR:VOLT %%g\"\noutput_factor: 2\noutput_interval: 40 ms\nqueue: 0.2 s\n";
@@ -323,9 +318,8 @@ static void test_plays(void **state)
                            "SOUR:VOLT 0\n*OPC?\n");
 }
 
-static void test_makes_no_sense(void **state)
+TEST(test_makes_no_sense)
 {
-  (void)state;
   static struct bench b;
   static char long_line[5000];
   memset(long_line, 'x', sizeof long_line - 1);
@@ -352,9 +346,8 @@ static void test_makes_no_sense(void **state)
 /* An answer is one number with a unit that fits, converted to SI. At first anything else ends the
  * measurement with what to write; later, when a range changes or a display says that it is at its
  * end, the value is left out. */
-static void test_units_and_fields(void **state)
+TEST(test_units_and_fields)
 {
-  (void)state;
   static struct bench b;
   static const char amps[] = READS_CURRENT(", quantity: current"),
                     second[] = READS_CURRENT(", quantity: current, field: 2"),
@@ -430,9 +423,8 @@ static void test_units_and_fields(void **state)
 }
 
 /* More lines than one were asked for: none of them is taken, in whatever pieces they come. */
-static void test_speaks_unasked(void **state)
+TEST(test_speaks_unasked)
 {
-  (void)state;
   static struct bench b;
   static const char *const answers[] = {"1\r\n2\r\n\r\n3", "0\r2000"};
   struct behaviour behaviour = usual;
@@ -452,9 +444,8 @@ static void test_speaks_unasked(void **state)
   }
 }
 
-static void test_goes_silent(void **state)
+TEST(test_goes_silent)
 {
-  (void)state;
   static struct bench b;
   struct behaviour behaviour = usual;
   behaviour.current = NULL;
@@ -469,9 +460,8 @@ static void test_goes_silent(void **state)
   end(&b);
 }
 
-static void test_hangs_up(void **state)
+TEST(test_hangs_up)
 {
-  (void)state;
   static struct bench b;
   struct behaviour behaviour = usual;
   for (size_t n = 1; n <= strlen(usual.current); n++) {
@@ -485,9 +475,8 @@ static void test_hangs_up(void **state)
   }
 }
 
-static void test_not_there(void **state)
+TEST(test_not_there)
 {
-  (void)state;
   static struct bench b;
   memset(&b, 0, sizeof b);
   snprintf(b.text, sizeof b.text, reads, emulator_no_port());
@@ -499,9 +488,8 @@ static void test_not_there(void **state)
                  "is not known");
 }
 
-static void test_refuses(void **state)
+TEST(test_refuses)
 {
-  (void)state;
   static struct bench b;
   struct behaviour behaviour = usual;
   memset(&b, 0, sizeof b);
@@ -522,9 +510,8 @@ static void test_refuses(void **state)
   end(&b);
 }
 
-static void test_wrong_keys(void **state)
+TEST(test_wrong_keys)
 {
-  (void)state;
   static const struct {
     const char *text, *finding;
   } cases[] = {
@@ -585,9 +572,8 @@ static void test_wrong_keys(void **state)
 }
 
 /* What sets no voltage may be said: words of a generator, ranges, questions. */
-static void test_harmless_commands(void **state)
+TEST(test_harmless_commands)
 {
-  (void)state;
   static const char *const harmless[] = {
       "VOLT 0",         "VOLT? MAX", "MEAS:VOLT?", "VOLT:RANG 1000", "OUTP ON", "*RST",
       "VOLT:PROT 5000", "VOLT",      "APPL?",      "VOLT ON,(@0)",   "VOLT OFF"};
@@ -605,9 +591,8 @@ static void test_harmless_commands(void **state)
 }
 
 /* The computer's lid was closed for an hour: what is due by then is not caught up with. */
-static void test_computer_that_slept(void **state)
+TEST(test_computer_that_slept)
 {
-  (void)state;
   static const char plays[] = "kind: scpi\naddress: 127.0.0.1\nport: %d\noutput: VOLT %%g\n";
   static struct bench b;
   double volts[20] = {0}, held_V = NAN;
@@ -633,9 +618,8 @@ static void test_computer_that_slept(void **state)
 
 /* A supply that took nothing for 0.4 s, while the program waited for it: what became due meanwhile
  * is as late as after a stall. */
-static void test_late_samples(void **state)
+TEST(test_late_samples)
 {
-  (void)state;
   static const double volts[] = {0, 1, 2, 3, 4};
   struct dea_timed_output o = {.rate_Hz = 100, .queue_s = 0.25, .behind_s = 1};
   assert_int_equal(dea_timed_begin(ctx, &o), DEA_OK);
@@ -677,9 +661,8 @@ static double off_at(double frequency_Hz, double share, double late_s, double mo
 
 /* Off by more than 5 % for 5 s, also where only the top of a triangle is cut off, which
  * voltage_error does not see; late by less than half of `behind` is fine. */
-static void test_read_back_that_is_off(void **state)
+TEST(test_read_back_that_is_off)
 {
-  (void)state;
   for (double frequency_Hz = 0.02; frequency_Hz < 1; frequency_Hz *= 5) {
     assert_true(isinf(off_at(frequency_Hz, 1, 0, INFINITY)));
     assert_true(isinf(off_at(frequency_Hz, 1, 0.1, INFINITY)));
@@ -729,9 +712,8 @@ static double found_at(enum shape shape, double frequency_Hz, double share, doub
 
 /* Fast waveforms, where each voltage alone may be one that is a little late: twice the voltage, 0.4
  * times, none, and a cut-off are found all the same, and none where all is well. */
-static void test_wrong_outputs_of_fast_waveforms(void **state)
+TEST(test_wrong_outputs_of_fast_waveforms)
 {
-  (void)state;
   for (enum shape shape = SQUARE; shape <= TRIANGLE; shape++) {
     for (double frequency_Hz = 0.5; frequency_Hz < 3; frequency_Hz *= 2) {
       double good_s = found_at(shape, frequency_Hz, 1, INFINITY);
@@ -749,9 +731,8 @@ static void test_wrong_outputs_of_fast_waveforms(void **state)
 
 /* 0 V is believed of a meter that was seen to follow, and that has contradicted nothing since: not
  * of one that shows 0 V whatever is set, at first or from some moment on. */
-static void test_evidence_of_zero(void **state)
+TEST(test_evidence_of_zero)
 {
-  (void)state;
   for (int from = 0; from < 3; from++) { // never, always, after 4 s
     struct dea_evidence e = {.lag_s = 0.5, .error_V = 300, .share = 0.05, .zero_V = 20};
     assert_null(dea_evidence_doubt(&e)); // nothing was sent
@@ -771,9 +752,8 @@ static void test_evidence_of_zero(void **state)
 
 /* Short pulses, whose readings of 0 V a late output would explain: a meter that shows 0 V from some
  * moment on is not believed once it was looked at in a pulse, and an honest one is. */
-static void test_evidence_of_zero_in_pulses(void **state)
+TEST(test_evidence_of_zero_in_pulses)
 {
-  (void)state;
   for (int lies = 0; lies < 2; lies++) {
     struct dea_evidence e = {.lag_s = 0.5, .error_V = 300, .share = 0.05, .zero_V = 20};
     for (int i = 1; i < 1195; i++) {
@@ -807,9 +787,8 @@ static double wrong_at(double past_V, double now_V)
 }
 
 /* A supply that does not follow a jump, to 0 V for one, is found although nothing else is sent. */
-static void test_stays_where_it_was(void **state)
+TEST(test_stays_where_it_was)
 {
-  (void)state;
   assert_true(isinf(wrong_at(5000, 5000)));
   static const double to_V[] = {0, 1000, 6000, -5000};
   for (size_t i = 0; i < 4; i++) {
@@ -821,9 +800,8 @@ static void test_stays_where_it_was(void **state)
 
 /* A generator of Siglent or BK before an amplifier, set as a direct voltage: what it gets are
  * numbers in its own words, and off comes before 0 V. */
-static void test_generator(void **state)
+TEST(test_generator)
 {
-  (void)state;
   static const char generator[] =
       "kind: scpi\naddress: 127.0.0.1\nport: %d\nidentity: SDG\n"
       "setup: [\"C1:BSWV WVTP,DC,OFST,0\", \"C1:BTWV STPS,270\", \"C1:OUTP LOAD,HZ\", \"C1:OUTP "
@@ -879,9 +857,8 @@ static void work(struct dea_context *context)
 /* A supply that was opened by its name is brought to 0 V on a new connection where nobody knows
  * that name any more, or takes longer to say so than there is time: by itself, and by its guard.
  * One of which that is kept is found by it, and by its name where it is an old one. */
-static void test_name_that_nobody_knows(void **state)
+TEST(test_name_that_nobody_knows)
 {
-  (void)state;
   static struct bench b;
   static const char plays[] =
       "kind: scpi\naddress: localhost\nport: %d\ntimeout: 5 s\noutput: \"SOUR:VOLT %%g\"\n"
@@ -928,9 +905,8 @@ static void test_name_that_nobody_knows(void **state)
   end(&b);
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   struct bench *b = &memory_bench;
   b->behaviour = usual;
   emulator_start(&b->emulator, serve, &b->behaviour);
@@ -940,33 +916,4 @@ static void test_memory(void **state)
   emulator_stop(&b->emulator);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_numbers),
-      cmocka_unit_test(test_units_behind_numbers),
-      cmocka_unit_test(test_voltages_and_errors),
-      cmocka_unit_test(test_reads),
-      cmocka_unit_test(test_read_back_that_is_off),
-      cmocka_unit_test(test_stays_where_it_was),
-      cmocka_unit_test(test_wrong_outputs_of_fast_waveforms),
-      cmocka_unit_test(test_evidence_of_zero),
-      cmocka_unit_test(test_evidence_of_zero_in_pulses),
-      cmocka_unit_test(test_late_samples),
-      cmocka_unit_test(test_plays),
-      cmocka_unit_test(test_makes_no_sense),
-      cmocka_unit_test(test_harmless_commands),
-      cmocka_unit_test(test_computer_that_slept),
-      cmocka_unit_test(test_speaks_unasked),
-      cmocka_unit_test(test_goes_silent),
-      cmocka_unit_test(test_hangs_up),
-      cmocka_unit_test(test_not_there),
-      cmocka_unit_test(test_refuses),
-      cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_name_that_nobody_knows),
-      cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_units_and_fields),
-      cmocka_unit_test(test_generator),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -186,9 +186,8 @@ static void end(struct bench *b)
   }
 }
 
-static void test_keyence(void **state)
+TEST(test_keyence)
 {
-  (void)state;
   static const double laser[] = {1.2345e-3, -0.012e-3, NAN, NAN};
   for (size_t fragment = 0; fragment < 4; fragment++) {
     struct bench b = {.line.fragment = fragment, .line.settings = fragment == 1};
@@ -210,9 +209,8 @@ static void test_keyence(void **state)
   }
 }
 
-static void test_keyence_faults(void **state)
+TEST(test_keyence_faults)
 {
-  (void)state;
   struct bench b = {.line.fault = GARBAGE};
   assert_int_equal(begin(&b, keyence, keyence_run), DEA_OK);
   assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 12, 0, 0), DEA_OK);
@@ -252,9 +250,8 @@ static void test_keyence_faults(void **state)
 
 /* Value by value in their order, at times that differ from those at which they were measured by the
  * adapter's delay at most. */
-static void test_optoncdt(void **state)
+TEST(test_optoncdt)
 {
-  (void)state;
   struct bench b = {.line.rate_Hz = 750};
   assert_int_equal(begin(&b, optoncdt, optoncdt_run), DEA_OK);
   assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 256, 0, 0), DEA_OK);
@@ -276,9 +273,8 @@ static void test_optoncdt(void **state)
   end(&b);
 }
 
-static void test_optoncdt_faults(void **state)
+TEST(test_optoncdt_faults)
 {
-  (void)state;
   struct bench b = {.line.rate_Hz = 750, .line.fault = GARBAGE};
   assert_int_equal(begin(&b, optoncdt, optoncdt_run), DEA_OK);
   assert_int_equal(emulator_get(ctx, b.instrument, &b.sink, 400, 0, 0), DEA_OK);
@@ -300,9 +296,8 @@ static void test_optoncdt_faults(void **state)
 }
 
 /* Those behind a gap have the time at which they came, once a second has shown it. */
-static void test_optoncdt_gap(void **state)
+TEST(test_optoncdt_gap)
 {
-  (void)state;
   struct bench b = {.line.rate_Hz = 750, .line.fault = GAP};
   assert_int_equal(begin(&b, optoncdt, optoncdt_run), DEA_OK);
   static struct emulator_sink sink;
@@ -315,9 +310,8 @@ static void test_optoncdt_gap(void **state)
 }
 
 /* A line that another program left with another idea of it. */
-static void test_line_as_left(void **state)
+TEST(test_line_as_left)
 {
-  (void)state;
   struct line l = {0};
   struct dea_socket socket;
   struct termios termios;
@@ -341,9 +335,8 @@ static void test_line_as_left(void **state)
 }
 
 /* A line is one program's, whatever name it has. */
-static void test_line_in_use(void **state)
+TEST(test_line_in_use)
 {
-  (void)state;
   char in_use[64];
   struct bench b = {0}, second = {0};
   assert_int_equal(begin(&b, keyence, keyence_run), DEA_OK);
@@ -358,9 +351,8 @@ static void test_line_in_use(void **state)
   end(&b);
 }
 
-static void test_wrong_keys(void **state)
+TEST(test_wrong_keys)
 {
-  (void)state;
   static const struct {
     const char *section;
     dea_status status;
@@ -390,9 +382,8 @@ static void test_wrong_keys(void **state)
   }
 }
 
-static void test_asking(void **state)
+TEST(test_asking)
 {
-  (void)state;
   struct dea_asking a = {.count = 2, .interval_s = 1, .timeout_s = 5};
   double next_s;
   dea_asking_start(&a, 10);
@@ -405,14 +396,4 @@ static void test_asking(void **state)
   assert_false(dea_asking_next(&a, 14.5, &next_s));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_asking),       cmocka_unit_test(test_wrong_keys),
-      cmocka_unit_test(test_keyence),      cmocka_unit_test(test_keyence_faults),
-      cmocka_unit_test(test_optoncdt),     cmocka_unit_test(test_optoncdt_faults),
-      cmocka_unit_test(test_optoncdt_gap), cmocka_unit_test(test_line_as_left),
-      cmocka_unit_test(test_line_in_use),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

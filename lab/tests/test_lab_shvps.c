@@ -20,9 +20,8 @@ static void check_said(struct line_supply *s, int code)
 }
 
 /* In pieces of 1 to 3 bytes too: a triangle up to 2 kV, whose voltage the recording has. */
-static void test_plays(void **state)
+TEST(test_plays)
 {
-  (void)state;
   static const char plateau[] = // it may be slow, and is to be seen at the top
       "kind: square, high: 2 kV, rise_time: 1 s, frequency: 0.25 Hz, cycles: 1";
   static struct line_supply s;
@@ -54,9 +53,8 @@ struct fault_case {
 };
 
 /* Above 1 kV something happens; dea says so, and of the output only what is true. */
-static void test_faults(void **state)
+TEST(test_faults)
 {
-  (void)state;
   static const struct fault_case cases[] = {
       {LINE_SUPPLY_SLOW, "did not answer"},  {LINE_SUPPLY_HANGS, "did not answer"},
       {LINE_SUPPLY_LIES, "measures"},        {LINE_SUPPLY_STUCK, "measures"},
@@ -87,9 +85,8 @@ static void test_faults(void **state)
 
 /* A square wave whose supply stays at 2 kV when 0 V are set, where nothing else is sent for 10 s.
  */
-static void test_stuck_in_a_pause(void **state)
+TEST(test_stuck_in_a_pause)
 {
-  (void)state;
   static struct line_supply s;
   s = (struct line_supply){0};
   shvps_begin(&s);
@@ -121,9 +118,8 @@ static void answer_off(struct line_supply *s, const char *command, char out[LINE
 }
 
 /* It reads 8 % too much, on the ramp that this ends with too: that is begun once only. */
-static void test_ramp_of_one_that_is_off(void **state)
+TEST(test_ramp_of_one_that_is_off)
 {
-  (void)state;
   static struct line_supply s;
   s = (struct line_supply){.answer = answer_off, .error = "Err", .buffer = LINE_SUPPLY_BUFFER};
   line_supply_start(&s);
@@ -145,9 +141,8 @@ static void test_ramp_of_one_that_is_off(void **state)
 }
 
 /* Its reading stands at 0 V while the output moves: what it reads back at the end says nothing. */
-static void test_lie_from_the_start(void **state)
+TEST(test_lie_from_the_start)
 {
-  (void)state;
   static struct line_supply s;
   s = (struct line_supply){.slew_V_per_s = 500};
   shvps_begin(&s);
@@ -166,9 +161,8 @@ static void test_lie_from_the_start(void **state)
 
 /* Pulled out, and another supply at 0 V gets the name of its line: that says nothing of this one.
  */
-static void test_neighbour(void **state)
+TEST(test_neighbour)
 {
-  (void)state;
   static struct line_supply s, neighbour;
   s = neighbour = (struct line_supply){0};
   shvps_begin(&s);
@@ -205,9 +199,8 @@ static void put_at(const char *line, const char *device)
 
 /* The line's name is another supply's when the program is killed: neither its guard nor --zero take
  * the other one's 0 V for this one's; `--checked` says that somebody has looked. */
-static void test_neighbour_of_the_guard(void **state)
+TEST(test_neighbour_of_the_guard)
 {
-  (void)state;
   static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
   static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
   static struct line_supply s, neighbour;
@@ -251,9 +244,8 @@ static void test_neighbour_of_the_guard(void **state)
 
 /* One that hung was switched off and on: its mark is gone, so that --zero believes it only with
  * somebody's word that they have looked. */
-static void test_zero_after_a_new_beginning(void **state)
+TEST(test_zero_after_a_new_beginning)
 {
-  (void)state;
   static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
   static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
   static struct line_supply s;
@@ -283,9 +275,8 @@ static double uniform(unsigned *seed, double from, double to)
 }
 
 /* At any moment from the start on, for good or for a while: what is said is true. */
-static void test_faults_at_random_moments(void **state)
+TEST(test_faults_at_random_moments)
 {
-  (void)state;
   static struct line_supply s;
   for (size_t i = 0; i < run_count; i++) {
     unsigned seed = 2654435761U * (first_seed + (unsigned)i); // neighbours are alike otherwise
@@ -315,9 +306,8 @@ static void test_faults_at_random_moments(void **state)
 }
 
 /* What was left up is known by the next program, and ends with a supply that answers. */
-static void test_zero(void **state)
+TEST(test_zero)
 {
-  (void)state;
   static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
   static struct line_supply s;
   s = (struct line_supply){0};
@@ -340,9 +330,8 @@ static void test_zero(void **state)
 }
 
 /* The guard opens the line by itself. */
-static void test_killed_and_stopped(void **state)
+TEST(test_killed_and_stopped)
 {
-  (void)state;
   static const int signals[] = {SIGKILL, SIGSTOP};
   static struct line_supply s;
   for (size_t i = 0; i < 2; i++) {
@@ -366,9 +355,8 @@ static void test_killed_and_stopped(void **state)
 }
 
 /* Refused before any voltage: more than it says that it gives, another one, a negative sign. */
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   static struct line_supply s;
   s = (struct line_supply){0};
   shvps_begin(&s);
@@ -402,9 +390,8 @@ static void test_refused(void **state)
 }
 
 /* Said before anything is played: a time in which 0 V cannot be seen to stay. */
-static void test_too_short_for_zero(void **state)
+TEST(test_too_short_for_zero)
 {
-  (void)state;
   static struct line_supply s;
   s = (struct line_supply){0};
   shvps_begin(&s);
@@ -425,26 +412,11 @@ static void test_too_short_for_zero(void **state)
 
 int main(int count, char **arguments)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays),
-      cmocka_unit_test(test_faults),
-      cmocka_unit_test(test_zero),
-      cmocka_unit_test(test_killed_and_stopped),
-      cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_too_short_for_zero),
-      cmocka_unit_test(test_stuck_in_a_pause),
-      cmocka_unit_test(test_ramp_of_one_that_is_off),
-      cmocka_unit_test(test_lie_from_the_start),
-      cmocka_unit_test(test_neighbour),
-      cmocka_unit_test(test_faults_at_random_moments),
-      cmocka_unit_test(test_neighbour_of_the_guard),
-      cmocka_unit_test(test_zero_after_a_new_beginning),
-  };
   const struct CMUnitTest many[] = {cmocka_unit_test(test_faults_at_random_moments)};
   if (count > 1) {
     run_count = (size_t)strtoul(arguments[1], NULL, 10);
     first_seed = count > 2 ? (unsigned)strtoul(arguments[2], NULL, 10) : 1;
     return cmocka_run_group_tests(many, command_set_up, supply_tear_down);
   }
-  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
+  return run_all(command_set_up, supply_tear_down);
 }

@@ -176,9 +176,8 @@ static struct dea_load_point point_at(const struct dea_curve *curve, double time
   return point;
 }
 
-static void test_truth_is_the_model(void **state)
+TEST(test_truth_is_the_model)
 {
-  (void)state;
   struct dea_protocol *p =
       bench_protocol(HEAD IDEAL "waveform: " WAVE "\nsim: {" QUIET ", profile_points: 0}\n");
   struct record r;
@@ -238,9 +237,8 @@ static void statistics(const struct dea_protocol *p, const struct record *r,
 
 #define LONG_WAVE "{kind: constant, voltage: 3 kV, duration: 10 s}"
 
-static void test_noise_is_what_was_asked(void **state)
+TEST(test_noise_is_what_was_asked)
 {
-  (void)state;
   static const double sigma[4] = {20, 2e-6, 5e-6, 1e-3};
   struct dea_protocol *p = bench_protocol(
       HEAD IDEAL "waveform: " LONG_WAVE "\nsim: {voltage_noise: 20 V, current_noise: 2 uA, "
@@ -293,9 +291,8 @@ static void test_noise_is_what_was_asked(void **state)
 }
 
 /* One seed gives one recording, however it is read; another seed another one. */
-static void test_seeds(void **state)
+TEST(test_seeds)
 {
-  (void)state;
   static const char *const texts[3] = {HEAD IDEAL "waveform: " WAVE "\nsim: {seed: 7, lost: 5 %}\n",
                                        HEAD IDEAL "waveform: " WAVE "\nsim: {seed: 7, lost: 5 %}\n",
                                        HEAD IDEAL "waveform: " WAVE
@@ -322,9 +319,8 @@ static void test_seeds(void **state)
 }
 
 /* A jump of the amplifier takes as long as its limits say. */
-static void test_limits(void **state)
+TEST(test_limits)
 {
-  (void)state;
   struct dea_protocol *p = bench_protocol(
       HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, slew_limit: 1 V/us}\nrate: 100 kHz\n"
            "waveform: {kind: constant, voltage: 4 kV, duration: 6 ms}\n"
@@ -355,9 +351,8 @@ static void test_limits(void **state)
 }
 
 /* From its breakdown voltage on the film is a short circuit; discharges bring their charge. */
-static void test_breakdown_and_discharges(void **state)
+TEST(test_breakdown_and_discharges)
 {
-  (void)state;
   struct dea_protocol *p =
       bench_protocol(HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 5 mA}\n"
                           "waveform: {kind: ramp, to: 5 kV, duration: 1 s}\n"
@@ -386,9 +381,8 @@ static void test_breakdown_and_discharges(void **state)
  * amplifier's current charges in some 100 ns, and a film that stays whole; one that lives for 1000
  * s under voltage does not.
  */
-static void test_slow_wave(void **state)
+TEST(test_slow_wave)
 {
-  (void)state;
 #define LIFE(end)                                                                                  \
   HEAD "amplifier: {gain: 1000, max_voltage: 10 kV, current_limit: 10 mA}\nrate: 10 Hz\n"          \
        "waveform: {kind: triangle, high: 2.5 kV, low: 0 V, frequency: 0.1 Hz, cycles: 60}\n"       \
@@ -409,9 +403,8 @@ static void test_slow_wave(void **state)
 }
 
 /* In real time it takes as long as the protocol. */
-static void test_real_pace(void **state)
+TEST(test_real_pace)
 {
-  (void)state;
   struct dea_protocol *p = bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
                                                      "duration: 50 ms}\nsim: {pace: real}\n");
   struct dea_instrument *bench;
@@ -437,9 +430,8 @@ static void test_real_pace(void **state)
   dea_protocol_destroy(ctx, p);
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   static const struct {
     const char *text, *part;
     size_t line;
@@ -479,26 +471,11 @@ static dea_status play_short(struct dea_context *context)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   dea_protocol_destroy(ctx, bench_protocol(HEAD IDEAL "waveform: {kind: constant, voltage: 1 kV, "
                                                       "duration: 30 ms}\n"));
   assert_true(failing_ends(play_short, DEA_OK) > 10); // there was something to fail
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_truth_is_the_model),
-      cmocka_unit_test(test_noise_is_what_was_asked),
-      cmocka_unit_test(test_seeds),
-      cmocka_unit_test(test_limits),
-      cmocka_unit_test(test_breakdown_and_discharges),
-      cmocka_unit_test(test_slow_wave),
-      cmocka_unit_test(test_real_pace),
-      cmocka_unit_test(test_errors),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -54,9 +54,8 @@ static void kill_program(pid_t child)
   assert_int_equal(waitpid(child, NULL, 0), child);
 }
 
-static void test_second_program_is_refused(void **state)
+TEST(test_second_program_is_refused)
 {
-  (void)state;
   struct dea_supply supply;
   pid_t child = other_program("armed by somebody");
   for (int i = 0; i < 2; i++) { // to be refused takes nothing away
@@ -77,9 +76,8 @@ static void test_second_program_is_refused(void **state)
 }
 
 /* A lock ends with its program, however that ends; what it left stays until somebody clears it. */
-static void test_next_program(void **state)
+TEST(test_next_program)
 {
-  (void)state;
   struct dea_supply supply;
   kill_program(other_program("armed by the dead"));
   assert_int_equal(dea_supply_open(ctx, folder, address, &supply), DEA_OK);
@@ -92,9 +90,8 @@ static void test_next_program(void **state)
   dea_supply_close(&supply);
 }
 
-static void test_supplies_are_apart(void **state)
+TEST(test_supplies_are_apart)
 {
-  (void)state;
   struct dea_supply same, other;
   assert_int_equal(dea_supply_open(ctx, folder, address, &same), DEA_OK);
   assert_int_equal(dea_supply_open(ctx, folder, "scpi 127.0.0.1 5026", &other), DEA_OK);
@@ -115,9 +112,8 @@ static void test_supplies_are_apart(void **state)
 }
 
 /* Who brings it to 0 V asks for it, and who has it sees that and gives it away for as long. */
-static void test_asked_for(void **state)
+TEST(test_asked_for)
 {
-  (void)state;
   struct dea_supply one, other, third;
   assert_int_equal(dea_supply_open(ctx, folder, address, &one), DEA_OK);
   assert_int_equal(dea_supply_leave(ctx, &one, "armed by the first"), DEA_OK);
@@ -144,9 +140,8 @@ static void test_asked_for(void **state)
 }
 
 /* What was left is read again after it was given away; one that is not given back is lost. */
-static void test_given_away(void **state)
+TEST(test_given_away)
 {
-  (void)state;
   struct dea_supply one, other;
   assert_int_equal(dea_supply_open(ctx, folder, address, &one), DEA_OK);
   assert_int_equal(dea_supply_leave(ctx, &one, "armed by the first"), DEA_OK);
@@ -176,9 +171,8 @@ static void test_given_away(void **state)
 
 /* A name that is new is brought to the disk with its folders: what was left up would be forgotten
  * with it when the power fails. */
-static void test_new_names_reach_the_disk(void **state)
+TEST(test_new_names_reach_the_disk)
 {
-  (void)state;
   struct dea_supply supply;
   char deep[600];
   snprintf(deep, sizeof deep, "%s/new/dea/supplies", folder);
@@ -192,9 +186,8 @@ static void test_new_names_reach_the_disk(void **state)
 }
 
 /* What cannot be read does not say "at 0 V". */
-static void test_unreadable(void **state)
+TEST(test_unreadable)
 {
-  (void)state;
   struct dea_supply supply;
   assert_int_equal(dea_supply_open(ctx, folder, "scpi unreadable", &supply), DEA_OK);
   snprintf(path, sizeof path, "%s", supply.path);
@@ -209,9 +202,8 @@ static void test_unreadable(void **state)
 
 /* What tells the supply, and where it was, are kept with what was left, also one without the other.
  */
-static void test_what_is_kept(void **state)
+TEST(test_what_is_kept)
 {
-  (void)state;
   static const char *const cases[][2] = {
       {"ACME,5 kV,0815", "192.168.1.20"}, {"", "fe80::1%eth0"}, {"397.25", ""}, {"", ""}};
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
@@ -234,9 +226,8 @@ static void test_what_is_kept(void **state)
 }
 
 /* On a disk that is full what stood there still says that the supply was not left at 0 V. */
-static void test_full_disk(void **state)
+TEST(test_full_disk)
 {
-  (void)state;
   struct dea_supply supply;
   struct rlimit before, none;
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -264,18 +255,4 @@ static void test_full_disk(void **state)
   signal(SIGXFSZ, handler);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_second_program_is_refused),
-      cmocka_unit_test(test_next_program),
-      cmocka_unit_test(test_supplies_are_apart),
-      cmocka_unit_test(test_asked_for),
-      cmocka_unit_test(test_given_away),
-      cmocka_unit_test(test_unreadable),
-      cmocka_unit_test(test_new_names_reach_the_disk),
-      cmocka_unit_test(test_what_is_kept),
-      cmocka_unit_test(test_full_disk),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -124,9 +124,8 @@ static void play(enum lie lie, struct trek *t, struct dea_drive_report *report, 
 }
 
 /* Read back by the monitor: the generator itself has nothing to say of that. */
-static void test_plays(void **state)
+TEST(test_plays)
 {
-  (void)state;
   struct trek t;
   struct dea_drive_report report;
   dea_status status;
@@ -138,9 +137,8 @@ static void test_plays(void **state)
 
 /* A monitor that contradicted what was asked is not believed when it shows 0 V at last: it may have
  * come off, and then it shows that whatever the amplifier does. */
-static void test_monitor_that_lies(void **state)
+TEST(test_monitor_that_lies)
 {
-  (void)state;
   static const enum lie lies[] = {DEAD, STUCK, HALVED, FALLEN, AMPLIFIER_STAYS};
   for (size_t i = 0; i < sizeof lies / sizeof lies[0]; i++) {
     struct trek t;
@@ -155,11 +153,4 @@ static void test_monitor_that_lies(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plays),
-      cmocka_unit_test(test_monitor_that_lies),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -54,9 +54,8 @@ static void check(const char *file, size_t blocks, bool complete)
   dea_recording_destroy(ctx, recording);
 }
 
-static void test_disk_that_blocks(void **state)
+TEST(test_disk_that_blocks)
 {
-  (void)state;
   dea_status status;
   char file[700];
   snprintf(file, sizeof file, "%s", in_folder("blocks.h5"));
@@ -74,9 +73,8 @@ static void test_disk_that_blocks(void **state)
 }
 
 /* What simulates waits. */
-static void test_waits_for_room(void **state)
+TEST(test_waits_for_room)
 {
-  (void)state;
   dea_status status;
   char file[700];
   snprintf(file, sizeof file, "%s", in_folder("waits.h5"));
@@ -87,9 +85,4 @@ static void test_waits_for_room(void **state)
   check(file, 300, true);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_disk_that_blocks),
-                                     cmocka_unit_test(test_waits_for_room)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -18,9 +18,8 @@ static void check_said(struct supply *s, int code)
 }
 
 /* Commands that take 0.4 s each, which are sent every 20 ms: a queue that grows. */
-static void test_slow_supply(void **state)
+TEST(test_slow_supply)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){.delay_s = 0.4};
   atomic_store(&s.fault, SUPPLY_SLOW);
@@ -44,9 +43,8 @@ static int fault_above(struct supply *s, const char *file, double volts, enum su
 static const char *const zero[] = {"drive", "p.yaml", "--zero", NULL};
 
 /* The output stays up: that is not known, is said, is kept, and ends with a supply that answers. */
-static void test_hung_supply(void **state)
+TEST(test_hung_supply)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -80,9 +78,8 @@ static void test_hung_supply(void **state)
 
 /* One that lies is found out by its voltage, one that makes no sense or hangs up is not believed.
  */
-static void test_other_faults(void **state)
+TEST(test_other_faults)
 {
-  (void)state;
   static const enum supply_fault faults[] = {SUPPLY_LIES, SUPPLY_GARBLES, SUPPLY_HANGS_UP};
   static struct supply s;
   for (size_t i = 0; i < 3; i++) {
@@ -99,9 +96,8 @@ static void test_other_faults(void **state)
 
 /* Its meter shows 0 V from the start, and its output stays where it was at 1 kV: that is not known
  * to be at 0 V, to `--zero` neither, until somebody says that they have looked. */
-static void test_meter_that_shows_0_V(void **state)
+TEST(test_meter_that_shows_0_V)
 {
-  (void)state;
   static const char *const checked[] = {"drive", "p.yaml", "--zero", "--checked", NULL};
   static const struct supply_wrong blind = {.blind = true},
                                    stays = {.blind = true, .latched = true}, good = {0};
@@ -128,9 +124,8 @@ static void test_meter_that_shows_0_V(void **state)
 }
 
 /* What cannot be read back is commanded, and never "at 0 V". */
-static void test_without_measure(void **state)
+TEST(test_without_measure)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -143,9 +138,8 @@ static void test_without_measure(void **state)
 }
 
 /* One that does not obey, and answers its 2 kV in words that begin with "2". */
-static void test_other_words_for_volts(void **state)
+TEST(test_other_words_for_volts)
 {
-  (void)state;
   static const struct {
     const char *behind;
     bool comma;
@@ -168,9 +162,8 @@ static void test_other_words_for_volts(void **state)
 }
 
 /* A protocol that calls anything 0 V: `--arm` refuses it, and `--zero` believes it no more. */
-static void test_much_that_is_called_zero(void **state)
+TEST(test_much_that_is_called_zero)
 {
-  (void)state;
   static const char *const called[] = {"drive", "p.yaml", "--zero", "--set", "safety.at_zero=9 kV",
                                        NULL};
   static const char *const arm[] = {"drive",
@@ -194,9 +187,8 @@ static void test_much_that_is_called_zero(void **state)
 }
 
 /* 0 V does not wait for what the film would do, nor for a design that is there. */
-static void test_zero_without_its_design(void **state)
+TEST(test_zero_without_its_design)
 {
-  (void)state;
   static const char *const wrong[] = {"drive", "p.yaml", "--zero", "--set", "design=no.yaml", NULL};
   static struct supply s;
   s = (struct supply){.on = true, .set_V = 2000};
@@ -209,9 +201,8 @@ static void test_zero_without_its_design(void **state)
 }
 
 /* Nor does 0 V wait for the specimen's file, or that of a waveform. */
-static void test_zero_without_other_files(void **state)
+TEST(test_zero_without_other_files)
 {
-  (void)state;
   static const char *const plain[] = {"drive", "p.yaml", "--zero", NULL};
   static const char *const table[] = {
       "drive", "p.yaml", "--zero", "--set", "waveform={kind: table, file: gone.csv}", NULL};
@@ -233,9 +224,8 @@ static void test_zero_without_other_files(void **state)
 
 /* It hangs while another instrument is waited for: nothing is played, and that it is not known to
  * be at 0 V is said all the same. */
-static void test_hangs_before_anything_is_played(void **state)
+TEST(test_hangs_before_anything_is_played)
 {
-  (void)state;
   static struct supply s, mute;
   char more[200];
   s = mute = (struct supply){0};
@@ -261,9 +251,8 @@ static void test_hangs_before_anything_is_played(void **state)
 }
 
 /* Where what was left cannot be kept or read, 0 V is commanded all the same, and not believed. */
-static void test_zero_without_a_place(void **state)
+TEST(test_zero_without_a_place)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){.on = true, .set_V = 2000};
   supply_start(&s);
@@ -284,9 +273,8 @@ static void test_zero_without_a_place(void **state)
   supply_stop(&s);
 }
 
-static void test_checked_by_somebody(void **state)
+TEST(test_checked_by_somebody)
 {
-  (void)state;
   static struct supply s;
   s = (struct supply){0};
   supply_start(&s);
@@ -302,21 +290,4 @@ static void test_checked_by_somebody(void **state)
   supply_stop(&s);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_much_that_is_called_zero),
-      cmocka_unit_test(test_zero_without_its_design),
-      cmocka_unit_test(test_zero_without_other_files),
-      cmocka_unit_test(test_zero_without_a_place),
-      cmocka_unit_test(test_meter_that_shows_0_V),
-      cmocka_unit_test(test_hangs_before_anything_is_played),
-      cmocka_unit_test(test_slow_supply),
-      cmocka_unit_test(test_hung_supply),
-      cmocka_unit_test(test_other_faults),
-      cmocka_unit_test(test_without_measure),
-      cmocka_unit_test(test_checked_by_somebody),
-      cmocka_unit_test(test_other_words_for_volts),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, supply_tear_down);
-}
+TESTS(command_set_up, supply_tear_down)

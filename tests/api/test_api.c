@@ -61,9 +61,8 @@ static const dea_array *array(const dea_result *result, const char *name)
 }
 
 /* The numbers of the enumerations are the library's own. */
-static void test_status_names(void **state)
+TEST(test_status_names)
 {
-  (void)state;
 #define NAMED(code) assert_string_equal(dea_error_name(code), #code)
   NAMED(DEA_OK);
   NAMED(DEA_E_DIFFERS);
@@ -88,9 +87,8 @@ static void test_status_names(void **state)
   assert_int_equal(sscanf(dea_version(), "%d.%d.%d", &a, &b, &c), 3);
 }
 
-static void test_values(void **state)
+TEST(test_values)
 {
-  (void)state;
   dea_design *design = parse(disc);
   const dea_value *value;
   assert_int_equal(dea_design_get(ctx, design, "film.thickness", &value), DEA_OK);
@@ -122,9 +120,8 @@ static void test_values(void **state)
 }
 
 /* A value that is refused leaves the design as it was, and says why and where. */
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   dea_design *design = parse(disc);
   const dea_value *value;
   assert_int_equal(dea_design_set(ctx, design, "film.thickness", "80"), DEA_E_DESIGN);
@@ -154,9 +151,8 @@ static void test_refused(void **state)
 }
 
 /* Values that fit only together. */
-static void test_together(void **state)
+TEST(test_together)
 {
-  (void)state;
   static const char *const keys[] = {"pre_stretch", "compute.path.max_stretch"};
   static const char *const values[] = {"1.8", "2.5"};
   dea_design *design = parse(disc);
@@ -171,9 +167,8 @@ static void test_together(void **state)
 }
 
 /* The text of a changed design is read as that design again. */
-static void test_text(void **state)
+TEST(test_text)
 {
-  (void)state;
   dea_design *design = parse(disc), *copy, *again;
   const char *text;
   assert_int_equal(dea_design_text(ctx, design, &text), DEA_OK);
@@ -204,9 +199,8 @@ static void test_text(void **state)
 }
 
 /* The sweep of the interface against one actuator taken through the same voltages by hand. */
-static void test_sweep(void **state)
+TEST(test_sweep)
 {
-  (void)state;
   dea_design *design = parse(disc);
   dea_result *result = run(design, "lumped");
   const dea_array *V = array(result, "lumped/sweep/voltage_V");
@@ -242,9 +236,8 @@ static void test_sweep(void **state)
 }
 
 /* What a model cannot do is an error with a message; each says beforehand what it can. */
-static void test_abilities(void **state)
+TEST(test_abilities)
 {
-  (void)state;
   dea_design *design = parse(disc);
   const dea_model_info *model;
   size_t count = 0;
@@ -285,9 +278,8 @@ static void test_abilities(void **state)
 }
 
 /* Saved, read back, written as a folder: the same numbers, and the design that was computed. */
-static void test_files(void **state)
+TEST(test_files)
 {
-  (void)state;
   dea_design *design = parse(disc), *again;
   assert_int_equal(dea_design_set(ctx, design, "pre_stretch", "1.4"), DEA_OK);
   dea_result *result = run(design, "axisymmetric"), *read;
@@ -323,9 +315,8 @@ static void test_files(void **state)
   dea_design_free(design);
 }
 
-static void test_pictures(void **state)
+TEST(test_pictures)
 {
-  (void)state;
   dea_design *design = parse(disc);
   dea_result *result = run(design, "lumped");
   const char *svg;
@@ -367,9 +358,8 @@ static void on_note(void *user, enum dea_severity severity, const char *text)
 }
 
 /* A run that is interrupted keeps what it has; the same run goes through otherwise. */
-static void test_callbacks(void **state)
+TEST(test_callbacks)
 {
-  (void)state;
   dea_context *own;
   struct calls calls = {.stop_after = 1000000};
   dea_context_options options = DEA_CONTEXT_OPTIONS_INIT;
@@ -400,9 +390,8 @@ static void test_callbacks(void **state)
 }
 
 /* Options of a caller that knows fewer members, or none. */
-static void test_growth(void **state)
+TEST(test_growth)
 {
-  (void)state;
   dea_design *design = parse(disc);
   dea_result *result;
   const char *const models[] = {"lumped"};
@@ -470,9 +459,8 @@ static dea_status work(dea_context *own)
 }
 
 /* Whichever allocation fails: out of memory, and nothing is left over. */
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   dea_status status = DEA_E_MEMORY;
   long n = 0;
   for (; status == DEA_E_MEMORY; n += 1 + n / 40) {
@@ -498,18 +486,10 @@ static void test_memory(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_status_names), cmocka_unit_test(test_values),
-      cmocka_unit_test(test_refused),      cmocka_unit_test(test_together),
-      cmocka_unit_test(test_text),         cmocka_unit_test(test_sweep),
-      cmocka_unit_test(test_abilities),    cmocka_unit_test(test_files),
-      cmocka_unit_test(test_pictures),     cmocka_unit_test(test_callbacks),
-      cmocka_unit_test(test_growth),       cmocka_unit_test(test_memory),
-  };
   if (mkdtemp(folder) == NULL || dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;
   }
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  int failed = run_all(NULL, NULL);
   dea_context_free(ctx);
   rmdir(folder);
   return failed;

@@ -77,9 +77,8 @@ static const dea_array *field(const dea_mesh *mesh, const char *name)
 }
 
 /* Pulled by a dead load: the stretch where mu (l - 1/l^2) is the traction. */
-static void test_pull(void **state)
+TEST(test_pull)
 {
-  (void)state;
   const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.04}, stretch = 1.5;
   const double end[3] = {0, 0, size[2]};
   const double traction[3] = {0, 0, mu * (stretch - 1 / (stretch * stretch))};
@@ -116,9 +115,8 @@ static void test_pull(void **state)
 }
 
 /* A film between electrodes, free in its plane: mu (l^2 - l^-4) = eps E^2 with E = V l^2/h. */
-static void test_voltage(void **state)
+TEST(test_voltage)
 {
-  (void)state;
   const double mu = 0.4e6, h = 1e-4, size[3] = {1e-3, 1e-3, h}, eps = 3 * 8.8541878128e-12;
   const double stretch = 1.1, l2 = stretch * stretch;
   const double voltage = h / l2 * sqrt(mu * (l2 - 1 / (l2 * l2)) / eps);
@@ -152,9 +150,8 @@ static void test_voltage(void **state)
 }
 
 /* A clamped bar: the lowest bending frequency of a slender beam, twice, by points and cells. */
-static void test_modes(void **state)
+TEST(test_modes)
 {
-  (void)state;
   enum { ELEMENTS = 10, ALONG = 2 * ELEMENTS + 1, POINTS = 9 * ALONG };
   const double size[3] = {0.1, 2e-3, 2e-3}, E = 3e9, density = 1000;
   double points[3 * POINTS];
@@ -219,9 +216,8 @@ static void test_modes(void **state)
 
 /* Two films on each other with an electrode between them and at both faces, held where they are:
  * plate capacitors, eps A / h each, and a force between the plates. */
-static void test_channels(void **state)
+TEST(test_channels)
 {
-  (void)state;
   enum { LEVELS = 5, POINTS = 9 * LEVELS };
   const double mu[1] = {0.1e6}, side = 1e-3, h = 50e-6, V = 1500;
   double points[POINTS * 3];
@@ -282,9 +278,8 @@ static void test_channels(void **state)
 
 /* Two squares of a .msh file, side by side, of the same material as two parts in two plies: pulled
  * along x they are one bar. */
-static void test_msh(void **state)
+TEST(test_msh)
 {
-  (void)state;
   const double mu = 0.4e6, stretch = 1.3, thickness[2] = {1e-4, 2e-4};
   const dea_part soft = rubber(&mu), same = rubber(&mu);
   const dea_part *parts[] = {&soft, &same};
@@ -335,9 +330,8 @@ static void test_msh(void **state)
 
 /* A block whose top is a rigid plate: moved like nodes that are held, brought there by the force
  * that this takes, and turned by it when it may turn. */
-static void test_body(void **state)
+TEST(test_body)
 {
-  (void)state;
   const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.02}, move[3] = {2e-3, 0, 1e-3};
   const double low[3] = {0, 0, size[2]}, bottom[3] = {size[0], size[1], 0};
   dea_part part = rubber(&mu);
@@ -464,9 +458,8 @@ static void check_spring(const dea_body_spring *given, double there, const char 
   dea_solid_free(solid);
 }
 
-static void test_springs(void **state)
+TEST(test_springs)
 {
-  (void)state;
   const double y[3] = {-1e-3, 1e-3, 3e-3}, F[3] = {2, 1, 0.8}; // less and less
   dea_body_spring spring = DEA_BODY_SPRING_INIT;
   spring.component = 4;
@@ -532,9 +525,8 @@ static dea_status work(dea_context *own, const dea_solid_options *options, dea_s
 }
 
 /* Whichever allocation fails: out of memory, and nothing is left over. */
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.02};
   dea_part part = rubber(&mu);
   part.density_kg_per_m3 = 1000;
@@ -572,9 +564,8 @@ static void test_memory(void **state)
   assert_true(n > 100);
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   const double mu[2] = {0.4e6, 1}, size[3] = {0.01, 0.01, 0.04};
   dea_part part = rubber(mu);
   const dea_part *parts[] = {&part};
@@ -613,9 +604,8 @@ static void test_refused(void **state)
 }
 
 /* Settings are listed, change what a solve does, and are refused where they cannot be. */
-static void test_settings(void **state)
+TEST(test_settings)
 {
-  (void)state;
   const double mu = 0.4e6, size[3] = {0.01, 0.01, 0.04}, end[3] = {0, 0, size[2]};
   const double traction[3] = {0, 0, mu};
   dea_part part = rubber(&mu);
@@ -644,9 +634,8 @@ static void test_settings(void **state)
 
 /* What is no number is refused by every function that takes numbers, and what is large by physics.
  */
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
-  (void)state;
   static const double size[3] = {1e-3, 1e-3, 1e-3}, top[3] = {0, 0, 1e-3};
   const double mu = 1e5;
   const dea_part part = rubber(&mu);
@@ -694,9 +683,8 @@ static void test_numbers(void **state)
 }
 
 /* A voltage that no film bears is one without an equilibrium, in all models. */
-static void test_voltage_out_of_all_range(void **state)
+TEST(test_voltage_out_of_all_range)
 {
-  (void)state;
   static const char *const models[] = {"lumped", "axisymmetric", "3d"};
   static const char text[] = "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\n"
                              "pre_stretch: 1.3\nframe: {inner_diameter: 40 mm}\n"
@@ -722,18 +710,10 @@ static void test_voltage_out_of_all_range(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull),     cmocka_unit_test(test_voltage),
-      cmocka_unit_test(test_modes),    cmocka_unit_test(test_channels),
-      cmocka_unit_test(test_msh),      cmocka_unit_test(test_body),
-      cmocka_unit_test(test_springs),  cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_settings), cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_numbers),  cmocka_unit_test(test_voltage_out_of_all_range),
-  };
   if (dea_context_new(NULL, &ctx) != DEA_OK) {
     return 1;
   }
-  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  int failed = run_all(NULL, NULL);
   dea_context_free(ctx);
   return failed;
 }

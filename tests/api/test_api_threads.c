@@ -124,9 +124,8 @@ static int compare(void)
   return code;
 }
 
-static void test_first_runs_at_once(void **state)
+TEST(test_first_runs_at_once)
 {
-  (void)state;
   for (int i = 0; i < PROCESSES; i++) {
     int code = 0;
     const pid_t child = fork();
@@ -139,8 +138,4 @@ static void test_first_runs_at_once(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_first_runs_at_once)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

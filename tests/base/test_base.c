@@ -14,9 +14,8 @@
 #include <string.h>
 #include <unistd.h>
 
-static void test_fail_keeps_message_and_chain(void **state)
+TEST(test_fail_keeps_message_and_chain)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   assert_int_equal(dea_fail(ctx, DEA_E_IO, "cannot open %s", "x"), DEA_E_IO);
@@ -27,9 +26,8 @@ static void test_fail_keeps_message_and_chain(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_trials_nest(void **state)
+TEST(test_trials_nest)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   const size_t outer = dea_finding_trial_begin(ctx), inner = dea_finding_trial_begin(ctx);
@@ -42,9 +40,8 @@ static void test_trials_nest(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_alloc_refuses_overflow(void **state)
+TEST(test_alloc_refuses_overflow)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   assert_null(dea_alloc(ctx, SIZE_MAX / 2, 16));
@@ -55,9 +52,8 @@ static void test_alloc_refuses_overflow(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_nearest_name(void **state)
+TEST(test_nearest_name)
 {
-  (void)state;
   const char *const names[] = {"thickness", "width", "pre_stretch"};
   assert_string_equal(dea_nearest_name("thicknes", names, 3), "thickness");
   assert_string_equal(dea_nearest_name("Widht", names, 3), "width");
@@ -72,17 +68,15 @@ static void test_nearest_name(void **state)
   assert_null(dea_nearest_name("vhb", films, 3)); // one of two
 }
 
-static void test_text_to_double_ignores_locale(void **state)
+TEST(test_text_to_double_ignores_locale)
 {
-  (void)state;
   const char *end;
   assert_close(dea_text_to_double("1.5 mm", &end), 1.5, 0, 0);
   assert_string_equal(end, " mm");
 }
 
-static void test_flat_text(void **state)
+TEST(test_flat_text)
 {
-  (void)state;
   char text[] = "a\nb\x1b[1m\x7f \xc2\x9b\xc2\xb5 \xff\x9b.";
   dea_text_flatten(text);
   assert_string_equal(text, "a b [1m    \xc2\xb5 \xff\x9b."); // bytes that are no letters stay
@@ -93,9 +87,8 @@ static void test_flat_text(void **state)
   assert_string_equal(turned, "a   8           \xe2\x80\x90.");
 }
 
-static void test_text_grows(void **state)
+TEST(test_text_grows)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_text text = {.ctx = ctx};
@@ -138,15 +131,13 @@ static dea_status fill_arena(struct dea_context *ctx)
   return status;
 }
 
-static void test_arena_gives_and_frees_all(void **state)
+TEST(test_arena_gives_and_frees_all)
 {
-  (void)state;
   assert_int_equal(failing_ends(fill_arena, DEA_OK), 20);
 }
 
-static void test_arena_refuses_overflow(void **state)
+TEST(test_arena_refuses_overflow)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   const size_t sizes[] = {3, sizeof(double), SIZE_MAX / 2, SIZE_MAX};
@@ -165,9 +156,8 @@ static void test_arena_refuses_overflow(void **state)
 }
 
 /* What a schema prints: of kinds that are known here each with its own keys, of others nothing. */
-static void test_schema_prints_kinds(void **state)
+TEST(test_schema_prints_kinds)
 {
-  (void)state;
   struct dea_context *ctx;
   static const struct dea_field of_one[] = {{.key = "height", .doc = "of it", .example = "1"}},
                                 of_other[] = {{.key = "slope", .doc = "of it", .example = "1"}};
@@ -196,9 +186,8 @@ static void test_schema_prints_kinds(void **state)
 }
 
 /* A file is in the way until it may be replaced; a folder stays. */
-static void test_way_for_a_file(void **state)
+TEST(test_way_for_a_file)
 {
-  (void)state;
   struct dea_context *ctx;
   char here[] = "way-XXXXXX", name[64];
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
@@ -220,20 +209,4 @@ static void test_way_for_a_file(void **state)
   dea_context_destroy(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_fail_keeps_message_and_chain),
-      cmocka_unit_test(test_trials_nest),
-      cmocka_unit_test(test_alloc_refuses_overflow),
-      cmocka_unit_test(test_nearest_name),
-      cmocka_unit_test(test_text_to_double_ignores_locale),
-      cmocka_unit_test(test_flat_text),
-      cmocka_unit_test(test_text_grows),
-      cmocka_unit_test(test_arena_gives_and_frees_all),
-      cmocka_unit_test(test_arena_refuses_overflow),
-      cmocka_unit_test(test_schema_prints_kinds),
-      cmocka_unit_test(test_way_for_a_file),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -17,9 +17,8 @@ static double next(uint32_t *state)
   return (double)(*state >> 8) / (1 << 23) - 1;
 }
 
-static void test_solve(void **state)
+TEST(test_solve)
 {
-  (void)state;
   uint32_t seed = 7;
   for (size_t n = 1; n <= N_MAX; n += 3) {
     double A[N_MAX * N_MAX], copy[2][N_MAX * N_MAX], b[2][N_MAX] = {{0}}, x[N_MAX];
@@ -46,9 +45,8 @@ static void test_solve(void **state)
 
 /* C D C^T with a known D has as many negative eigenvalues as D (Sylvester). zeros: on the diagonal,
  * so that pivots of one row do not do. */
-static void test_negative(void **state)
+TEST(test_negative)
 {
-  (void)state;
   uint32_t seed = 3;
   for (size_t n = 1; n <= N_MAX; n++) {
     double C[N_MAX][N_MAX], A[2][N_MAX * N_MAX] = {{0}};
@@ -75,9 +73,8 @@ static void test_negative(void **state)
   }
 }
 
-static void test_pivots_of_two_rows(void **state)
+TEST(test_pivots_of_two_rows)
 {
-  (void)state;
   typedef dea_status (*counter)(size_t n, double *A, int *negative);
   static const counter counters[] = {dea_dense_negative, small_dense_negative};
   for (size_t i = 0; i < 2; i++) {
@@ -94,9 +91,8 @@ static void test_pivots_of_two_rows(void **state)
   }
 }
 
-static void test_what_cannot_be_solved(void **state)
+TEST(test_what_cannot_be_solved)
 {
-  (void)state;
   static double big[(DEA_DENSE_MAX + 1) * (DEA_DENSE_MAX + 1)], b[DEA_DENSE_MAX + 1];
   double singular[4] = {1, 2, 2, 4}, right[2] = {1, 1}, again[4] = {1, 2, 2, 4};
   int negative;
@@ -108,13 +104,4 @@ static void test_what_cannot_be_solved(void **state)
   assert_int_equal(small_dense_negative(DEA_DENSE_MAX + 1, big, &negative), DEA_E_ARGUMENT);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_solve),
-      cmocka_unit_test(test_negative),
-      cmocka_unit_test(test_pivots_of_two_rows),
-      cmocka_unit_test(test_what_cannot_be_solved),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

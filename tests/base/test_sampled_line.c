@@ -67,9 +67,8 @@ static double cubic(double V)
 }
 
 /* A cubic is met, and what is constant stays it to the last bit. */
-static void test_cubic(void **state)
+TEST(test_cubic)
 {
-  (void)state;
   begin(8, cubic);
   dea_sampled_line_fill(&line);
   for (size_t k = 0; k < COUNT; k++) {
@@ -93,9 +92,8 @@ static double quartic(double V)
 
 /* Of a quartic the estimate is 9/4 of 4 h^4 Q''''/24, next to an end of 6 h^4, and the error 9/16
  * and 1 of it at most. */
-static void test_estimate(void **state)
+TEST(test_estimate)
 {
-  (void)state;
   const size_t h = 8;
   const double unit = fourth * (double)(h * h * h * h);
   begin(h, quartic);
@@ -125,9 +123,8 @@ static double kink(double V)
 
 /* A kink in the middle of a gap is as much off as is estimated: 3/16 of its leap of slope, 2, by
  * the gap. */
-static void test_kink(void **state)
+TEST(test_kink)
 {
-  (void)state;
   begin(8, kink);
   dea_sampled_line_fill(&line);
   assert_close(points[36].force_N, 3.0 / 16 * 2 * 8, 1e-12, 0);
@@ -140,9 +137,8 @@ static double steep(double V)
 }
 
 /* Gaps are halved where the function asks for it, and all that is left is within the tolerance. */
-static void test_halve(void **state)
+TEST(test_halve)
 {
-  (void)state;
   const double tolerance = 1e-3;
   begin(8, steep);
   assert_true(halve(tolerance, steep) > 1);
@@ -174,9 +170,8 @@ static double straight(double V)
 
 /* Across a contact, a flag or a number that comes or goes nothing is interpolated, however loose
  * the tolerance. */
-static void test_states(void **state)
+TEST(test_states)
 {
-  (void)state;
   begin(8, touching);
   halve(1e6, touching);
   assert_true(computed[21] && computed[22]);
@@ -225,9 +220,8 @@ static size_t count_with(double released)
 
 /* A jump that is over at both ends of a gap has set free energy: it is closed in on, though that is
  * a hundredth of what the energy's own estimate lets pass. */
-static void test_jump(void **state)
+TEST(test_jump)
 {
-  (void)state;
   assert_int_equal(count_with(0), 9);
   double tenth = 10 * 0.01 * (64.0 * 64 / 2 + 64.0 * 64 * 64 * 64 / 4000);
   assert_int_equal(count_with(0.01 * tenth), 12); // 20, 22, 21
@@ -237,9 +231,8 @@ static void test_jump(void **state)
 }
 
 /* Of the mesh's estimated errors the larger one of both sides; a number without any stays so. */
-static void test_mesh_error(void **state)
+TEST(test_mesh_error)
 {
-  (void)state;
   begin(8, straight);
   for (size_t k = 8; k < COUNT; k += 8) {
     points[k].centre_z_error_m = (double)(k % 24);
@@ -252,22 +245,12 @@ static void test_mesh_error(void **state)
 }
 
 /* Too few points to hold one back: all are computed. */
-static void test_few(void **state)
+TEST(test_few)
 {
-  (void)state;
   begin(32, straight);
   assert_int_equal(dea_sampled_line_halve(&line, 1, wanted), 2);
   begin(16, straight);
   assert_int_equal(dea_sampled_line_halve(&line, 1e-9, wanted), 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cubic),      cmocka_unit_test(test_estimate),
-      cmocka_unit_test(test_kink),       cmocka_unit_test(test_halve),
-      cmocka_unit_test(test_states),     cmocka_unit_test(test_jump),
-      cmocka_unit_test(test_mesh_error), cmocka_unit_test(test_few),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

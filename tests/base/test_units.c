@@ -6,9 +6,8 @@
 #include <locale.h>
 #include <string.h>
 
-static void test_reads_what_designs_write(void **state)
+TEST(test_reads_what_designs_write)
 {
-  (void)state;
   static const struct {
     const char *text, *unit;
     double si;
@@ -41,9 +40,8 @@ static void test_reads_what_designs_write(void **state)
   }
 }
 
-static void test_refuses_with_a_reason(void **state)
+TEST(test_refuses_with_a_reason)
 {
-  (void)state;
   static const struct {
     const char *text, *unit, *example, *why;
   } bad[] = {
@@ -83,9 +81,8 @@ static void test_refuses_with_a_reason(void **state)
   }
 }
 
-static void test_ignores_the_locale(void **state)
+TEST(test_ignores_the_locale)
 {
-  (void)state;
   // Whether such a locale is installed or not, the point stays the decimal sign.
   setlocale(LC_NUMERIC, "de_DE.UTF-8");
   char why[DEA_WHY_SIZE];
@@ -96,12 +93,4 @@ static void test_ignores_the_locale(void **state)
   assert_close(si, 2.5e-3, 1e-14, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_reads_what_designs_write),
-      cmocka_unit_test(test_refuses_with_a_reason),
-      cmocka_unit_test(test_ignores_the_locale),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -47,9 +47,8 @@ static double taken(const struct dea_worker *aside, dea_status wanted)
 }
 
 /* Bytes, findings, status and message of each come here; what else it does stays there. */
-static void test_hands_back(void **state)
+TEST(test_hands_back)
 {
-  (void)state;
   struct task tasks[] = {{1.5, DEA_OK, false}, {2.5, DEA_E_SLACK, false}, {3.5, DEA_OK, true}};
   struct dea_worker at[3] = {{0}};
   size_t count;
@@ -93,9 +92,8 @@ static dea_status wait_to_stop(struct dea_context *context, void *user, struct d
 
 /* An interruption here reaches those beside, whose part is kept; one that is not waited for ends at
  * once. */
-static void test_interrupted(void **state)
+TEST(test_interrupted)
 {
-  (void)state;
   double number = 7;
   struct task task = {1, DEA_OK, false};
   struct dea_worker at[3] = {{0}};
@@ -121,11 +119,4 @@ static void test_interrupted(void **state)
   dea_context_clear(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hands_back),
-      cmocka_unit_test(test_interrupted),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -46,9 +46,8 @@ static void write_bad_files(void)
   assert_int_equal(system(text), 0);
 }
 
-static void test_every_bad_file_has_its_exit_code(void **state)
+TEST(test_every_bad_file_has_its_exit_code)
 {
-  (void)state;
   static const struct {
     const char *arguments;
     int code;
@@ -107,9 +106,8 @@ static void test_every_bad_file_has_its_exit_code(void **state)
 
 /* Under mpirun a command that computes in one process would wait for the others without end. */
 /* Before anything is computed. */
-static void test_what_cannot_be_uncertain(void **state)
+TEST(test_what_cannot_be_uncertain)
 {
-  (void)state;
   command_expect("check @/examples/frdea-4.yaml --set 'compute.uncertainty={parameters: "
                  "[{name: film.thicknes, std: 2 um}]}'",
                  3, "'film.thicknes' is no key of the design; did you mean 'film.thickness'?");
@@ -121,9 +119,8 @@ static void test_what_cannot_be_uncertain(void **state)
 
 /* A study that none of the design's own models knows is left out of a run, and check says so where
  * the study is asked for; with a model that knows it there is nothing to say. */
-static void test_studies_of_no_model(void **state)
+TEST(test_studies_of_no_model)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   command_read_in(DEA_SOURCE_DIR, "examples/plain-disc.yaml", text);
   char *models = strstr(text, "models: [lumped, axisymmetric]");
@@ -157,16 +154,14 @@ static void test_studies_of_no_model(void **state)
 }
 
 /* "$NAME" of a shell that knows no NAME. */
-static void test_empty_value(void **state)
+TEST(test_empty_value)
 {
-  (void)state;
   command_expect("run @/examples/frdea-4.yaml -o ''", 2, "option '--output' has an empty value");
   command_expect("run @/examples/frdea-4.yaml --output=", 2, "'--output' has an empty value");
 }
 
-static void test_ranks_are_for_run_alone(void **state)
+TEST(test_ranks_are_for_run_alone)
 {
-  (void)state;
   command_before = "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0";
   assert_int_equal(command_run("sweep @/examples/explore/grid.yaml"), 2);
   assert_contains(command_err, "dea sweep runs in one process, and mpirun has started 2");
@@ -175,9 +170,8 @@ static void test_ranks_are_for_run_alone(void **state)
   command_before = "";
 }
 
-static void test_check_lists_values_and_what_follows(void **state)
+TEST(test_check_lists_values_and_what_follows)
 {
-  (void)state;
   assert_int_equal(command_run("check @/examples/frdea-4.yaml --all --set film.thickness=200um"),
                    0);
   assert_contains(command_out,
@@ -190,9 +184,8 @@ static void test_check_lists_values_and_what_follows(void **state)
 
 /* The reader finds the unknown key after a missing one, and a section's range after its list;
  * names of models are looked at last. */
-static void test_errors_in_the_order_of_the_file(void **state)
+TEST(test_errors_in_the_order_of_the_file)
 {
-  (void)state;
   command_write("wrong.yaml", "dea: 1\nfilm:\n  thicknes: 1 um\n  thickness: -1 um\n"
                               "compute: {coverage: 2, models: [lumpd], voltage: {to: 8}}\n");
   assert_int_equal(command_run("check wrong.yaml"), 3);
@@ -210,9 +203,8 @@ static void test_errors_in_the_order_of_the_file(void **state)
 }
 
 /* What is given and what follows, of either kind of device, on about a page. */
-static void test_check_is_brief(void **state)
+TEST(test_check_is_brief)
 {
-  (void)state;
   static const char *const designs[] = {"frdea-4.yaml", "plain-disc.yaml", "devices/cone-mass.yaml",
                                         "devices/two-electrodes.yaml"};
   for (size_t i = 0; i < sizeof designs / sizeof designs[0]; i++) {
@@ -243,9 +235,8 @@ static void test_check_is_brief(void **state)
   assert_contains(command_out, "\n  channels        middle 1 x voltage, others 0 x voltage\n");
 }
 
-static void test_quiet_keeps_the_result(void **state)
+TEST(test_quiet_keeps_the_result)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/frdea-4.yaml -m lumped --no-figures -o q --quiet"),
                    0);
   assert_contains(command_out, "stretch");
@@ -254,9 +245,8 @@ static void test_quiet_keeps_the_result(void **state)
   assert_null(strstr(command_err, "lumped sweep"));
 }
 
-static void test_check_shows_the_band_of_the_breakdown_field(void **state)
+TEST(test_check_shows_the_band_of_the_breakdown_field)
 {
-  (void)state;
   assert_int_equal(command_run("check @/examples/frdea-4.yaml"), 0);
   assert_contains(command_out, "E_b 80 V/um (80 to 100\n                  by source)");
 }
@@ -272,9 +262,8 @@ static json_t *run_json(const char *arguments, int code)
   return json;
 }
 
-static void test_check_as_json(void **state)
+TEST(test_check_as_json)
 {
-  (void)state;
   json_t *json = run_json("check @/examples/paper/fig02.yaml --json", 0);
   json_t *derived = json_object_get(json, "derived");
   assert_true(json_is_true(json_object_get(json, "good")));
@@ -289,9 +278,8 @@ static void test_check_as_json(void **state)
   json_decref(json);
 }
 
-static void test_schema(void **state)
+TEST(test_schema)
 {
-  (void)state;
   assert_int_equal(command_run("schema"), 0);
   assert_contains(command_out, "film.thickness\n      thickness of the unstretched film");
   assert_int_equal(command_run("schema --material"), 0);
@@ -306,9 +294,8 @@ static void test_schema(void **state)
 }
 
 /* What is told and drawn of a design of the general form. */
-static void test_layout(void **state)
+TEST(test_layout)
 {
-  (void)state;
   json_t *json = run_json("check @/examples/devices/from-dxf.yaml --svg drawing.svg --json", 0);
   json_t *derived = json_object_get(json, "derived");
   json_t *area = json_object_get(derived, "area_m2");
@@ -345,9 +332,8 @@ static void write_with(const char *name, const char *parts, const char *material
 }
 
 /* What a run refuses before it solves, check refuses with the same words. */
-static void test_what_run_refuses(void **state)
+TEST(test_what_run_refuses)
 {
-  (void)state;
 #define DISC                                                                                       \
   "film: {material: mine, thickness: 100 um}\npre_stretch: 1.2\n"                                  \
   "frame: {inner_diameter: 40 mm}\nelectrodes: {diameter: 10 mm stretched}\n"
@@ -402,9 +388,8 @@ static void test_what_run_refuses(void **state)
 }
 
 /* What only a disc has is refused, not passed over. */
-static void test_keys_of_a_disc(void **state)
+TEST(test_keys_of_a_disc)
 {
-  (void)state;
   static const char cone[] = "@/examples/devices/cone-mass.yaml --json --set compute.";
   static const char *const keys[][3] = {
       {"solid.field", "coupled", "a coupled field knows no rigid bodies"},
@@ -423,9 +408,8 @@ static void test_keys_of_a_disc(void **state)
 }
 
 /* A module that this build has, but not its folders, is no matter of packages. */
-static void test_doctor_without_modules(void **state)
+TEST(test_doctor_without_modules)
 {
-  (void)state;
   if (SANITIZED) {
     skip(); // its library wants to be the first
   }
@@ -442,9 +426,8 @@ static void test_doctor_without_modules(void **state)
   assert_null(strstr(command_out, "install libgeos-dev"));
 }
 
-static void test_materials(void **state)
+TEST(test_materials)
 {
-  (void)state;
   assert_int_equal(command_run("materials"), 0);
   assert_contains(command_out, "elastosil-2030");
   assert_int_equal(command_run("materials elastosil-2030"), 0);
@@ -455,36 +438,12 @@ static void test_materials(void **state)
 }
 
 /* A file's name that changes the colours of a terminal is shown without what it obeys. */
-static void test_names_do_not_reach_the_terminal(void **state)
+TEST(test_names_do_not_reach_the_terminal)
 {
-  (void)state;
   command_write("odd\x1b[31m.yaml", "hello\n");
   assert_int_equal(command_run("check 'odd\x1b[31m.yaml'"), 3);
   assert_contains(command_err, "odd [31m.yaml:1:1: error: ");
   assert_null(strchr(command_err, '\x1b'));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_names_do_not_reach_the_terminal),
-      cmocka_unit_test(test_every_bad_file_has_its_exit_code),
-      cmocka_unit_test(test_what_cannot_be_uncertain),
-      cmocka_unit_test(test_studies_of_no_model),
-      cmocka_unit_test(test_empty_value),
-      cmocka_unit_test(test_ranks_are_for_run_alone),
-      cmocka_unit_test(test_check_lists_values_and_what_follows),
-      cmocka_unit_test(test_errors_in_the_order_of_the_file),
-      cmocka_unit_test(test_check_is_brief),
-      cmocka_unit_test(test_quiet_keeps_the_result),
-      cmocka_unit_test(test_check_shows_the_band_of_the_breakdown_field),
-      cmocka_unit_test(test_check_as_json),
-      cmocka_unit_test(test_schema),
-      cmocka_unit_test(test_layout),
-      cmocka_unit_test(test_what_run_refuses),
-      cmocka_unit_test(test_keys_of_a_disc),
-      cmocka_unit_test(test_doctor_without_modules),
-      cmocka_unit_test(test_materials),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

@@ -17,9 +17,8 @@ static void read_into(const char *name, char **out)
   *out = text;
 }
 
-static void test_files(void **state)
+TEST(test_files)
 {
-  (void)state;
   assert_int_equal(command_run("fab @/examples/frdea-4.yaml"), 0);
   assert_contains(command_err, "files for the workshop are in frdea-4.fab");
   assert_true(strstr(command_err, "elements") == NULL); // of models that were only asked
@@ -37,9 +36,8 @@ static void test_files(void **state)
   assert_true(strstr(command_err, "are in") == NULL);
 }
 
-static void test_summary(void **state)
+TEST(test_summary)
 {
-  (void)state;
   assert_int_equal(command_run("fab " STILL "-o four --json "
                                "--set fabrication.copies=2"),
                    0);
@@ -73,9 +71,8 @@ static void test_summary(void **state)
   json_decref(root);
 }
 
-static void test_without_fibres(void **state)
+TEST(test_without_fibres)
 {
-  (void)state;
   assert_int_equal(command_run("fab " STILL "-o disc"), 0);
   char path[700];
   // the sheet of an older design's fibres goes
@@ -85,9 +82,8 @@ static void test_without_fibres(void **state)
 }
 
 /* Sheets of parts that are gone go; what is not ours, or no sheet, stays. */
-static void test_parts_that_are_gone(void **state)
+TEST(test_parts_that_are_gone)
 {
-  (void)state;
   static const struct {
     const char *name;
     bool stays;
@@ -107,9 +103,8 @@ static void test_parts_that_are_gone(void **state)
 }
 
 /* Files are the same however often they are written, and whatever the locale. */
-static void test_same_bytes(void **state)
+TEST(test_same_bytes)
 {
-  (void)state;
   assert_int_equal(command_run("fab @/examples/frdea-8.yaml" WITHOUT_VOLTAGE "-o one"), 0);
   assert_int_equal(command_run("fab @/examples/frdea-8.yaml" WITHOUT_VOLTAGE "-o two"), 0);
   char text[1400];
@@ -117,9 +112,8 @@ static void test_same_bytes(void **state)
   assert_int_equal(system(text), 0);
 }
 
-static void test_hostile_names(void **state)
+TEST(test_hostile_names)
 {
-  (void)state;
   command_write("a<script>&.yaml", "dea: 1\n"
                                    "title: '</title><script>alert(1)</script>&\"'\n"
                                    "film: {material: elastosil-2030, thickness: 100 um}\n"
@@ -143,9 +137,8 @@ static void test_hostile_names(void **state)
 /* Names of design files that are not UTF-8, or are cut inside of a letter, are no reason not to
  * draw.
  */
-static void test_names_in_drawings(void **state)
+TEST(test_names_in_drawings)
 {
-  (void)state;
   static const char *const names[] = {"lat\351in.yaml",
                                       "x\303\251\303\251\303\251\303\251\303\251\303\251\303\251"
                                       "\303\251\303\251\303\251\303\251\303\251\303"
@@ -165,9 +158,8 @@ static void test_names_in_drawings(void **state)
   }
 }
 
-static void test_drawing_only(void **state)
+TEST(test_drawing_only)
 {
-  (void)state;
   assert_int_equal(command_run("fab " STILL "--drawing -o only"), 0);
   static const char *const names[] = {"only/drawing.svg", "only/drawing.pdf", "only/drawing.png"};
   for (size_t i = 0; i < 3; i++) {
@@ -180,9 +172,8 @@ static void test_drawing_only(void **state)
   assert_int_not_equal(access(path, F_OK), 0);
 }
 
-static void test_what_goes_wrong(void **state)
+TEST(test_what_goes_wrong)
 {
-  (void)state;
   assert_int_equal(command_run("fab"), 2);
   assert_int_equal(command_run("fab a b"), 2);
   assert_int_equal(command_run("fab " STILL "--laser"), 2);
@@ -200,14 +191,4 @@ static void test_what_goes_wrong(void **state)
   assert_int_equal(command_run("fab " STILL "-o file"), 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_files),           cmocka_unit_test(test_summary),
-      cmocka_unit_test(test_without_fibres),  cmocka_unit_test(test_parts_that_are_gone),
-      cmocka_unit_test(test_same_bytes),      cmocka_unit_test(test_names_in_drawings),
-      cmocka_unit_test(test_drawing_only),    cmocka_unit_test(test_hostile_names),
-      cmocka_unit_test(test_what_goes_wrong),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

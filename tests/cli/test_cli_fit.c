@@ -16,9 +16,8 @@ static const char fit_file[] = "dea_fit: 1\n"
 static const char good[] =
     "stretch,stress (kPa)\n1.1,27.355\n1.2,50.556\n1.4,88.980\n1.6,120.938\n";
 
-static void test_fit(void **state)
+TEST(test_fit)
 {
-  (void)state;
   static char first[COMMAND_TEXT_MAX];
   command_write("mine.yaml", fit_file);
   command_write("strip.csv", good);
@@ -55,9 +54,8 @@ static void expect(const char *csv, int code, const char *message)
   command_expect("fit mine.yaml --force", code, message);
 }
 
-static void test_bad_data(void **state)
+TEST(test_bad_data)
 {
-  (void)state;
   expect("stretch,stress (kPa)\n1.1,27\n1.4,89\n1.2,50\n", 5,
          "strip.csv:4:1: error: the stretch goes back from 1.4 to 1.2");
   expect("stretch,stress (kPa)\n1.1,27\n1.1,27\n1.2,50\n1.4,89\n", 0,
@@ -94,9 +92,8 @@ static void test_bad_data(void **state)
 }
 
 /* A frame's file with a stress and a force. */
-static void test_stress_and_force(void **state)
+TEST(test_stress_and_force)
 {
-  (void)state;
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\ntests:\n"
                              "  - {name: s, kind: uniaxial, file: strip.csv, section: 10 mm^2}\n");
   command_write("strip.csv", "stretch,stress (kPa),force (N)\n1.1,27,0.27\n1.4,89,0.893\n");
@@ -108,9 +105,8 @@ static void test_stress_and_force(void **state)
                  "kPa (5.62 % of the largest): the stress counts");
 }
 
-static void test_names_and_files(void **state)
+TEST(test_names_and_files)
 {
-  (void)state;
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [ogden-3]\ntests:\n"
                              "  - {name: strip, kind: uniaxial, file: three.csv}\n");
   command_write("three.csv", "stretch,stress (kPa)\n1.1,27\n1.2,50\n1.4,89\n");
@@ -151,9 +147,8 @@ static void test_names_and_files(void **state)
 }
 
 /* Keys that hang together, and what is said of a test twice. */
-static void test_keys_that_differ(void **state)
+TEST(test_keys_that_differ)
 {
-  (void)state;
   static const struct {
     const char *keys, *test, *csv, *message;
     int code;
@@ -206,9 +201,8 @@ static void read_parameter(const char *name, double *value, double *std)
 /* mu = 100 kPa and noise of 0.02 kPa, little stretched, so that c2 is hardly known: without an
  * uncertainty the scatter is found to be that noise, and a prior weighs as it does with it. One
  * that is far narrower than what the rows know keeps its own uncertainty. */
-static void test_prior_without_uncertainty(void **state)
+TEST(test_prior_without_uncertainty)
 {
-  (void)state;
   static const char *const priors[] = {"-8 kPa, prior_std: 5 kPa", "0.03 kPa, prior_std: 0.01 kPa"};
   command_write("strip.csv",
                 "stretch,stress (kPa)\n1.01,2.972\n1.02,5.898\n1.03,8.745\n1.04,11.566\n"
@@ -237,9 +231,8 @@ static void test_prior_without_uncertainty(void **state)
 /* Planar tension holds c10 + c01 alone: what it foretells of planar tension is known, of equal
  * stretches nothing is (the field is empty; it had a band of the planar test's size). Nor is
  * anything known where as many rows as parameters leave no scatter. */
-static void test_band_of_what_is_not_known(void **state)
+TEST(test_band_of_what_is_not_known)
 {
-  (void)state;
   static char rows[COMMAND_TEXT_MAX];
   double stress, std;
   command_write("strip.csv", "stretch,stress (kPa)\n1.1,35.03\n1.3,85.20\n1.5,120.33\n1.7,149.71\n"
@@ -268,9 +261,8 @@ static void test_band_of_what_is_not_known(void **state)
 }
 
 /* The example of docs/fit.md. */
-static void test_example(void **state)
+TEST(test_example)
 {
-  (void)state;
   static char page[COMMAND_TEXT_MAX];
   command_read_in(DEA_SOURCE_DIR "/docs", "fit.md", page);
   assert_int_equal(command_run("fit @/examples/fit/silicone.yaml -o silicone"), 0);
@@ -281,9 +273,8 @@ static void test_example(void **state)
 
 /* Holds at the stretches 2, 3 and 5 foretell loading and unloading at 0.05 1/s to 4 % where the
  * strip is not nearly slack (docs/validation/vhb.md). */
-static void test_vhb(void **state)
+TEST(test_vhb)
 {
-  (void)state;
   static char rows[COMMAND_TEXT_MAX];
 #define VHB DEA_SOURCE_DIR "/examples/fit/vhb-4910/"
   command_write("vhb.yaml",
@@ -326,9 +317,8 @@ static double creep_strain(double t, double stress, double rise_s)
 }
 
 /* Creep gives the branch back, to what strains of half a percent are off the linear solid. */
-static void test_creep(void **state)
+TEST(test_creep)
 {
-  (void)state;
   static char rows[16384];
   double mu, modulus, time_s;
   size_t used = (size_t)snprintf(rows, sizeof rows, "time (s),stretch,stress (Pa)\n0,1,0\n");
@@ -358,9 +348,8 @@ static void test_creep(void **state)
 /* A Gent law in tension: Mooney and Rivlin's fits it better than neo-Hooke's by a negative
  * constant, which has no strength in equibiaxial tension. Where a stable law is as good, that is
  * taken. */
-static void test_unstable(void **state)
+TEST(test_unstable)
 {
-  (void)state;
   command_write("strip.csv", "stretch,stress (kPa)\n1.1,27.4\n1.2,50.8\n1.3,71.6\n1.4,90.7\n"
                              "1.5,108.7\n1.6,126.0\n1.8,159.9\n2.0,194.4\n2.2,231.1\n2.5,293.4\n");
   command_write("mine.yaml", "dea_fit: 1\nname: mine\nlaws: [mooney-rivlin, neo-hookean]\ntests:\n"
@@ -390,9 +379,8 @@ static double found_value(const char *name)
 }
 
 /* Curves that Mooney and Rivlin's law follows best with a film that is not stable at rest. */
-static void test_modulus_at_rest(void **state)
+TEST(test_modulus_at_rest)
 {
-  (void)state;
   static const char *const files[] = {"d", "e", "f"};
   for (size_t i = 0; i < 3; i++) {
     char text[200];
@@ -415,9 +403,8 @@ static void test_modulus_at_rest(void **state)
 
 /* Tables as machines write them: preamble, units in a line of their own, strains, columns of text
  * that nobody asked for. All are of a neo-Hookean film of 100 kPa. */
-static void test_tables_of_machines(void **state)
+TEST(test_tables_of_machines)
 {
-  (void)state;
   static const char *const names[] = {"a-blank-lines",   "a-no-blank", "a2",       "a3", "a4",
                                       "b-units-row",     "c-preface",  "d-strain", "d2", "d3",
                                       "e-strain-percent"};
@@ -431,9 +418,8 @@ static void test_tables_of_machines(void **state)
 }
 
 /* Strips of Gent's law far beyond the values that a search used to begin from. */
-static void test_gent_far(void **state)
+TEST(test_gent_far)
 {
-  (void)state;
   assert_int_equal(command_run("fit @/tests/cases/fit/fit-gent-large/to17.yaml --json -o far"), 0);
   assert_close(found_value("mu"), 35e3, 1e-5, 0);
   assert_close(found_value("jm"), 1.6 * (17 * 17 + 2.0 / 17 - 3), 1e-5, 0); // as it was made
@@ -441,23 +427,4 @@ static void test_gent_far(void **state)
   assert_true(found_value("mu") > 25e3 && found_value("jm") > 16 * 16 + 2.0 / 16 - 3);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_fit),
-      cmocka_unit_test(test_bad_data),
-      cmocka_unit_test(test_stress_and_force),
-      cmocka_unit_test(test_names_and_files),
-      cmocka_unit_test(test_keys_that_differ),
-      cmocka_unit_test(test_prior_without_uncertainty),
-      cmocka_unit_test(test_band_of_what_is_not_known),
-      cmocka_unit_test(test_creep),
-      cmocka_unit_test(test_unstable),
-      cmocka_unit_test(test_modulus_at_rest),
-      cmocka_unit_test(test_gent_far),
-      cmocka_unit_test(test_tables_of_machines),
-      cmocka_unit_test(test_example),
-      cmocka_unit_test(test_vhb),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

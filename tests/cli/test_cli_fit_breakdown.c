@@ -17,9 +17,8 @@ static void expect(const char *keys, const char *table, int code, const char *me
 
 static const char alike[] = "thickness: 100 um\nstretch: 1.5\narea: 20 mm^2\n";
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   expect(alike, "voltage (kV),survived\n4,1\n5,1\n", 3,
          "mine.yaml:4:12: error: nothing broke down");
   expect(alike, "voltage (kV),survived\n4,0\n5,1\n", 3, "1 film broke down: too few");
@@ -47,9 +46,8 @@ static void test_errors(void **state)
 
 /* Thicknesses that scatter by 4 % hold no power; that of films twice as thick would follow from it.
  */
-static void test_power_of_scatter(void **state)
+TEST(test_power_of_scatter)
 {
-  (void)state;
   static const char films[] = "field (V/um),thickness (um),survived\n80,49,0\n85,51,0\n92,50.2,0\n"
                               "77,50.9,0\n88,49.3,0\n95,49.9,0\n83,50.7,0\n";
   expect(
@@ -70,9 +68,8 @@ static void test_power_of_scatter(void **state)
 }
 
 /* The example as the page has it; its material gives a breakdown probability. */
-static void test_example(void **state)
+TEST(test_example)
 {
-  (void)state;
   static char page[COMMAND_TEXT_MAX];
   command_read_in(DEA_SOURCE_DIR "/docs", "fit.md", page);
   assert_int_equal(command_run("fit @/examples/fit/breakdown.yaml -o films"), 0);
@@ -130,9 +127,8 @@ static void fit_lives(const char *keys, int code)
 }
 
 /* Three specimens of several weeks: by stroke, by breakdown in the second week, and a survivor. */
-static void test_lives_of_recordings(void **state)
+TEST(test_lives_of_recordings)
 {
-  (void)state;
   write_week("a1", 400, 0.02, 0, 0); // 400 to 380 um
   write_week("a2", 380, 0.1, 0, 0);  // below 320 of 399.89 from the 602nd cycle on
   write_week("b1", 300, 0, 0, 0);
@@ -187,9 +183,8 @@ static void test_lives_of_recordings(void **state)
 
 /* The example as the page has it: the numbers are those of the equations of the maximum, solved by
  * bisection elsewhere. */
-static void test_life_example(void **state)
+TEST(test_life_example)
 {
-  (void)state;
   static char page[COMMAND_TEXT_MAX];
   command_read_in(DEA_SOURCE_DIR "/docs", "fit.md", page);
   assert_int_equal(command_run("fit @/examples/fit/life.yaml -o batch"), 0);
@@ -203,11 +198,4 @@ static void test_life_example(void **state)
   assert_contains(command_out, "\"failed\": 17");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_errors), cmocka_unit_test(test_power_of_scatter),
-      cmocka_unit_test(test_example), cmocka_unit_test(test_lives_of_recordings),
-      cmocka_unit_test(test_life_example)};
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

@@ -27,9 +27,8 @@ static void expect(const char *model, const char *parameters, const char *curves
 
 static const char one[] = "name: s, file: sweep.csv, quantities: [electrode_edge_u_m]";
 
-static void test_parameters(void **state)
+TEST(test_parameters)
 {
-  (void)state;
   command_write("sweep.csv", curve);
   expect("lumped", "{name: film.thicknes}", one, 3,
          "mine.yaml:5:21: error: 'film.thicknes' is no key of the design; did you mean "
@@ -56,9 +55,8 @@ static void test_parameters(void **state)
          "the name 'pre_stretch' is taken by the parameter in line 5");
 }
 
-static void test_curves(void **state)
+TEST(test_curves)
 {
-  (void)state;
   static const char free_one[] = "{name: film.thickness}";
   command_write("sweep.csv", curve);
   expect("lumpet", free_one, one, 3, "there is no model 'lumpet'; did you mean 'lumped'?");
@@ -100,9 +98,8 @@ static void test_curves(void **state)
 }
 
 /* A film driven below 0 is fitted as one driven above it. */
-static void test_negative_voltages(void **state)
+TEST(test_negative_voltages)
 {
-  (void)state;
   static char above[COMMAND_TEXT_MAX];
   static const char free_one[] = "{name: film.thickness}";
   command_write("v.csv", "V (kV),capacitance (pF)\n1,24.1\n2,24.2\n3,24.8\n");
@@ -154,9 +151,8 @@ static void check_band(void)
   assert_contains(text, "uncertainty:");
 }
 
-static void test_example(void **state)
+TEST(test_example)
 {
-  (void)state;
   skip_sanitized();
   static char page[COMMAND_TEXT_MAX];
   command_read_in(DEA_SOURCE_DIR "/docs", "fit.md", page);
@@ -178,9 +174,8 @@ static void test_example(void **state)
   assert_contains(command_out, "\"not_told_apart\"");
 }
 
-static void test_folder(void **state)
+TEST(test_folder)
 {
-  (void)state;
   command_write("sweep.csv", curve);
   char text[700];
   snprintf(text, sizeof text, "%s/reduced", command_folder);
@@ -195,7 +190,7 @@ static void test_folder(void **state)
 
 /* A known film on the simulated bench, its recording reduced and fitted from another design: back
  * within three standard uncertainties. verify/fit-round-trip.sh counts over many recordings. */
-static void test_round_trip(void **state)
+TEST(test_round_trip)
 {
   static const char film[] =
       "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um, viscosity: none}\n"
@@ -203,7 +198,6 @@ static void test_round_trip(void **state)
       "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
       "compute: {models: [lumped], voltage: {to: 4 kV, step: 500 V}}\n";
   char text[1000];
-  (void)state;
   assert_int_equal(command_run("drive --help"), 0);
   if (strstr(command_out, "Not in this build") != NULL) {
     skip();
@@ -239,7 +233,7 @@ static void test_round_trip(void **state)
 
 /* The step response of a known film: back from another start, the resistance of the supply and a
  * viscous branch. The model's own steps are finer in the fit, so what is left is their error. */
-static void test_transient(void **state)
+TEST(test_transient)
 {
   static const char film[] =
       "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.3\n"
@@ -247,7 +241,6 @@ static void test_transient(void **state)
       "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
       "drive:\n  series_resistance: 300 Mohm\n  waveform: {kind: step, to: 3 kV, duration: 12 s}\n"
       "compute: {models: [lumped], transient: {interval: 1e-12 s, tolerance: 1e-6}}\n";
-  (void)state;
   command_write("step.yaml", film);
   assert_int_equal(command_run("run step.yaml --study transient --no-figures -o step --force"), 0);
   command_write("back.yaml",
@@ -278,16 +271,4 @@ static void test_transient(void **state)
   expect("lumped", "{name: film.branch.3.time}", one, 3, "is no branch that the film has");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_parameters),
-      cmocka_unit_test(test_curves),
-      cmocka_unit_test(test_negative_voltages),
-      cmocka_unit_test(test_example),
-      cmocka_unit_test(test_folder),
-      cmocka_unit_test(test_round_trip),
-      cmocka_unit_test(test_transient),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

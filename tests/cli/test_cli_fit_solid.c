@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* The membrane film of model 3d: thickness and pre-stretch back from a sweep of its own. */
-static void test_membrane(void **state)
+TEST(test_membrane)
 {
   static const char film[] =
       "dea: 1\nfilm: {material: elastosil-2030, thickness: %g um, viscosity: none}\n"
@@ -15,7 +15,6 @@ static void test_membrane(void **state)
       "fibres: {count: 4, width: 2 mm, thickness: 100 um, material: pet}\n"
       "compute: {models: [3d], voltage: {values: [0 kV, 2 kV, 4 kV]}, solid: {film: membrane}}\n";
   char text[1000];
-  (void)state;
   snprintf(text, sizeof text, film, 96.0, 1.45);
   command_write("true.yaml", text);
   snprintf(text, sizeof text, film, 100.0, 1.5);
@@ -44,10 +43,4 @@ static void test_membrane(void **state)
   assert_true(std > 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_membrane),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

@@ -154,9 +154,8 @@ static int group_of(const char *name)
   return 0;
 }
 
-static void test_file(void **state)
+TEST(test_file)
 {
-  (void)state;
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o four.msh --json "
                                "--set compute.solid.refinement=2.5"),
                    0);
@@ -179,9 +178,8 @@ static void test_file(void **state)
 }
 
 /* A membrane is made of quadrilaterals, and its rims of lines. */
-static void test_file_of_a_membrane(void **state)
+TEST(test_file_of_a_membrane)
 {
-  (void)state;
   assert_int_equal(
       command_run("mesh @/examples/frdea-4.yaml -o flat.msh --json "
                   "--set compute.solid.film=membrane --set compute.solid.refinement=2"),
@@ -205,18 +203,16 @@ static void test_file_of_a_membrane(void **state)
   json_decref(root);
 }
 
-static void test_summary(void **state)
+TEST(test_summary)
 {
-  (void)state;
   assert_int_equal(command_run("mesh @/examples/plain-disc.yaml --set compute.solid.domain=disc"),
                    0);
   assert_contains(command_out, "360 degrees");
 }
 
 /* The mesh that is written has the size that a run tells of it. */
-static void test_size_is_that_of_a_run(void **state)
+TEST(test_size_is_that_of_a_run)
 {
-  (void)state;
   static const char *const designs[] = {"@/examples/frdea-4.yaml",
                                         "@/examples/devices/two-electrodes.yaml"};
   for (size_t i = 0; i < 2; i++) {
@@ -234,9 +230,8 @@ static void test_size_is_that_of_a_run(void **state)
   }
 }
 
-static void test_what_goes_wrong(void **state)
+TEST(test_what_goes_wrong)
 {
-  (void)state;
   assert_int_equal(command_run("mesh"), 2);
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml -o"), 2);
   assert_int_equal(command_run("mesh @/examples/frdea-4.yaml --st x=1"), 2);
@@ -257,14 +252,4 @@ static void test_what_goes_wrong(void **state)
   assert_contains(command_err, "overlap each other");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_file),
-      cmocka_unit_test(test_file_of_a_membrane),
-      cmocka_unit_test(test_summary),
-      cmocka_unit_test(test_size_is_that_of_a_run),
-      cmocka_unit_test(test_what_goes_wrong),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

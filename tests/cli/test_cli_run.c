@@ -37,9 +37,8 @@ static const json_t *point_at(const json_t *root, double voltage_V)
   return NULL;
 }
 
-static void test_plain_disc_json(void **state)
+TEST(test_plain_disc_json)
 {
-  (void)state;
   static const double kV[] = {1, 3, 5, 7}, strain[] = {0.365, 3.434, 10.297, 21.607};
   json_t *root = summary("run @/examples/plain-disc.yaml --model axisymmetric --json");
   assert_string_equal(json_string_value(json_object_get(root, "model")), "axisymmetric");
@@ -57,9 +56,8 @@ static void test_plain_disc_json(void **state)
   json_decref(root);
 }
 
-static void test_figure_2_json(void **state)
+TEST(test_figure_2_json)
 {
-  (void)state;
   json_t *root = summary("run @/examples/paper/fig02.yaml --model lumped --json");
   assert_close(number(point_at(root, 4e3), "electrode_stretch"), 1.07611, 0, 5e-6);
   assert_close(number(point_at(root, 8e3), "electrode_stretch"), 1.32266, 0, 5e-6);
@@ -71,9 +69,8 @@ static void test_figure_2_json(void **state)
 
 /* Two pulses at two voltages: cycles, creep and balance of energy are in the summary, points in the
  * table, curves in the figures. */
-static void test_in_time(void **state)
+TEST(test_in_time)
 {
-  (void)state;
   json_t *root = summary("run @/examples/protocol.yaml --study transient --json -o in-time --force "
                          "--set drive.waveform.cycles=2 --set drive.waveform.from='7 kV' "
                          "--set report.figures='[svg]'");
@@ -98,9 +95,8 @@ static void test_in_time(void **state)
   assert_contains(command_out, "time (s),source V (kV)");
 }
 
-static void test_set_overrides_the_design(void **state)
+TEST(test_set_overrides_the_design)
 {
-  (void)state;
   json_t *a = summary("run @/examples/plain-disc.yaml --model lumped --json");
   json_t *b = summary("run @/examples/plain-disc.yaml --model lumped --json "
                       "--set film.thickness='200 um' --set 'compute.voltage={values: [10 kV]}'");
@@ -111,9 +107,8 @@ static void test_set_overrides_the_design(void **state)
   json_decref(b);
 }
 
-static void test_run_folder(void **state)
+TEST(test_run_folder)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures"), 0);
   assert_contains(command_out, "frdea-4.run");
   static const char *const files[] = {"summary.json", "results.h5", "lumped_sweep.csv",
@@ -137,9 +132,8 @@ static bool is_there(const char *name)
 
 /* A run of the same design takes the place of the one before, with --keep a folder of its own; one
  * of another design asks for --force. What is not ours stays. */
-static void test_folder_is_renewed(void **state)
+TEST(test_folder_is_renewed)
 {
-  (void)state;
   const char again[] = "run @/examples/plain-disc.yaml -m lumped --no-figures -o renewed ";
   char arguments[400];
   assert_int_equal(command_run("run @/examples/plain-disc.yaml --no-figures -o renewed"), 0);
@@ -164,9 +158,8 @@ static void test_folder_is_renewed(void **state)
 
 /* A run that fails leaves no folder, and the results of before as they were: here files are longer
  * than the user's limit, an error of writing, not the end by a signal. */
-static void test_failed_run_leaves_nothing(void **state)
+TEST(test_failed_run_leaves_nothing)
 {
-  (void)state;
   for (int i = 0; i < 2; i++) {
     char text[2048];
     if (i > 0) {
@@ -187,9 +180,8 @@ static void test_failed_run_leaves_nothing(void **state)
 }
 
 /* The electrode's stretch triples, far beyond 1.5: events up there are reported all the same. */
-static void test_path_reaches_as_far_as_the_sweep(void **state)
+TEST(test_path_reaches_as_far_as_the_sweep)
 {
-  (void)state;
   assert_int_equal(
       command_run("run @/examples/plain-disc.yaml --model lumped --no-figures -o vhb"
                   " --set film='{material: vhb-4910, thickness: 1 mm}' --set pre_stretch=3"
@@ -222,9 +214,8 @@ static const char soft_disc[] = "dea: 1\n"
                                 "  models: [lumped]\n"
                                 "  voltage: {from: 0 kV, to: 8 kV, step: 0.5 kV}\n";
 
-static void test_pull_in_keeps_what_was_computed(void **state)
+TEST(test_pull_in_keeps_what_was_computed)
 {
-  (void)state;
   command_write("soft.yaml", soft_disc);
   assert_int_equal(command_run("run soft.yaml --json"), 4);
   assert_contains(command_err, "pull-in");
@@ -245,9 +236,8 @@ static void test_pull_in_keeps_what_was_computed(void **state)
 }
 
 /* Slopes at a voltage have the flags of the state there. */
-static void test_what_matters_has_flags(void **state)
+TEST(test_what_matters_has_flags)
 {
-  (void)state;
   char bytes[COMMAND_TEXT_MAX];
   size_t safe = 0, beyond = 0;
   assert_int_equal(
@@ -272,9 +262,8 @@ static void test_what_matters_has_flags(void **state)
 /* Without pre-stretch the film has no tension at rest and less under a voltage, and with little it
  * has lost it where its pull-in is: that of a flat one is marked wherever it is said, and only
  * there. */
-static void test_pull_in_of_a_slack_film(void **state)
+TEST(test_pull_in_of_a_slack_film)
 {
-  (void)state;
   static const char words[] = "pull-in of a slack film: not predictive";
   static const char *const pre_stretch[] = {"1.3", "1", "1.1"};
   command_write("soft.yaml", soft_disc);
@@ -305,9 +294,8 @@ static void test_pull_in_of_a_slack_film(void **state)
 }
 
 /* Several files: the first with the others beside it; --set holds for all of them. */
-static void test_several_designs(void **state)
+TEST(test_several_designs)
 {
-  (void)state;
   json_t *root = summary("run @/examples/plain-disc.yaml @/examples/frdea-8.yaml --model lumped "
                          "--study compare-design --set 'compute.voltage={values: [6 kV]}' --json");
   const json_t *designs = json_object_get(root, "designs");
@@ -327,9 +315,8 @@ static void test_several_designs(void **state)
 }
 
 /* At rest alone there is no range of voltages, and figures all the same. */
-static void test_figures_at_rest(void **state)
+TEST(test_figures_at_rest)
 {
-  (void)state;
   command_expect("run @/examples/plain-disc.yaml -m lumped --study sweep -o rest --set "
                  "'compute.voltage={values: [0 kV]}'",
                  0, "");
@@ -342,9 +329,8 @@ static void test_figures_at_rest(void **state)
 }
 
 /* What is wrong with another design file is told of that file, not of the option it stands for. */
-static void test_errors_of_several_designs(void **state)
+TEST(test_errors_of_several_designs)
 {
-  (void)state;
   static const struct {
     const char *files, *place, *words;
   } bad[] = {
@@ -368,9 +354,8 @@ static void test_errors_of_several_designs(void **state)
 }
 
 /* A path that was asked for alone has no table of a sweep. */
-static void test_path_alone(void **state)
+TEST(test_path_alone)
 {
-  (void)state;
   assert_int_equal(
       command_run("run @/examples/plain-disc.yaml -m lumped --study path --no-figures -o path"), 0);
   assert_contains(command_out, "\nlumped\n  path of ");
@@ -383,9 +368,8 @@ static void test_path_alone(void **state)
 
 /* The operating map is printed by a few rows and is in CSV with all; the folder has no figures of
  * it, and none are said to be there. */
-static void test_operating_map(void **state)
+TEST(test_operating_map)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/plain-disc.yaml -m lumped --study operating-map "
                                "-o map"),
                    0);
@@ -406,9 +390,8 @@ static void test_operating_map(void **state)
   assert_contains(command_out, "breakdown above");
 }
 
-static void test_no_figures(void **state)
+TEST(test_no_figures)
 {
-  (void)state;
   char path[600];
   assert_int_equal(
       command_run("run @/examples/plain-disc.yaml -m lumped --study sensitivity -o none"), 0);
@@ -418,9 +401,8 @@ static void test_no_figures(void **state)
 }
 
 /* A study or a device that none of the models knows is an error before anything is made. */
-static void test_models_that_cannot(void **state)
+TEST(test_models_that_cannot)
 {
-  (void)state;
   static const struct {
     const char *arguments;
     int code;
@@ -458,9 +440,8 @@ static void test_models_that_cannot(void **state)
 /* A figure that a run has nothing for is an error, and a quantity that is none names those that
  * are.
  */
-static void test_nothing_to_draw(void **state)
+TEST(test_nothing_to_draw)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/plain-disc.yaml -m lumped --no-figures -o bare"), 0);
   command_expect("plot bare --figure map", 2, "nothing to show in figure 'map'");
   assert_contains(command_err, "nothing is drawn");
@@ -472,16 +453,14 @@ static void test_nothing_to_draw(void **state)
   command_expect("compare bare bare --quantity centre_z", 2, "did you mean 'centre_z_m'?");
 }
 
-static void test_unknown_model(void **state)
+TEST(test_unknown_model)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/plain-disc.yaml --model lumpd --json"), 2);
   assert_contains(command_err, "lumped, axisymmetric");
 }
 
-static void test_usage_errors(void **state)
+TEST(test_usage_errors)
 {
-  (void)state;
   assert_int_equal(command_run(""), 2);
   assert_int_equal(command_run("rnu x"), 2);
   assert_contains(command_err, "did you mean 'run'");
@@ -495,9 +474,8 @@ static void test_usage_errors(void **state)
   assert_contains(command_err, "KEY=VALUE");
 }
 
-static void test_missing_file(void **state)
+TEST(test_missing_file)
 {
-  (void)state;
   assert_int_equal(command_run("run nowhere.yaml"), 5);
   assert_contains(command_err, "nowhere.yaml");
 }
@@ -534,9 +512,8 @@ static size_t interrupt_after(double delay_s)
 }
 
 /* One run at a time writes into a folder; a run that was killed holds it no longer. */
-static void test_one_run_a_folder(void **state)
+TEST(test_one_run_a_folder)
 {
-  (void)state;
   char text[4096], path[600];
   snprintf(text, sizeof text,
            "cd '%s' && { '%s' run '%s/examples/plain-disc.yaml' --model 3d --no-figures "
@@ -563,9 +540,8 @@ static void test_one_run_a_folder(void **state)
 }
 
 /* A full disk behind standard output is an error of exit code 5, said on stderr. */
-static void test_lost_output(void **state)
+TEST(test_lost_output)
 {
-  (void)state;
   static const char *const commands[] = {
       "--version", "run '" DEA_SOURCE_DIR "/examples/plain-disc.yaml' --json", "schema --json"};
   for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
@@ -581,9 +557,8 @@ static void test_lost_output(void **state)
 }
 
 /* What --json writes to a standard output that is closed is lost: an error. */
-static void test_closed_output(void **state)
+TEST(test_closed_output)
 {
-  (void)state;
   char text[2048];
   snprintf(text, sizeof text, "'%s' schema --json >&- 2>'%s/err.txt'", DEA_COMMAND, command_folder);
   int status = system(text);
@@ -594,9 +569,8 @@ static void test_closed_output(void **state)
 }
 
 /* Figures are not removed and written behind a link, whatever --force says. */
-static void test_linked_figures(void **state)
+TEST(test_linked_figures)
 {
-  (void)state;
   char text[2048];
   snprintf(text, sizeof text,
            "cd '%s' && mkdir elsewhere linked && echo mine > elsewhere/stretch.svg && "
@@ -611,9 +585,8 @@ static void test_linked_figures(void **state)
 
 /* Little memory ends model 3d with a message: not in OpenBLAS, which asks for its work space
  * without end where there is no room for it (10 s of processor time end that). */
-static void test_little_memory(void **state)
+TEST(test_little_memory)
 {
-  (void)state;
   if (SANITIZED) {
     skip(); // the address space is taken
   }
@@ -639,9 +612,8 @@ static void test_little_memory(void **state)
 /* Interrupted in a long sweep: exit code 130, and what was computed is there. How fast this machine
  * is is not known, so several delays are tried until one falls into the sweep; soon after it began,
  * as sanitizers take long to write many points. */
-static void test_interrupt_keeps_points(void **state)
+TEST(test_interrupt_keeps_points)
 {
-  (void)state;
   size_t lines = 0;
   for (double delay_s = 0.04; delay_s < 10 && lines <= 3; delay_s *= 1.3) {
     lines = interrupt_after(delay_s);
@@ -649,37 +621,4 @@ static void test_interrupt_keeps_points(void **state)
   assert_true(lines > 3 && lines < 9902);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plain_disc_json),
-      cmocka_unit_test(test_figure_2_json),
-      cmocka_unit_test(test_in_time),
-      cmocka_unit_test(test_set_overrides_the_design),
-      cmocka_unit_test(test_run_folder),
-      cmocka_unit_test(test_folder_is_renewed),
-      cmocka_unit_test(test_failed_run_leaves_nothing),
-      cmocka_unit_test(test_path_reaches_as_far_as_the_sweep),
-      cmocka_unit_test(test_pull_in_keeps_what_was_computed),
-      cmocka_unit_test(test_what_matters_has_flags),
-      cmocka_unit_test(test_pull_in_of_a_slack_film),
-      cmocka_unit_test(test_several_designs),
-      cmocka_unit_test(test_errors_of_several_designs),
-      cmocka_unit_test(test_figures_at_rest),
-      cmocka_unit_test(test_path_alone),
-      cmocka_unit_test(test_operating_map),
-      cmocka_unit_test(test_no_figures),
-      cmocka_unit_test(test_models_that_cannot),
-      cmocka_unit_test(test_nothing_to_draw),
-      cmocka_unit_test(test_unknown_model),
-      cmocka_unit_test(test_usage_errors),
-      cmocka_unit_test(test_missing_file),
-      cmocka_unit_test(test_one_run_a_folder),
-      cmocka_unit_test(test_lost_output),
-      cmocka_unit_test(test_closed_output),
-      cmocka_unit_test(test_linked_figures),
-      cmocka_unit_test(test_little_memory),
-      cmocka_unit_test(test_interrupt_keeps_points),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

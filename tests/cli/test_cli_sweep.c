@@ -21,9 +21,8 @@ static void expect(const char *variables, const char *more, const char *message)
   command_expect("sweep mine.yaml --force", 3, message);
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   static const char good[] = "{name: pre_stretch, values: [1.5]}";
   expect("{name: film.thicknes, values: [80 um]}", "",
          "mine.yaml:7:20: error: 'film.thicknes' is no key of the design; did you mean "
@@ -71,9 +70,8 @@ static void test_errors(void **state)
 }
 
 /* Of a device made of plies: numbers of its parts and shapes. */
-static void test_parts(void **state)
+TEST(test_parts)
 {
-  (void)state;
   static const struct {
     const char *name, *message;
   } cases[] = {
@@ -97,9 +95,8 @@ static void test_parts(void **state)
 }
 
 /* Monitors by their names, and what each has. */
-static void test_monitors(void **state)
+TEST(test_monitors)
 {
-  (void)state;
   static const struct {
     const char *design, *quantity, *message;
   } cases[] = {
@@ -152,9 +149,8 @@ static void write_question(const char *name, const char *more)
 }
 
 /* What a material of the design says, its range and its scatter too, is part of the question. */
-static void test_another_material(void **state)
+TEST(test_another_material)
 {
-  (void)state;
   static const char *const ranges[] = {"[1, 3]", "[1, 4]", "[1, 4]"}, *const shapes[] = {"8", "8",
                                                                                          "9"};
   write_question("other.yaml", "quantities: [range_share, breakdown_probability]\n"
@@ -172,9 +168,8 @@ static void test_another_material(void **state)
 
 /* So is what no list of keys says: the direction of its fibres, and the voltages of the design, up
  * to four times of which a critical voltage is looked for. */
-static void test_another_design(void **state)
+TEST(test_another_design)
 {
-  (void)state;
   static const struct {
     const char *angle, *highest, *state;
   } designs[] = {{"0 degree", "3 kV", "stretched"},
@@ -205,9 +200,8 @@ static void test_another_design(void **state)
 }
 
 /* A search gives its variables ranges, of which a sweep knows no grid. */
-static void test_sweep_of_a_search(void **state)
+TEST(test_sweep_of_a_search)
 {
-  (void)state;
   expect("{name: film.thickness, low: 80 um, high: 120 um}",
          "objectives: [{quantity: electrode_edge_u_m}]", "a grid needs values, or steps");
   write_file("{name: film.thickness, low: 80 um, high: 120 um}",
@@ -229,9 +223,8 @@ static int lines_with(const char *name, const char *text)
 
 /* Numbers that are not to be trusted, of a film that went slack on the way, are said to be that: of
  * a sweep, in tables, bands and what is printed, kept or computed, and of the best of a search. */
-static void test_flags(void **state)
+TEST(test_flags)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   static const char slack[] = "not trusted, slack: so much of the film";
   write_own("[1, 6]", "8");
@@ -278,9 +271,8 @@ static void test_flags(void **state)
   assert_contains(text, slack);
 }
 
-static void test_grid(void **state)
+TEST(test_grid)
 {
-  (void)state;
   static char first[COMMAND_TEXT_MAX], again[COMMAND_TEXT_MAX];
   write_file("{name: film.thickness, low: 80 um, high: 120 um, steps: 3}, "
              "{name: fibres.count, low: 3, high: 4}, "
@@ -324,9 +316,8 @@ static void test_grid(void **state)
 }
 
 /* Killed again and again: in the end every case is there, and once. */
-static void test_killed(void **state)
+TEST(test_killed)
 {
-  (void)state;
   char text[700];
   write_file("{name: film.thickness, distribution: normal, mean: 100 um, std: 4 um}, "
              "{name: film.law.c1, distribution: lognormal, mean: 178 kPa, std: 9 kPa}",
@@ -347,9 +338,8 @@ static void test_killed(void **state)
 }
 
 /* Ctrl-C: what is done is in the tables, and the rest is not. */
-static void test_interrupted(void **state)
+TEST(test_interrupted)
 {
-  (void)state;
   write_file("{name: film.thickness, distribution: normal, mean: 100 um, std: 4 um}",
              "plan: random\nsamples: 200000");
   command_before = "timeout --foreground --preserve-status -s INT 1"; // else it comes twice
@@ -392,9 +382,8 @@ static int read_search(const char *folder, double *best_m)
 
 /* Ctrl-C upon a search, on the command and its processes, once it has kept a few designs more: what
  * it has made stays, and in the end is what one search makes, none of it twice. */
-static void test_interrupted_search(void **state)
+TEST(test_interrupted_search)
 {
-  (void)state;
   skip_sanitized();
   static const int more[] = {1, 20, 1, 100, 2};
   double wanted_m, best_m;
@@ -429,9 +418,8 @@ static void test_interrupted_search(void **state)
 }
 
 /* A search as a user runs it; docs/explore.md shows it. */
-static void test_optimise(void **state)
+TEST(test_optimise)
 {
-  (void)state;
   static const char best[] = "  pre_stretch                  1.26633";
   write_file("{name: pre_stretch, low: 1.6, high: 1.8}",
              "objectives: [{quantity: breakdown_margin}]");
@@ -480,9 +468,8 @@ static void test_optimise(void **state)
 
 /* A search that finds nothing leaves no best design of an earlier one in its folder, and no file
  * that is not a search's goes. */
-static void test_nothing_found_after_a_best(void **state)
+TEST(test_nothing_found_after_a_best)
 {
-  (void)state;
   static const char file[] = "objectives: [{quantity: breakdown_margin, goal: most}]\n"
                              "limits: [{quantity: breakdown_margin, above: %g}]\n"
                              "evaluations: 20\nstarts: 1";
@@ -503,9 +490,8 @@ static void test_nothing_found_after_a_best(void **state)
 }
 
 /* No design has a value: that is said with the reasons, and all evaluations stay. */
-static void test_none_with_values(void **state)
+TEST(test_none_with_values)
 {
-  (void)state;
   command_write("lost.yaml", "dea_explore: 1\nname: lost\ndesign: " DEA_SOURCE_DIR
                              "/examples/frdea-4.yaml\nmodel: lumped\nvoltages: [1 kV]\n"
                              "quantities: [pull_in_voltage_V]\n"
@@ -520,9 +506,8 @@ static void test_none_with_values(void **state)
 }
 
 /* What is counted off begins at one of its values, not at the design's four fibres. */
-static void test_values_without_the_start(void **state)
+TEST(test_values_without_the_start)
 {
-  (void)state;
   static const char more[] = "objectives: [{quantity: electrode_edge_u_m}]";
   write_file("{name: fibres.count, values: [10, 6, 8], start: 4}", more);
   command_expect("optimise mine.yaml", 3,
@@ -539,9 +524,8 @@ static void test_values_without_the_start(void **state)
 
 /* The most capacitance of a film that lives to 4 kV: that voltage goes with the thickness, and the
  * path of the best design, which locates it by itself, has it. What there is not has a reason. */
-static void test_critical_voltages(void **state)
+TEST(test_critical_voltages)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   double at_kV;
   command_write("lives.yaml",
@@ -569,9 +553,8 @@ static void test_critical_voltages(void **state)
 }
 
 /* A variable sets two numbers, and an optimum at the end of its range says so. */
-static void test_tied_variable_ends_at_a_bound(void **state)
+TEST(test_tied_variable_ends_at_a_bound)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   static const char head[] = "dea_explore: 1\nname: tied\ndesign: " DEA_SOURCE_DIR
                              "/examples/frdea-4.yaml\nmodel: axisymmetric\nvoltages: [3 kV]\n"
@@ -603,24 +586,4 @@ static void test_tied_variable_ends_at_a_bound(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_errors),
-                                     cmocka_unit_test(test_another_material),
-                                     cmocka_unit_test(test_another_design),
-                                     cmocka_unit_test(test_sweep_of_a_search),
-                                     cmocka_unit_test(test_flags),
-                                     cmocka_unit_test(test_grid),
-                                     cmocka_unit_test(test_killed),
-                                     cmocka_unit_test(test_interrupted),
-                                     cmocka_unit_test(test_interrupted_search),
-                                     cmocka_unit_test(test_optimise),
-                                     cmocka_unit_test(test_nothing_found_after_a_best),
-                                     cmocka_unit_test(test_none_with_values),
-                                     cmocka_unit_test(test_critical_voltages),
-                                     cmocka_unit_test(test_parts),
-                                     cmocka_unit_test(test_monitors),
-                                     cmocka_unit_test(test_values_without_the_start),
-                                     cmocka_unit_test(test_tied_variable_ends_at_a_bound)};
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

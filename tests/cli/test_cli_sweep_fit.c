@@ -84,9 +84,8 @@ static double banded_std(void)
 /* Samples have the fit's values, standard uncertainties and correlation, to what the sampling
  * leaves (no more than plain random samples: 1 / sqrt(N)); what was held keeps its value. The
  * spread of the answer is the band that dea run makes of the same. */
-static void test_samples(void **state)
+TEST(test_samples)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   const int N = 1024;
   double mean[2] = {0}, product[3] = {0};
@@ -122,9 +121,8 @@ static void test_samples(void **state)
 }
 
 /* A variable of the file that was fitted is cut at its bounds, and its row stays where it is. */
-static void test_cut(void **state)
+TEST(test_cut)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   double least = INFINITY, most = -INFINITY, t;
   write_file("variables: [{name: pre_stretch, low: 1.4195, high: 1.4205}]\n"
@@ -142,9 +140,8 @@ static void test_cut(void **state)
 }
 
 /* A search stands for each design by the fit's values, scattered, and one of them as they are. */
-static void test_search(void **state)
+TEST(test_search)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   double t, s, product = 0;
   int count = 0, centre = 0;
@@ -167,9 +164,8 @@ static void test_search(void **state)
 }
 
 /* Of a material: parameters of the film's law. */
-static void test_material(void **state)
+TEST(test_material)
 {
-  (void)state;
   static const char c1[] = "{\"name\": \"c1\", \"unit\": \"Pa\", \"value\": 178e3, "
                            "\"standard_uncertainty\": 500}";
   static char text[COMMAND_TEXT_MAX];
@@ -199,9 +195,8 @@ static void test_material(void **state)
                                "film has yeoh");
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   static const char one[] = "{\"name\": \"%s\", \"unit\": \"%s\", \"film\": \"%s\", "
                             "\"value\": 1e-4, \"standard_uncertainty\": 0.1, \"at_bound\": %s}";
   static const struct {
@@ -248,10 +243,4 @@ static void test_errors(void **state)
   expect("", "variables: say what changes (or from_fit)");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_samples), cmocka_unit_test(test_cut),
-                                     cmocka_unit_test(test_search), cmocka_unit_test(test_material),
-                                     cmocka_unit_test(test_errors)};
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

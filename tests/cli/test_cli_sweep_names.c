@@ -97,18 +97,16 @@ static size_t ask_for_names(const char *text)
   return count;
 }
 
-static void test_every_name(void **state)
+TEST(test_every_name)
 {
-  (void)state;
   assert_true(ask_for_names(disc) >= 22);
   assert_true(ask_for_names(parts) >= 17);
 }
 
 /* At next to no voltage C = eps_0 eps_r pi r^2 l^2 / h, so that a limit of the capacitance is one
  * of the permittivity of the ply; the design that is written has it too. */
-static void test_permittivity_of_a_ply(void **state)
+TEST(test_permittivity_of_a_ply)
 {
-  (void)state;
   static const double eps_0 = 8.8541878128e-12, radius_m = 10e-3, h_m = 100e-6, l = 1.2,
                       wanted_F = 130e-12;
   static char bytes[COMMAND_TEXT_MAX];
@@ -148,9 +146,8 @@ static void test_permittivity_of_a_ply(void **state)
 }
 
 /* The fibres' material in the design that is written: it computes what the search has found. */
-static void test_modulus_of_the_fibres(void **state)
+TEST(test_modulus_of_the_fibres)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   command_write("design.yaml", disc);
   command_write("fibres.yaml",
@@ -173,9 +170,8 @@ static void test_modulus_of_the_fibres(void **state)
 }
 
 /* A spring has no name: by its place. One that is much stiffer than the film holds F / k. */
-static void test_spring(void **state)
+TEST(test_spring)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   double stiffness[2], z_m[2];
   command_write("spring.yaml",
@@ -206,9 +202,8 @@ static void test_spring(void **state)
 
 /* Plies are told apart by the ends of long names too, in the numbers and in the design that is
  * written: C = eps_0 pi r^2 l^2 (eps_1 / h_1 + eps_2 / h_2) at next to no voltage. */
-static void test_long_names(void **state)
+TEST(test_long_names)
 {
-  (void)state;
 #define LONG "silicone-film-of-the-stack-in-the-middle-"
   static const double eps_0 = 8.8541878128e-12, radius_m = 10e-3, l = 1.2;
   const double wanted_F =
@@ -239,14 +234,4 @@ static void test_long_names(void **state)
   assert_close(strtod(point + strlen("\"capacitance_F\": "), NULL), wanted_F, 1e-6, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_name),
-      cmocka_unit_test(test_permittivity_of_a_ply),
-      cmocka_unit_test(test_modulus_of_the_fibres),
-      cmocka_unit_test(test_spring),
-      cmocka_unit_test(test_long_names),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

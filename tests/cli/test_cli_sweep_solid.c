@@ -61,10 +61,9 @@ static void run_solid(const char *arguments)
 }
 
 /* The same as from rest, and to the bit the same whoever computes it after whom. */
-static void test_neighbours(void **state)
+TEST(test_neighbours)
 {
   only_nightly();
-  (void)state;
   static char near[DESIGNS][200], rest[DESIGNS][200], parts[DESIGNS][200];
   static double a[DESIGNS][NUMBERS], b[DESIGNS][NUMBERS];
   write_files();
@@ -102,9 +101,8 @@ static void optimise(const char *file)
 }
 
 /* A device made of plies: by a thickness and by a shape with the model's gradients. */
-static void test_parts(void **state)
+TEST(test_parts)
 {
-  (void)state;
   command_write("parts.yaml",
                 "dea_explore: 1\nname: parts\ndesign: " DEA_SOURCE_DIR
                 "/examples/devices/diaphragm.yaml\nmodel: 3d\nvoltages: [3 kV]\n"
@@ -122,9 +120,8 @@ static void test_parts(void **state)
 
 /* A critical voltage as a limit of a search by the model's gradients; that of a film goes with its
  * thickness. */
-static void test_critical_voltage(void **state)
+TEST(test_critical_voltage)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   double first_m, first_V, best_um;
   command_write("disc.yaml",
@@ -148,9 +145,8 @@ static void test_critical_voltage(void **state)
 
 /* The force on a tip as a limit of a search by the model's gradients, by a number of the film and
  * one of the tip, which ends where the limit is; and what matters to that force. */
-static void test_force(void **state)
+TEST(test_force)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   double force_mN;
   command_write("tip.yaml",
@@ -211,9 +207,8 @@ static double last_of(const char *summary, const char *key)
 
 /* What monitors show as quantities, beside the points of dea run; as objective and limit of a
  * search by the model's gradients, which ends where the limit is. */
-static void test_monitors(void **state)
+TEST(test_monitors)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   static const char head[] = "dea_explore: 1\nname: seen\ndesign: cone.yaml\nmodel: 3d\n"
                              "quantities: [hub.z_m, ring.z_m, ring_area_stretch]\n";
@@ -255,9 +250,8 @@ static void test_monitors(void **state)
 
 /* What a monitor shows is a column like any other: in the sweep's table, beside a measurement, in a
  * fit, which finds the thickness that the measured device was computed with, and on the report. */
-static void test_columns_of_monitors(void **state)
+TEST(test_columns_of_monitors)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   char text[400];
   command_write("cone.yaml", cone);
@@ -287,10 +281,9 @@ static void test_columns_of_monitors(void **state)
 }
 
 /* A slow ripple moves the hub as the voltage does: by the slope of its z. */
-static void test_columns_by_frequency(void **state)
+TEST(test_columns_by_frequency)
 {
   static const char still[] = "--set 'plies[0].viscosity=none' -q -o";
-  (void)state;
   char command[300];
   command_write("cone.yaml", cone);
   snprintf(command, sizeof command,
@@ -313,9 +306,8 @@ static void test_columns_by_frequency(void **state)
 }
 
 /* A number of a ply beside what its tolerance does to a monitor; angles and places have none. */
-static void test_tolerances_of_plies(void **state)
+TEST(test_tolerances_of_plies)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   static const struct {
     const char *row;
@@ -342,9 +334,8 @@ static void test_tolerances_of_plies(void **state)
 /* Where study loading ends, the force that holds the hub there: with all moduli and the
  * permittivity s times as large it is s times as large, and the voltage comes in by eps V^2 only.
  */
-static void test_end_of_a_line(void **state)
+TEST(test_end_of_a_line)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   enum { LAW = 3, PERMITTIVITY = LAW, VOLTAGE, NUMBERS_OF_LINE };
   static const char *const keys[NUMBERS_OF_LINE] = {"plies.film.law.c1", "plies.film.law.c2",
@@ -376,10 +367,9 @@ static void test_end_of_a_line(void **state)
 
 /* Slopes of the lowest frequency with study modal, which the command names; all that has a mass is
  * the film. */
-static void test_frequency(void **state)
+TEST(test_frequency)
 {
   only_nightly();
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   command_write("cone.yaml", cone);
   run_solid("run cone.yaml --set compute.sensitivity.modes=2 --study modal --study sensitivity -q "
@@ -401,9 +391,8 @@ static void test_frequency(void **state)
 
 /* The heaviest film that does not vibrate below a limit: f^2 times its density stays, as nothing
  * else has a mass. */
-static void test_frequency_as_a_limit(void **state)
+TEST(test_frequency_as_a_limit)
 {
-  (void)state;
   static char bytes[COMMAND_TEXT_MAX];
   double first_Hz, first, best;
   command_write("disc.yaml",
@@ -427,20 +416,4 @@ static void test_frequency_as_a_limit(void **state)
   assert_close(best, first * pow(first_Hz / 600, 2), 1e-5, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_neighbours),
-      cmocka_unit_test(test_parts),
-      cmocka_unit_test(test_critical_voltage),
-      cmocka_unit_test(test_force),
-      cmocka_unit_test(test_monitors),
-      cmocka_unit_test(test_columns_of_monitors),
-      cmocka_unit_test(test_columns_by_frequency),
-      cmocka_unit_test(test_tolerances_of_plies),
-      cmocka_unit_test(test_end_of_a_line),
-      cmocka_unit_test(test_frequency),
-      cmocka_unit_test(test_frequency_as_a_limit),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

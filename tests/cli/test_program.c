@@ -26,9 +26,8 @@ static enum dea_program_end shell(const char *script, bool all, double limit_s)
   return dea_program_wait(ctx, &program, limit_s, said, &number);
 }
 
-static void test_ends(void **state)
+TEST(test_ends)
 {
-  (void)state;
   assert_int_equal(shell("echo one; echo two >&2; pwd", true, INFINITY), DEA_PROGRAM_DONE);
   assert_string_equal(said, "one\ntwo\n/");
   assert_string_equal(dea_last_lines(said, 2), "two\n/");
@@ -41,9 +40,8 @@ static void test_ends(void **state)
 }
 
 /* Of much that is said the last is kept. */
-static void test_last_words(void **state)
+TEST(test_last_words)
 {
-  (void)state;
   assert_int_equal(shell("i=0; while [ $i -lt 3000 ]; do echo line $i; i=$((i+1)); done", true, 60),
                    DEA_PROGRAM_DONE);
   assert_true(strlen(said) > DEA_PROGRAM_SAID / 2);
@@ -56,9 +54,8 @@ static bool always(void *user)
   return true;
 }
 
-static void test_ended_by_us(void **state)
+TEST(test_ended_by_us)
 {
-  (void)state;
   double start_s = dea_clock_s();
   assert_int_equal(shell("echo here; exec sleep 60", true, 0.1), DEA_PROGRAM_TOO_LONG);
   assert_string_equal(said, "here");
@@ -74,9 +71,8 @@ static void test_ended_by_us(void **state)
 }
 
 /* What a program starts ends with it. */
-static void test_ended_with_its_own(void **state)
+TEST(test_ended_with_its_own)
 {
-  (void)state;
   assert_int_equal(shell("sleep 60 & echo $!; wait", true, 0.1), DEA_PROGRAM_TOO_LONG);
   pid_t child = (pid_t)strtol(said, NULL, 10);
   assert_true(child > 1);
@@ -98,20 +94,12 @@ static void test_ended_with_its_own(void **state)
   }
 }
 
-static void test_missing(void **state)
+TEST(test_missing)
 {
-  (void)state;
   char name[] = "no-such-program-at-all";
   char *const argv[] = {name, NULL};
   struct dea_program program;
   assert_int_equal(dea_program_start(argv, "/", true, &program), ENOENT);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_ends), cmocka_unit_test(test_last_words),
-                                     cmocka_unit_test(test_ended_by_us),
-                                     cmocka_unit_test(test_ended_with_its_own),
-                                     cmocka_unit_test(test_missing)};
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -46,9 +46,8 @@ static const struct dea_listed *listed(const char *path)
   return NULL;
 }
 
-static void test_lengths_are_those_of_the_stretched_film(void **state)
+TEST(test_lengths_are_those_of_the_stretched_film)
 {
-  (void)state;
   read_good(GOOD_DESIGN, NULL, 0);
   assert_close(device->film_thickness_unstretched_m, 100e-6, 1e-14, 0);
   assert_close(device->film_thickness_m, 100e-6 / 2.25, 1e-14, 0);
@@ -61,9 +60,8 @@ static void test_lengths_are_those_of_the_stretched_film(void **state)
 }
 
 /* Editors on Windows put a mark first, end lines by CR LF, or both. */
-static void test_files_of_other_editors(void **state)
+TEST(test_files_of_other_editors)
 {
-  (void)state;
   read_good("\xef\xbb\xbf" GOOD_DESIGN, NULL, 0);
   assert_int_equal(listed("pre_stretch")->location.line, 3);
   assert_int_equal(listed("dea")->location.column, 6);
@@ -75,9 +73,8 @@ static void test_files_of_other_editors(void **state)
   assert_int_equal(listed("pre_stretch")->location.line, 3);
 }
 
-static void test_materials_of_the_file(void **state)
+TEST(test_materials_of_the_file)
 {
-  (void)state;
   const struct dea_override sets[] = {{"film.law", "b"}, {"film.permittivity", "sloped"}};
   read_good(GOOD_DESIGN, sets, 2);
   assert_string_equal(device->film.law->name, "neo-hookean");
@@ -91,9 +88,8 @@ static void test_materials_of_the_file(void **state)
 }
 
 /* A material in one line is the one of the list `materials` with the same numbers. */
-static void test_material_in_one_line(void **state)
+TEST(test_material_in_one_line)
 {
-  (void)state;
   static const struct {
     const char *line, *law;
     double param[4];
@@ -130,9 +126,8 @@ static void test_material_in_one_line(void **state)
 }
 
 /* The same in a ply, twice, beside materials of the list. */
-static void test_plies_with_materials_in_one_line(void **state)
+TEST(test_plies_with_materials_in_one_line)
 {
-  (void)state;
   read_good("dea: 1\n"
             "shapes: [{name: a, kind: circle, radius: 9 mm}]\n"
             "plies:\n"
@@ -166,9 +161,8 @@ static bool has_note(const char *part)
   return false;
 }
 
-static void test_breakdown_without_a_known_exponent_is_noted(void **state)
+TEST(test_breakdown_without_a_known_exponent_is_noted)
 {
-  (void)state;
   read_good(GOOD_DESIGN, NULL, 0);
   assert_false(has_note("pessimistic")); // set x has its exponent
   const struct dea_override y[] = {{"film.breakdown", "y"}, {"pre_stretch", "1"}};
@@ -182,9 +176,8 @@ static void test_breakdown_without_a_known_exponent_is_noted(void **state)
 }
 
 /* 51 V/um h^-0.25 s^0.63 of a 1 mm film, for 100 um: with h = H/s^2 a power of 0.63 + 0.5. */
-static void test_breakdown_fits_the_film(void **state)
+TEST(test_breakdown_fits_the_film)
 {
-  (void)state;
   const struct dea_override huang[] = {{"film.material", "vhb-4910"},
                                        {"film.law", "arruda-boyce-2016"},
                                        {"film.permittivity", "constant"},
@@ -194,9 +187,8 @@ static void test_breakdown_fits_the_film(void **state)
   assert_close(device->film.breakdown.exponent, 1.13, 1e-13, 0);
 }
 
-static void test_first_set_is_the_default(void **state)
+TEST(test_first_set_is_the_default)
 {
-  (void)state;
   read_good(GOOD_DESIGN, NULL, 0);
   assert_string_equal(device->film.law_id, "a");
   assert_close(device->film.param[1], -6000, 1e-14, 0);
@@ -204,9 +196,8 @@ static void test_first_set_is_the_default(void **state)
   assert_close(device->film.stretch_max, 2, 0, 0);
 }
 
-static void test_every_default_is_listed(void **state)
+TEST(test_every_default_is_listed)
 {
-  (void)state;
   read_good(GOOD_DESIGN, NULL, 0);
   static const struct {
     const char *path, *text;
@@ -240,9 +231,8 @@ static void test_every_default_is_listed(void **state)
   assert_int_equal(listed("film.thickness")->location.column, 35);
 }
 
-static void test_default_sweep(void **state)
+TEST(test_default_sweep)
 {
-  (void)state;
   read_good(GOOD_DESIGN, NULL, 0);
   assert_int_equal(design->compute.voltage_count, 81);
   assert_close(design->compute.voltages_V[0], 0, 0, 0);
@@ -253,9 +243,8 @@ static void test_default_sweep(void **state)
   assert_true(design->report.svg && !design->report.pdf && !design->report.png);
 }
 
-static void test_sweeps(void **state)
+TEST(test_sweeps)
 {
-  (void)state;
   static const struct {
     const char *voltage;
     size_t count;
@@ -277,9 +266,8 @@ static void test_sweeps(void **state)
   }
 }
 
-static void test_three_ways_to_place_the_tip(void **state)
+TEST(test_three_ways_to_place_the_tip)
 {
-  (void)state;
   static const struct {
     const char *key, *value;
     double tip_m;
@@ -298,9 +286,8 @@ static void test_three_ways_to_place_the_tip(void **state)
   }
 }
 
-static void test_override_wins_over_the_other_way_to_say_it(void **state)
+TEST(test_override_wins_over_the_other_way_to_say_it)
 {
-  (void)state;
   const struct dea_override sets[] = {{"electrodes.radius", "4 mm stretched"},
                                       {"frame.inner_radius", "20 mm"},
                                       {"film.thickness", "200um"},
@@ -314,9 +301,8 @@ static void test_override_wins_over_the_other_way_to_say_it(void **state)
   assert_string_equal(listed("film.thickness")->location.file, "--set film.thickness");
 }
 
-static void test_null_takes_a_section_away(void **state)
+TEST(test_null_takes_a_section_away)
 {
-  (void)state;
   const struct dea_override set = {"fibres", "null"};
   read_good(GOOD_DESIGN, &set, 1);
   assert_false(design->has_fibres);
@@ -325,35 +311,31 @@ static void test_null_takes_a_section_away(void **state)
   assert_string_equal(listed("fibres")->text, "none");
 }
 
-static void test_coverage_given(void **state)
+TEST(test_coverage_given)
 {
-  (void)state;
   const struct dea_override set = {"compute.coverage", "0.2"};
   read_good(GOOD_DESIGN, &set, 1);
   assert_close(device->coverage, 0.2, 0, 0);
 }
 
-static void test_pre_stretch_beyond_the_data_is_a_warning(void **state)
+TEST(test_pre_stretch_beyond_the_data_is_a_warning)
 {
-  (void)state;
   const struct dea_override set = {"pre_stretch", "2.5"};
   read_good(GOOD_DESIGN, &set, 1);
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1);
   assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
 }
 
-static void test_fibres_that_just_touch_are_good(void **state)
+TEST(test_fibres_that_just_touch_are_good)
 {
-  (void)state;
   // The ends are arcs: 8 fibres of 2 mm meet at 1 mm/sin(22.5 degrees) = 2.613125930 mm.
   const struct dea_override touching[] = {{"fibres.count", "8"},
                                           {"fibres.tip_radius", "2.61312592975275 mm stretched"}};
   read_good(GOOD_DESIGN, touching, 2);
 }
 
-static void test_taper_and_free_end(void **state)
+TEST(test_taper_and_free_end)
 {
-  (void)state;
   const struct dea_override sets[] = {{"fibres.width", "3 mm"},
                                       {"fibres.tip_width", "1 mm"},
                                       {"fibres.outer_end", "free"},
@@ -381,9 +363,8 @@ static void test_taper_and_free_end(void **state)
 }
 
 /* An older word of a key is read as the key; the list of values knows the key only. */
-static void test_older_words_of_keys(void **state)
+TEST(test_older_words_of_keys)
 {
-  (void)state;
   const struct dea_override old[] = {{"compute.solid.side", "fibres"}};
   const struct dea_override new[] = {{"compute.solid.buckling_branch", "fibres"}};
   const struct dea_override both[] = {{"compute.solid.buckling_branch", "fibres"},
@@ -410,9 +391,8 @@ static void test_older_words_of_keys(void **state)
   dea_finding_clear(ctx);
 }
 
-static void test_straight_clamped_fibres_are_the_default(void **state)
+TEST(test_straight_clamped_fibres_are_the_default)
 {
-  (void)state;
   read_good(GOOD_DESIGN, NULL, 0);
   assert_close(device->fibre_tip_width_m, 2e-3, 1e-14, 0);
   assert_close(device->fibre_outer_gap_m, 0, 0, 0);
@@ -423,9 +403,8 @@ static void test_straight_clamped_fibres_are_the_default(void **state)
   assert_int_equal(dea_finding_count(ctx, DEA_WARNING), 1); // the end is not free
 }
 
-static void test_examples_are_good(void **state)
+TEST(test_examples_are_good)
 {
-  (void)state;
   static const char *const names[] = {"plain-disc", "frdea-4", "frdea-8", "paper/fig02"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     char file[512];
@@ -496,9 +475,8 @@ static void check_limit(const char *path, const char *form, const char *sign)
 /* The table of keys says what the reader does: every key is known and takes its example, limits
  * are where they are said to be, one of a choice is taken and nothing else; and no value that is
  * read lacks its row. */
-static void test_reference_says_what_is_read(void **state)
+TEST(test_reference_says_what_is_read)
 {
-  (void)state;
   struct dea_design_schema schema;
   struct dea_text page = {.ctx = ctx};
   char path[120], form[200], line[1000];
@@ -546,33 +524,4 @@ static void test_reference_says_what_is_read(void **state)
   dea_text_free(&page);
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-  const struct CMUnitTest tests[] = {
-      TEST(test_lengths_are_those_of_the_stretched_film),
-      TEST(test_files_of_other_editors),
-      TEST(test_materials_of_the_file),
-      TEST(test_material_in_one_line),
-      TEST(test_plies_with_materials_in_one_line),
-      TEST(test_breakdown_without_a_known_exponent_is_noted),
-      TEST(test_breakdown_fits_the_film),
-      TEST(test_first_set_is_the_default),
-      TEST(test_every_default_is_listed),
-      TEST(test_default_sweep),
-      TEST(test_sweeps),
-      TEST(test_three_ways_to_place_the_tip),
-      TEST(test_override_wins_over_the_other_way_to_say_it),
-      TEST(test_null_takes_a_section_away),
-      TEST(test_coverage_given),
-      TEST(test_pre_stretch_beyond_the_data_is_a_warning),
-      TEST(test_fibres_that_just_touch_are_good),
-      TEST(test_taper_and_free_end),
-      TEST(test_older_words_of_keys),
-      TEST(test_reference_says_what_is_read),
-      TEST(test_straight_clamped_fibres_are_the_default),
-      TEST(test_examples_are_good),
-  };
-#undef TEST
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS_EACH(NULL, NULL, set_up, tear_down)

@@ -60,9 +60,8 @@ static void check_errors(const char *text, const struct wanted *wanted, size_t c
 
 /* What helps: keys of a section, limits in the unit that was written, and one error for a key that
  * is misspelt, not another one for want of it. */
-static void test_help(void **state)
+TEST(test_help)
 {
-  (void)state;
   static const struct {
     const char *text;
     struct wanted wanted;
@@ -82,9 +81,8 @@ static void test_help(void **state)
   }
 }
 
-static void test_one_error_each(void **state)
+TEST(test_one_error_each)
 {
-  (void)state;
   static const struct {
     const char *text;
     struct wanted wanted;
@@ -160,9 +158,8 @@ static void test_one_error_each(void **state)
   }
 }
 
-static void test_not_yaml(void **state)
+TEST(test_not_yaml)
 {
-  (void)state;
   static const struct {
     const char *text;
     struct wanted wanted;
@@ -201,9 +198,8 @@ static void test_not_yaml(void **state)
 
 /* libyaml's scanner takes time by the depth for each bracket: without a bound this runs for
  * minutes. */
-static void test_four_megabytes_of_brackets(void **state)
+TEST(test_four_megabytes_of_brackets)
 {
-  (void)state;
   const size_t length = DEA_YAML_SIZE_MAX;
   struct dea_design *design;
   char *text = malloc(length);
@@ -217,18 +213,16 @@ static void test_four_megabytes_of_brackets(void **state)
   assert_int_equal(finding->location.column, DEA_YAML_DEPTH_MAX + 1);
 }
 
-static void test_a_zero_byte_in_the_file(void **state)
+TEST(test_a_zero_byte_in_the_file)
 {
-  (void)state;
   struct dea_design *design;
   assert_int_equal(dea_design_read_memory(ctx, "t.yaml", "dea: 1\n\0\n", 9, NULL, 0, &design),
                    DEA_E_DESIGN);
   assert_non_null(find_error(ctx, "not a text file"));
 }
 
-static void test_all_errors_at_once(void **state)
+TEST(test_all_errors_at_once)
 {
-  (void)state;
   static const char text[] = "dea: 1\n"
                              "film:\n"
                              "  thicknes: 100 um\n"
@@ -250,9 +244,8 @@ static void test_all_errors_at_once(void **state)
   check_errors(text, wanted, sizeof wanted / sizeof wanted[0]);
 }
 
-static void test_number_of_errors_is_bounded(void **state)
+TEST(test_number_of_errors_is_bounded)
 {
-  (void)state;
   struct dea_text text = {.ctx = ctx};
   for (int i = 0; i < 20000; i++) {
     dea_text_add(&text, "key%d: 1\n", i);
@@ -274,9 +267,8 @@ static void test_number_of_errors_is_bounded(void **state)
   "dea: 1\n" FILM "pre_stretch: 1.5\nframe: {inner_radius: 15 mm}\n"                               \
   "electrodes: {radius: " electrode "}\nfibres: {material: stiff, " fibres "}\n" FILM_MATERIAL
 
-static void test_geometry(void **state)
+TEST(test_geometry)
 {
-  (void)state;
   static const struct {
     const char *text;
     struct wanted wanted;
@@ -318,9 +310,8 @@ static void test_geometry(void **state)
   "frame: {inner_radius: 15 mm}\nelectrodes: {radius: 3.75 mm stretched" electrodes "}\n"          \
   "fibres: {count: 4, material: " fibre "}\n" FILM_MATERIAL
 
-static void test_materials(void **state)
+TEST(test_materials)
 {
-  (void)state;
   static const struct {
     const char *text;
     struct wanted wanted;
@@ -381,9 +372,8 @@ static void test_materials(void **state)
   "parameters: {mu: 9 kPa, jm: " jm "}, source: s}], permittivity: [{id: p, at_rest: 3, source: "  \
   "s}]}\n"
 
-static void test_law_that_ends_before_the_pre_stretch(void **state)
+TEST(test_law_that_ends_before_the_pre_stretch)
 {
-  (void)state;
   static const struct wanted film[] = {{3, 14, "ends before the pre-stretch 1.5 of the film"}},
                              layer[] = {{3, 14, "before the pre-stretch 1.5 of the electrodes"}};
   struct dea_design *design;
@@ -400,9 +390,8 @@ static void test_law_that_ends_before_the_pre_stretch(void **state)
   }
 }
 
-static void test_film_without_law_or_permittivity(void **state)
+TEST(test_film_without_law_or_permittivity)
 {
-  (void)state;
   static const struct wanted wanted[] = {{2, 37, "has no hyperelastic law"},
                                          {2, 37, "has no permittivity"}};
   check_errors(WITH("stiff", "", "stiff"), wanted, 2);
@@ -427,9 +416,8 @@ static void check_override(const char *key, const char *value, const char *part)
   assert_int_equal(finding->location.line, 0);
 }
 
-static void test_bad_overrides(void **state)
+TEST(test_bad_overrides)
 {
-  (void)state;
   check_override("film.thicknes", "200 um", "did you mean 'thickness'?");
   check_override("flim.thickness", "200 um", "did you mean 'film'?");
   check_override("film.thickness", "", "no value is given");
@@ -445,23 +433,4 @@ static void test_bad_overrides(void **state)
   check_override("compute.voltage", "{to:[1 kV]}", "a space is due after the colon");
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, context_set_up, context_tear_down)
-  const struct CMUnitTest tests[] = {
-      TEST(test_one_error_each),
-      TEST(test_help),
-      TEST(test_not_yaml),
-      TEST(test_four_megabytes_of_brackets),
-      TEST(test_a_zero_byte_in_the_file),
-      TEST(test_all_errors_at_once),
-      TEST(test_number_of_errors_is_bounded),
-      TEST(test_geometry),
-      TEST(test_materials),
-      TEST(test_law_that_ends_before_the_pre_stretch),
-      TEST(test_film_without_law_or_permittivity),
-      TEST(test_bad_overrides),
-  };
-#undef TEST
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS_EACH(NULL, NULL, context_set_up, context_tear_down)

@@ -51,37 +51,24 @@ static dea_status build_unknown(struct dea_context *ctx)
   return status;
 }
 
-static void test_good_design(void **state)
+TEST(test_good_design)
 {
-  (void)state;
   assert_true(failing_ends(read_good, DEA_OK) > 10); // there was something to fail
 }
 
-static void test_bad_design(void **state)
+TEST(test_bad_design)
 {
-  (void)state;
   assert_true(failing_ends(read_bad, DEA_E_DESIGN) > 10); // there was something to fail
 }
 
-static void test_example_with_the_catalogue(void **state)
+TEST(test_example_with_the_catalogue)
 {
-  (void)state;
   assert_true(failing_ends(read_example, DEA_OK) > 10); // there was something to fail
 }
 
-static void test_unknown_material(void **state)
+TEST(test_unknown_material)
 {
-  (void)state;
   assert_true(failing_ends(build_unknown, DEA_E_DESIGN) > 10); // there was something to fail
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_good_design),
-      cmocka_unit_test(test_bad_design),
-      cmocka_unit_test(test_example_with_the_catalogue),
-      cmocka_unit_test(test_unknown_material),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -28,9 +28,8 @@ static struct dea_text text_of_material(const struct dea_material *material)
 
 /* Whatever word of the struct changes, a new member's too: only names, and how sure the numbers
  * are, do not matter. */
-static void test_every_number_of_a_material(void **state)
+TEST(test_every_number_of_a_material)
 {
-  (void)state;
   static const struct {
     size_t from, to;
   } others[] = {MEMBER(name), MEMBER(law_id), MEMBER(viscosity_id), MEMBER(param_std),
@@ -172,9 +171,8 @@ static void check_record(struct walk *walk, const struct dea_record *record, con
   }
 }
 
-static void test_every_key_of_a_design(void **state)
+TEST(test_every_key_of_a_design)
 {
-  (void)state;
   struct dea_design_schema schema;
   dea_design_file_schema(&schema);
   struct walk disc = {disc_text, identity_with(disc_text, NULL, NULL), 0};
@@ -188,9 +186,8 @@ static void test_every_key_of_a_design(void **state)
 }
 
 /* Keys of every kind of shape. */
-static void test_every_key_of_a_shape(void **state)
+TEST(test_every_key_of_a_shape)
 {
-  (void)state;
   struct dea_design_schema schema;
   dea_design_file_schema(&schema);
   for (size_t k = 0; k < schema.shapes.count; k++) {
@@ -220,12 +217,4 @@ static void test_every_key_of_a_shape(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_number_of_a_material),
-      cmocka_unit_test(test_every_key_of_a_design),
-      cmocka_unit_test(test_every_key_of_a_shape),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -48,12 +48,11 @@ static struct dea_observation solve(const struct example *example, double voltag
 
 /* 20 g on the hub: membrane theory integrated by another program, without the film's own weight;
  * the solid film is stiffer by its clamped edges. */
-static void test_cone(void **state)
+TEST(test_cone)
 {
   static const struct {
     double kV, h_mm;
   } table[] = {{0, 1.8179}, {3, 2.0871}, {5, 2.7982}};
-  (void)state;
   struct example cone = open_example("cone-mass");
   for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
     struct dea_observation seen = solve(&cone, 1e3 * table[i].kV);
@@ -64,9 +63,8 @@ static void test_cone(void **state)
 
 /* Ten films take up ten times what a plate capacitor of one would, at the area and the thickness
  * that the film has in the middle; where it is not stretched evenly a little more or less. */
-static void test_stack(void **state)
+TEST(test_stack)
 {
-  (void)state;
   struct example stack = open_example("stack-10");
   struct dea_observation seen = solve(&stack, 200);
   double area_stretch = seen.monitor[1][DEA_OBSERVED_AREA_STRETCH], h_m = 20e-6 / 1.44;
@@ -81,9 +79,8 @@ static void test_stack(void **state)
 
 /* One quadrant driven: the plate tilts about the axis across it, away from the side that gives
  * way, and does not turn in the plane. */
-static void test_quadrants(void **state)
+TEST(test_quadrants)
 {
-  (void)state;
   struct example quadrants = open_example("quadrants");
   const double *plate = solve(&quadrants, 3e3).monitor[0];
   assert_true(fabs(plate[DEA_OBSERVED_TURN_Y]) > 3e-4);
@@ -96,9 +93,8 @@ static void test_quadrants(void **state)
 
 /* Each quadrant has a source of its own: with the voltages the tilt goes a quarter round in a
  * quarter of a cycle, and the tables say what was played. */
-static void test_quadrants_round(void **state)
+TEST(test_quadrants_round)
 {
-  (void)state;
   static const struct dea_override changes[] = {
       {"compute.transient.until", "0.25 s"},
       {"compute.transient.tolerance", "0.01"},
@@ -139,9 +135,8 @@ static void test_quadrants_round(void **state)
 }
 
 /* The film on a flexible frame curls when it is let go, and opens with the voltage. */
-static void test_gripper(void **state)
+TEST(test_gripper)
 {
-  (void)state;
   struct example gripper = open_example("gripper");
   double closed = solve(&gripper, 0).monitor[0][DEA_OBSERVED_Z];
   double open = solve(&gripper, 4e3).monitor[0][DEA_OBSERVED_Z];
@@ -150,12 +145,4 @@ static void test_gripper(void **state)
   close_example(&gripper);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cone),      cmocka_unit_test(test_stack),
-      cmocka_unit_test(test_quadrants), cmocka_unit_test(test_quadrants_round),
-      cmocka_unit_test(test_gripper),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -73,9 +73,8 @@ static void drop(void)
   design = NULL;
 }
 
-static void test_plies_and_electrodes(void **state)
+TEST(test_plies_and_electrodes)
 {
-  (void)state;
   const struct dea_layout *l = build(0, NULL);
   assert_int_equal(l->ply_count, 2);
   assert_string_equal(l->plies[0].name, "lower");
@@ -99,9 +98,8 @@ static void test_plies_and_electrodes(void **state)
   drop();
 }
 
-static void test_bodies_springs_monitors(void **state)
+TEST(test_bodies_springs_monitors)
 {
-  (void)state;
   const struct dea_layout *l = build(
       MORE, "bodies: [{name: plate, shape: active, free: [z, turn_x], mass: 20 g, "
             "force_z: 1 mN, move_x: 2 mm}]\n"
@@ -133,9 +131,8 @@ static void test_bodies_springs_monitors(void **state)
 }
 
 /* Areas of what is made of other shapes, by closed forms. */
-static void test_shapes_of_shapes(void **state)
+TEST(test_shapes_of_shapes)
 {
-  (void)state;
   static const struct {
     const char *shape;
     double area_mm2, centre_mm[2];
@@ -306,9 +303,8 @@ static const struct {
     {MORE, "stripes: 3", "shape of kind array", "stripes"},
 };
 
-static void test_one_error_each(void **state)
+TEST(test_one_error_each)
 {
-  (void)state;
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     dea_finding_clear(ctx);
     dea_status status =
@@ -333,9 +329,8 @@ static void test_one_error_each(void **state)
 }
 
 /* Each electrode that is too large is said at its shape. */
-static void test_electrodes_beyond_their_film(void **state)
+TEST(test_electrodes_beyond_their_film)
 {
-  (void)state;
   dea_finding_clear(ctx);
   const char *text = write_design(SHAPES, "shapes: [{name: film, kind: circle, radius: 20 mm}, "
                                           "{name: active, kind: rectangle, width: 50 mm, "
@@ -351,9 +346,8 @@ static void test_electrodes_beyond_their_film(void **state)
 }
 
 /* What is not held is said before anything is computed. */
-static void test_parts_that_nothing_holds(void **state)
+TEST(test_parts_that_nothing_holds)
 {
-  (void)state;
   dea_finding_clear(ctx);
   const char *text =
       write_design(SHAPES, "shapes: [{name: one, kind: rectangle, width: 40 mm, height: 10 mm}, "
@@ -369,9 +363,8 @@ static void test_parts_that_nothing_holds(void **state)
 
 /* Electrodes of two channels beside each other: at 0.5 mm dry air breaks down at
  * 24.36 0.05 + 6.72 sqrt(0.05) = 2.72 kV. */
-static void test_gap_between_channels(void **state)
+TEST(test_gap_between_channels)
 {
-  (void)state;
   static const struct {
     const char *width, *voltage, *finding;
   } gaps[] = {{"10 mm", "1 kV", "electrodes of the channels 'one' and 'two' touch on one face of"},
@@ -404,9 +397,8 @@ static void test_gap_between_channels(void **state)
 }
 
 /* A weight on a film that nothing else holds falls, but on a spring. */
-static void test_direction_that_nothing_holds(void **state)
+TEST(test_direction_that_nothing_holds)
 {
-  (void)state;
   static const char *const held[] = {"bodies: [{name: hub, shape: active, free: [z]}]",
                                      "bodies: [{name: hub, shape: active, free: [z]}]\n"
                                      "springs: [{body: hub, direction: z, stiffness: 1 N/m}]"};
@@ -420,9 +412,8 @@ static void test_direction_that_nothing_holds(void **state)
 }
 
 /* Keys of the general form in a file of the short one. */
-static void test_short_form_says_where_parts_belong(void **state)
+TEST(test_short_form_says_where_parts_belong)
 {
-  (void)state;
   dea_finding_clear(ctx);
   assert_int_equal(
       read_and_build(ctx, GOOD_DESIGN "bodies: [{name: hub}]\n", NULL, 0, &design, &device),
@@ -433,9 +424,8 @@ static void test_short_form_says_where_parts_belong(void **state)
 }
 
 /* Items of lists go by their names in --set. */
-static void test_override_by_name(void **state)
+TEST(test_override_by_name)
 {
-  (void)state;
   const struct dea_override override = {"plies.upper.thickness", "50 um"};
   assert_int_equal(read_and_build(ctx, write_design(0, NULL), &override, 1, &design, &device),
                    DEA_OK);
@@ -450,18 +440,16 @@ static void test_override_by_name(void **state)
       find_error(ctx, "'plies' is a list, not a section, and has no item of that name"));
 }
 
-static void test_no_dielectric_is_a_note(void **state)
+TEST(test_no_dielectric_is_a_note)
 {
-  (void)state;
   build(ELECTRODES, "");
   assert_non_null(find_finding(ctx, DEA_NOTE, "a voltage does nothing"));
   drop();
 }
 
 /* A ply may span what is open below it; what reaches beyond all of that is said. */
-static void test_overhang_is_a_note(void **state)
+TEST(test_overhang_is_a_note)
 {
-  (void)state;
   build(0, NULL);
   assert_null(find_finding(ctx, DEA_NOTE, "overhangs"));
   drop();
@@ -499,18 +487,16 @@ static dea_status build_shapes(struct dea_context *own)
   return status;
 }
 
-static void test_failing_memory(void **state)
+TEST(test_failing_memory)
 {
-  (void)state;
   assert_true(failing_ends(build_example, DEA_OK) > 100);
   assert_true(failing_ends(build_shapes, DEA_OK) > 100);
 }
 
 /* The unit of drawings: that of the file, or of the key where the file says none; the same file in
  * two units is two drawings. */
-static void test_units_of_drawings(void **state)
+TEST(test_units_of_drawings)
 {
-  (void)state;
   const struct dea_layout *layout =
       build(SHAPES, THREE_SHAPES
             ", {name: a, kind: drawing, file: " DRAWINGS
@@ -688,9 +674,8 @@ static void assert_same_number(double value, double wanted, double tolerance)
 /* A disc is the same one however it is written: every column of each model that knows it. Its
  * lengths are the same numbers in mm and in m: an estimated error, which is what is left of large
  * numbers, tells them apart in their last bit. */
-static void test_disc_of_both_forms(void **state)
+TEST(test_disc_of_both_forms)
 {
-  (void)state;
 #define LEVEL                                                                                      \
   {                                                                                                \
     "off", "off"                                                                                   \
@@ -781,9 +766,8 @@ static double slope_by(const char *text, const char *outcome)
 
 /* A disc whose electrodes are changed one after the other, which is none between, changes as one
  * whose electrodes are changed together. */
-static void test_slopes_of_both_forms(void **state)
+TEST(test_slopes_of_both_forms)
 {
-  (void)state;
   const struct disc disc = {1.2, 100, 15, 3.75, 0, 10, LEVEL, .film = "film"};
   static const char *const outcomes[] = {".thickness", ".law.c1"};
   for (size_t i = 0; i < sizeof outcomes / sizeof outcomes[0]; i++) {
@@ -796,9 +780,8 @@ static void test_slopes_of_both_forms(void **state)
   }
 }
 
-static void test_what_is_no_disc(void **state)
+TEST(test_what_is_no_disc)
 {
-  (void)state;
 #define RODS(shape, more)                                                                          \
   FILM_OF "1.2}, {name: rods, shape: " shape ", thickness: 9 um, material: " more "}]"
   static const struct {
@@ -862,19 +845,4 @@ static void test_what_is_no_disc(void **state)
   }
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test(name)
-  const struct CMUnitTest tests[] = {
-      TEST(test_units_of_drawings),        TEST(test_plies_and_electrodes),
-      TEST(test_bodies_springs_monitors),  TEST(test_shapes_of_shapes),
-      TEST(test_one_error_each),           TEST(test_electrodes_beyond_their_film),
-      TEST(test_parts_that_nothing_holds), TEST(test_direction_that_nothing_holds),
-      TEST(test_gap_between_channels),     TEST(test_short_form_says_where_parts_belong),
-      TEST(test_override_by_name),         TEST(test_failing_memory),
-      TEST(test_no_dielectric_is_a_note),  TEST(test_overhang_is_a_note),
-      TEST(test_disc_of_both_forms),       TEST(test_what_is_no_disc),
-      TEST(test_slopes_of_both_forms),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -29,9 +29,8 @@ static void write_all(const struct dea_design *design)
 #define LOAD "x = load('results.h5'); assert(isempty(lastwarn()), lastwarn());"
 #define RAW(values) "f = fopen('raw', 'w'); fwrite(f, " values ", 'double'); fclose(f);"
 
-static void test_numbers(void **state)
+TEST(test_numbers)
 {
-  (void)state;
   enum { POINTS = 41, ALL = 3 * POINTS + 9 };
   const struct dea_design design = fake_design();
   double got[ALL + 1];
@@ -57,9 +56,8 @@ static void test_numbers(void **state)
 }
 
 /* The design's text, with what is not ASCII. */
-static void test_texts(void **state)
+TEST(test_texts)
 {
-  (void)state;
   static const char text[] = "title: 80 \302\265m\nfilm: {thickness: 80 um}\n";
   const struct dea_design design = fake_design();
   struct dea_result *result = NULL;
@@ -80,8 +78,4 @@ static void test_texts(void **state)
   assert_string_equal(got, text);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_numbers), cmocka_unit_test(test_texts)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -61,9 +61,8 @@ static void list_models(const struct dea_study *study, const struct built *b, ch
   }
 }
 
-static void test_table_of_studies(void **state)
+TEST(test_table_of_studies)
 {
-  (void)state;
   char *text;
   size_t length, count, wrong = 0;
   struct built discs = build(disc), others = build(other);
@@ -89,8 +88,4 @@ static void test_table_of_studies(void **state)
   end(&others);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_table_of_studies)};
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -20,9 +20,8 @@ static const double pi = 3.14159265358979323846;
 
 /* Each dimension of the first 2^k points has one point in each of 2^k intervals, and the first two
  * in each box of area 2^-k: what makes the sequence one of Sobol's. */
-static void test_sobol(void **state)
+TEST(test_sobol)
 {
-  (void)state;
   enum { K = 10, N = 1 << K };
   double *u = calloc((size_t)N * DEA_SOBOL_DIMENSIONS, sizeof *u);
   dea_sample_sobol(DEA_SOBOL_DIMENSIONS, N, 3, u);
@@ -51,9 +50,8 @@ static void test_sobol(void **state)
 
 /* The integral of a product over 21 dimensions, which is 1: the error of 4096 points is far below
  * that of random ones (0.3 / 64), which wrong direction numbers would not reach. */
-static void test_sobol_integral(void **state)
+TEST(test_sobol_integral)
 {
-  (void)state;
   enum { N = 4096 };
   double *u = calloc((size_t)N * DEA_SOBOL_DIMENSIONS, sizeof *u), sum = 0;
   dea_sample_sobol(DEA_SOBOL_DIMENSIONS, N, 1, u);
@@ -68,9 +66,8 @@ static void test_sobol_integral(void **state)
   free(u);
 }
 
-static void test_latin(void **state)
+TEST(test_latin)
 {
-  (void)state;
   enum { N = 100, D = 3 };
   double u[N * D];
   assert_int_equal(dea_sample_latin(ctx, D, N, 5, u), DEA_OK);
@@ -85,9 +82,8 @@ static void test_latin(void **state)
   }
 }
 
-static void test_quantile(void **state)
+TEST(test_quantile)
 {
-  (void)state;
   for (double x = -8; x <= 8; x += 0.25) {
     const double u = 0.5 * erfc(-x / sqrt(2));
     if (u < 1) {
@@ -99,9 +95,8 @@ static void test_quantile(void **state)
 }
 
 /* Samples with correlations: those of the normal numbers behind them, and each still even. */
-static void test_correlated_samples(void **state)
+TEST(test_correlated_samples)
 {
-  (void)state;
   enum { N = 1 << 14, D = 3 };
   static struct dea_explore_file file = {.variable_count = D, .correlation_count = 3};
   const double wanted[] = {0.8, -0.3, 0.2}; // 2 with 1, 3 with 1, 3 with 2
@@ -133,9 +128,8 @@ static void test_correlated_samples(void **state)
 }
 
 /* A matrix with an eigenvalue of 0 is one of numbers that go together; below 0 there are none. */
-static void test_impossible_correlations(void **state)
+TEST(test_impossible_correlations)
 {
-  (void)state;
   const struct {
     double of[3];
     size_t count;
@@ -166,9 +160,8 @@ static void test_impossible_correlations(void **state)
 }
 
 /* Ishigami and Homma's function, whose indices are known in closed form, to 1 %. */
-static void test_ishigami(void **state)
+TEST(test_ishigami)
 {
-  (void)state;
   enum { N = 1 << 14, D = 3 };
   const double A = 7, B = 0.1;
   double *u = calloc((size_t)N * 2 * D, sizeof *u), *f = calloc((size_t)N * (D + 2), sizeof *f);
@@ -196,9 +189,8 @@ static void test_ishigami(void **state)
   free(f);
 }
 
-static void test_spread(void **state)
+TEST(test_spread)
 {
-  (void)state;
   double values[1001];
   struct dea_spread spread;
   for (int i = 0; i <= 1000; i++) {
@@ -211,9 +203,8 @@ static void test_spread(void **state)
 
 /* Groups of neighbours: each case in one, which is a box of the plan; they begin from one of them.
  */
-static void test_order(void **state)
+TEST(test_order)
 {
-  (void)state;
   enum { N = 1000, D = 3, GROUP = 20 };
   static double p[N * D];
   const bool whole[D] = {true, false, false};
@@ -299,9 +290,8 @@ static dea_status take(void *user, const struct dea_case *done)
   return taken->store != NULL ? dea_store_add(taken->store, done) : DEA_OK;
 }
 
-static void test_pool(void **state)
+TEST(test_pool)
 {
-  (void)state;
   struct dea_pool *pool;
   static struct taken taken;
   taken = (struct taken){.count = 40};
@@ -329,9 +319,8 @@ static void test_pool(void **state)
 
 static const struct dea_shard whole = {1, 1};
 
-static void test_store(void **state)
+TEST(test_store)
 {
-  (void)state;
   struct dea_store *store, *other;
   struct dea_pool *pool;
   static struct taken taken;
@@ -390,18 +379,4 @@ static void test_store(void **state)
   dea_store_close(store);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sobol),
-                                     cmocka_unit_test(test_sobol_integral),
-                                     cmocka_unit_test(test_latin),
-                                     cmocka_unit_test(test_quantile),
-                                     cmocka_unit_test(test_ishigami),
-                                     cmocka_unit_test(test_spread),
-                                     cmocka_unit_test(test_order),
-                                     cmocka_unit_test(test_pool),
-                                     cmocka_unit_test(test_store),
-                                     cmocka_unit_test(test_correlated_samples),
-                                     cmocka_unit_test(test_impossible_correlations)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -87,9 +87,8 @@ static size_t run(struct dea_search *search, const char *name, struct dea_optimu
 }
 
 /* The least sum where the product is at least 2: both the root of 2. */
-static void test_limit(void **state)
+TEST(test_limit)
 {
-  (void)state;
   static const int sum[] = {0, 0};
   struct dea_optimum best;
   size_t count, evaluations[3];
@@ -118,9 +117,8 @@ static void test_limit(void **state)
 }
 
 /* x of 1 to 5 only: x = 2, y = 2; with limits off. */
-static void test_whole(void **state)
+TEST(test_whole)
 {
-  (void)state;
   static const int distance[] = {2, 2};
   struct dea_optimum best;
   size_t count;
@@ -139,9 +137,8 @@ static void test_whole(void **state)
 
 /* Sum against distance: with y = y(x) least of (x - 2.4)^2 + 3 (y - x)^2 at x + y = s, which by
  * Lagrange is 3 (s - 4.8)^2 / 13 (x moves by 6/13 of the way, y by 7/13). */
-static void test_front(void **state)
+TEST(test_front)
 {
-  (void)state;
   static const int both[] = {0, 2};
   struct dea_optimum front[DEA_FRONT_MAX];
   size_t count;
@@ -157,9 +154,8 @@ static void test_front(void **state)
 }
 
 /* Slopes by y are missing: differences stand in for them, and are counted. */
-static void test_slopes_that_are_missing(void **state)
+TEST(test_slopes_that_are_missing)
 {
-  (void)state;
   static const int sum[] = {0, 0};
   struct dea_optimum best;
   size_t count, replaced[2] = {0, 0};
@@ -179,9 +175,8 @@ static void test_slopes_that_are_missing(void **state)
 /* x is missed by d to either side: the product stays at least 2 at the smaller x, which is then the
  * root of 2 and d; by the worst, and by mean and spread, where the standard deviations of sum and
  * product over -d, 0, d are d and d y. */
-static void test_scatter(void **state)
+TEST(test_scatter)
 {
-  (void)state;
   static const int sum[] = {0, 0};
   static const double d = 0.3, shifts[] = {0, 0, 0.3, 0, -0.3, 0};
   struct dea_optimum best;
@@ -227,9 +222,8 @@ static void count_design(void *user, const char *what, size_t done, size_t total
 
 /* Ctrl-C while designs are evaluated: what was done is kept, and the search that goes on makes
  * those that are missing, none twice. */
-static void test_interrupt(void **state)
+TEST(test_interrupt)
 {
-  (void)state;
   static const int sum[] = {0, 0};
   const struct dea_shard whole = {1, 1};
   struct dea_optimum best, again;
@@ -260,13 +254,4 @@ static void test_interrupt(void **state)
   dea_context_set_interrupt(ctx, NULL);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_limit),
-                                     cmocka_unit_test(test_whole),
-                                     cmocka_unit_test(test_front),
-                                     cmocka_unit_test(test_scatter),
-                                     cmocka_unit_test(test_slopes_that_are_missing),
-                                     cmocka_unit_test(test_interrupt)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -266,9 +266,8 @@ static void check_rounds(const struct drawn *d, bool svg)
   assert_int_equal(count_circles("CUT_OUTER", d->R + d->ring + k), d->copies);
 }
 
-static void test_designs_drawn_at_random(void **state)
+TEST(test_designs_drawn_at_random)
 {
-  (void)state;
   int good = 0, with_fibres = 0, free_ends = 0;
   seed = 20240607;
   for (int i = 0; i < 200; i++) {
@@ -317,9 +316,8 @@ static struct dea_contour contour_of(const char *part, enum dea_layer layer, siz
   return (struct dea_contour){0};
 }
 
-static void test_the_stretched_electrode_is_the_simulated_one(void **state)
+TEST(test_the_stretched_electrode_is_the_simulated_one)
 {
-  (void)state;
   seed = 7;
   for (int i = 0; i < 40; i++) {
     struct drawn d;
@@ -365,9 +363,8 @@ static void read_marks(const char *part, const char *layer, double out[3][2])
   assert_int_equal(found, 3);
 }
 
-static void test_marks_meet_in_all_sheets(void **state)
+TEST(test_marks_meet_in_all_sheets)
 {
-  (void)state;
   static const struct {
     const char *part, *layer;
     bool stretched, mirrored;
@@ -409,9 +406,8 @@ static void test_marks_meet_in_all_sheets(void **state)
   }
 }
 
-static void test_copies_keep_apart(void **state)
+TEST(test_copies_keep_apart)
 {
-  (void)state;
   const struct dea_override sets[] = {{"fabrication.copies", "7"},
                                       {"fabrication.sheet.width", "200 mm"},
                                       {"fabrication.sheet.gap", "4 mm"}};
@@ -443,13 +439,4 @@ static void test_copies_keep_apart(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_designs_drawn_at_random),
-      cmocka_unit_test(test_the_stretched_electrode_is_the_simulated_one),
-      cmocka_unit_test(test_marks_meet_in_all_sheets),
-      cmocka_unit_test(test_copies_keep_apart),
-  };
-  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
-}
+TESTS(workshop_set_up, workshop_tear_down)

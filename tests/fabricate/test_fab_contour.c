@@ -4,9 +4,8 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void test_contours(void **state)
+TEST(test_contours)
 {
-  (void)state;
   // a half disc of radius 1, and a square with a rounded corner the other way
   const struct dea_vertex half[] = {{.x_m = 1, .bulge = 1}, {.x_m = -1}};
   const struct dea_contour disc = {half, 2, true};
@@ -57,9 +56,8 @@ static void expect_holes(double x0, double r0, double x1, double r1, const char 
   dea_context_destroy(ctx);
 }
 
-static void test_holes(void **state)
+TEST(test_holes)
 {
-  (void)state;
   expect_holes(-5e-3, 2e-3, 5e-3, 2e-3, NULL);
   expect_holes(-1e-3, 2e-3, 1e-3, 2e-3, "parts overlap at (");
   expect_holes(0, 5e-3, 0, 2e-3, "a hole lies in another one");
@@ -70,11 +68,4 @@ static void test_holes(void **state)
   expect_holes(0, 2e-3, 5e-3, 0.2e-3, "smaller than the minimum feature");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_contours),
-      cmocka_unit_test(test_holes),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

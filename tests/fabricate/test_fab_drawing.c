@@ -149,9 +149,8 @@ static const struct variant {
 };
 enum { VARIANTS = sizeof variants / sizeof variants[0] };
 
-static void test_words_do_not_overlap(void **state)
+TEST(test_words_do_not_overlap)
 {
-  (void)state;
   for (size_t v = 0; v < VARIANTS; v++) {
     double size[2];
     make(variants[v].sets, variants[v].count);
@@ -179,9 +178,8 @@ static void test_words_do_not_overlap(void **state)
 }
 
 /* The same of devices of any layout: drawing, parts, and process sheet. */
-static void test_words_of_devices(void **state)
+TEST(test_words_of_devices)
 {
-  (void)state;
   static const char *const names[] = {"quadrants", "stack-10",   "two-electrodes",
                                       "bender",    "pure-shear", "diaphragm"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -213,9 +211,8 @@ static void test_words_of_devices(void **state)
 }
 
 /* Words of any length go onto their lines. */
-static void test_long_words(void **state)
+TEST(test_long_words)
 {
-  (void)state;
   static const double widths[] = {0.1, 0.9};
   char word[3000];
   memset(word, 'x', sizeof word - 1);
@@ -241,9 +238,8 @@ static void test_long_words(void **state)
 
 /* ---- numbers ---- */
 
-static void test_amounts(void **state)
+TEST(test_amounts)
 {
-  (void)state;
   const struct dea_override sets[] = {{"electrodes.thickness", "10 um"},
                                       {"electrodes.material", "stiff"},
                                       {"fibres.bond.thickness", "50 um"},
@@ -275,9 +271,8 @@ static void test_amounts(void **state)
 }
 
 /* Without fibres model axisymmetric says all; what 3d says of others is in test_fab_solid.c. */
-static void test_sensitivity_of_film(void **state)
+TEST(test_sensitivity_of_film)
 {
-  (void)state;
   struct dea_sensitivity found;
   const struct dea_override none = {"fibres", "null"};
   make(&none, 1);
@@ -306,9 +301,8 @@ static dea_status write_document(struct dea_context *failing)
   return status;
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   // without fibres: what model 3d needs is tested elsewhere
   const struct dea_override sets[] = {{"fibres", "null"}, {"compute.voltage", "{values: [1 kV]}"}};
   make(sets, 2);
@@ -322,12 +316,4 @@ static void test_each_allocation(void **state)
   assert_true(n > 100);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_words_do_not_overlap), cmocka_unit_test(test_words_of_devices),
-      cmocka_unit_test(test_long_words),           cmocka_unit_test(test_amounts),
-      cmocka_unit_test(test_sensitivity_of_film),  cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
-}
+TESTS(workshop_set_up, workshop_tear_down)

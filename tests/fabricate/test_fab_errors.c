@@ -74,9 +74,8 @@ static void expect(const char *from, const char *to, const char *message, size_t
   dea_context_destroy(ctx);
 }
 
-static void test_what_cannot_be_built(void **state)
+TEST(test_what_cannot_be_built)
 {
-  (void)state;
   expect("kerf: 0.2 mm", "kerf: 0.6 mm", "a cut of 0.6 mm width makes no features of 0.5 mm", 8);
   expect("width: 1 mm uns", "width: 0.4 mm uns", "only 0.4 mm lie between two edges", 12);
   expect("width: 1 mm uns", "width: 6 mm uns", "wider than the pad of 5 mm", 12);
@@ -99,9 +98,8 @@ static void test_what_cannot_be_built(void **state)
 }
 
 /* Fibres that widen outwards: the lead passes their tips, and goes under their outer ends. */
-static void test_lead_under_a_taper(void **state)
+TEST(test_lead_under_a_taper)
 {
-  (void)state;
   static const char *const widths[] = {"8 mm", "10 mm"};
   for (size_t i = 0; i < 2; i++) {
     struct dea_context *ctx;
@@ -120,9 +118,8 @@ static void test_lead_under_a_taper(void **state)
   }
 }
 
-static void test_parts_that_overlap(void **state)
+TEST(test_parts_that_overlap)
 {
-  (void)state;
   // fibres that overlap, and leads at a right angle that are nearly as wide as their electrode
   expect("count: 4", "count: 16", "overlap each other", 6);
   struct dea_context *ctx;
@@ -145,9 +142,8 @@ static dea_status build_all(struct dea_context *ctx)
   return make_files(ctx, design, device);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   static const struct dea_override sets[][1] = {
       {{"fabrication.marks.grid", "20 mm unstretched"}}, // good
       {{"fabrication.minimum_feature", "3 mm"}},         // things that are too narrow
@@ -164,9 +160,8 @@ static void test_each_allocation(void **state)
 }
 
 /* Extremes of every key by itself: refused or built, never worse. */
-static void test_hostile_values(void **state)
+TEST(test_hostile_values)
 {
-  (void)state;
   static const char *const keys[] = {
       "kerf",          "minimum_feature",    "sheet.width",       "sheet.height",
       "sheet.margin",  "sheet.gap",          "ring.width",        "ring.contact_window",
@@ -191,9 +186,8 @@ static void test_hostile_values(void **state)
   }
 }
 
-static void test_letters(void **state)
+TEST(test_letters)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_text text = {.ctx = ctx};
@@ -214,12 +208,4 @@ static void test_letters(void **state)
   dea_context_destroy(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_what_cannot_be_built), cmocka_unit_test(test_lead_under_a_taper),
-      cmocka_unit_test(test_parts_that_overlap),   cmocka_unit_test(test_each_allocation),
-      cmocka_unit_test(test_hostile_values),       cmocka_unit_test(test_letters),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -50,9 +50,8 @@ static double layer_area(const struct dea_part *part, enum dea_layer layer, doub
 }
 
 /* What is cut before the film is stretched is smaller by its two pre-stretches. */
-static void test_unstretched(void **state)
+TEST(test_unstretched)
 {
-  (void)state;
   assert_int_equal(workshop_make(DEVICE("[1.25, 1.6]", ""), NULL, 0), DEA_OK);
   const double l1 = 1.25, l2 = 1.6;
   double box[4];
@@ -85,9 +84,8 @@ static void test_unstretched(void **state)
 
 /* What is cut in the flat film has the lengths of the design; the frame goes once the film is cut
  * along its outline. */
-static void test_flat(void **state)
+TEST(test_flat)
 {
-  (void)state;
   assert_int_equal(workshop_make(DEVICE("1.3", ""), NULL, 0), DEA_OK);
   double box[4];
   assert_close(dea_part_area_m2(find("ply-a-stiff-ring")), pi * 20e-6, 1e-12, 0);
@@ -111,9 +109,8 @@ static void test_flat(void **state)
 
 /* Axes of the pre-stretch at an angle: a square of film becomes a parallelogram, of which
  * stretching makes the square again. */
-static void test_turned_axes(void **state)
+TEST(test_turned_axes)
 {
-  (void)state;
   assert_int_equal(workshop_make(DEVICE("[1.2, 1.5], angle: 30 degree", ""), NULL, 0), DEA_OK);
   const struct dea_part *blank = find("blank-film");
   const double c = cos(pi / 6), s = sin(pi / 6);
@@ -133,9 +130,8 @@ static void test_turned_axes(void **state)
 }
 
 /* Films that are alike have one file, and faces that are. */
-static void test_alike(void **state)
+TEST(test_alike)
 {
-  (void)state;
   static const char text[] =
       "dea: 1\nshapes:\n"
       "  - {name: film, kind: circle, radius: 10 mm}\n"
@@ -169,9 +165,8 @@ static void expect_refusal(const char *text, const char *key, const char *value,
   }
 }
 
-static void test_refusals(void **state)
+TEST(test_refusals)
 {
-  (void)state;
   static const char good[] = DEVICE("1.3", "");
   expect_refusal(good, "fabrication.minimum_feature", "2.5 mm",
                  "only 2 mm lie between two edges at");
@@ -186,9 +181,8 @@ static void test_refusals(void **state)
 }
 
 /* A sheet as it is written, without kerf, read back. */
-static void test_sheet_read_back(void **state)
+TEST(test_sheet_read_back)
 {
-  (void)state;
   const struct dea_override sharp = {"fabrication.kerf", "0 mm"};
   const struct dea_location here = {0};
   assert_int_equal(workshop_make(DEVICE("[1.25, 1.6]", ""), &sharp, 1), DEA_OK);
@@ -212,12 +206,4 @@ static void test_sheet_read_back(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_unstretched), cmocka_unit_test(test_flat),
-      cmocka_unit_test(test_turned_axes), cmocka_unit_test(test_alike),
-      cmocka_unit_test(test_refusals),    cmocka_unit_test(test_sheet_read_back),
-  };
-  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
-}
+TESTS(workshop_set_up, workshop_tear_down)

@@ -8,9 +8,8 @@ static void make(const struct dea_override *sets, size_t count)
   assert_int_equal(workshop_make(GOOD_DESIGN, sets, count), DEA_OK);
 }
 
-static void test_disc(void **state)
+TEST(test_disc)
 {
-  (void)state;
   struct dea_sensitivity found;
   const struct dea_override four = {"compute.voltage", "{values: [4 kV]}"};
   make(&four, 1);
@@ -21,9 +20,8 @@ static void test_disc(void **state)
 }
 
 /* Tips beside the electrode's edge, which the gradient knows: whichever key places them. */
-static void test_tips(void **state)
+TEST(test_tips)
 {
-  (void)state;
   static const char *const fibres[] = {
       "{count: 4, material: stiff, overlap: 0.5 mm stretched}",
       "{count: 4, material: stiff, tip_radius: 3.25 mm stretched}",
@@ -77,9 +75,8 @@ static double height(const char *name, const char *key, const char *value)
 }
 
 /* A device of plies: the height of its middle by the film's thickness and pre-stretch. */
-static void test_plies(void **state)
+TEST(test_plies)
 {
-  (void)state;
   static const char name[] = "devices/diaphragm";
   struct dea_layout_sensitivity found;
   assert_int_equal(workshop_make(example(name), NULL, 0), DEA_OK);
@@ -123,9 +120,8 @@ static struct dea_load_point solve(double voltage_V)
 }
 
 /* Up to the last quarter to be trusted with a film that is taut; a bound where there is none. */
-static void test_lower(void **state)
+TEST(test_lower)
 {
-  (void)state;
   struct dea_sensitivity found;
   const struct dea_override eight = {"compute.voltage", "{values: [8 kV]}"};
   make(&eight, 1); // stretched beyond the range of its law from 4 kV on
@@ -149,13 +145,4 @@ static void test_lower(void **state)
   assert_true(found.effect_m[DEA_DEVIATION_FIBRE] != 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_disc),
-      cmocka_unit_test(test_plies),
-      cmocka_unit_test(test_tips),
-      cmocka_unit_test(test_lower),
-  };
-  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
-}
+TESTS(workshop_set_up, workshop_tear_down)

@@ -26,9 +26,8 @@ static double length_of(const struct dea_outline *lines, size_t count, enum dea_
   return length;
 }
 
-static void test_outlines(void **state)
+TEST(test_outlines)
 {
-  (void)state;
   const double pi = 3.14159265358979324;
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
   struct dea_outline *lines;
@@ -45,9 +44,8 @@ static void test_outlines(void **state)
 }
 
 /* All of the disc once, at the height that the surface has there. */
-static void test_patches(void **state)
+TEST(test_patches)
 {
-  (void)state;
   const double pi = 3.14159265358979324;
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
   struct dea_surface_lattice drawing;
@@ -77,9 +75,8 @@ static void test_patches(void **state)
 }
 
 /* A rectangle away from the origin: its own middle, box, boundary, and section. */
-static void test_off_centre(void **state)
+TEST(test_off_centre)
 {
-  (void)state;
   static const struct dea_mesh_field displacement = {.name = "displacement_m",
                                                      .unit = "m",
                                                      .meaning = "displacement",
@@ -117,9 +114,8 @@ static void test_off_centre(void **state)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
-static void test_section(void **state)
+TEST(test_section)
 {
-  (void)state;
   struct dea_field_mesh *mesh = fake_surface(ctx, 1e3);
   struct dea_surface_lattice drawing;
   assert_int_equal(dea_surface_lattice_create(ctx, mesh, 20000, &drawing), DEA_OK);
@@ -141,9 +137,8 @@ static void test_section(void **state)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
-static void test_what_cannot_be_drawn(void **state)
+TEST(test_what_cannot_be_drawn)
 {
-  (void)state;
   struct dea_field_mesh *mesh;
   struct dea_surface_lattice drawing;
   struct dea_outline *lines;
@@ -176,9 +171,8 @@ static dea_status make_result(struct dea_context *c, struct dea_result **out)
 }
 
 /* A long sweep keeps a few surfaces, evenly spread, the first and the last among them. */
-static void test_surfaces_are_bounded(void **state)
+TEST(test_surfaces_are_bounded)
 {
-  (void)state;
   enum { POINTS = 101, ROOM = 10 };
   struct dea_result *result;
   assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
@@ -232,9 +226,8 @@ static void check_same(const struct dea_field_mesh *a, const struct dea_field_me
   }
 }
 
-static void test_store(void **state)
+TEST(test_store)
 {
-  (void)state;
   struct dea_result *result;
   struct dea_run *run;
   assert_int_equal(make_result(ctx, &result), DEA_OK);
@@ -250,9 +243,8 @@ static void test_store(void **state)
   dea_result_destroy(ctx, result);
 }
 
-static void test_figures(void **state)
+TEST(test_figures)
 {
-  (void)state;
   struct dea_result *result;
   assert_int_equal(make_result(ctx, &result), DEA_OK);
   result->surfaces[2].mesh->X[0] -= 1e-9;
@@ -287,9 +279,8 @@ static void test_figures(void **state)
 }
 
 /* A flat film, one surface, or none. */
-static void test_figures_of_little(void **state)
+TEST(test_figures_of_little)
 {
-  (void)state;
   const struct dea_figure_options options = {.format = {.svg = true, .width_m = 0.17},
                                              .voltage_V = NAN};
   struct dea_result *result;
@@ -305,9 +296,8 @@ static void test_figures_of_little(void **state)
 }
 
 /* What stays flat shows how far it moves in its plane. */
-static void test_figures_in_the_plane(void **state)
+TEST(test_figures_in_the_plane)
 {
-  (void)state;
   static const char *const names[] = {"map", "surface"};
   const struct dea_figure_options options = {
       .names = names, .name_count = 2, .format = {.svg = true, .width_m = 0.085}, .voltage_V = NAN};
@@ -369,27 +359,10 @@ static void draw(struct dea_context *failing)
   dea_result_destroy(failing, result);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   assert_true(failing_each(store_and_read) > 40);
   assert_true(failing_each(draw) > 60);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_surfaces_are_bounded),
-      cmocka_unit_test(test_outlines),
-      cmocka_unit_test(test_patches),
-      cmocka_unit_test(test_section),
-      cmocka_unit_test(test_off_centre),
-      cmocka_unit_test(test_what_cannot_be_drawn),
-      cmocka_unit_test(test_store),
-      cmocka_unit_test(test_figures),
-      cmocka_unit_test(test_figures_of_little),
-      cmocka_unit_test(test_figures_in_the_plane),
-      cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -52,9 +52,8 @@ static void expect(struct dea_region region, double area, size_t contours, size_
   dea_region_free(&region);
 }
 
-static void test_lens(void **state)
+TEST(test_lens)
 {
-  (void)state;
   for (int k = 1; k < 20; k++) {
     double d = 0.1 * k, lens = 2 * acos(0.5 * d) - 0.5 * d * sqrt(4 - d * d);
     double x = d * cos(k), y = d * sin(k);
@@ -79,9 +78,8 @@ static double half_band(double radius, double h)
   return h * sqrt(radius * radius - h * h) + radius * radius * asin(h / radius);
 }
 
-static void test_ring_and_strips(void **state)
+TEST(test_ring_and_strips)
 {
-  (void)state;
   double outer = 20e-3, inner = 15e-3, hub = 4e-3, h = 0.35e-3;
   struct dea_region ring = shape(&dea_shape_ring, (double[]){0, 0, inner, outer});
   expect(combine(DEA_DIFFERENCE, ring, rectangle(0, 0, 1, 2 * h)),
@@ -99,9 +97,8 @@ static void test_ring_and_strips(void **state)
   dea_region_free(&spoke);
 }
 
-static void test_tangent(void **state)
+TEST(test_tangent)
 {
-  (void)state;
   expect(combine(DEA_UNION, circle(0, 0, 1), circle(3, 0, 2)), 5 * pi, 2, 4);
   expect(combine(DEA_INTERSECTION, circle(0, 0, 1), circle(3, 0, 2)), 0, 0, 0);
   struct dea_region moon = combine(DEA_DIFFERENCE, circle(0, 0, 2), circle(0.6, 0.8, 1));
@@ -119,9 +116,8 @@ static void test_tangent(void **state)
   dea_region_free(&near);
 }
 
-static void test_coincident(void **state)
+TEST(test_coincident)
 {
-  (void)state;
   expect(combine(DEA_UNION, rectangle(0, 0, 1, 1), rectangle(1, 0, 1, 1)), 2, 1, 4);
   expect(combine(DEA_DIFFERENCE, rectangle(0, 0, 2, 2), rectangle(0.5, 0, 1, 2)), 2, 1, 4);
   expect(combine(DEA_INTERSECTION, rectangle(0, 0, 1, 1), rectangle(1, 0, 1, 1)), 0, 0, 0);
@@ -151,9 +147,8 @@ static void test_coincident(void **state)
 }
 
 /* Thinner than the chords' height at the first attempt: seen, and tried again with finer ones. */
-static void test_thin(void **state)
+TEST(test_thin)
 {
-  (void)state;
   double t = 1e-7;
   struct dea_region thin = shape(&dea_shape_ring, (double[]){0, 0, 1 - t, 1});
   double area = pi * (2 - t) * t, half_width = 0.1;
@@ -201,9 +196,8 @@ static struct dea_region copy(const struct dea_region *region)
   return out;
 }
 
-static void test_any(void **state)
+TEST(test_any)
 {
-  (void)state;
   unsigned long seed = 7;
   for (int k = 0; k < 60; k++) {
     struct dea_region a = any(&seed), b = any(&seed);
@@ -224,9 +218,8 @@ static void test_any(void **state)
   }
 }
 
-static void test_faults(void **state)
+TEST(test_faults)
 {
-  (void)state;
   const struct dea_vertex bow[4] = {
       {0, 0, 0, here}, {2e-3, 2e-3, 0, here}, {2e-3, 0, 0, here}, {0, 2e-3, 0, here}};
   struct dea_region bad = {.ctx = ctx}, good = circle(0, 0, 1e-3), out = {.ctx = ctx};
@@ -247,9 +240,8 @@ static void test_faults(void **state)
 }
 
 /* What is so far away that the two have no common scale: a unit in capital letters (12 Mm). */
-static void test_far_apart(void **state)
+TEST(test_far_apart)
 {
-  (void)state;
   struct dea_region near = circle(0, 0, 2.5e-3), far = circle(0, -12e6, 2.5e-3), out = {.ctx = ctx};
   for (int i = 0; i < 2; i++) {
     assert_message(dea_region_combine(ctx, i == 0 ? DEA_UNION : DEA_DIFFERENCE,
@@ -276,20 +268,9 @@ static dea_status cut_some(struct dea_context *own)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_ends(cut_some, DEA_OK) > 20);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_lens),    cmocka_unit_test(test_ring_and_strips),
-      cmocka_unit_test(test_tangent), cmocka_unit_test(test_coincident),
-      cmocka_unit_test(test_thin),    cmocka_unit_test(test_any),
-      cmocka_unit_test(test_faults),  cmocka_unit_test(test_far_apart),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

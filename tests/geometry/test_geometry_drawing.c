@@ -65,9 +65,8 @@ static void expect(struct dea_drawing *drawing, const char *layer, double area_m
 #define ARC(layer, x, y, r, a, b)                                                                  \
   "0\nARC\n8\n" #layer "\n" AT(x, y) "40\n" #r "\n50\n" #a "\n51\n" #b "\n"
 
-static void test_dxf_entities(void **state)
+TEST(test_dxf_entities)
 {
-  (void)state;
   // a stadium of lines and arcs in no order and any sense, with a hole and a disc in the hole
   static const char parts[] = ARC(cut, 5, 0, 2, 270, 90) LINE(cut, 0, 2, 5, 2)
       LINE(cut, 5, -2, 0, -2) ARC(cut, 0, 0, 2, 90, 270) CIRCLE(cut, 0, 0, 1) CIRCLE(cut, 0, 0, 0.5)
@@ -144,9 +143,8 @@ static void expect_about(struct dea_drawing *drawing, double area_mm2, double to
 }
 
 /* Ellipses and splines become arcs, at most 0.1 um away: 1e-4 mm along their length. */
-static void test_dxf_curves(void **state)
+TEST(test_dxf_curves)
 {
-  (void)state;
 #define ELLIPSE(x, y, more) "0\nELLIPSE\n8\na\n10\n3\n20\n4\n11\n" #x "\n21\n" #y "\n" more
   expect_about(read_dxf(ELLIPSE(6, 8, "40\n0.5\n")), 50 * pi, 50 * 1e-4);
   assert_non_null(find_finding(ctx, DEA_NOTE, "1 curve became circular arcs, to within"));
@@ -191,9 +189,8 @@ static void test_dxf_curves(void **state)
 #define INSERT(layer, name, more) "0\nINSERT\n8\n" #layer "\n2\n" #name "\n" more
 
 /* Blocks: half a disc of radius 2 about (1, 1), its base, on layer "0". */
-static void test_dxf_blocks(void **state)
+TEST(test_dxf_blocks)
 {
-  (void)state;
 #define HALF ARC(0, 1, 1, 2, 0, 180) LINE(0, -1, 1, 3, 1)
 #define WITH(inserts)                                                                              \
   FILE_OF("",                                                                                      \
@@ -250,9 +247,8 @@ static void test_dxf_blocks(void **state)
 }
 
 /* Names of layers by version, codepage and escapes; one name in any case. */
-static void test_dxf_names(void **state)
+TEST(test_dxf_names)
 {
-  (void)state;
 #define NAMED(header, name) FILE_OF(header, "", "0\nCIRCLE\n8\n" name "\n40\n1\n")
 #define PAGE(name) "9\n$DWGCODEPAGE\n3\n" name "\n"
   static const struct {
@@ -390,9 +386,8 @@ static const struct {
     {"svg/vbonly.svg", "Cut", 800 * PX *PX, NULL},
 };
 
-static void test_files_of_others(void **state)
+TEST(test_files_of_others)
 {
-  (void)state;
   for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
     char file[400];
     struct dea_drawing *drawing;
@@ -423,9 +418,8 @@ static unsigned draw_number(unsigned *seed)
 }
 
 /* Polygons of 60 lines about a point, whose coordinates are whole um, in any order and sense. */
-static void test_random_polygons(void **state)
+TEST(test_random_polygons)
 {
-  (void)state;
   enum { POLYGONS = 40, LINES = 60 };
   unsigned seed = 1;
   for (int polygon = 0; polygon < POLYGONS; polygon++) {
@@ -458,9 +452,8 @@ static void test_random_polygons(void **state)
 
 /* Pieces below the tolerance between longer ones are none, also in polylines and where a path
  * closes; what is as small as that all along stays. */
-static void test_tiny_pieces(void **state)
+TEST(test_tiny_pieces)
 {
-  (void)state;
   static const char *const paths[] = {"M0 0H40V1e-4V20H0z", "M0 0H40V20H0V3e-4z",
                                       "m0 0h40v20h-40v-19.9999999z"};
   struct dea_region region = {.ctx = ctx};
@@ -480,9 +473,8 @@ static void test_tiny_pieces(void **state)
   expect(drawing, "a", 16e-8 + 9e-8 * pi, 2);
 }
 
-static void test_units(void **state)
+TEST(test_units)
 {
-  (void)state;
   static const struct {
     const char *code;
     double mm;
@@ -497,9 +489,8 @@ static void test_units(void **state)
   }
 }
 
-static void test_dxf_faults(void **state)
+TEST(test_dxf_faults)
 {
-  (void)state;
   expect_fault(LINE(a, 0, 0, 2, 0) LINE(a, 2, 0, 2, 2) LINE(a, 2, 2.002, 0, 0), "a", 18,
                "the contour is open (the nearest other end is 0.002 mm away, ends within 0.001 mm "
                "are joined) at (2, 2) mm");
@@ -546,9 +537,8 @@ static void test_dxf_faults(void **state)
   "<svg xmlns='http://www.w3.org/2000/svg' width='100mm' height='50mm' viewBox='0 0 100 50'>"      \
   "<g id='a'>" inside "</g></svg>"
 
-static void test_svg_elements(void **state)
+TEST(test_svg_elements)
 {
-  (void)state;
   expect(read_svg(SVG("<circle cx='10' cy='10' r='3'/>")), "a", 9 * pi, 1);
   expect(read_svg(SVG("<rect x='1' y='2' width='6' height='4' rx='1'/>")), "a", 24 - 4 + pi, 1);
   expect(read_svg(SVG("<polygon points='0,0 6 0 0,3'/>")), "a", 9, 1);
@@ -587,9 +577,8 @@ static void test_svg_elements(void **state)
 }
 
 /* Curves become arcs to within the tolerance that is told. */
-static void test_svg_curves(void **state)
+TEST(test_svg_curves)
 {
-  (void)state;
   struct dea_drawing *drawing = read_svg(SVG("<ellipse cx='20' cy='20' rx='10' ry='5'/>"));
   assert_non_null(find_finding(ctx, DEA_NOTE, "1 curve became circular arcs, to within"));
   struct dea_region region = {.ctx = ctx};
@@ -629,9 +618,8 @@ static void add_bezier_circle(struct dea_text *text, const char *number, double 
 }
 
 /* Circles of four cubics become four arcs, whatever program wrote them; 900 holes are no more. */
-static void test_svg_bezier_circles(void **state)
+TEST(test_svg_bezier_circles)
 {
-  (void)state;
   static const struct {
     const char *number;
     double radius, handle, tolerance; // of the area: that of rounded radii
@@ -697,9 +685,8 @@ static void expect_svg_fault(const char *text, const char *message)
 }
 
 /* The unit is known where a side has a length and the view box says how many units it is. */
-static void test_svg_units(void **state)
+TEST(test_svg_units)
 {
-  (void)state;
   static const struct {
     const char *root;
     double unit_mm;
@@ -733,9 +720,8 @@ static void test_svg_units(void **state)
   }
 }
 
-static void test_svg_faults(void **state)
+TEST(test_svg_faults)
 {
-  (void)state;
   expect_svg_fault(SVG("<path d='M0 0L10 0L10 10'/>"),
                    "the contour is open (the nearest other end");
   expect_svg_fault(SVG("<path d='M0 0L10 0 x'/>"), "the path is not understood at 'x'");
@@ -755,9 +741,8 @@ static void test_svg_faults(void **state)
 }
 
 /* Every part of a design as the project's own writer writes it. */
-static void test_round_trip(void **state)
+TEST(test_round_trip)
 {
-  (void)state;
   assert_int_equal(workshop_make(GOOD_DESIGN, NULL, 0), DEA_OK);
   size_t seen = 0;
   for (size_t i = 0; i < workshop->count; i++) {
@@ -823,24 +808,10 @@ static dea_status read_some_svg(struct dea_context *own)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_ends(read_some, DEA_OK) > 20);
   assert_true(failing_ends(read_some_svg, DEA_OK) > 20);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_dxf_entities),    cmocka_unit_test(test_dxf_curves),
-      cmocka_unit_test(test_dxf_blocks),      cmocka_unit_test(test_dxf_names),
-      cmocka_unit_test(test_files_of_others), cmocka_unit_test(test_random_polygons),
-      cmocka_unit_test(test_tiny_pieces),     cmocka_unit_test(test_svg_bezier_circles),
-      cmocka_unit_test(test_units),           cmocka_unit_test(test_dxf_faults),
-      cmocka_unit_test(test_svg_elements),    cmocka_unit_test(test_svg_curves),
-      cmocka_unit_test(test_svg_faults),      cmocka_unit_test(test_svg_units),
-      cmocka_unit_test(test_round_trip),      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, workshop_set_up, workshop_tear_down);
-}
+TESTS(workshop_set_up, workshop_tear_down)

@@ -52,9 +52,8 @@ static void expect(const struct dea_shape_type *type, const double *value, const
   dea_region_free(&region);
 }
 
-static void test_shapes(void **state)
+TEST(test_shapes)
 {
-  (void)state;
   const double none = NAN;
   expect(&dea_shape_circle, (double[]){1, 2, 3}, NULL, 0, 9 * pi, 6 * pi, 1, 2);
   expect(&dea_shape_circle, (double[]){none, none, 1}, NULL, 0, pi, 2 * pi, 0, 0);
@@ -101,9 +100,8 @@ static void expect_fault(const struct dea_shape_type *type, const double *value,
   dea_region_free(&region);
 }
 
-static void test_shape_faults(void **state)
+TEST(test_shape_faults)
 {
-  (void)state;
   expect_fault(&dea_shape_circle, (double[]){0, 0, -1}, NULL, 0,
                "radius of the circle must be a length above 0, not -1");
   expect_fault(&dea_shape_ring, (double[]){1e-3, 0, 2e-3, 2e-3}, NULL, 0,
@@ -129,9 +127,8 @@ static void test_shape_faults(void **state)
   expect_fault(&dea_shape_strip, (double[]){0.1}, loop, 5, "crosses or touches itself");
 }
 
-static void test_arrays_and_inside(void **state)
+TEST(test_arrays_and_inside)
 {
-  (void)state;
   struct dea_region cell = empty(), array = empty(), wheel = empty();
   add(&cell, &dea_shape_ring, (double[]){0, 0, 1, 2});
   const size_t count[2] = {3, 2};
@@ -172,9 +169,8 @@ static dea_status check_circles(double x, double radius, bool apart)
   return status;
 }
 
-static void test_check(void **state)
+TEST(test_check)
 {
-  (void)state;
   assert_int_equal(check_circles(4e-3, 2e-3, true), DEA_OK); // touch from outside
   assert_int_equal(check_circles(1e-3, 1e-3, true), DEA_OK); // and from inside
   assert_int_equal(check_circles(3e-3, 2e-3, false), DEA_OK);
@@ -210,9 +206,8 @@ static void test_check(void **state)
   dea_finding_clear(ctx);
 }
 
-static void test_arrange(void **state)
+TEST(test_arrange)
 {
-  (void)state;
   struct dea_region region = empty();
   // seven circles in each other, and two beside them, in any sense
   static const int order[7] = {3, 6, 1, 5, 2, 7, 4};
@@ -237,9 +232,8 @@ static void test_arrange(void **state)
 
 /* A square in the notch of a long contour, whose box holds it: a ray from it crosses that contour
  * twice, so it lies beside it and is no hole. */
-static void test_arrange_in_a_notch(void **state)
+TEST(test_arrange_in_a_notch)
 {
-  (void)state;
   static const double corner[8][2] = {{0, 0}, {9, 0}, {9, 9}, {6, 9},
                                       {6, 3}, {3, 3}, {3, 9}, {0, 9}};
   enum { PARTS = 60 };
@@ -261,9 +255,8 @@ static void test_arrange_in_a_notch(void **state)
 }
 
 /* The pieces near a box, against looking at all. */
-static void test_tree(void **state)
+TEST(test_tree)
 {
-  (void)state;
   struct dea_region region = empty();
   unsigned long seed = 1;
   for (int k = 0; k < 300; k++) {
@@ -315,23 +308,9 @@ static dea_status build_some(struct dea_context *own)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_ends(build_some, DEA_OK) > 10);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_shapes),
-      cmocka_unit_test(test_shape_faults),
-      cmocka_unit_test(test_arrays_and_inside),
-      cmocka_unit_test(test_check),
-      cmocka_unit_test(test_arrange),
-      cmocka_unit_test(test_arrange_in_a_notch),
-      cmocka_unit_test(test_tree),
-      cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

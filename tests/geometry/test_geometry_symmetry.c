@@ -80,9 +80,8 @@ static void expect(size_t order, size_t mirrors, double mirror_degree)
   clear();
 }
 
-static void test_one(void **state)
+TEST(test_one)
 {
-  (void)state;
   add(&dea_shape_rectangle, (double[]){1, 2, 2, 2}, 1);
   expect(4, 4, 0);
   add(&dea_shape_rectangle, (double[]){1, 2, 3, 2}, 1);
@@ -109,9 +108,8 @@ static void test_one(void **state)
 }
 
 /* Copies about a centre, of a shape with and without a mirror line of its own. */
-static void test_polar(void **state)
+TEST(test_polar)
 {
-  (void)state;
   for (size_t n = 2; n < 30; n++) {
     for (int chiral = 0; chiral < 2; chiral++) {
       struct dea_region one = {.ctx = ctx};
@@ -127,9 +125,8 @@ static void test_polar(void **state)
   }
 }
 
-static void test_labels(void **state)
+TEST(test_labels)
 {
-  (void)state;
   for (int kind = 0; kind < 3; kind++) { // four quadrants: one channel, two, four
     static const int channel[3][4] = {{1, 1, 1, 1}, {1, 2, 1, 2}, {1, 2, 3, 4}};
     static const size_t order[3] = {4, 2, 1}, mirrors[3] = {4, 2, 0};
@@ -150,9 +147,8 @@ static void test_labels(void **state)
   }
 }
 
-static void test_tolerance(void **state)
+TEST(test_tolerance)
 {
-  (void)state;
   add(&dea_shape_circle, (double[]){0, 0, 1}, 1);
   add(&dea_shape_circle, (double[]){4, 0, 1 + 1e-4}, 1);
   assert_int_equal(find(0).order, 1);
@@ -169,9 +165,8 @@ static void test_tolerance(void **state)
 }
 
 /* The result of a boolean has vertices elsewhere than what it is equal to. */
-static void test_boolean(void **state)
+TEST(test_boolean)
 {
-  (void)state;
   char path[4096];
   if (!dea_boolean_find(path, sizeof path)) {
     skip();
@@ -206,18 +201,9 @@ static dea_status find_some(struct dea_context *own)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_ends(find_some, DEA_OK) > 3);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_one),     cmocka_unit_test(test_polar),
-      cmocka_unit_test(test_labels),  cmocka_unit_test(test_tolerance),
-      cmocka_unit_test(test_boolean), cmocka_unit_test(test_memory),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

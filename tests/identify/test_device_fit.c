@@ -60,9 +60,8 @@ static void write_capacitances(double *k, double *C, double *std)
 
 /* One parameter that the curve is linear in, with a Gaussian prior: the posterior in closed form.
  */
-static void test_closed_form(void **state)
+TEST(test_closed_form)
 {
-  (void)state;
   double k, C[CAPACITIES], std[CAPACITIES], information = 1 / (0.05 * 0.05),
                                             sum = 2.88 * information;
   struct dea_device_file *file;
@@ -85,9 +84,8 @@ static void test_closed_form(void **state)
 
 /* The same without uncertainties: s of the rows is that of their residuals, sum r^2 = s^2 (m - m
  * k^2 std^2/s^2), and the prior weighs against it with its own uncertainty. */
-static void test_prior_without_uncertainty(void **state)
+TEST(test_prior_without_uncertainty)
 {
-  (void)state;
   static const double prior = 2.901, prior_std = 7e-4;
   char text[512] = "V (V),capacitance (pF)\n";
   double k, C[CAPACITIES], unused[CAPACITIES], squares = 0, mean = 0;
@@ -118,9 +116,8 @@ static void test_prior_without_uncertainty(void **state)
 
 /* A pre-stretch so close to 1, below which there is none, that the step down leads out: at rest C
  * is as its fourth power. */
-static void test_slope_to_one_side(void **state)
+TEST(test_slope_to_one_side)
 {
-  (void)state;
   static const double stretch = 1.0004;
   double k, C[CAPACITIES], std[CAPACITIES], information = 0;
   char text[1024] = "V (V),capacitance (pF),capacitance std (pF)\n";
@@ -144,9 +141,8 @@ static void test_slope_to_one_side(void **state)
 }
 
 /* At rest the capacitance tells eps/h only. */
-static void test_not_told_apart(void **state)
+TEST(test_not_told_apart)
 {
-  (void)state;
   double k, C[CAPACITIES], std[CAPACITIES];
   struct dea_device_file *file;
   struct dea_device_fit *found;
@@ -215,9 +211,8 @@ static const char two[] = "  - {name: film.thickness, low: 60 um, high: 140 um}\
                           "  - {name: pre_stretch, low: 1.1, high: 1.9}\n";
 
 /* Of 80 intervals of one standard uncertainty 68 % hold the truth: 55 +- 4. */
-static void test_coverage(void **state)
+TEST(test_coverage)
 {
-  (void)state;
   skip_sanitized();
   struct dea_load_point points[STOPS];
   uint64_t seed = 7;
@@ -243,9 +238,8 @@ static void test_coverage(void **state)
 }
 
 /* The written design gives the fitted curve, and slack rows are cut and counted. */
-static void test_design_and_slack(void **state)
+TEST(test_design_and_slack)
 {
-  (void)state;
   struct dea_load_point points[STOPS];
   struct dea_device_file *file;
   struct dea_device_fit *found;
@@ -291,9 +285,8 @@ static void test_design_and_slack(void **state)
 }
 
 /* From a start where the film goes slack on the way: the rows cut there come back. */
-static void test_rows_come_back(void **state)
+TEST(test_rows_come_back)
 {
-  (void)state;
   static const char *const models[] = {"lumped", "axisymmetric"};
   struct dea_load_point points[STOPS];
   struct dea_device_file *file;
@@ -316,9 +309,8 @@ static void test_rows_come_back(void **state)
 
 /* A highest row that a slack film alone would give: cut, the others want a film that is not slack
  * there, and so round after round. */
-static void test_rows_do_not_settle(void **state)
+TEST(test_rows_do_not_settle)
 {
-  (void)state;
   struct dea_load_point points[STOPS];
   struct dea_device_file *file;
   struct dea_device_fit *found;
@@ -336,13 +328,4 @@ static void test_rows_do_not_settle(void **state)
   end(file, found);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_closed_form),    cmocka_unit_test(test_prior_without_uncertainty),
-      cmocka_unit_test(test_not_told_apart), cmocka_unit_test(test_slope_to_one_side),
-      cmocka_unit_test(test_coverage),       cmocka_unit_test(test_design_and_slack),
-      cmocka_unit_test(test_rows_come_back), cmocka_unit_test(test_rows_do_not_settle),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -88,9 +88,8 @@ static double normal(uint64_t *seed)
 /* The posterior of a straight line with Gaussian priors is Gaussian, with the precision
  * A = sum of (1, x)(1, x)'/s^2 + diag(1/S_j^2) and the mean A^-1 (sum of (1, x) y/s^2 + m_j/S_j^2).
  */
-static void test_linear_gaussian_posterior(void **state)
+TEST(test_linear_gaussian_posterior)
 {
-  (void)state;
   struct line line = {.model = straight,
                       .count = 20,
                       .prior_count = 2,
@@ -137,9 +136,8 @@ static void test_linear_gaussian_posterior(void **state)
   dea_lsq_free(&fit);
 }
 
-static void test_derivatives(void **state)
+TEST(test_derivatives)
 {
-  (void)state;
   struct line line = {.model = saturating, .count = 30, .std = 0.5};
   double J[2 * 30];
   const double p[2] = {3, 0.8};
@@ -156,9 +154,8 @@ static void test_derivatives(void **state)
 }
 
 /* A parameter that wants to leave its bounds stays there, and is let go again where it must. */
-static void test_bounds(void **state)
+TEST(test_bounds)
 {
-  (void)state;
   struct line line = {.model = straight, .count = 10, .std = 1};
   const double low[2] = {-1, 2.5}, high[2] = {0.5, 10}, start[2] = {0.4, 2.5};
   for (size_t i = 0; i < line.count; i++) {
@@ -188,9 +185,8 @@ static void test_bounds(void **state)
 }
 
 /* Only p0 + 1.3 p1 is in the data: both are open, the direction says so, chi2 is still least. */
-static void test_what_is_not_determined(void **state)
+TEST(test_what_is_not_determined)
 {
-  (void)state;
   struct line line = {.model = sum_of_two, .count = 10, .std = 1};
   const double start[2] = {1, 1};
   for (size_t i = 0; i < line.count; i++) {
@@ -210,9 +206,8 @@ static void test_what_is_not_determined(void **state)
 }
 
 /* ln p = m +- s: the interval is exp(m - s) to exp(m + s), not symmetric. */
-static void test_profile_that_bends(void **state)
+TEST(test_profile_that_bends)
 {
-  (void)state;
   struct line line = {.model = logarithm, .count = 1, .x = {1}, .y = {0.7}, .std = 0.4};
   struct dea_lsq_problem problem = problem_of(&line, 1);
   const double start = 1, low = 1e-9;
@@ -232,9 +227,8 @@ static void test_profile_that_bends(void **state)
   dea_lsq_free(&fit);
 }
 
-static void test_where_the_model_ends(void **state)
+TEST(test_where_the_model_ends)
 {
-  (void)state;
   struct line line = {.model = root, .count = 3, .x = {1, 2, 3}, .y = {0.01, 0.02, 0.03}, .std = 1};
   struct dea_lsq_problem problem = problem_of(&line, 1);
   struct dea_lsq_fit fit;
@@ -279,35 +273,20 @@ static double coverage(double rho, bool known, size_t j)
 }
 
 /* 68.3 % to 3 %, which is two standard deviations of 1000 trials. */
-static void test_coverage_of_white_noise(void **state)
+TEST(test_coverage_of_white_noise)
 {
-  (void)state;
   for (size_t j = 0; j < 2; j++) {
     assert_close(coverage(0, true, j), 0.683, 0, 0.03);
     assert_close(coverage(0, false, j), 0.683, 0, 0.03);
   }
 }
 
-static void test_coverage_of_correlated_noise(void **state)
+TEST(test_coverage_of_correlated_noise)
 {
-  (void)state;
   for (size_t j = 0; j < 2; j++) {
     assert_close(coverage(0.6, true, j), 0.683, 0, 0.03);
     assert_close(coverage(0.6, false, j), 0.683, 0, 0.03);
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_linear_gaussian_posterior),
-      cmocka_unit_test(test_derivatives),
-      cmocka_unit_test(test_bounds),
-      cmocka_unit_test(test_what_is_not_determined),
-      cmocka_unit_test(test_profile_that_bends),
-      cmocka_unit_test(test_where_the_model_ends),
-      cmocka_unit_test(test_coverage_of_white_noise),
-      cmocka_unit_test(test_coverage_of_correlated_noise),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -16,9 +16,8 @@ static struct dea_material material_of(const char *law, double a, double b)
 }
 
 /* Nominal stresses of the neo-Hookean law: mu (l - l^-2), mu (l - l^-3), mu (l - l^-5). */
-static void test_modes_of_a_coupon(void **state)
+TEST(test_modes_of_a_coupon)
 {
-  (void)state;
   const struct dea_material material = material_of("neo-hookean", 2e5, 0);
   const double powers[DEA_COUPON_MODES] = {-2, -3, -5}, stretch[3] = {0.7, 1.5, 3};
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
@@ -37,9 +36,8 @@ static void test_modes_of_a_coupon(void **state)
 
 /* A branch that is stretched at once and held: A relaxes from 1 to C^-1, so that its stress is
  * G e^(-t/tau) (l - l^-2), the neo-Hookean one of its spring. */
-static void test_relaxation_after_a_jump(void **state)
+TEST(test_relaxation_after_a_jump)
 {
-  (void)state;
   struct dea_material material = material_of("neo-hookean", 1e4, 0);
   material.branch_count = 1;
   material.branches[0] = (struct dea_branch){3e4, 20};
@@ -58,9 +56,8 @@ static void test_relaxation_after_a_jump(void **state)
 }
 
 /* The same film under equal stretches as the models have it (material/branch.c). */
-static void test_branches_against_the_film(void **state)
+TEST(test_branches_against_the_film)
 {
-  (void)state;
   struct dea_material material = material_of("neo-hookean", 1, 0);
   material.branch_count = 1;
   material.branches[0] = (struct dea_branch){3e4, 2};
@@ -86,9 +83,8 @@ static void test_branches_against_the_film(void **state)
   dea_arena_free(&arena);
 }
 
-static void test_stability(void **state)
+TEST(test_stability)
 {
-  (void)state;
   const struct dea_material stable = material_of("mooney-rivlin", 1e5, 1e4);
   const struct dea_material falls = material_of("mooney-rivlin", 2e5, -1e5);
   for (double l = 1; l < 4; l += 0.1) {
@@ -177,9 +173,8 @@ static void fill(struct dea_fit_series *series, const struct dea_material *mater
  * point as planar tension of a section A/(8/7), at half the displacement as biaxial one of A/(4/5);
  * third-order deformation, equal weights. Its answer, in MPa, to the four digits that the page of
  * the project asks for. */
-static void test_three_tests(void **state)
+TEST(test_three_tests)
 {
-  (void)state;
   static const double known[5] = {.50430357, -.01413309, .0141219, -.01641752, .00492179};
   static const double sections[3] = {1, 8.0 / 7, 4.0 / 5};
   add_law("third-order");
@@ -200,9 +195,8 @@ static void test_three_tests(void **state)
 }
 
 /* Every law from its own curves, without a hint where to begin. */
-static void test_laws_find_themselves(void **state)
+TEST(test_laws_find_themselves)
 {
-  (void)state;
   static const struct {
     const char *name, *law;
     double p[DEA_LAW_PARAM_MAX];
@@ -241,9 +235,8 @@ static void test_laws_find_themselves(void **state)
 }
 
 /* Two branches from relaxations at two stretches; their number is found. */
-static void test_branches_find_themselves(void **state)
+TEST(test_branches_find_themselves)
 {
-  (void)state;
   struct dea_material material = material_of("neo-hookean", 2e4, 0);
   uint64_t seed = 3;
   material.branch_count = 2;
@@ -282,9 +275,8 @@ static void test_branches_find_themselves(void **state)
 
 /* One uniaxial test of small stretches holds c10 and c01 by their sum only, a biaxial one parts
  * them. */
-static void test_what_cannot_be_told_apart(void **state)
+TEST(test_what_cannot_be_told_apart)
 {
-  (void)state;
   const struct dea_material material = material_of("mooney-rivlin", 1e5, 2e4);
   add_law("mooney-rivlin");
   fill(add_series(DEA_FIT_UNIAXIAL, 20, 500), &material, 1.003);
@@ -306,9 +298,8 @@ static void test_what_cannot_be_told_apart(void **state)
 
 /* Of several laws the one that the data come from foretells held-out tests best, and of a nested
  * pair the smaller is taken. */
-static void test_laws_are_compared(void **state)
+TEST(test_laws_are_compared)
 {
-  (void)state;
   const struct dea_material material = material_of("gent", 4e4, 20);
   add_law("neo-hookean");
   add_law("yeoh");
@@ -324,9 +315,8 @@ static void test_laws_are_compared(void **state)
 
 /* Equal stretches of 2 reach as far (I1 = 8.0625) as a strip that is stretched to 2.7063: so far it
  * is looked whether the law is stable, and such a test is proposed. */
-static void test_how_far_tests_reach(void **state)
+TEST(test_how_far_tests_reach)
 {
-  (void)state;
   const struct dea_material material = material_of("gent", 4e4, 20);
   add_law("gent");
   fill(add_series(DEA_FIT_EQUIBIAXIAL, 20, 100), &material, 2);
@@ -346,9 +336,8 @@ static void test_how_far_tests_reach(void **state)
 /* Uniaxial curves of what the catalogue has, with noise: a law ends with its modulus at rest above
  * 0 or says that it has none, Ogden's with two terms follows each to 0.7 % of the largest stress,
  * Gent's to 5 %. */
-static void test_silicones(void **state)
+TEST(test_silicones)
 {
-  (void)state;
   static const char *const laws[] = {"mooney-rivlin", "gent", "ogden-2"};
   const char **names;
   size_t count, curves = 0;
@@ -396,21 +385,4 @@ static void test_silicones(void **state)
   trial_set_up(NULL);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_modes_of_a_coupon),
-      cmocka_unit_test(test_relaxation_after_a_jump),
-      cmocka_unit_test(test_branches_against_the_film),
-      cmocka_unit_test(test_stability),
-      cmocka_unit_test_setup_teardown(test_three_tests, trial_set_up, trial_tear_down),
-      cmocka_unit_test_setup_teardown(test_laws_find_themselves, trial_set_up, trial_tear_down),
-      cmocka_unit_test_setup_teardown(test_branches_find_themselves, trial_set_up, trial_tear_down),
-      cmocka_unit_test_setup_teardown(test_what_cannot_be_told_apart, trial_set_up,
-                                      trial_tear_down),
-      cmocka_unit_test_setup_teardown(test_laws_are_compared, trial_set_up, trial_tear_down),
-      cmocka_unit_test_setup_teardown(test_silicones, trial_set_up, trial_tear_down),
-      cmocka_unit_test_setup_teardown(test_how_far_tests_reach, trial_set_up, trial_tear_down),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS_EACH(context_set_up, context_tear_down, trial_set_up, trial_tear_down)

@@ -55,9 +55,8 @@ static void fit_small(struct dea_context *ctx, void *user)
   dea_arena_free(&memory);
 }
 
-static void test_every_allocation(void **state)
+TEST(test_every_allocation)
 {
-  (void)state;
   for (int k = 0; k < 2; k++) {
     bool profile = k == 1;
     struct failing_count count;
@@ -69,8 +68,4 @@ static void test_every_allocation(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_allocation)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -66,9 +66,8 @@ static double shape_by_bisection(size_t rows)
   return low;
 }
 
-static void test_against_its_equations(void **state)
+TEST(test_against_its_equations)
 {
-  (void)state;
   for (int censored = 0; censored < 2; censored++) {
     struct dea_weibull_data data = plain(25);
     struct dea_weibull_fit fit;
@@ -93,9 +92,8 @@ static void test_against_its_equations(void **state)
 }
 
 /* At the ends of the interval of E_0 the likelihood has fallen by 1/2, the shape fitted anew. */
-static void test_profile(void **state)
+TEST(test_profile)
 {
-  (void)state;
   struct dea_weibull_data data = plain(25);
   struct dea_weibull_fit fit;
   for (size_t i = 0; i < 25; i++) {
@@ -122,9 +120,8 @@ static void test_profile(void **state)
 
 /* Films that held at fields far below say nothing: every interval stays where it is without them.
  */
-static void test_early_survivors(void **state)
+TEST(test_early_survivors)
 {
-  (void)state;
   struct dea_weibull_data data = plain(2);
   struct dea_weibull_fit without, with;
   memset(survived, 0, sizeof survived);
@@ -146,9 +143,8 @@ static void test_early_survivors(void **state)
 }
 
 /* Other units of area, and another reference, change E_0 by the law and nothing else. */
-static void test_area_scales(void **state)
+TEST(test_area_scales)
 {
-  (void)state;
   struct dea_weibull_data data = plain(ROWS);
   struct dea_weibull_fit first, other;
   for (size_t i = 0; i < ROWS; i++) {
@@ -169,9 +165,8 @@ static void test_area_scales(void **state)
 /* Of 300 sets of 100 films, a third of which survive, the profile's interval holds the truth in 68
  * %
  * (+- 6 %, a little more than two standard deviations of the count), for all four parameters. */
-static void test_coverage(void **state)
+TEST(test_coverage)
 {
-  (void)state;
   skip_sanitized();
   const double truth[DEA_WEIBULL_PARAMS] = {1.2e8, 9, 0.63, -0.25};
   int held[DEA_WEIBULL_PARAMS] = {0};
@@ -202,9 +197,8 @@ static void test_coverage(void **state)
   }
 }
 
-static void test_what_cannot_be_told(void **state)
+TEST(test_what_cannot_be_told)
 {
-  (void)state;
   struct dea_weibull_data data = plain(10);
   struct dea_weibull_fit fit;
   for (size_t i = 0; i < 10; i++) {
@@ -229,15 +223,4 @@ static void test_what_cannot_be_told(void **state)
   dea_context_clear(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_against_its_equations),
-      cmocka_unit_test(test_profile),
-      cmocka_unit_test(test_early_survivors),
-      cmocka_unit_test(test_area_scales),
-      cmocka_unit_test(test_coverage),
-      cmocka_unit_test(test_what_cannot_be_told),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

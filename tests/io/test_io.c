@@ -105,9 +105,8 @@ static void assert_same_points(const struct dea_load_point *a, const struct dea_
 
 // results.h5 -------------------------------------------------------------------------------------
 
-static void test_store_reads_back_to_the_bit(void **state)
+TEST(test_store_reads_back_to_the_bit)
 {
-  (void)state;
   struct dea_run *run;
   result->curves[0].complete = false;
   result->curves[0].status = DEA_E_NO_EQUILIBRIUM;
@@ -157,9 +156,8 @@ static void test_store_reads_back_to_the_bit(void **state)
   dea_run_destroy(ctx, run);
 }
 
-static void test_store_of_an_empty_result(void **state)
+TEST(test_store_of_an_empty_result)
 {
-  (void)state;
   struct dea_result *empty;
   struct dea_curve *curve;
   struct dea_run *run;
@@ -174,9 +172,8 @@ static void test_store_of_an_empty_result(void **state)
   dea_result_destroy(ctx, empty);
 }
 
-static void test_store_that_is_cut_off_or_is_none(void **state)
+TEST(test_store_that_is_cut_off_or_is_none)
 {
-  (void)state;
   struct dea_run *run;
   char *bytes;
   size_t length;
@@ -196,9 +193,8 @@ static void test_store_that_is_cut_off_or_is_none(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "not a run folder"));
 }
 
-static void test_store_with_damaged_bytes_never_crashes(void **state)
+TEST(test_store_with_damaged_bytes_never_crashes)
 {
-  (void)state;
   char *bytes;
   size_t length;
   assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
@@ -217,9 +213,8 @@ static void test_store_with_damaged_bytes_never_crashes(void **state)
   dea_free(ctx, bytes);
 }
 
-static void test_file_is_whole_or_absent(void **state)
+TEST(test_file_is_whole_or_absent)
 {
-  (void)state;
   write_file("kept.txt", "old");
   assert_int_equal(mkdir(in_folder("target"), 0777), 0);
   assert_int_equal(dea_file_write(ctx, in_folder("target"), "new", 3), DEA_E_IO); // a folder
@@ -236,9 +231,8 @@ static void test_file_is_whole_or_absent(void **state)
 
 // summary.json -----------------------------------------------------------------------------------
 
-static void test_summary_is_what_scripts_expect(void **state)
+TEST(test_summary_is_what_scripts_expect)
 {
-  (void)state;
   char *text;
   assert_int_equal(dea_summary_text(ctx, result, &text), DEA_OK);
   json_t *root = json_loads(text, JSON_REJECT_DUPLICATES, NULL);
@@ -274,9 +268,8 @@ static void test_summary_is_what_scripts_expect(void **state)
   dea_free(ctx, text);
 }
 
-static void test_summary_of_a_stopped_sweep(void **state)
+TEST(test_summary_of_a_stopped_sweep)
 {
-  (void)state;
   char *text;
   result->curves[0].complete = false;
   result->curves[0].status = DEA_E_INTERRUPTED;
@@ -303,9 +296,8 @@ static char *read_all(const char *path)
   return text;
 }
 
-static void test_figures_are_the_same_every_time(void **state)
+TEST(test_figures_are_the_same_every_time)
 {
-  (void)state;
   assert_int_equal(dea_figures_write(ctx, result, in_folder("one"), &svg_only, NULL), DEA_OK);
   assert_int_equal(dea_figures_write(ctx, result, in_folder("two"), &svg_only, NULL), DEA_OK);
   static const char *const names[] = {"displacement", "stretch", "field",
@@ -333,9 +325,8 @@ static const char *figure_caption(const char *name)
   return figure->caption;
 }
 
-static void test_script_runs_by_itself_in_its_folder(void **state)
+TEST(test_script_runs_by_itself_in_its_folder)
 {
-  (void)state;
   static const char *const names[] = {"stretch"};
   struct dea_figure_options options = svg_only;
   options.names = names;
@@ -360,9 +351,8 @@ static void test_script_runs_by_itself_in_its_folder(void **state)
   dea_free(ctx, again);
 }
 
-static void test_figure_without_content_is_skipped(void **state)
+TEST(test_figure_without_content_is_skipped)
 {
-  (void)state;
   static const char *const wanted[] = {"force", "strech"};
   struct dea_result *bare;
   struct dea_figure_options options = {.names = wanted, .name_count = 1};
@@ -378,9 +368,8 @@ static void test_figure_without_content_is_skipped(void **state)
   dea_result_destroy(ctx, bare);
 }
 
-static void test_without_gnuplot_the_scripts_stay(void **state)
+TEST(test_without_gnuplot_the_scripts_stay)
 {
-  (void)state;
   char path[4096];
   snprintf(path, sizeof path, "%s", getenv("PATH"));
   setenv("PATH", folder, 1);
@@ -396,9 +385,8 @@ static void test_without_gnuplot_the_scripts_stay(void **state)
   assert_int_equal(count_hidden(in_folder("run/figures")), 0);
 }
 
-static void test_gnuplot_that_fails_is_reported(void **state)
+TEST(test_gnuplot_that_fails_is_reported)
 {
-  (void)state;
   char path[4096], with[5000];
   write_file("gnuplot", "#!/bin/sh\necho first >&2\necho 'line 3: no such thing' >&2\nexit 1\n");
   assert_int_equal(chmod(in_folder("gnuplot"), 0755), 0);
@@ -413,9 +401,8 @@ static void test_gnuplot_that_fails_is_reported(void **state)
 }
 
 /* One that ends well and leaves no picture, or an empty one. */
-static void test_gnuplot_that_draws_nothing_is_reported(void **state)
+TEST(test_gnuplot_that_draws_nothing_is_reported)
 {
-  (void)state;
   static const char *const programs[] = {
       "#!/bin/sh\nexit 0\n",
       "#!/bin/sh\nfor f in *.gp; do : >\"$(echo .drawing.*)/${f%.gp}.svg\"; done\n"};
@@ -434,9 +421,8 @@ static void test_gnuplot_that_draws_nothing_is_reported(void **state)
   }
 }
 
-static void test_run_folder_is_not_overwritten(void **state)
+TEST(test_run_folder_is_not_overwritten)
 {
-  (void)state;
   const struct dea_run_folder_options quick = {.no_figures = true};
   const struct dea_run_folder_options force = {.no_figures = true, .force = true};
   assert_int_equal(dea_run_folder_write(ctx, result, in_folder("a/b"), &quick), DEA_OK);
@@ -459,9 +445,8 @@ static void test_run_folder_is_not_overwritten(void **state)
   dea_result_destroy(ctx, bare);
 }
 
-static void test_run_folder_where_a_file_is(void **state)
+TEST(test_run_folder_where_a_file_is)
 {
-  (void)state;
   write_file("taken", "x");
   assert_int_equal(dea_run_folder_write(ctx, result, in_folder("taken"), NULL), DEA_E_IO);
   assert_non_null(strstr(dea_context_message(ctx), "a file has that name"));
@@ -504,9 +489,8 @@ static void read_back(struct dea_context *own)
   dea_run_destroy(own, run);
 }
 
-static void test_every_allocation_may_fail(void **state)
+TEST(test_every_allocation_may_fail)
 {
-  (void)state;
   snprintf(failing_folder, sizeof failing_folder, "%s/f", folder);
   assert_true(failing_each(write_everything) > 100);
   assert_true(failing_each(read_back) > 20);
@@ -529,9 +513,8 @@ static double lightness(const char *colour)
 }
 
 /* A map printed without colours says up from down: its lightness rises all the way. */
-static void test_colours_keep_the_sign_in_grey(void **state)
+TEST(test_colours_keep_the_sign_in_grey)
 {
-  (void)state;
   const double low_m[] = {-1e-5, -1e-5, 0};
   for (int k = 0; k < 3; k++) {
     struct dea_text gp = {.ctx = ctx};
@@ -547,28 +530,4 @@ static void test_colours_keep_the_sign_in_grey(void **state)
   }
 }
 
-#define OUTPUT_TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      OUTPUT_TEST(test_store_reads_back_to_the_bit),
-      OUTPUT_TEST(test_store_of_an_empty_result),
-      OUTPUT_TEST(test_store_that_is_cut_off_or_is_none),
-      OUTPUT_TEST(test_store_with_damaged_bytes_never_crashes),
-      OUTPUT_TEST(test_file_is_whole_or_absent),
-      OUTPUT_TEST(test_summary_is_what_scripts_expect),
-      OUTPUT_TEST(test_summary_of_a_stopped_sweep),
-      OUTPUT_TEST(test_figures_are_the_same_every_time),
-      OUTPUT_TEST(test_script_runs_by_itself_in_its_folder),
-      OUTPUT_TEST(test_figure_without_content_is_skipped),
-      OUTPUT_TEST(test_colours_keep_the_sign_in_grey),
-      OUTPUT_TEST(test_without_gnuplot_the_scripts_stay),
-      OUTPUT_TEST(test_gnuplot_that_fails_is_reported),
-      OUTPUT_TEST(test_gnuplot_that_draws_nothing_is_reported),
-      OUTPUT_TEST(test_run_folder_is_not_overwritten),
-      OUTPUT_TEST(test_run_folder_where_a_file_is),
-      OUTPUT_TEST(test_every_allocation_may_fail),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS_EACH(NULL, NULL, setup, teardown)

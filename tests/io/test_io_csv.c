@@ -67,9 +67,8 @@ static void assert_error(const char *text, size_t line, size_t column, const cha
   }
 }
 
-static void test_units_names_and_uncertainties(void **state)
+TEST(test_units_names_and_uncertainties)
 {
-  (void)state;
   struct dea_measurement *m = read_good("# tip, laser\n"
                                         "voltage (V),z centre (mm),z centre std (um),stretch\n"
                                         "\n"
@@ -86,9 +85,8 @@ static void test_units_names_and_uncertainties(void **state)
 }
 
 /* As people title them: an uncertainty without a quantity is that of the column before it. */
-static void test_titles_of_spreadsheets(void **state)
+TEST(test_titles_of_spreadsheets)
 {
-  (void)state;
   struct dea_measurement *m =
       read_good("Voltage (V),Displacement (mm),err (um),force (mN),Force uncertainty (uN)\n"
                 "1000,-0.012,3,5,20\n");
@@ -101,9 +99,8 @@ static void test_titles_of_spreadsheets(void **state)
 
 /* As programs export them: lines above the titles, units in a line below, a column that nobody
  * asked for would have a name that is not known. */
-static void test_preamble_and_row_of_units(void **state)
+TEST(test_preamble_and_row_of_units)
 {
-  (void)state;
   struct dea_measurement *m = read_good("Bench 3;;\nOperator;A. B.;\n;;\n"
                                         "Voltage;z centre;err\n(kV);(um);(um)\n"
                                         "0,5;-12,5;3\n1,0;n/a;4\n");
@@ -117,9 +114,8 @@ static void test_preamble_and_row_of_units(void **state)
   assert_error("V (V),force (mN)\n900,2\n\"1,000\",3\n\"1,500\",4\n", 3, 1, "between thousands");
 }
 
-static void test_keys_carry_their_unit(void **state)
+TEST(test_keys_carry_their_unit)
 {
-  (void)state;
   struct dea_measurement *m =
       read_good("voltage_V\tfibre_tip_z_m\tforce_N std\n500\t1e-5\t0.001\n");
   assert_close(m->curve.points[0].voltage_V, 500.0, 0, 0);
@@ -128,9 +124,8 @@ static void test_keys_carry_their_unit(void **state)
   dea_measurement_destroy(ctx, m);
 }
 
-static void test_decimal_comma_quotes_and_windows_lines(void **state)
+TEST(test_decimal_comma_quotes_and_windows_lines)
 {
-  (void)state;
   struct dea_measurement *m = read_good("\xef\xbb\xbf\"V [kV]\";\"z fibre tip (\302\265m)\"\r\n"
                                         "1,5;\"2,25\"\r\n2,5;3.5\r\n");
   assert_int_equal(m->curve.count, 2);
@@ -140,9 +135,8 @@ static void test_decimal_comma_quotes_and_windows_lines(void **state)
   dea_measurement_destroy(ctx, m);
 }
 
-static void test_errors_have_places(void **state)
+TEST(test_errors_have_places)
 {
-  (void)state;
   assert_error("V (kV),z centr (um)\n1,2\n", 1, 8, "did you mean 'z centre (um)'");
   assert_error("V (kV),colour\n1,2\n", 1, 8, "not a known quantity");
   assert_error("V (kV),z centre\n1,2\n", 1, 8, "needs a unit");
@@ -158,9 +152,8 @@ static void test_errors_have_places(void **state)
   assert_error("V (kV),force (mN)\n1,inf\n", 2, 3, "not a number");
 }
 
-static void test_all_errors_at_once(void **state)
+TEST(test_all_errors_at_once)
 {
-  (void)state;
   struct dea_measurement *m;
   const char *text = "V (kV),force (mN)\n1,a\n1,b\n2,c\n";
   assert_int_equal(dea_file_write(ctx, path, text, strlen(text)), DEA_OK);
@@ -169,9 +162,8 @@ static void test_all_errors_at_once(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "3 errors"));
 }
 
-static void test_no_text_and_no_file(void **state)
+TEST(test_no_text_and_no_file)
 {
-  (void)state;
   struct dea_measurement *m;
   assert_int_equal(dea_measurement_read(ctx, folder, &m), DEA_E_IO);
   assert_int_equal(dea_measurement_read(ctx, path, &m), DEA_E_IO);
@@ -182,9 +174,8 @@ static void test_no_text_and_no_file(void **state)
   assert_int_equal(dea_measurement_read(ctx, path, &m), DEA_E_IO);
 }
 
-static void test_curve_survives_the_round_trip(void **state)
+TEST(test_curve_survives_the_round_trip)
 {
-  (void)state;
   struct dea_design design = fake_design();
   struct dea_result *result = NULL;
   assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
@@ -217,9 +208,8 @@ static void test_curve_survives_the_round_trip(void **state)
   dea_result_destroy(ctx, result);
 }
 
-static void test_columns_without_numbers_are_left_out(void **state)
+TEST(test_columns_without_numbers_are_left_out)
 {
-  (void)state;
   struct dea_load_point points[2] = {dea_load_point_empty(), dea_load_point_empty()};
   points[0].voltage_V = 1500.0;
   points[1].voltage_V = 2000.0;
@@ -249,9 +239,8 @@ static void read_once(struct dea_context *own)
   dea_measurement_destroy(own, m);
 }
 
-static void test_every_allocation_may_fail(void **state)
+TEST(test_every_allocation_may_fail)
 {
-  (void)state;
   const char *good = "V (kV),force (mN)\n1,2\n3,4\n", *bad = "V (kV),forse (mN)\n1,2\n";
   assert_int_equal(dea_file_write(ctx, path, good, strlen(good)), DEA_OK);
   assert_true(failing_each(read_once) > 4);
@@ -259,22 +248,4 @@ static void test_every_allocation_may_fail(void **state)
   assert_true(failing_each(read_once) > 3);
 }
 
-#define CSV_TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
-
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      CSV_TEST(test_units_names_and_uncertainties),
-      CSV_TEST(test_titles_of_spreadsheets),
-      CSV_TEST(test_preamble_and_row_of_units),
-      CSV_TEST(test_keys_carry_their_unit),
-      CSV_TEST(test_decimal_comma_quotes_and_windows_lines),
-      CSV_TEST(test_errors_have_places),
-      CSV_TEST(test_all_errors_at_once),
-      CSV_TEST(test_no_text_and_no_file),
-      CSV_TEST(test_curve_survives_the_round_trip),
-      CSV_TEST(test_columns_without_numbers_are_left_out),
-      CSV_TEST(test_every_allocation_may_fail),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS_EACH(NULL, NULL, setup, teardown)

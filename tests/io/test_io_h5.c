@@ -3,9 +3,8 @@
 #include "testing.h"
 
 /* An attribute with many texts or numbers where one is due would write past its reader's room. */
-static void test_store_reads_single_attributes_only(void **state)
+TEST(test_store_reads_single_attributes_only)
 {
-  (void)state;
   enum { MANY = 1000 };
   static const char texts[MANY][8];
   static const long long numbers[MANY];
@@ -41,9 +40,8 @@ static void test_store_reads_single_attributes_only(void **state)
 }
 
 /* One set under two names; a name that is taken is an error, and after an error nothing is done. */
-static void test_link(void **state)
+TEST(test_link)
 {
-  (void)state;
   static const double numbers[3] = {1, 2, 4};
   double back[3];
   struct h5 h;
@@ -73,9 +71,8 @@ static void test_link(void **state)
 }
 
 /* Files of libdea 0.1 say that long texts are UTF-8; now they say ASCII, for Octave. */
-static void test_long_text_of_older_files(void **state)
+TEST(test_long_text_of_older_files)
 {
-  (void)state;
   static const char text[] = "80 \302\265m";
   struct h5 h;
   struct dea_context *ctx;
@@ -103,10 +100,4 @@ static void test_long_text_of_older_files(void **state)
   dea_context_destroy(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_store_reads_single_attributes_only),
-                                     cmocka_unit_test(test_long_text_of_older_files),
-                                     cmocka_unit_test(test_link)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

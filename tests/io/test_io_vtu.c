@@ -279,9 +279,8 @@ static void check(int order, int order_z, bool whole)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
-static void test_all_kinds_of_elements(void **state)
+TEST(test_all_kinds_of_elements)
 {
-  (void)state;
   for (int order = 1; order <= 3; order++) {
     for (int order_z = 0; order_z <= 3; order_z++) {
       check(order, order_z, false);
@@ -292,9 +291,8 @@ static void test_all_kinds_of_elements(void **state)
 
 /* The nodes between the corners of quadratic cells, as VTK's documentation has them: middles of
  * edges, of faces, of the cell. The wedge is so narrow that arcs are chords. */
-static void test_order_of_nodes(void **state)
+TEST(test_order_of_nodes)
 {
-  (void)state;
   static const int parents[27][8] = {{0},          {1},          {2},
                                      {3},          {4},          {5},
                                      {6},          {7},          {0, 1},
@@ -338,9 +336,8 @@ static void test_order_of_nodes(void **state)
   }
 }
 
-static void test_pvd(void **state)
+TEST(test_pvd)
 {
-  (void)state;
   struct dea_pvd_entry entries[3] = {{0, "fields/a.vtu"}, {2e3, "fields/b.vtu"}, {1e3, "c.vtu"}};
   assert_int_equal(dea_pvd_write(ctx, entries, 2, path), DEA_OK);
   load(path);
@@ -352,9 +349,8 @@ static void test_pvd(void **state)
   assert_int_equal(dea_pvd_write(ctx, NULL, 0, path), DEA_OK);
 }
 
-static void test_bad_folder(void **state)
+TEST(test_bad_folder)
 {
-  (void)state;
   struct dea_field_mesh *mesh = wedge(ctx, 1, 1);
   char bad[700];
   snprintf(bad, sizeof bad, "%s/none/a.vtu", folder);
@@ -364,9 +360,8 @@ static void test_bad_folder(void **state)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
-static void test_bad_meshes(void **state)
+TEST(test_bad_meshes)
 {
-  (void)state;
   static const struct dea_mesh_field none = {.name = "none", .components = 0},
                                      pair = {
                                          .name = "pair", .kind = DEA_MESH_VECTOR, .components = 2};
@@ -392,23 +387,14 @@ static void write_one(struct dea_context *failing)
   }
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   assert_true(failing_each(write_one) > 10);
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_all_kinds_of_elements),
-      cmocka_unit_test(test_order_of_nodes),
-      cmocka_unit_test(test_pvd),
-      cmocka_unit_test(test_bad_folder),
-      cmocka_unit_test(test_bad_meshes),
-      cmocka_unit_test(test_each_allocation),
-  };
-  int code = cmocka_run_group_tests(tests, set_up, tear_down);
+  int code = run_all(set_up, tear_down);
   free(file_text);
   return code;
 }

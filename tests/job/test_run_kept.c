@@ -184,9 +184,8 @@ static void plain_design(enum dea_fields_at fields)
   fake_limit_V = INFINITY;
 }
 
-static void test_resume_equals_one_run(void **state)
+TEST(test_resume_equals_one_run)
 {
-  (void)state;
   double whole, part;
   plain_design(DEA_FIELDS_LAST);
   assert_int_equal(run(ctx, "whole", 6, false, &whole), DEA_OK);
@@ -214,9 +213,8 @@ static void test_resume_equals_one_run(void **state)
 }
 
 /* Killed between results.h5 and the state: the state says how far the run came. */
-static void test_state_that_lags_behind(void **state)
+TEST(test_state_that_lags_behind)
 {
-  (void)state;
   double z;
   char command[1500];
   plain_design(DEA_FIELDS_NONE);
@@ -230,9 +228,8 @@ static void test_state_that_lags_behind(void **state)
   assert_close(z, 1e4 * (1 + 4 + 9 + 16 + 25 + 36), 0, 0);
 }
 
-static void test_resume_is_refused(void **state)
+TEST(test_resume_is_refused)
 {
-  (void)state;
   double z;
   plain_design(DEA_FIELDS_NONE);
   assert_int_equal(run(ctx, "nowhere", 3, true, &z), DEA_E_IO);
@@ -256,9 +253,8 @@ static void test_resume_is_refused(void **state)
 }
 
 /* Fields at all points, at some, at none; a new run clears what the old one kept. */
-static void test_fields_as_asked(void **state)
+TEST(test_fields_as_asked)
 {
-  (void)state;
   double z;
   plain_design(DEA_FIELDS_ALL);
   assert_int_equal(run(ctx, "asked", 3, false, &z), DEA_OK);
@@ -280,9 +276,8 @@ static void test_fields_as_asked(void **state)
 }
 
 /* A folder that cannot be written to stops the sweep with a message, not with a crash. */
-static void test_bad_folder(void **state)
+TEST(test_bad_folder)
 {
-  (void)state;
   double z;
   char name[700];
   plain_design(DEA_FIELDS_ALL);
@@ -305,22 +300,10 @@ static void run_twice(struct dea_context *failing)
   }
 }
 
-static void test_each_allocation_of_a_run(void **state)
+TEST(test_each_allocation_of_a_run)
 {
-  (void)state;
   plain_design(DEA_FIELDS_LAST);
   assert_true(failing_each(run_twice) > 100);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_resume_equals_one_run),
-      cmocka_unit_test(test_state_that_lags_behind),
-      cmocka_unit_test(test_resume_is_refused),
-      cmocka_unit_test(test_fields_as_asked),
-      cmocka_unit_test(test_bad_folder),
-      cmocka_unit_test(test_each_allocation_of_a_run),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -70,9 +70,8 @@ static void make_impossible_models(struct dea_context *ctx)
   }
 }
 
-static void test_each_allocation_of_each_model(void **state)
+TEST(test_each_allocation_of_each_model)
 {
-  (void)state;
   double voltages_V[20];
   for (size_t i = 0; i < 20; i++) {
     voltages_V[i] = 100.0 * (double)i;
@@ -90,8 +89,4 @@ static void test_each_allocation_of_each_model(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_allocation_of_each_model)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -116,29 +116,25 @@ static void laws_are_stable(const struct dea_catalogue_entry *entry)
   }
 }
 
-static void test_all_have_units_and_sources(void **state)
+TEST(test_all_have_units_and_sources)
 {
-  (void)state;
   for_each_material(has_units_and_sources);
 }
 
-static void test_all_ranges_hold_their_values(void **state)
+TEST(test_all_ranges_hold_their_values)
 {
-  (void)state;
   for_each_material(ranges_hold_their_values);
 }
 
-static void test_all_laws_are_stable(void **state)
+TEST(test_all_laws_are_stable)
 {
-  (void)state;
   for_each_material(laws_are_stable);
 }
 
 /* E = 51 h^-0.25 l^0.63, h in mm and E in MV/m, of VHB 4910 (Huang et al. 2012): 244 at the stretch
  * 4 of a film of 1 mm, and within 2 % of the 412 that were measured at 6.43. */
-static void test_breakdown_with_thickness(void **state)
+TEST(test_breakdown_with_thickness)
 {
-  (void)state;
   struct dea_catalogue_entry *entry;
   struct dea_device device = {.electrode_radius_m = 10e-3, .pre_stretch = 4};
   const struct dea_material_choice huang = {.breakdown = "huang-2012"};
@@ -157,9 +153,8 @@ static void test_breakdown_with_thickness(void **state)
 }
 
 /* A film of n times the area survives when n films survive: 1 - P = (1 - P_1)^n. */
-static void test_breakdown_of_the_weakest_link(void **state)
+TEST(test_breakdown_of_the_weakest_link)
 {
-  (void)state;
   const double pi = 3.14159265358979, area_m2 = 1e-4, field = 90e6;
   struct dea_device device = {.pre_stretch = 1.2, .film_thickness_unstretched_m = 50e-6};
   device.film.breakdown = (struct dea_breakdown){.known = true,
@@ -182,9 +177,8 @@ static void test_breakdown_of_the_weakest_link(void **state)
   assert_close(survives[1], pow(survives[0], 7), 1e-12, 0);
 }
 
-static void test_elastosil_has_the_numbers_of_the_paper(void **state)
+TEST(test_elastosil_has_the_numbers_of_the_paper)
 {
-  (void)state;
   struct dea_catalogue_entry *entry;
   struct dea_material film;
   const struct dea_material_choice first = {0}, second = {.law = "yeoh-181"};
@@ -201,9 +195,8 @@ static void test_elastosil_has_the_numbers_of_the_paper(void **state)
   dea_catalogue_destroy(ctx, entry);
 }
 
-static void test_own_directory_goes_first(void **state)
+TEST(test_own_directory_goes_first)
 {
-  (void)state;
   command_write("pet.yaml", OWN("pet", "1 GPa"));
   struct dea_catalogue_entry *entry;
   assert_int_equal(dea_catalogue_read(ctx, "pet", nowhere, &entry), DEA_OK);
@@ -211,9 +204,8 @@ static void test_own_directory_goes_first(void **state)
   dea_catalogue_destroy(ctx, entry);
 }
 
-static void test_unknown_name_lists_all(void **state)
+TEST(test_unknown_name_lists_all)
 {
-  (void)state;
   struct dea_catalogue_entry *entry;
   const struct dea_location location = {"x.yaml", 3, 4};
   assert_int_equal(dea_catalogue_read(ctx, "elastosil-203", location, &entry), DEA_E_DESIGN);
@@ -226,9 +218,8 @@ static void test_unknown_name_lists_all(void **state)
   assert_contains(findings[0].text, "vhb-4910");
 }
 
-static void test_names_do_not_leave_the_directories(void **state)
+TEST(test_names_do_not_leave_the_directories)
 {
-  (void)state;
   static const char *const names[] = {"../materials/pet", "/etc/passwd", ".", "", "a/b"};
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     struct dea_catalogue_entry *entry;
@@ -236,9 +227,8 @@ static void test_names_do_not_leave_the_directories(void **state)
   }
 }
 
-static void test_bad_files(void **state)
+TEST(test_bad_files)
 {
-  (void)state;
   static const struct {
     const char *text, *part;
     size_t line;
@@ -290,9 +280,8 @@ static void test_bad_files(void **state)
 
 /* Sets by the temperature of the device: the nearest, said where it is far; not over a chosen
  * one. */
-static void test_temperature(void **state)
+TEST(test_temperature)
 {
-  (void)state;
   struct dea_catalogue_entry *entry;
   struct dea_material film;
   struct dea_quantity at = {.si = 296.15, .origin = DEA_GIVEN};
@@ -326,22 +315,4 @@ static void test_temperature(void **state)
   dea_catalogue_destroy(ctx, entry);
 }
 
-int main(void)
-{
-#define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
-  const struct CMUnitTest tests[] = {
-      TEST(test_temperature),
-      TEST(test_all_have_units_and_sources),
-      TEST(test_all_ranges_hold_their_values),
-      TEST(test_all_laws_are_stable),
-      TEST(test_breakdown_with_thickness),
-      TEST(test_breakdown_of_the_weakest_link),
-      TEST(test_elastosil_has_the_numbers_of_the_paper),
-      TEST(test_own_directory_goes_first),
-      TEST(test_unknown_name_lists_all),
-      TEST(test_names_do_not_leave_the_directories),
-      TEST(test_bad_files),
-  };
-#undef TEST
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS_EACH(NULL, NULL, set_up, tear_down)

@@ -9,9 +9,8 @@
 static const double step = 1e-30;
 static const double tolerance = 1e-12;
 
-static void test_registry(void **state)
+TEST(test_registry)
 {
-  (void)state;
   size_t count;
   const struct dea_law *const *laws = dea_law_all(&count);
   assert_true(count >= 7);
@@ -45,9 +44,8 @@ static void check_sample(const struct dea_law *law, const double *param)
   assert_true(law->shear_modulus(param) > 0.0);
 }
 
-static void test_samples_are_admissible(void **state)
+TEST(test_samples_are_admissible)
 {
-  (void)state;
   for_each_law(check_sample);
 }
 
@@ -86,9 +84,8 @@ static void check_invariant_step(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_invariant_form_by_complex_step(void **state)
+TEST(test_invariant_form_by_complex_step)
 {
-  (void)state;
   for_each_law(check_invariant_step);
 }
 
@@ -117,9 +114,8 @@ static void check_compressible_step(const struct dea_law *law, const double *par
   }
 }
 
-static void test_compressible_form_by_complex_step(void **state)
+TEST(test_compressible_form_by_complex_step)
 {
-  (void)state;
   for_each_law(check_compressible_step);
 }
 
@@ -127,9 +123,8 @@ static void test_compressible_form_by_complex_step(void **state)
  * sigma = (mu (B - 1) + lambda ln J 1)/J with mu and lambda of E and nu; and the bulk modulus E/(3
  * (1
  * - 2 nu)) at small strains. */
-static void test_compressible_neo_hookean(void **state)
+TEST(test_compressible_neo_hookean)
 {
-  (void)state;
   const struct dea_law *law = dea_law_find("compressible-neo-hookean");
   const double E = 4e9, nu = 0.38, param[DEA_LAW_PARAM_MAX] = {E, nu}, a = 1.1, b = 0.9;
   const double mu = E / 2.76, lambda = 0.38 * E / (1.38 * 0.24), J = a * a * b;
@@ -164,16 +159,14 @@ static void check_principal_step(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_principal_form_by_complex_step(void **state)
+TEST(test_principal_form_by_complex_step)
 {
-  (void)state;
   for_each_law(check_principal_step);
 }
 
 /* An Ogden term with alpha = 0 does no work, and an absent term is one with mu = 0. */
-static void test_ogden_term_with_zero_exponent(void **state)
+TEST(test_ogden_term_with_zero_exponent)
 {
-  (void)state;
   const struct dea_law *ogden = dea_law_find("ogden");
   const double one[DEA_LAW_PARAM_MAX] = {40e3, 2.0};
   const double two[DEA_LAW_PARAM_MAX] = {40e3, 2.0, 7e3, 0.0, 0.0, 3.0};
@@ -184,9 +177,8 @@ static void test_ogden_term_with_zero_exponent(void **state)
 }
 
 /* The published expansion of the ground-state modulus, in a form that the code does not use. */
-static void test_arruda_boyce_ground_state(void **state)
+TEST(test_arruda_boyce_ground_state)
 {
-  (void)state;
   const double param[DEA_LAW_PARAM_MAX] = {1e5, 2.8}, y = 1.0 / (2.8 * 2.8);
   const double wanted = 1e5 * (1.0 + 3.0 / 5.0 * y + 99.0 / 175.0 * y * y +
                                513.0 / 875.0 * pow(y, 3) + 42039.0 / 67375.0 * pow(y, 4));
@@ -194,9 +186,8 @@ static void test_arruda_boyce_ground_state(void **state)
 }
 
 /* A small k2 must join k2 = 0 without a jump, and fibres must not push. */
-static void test_fibre_law(void **state)
+TEST(test_fibre_law)
 {
-  (void)state;
   const struct dea_law *law = dea_law_find("holzapfel-gasser-ogden");
   const double quadratic[DEA_LAW_PARAM_MAX] = {1e5, 4e5, 0.0, 0.0};
   const double nearly[DEA_LAW_PARAM_MAX] = {1e5, 4e5, 1e-14, 0.0};
@@ -211,9 +202,8 @@ static void test_fibre_law(void **state)
   assert_true(e.W4 == 0.0 && e.W44 == 0.0);
 }
 
-static void test_law_domain(void **state)
+TEST(test_law_domain)
 {
-  (void)state;
   struct dea_law_energy e;
   double w, w1, w2;
   const double gent[DEA_LAW_PARAM_MAX] = {43e3, 7.0};
@@ -233,19 +223,4 @@ static void test_law_domain(void **state)
   assert_int_equal(law->principal(ogden, (double)NAN, &w, &w1, &w2), DEA_E_DOMAIN);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_registry),
-      cmocka_unit_test(test_samples_are_admissible),
-      cmocka_unit_test(test_invariant_form_by_complex_step),
-      cmocka_unit_test(test_principal_form_by_complex_step),
-      cmocka_unit_test(test_compressible_form_by_complex_step),
-      cmocka_unit_test(test_compressible_neo_hookean),
-      cmocka_unit_test(test_ogden_term_with_zero_exponent),
-      cmocka_unit_test(test_arruda_boyce_ground_state),
-      cmocka_unit_test(test_fibre_law),
-      cmocka_unit_test(test_law_domain),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

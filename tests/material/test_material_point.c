@@ -108,9 +108,8 @@ static void check_steps(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_complex_step(void **state)
+TEST(test_complex_step)
 {
-  (void)state;
   for_each_law(check_steps);
 }
 
@@ -248,9 +247,8 @@ static void check_repeated(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_repeated_stretches(void **state)
+TEST(test_repeated_stretches)
 {
-  (void)state;
   for_each_law(check_repeated);
 }
 
@@ -279,9 +277,8 @@ static void check_forms_agree(const double F[9])
   assert_all_close("A", a.A, b.A, 81, tolerance, scale);
 }
 
-static void test_principal_against_invariant_form(void **state)
+TEST(test_principal_against_invariant_form)
 {
-  (void)state;
   uint64_t seed = 3;
   double F[9], Q[9], R[9], l[3];
   for (int n = 0; n < SAMPLE_COUNT; n++) {
@@ -319,9 +316,8 @@ static void check_objectivity(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_objectivity(void **state)
+TEST(test_objectivity)
 {
-  (void)state;
   for_each_law(check_objectivity);
 }
 
@@ -353,9 +349,8 @@ static void check_isotropy(const struct dea_law *law, const double *param)
   assert_int_equal(noticed, law->anisotropic);
 }
 
-static void test_isotropy(void **state)
+TEST(test_isotropy)
 {
-  (void)state;
   for_each_law(check_isotropy);
 }
 
@@ -375,9 +370,8 @@ static void check_symmetry(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_major_symmetry(void **state)
+TEST(test_major_symmetry)
 {
-  (void)state;
   for_each_law(check_symmetry);
 }
 
@@ -400,9 +394,8 @@ static void check_reference(const struct dea_law *law, const double *param)
   assert_close(point.P[1], G * gamma, 1e-9, 0.0);
 }
 
-static void test_reference_and_small_shear(void **state)
+TEST(test_reference_and_small_shear)
 {
-  (void)state;
   for_each_law(check_reference);
 }
 
@@ -430,26 +423,12 @@ static void check_domain(const struct dea_law *law, const double *param)
                    law->anisotropic ? DEA_E_ARGUMENT : DEA_OK);
 }
 
-static void test_point_domain(void **state)
+TEST(test_point_domain)
 {
-  (void)state;
   for_each_law(check_domain);
   const double gent[DEA_LAW_PARAM_MAX] = {43e3, 7.0}, F[9] = {4, 0, 0, 0, 0.5, 0, 0, 0, 0.5};
   struct dea_point point;
   assert_int_equal(dea_point_elastic(dea_law_find("gent"), gent, F, NULL, &point), DEA_E_DOMAIN);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_complex_step),
-      cmocka_unit_test(test_repeated_stretches),
-      cmocka_unit_test(test_principal_against_invariant_form),
-      cmocka_unit_test(test_objectivity),
-      cmocka_unit_test(test_isotropy),
-      cmocka_unit_test(test_major_symmetry),
-      cmocka_unit_test(test_reference_and_small_shear),
-      cmocka_unit_test(test_point_domain),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

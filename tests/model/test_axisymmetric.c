@@ -17,9 +17,8 @@ static struct dea_load_point solve_at(const struct dea_device *device, double vo
   return p;
 }
 
-static void test_benchmark_4(void **state)
+TEST(test_benchmark_4)
 {
-  (void)state;
   static const double kV[] = {1, 3, 5, 7};
   static const double small[] = {0.365, 3.434, 10.297, 21.607};
   static const double large[] = {0.346, 3.259, 9.819, 20.828};
@@ -46,9 +45,8 @@ static dea_status keep_slack(void *user, const struct dea_event *event)
   return DEA_OK;
 }
 
-static void test_loss_of_tension(void **state)
+TEST(test_loss_of_tension)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
   const struct dea_path_options options = {
@@ -109,9 +107,8 @@ static double shooting_stretch(const struct dea_device *device, double voltage_V
   return x1;
 }
 
-static void test_against_shooting(void **state)
+TEST(test_against_shooting)
 {
-  (void)state;
   struct {
     struct dea_material film;
     double pre, radius, V;
@@ -173,9 +170,8 @@ static double stretch_at_order(const struct dea_device *device, size_t order, do
 }
 
 /* Exponential convergence; the order that the model uses (14) is far below 1e-6. */
-static void test_refinement(void **state)
+TEST(test_refinement)
 {
-  (void)state;
   static const double radii[] = {0.5e-3, 3.75e-3, 13e-3};
   for (size_t i = 0; i < 3; i++) {
     struct dea_device device = test_disc(test_yeoh(), 1.5, radii[i], radii[i] / 15e-3, 0);
@@ -189,9 +185,8 @@ static void test_refinement(void **state)
 }
 
 /* Small strains of lumped and exact disc in the ratio of docs/theory/lumped.md, section 2. */
-static void test_cost_of_eq_17_at_small_strain(void **state)
+TEST(test_cost_of_eq_17_at_small_strain)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("lumped");
   static const double radius_mm[] = {3.75, 5, 9};
   struct dea_material film = test_yeoh();
@@ -221,9 +216,8 @@ static struct dea_device fibre_film(double angle_rad, double kappa)
 }
 
 /* A film with a direction is refused, one whose fibres balance is solved as finely as others. */
-static void test_films_with_a_direction(void **state)
+TEST(test_films_with_a_direction)
 {
-  (void)state;
   const double quarter = acos(0) / 2;
   const struct dea_device round[] = {fibre_film(quarter, 0), fibre_film(0, 1.0 / 3)};
   struct dea_device directed[] = {fibre_film(0, 0), fibre_film(2 * quarter, 0.2), fibre_film(0, 0)};
@@ -243,9 +237,8 @@ static void test_films_with_a_direction(void **state)
   }
 }
 
-static void test_disc_derivatives(void **state)
+TEST(test_disc_derivatives)
 {
-  (void)state;
   enum { N = DEA_PATH_UNKNOWNS_MAX };
   static double g[N], K[N * N], gV[N], up[N], down[N], Kd[N * N], gVd[N];
   double u[N], e0, e1, C, d = 1e-6, V = 5e3;
@@ -284,9 +277,8 @@ static void test_disc_derivatives(void **state)
 
 /* Inside, an isotropic film is homogeneous; radial tension is continuous at the electrode edge; the
  * frame holds. */
-static void test_profile(void **state)
+TEST(test_profile)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 1.0 / 3, 0);
   struct dea_model *model;
@@ -310,9 +302,8 @@ static void test_profile(void **state)
 }
 
 /* Charge is minus the derivative of the energy by the voltage. */
-static void test_charge_from_energy(void **state)
+TEST(test_charge_from_energy)
 {
-  (void)state;
   for (int k = 0; k < 2; k++) {
     const struct dea_model_type *type = dea_model_find(k == 0 ? "axisymmetric" : "lumped");
     struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 1.0 / 3, 0);
@@ -329,9 +320,8 @@ static void test_charge_from_energy(void **state)
 
 /* A film at its pre-stretch goes slack at 7972 V (physics.md); an electrode that fills the frame
  * nearly is held like that. */
-static void test_held_film_goes_slack_at_the_maxwell_voltage(void **state)
+TEST(test_held_film_goes_slack_at_the_maxwell_voltage)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   struct dea_device device = test_disc(test_yeoh(), 1.5, 14.9999e-3, 0.99, 0);
   const struct dea_path_options options = {
@@ -344,19 +334,4 @@ static void test_held_film_goes_slack_at_the_maxwell_voltage(void **state)
   type->destroy(ctx, model);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_benchmark_4),
-      cmocka_unit_test(test_loss_of_tension),
-      cmocka_unit_test(test_against_shooting),
-      cmocka_unit_test(test_refinement),
-      cmocka_unit_test(test_cost_of_eq_17_at_small_strain),
-      cmocka_unit_test(test_films_with_a_direction),
-      cmocka_unit_test(test_disc_derivatives),
-      cmocka_unit_test(test_profile),
-      cmocka_unit_test(test_charge_from_energy),
-      cmocka_unit_test(test_held_film_goes_slack_at_the_maxwell_voltage),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

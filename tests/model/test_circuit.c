@@ -23,9 +23,8 @@ static struct dea_circuit_state charge(const struct dea_circuit *circuit, double
   return state;
 }
 
-static void test_charging(void **state)
+TEST(test_charging)
 {
-  (void)state;
   const struct dea_circuit circuit = {1e9, INFINITY}; // R C = 0.2 s
   for (int n = 1; n <= 100; n *= 10) {
     for (double time_s = 1e-4; time_s < 1e3; time_s *= 10) {
@@ -40,9 +39,8 @@ static void test_charging(void **state)
   }
 }
 
-static void test_leakage(void **state)
+TEST(test_leakage)
 {
-  (void)state;
   const double G = 1e-11; // C/G = 20 s
   const struct dea_circuit open = {1e18, INFINITY};
   const struct dea_circuit_film film = {.capacitance_F = C, .conductance_S = G};
@@ -60,9 +58,8 @@ static void test_leakage(void **state)
 }
 
 /* 10 uA into 0.2 nF: 50 V/ms, with and without resistance. */
-static void test_current_limit(void **state)
+TEST(test_current_limit)
 {
-  (void)state;
   const struct dea_circuit stiff = {0, 1e-5}, soft = {1e6, 1e-5}; // the end in 0.2 ms there
   struct dea_circuit_state end = charge(&stiff, 0, 5000, 0.05, 7);
   assert_close(end.voltage_V, 2500, 0, 1e-9);
@@ -75,9 +72,8 @@ static void test_current_limit(void **state)
 }
 
 /* A ramp through R_s: exact for any step, V = s (t - RC (1 - exp(-t/RC))). */
-static void test_ramp(void **state)
+TEST(test_ramp)
 {
-  (void)state;
   const struct dea_circuit circuit = {1e9, INFINITY};
   const struct dea_circuit_film film = {.capacitance_F = C};
   for (int n = 1; n <= 64; n *= 8) {
@@ -92,9 +88,8 @@ static void test_ramp(void **state)
 }
 
 /* dV by the shape, against differences. */
-static void test_slope(void **state)
+TEST(test_slope)
 {
-  (void)state;
   const struct dea_circuit circuits[] = {{1e9, INFINITY}, {1e9, 1e-6}, {0, 1e-6}, {0, INFINITY}};
   const struct dea_circuit_state last = {1000, 400, 400 * C, 6e-7, C, 1e-11, 0, 0, 0};
   const struct dea_time_step step = {.length_s = 0.05, .source_voltage_V = 3000};
@@ -113,9 +108,8 @@ static void test_slope(void **state)
 
 // Branches ---------------------------------------------------------------------------------------
 
-static void test_weights(void **state)
+TEST(test_weights)
 {
-  (void)state;
   for (double x = 1e-12; x < 1e6; x *= 3.7) {
     struct dea_branch_weights w = dea_branch_weights(x, 1);
     long double e = expl(-(long double)x), mean = -expm1l(-(long double)x) / (long double)x;
@@ -128,9 +122,8 @@ static void test_weights(void **state)
 }
 
 /* C^-1 that goes evenly with time: A is exact at any step; and a film that was held stays. */
-static void test_update(void **state)
+TEST(test_update)
 {
-  (void)state;
   const struct dea_material m = {.branch_count = 2, .branches = {{3e4, 0.3}, {1e4, 40}}};
   struct dea_equal_tensor A[2], held = dea_equal_inverse(1.5);
   for (int i = 0; i < 2; i++) {
@@ -160,13 +153,4 @@ static void test_update(void **state)
   assert_close((W2[1] - W2[0]) / 2e-5, 2 * s, 0, 1e-4 * fabs(s));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_charging),      cmocka_unit_test(test_leakage),
-      cmocka_unit_test(test_current_limit), cmocka_unit_test(test_ramp),
-      cmocka_unit_test(test_slope),         cmocka_unit_test(test_weights),
-      cmocka_unit_test(test_update),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

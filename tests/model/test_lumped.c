@@ -21,9 +21,8 @@ static struct dea_load_point solve(struct dea_model *model, double voltage_V)
   return p;
 }
 
-static void test_benchmark_3(void **state)
+TEST(test_benchmark_3)
 {
-  (void)state;
   static const double stretch[] = {1.00440, 1.01792, 1.04145, 1.07611,
                                    1.12265, 1.18059, 1.24809, 1.32266};
   struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 4);
@@ -46,9 +45,8 @@ static void test_benchmark_3(void **state)
 
 /* Weibull at the smallest margin, which is 63.2 % at the breakdown field; nothing without a shape.
  */
-static void test_probability_of_breakdown(void **state)
+TEST(test_probability_of_breakdown)
 {
-  (void)state;
   static const char *const names[] = {"lumped", "axisymmetric"};
   for (size_t i = 0; i < 2; i++) {
     const struct dea_model_type *type = dea_model_find(names[i]);
@@ -75,9 +73,8 @@ static void test_probability_of_breakdown(void **state)
   }
 }
 
-static void test_without_fibres_there_is_no_lift(void **state)
+TEST(test_without_fibres_there_is_no_lift)
 {
-  (void)state;
   struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 0);
   struct dea_model *model = make(&device);
   struct dea_load_point p = solve(model, 5e3);
@@ -86,9 +83,8 @@ static void test_without_fibres_there_is_no_lift(void **state)
 }
 
 /* What no device has is refused by every model that has it, in place of a division by it. */
-static void test_devices_that_cannot_be(void **state)
+TEST(test_devices_that_cannot_be)
 {
-  (void)state;
   static const char *const names[] = {"lumped", "axisymmetric"};
   const struct dea_device good = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 4);
   struct dea_device bad[] = {good, good, good, good, good, good, good};
@@ -110,9 +106,8 @@ static void test_devices_that_cannot_be(void **state)
 }
 
 /* At rest the film is taut with the pre-stretch's own tension, and nothing has moved. */
-static void test_rest_state(void **state)
+TEST(test_rest_state)
 {
-  (void)state;
   struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 4);
   struct dea_model *model = make(&device);
   struct dea_load_point p = solve(model, 0);
@@ -138,9 +133,8 @@ static struct dea_lumped sample(const struct dea_material *m, double permittivit
 }
 
 /* Slopes against central differences of what they are slopes of, energy included. */
-static void test_balance_derivatives(void **state)
+TEST(test_balance_derivatives)
 {
-  (void)state;
   const struct dea_material m = test_yeoh();
   const double slopes[] = {0, -0.28};
   for (size_t k = 0; k < 2; k++) {
@@ -161,9 +155,8 @@ static void test_balance_derivatives(void **state)
   }
 }
 
-static void test_balance_outside_its_domain(void **state)
+TEST(test_balance_outside_its_domain)
 {
-  (void)state;
   const struct dea_material m = test_yeoh();
   struct dea_material copy;
   struct dea_lumped lumped = sample(&m, 0, &copy);
@@ -184,9 +177,8 @@ static double energy_at(const struct dea_lumped *lumped, const struct dea_lift *
   return at.energy_Pa * acos(-1) * r * r * lumped->film.thickness_m / (l_pre * l_pre);
 }
 
-static void test_force_is_minus_the_slope_of_the_energy(void **state)
+TEST(test_force_is_minus_the_slope_of_the_energy)
 {
-  (void)state;
   const struct dea_material m = test_yeoh();
   struct dea_material copy;
   struct dea_lumped lumped = sample(&m, 0, &copy);
@@ -201,9 +193,8 @@ static void test_force_is_minus_the_slope_of_the_energy(void **state)
 }
 
 /* The force vanishes at the free height, and the reported one is the largest of the load line. */
-static void test_load_line(void **state)
+TEST(test_load_line)
 {
-  (void)state;
   struct dea_device device = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 4);
   struct dea_model *model = make(&device);
   struct dea_load_point p = solve(model, 5e3);
@@ -225,9 +216,8 @@ static void test_load_line(void **state)
 }
 
 /* A tip on the electrode moves less, one short of it about as much as the passive film lets it. */
-static void test_lift_of_overlapping_and_short_fibres(void **state)
+TEST(test_lift_of_overlapping_and_short_fibres)
 {
-  (void)state;
   struct dea_device device = test_disc(test_yeoh(), 1.5, 5e-3, 1.0 / 3, 4);
   assert_close(dea_lift_create(&device).tip_per_stretch_m, 5e-3, 1e-14, 0);
   device.fibre_tip_radius_m = 4e-3;
@@ -245,9 +235,8 @@ static double uniform(unsigned *seed, double low, double high)
 }
 
 /* The model finds what a scan does on designs drawn at random, pull-in included. */
-static void test_random_designs(void **state)
+TEST(test_random_designs)
 {
-  (void)state;
   enum { COUNT = 300 };
   static const struct {
     const char *law;
@@ -279,9 +268,8 @@ static void test_random_designs(void **state)
 }
 
 /* Thickness and voltage together change nothing: 100 um at V is 200 um at 2 V. */
-static void test_scaling_with_thickness(void **state)
+TEST(test_scaling_with_thickness)
 {
-  (void)state;
   struct dea_device thin = test_disc(test_yeoh(), 1.5, 5e-3, 0.2, 0), thick = thin;
   thick.film_thickness_unstretched_m *= 2;
   thick.film_thickness_m *= 2;
@@ -291,21 +279,4 @@ static void test_scaling_with_thickness(void **state)
   dea_model_find("lumped")->destroy(ctx, b);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_benchmark_3),
-      cmocka_unit_test(test_devices_that_cannot_be),
-      cmocka_unit_test(test_probability_of_breakdown),
-      cmocka_unit_test(test_without_fibres_there_is_no_lift),
-      cmocka_unit_test(test_rest_state),
-      cmocka_unit_test(test_balance_derivatives),
-      cmocka_unit_test(test_balance_outside_its_domain),
-      cmocka_unit_test(test_force_is_minus_the_slope_of_the_energy),
-      cmocka_unit_test(test_load_line),
-      cmocka_unit_test(test_lift_of_overlapping_and_short_fibres),
-      cmocka_unit_test(test_random_designs),
-      cmocka_unit_test(test_scaling_with_thickness),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

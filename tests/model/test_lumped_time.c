@@ -50,9 +50,8 @@ static void end(struct dea_model *model)
 }
 
 /* Benchmark: strain(t) = strain(inf) [1 - mu1/(mu + mu1) exp(-t mu/((mu + mu1) tau))]. */
-static void test_small_step_of_the_voltage(void **state)
+TEST(test_small_step_of_the_voltage)
 {
-  (void)state;
   const double mu = 1e5, mu1 = 1.7e5, tau = 0.8, strain = 4e-4;
   struct dea_device device = free_film("neo-hookean", mu, 0, mu1, tau);
   struct dea_model *model = begin(&device, &quiet);
@@ -148,9 +147,8 @@ static double integrate(const struct film *f, double V, double *l_at)
   return INFINITY;
 }
 
-static void test_creep_at_large_strain(void **state)
+TEST(test_creep_at_large_strain)
 {
-  (void)state;
   const struct film f = {1e5, 90, 1e5, 0.8, 1e-4};
   struct dea_device device = free_film("gent", f.mu, f.J, f.mu1, f.tau);
   struct dea_model *model = begin(&device, &quiet);
@@ -169,9 +167,8 @@ static void test_creep_at_large_strain(void **state)
 }
 
 /* The film holds at first, creeps, and is lost seconds later. */
-static void test_delayed_pull_in(void **state)
+TEST(test_delayed_pull_in)
 {
-  (void)state;
   const struct film f = {1e5, 90, 1e5, 0.8, 1e-4};
   struct dea_device device = free_film("gent", f.mu, f.J, f.mu1, f.tau);
   struct dea_model *model = begin(&device, &quiet);
@@ -190,9 +187,8 @@ static void test_delayed_pull_in(void **state)
 }
 
 /* With inertia it goes through and comes to rest on the other side. */
-static void test_pull_in_with_inertia(void **state)
+TEST(test_pull_in_with_inertia)
 {
-  (void)state;
   const struct film f = {1e5, 90, 1e5, 0.8, 1e-4};
   struct dea_device device = free_film("gent", f.mu, f.J, f.mu1, f.tau);
   struct dea_time_options options = quiet;
@@ -248,9 +244,8 @@ static struct dea_load_point play(const struct dea_time_options *options, double
 }
 
 /* Halving the step takes the error to a quarter, whatever is switched on. */
-static void test_second_order(void **state)
+TEST(test_second_order)
 {
-  (void)state;
   const struct {
     struct dea_time_options options;
     double end_s;
@@ -280,9 +275,8 @@ static void test_second_order(void **state)
   }
 }
 
-static void test_energy(void **state)
+TEST(test_energy)
 {
-  (void)state;
   const struct {
     struct dea_time_options options;
     double end_s;
@@ -301,9 +295,8 @@ static void test_energy(void **state)
 }
 
 /* A charged film that is cut off keeps its charge but for what leaks, whatever its shape does. */
-static void test_leakage_of_an_open_film(void **state)
+TEST(test_leakage_of_an_open_film)
 {
-  (void)state;
   struct dea_device device = whole();
   const struct dea_time_options options = {{1e16, INFINITY}, NULL, false, 0.8};
   const struct dea_model_type *type = dea_model_find("lumped");
@@ -324,9 +317,8 @@ static void test_leakage_of_an_open_film(void **state)
 
 // Small things ------------------------------------------------------------------------------------
 
-static void test_at_rest(void **state)
+TEST(test_at_rest)
 {
-  (void)state;
   struct dea_device device = whole();
   struct dea_model *model = begin(&device, &quiet);
   struct dea_load_point p;
@@ -339,9 +331,8 @@ static void test_at_rest(void **state)
 }
 
 /* Asking for another step instead of accepting leaves no trace. */
-static void test_rejected_steps(void **state)
+TEST(test_rejected_steps)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("lumped");
   struct dea_device device = whole();
   struct dea_load_point p[2];
@@ -363,9 +354,8 @@ static void test_rejected_steps(void **state)
 }
 
 /* Mass of disc and annulus by summing over rings of the velocity field. */
-static void test_mass(void **state)
+TEST(test_mass)
 {
-  (void)state;
   struct dea_device device = whole();
   double a = device.electrode_radius_m, L = device.frame_radius_m, mass = 0;
   enum { RINGS = 100000 };
@@ -377,9 +367,8 @@ static void test_mass(void **state)
 }
 
 /* Small vibrations have the period that mass and stiffness give. */
-static void test_period(void **state)
+TEST(test_period)
 {
-  (void)state;
   struct dea_device device = whole();
   device.film.branch_count = 0;
   const struct dea_time_options options = {{0, INFINITY}, NULL, true, 1};
@@ -411,20 +400,4 @@ static void test_period(void **state)
   end(model);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_small_step_of_the_voltage),
-      cmocka_unit_test(test_creep_at_large_strain),
-      cmocka_unit_test(test_delayed_pull_in),
-      cmocka_unit_test(test_pull_in_with_inertia),
-      cmocka_unit_test(test_second_order),
-      cmocka_unit_test(test_energy),
-      cmocka_unit_test(test_leakage_of_an_open_film),
-      cmocka_unit_test(test_at_rest),
-      cmocka_unit_test(test_rejected_steps),
-      cmocka_unit_test(test_mass),
-      cmocka_unit_test(test_period),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

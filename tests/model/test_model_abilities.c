@@ -6,9 +6,8 @@
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
 /* The axisymmetric model has no indenter: pressing one in called a null pointer. */
-static void test_force_without_indenter(void **state)
+TEST(test_force_without_indenter)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   const struct dea_override depth = {"compute.force", "{radius: 1 mm, depth: [0.1 mm]}"};
   struct dea_design *design;
@@ -25,9 +24,8 @@ static void test_force_without_indenter(void **state)
 }
 
 /* A model that has nothing beside solving, and every call that it lacks. */
-static void test_bare_model(void **state)
+TEST(test_bare_model)
 {
-  (void)state;
   const struct dea_model_type bare = {.name = "bare"};
   const struct dea_path_options path = {.max_points = 1};
   struct dea_profile profile;
@@ -58,11 +56,4 @@ static void test_bare_model(void **state)
   assert_string_equal(dea_context_message(ctx), "the model 'bare' does not support time");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_force_without_indenter),
-      cmocka_unit_test(test_bare_model),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

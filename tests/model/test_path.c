@@ -94,9 +94,8 @@ static double field_of(const struct dea_event *event, const struct dea_material 
   return event->point.nominal_field_V_per_m * sqrt(eps / mu);
 }
 
-static void test_neo_hookean_pull_in(void **state)
+TEST(test_neo_hookean_pull_in)
 {
-  (void)state;
   static const struct {
     double pre, field, stretch;
   } wanted[] = {{1, 0.687365, 1.259921}, {1.2, 0.41535, 1.59036}, {2, 0.19507, 2.97042}};
@@ -118,9 +117,8 @@ static void test_neo_hookean_pull_in(void **state)
   assert_close(field_of(&r.events[0], &m, 1e5), sqrt(pow(l, -2) - pow(l, -8)), 1e-11, 0);
 }
 
-static void test_gent_snaps_through(void **state)
+TEST(test_gent_snaps_through)
 {
-  (void)state;
   struct dea_material m = test_material("gent", 1e5, 90, 0);
   struct record r = trace(&m, 1, 6.5);
   assert_int_equal(r.event_count, 2);
@@ -134,9 +132,8 @@ static void test_gent_snaps_through(void **state)
   assert_int_equal(r.last_modes, 0);
 }
 
-static void test_stiff_gent_has_no_limit_and_ends_at_lock_up(void **state)
+TEST(test_stiff_gent_has_no_limit_and_ends_at_lock_up)
 {
-  (void)state;
   struct dea_material m = test_material("gent", 1e5, 7, 0);
   struct record r = trace(&m, 1, 10); // lock-up: 2 l^2 + l^-4 = 10
   assert_int_equal(r.event_count, 0);
@@ -144,9 +141,8 @@ static void test_stiff_gent_has_no_limit_and_ends_at_lock_up(void **state)
   assert_true(r.last_stretch > 2.2 && r.last_stretch < sqrt(5));
 }
 
-static void test_table_1_pull_in(void **state)
+TEST(test_table_1_pull_in)
 {
-  (void)state;
   struct dea_material m = test_yeoh();
   struct record r = trace(&m, 1, 2);
   assert_true(r.event_count >= 1);
@@ -168,9 +164,8 @@ static dea_status check_on_curve(void *user, const struct dea_load_point *point)
   return DEA_OK;
 }
 
-static void test_points_lie_on_the_closed_form(void **state)
+TEST(test_points_lie_on_the_closed_form)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_material m = test_yeoh();
@@ -228,16 +223,14 @@ static void seek_with(double sign)
   dea_context_destroy(ctx);
 }
 
-static void test_seek_snaps_and_shows_hysteresis(void **state)
+TEST(test_seek_snaps_and_shows_hysteresis)
 {
-  (void)state;
   seek_with(1);
   seek_with(-1);
 }
 
-static void test_seek_beyond_pull_in_keeps_the_last_point(void **state)
+TEST(test_seek_beyond_pull_in_keeps_the_last_point)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
@@ -277,9 +270,8 @@ static dea_status crowded_point(void *self, const double *u, double voltage_V,
 
 /* Events that share a segment are reported in their order along the path, and none beyond its end.
  */
-static void test_events_come_in_order(void **state)
+TEST(test_events_come_in_order)
 {
-  (void)state;
   struct dea_context *ctx;
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   struct dea_material m = test_material("neo-hookean", 1e5, 0, 0);
@@ -310,17 +302,4 @@ static void test_events_come_in_order(void **state)
   dea_context_destroy(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_neo_hookean_pull_in),
-      cmocka_unit_test(test_events_come_in_order),
-      cmocka_unit_test(test_gent_snaps_through),
-      cmocka_unit_test(test_stiff_gent_has_no_limit_and_ends_at_lock_up),
-      cmocka_unit_test(test_table_1_pull_in),
-      cmocka_unit_test(test_points_lie_on_the_closed_form),
-      cmocka_unit_test(test_seek_snaps_and_shows_hysteresis),
-      cmocka_unit_test(test_seek_beyond_pull_in_keeps_the_last_point),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -10,9 +10,8 @@
 #include <string.h>
 
 /* An SVG as gnuplot 5.4 writes it, and what becomes of it. */
-static void test_svg(void **state)
+TEST(test_svg)
 {
-  (void)state;
   static const char before[] =
       "<svg>\n<title>Gnuplot</title>\n<g id=\"gnuplot_plot_1\" ><title>gnuplot_plot_1</title>\n"
       "\t<g stroke='none' shape-rendering='crispEdges'>\n"
@@ -36,9 +35,8 @@ static void test_svg(void **state)
 }
 
 /* The chunk of 300 dots an inch, its check as other programs write it. */
-static void test_png(void **state)
+TEST(test_png)
 {
-  (void)state;
   static const unsigned char chunk[21] = {0,    0, 0, 9,    'p',  'H', 'Y',  's',  0,    0,   0x2e,
                                           0x23, 0, 0, 0x2e, 0x23, 1,   0x78, 0xa5, 0x3f, 0x76};
   char png[60] = "\211PNG\r\n\032\n", *out, *again;
@@ -71,9 +69,8 @@ static void add(struct dea_panel *panel, double from, double to, bool aside)
 }
 
 /* Slack points reach to -1766 N/m and are not to be trusted: the axis is that of the others. */
-static void test_what_is_aside_does_not_set_the_axis(void **state)
+TEST(test_what_is_aside_does_not_set_the_axis)
 {
-  (void)state;
   struct dea_plot *plot;
   double low, high;
   assert_int_equal(dea_plot_create(ctx, "tension", "", &plot), DEA_OK);
@@ -109,9 +106,8 @@ static int titled(const struct dea_panel *panel, const char *title)
 }
 
 /* A preview is wholly doubtful: its curve is dashed and still has its name in the key, once. */
-static void test_a_doubtful_curve_keeps_its_name(void **state)
+TEST(test_a_doubtful_curve_keeps_its_name)
 {
-  (void)state;
   enum { POINTS = 81 };
   struct dea_load_point points[POINTS];
   const struct dea_curve curve = {.points = points, .count = POINTS};
@@ -135,13 +131,4 @@ static void test_a_doubtful_curve_keeps_its_name(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_svg),
-      cmocka_unit_test(test_png),
-      cmocka_unit_test(test_what_is_aside_does_not_set_the_axis),
-      cmocka_unit_test(test_a_doubtful_curve_keeps_its_name),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -41,9 +41,8 @@ static double waving(double x)
   return 0.5 + 0.5 * sin(50 * x);
 }
 
-static void test_key_stands_where_no_curve_is(void **state)
+TEST(test_key_stands_where_no_curve_is)
 {
-  (void)state;
   double top;
   assert_string_equal(key_of(rising, &top), "top left");
   assert_string_equal(key_of(saturating, &top), "bottom right");
@@ -51,19 +50,11 @@ static void test_key_stands_where_no_curve_is(void **state)
   assert_true(isnan(top)); // left to gnuplot
 }
 
-static void test_key_above_curves_that_fill_the_panel(void **state)
+TEST(test_key_above_curves_that_fill_the_panel)
 {
-  (void)state;
   double top;
   assert_string_equal(key_of(waving, &top), "top left");
   assert_true(top > 1.05 && top < 1.3);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_key_stands_where_no_curve_is),
-      cmocka_unit_test(test_key_above_curves_that_fill_the_panel),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -30,9 +30,8 @@ static double left_mm(double from, double to)
 
 /* Tics of a curve that is far from 0 and hardly moves have many digits: "-2.018" is 10 mm wide in
  * the figures' type, and the axis' words need 4 mm more. */
-static void test_room_for_the_tics(void **state)
+TEST(test_room_for_the_tics)
 {
-  (void)state;
   double usual = left_mm(0, 8);
   assert_close(usual, 14, 1e-3, 0);
   assert_close(left_mm(0, 0.35), usual, 1e-12, 0);
@@ -43,8 +42,4 @@ static void test_room_for_the_tics(void **state)
   assert_true(left_mm(-1e300, 1e300) > usual);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_room_for_the_tics)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -75,9 +75,8 @@ static void assert_estimate(double value, double error, int digits, const char *
 }
 
 /* No digit beyond the first of the error, and none that is not known. */
-static void test_digits_end_with_the_error(void **state)
+TEST(test_digits_end_with_the_error)
 {
-  (void)state;
   assert_estimate(-5.701, 0.09, 3, "\342\210\2225.70 \302\261 0.09");
   assert_estimate(-43.75, 1.4, 3, "\342\210\22244 \302\261 1");
   assert_estimate(0.3, 2, 3, "0 \302\261 2");
@@ -89,9 +88,8 @@ static void test_digits_end_with_the_error(void **state)
   assert_estimate(NAN, NAN, 3, "\342\200\223");
 }
 
-static void test_escaping(void **state)
+TEST(test_escaping)
 {
-  (void)state;
   assert_writes(dea_html_text, "<b>&\"'", "&lt;b&gt;&amp;&quot;&#39;");
   assert_writes(dea_html_text, "\302\265m \342\210\222 \360\237\231\202",
                 "\302\265m \342\210\222 \360\237\231\202");
@@ -107,9 +105,9 @@ static void test_escaping(void **state)
                 "\\u003c/script\\u003e\\u000a\\u0022\\u005c\302\265");
 }
 
-static void test_base64(void **state)
+TEST(test_base64)
 {
-  (void)state; // RFC 4648, section 10
+  // RFC 4648, section 10
   static const char *const pairs[][2] = {{"", ""},
                                          {"f", "Zg=="},
                                          {"fo", "Zm8="},
@@ -122,9 +120,8 @@ static void test_base64(void **state)
   }
 }
 
-static void test_labels(void **state)
+TEST(test_labels)
 {
-  (void)state;
   assert_writes(plain_label, "Voltage {/:Italic V} (kV)", "Voltage V (kV)");
   assert_writes(label, "{/:Italic V} <", "<tspan class=\"it\">V</tspan> &lt;");
   assert_writes(plain_label, "a\\\\_b {/:Italic x}_a", "a_b xa");
@@ -137,9 +134,8 @@ static void test_labels(void **state)
                 "a \\u0026 \\u0022b\\u0022\\u000a\\u003c/script\\u003ex");
 }
 
-static void test_axes(void **state)
+TEST(test_axes)
 {
-  (void)state;
   const double open[2] = {NAN, NAN}, closed[2] = {0, 8};
   struct dea_axis axis = dea_axis_create(-3.2, 41, open, false, 7);
   axis.at_high = 100;
@@ -259,9 +255,8 @@ static const char *band_of(struct dea_plot *plot, struct dea_text *out)
 }
 
 /* A narrow band that begins at the top of its panel stays narrow; one to the top goes there. */
-static void test_bands(void **state)
+TEST(test_bands)
 {
-  (void)state;
   static const double y[] = {0, -1, -100}, error[] = {0, 0.5, 2};
   struct dea_text out = {.ctx = ctx};
   struct dea_plot *plot;
@@ -291,9 +286,8 @@ static void test_bands(void **state)
   dea_plot_destroy(ctx, plot);
 }
 
-static void test_text_of_a_design_is_text(void **state)
+TEST(test_text_of_a_design_is_text)
 {
-  (void)state;
   command_write("evil.yaml", evil);
   if (command_run("run evil.yaml --no-figures -o evil.run") != 0) {
     fail_msg("%s", command_err);
@@ -312,9 +306,8 @@ static void test_text_of_a_design_is_text(void **state)
   assert_contains(page, "default-src 'none'");
 }
 
-static void test_page_of_an_example(void **state)
+TEST(test_page_of_an_example)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --no-figures --set "
                                "'compute.voltage={from: 0 kV, to: 4 kV, step: 2 kV}' -o a.run"),
                    0);
@@ -343,9 +336,8 @@ static void test_page_of_an_example(void **state)
 }
 
 /* A study with tables has a section, with its figures and its tables as the terminal has them. */
-static void test_sections_of_studies(void **state)
+TEST(test_sections_of_studies)
 {
-  (void)state;
   assert_int_equal(
       command_run("run @/examples/frdea-4.yaml @/examples/plain-disc.yaml --no-figures "
                   "--model lumped -o studies.run --set "
@@ -382,9 +374,8 @@ static char *copy_map_and_touch(void)
 
 /* Map and load line of a run that has them are its own; of one that lacks them they are made for
  * the page, and look the same. */
-static void test_studies_of_the_run_or_of_the_page(void **state)
+TEST(test_studies_of_the_run_or_of_the_page)
 {
-  (void)state;
   static char text[COMMAND_TEXT_MAX];
   assert_int_equal(
       command_run("run @/examples/frdea-4.yaml --no-figures --set "
@@ -413,9 +404,8 @@ static void test_studies_of_the_run_or_of_the_page(void **state)
   free(own);
 }
 
-static void test_runs_beside_each_other(void **state)
+TEST(test_runs_beside_each_other)
 {
-  (void)state;
   for (int i = 0; i < 2; i++) {
     assert_int_equal(
         command_run(i == 0 ? "run @/examples/plain-disc.yaml --no-figures -o one.run "
@@ -439,9 +429,8 @@ static void test_runs_beside_each_other(void **state)
   assert_int_equal(command_run("report"), 2);
 }
 
-static void test_measurement(void **state)
+TEST(test_measurement)
 {
-  (void)state;
   static const char measured[] = "voltage (V), z centre (um), z centre std (um)\n"
                                  "1000, 12.5, 2\n4000, 250, 15\n";
   command_write("measured.csv", measured);
@@ -465,9 +454,8 @@ static void test_measurement(void **state)
 }
 
 /* A section of the fit beside the runs; its texts are text, its figures in the page. */
-static void test_fit(void **state)
+TEST(test_fit)
 {
-  (void)state;
   assert_int_equal(command_run("fit @/examples/fit/device.yaml -o device.fit"), 0);
   assert_int_equal(command_run("run device.fit/sample-3.yaml --model lumped --no-figures -o "
                                "device.run"),
@@ -495,9 +483,8 @@ static void test_fit(void **state)
   assert_contains(command_err, "holds no fit");
 }
 
-static void test_only_pages_are_replaced(void **state)
+TEST(test_only_pages_are_replaced)
 {
-  (void)state;
   command_write("mine.txt", "mine");
   assert_int_equal(command_run("report a.run -o mine.txt"), 5);
   assert_contains(command_err, "mine.txt already exists and is not a page");
@@ -521,9 +508,8 @@ static void write_made_up_run(void)
 
 /* What study frequency found is said at 10 Hz, straight between its points; without it that it was
  * not asked. */
-static void test_touch_at_its_frequency(void **state)
+TEST(test_touch_at_its_frequency)
 {
-  (void)state;
   static const double hertz[3] = {1, 5, 15}, amplitude_m[3] = {2e-9, 1.9e-9, 1.7e-9};
   struct dea_run *run;
   struct dea_curve *curve;
@@ -553,9 +539,8 @@ static void test_touch_at_its_frequency(void **state)
   assert_well_formed();
 }
 
-static void test_design_that_is_gone(void **state)
+TEST(test_design_that_is_gone)
 {
-  (void)state;
   write_made_up_run();
   assert_int_equal(command_run("report made-up.h5 -o made-up.html"), 0);
   read_page("made-up.html");
@@ -575,9 +560,8 @@ static dea_status write_report(struct dea_context *own)
   return dea_job_report(own, copies, 1, &options, in_folder("memory.html"));
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   write_made_up_run();
   struct failing_attempt attempt = {.call = write_report};
   struct failing_count count;
@@ -600,9 +584,8 @@ static dea_status write_whole_report(struct dea_context *own)
 }
 
 /* The same with all sections; a material that could not be read is left out there. */
-static void test_memory_of_all_sections(void **state)
+TEST(test_memory_of_all_sections)
 {
-  (void)state;
   struct failing_attempt attempt = {.call = write_whole_report};
   struct failing_count count;
   long n = 0;
@@ -615,27 +598,4 @@ static void test_memory_of_all_sections(void **state)
   page = NULL;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_digits_end_with_the_error),
-      cmocka_unit_test(test_escaping),
-      cmocka_unit_test(test_base64),
-      cmocka_unit_test(test_labels),
-      cmocka_unit_test(test_axes),
-      cmocka_unit_test(test_bands),
-      cmocka_unit_test(test_text_of_a_design_is_text),
-      cmocka_unit_test(test_page_of_an_example),
-      cmocka_unit_test(test_sections_of_studies),
-      cmocka_unit_test(test_measurement),
-      cmocka_unit_test(test_fit),
-      cmocka_unit_test(test_only_pages_are_replaced),
-      cmocka_unit_test(test_studies_of_the_run_or_of_the_page),
-      cmocka_unit_test(test_runs_beside_each_other),
-      cmocka_unit_test(test_touch_at_its_frequency),
-      cmocka_unit_test(test_design_that_is_gone),
-      cmocka_unit_test(test_memory),
-      cmocka_unit_test(test_memory_of_all_sections),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

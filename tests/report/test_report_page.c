@@ -52,9 +52,8 @@ static void assert_holds(const char *expression)
 
 // What a design says is text ----------------------------------------------------------------------
 
-static void test_text_is_text(void **state)
+TEST(test_text_is_text)
 {
-  (void)state;
   command_write("evil.yaml",
                 "dea: 1\n"
                 "title: '</title><script>alert(1)</script><img src=x onerror=alert(2)>'\n"
@@ -104,9 +103,8 @@ static void set_scheme(const char *scheme)
       json_pack("{s:[{s:s, s:s}]}", "features", "name", "prefers-color-scheme", "value", scheme));
 }
 
-static void test_opens_without_a_request(void **state)
+TEST(test_opens_without_a_request)
 {
-  (void)state;
   open_example();
   assert_quiet();
   assert_holds("document.querySelectorAll('figure.plot svg.chart').length >= 7");
@@ -133,9 +131,8 @@ static void test_opens_without_a_request(void **state)
 }
 
 /* WCAG 2.1, 1.4.3: the ratio of luminances of all text that is seen to what lies behind it. */
-static void test_contrast(void **state)
+TEST(test_contrast)
 {
-  (void)state;
   static const char worst[] =
       "(() => { const rgb = (c) => c.match(/[\\d.]+/g).map(Number); "
       "const L = (c) => { const [r, g, b] = c.map((v) => { v /= 255; return v <= 0.03928 ? v / "
@@ -175,9 +172,8 @@ static void press_tab(void)
 
 /* The tabulator visits all that can be used, in the order of the page; each says what it is, and is
  * seen to have the focus. */
-static void test_keyboard(void **state)
+TEST(test_keyboard)
 {
-  (void)state;
   open_example();
   assert_holds("(() => { window.stops = [...document.querySelectorAll('a[href], button, select, "
                "input, summary, canvas[tabindex], [tabindex=\"0\"]')].filter((e) => "
@@ -199,9 +195,8 @@ static void test_keyboard(void **state)
 }
 
 /* What says nothing is not there: columns without a value, rows without a number. */
-static void test_no_empty_columns(void **state)
+TEST(test_no_empty_columns)
 {
-  (void)state;
   open_example();
   assert_holds("(() => { const tables = [...document.querySelectorAll('table')].filter((t) => "
                "t.querySelector('[colspan]') === null); return tables.length > 4 && "
@@ -212,9 +207,8 @@ static void test_no_empty_columns(void **state)
                "row.cells.length === t.rows[0].cells.length || t.querySelector('[colspan]')))");
 }
 
-static void test_network_is_shut(void **state)
+TEST(test_network_is_shut)
 {
-  (void)state;
   open_example();
   assert_holds("fetch('data:text/plain,x').then(() => 0, () => 1)");
   assert_holds("new Promise((done) => { const s = document.createElement('script'); "
@@ -222,9 +216,8 @@ static void test_network_is_shut(void **state)
                "done(window.ran === undefined ? 1 : 0); })");
 }
 
-static void test_values_under_the_pointer(void **state)
+TEST(test_values_under_the_pointer)
 {
-  (void)state;
   open_example();
   // the same voltage on all curves; that of the drawing is what the table of points says
   assert_holds(
@@ -248,9 +241,8 @@ static void test_values_under_the_pointer(void **state)
 
 /* The map's limit at the design's own pre-stretch is that of the path, and the ratio of the
  * displacement to the threshold of touch that of the numbers. */
-static void test_map_and_touch(void **state)
+TEST(test_map_and_touch)
 {
-  (void)state;
   open_example();
   static const char map[] =
       "(() => { const figure = document.querySelector('[id^=map] figure'); const { series } = "
@@ -294,9 +286,8 @@ static json_t *command_point(const char *model, const char *sets, double voltage
   return point;
 }
 
-static void test_explorer_computes_what_the_command_computes(void **state)
+TEST(test_explorer_computes_what_the_command_computes)
 {
-  (void)state;
   static const struct {
     const char *model, *sets, *values;
     double voltage_V;
@@ -341,9 +332,8 @@ static void test_explorer_computes_what_the_command_computes(void **state)
   assert_quiet();
 }
 
-static void test_explorer_follows_its_sliders(void **state)
+TEST(test_explorer_follows_its_sliders)
 {
-  (void)state;
   open_example();
   if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
     skip();
@@ -375,9 +365,8 @@ static void test_explorer_follows_its_sliders(void **state)
   assert_quiet();
 }
 
-static void test_map_of_two_parameters(void **state)
+TEST(test_map_of_two_parameters)
 {
-  (void)state;
   open_example();
   if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
     skip();
@@ -430,9 +419,8 @@ static void write_membrane(void)
   assert_int_equal(command_run("report film.h5 -o film.html"), 0);
 }
 
-static void test_membrane_is_the_surface(void **state)
+TEST(test_membrane_is_the_surface)
 {
-  (void)state;
   write_membrane();
   open_page("film.html");
   assert_quiet();
@@ -452,9 +440,8 @@ static void test_membrane_is_the_surface(void **state)
   dea_field_mesh_destroy(ctx, mesh);
 }
 
-static void test_slider_moves_the_membrane(void **state)
+TEST(test_slider_moves_the_membrane)
 {
-  (void)state;
   write_membrane();
   open_page("film.html");
   assert_holds("document.querySelector('.membrane canvas') !== null"); // WebGL is there
@@ -480,22 +467,4 @@ static void test_slider_moves_the_membrane(void **state)
   assert_quiet();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_text_is_text),
-      cmocka_unit_test(test_opens_without_a_request),
-      cmocka_unit_test(test_contrast),
-      cmocka_unit_test(test_keyboard),
-      cmocka_unit_test(test_no_empty_columns),
-      cmocka_unit_test(test_network_is_shut),
-      cmocka_unit_test(test_values_under_the_pointer),
-      cmocka_unit_test(test_map_and_touch),
-      cmocka_unit_test(test_explorer_computes_what_the_command_computes),
-      cmocka_unit_test(test_explorer_follows_its_sliders),
-      cmocka_unit_test(test_map_of_two_parameters),
-      cmocka_unit_test(test_membrane_is_the_surface),
-      cmocka_unit_test(test_slider_moves_the_membrane),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -40,18 +40,16 @@ static bool exists(const char *name)
   return access(path, F_OK) == 0;
 }
 
-static void test_a_run_is_equal_to_itself(void **state)
+TEST(test_a_run_is_equal_to_itself)
 {
-  (void)state;
   assert_int_equal(command_run("compare a a --tolerance 0%"), 0);
   assert_contains(command_out, "lumped");
   assert_contains(command_out, "axisymmetric");
   assert_contains(command_out, "electrode stretch");
 }
 
-static void test_the_exit_code_tells_a_difference(void **state)
+TEST(test_the_exit_code_tells_a_difference)
 {
-  (void)state;
   assert_int_equal(command_run("compare a b"), 0); // no tolerance, no judgement
   assert_int_equal(command_run("compare a b --tolerance 1%"), 1);
   assert_contains(command_err, "more than 1 %");
@@ -62,9 +60,8 @@ static void test_the_exit_code_tells_a_difference(void **state)
                    0);
 }
 
-static void test_json_has_the_numbers(void **state)
+TEST(test_json_has_the_numbers)
 {
-  (void)state;
   // The table's z is the model's plus 10 um: a - b is -10 um at each voltage.
   command_write("t.csv", "V (kV),z centre (um),z centre std (um)\n0,10,2\n");
   assert_int_equal(command_run("compare a t.csv --json --quantity centre_z_m --tolerance 5%"), 1);
@@ -79,9 +76,8 @@ static void test_json_has_the_numbers(void **state)
   json_decref(root);
 }
 
-static void test_one_model_against_another(void **state)
+TEST(test_one_model_against_another)
 {
-  (void)state;
   assert_int_equal(command_run("compare a a --model lumped:axisymmetric --tolerance 0.1%"), 1);
   assert_contains(command_out, "a, lumped");
   assert_contains(command_out, "a, axisymmetric");
@@ -89,9 +85,8 @@ static void test_one_model_against_another(void **state)
   assert_contains(command_err, "no curve of model '3d' (it has: lumped, axisymmetric)");
 }
 
-static void test_misfit_figures_are_drawn(void **state)
+TEST(test_misfit_figures_are_drawn)
 {
-  (void)state;
   command_write("t.csv", "V (kV),z centre (um),z centre std (um),strain\n0,10,2,1\n");
   assert_int_equal(command_run("compare a t.csv -o fig"), 5); // 'strain' is not known
   assert_contains(command_err, "t.csv:1:40: error:");
@@ -104,9 +99,8 @@ static void test_misfit_figures_are_drawn(void **state)
 }
 
 /* An uncertainty without name and unit has those of the column before it. */
-static void test_uncertainty_of_the_column_before(void **state)
+TEST(test_uncertainty_of_the_column_before)
 {
-  (void)state;
   command_write("t.csv", "V (kV),z centre (mm),z centre err (mm)\n0,0,0.01\n1,1.5,0.2\n");
   assert_int_equal(command_run("compare a t.csv --json"), 0);
   char *named = strdup(command_out);
@@ -164,9 +158,8 @@ static void make_device_run(const char *name, double scale)
 
 /* Monitors are compared as quantities of all devices are: misfits in their units, the tolerance,
  * figures with doubtful points dashed. What is rounding is left out. */
-static void test_monitors(void **state)
+TEST(test_monitors)
 {
-  (void)state;
   make_device_run("once", 1);
   make_device_run("twice", 2);
   assert_int_equal(command_run("compare once twice --json --tolerance 60%"), 0);
@@ -207,9 +200,8 @@ static void test_monitors(void **state)
   assert_true(exists("three/compare_the_hub_z_m.svg"));
 }
 
-static void test_errors_of_the_command_line(void **state)
+TEST(test_errors_of_the_command_line)
 {
-  (void)state;
   assert_int_equal(command_run("compare a"), 2);
   assert_int_equal(command_run("compare a b --quantity centre_z"), 2);
   assert_contains(command_err, "did you mean 'centre_z_m'");
@@ -226,9 +218,8 @@ static void test_errors_of_the_command_line(void **state)
   assert_contains(command_err, "1 of 2 measured points of 'z centre' lie outside the voltages");
 }
 
-static void test_plot_draws_again(void **state)
+TEST(test_plot_draws_again)
 {
-  (void)state;
   assert_int_equal(command_run("plot a --figure stretch --format svg"), 0);
   assert_true(exists("a/figures/stretch.svg"));
   assert_false(exists("a/figures/force.svg"));
@@ -243,18 +234,4 @@ static void test_plot_draws_again(void **state)
   assert_int_equal(command_run("plot nowhere"), 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_a_run_is_equal_to_itself),
-      cmocka_unit_test(test_the_exit_code_tells_a_difference),
-      cmocka_unit_test(test_json_has_the_numbers),
-      cmocka_unit_test(test_one_model_against_another),
-      cmocka_unit_test(test_misfit_figures_are_drawn),
-      cmocka_unit_test(test_uncertainty_of_the_column_before),
-      cmocka_unit_test(test_monitors),
-      cmocka_unit_test(test_errors_of_the_command_line),
-      cmocka_unit_test(test_plot_draws_again),
-  };
-  return cmocka_run_group_tests(tests, set_up, command_tear_down);
-}
+TESTS(set_up, command_tear_down)

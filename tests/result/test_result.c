@@ -16,9 +16,8 @@ static struct dea_context *context(void)
   return ctx;
 }
 
-static void test_empty_point_is_nan_everywhere(void **state)
+TEST(test_empty_point_is_nan_everywhere)
 {
-  (void)state;
   struct dea_load_point p = dea_load_point_empty();
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     assert_true(isnan(dea_point_get(&p, c)));
@@ -27,9 +26,8 @@ static void test_empty_point_is_nan_everywhere(void **state)
   assert_int_equal(p.unstable_modes, 0);
 }
 
-static void test_columns_reach_their_members(void **state)
+TEST(test_columns_reach_their_members)
 {
-  (void)state;
   struct dea_load_point p = dea_load_point_empty();
   dea_point_set(&p, dea_point_column_find("force_N"), 0.25);
   assert_close(p.force_N, 0.25, 0, 0);
@@ -39,9 +37,8 @@ static void test_columns_reach_their_members(void **state)
 }
 
 /* A number that is off by a hair on either side of where its flag begins. */
-static void test_flags_begin_where_they_say(void **state)
+TEST(test_flags_begin_where_they_say)
 {
-  (void)state;
   static const struct {
     const char *key;
     double without, with;
@@ -69,9 +66,8 @@ static void test_flags_begin_where_they_say(void **state)
   assert_true(dea_load_point_trusted(&corner));
 }
 
-static void test_flags_are_read_as_they_are_written(void **state)
+TEST(test_flags_are_read_as_they_are_written)
 {
-  (void)state;
   char words[DEA_FLAGS_SIZE];
   for (unsigned flags = 0; flags < 1u << DEA_FLAG_COUNT; flags++) {
     assert_int_equal(dea_flags_of_text(dea_flags_text(flags, words)), flags);
@@ -82,9 +78,8 @@ static void test_flags_are_read_as_they_are_written(void **state)
 }
 
 /* Up and down again: what is doubtful on the way down ends the prediction too. */
-static void test_trust_ends_at_the_lowest_doubt(void **state)
+TEST(test_trust_ends_at_the_lowest_doubt)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_load_point points[7];
   for (int i = 0; i < 7; i++) {
@@ -115,9 +110,8 @@ static void test_trust_ends_at_the_lowest_doubt(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_curves_grow_and_are_found(void **state)
+TEST(test_curves_grow_and_are_found)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_result *result;
   struct dea_curve *curve;
@@ -137,9 +131,8 @@ static void test_curves_grow_and_are_found(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_names_are_checked(void **state)
+TEST(test_names_are_checked)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_result *result;
   struct dea_curve *curve;
@@ -158,9 +151,8 @@ static void test_names_are_checked(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_profiles_are_copied(void **state)
+TEST(test_profiles_are_copied)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_design design = fake_design();
   struct dea_result *result = NULL;
@@ -174,17 +166,15 @@ static void test_profiles_are_copied(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_sha256_of_a_known_text(void **state)
+TEST(test_sha256_of_a_known_text)
 {
-  (void)state;
   char hex[65];
   dea_sha256_hex("abc", 3, hex); // FIPS 180-4, first example
   assert_string_equal(hex, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
-static void test_provenance_says_what_ran(void **state)
+TEST(test_provenance_says_what_ran)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_provenance p = {.wall_s = 0.0};
   const struct dea_override o[] = {{"a.b", "1 mm"}, {"c", "2"}};
@@ -214,9 +204,8 @@ static void make_result(struct dea_context *ctx)
   dea_result_destroy(ctx, result);
 }
 
-static void test_every_allocation_may_fail(void **state)
+TEST(test_every_allocation_may_fail)
 {
-  (void)state;
   assert_true(failing_each(make_result) > 20);
 }
 
@@ -237,9 +226,8 @@ static void parabola(struct dea_context *ctx, struct dea_result *result, const c
   }
 }
 
-static void test_compare_finds_a_known_offset(void **state)
+TEST(test_compare_finds_a_known_offset)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_result *result;
   struct dea_comparison *c;
@@ -263,9 +251,8 @@ static void test_compare_finds_a_known_offset(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_compare_interpolates_between_voltages(void **state)
+TEST(test_compare_interpolates_between_voltages)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_result *result;
   struct dea_comparison *c;
@@ -285,9 +272,8 @@ static void test_compare_interpolates_between_voltages(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_compare_reports_nothing_in_common(void **state)
+TEST(test_compare_reports_nothing_in_common)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_result *result;
   struct dea_comparison *c;
@@ -308,9 +294,8 @@ static void test_compare_reports_nothing_in_common(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_compare_up_and_down(void **state)
+TEST(test_compare_up_and_down)
 {
-  (void)state;
   struct dea_context *ctx = context();
   struct dea_result *result;
   struct dea_comparison *c;
@@ -335,9 +320,8 @@ static void test_compare_up_and_down(void **state)
   dea_context_destroy(ctx);
 }
 
-static void test_interpolation_adds_no_extremes(void **state)
+TEST(test_interpolation_adds_no_extremes)
 {
-  (void)state;
   const double x[] = {0.0, 1.0, 2.0, 3.0, 4.0}, y[] = {0.0, 0.0, 0.1, 5.0, 5.0};
   double before = 0.0;
   for (int i = 0; i <= 400; i++) {
@@ -372,32 +356,9 @@ static void compare_once(struct dea_context *ctx)
   dea_comparison_destroy(ctx, c);
 }
 
-static void test_compare_with_failing_allocations(void **state)
+TEST(test_compare_with_failing_allocations)
 {
-  (void)state;
   assert_true(failing_each(compare_once) > 6);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_empty_point_is_nan_everywhere),
-      cmocka_unit_test(test_columns_reach_their_members),
-      cmocka_unit_test(test_flags_begin_where_they_say),
-      cmocka_unit_test(test_flags_are_read_as_they_are_written),
-      cmocka_unit_test(test_trust_ends_at_the_lowest_doubt),
-      cmocka_unit_test(test_curves_grow_and_are_found),
-      cmocka_unit_test(test_names_are_checked),
-      cmocka_unit_test(test_profiles_are_copied),
-      cmocka_unit_test(test_sha256_of_a_known_text),
-      cmocka_unit_test(test_provenance_says_what_ran),
-      cmocka_unit_test(test_every_allocation_may_fail),
-      cmocka_unit_test(test_compare_finds_a_known_offset),
-      cmocka_unit_test(test_compare_interpolates_between_voltages),
-      cmocka_unit_test(test_compare_reports_nothing_in_common),
-      cmocka_unit_test(test_compare_up_and_down),
-      cmocka_unit_test(test_interpolation_adds_no_extremes),
-      cmocka_unit_test(test_compare_with_failing_allocations),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -103,9 +103,8 @@ static double length_of(const struct dea_plane_mesh *mesh, const char *name)
   return length;
 }
 
-static void test_shapes(void **state)
+TEST(test_shapes)
 {
-  (void)state;
   if (!has_gmsh()) {
     print_message("gmsh is not installed: skipped\n");
     skip();
@@ -134,9 +133,8 @@ static void test_shapes(void **state)
 /* Rows on both sides of an electrode's edge and of strips that cross it, none inside the strips:
  * areas and edges stay, and the nodes next to an edge are as far from it as the first row is wide.
  */
-static void test_rows(void **state)
+TEST(test_rows)
 {
-  (void)state;
   if (!has_gmsh()) {
     skip();
   }
@@ -177,9 +175,8 @@ static void test_rows(void **state)
 /* A wide strip from the electrode's edge outwards, whose end leaves a crescent within it, .1 mm
  * thick. With an end that touches the electrode in a point nothing can be done: what is said
  * names both. */
-static void test_crescent(void **state)
+TEST(test_crescent)
 {
-  (void)state;
   if (!has_gmsh()) {
     skip();
   }
@@ -238,9 +235,8 @@ static void expect(const char *script, const char *message)
   assert_int_equal(dea_finding_count(ctx, DEA_ERROR), 0);
 }
 
-static void test_faults_of_gmsh(void **state)
+TEST(test_faults_of_gmsh)
 {
-  (void)state;
   struct dea_gmsh_plan other = plan;
   struct dea_plane_mesh *mesh;
   other.program = "no-such-gmsh";
@@ -258,10 +254,4 @@ static void test_faults_of_gmsh(void **state)
   assert_int_equal(dea_gmsh_mesh(ctx, &other, &mesh), DEA_E_ARGUMENT);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_shapes), cmocka_unit_test(test_rows),
-                                     cmocka_unit_test(test_crescent),
-                                     cmocka_unit_test(test_faults_of_gmsh)};
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

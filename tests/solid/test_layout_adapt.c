@@ -77,9 +77,8 @@ static struct dea_device *rectangle_new(void)
 
 /* Two meshes of a monitor differ by less than their errors together; those are no more than some
  * tens of times too large. */
-static void test_errors_of_monitors(void **state)
+TEST(test_errors_of_monitors)
 {
-  (void)state;
   struct dea_device *device = rectangle_new();
   for (size_t i = 0; i < 4; i++) {
     struct found coarse = adapt(device, i, 0, 3e3, 0, 1), fine = adapt(device, i, 0, 3e3, 0, 2.5);
@@ -91,9 +90,8 @@ static void test_errors_of_monitors(void **state)
   dea_device_destroy(ctx, device);
 }
 
-static void test_corner(void **state)
+TEST(test_corner)
 {
-  (void)state;
   struct dea_device *device = rectangle_new();
   struct found even = adapt(device, 0, 0, 3e3, 0, 3);
   struct found first = adapt(device, 0, 3e-3, 3e3, 1, 1); // one pass is not enough
@@ -114,9 +112,8 @@ static void test_corner(void **state)
 /* Clamped edges of a solid film, whose shear elements as wide as the film is thick do not see: a
  * pressed diaphragm is off a mesh of half the size in all directions by what it says. (In the plane
  * alone it goes on past the limit: 1585.483 and 1585.197 um, for 1585.60 um of a third in all.) */
-static void test_clamped_edge(void **state)
+TEST(test_clamped_edge)
 {
-  (void)state;
   struct dea_design *design;
   struct dea_device *device;
   double value[2], error[2];
@@ -148,9 +145,8 @@ static void test_clamped_edge(void **state)
 }
 
 /* Hung with 20 g at 5 kV: 2.7982 mm by membrane theory. */
-static void test_cone(void **state)
+TEST(test_cone)
 {
-  (void)state;
   struct dea_device *device = cone_new();
   device->layout->bodies[0].free = 4;
   device->layout->bodies[0].force_N[2] = 20e-3 * DEA_STANDARD_GRAVITY_M_PER_S2;
@@ -163,9 +159,8 @@ static void test_cone(void **state)
 
 /* The disc on its mesh of blocks and on a free one, solid: the electrode's edge is the same within
  * both estimated errors. */
-static void test_blocks_and_free(void **state)
+TEST(test_blocks_and_free)
 {
-  (void)state;
   struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
   struct dea_device *device = disc_new(blocks.frame_radius_m, 3.75e-3, 1.5);
   const struct dea_model_type *type = dea_model_find("3d");
@@ -189,10 +184,9 @@ static void test_blocks_and_free(void **state)
 }
 
 /* A tip that is pressed 2 mm into the middle takes the same force of both. */
-static void test_tip_on_blocks_and_free(void **state)
+TEST(test_tip_on_blocks_and_free)
 {
   only_nightly();
-  (void)state;
   static const struct dea_probe tip = {.radius_m = 3e-3, .from_fibre_side = true};
   const struct dea_device blocks = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
   struct dea_device *device = disc_new(blocks.frame_radius_m, 3.75e-3, 1.5);
@@ -214,9 +208,8 @@ static void test_tip_on_blocks_and_free(void **state)
 }
 
 /* A body that is held has no error, a device without a monitor of that name no mesh. */
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   struct dea_device *device = cone_new();
   const struct dea_model_type *type = dea_model_find("3d");
   struct found found = adapt(device, 0, 1e-3, 0, 5, 1);
@@ -231,9 +224,8 @@ static void test_refused(void **state)
 }
 
 /* A free mesh has no order 3 in the plane, and says so; of 2 there is nothing to say. */
-static void test_order(void **state)
+TEST(test_order)
 {
-  (void)state;
   struct dea_device *device = rectangle_new();
   const struct dea_model_type *type = dea_model_find("3d");
   for (int order = 2; order <= 3; order++) {
@@ -246,17 +238,4 @@ static void test_order(void **state)
   dea_device_destroy(ctx, device);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_errors_of_monitors),
-      cmocka_unit_test(test_clamped_edge),
-      cmocka_unit_test(test_corner),
-      cmocka_unit_test(test_cone),
-      cmocka_unit_test(test_blocks_and_free),
-      cmocka_unit_test(test_tip_on_blocks_and_free),
-      cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_order),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

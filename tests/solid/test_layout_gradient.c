@@ -254,9 +254,8 @@ static size_t check(struct at *at)
   return count;
 }
 
-static void test_cone(void **state)
+TEST(test_cone)
 {
-  (void)state;
   struct at at = {.voltage_V = 3e3};
   read_design(&at, "cone.yaml", cone);
   /* voltage, thickness, two stretches, ratio and voltage of a channel, mass, force, stiffness and
@@ -265,9 +264,8 @@ static void test_cone(void **state)
 }
 
 /* The lowest frequency of it: a body on a film and a spring. */
-static void test_frequency_of_the_cone(void **state)
+TEST(test_frequency_of_the_cone)
 {
-  (void)state;
   static const char *const only[] = {"voltage",
                                      "plies.film.thickness",
                                      "plies.film.density",
@@ -282,9 +280,8 @@ static void test_frequency_of_the_cone(void **state)
 
 /* Its hub where study loading has brought it, and pushed by more than its own force: that is held.
  */
-static void test_moved_hub(void **state)
+TEST(test_moved_hub)
 {
-  (void)state;
   static const struct dea_control place = {.kind = DEA_CONTROL_PLACE, .component = 2},
                                   force = {.kind = DEA_CONTROL_FORCE, .component = 2};
   static const char *const of_place[] = {"voltage", "plies.film.thickness", "bodies.hub.mass",
@@ -319,9 +316,8 @@ static void read_diaphragm(struct at *at)
 }
 
 /* Pressures half again as large as the design has them; the factor is held. */
-static void test_moved_pressure(void **state)
+TEST(test_moved_pressure)
 {
-  (void)state;
   static const struct dea_control pressure = {.kind = DEA_CONTROL_PRESSURE};
   static const char *const only[] = {"pressures[0].pressure", "shapes.active.radius", NULL};
   struct at at = {.voltage_V = 3e3, .only = only, .control = &pressure, .control_to = 1.5};
@@ -329,9 +325,8 @@ static void test_moved_pressure(void **state)
   check(&at);
 }
 
-static void test_two_plies_under_pressure(void **state)
+TEST(test_two_plies_under_pressure)
 {
-  (void)state;
   static const char *const only[] = {"plies.skin.thickness", "plies.skin.pre_stretch",
                                      "pressures[0].pressure", "shapes.active.radius",
                                      NULL}; // the others are like those of a cone
@@ -344,9 +339,8 @@ static void test_two_plies_under_pressure(void **state)
 
 /* A body aside of the middle, on legs that reach over the film's edge and over each other: its
  * place and size, an angle, and where outlines cross. */
-static void test_shapes(void **state)
+TEST(test_shapes)
 {
-  (void)state;
   static const char device[] =
       "dea: 1\n"
       "title: a body aside\n"
@@ -391,9 +385,8 @@ static void test_shapes(void **state)
 }
 
 /* Motions that are asked for by name: how high a region is in the mean, and its area. */
-static void test_region(void **state)
+TEST(test_region)
 {
-  (void)state;
   static const char *const only[] = {"voltage", "plies.film.thickness", NULL};
   struct at at = {.voltage_V = 3e3,
                   .monitors = {1, 1},
@@ -408,10 +401,9 @@ static void test_region(void **state)
 /* A plate on a film, turned and pulled aside by electrodes that lie askew, on a film whose
  * permittivity goes with its stretch: all its motions, and how long a line becomes, by numbers of
  * every kind. */
-static void test_plate_askew(void **state)
+TEST(test_plate_askew)
 {
   only_nightly();
-  (void)state;
   static const char device[] =
       "dea: 1\n"
       "title: a plate askew\n"
@@ -475,9 +467,8 @@ static void test_plate_askew(void **state)
 
 /* A hub that is held aside and askew, as blocked forces are measured: what it takes to hold it, and
  * mean stretches of a region, by numbers of the film and by where it is moved to. */
-static void test_held_hub(void **state)
+TEST(test_held_hub)
 {
-  (void)state;
   static const char device[] =
       "dea: 1\n"
       "title: a hub that is held\n"
@@ -548,9 +539,8 @@ static const char bender[] =
 
 /* A bender without pre-stretch, whose principal membrane forces are nearly equal: the remainder of
  * the smaller one falls as the square of the change. */
-static void test_tension_of_a_bender(void **state)
+TEST(test_tension_of_a_bender)
 {
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   struct at at = {.voltage_V = 500, .again = true};
   double base[WIDTH], moved[WIDTH], slope, left[3];
@@ -577,9 +567,8 @@ static void test_tension_of_a_bender(void **state)
  * fields and margins stay, forces by length are s times, capacitance too, and the energy s^3: so
  * slopes by the lengths times these sum up. The shape of the support is beyond the strip, and its
  * slopes are not known. */
-static void test_all_lengths(void **state)
+TEST(test_all_lengths)
 {
-  (void)state;
   static const double powers[FREQUENCY] = {1, 0, 0, 1, 1, 3};
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
   struct at at = {.voltage_V = 500, .monitor_count = 1, .motion = {DEA_OBSERVED_Z}, .asked = true};
@@ -622,9 +611,8 @@ static void test_all_lengths(void **state)
 }
 
 /* What the mesh of the device does not follow, and what it does. */
-static void test_what_cannot_follow(void **state)
+TEST(test_what_cannot_follow)
 {
-  (void)state;
   struct at at = {.voltage_V = 1e3};
   double base[WIDTH], slope;
   assert_int_equal(read_and_build(ctx, cone, NULL, 0, &at.design, &at.device), DEA_OK);
@@ -779,9 +767,8 @@ static size_t check_critical(struct at *at, enum dea_event_kind kind, double *vo
   return count;
 }
 
-static void test_critical_voltages_of_a_laminate(void **state)
+TEST(test_critical_voltages_of_a_laminate)
 {
-  (void)state;
   static const enum dea_event_kind kinds[] = {DEA_EVENT_BREAKDOWN, DEA_EVENT_SLACK,
                                               DEA_EVENT_PULL_IN};
   static const char *const only[][2] = {
@@ -830,10 +817,9 @@ static const char strut[] =
  * together by N = eps V^2 / (2 h): V = pi h^2 / L sqrt(2 mu / eps), and of a pre-stretch, mu h 3
  * dlambda of N, dV = 3 mu h^2 / (eps V) dlambda, both to the part h / L. A strip of s times the
  * size, or s times the modulus, buckles at a voltage that all of its slopes know. */
-static void test_buckling_of_a_strip(void **state)
+TEST(test_buckling_of_a_strip)
 {
   only_nightly();
-  (void)state;
   enum { VOLTAGE, THICKNESS, STRETCH, MU, PERMITTIVITY, OF_SHAPES, SHAPES = 8 };
   static const double of_shapes[SHAPES] = {8e-3, 2e-3, -4e-3, 0.2e-3, 3e-3, 4e-3, 0.2e-3, 3e-3};
   static const char *const only[] = {"plies.film.thickness", "shapes.strip.width", NULL};
@@ -899,10 +885,9 @@ static double slab_voltage(const struct slab *at)
   return H * sqrt((at->mu * at->l * at->l - m * (1 - low)) / at->eps);
 }
 
-static void test_buckling_of_a_slab(void **state)
+TEST(test_buckling_of_a_slab)
 {
   only_nightly();
-  (void)state;
   enum { VOLTAGE, THICKNESS, STRETCH, MU, PERMITTIVITY, NUMBERS };
   static const double share = 1e-6;
   static const char *const none[] = {NULL};
@@ -933,24 +918,4 @@ static void test_buckling_of_a_slab(void **state)
 }
 
 #include <stdio.h>
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cone),
-      cmocka_unit_test(test_frequency_of_the_cone),
-      cmocka_unit_test(test_moved_hub),
-      cmocka_unit_test(test_moved_pressure),
-      cmocka_unit_test(test_two_plies_under_pressure),
-      cmocka_unit_test(test_shapes),
-      cmocka_unit_test(test_region),
-      cmocka_unit_test(test_plate_askew),
-      cmocka_unit_test(test_held_hub),
-      cmocka_unit_test(test_tension_of_a_bender),
-      cmocka_unit_test(test_all_lengths),
-      cmocka_unit_test(test_what_cannot_follow),
-      cmocka_unit_test(test_critical_voltages_of_a_laminate),
-      cmocka_unit_test(test_buckling_of_a_strip),
-      cmocka_unit_test(test_buckling_of_a_slab),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -52,10 +52,9 @@ static double point(const struct ran *r, size_t row, const char *key)
   return dea_result_table_number(r->points, row, key, 0);
 }
 
-static void test_cone(void **state)
+TEST(test_cone)
 {
   enum { STEPS = 20, ROWS = STEPS + 1 };
-  (void)state;
   struct dea_device *device = cone_new();
   struct ran r = run(
       device, "{body: hub, from: 0 mm, to: 10 mm, steps: 20, voltage: [0 kV, 3 kV, 5 kV]}", DEA_OK);
@@ -102,9 +101,8 @@ static double extrapolated(const double by[3])
 }
 
 /* dF/dV = - d^2 W/dx dV = - dQ/dx: two outputs that know nothing of each other. F holds the hub. */
-static void test_force_and_charge(void **state)
+TEST(test_force_and_charge)
 {
-  (void)state;
   struct dea_device *device = cone_new();
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
   struct dea_model *model;
@@ -130,9 +128,8 @@ static const struct {
 } hung[] = {{0, 1.8179}, {2, 1.9290}, {3, 2.0871}, {4, 2.3529}, {5, 2.7982}};
 static const double rounded = 0.6e-4; // of the table
 
-static void test_hung(void **state)
+TEST(test_hung)
 {
-  (void)state;
   struct dea_device *device = cone_new();
   struct dea_layout *l = device->layout;
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 1};
@@ -154,9 +151,8 @@ static void test_hung(void **state)
 }
 
 /* The same by a force that is raised at each voltage. */
-static void test_pushed(void **state)
+TEST(test_pushed)
 {
-  (void)state;
   struct dea_device *device = cone_new();
   device->layout->bodies[0].free = 4;
   struct ran r = run(device,
@@ -172,10 +168,9 @@ static void test_pushed(void **state)
 
 /* A spring of a table that pushes the hub on from 2 mm to 4 mm: at its points the force is that of
  * the cone and the table; a body that is pushed leaps past the fall of the force. */
-static void test_bistable(void **state)
+TEST(test_bistable)
 {
   static const double at[] = {0, 1e-3, 2e-3, 4e-3, 6e-3}, pull[] = {0, 0.2, 0.1, -0.3, -0.4};
-  (void)state;
   struct dea_device *device = cone_new();
   struct dea_layout *l = device->layout;
   l->bodies[0].free = 4;
@@ -267,9 +262,8 @@ static void check_diaphragm(size_t elements)
   end(&r, device);
 }
 
-static void test_diaphragm(void **state)
+TEST(test_diaphragm)
 {
-  (void)state;
   check_diaphragm(0);
   check_diaphragm(2);
 }
@@ -328,12 +322,11 @@ static double stress_after(struct pulled p, double rate, double turn_s, double e
 /* A strip of 16 mm whose width is held, pulled to the stretch 2 in 4 s and back, with a branch and
  * a voltage, against the homogeneous solution: on the way back it goes slack, and carries nothing.
  */
-static void test_at_a_rate(void **state)
+TEST(test_at_a_rate)
 {
   only_nightly();
   enum { STEPS = 8 };
   static const double thickness_m = 100e-6, width_m = 10e-3, length_m = 16e-3, duration_s = 4;
-  (void)state;
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
   add_rectangle(device, "film", -10e-3, 0, 20e-3, width_m);
@@ -373,9 +366,8 @@ static void test_at_a_rate(void **state)
 /* The pressure at which a film of neo-Hookean rubber has its limit point is that, whatever the step
  * that comes to it, and it is called so. p R/(mu H) of a disc, unstretched R and H, is below 1.9 at
  * any pole stretch (docs/verification/inflation.md: 1.873 at 2, where it hardly rises any more). */
-static void test_pressure_limit(void **state)
+TEST(test_pressure_limit)
 {
-  (void)state;
   static const char *const ways[] = {
       "{pressure_from: 0 Pa, pressure_to: 3 kPa, steps: 1, voltage: [0 kV]}",
       "{pressure_from: 0 Pa, pressure_to: 3 kPa, steps: 4, voltage: [0 kV]}"};
@@ -405,13 +397,4 @@ static void test_pressure_limit(void **state)
   assert_in_range((int)(1e3 * 1e3 * limit_kPa[0] * R / (mu * H)), 1850, 1950);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cone),      cmocka_unit_test(test_force_and_charge),
-      cmocka_unit_test(test_hung),      cmocka_unit_test(test_pushed),
-      cmocka_unit_test(test_bistable),  cmocka_unit_test(test_diaphragm),
-      cmocka_unit_test(test_at_a_rate), cmocka_unit_test(test_pressure_limit),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

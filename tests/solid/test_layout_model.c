@@ -27,12 +27,11 @@ static struct dea_observation solve(struct dea_model *model, double voltage_V,
 
 /* Annulus with a rigid hub that is pushed out: force on the hub by membrane theory, which was
  * integrated by another program (radii 5 and 20 mm, pre-stretch 1.2). */
-static void test_cone(void **state)
+TEST(test_cone)
 {
   static const struct {
     double kV, force_mN;
   } table[] = {{0, 216.559}, {3, 187.545}, {5, 135.930}};
-  (void)state;
   struct dea_device *device = cone_new();
   device->layout->bodies[0].moved = 4;
   device->layout->bodies[0].shift_m[2] = 2e-3;
@@ -49,12 +48,11 @@ static void test_cone(void **state)
 
 /* A square of film whose edges at y are held apart and whose edges at x slide: pure shear, uniform,
  * l1 of the closed form (plane stress, incompressible). */
-static void test_pure_shear(void **state)
+TEST(test_pure_shear)
 {
   static const struct {
     double kV, l1;
   } table[] = {{0, 1}, {2, 1.007072}, {4, 1.029909}, {6, 1.074743}};
-  (void)state;
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
   double a = 10e-3;
@@ -102,9 +100,8 @@ static void test_pure_shear(void **state)
 
 /* The mesh ends where a support does: a held part of an edge is as long as it was drawn, on any
  * mesh. */
-static void test_end_of_a_support(void **state)
+TEST(test_end_of_a_support)
 {
-  (void)state;
   const double a = 10e-3, end_m = 3.7e-3;
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
@@ -175,9 +172,8 @@ static void check_bilayer(double h, double mismatch, double tolerance)
   dea_device_destroy(ctx, device);
 }
 
-static void test_release_of_a_bilayer(void **state)
+TEST(test_release_of_a_bilayer)
 {
-  (void)state;
   check_bilayer(100e-6, 1e-4, 1e-3);
   check_bilayer(50e-6, 2.5e-5, 2.5e-4);
 }
@@ -216,9 +212,8 @@ static struct dea_device *turned_square(double angle)
 /* A device that is turned does what it did, turned, but for the mesh, which gmsh makes anew (to
  * 1e-9 on one mesh: test_solid_solve_angle); looked at in the middle of a side, as the electrode's
  * corner is 0.5 % off on meshes that are not the same (docs/theory/trust.md). */
-static void test_pre_stretch_at_an_angle(void **state)
+TEST(test_pre_stretch_at_an_angle)
 {
-  (void)state;
   const double angle = 37 * acos(-1.0) / 180, c = cos(angle), s = sin(angle);
   double u[2][2], area[2], charge[2], tension[2];
   for (int i = 0; i < 2; i++) {
@@ -245,9 +240,8 @@ static void test_pre_stretch_at_an_angle(void **state)
 
 /* A film alone that lets go: from the flat state it goes back to G^-1, turned so that the edge that
  * is held along x stays straight: F is lower triangular with F^T F = G^-2. */
-static void test_release_at_an_angle(void **state)
+TEST(test_release_at_an_angle)
 {
-  (void)state;
   const double angle = 0.5, c = cos(angle), s = sin(angle), a = 2e-3;
   const double x1 = 1 / (1.3 * 1.3), x2 = 1 / (1.1 * 1.1); // of G^-2
   const double C[3] = {c * c * x1 + s * s * x2, s * s * x1 + c * c * x2, c * s * (x1 - x2)};
@@ -279,12 +273,11 @@ static void test_release_at_an_angle(void **state)
 }
 
 /* Two films between alternating electrodes move as one does, with twice its charge. */
-static void test_stack(void **state)
+TEST(test_stack)
 {
   struct dea_observation seen;
   struct dea_load_point point;
   double u[2] = {0}, charge[2] = {0};
-  (void)state;
   for (size_t films = 1; films <= 2; films++) {
     struct dea_device *device = device_new();
     struct dea_layout *l = device->layout;
@@ -346,9 +339,8 @@ static struct dea_device *bender_new(size_t layers, bool as_one, size_t elements
 }
 
 /* A ply of several layers does what as many plies do. */
-static void test_layers(void **state)
+TEST(test_layers)
 {
-  (void)state;
   static const size_t counts[] = {2, 3, 10};
   for (size_t k = 0; k < 3; k++) {
     const size_t layers = counts[k], runs = layers == 2 ? 3 : 2;
@@ -375,9 +367,8 @@ static void test_layers(void **state)
 }
 
 /* The plain disc on a free mesh and on that of blocks: two models of one film. */
-static void test_disc_of_both_models(void **state)
+TEST(test_disc_of_both_models)
 {
-  (void)state;
   struct dea_device plain = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
   struct dea_device *device = disc_new(plain.frame_radius_m, 3.75e-3, 1.5);
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE};
@@ -399,9 +390,8 @@ static void test_disc_of_both_models(void **state)
 
 /* The soft disc of test_solid_solve_stops on a free mesh: its pull-in is located and told, as of
  * the exact disc. */
-static void test_pull_in_is_told(void **state)
+TEST(test_pull_in_is_told)
 {
-  (void)state;
   struct dea_material soft = test_material("arruda-boyce", 15.36e3, 5.99, 0);
   soft.permittivity.at_rest = 4.8;
   struct dea_device plain = test_disc(soft, 1.2, 2.6e-3, 2.6 / 15.5, 0);
@@ -450,14 +440,13 @@ static void test_pull_in_is_told(void **state)
 
 /* The cone with the bistable spring of docs/verification/cone.md: a sweep leaps past both limit
  * points, and tells where they are. */
-static void test_leaps_are_located(void **state)
+TEST(test_leaps_are_located)
 {
   static const double at[] = {0, 0.5e-3, 1e-3, 2e-3, 3e-3, 4e-3, 6e-3, 8e-3};
   static const double force[] = {-0.1, -0.097, -0.096, -0.16, -0.33, -0.4, -0.43, -0.43};
   static const struct {
     double kV, passed_kV; // 0: none
   } steps[] = {{3, 0}, {4, 0}, {4.5, 4.30488}, {3, 0}, {2, 0}, {1, 0}, {0, 0.69665}};
-  (void)state;
   const struct dea_model_type *type = dea_model_find("3d");
   struct dea_device *device = cone_new();
   struct dea_layout *l = device->layout;
@@ -497,9 +486,8 @@ static const struct dea_state_mark *mark_of(const struct dea_state *state, const
 
 /* A hub that is pushed by a dead force: another model that takes over a saved state goes on as the
  * one that left it, to the last digit; a device with another force does not take it for its own. */
-static void test_saved_state(void **state)
+TEST(test_saved_state)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("3d");
   struct dea_load_point a, b;
   struct dea_state saved, other;
@@ -548,10 +536,9 @@ static const char *why_none(struct dea_device *device, const struct dea_model_se
 
 /* A pressure above the largest that a film bears is said to be that, and about how large that is.
  */
-static void test_limit_of_the_pressure(void **state)
+TEST(test_limit_of_the_pressure)
 {
   only_nightly();
-  (void)state;
   const struct dea_model_settings settings = {.film = DEA_FILM_MEMBRANE, .refinement = 0.5};
   struct dea_device *device = disc_new(10e-3, 5e-3, 1.1);
   struct dea_layout *l = device->layout;
@@ -568,22 +555,4 @@ static void test_limit_of_the_pressure(void **state)
   dea_context_clear(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_cone),
-      cmocka_unit_test(test_pure_shear),
-      cmocka_unit_test(test_end_of_a_support),
-      cmocka_unit_test(test_release_of_a_bilayer),
-      cmocka_unit_test(test_pre_stretch_at_an_angle),
-      cmocka_unit_test(test_release_at_an_angle),
-      cmocka_unit_test(test_stack),
-      cmocka_unit_test(test_layers),
-      cmocka_unit_test(test_disc_of_both_models),
-      cmocka_unit_test(test_pull_in_is_told),
-      cmocka_unit_test(test_leaps_are_located),
-      cmocka_unit_test(test_saved_state),
-      cmocka_unit_test(test_limit_of_the_pressure),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

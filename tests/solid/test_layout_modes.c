@@ -42,12 +42,11 @@ static double pre_stress(double l)
 /* A film in a rectangular frame, with electrodes all over: it stays flat and as it is, and the
  * field takes its stress from that of the pre-stretch: f = c/2 sqrt(m^2/a^2 + n^2/b^2), c^2 =
  * (sigma - eps E^2)/rho. */
-static void test_rectangle(void **state)
+TEST(test_rectangle)
 {
   enum { MODES = 4, ALL = 10 };
   static const int waves[MODES][2] = {{1, 1}, {2, 1}, {3, 1}, {1, 2}}; // of sides as 2 to 1.1
   static const double l = 1.2, a = 20e-3, b = 11e-3;
-  (void)state;
   struct dea_device *device = device_new();
   struct dea_layout *layout = device->layout;
   size_t film = add_rectangle(device, "film", 0, 0, a, b);
@@ -79,10 +78,9 @@ static void test_rectangle(void **state)
 
 /* A heavy hub on a ring of film: its stiffness is 2 pi T/ln(b/a) with the tension T of the film,
  * which has hardly a mass beside it. */
-static void test_hub(void **state)
+TEST(test_hub)
 {
   static const double mass_kg = 20e-3;
-  (void)state;
   struct dea_device *device = cone_new();
   device->layout->bodies[0].free = 4;
   device->layout->bodies[0].mass_kg = mass_kg;
@@ -129,10 +127,9 @@ static void look(struct dea_model *model, double voltage_V, double out[][DEA_OBS
 /* A heavy hub that hangs in a film with hardly a mass: a slow excitation makes what a little more
  * voltage makes, of a body, a point, a line, and a region; a faster one that over 1 - (f/f_1)^2. A
  * branch that follows at once changes nothing. */
-static void test_answers(void **state)
+TEST(test_answers)
 {
   enum { MONITORS = 4 };
-  (void)state;
   struct dea_device *device = cone_new();
   struct dea_layout *l = device->layout;
   struct dea_material *film = &l->plies[0].material;
@@ -181,12 +178,4 @@ static void test_answers(void **state)
   dea_device_destroy(ctx, device);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rectangle),
-      cmocka_unit_test(test_hub),
-      cmocka_unit_test(test_answers),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

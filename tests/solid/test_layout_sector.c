@@ -48,9 +48,8 @@ static void assert_fold(struct dea_device *device, int fold, double angle)
 }
 
 /* What acts on the cone's hub takes lines of symmetry away. */
-static void test_lines_that_everything_has(void **state)
+TEST(test_lines_that_everything_has)
 {
-  (void)state;
   struct dea_device *device = cone_new();
   struct dea_layout *l = device->layout;
   struct dea_layout_body *hub = &l->bodies[0];
@@ -84,9 +83,8 @@ static void test_lines_that_everything_has(void **state)
 }
 
 /* Copies cover the whole, and a place comes back from where it was mirrored to. */
-static void test_copies(void **state)
+TEST(test_copies)
 {
-  (void)state;
   for (int fold = 0; fold <= 4; fold++) {
     const struct dea_layout_sector sector = {fold, {1e-3, -2e-3}, 0.4};
     size_t copies = dea_layout_sector_copies(&sector);
@@ -201,9 +199,8 @@ static void check_release(size_t corners, int fold)
   dea_device_destroy(ctx, device);
 }
 
-static void test_free_films(void **state)
+TEST(test_free_films)
 {
-  (void)state;
   check_release(0, 1);
   check_release(4, 4);
   check_release(6, 3);
@@ -241,9 +238,8 @@ static struct dea_device *loaded_cone(void)
   return device;
 }
 
-static void test_loaded_cone(void **state)
+TEST(test_loaded_cone)
 {
-  (void)state;
   struct dea_device *device = loaded_cone();
   struct dea_load_point part, all;
   struct dea_model *sector = model_of(device, DEA_FILM_MEMBRANE, DEA_DOMAIN_SECTOR);
@@ -281,13 +277,4 @@ static void test_loaded_cone(void **state)
   dea_device_destroy(ctx, device);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_lines_that_everything_has),
-      cmocka_unit_test(test_copies),
-      cmocka_unit_test(test_free_films),
-      cmocka_unit_test(test_loaded_cone),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

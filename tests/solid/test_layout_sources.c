@@ -116,9 +116,8 @@ static void add_square(struct dea_device *device, double x_m, size_t channel)
 }
 
 /* Two films apart with two sources are two devices with one each. */
-static void test_apart(void **state)
+TEST(test_apart)
 {
-  (void)state;
   static const struct play plays[2] = {{700, 500, 0}, {900, -600, 0.2}};
   struct dea_device *both = device_new(), *one[2];
   struct dea_model *together, *alone[2];
@@ -185,10 +184,9 @@ static struct dea_device *pair_new(double middle_V, double top_V)
 
 /* Without a memory of the film each moment is the equilibrium at its voltages, and sources and film
  * have the same energy; the account of a step is of second order. */
-static void test_each_moment(void **state)
+TEST(test_each_moment)
 {
   only_nightly();
-  (void)state;
   static const struct play plays[2] = {{900, 600, 0}, {-500, 700, 0.4}};
   double missing[2], largest_A = 0;
   for (int fine = 0; fine < 2; fine++) {
@@ -226,10 +224,9 @@ static void test_each_moment(void **state)
 }
 
 /* Sources that all play the same are one supply, with inertia too. */
-static void test_as_one_supply(void **state)
+TEST(test_as_one_supply)
 {
   only_nightly();
-  (void)state;
   static const struct play plays[1] = {{600, 0, 0}};
   const struct dea_model_type *type = dea_model_find("3d");
   struct dea_device *devices[2];
@@ -273,9 +270,8 @@ static void test_as_one_supply(void **state)
 
 /* A plate among four electrodes that play a quarter of a cycle apart: what it does is what it did a
  * quarter before, turned by 90 degrees, as well as the mesh has that symmetry. */
-static void test_round(void **state)
+TEST(test_round)
 {
-  (void)state;
   static const struct play plays[4] = {
       {1500, 1500, 0}, {1500, 1500, -0.25}, {1500, 1500, -0.5}, {1500, 1500, -0.75}};
   struct dea_device *device = device_new();
@@ -329,9 +325,8 @@ static void test_round(void **state)
 }
 
 /* Films that are held leak between their channels: currents G V, the loss V G V of the time. */
-static void test_leaks(void **state)
+TEST(test_leaks)
 {
-  (void)state;
   static const struct play plays[2] = {{1000, 0, 0}, {400, 0, 0}};
   static const double per_s[2] = {5, 20}; // conductance over capacitance
   struct dea_device *device = device_new();
@@ -366,9 +361,8 @@ static void test_leaks(void **state)
 }
 
 /* A bias and a source: afterwards the channels are at what the layout says; and what is refused. */
-static void test_back_and_refused(void **state)
+TEST(test_back_and_refused)
 {
-  (void)state;
   struct dea_device *device = pair_new(800, 0);
   struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE);
   const struct dea_model_type *type = dea_model_find("3d");
@@ -398,12 +392,4 @@ static void test_back_and_refused(void **state)
   end(model, device);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_apart),         cmocka_unit_test(test_each_moment),
-      cmocka_unit_test(test_as_one_supply), cmocka_unit_test(test_round),
-      cmocka_unit_test(test_leaks),         cmocka_unit_test(test_back_and_refused),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

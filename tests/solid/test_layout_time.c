@@ -67,9 +67,8 @@ static struct dea_device *square_new(void)
 
 /* Free to move in its plane, with one branch G beside mu: after a small step of the voltage the
  * strain eps E^2 / (6 mu) comes up as that of the standard linear solid. */
-static void test_creep(void **state)
+TEST(test_creep)
 {
-  (void)state;
   struct dea_device *device = square_new();
   struct dea_layout *l = device->layout;
   const size_t low = add_rectangle(device, "low", 0, -1e-3, 10e-3, 1e-3);
@@ -112,9 +111,8 @@ static void test_creep(void **state)
 
 /* Two films that leak in their own ways, all held: a resistance charges them as a capacitor beside
  * a resistor, exactly for steps of any length. */
-static void test_charging(void **state)
+TEST(test_charging)
 {
-  (void)state;
   static const double per_s[2] = {5, 20}; // conductance over capacitance
   struct dea_device *device = square_new();
   struct dea_layout *l = device->layout;
@@ -145,9 +143,8 @@ static void test_charging(void **state)
 }
 
 /* A disc with a branch on a free mesh creeps as that of the model of discs does. */
-static void test_disc_of_both_models(void **state)
+TEST(test_disc_of_both_models)
 {
-  (void)state;
   struct dea_material film = silicone();
   film.branches[0] = (struct dea_branch){.modulus_Pa = 100e3, .time_s = 0.5};
   film.branch_count = 1;
@@ -173,9 +170,8 @@ static void test_disc_of_both_models(void **state)
 
 /* A hub that hangs in a film swings about its new place after a small step of the voltage: half a
  * period of its lowest vibration later it is as far beyond as it was away. */
-static void test_swing(void **state)
+TEST(test_swing)
 {
-  (void)state;
   enum { STEPS = 24 };
   const struct dea_model_type *type = dea_model_find("3d");
   struct dea_device *device = cone_new();
@@ -206,13 +202,4 @@ static void test_swing(void **state)
   dea_device_destroy(ctx, device);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_creep),
-      cmocka_unit_test(test_charging),
-      cmocka_unit_test(test_disc_of_both_models),
-      cmocka_unit_test(test_swing),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

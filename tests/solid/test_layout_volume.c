@@ -51,9 +51,8 @@ static struct seen solve(double stretch, struct dea_layout_pressure pressure, do
 }
 
 /* The pressure that an enclosed volume comes to, given to the face, leads to the same film. */
-static void test_as_given_pressure(void **state)
+TEST(test_as_given_pressure)
 {
-  (void)state;
   const struct dea_layout_pressure enclosed[] = {
       {.encloses = DEA_GAS, .pressure_Pa = 1.5e3, .volume_m3 = 20e-6},
       {.encloses = DEA_LIQUID, .volume_m3 = 0.3e-6},
@@ -78,9 +77,8 @@ static void test_as_given_pressure(void **state)
 
 /* A little liquid below a film of tension T = mu H (1 - 1/l^6): a cap, of the rise 2 v/(pi a^2) at
  * the pressure 4 T z/a^2, up to the square of the rise over the radius. */
-static void test_cap(void **state)
+TEST(test_cap)
 {
-  (void)state;
   const double stretch = 1.5, T = mu_Pa * film_m * (1 - pow(stretch, -6));
   const double area_m2 = acos(-1.0) * radius_m * radius_m, volume_m3 = 1e-9;
   const struct dea_layout_pressure liquid = {.encloses = DEA_LIQUID, .volume_m3 = volume_m3};
@@ -125,9 +123,8 @@ static double integrate(double pole, double pressure, double edge, double *rise,
 }
 
 /* Along the whole curve, also beyond the largest pressure, where a given one has no stable film. */
-static void test_curve(void **state)
+TEST(test_curve)
 {
-  (void)state;
   const double stretch = 1.1, unit_Pa = mu_Pa * film_m / radius_m;
   static const double poles[] = {1.3, 2.2, 2.8};
   double before_Pa = 0, largest_Pa = 0;
@@ -150,12 +147,4 @@ static void test_curve(void **state)
   assert_true(before_Pa < 0.99 * largest_Pa);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_as_given_pressure),
-      cmocka_unit_test(test_cap),
-      cmocka_unit_test(test_curve),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -146,21 +146,18 @@ static void check(const char *model, double stretch, double floor)
   dea_design_destroy(ctx, design);
 }
 
-static void test_lumped(void **state)
+TEST(test_lumped)
 {
-  (void)state;
   check("lumped", 0, 2e-13);
 }
 
-static void test_axisymmetric(void **state)
+TEST(test_axisymmetric)
 {
-  (void)state;
   check("axisymmetric", 0, 5e-12);
 }
 
-static void test_along_the_path(void **state)
+TEST(test_along_the_path)
 {
-  (void)state;
   check("lumped", 1.75, 5e-12);
   check("axisymmetric", 1.7, 5e-12);
 }
@@ -232,9 +229,8 @@ static void check_critical(const char *model, bool soft, const enum dea_event_ki
   dea_design_destroy(ctx, design);
 }
 
-static void test_critical_voltages(void **state)
+TEST(test_critical_voltages)
 {
-  (void)state;
   static const enum dea_event_kind crossings[] = {DEA_EVENT_SLACK, DEA_EVENT_BREAKDOWN},
                                    turns[] = {DEA_EVENT_PULL_IN};
   check_critical("lumped", false, crossings, 2, 1e-10);
@@ -243,13 +239,4 @@ static void test_critical_voltages(void **state)
   check_critical("axisymmetric", true, turns, 1, 5e-12);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_lumped),
-      cmocka_unit_test(test_axisymmetric),
-      cmocka_unit_test(test_along_the_path),
-      cmocka_unit_test(test_critical_voltages),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

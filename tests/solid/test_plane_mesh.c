@@ -74,9 +74,8 @@ static void names_of(const struct dea_plane_mesh *mesh)
 
 /* The same mesh in both formats; 2.2 says twice what is in two groups, and has an element of 8
  * nodes. */
-static void test_both_formats(void **state)
+TEST(test_both_formats)
 {
-  (void)state;
   static const char *const files[] = {SEEDS "two-squares-41.msh", SEEDS "two-squares-22.msh"};
   for (int i = 0; i < 2; i++) {
     struct dea_plane_mesh *mesh = two_squares(files[i]);
@@ -103,9 +102,8 @@ static size_t nodes_on(const struct dea_plane_mesh *mesh, const char *name)
 }
 
 /* A name that three numbers have is one curve: three sides of 4 x 4 nodes, which are 10. */
-static void test_one_name_of_several_curves(void **state)
+TEST(test_one_name_of_several_curves)
 {
-  (void)state;
   struct dea_plane_mesh *mesh = two_squares(CASES "dupnames.msh");
   assert_int_equal(mesh->curve_count, 2);
   assert_int_equal(nodes_on(mesh, "frame"), 10);
@@ -125,9 +123,8 @@ static void test_one_name_of_several_curves(void **state)
 }
 
 /* Files as others write them: read, or refused with what is wrong. */
-static void test_files_of_others(void **state)
+TEST(test_files_of_others)
 {
-  (void)state;
   static const struct {
     const char *file, *fault; // NULL: it is read
     size_t quads;
@@ -172,9 +169,8 @@ static bool electrode_on_film(const void *self, int region, int ply)
   return within[dea_plane_mesh_group(mesh, ply == 0 ? "film" : "electrode")] != 0;
 }
 
-static void test_extruded_by_groups(void **state)
+TEST(test_extruded_by_groups)
 {
-  (void)state;
   struct dea_plane_mesh *mesh = two_squares(SEEDS "two-squares-41.msh");
   const struct dea_ply plies[] = {{1e-4, 2, 2}, {1e-5, 1, 2}};
   const struct dea_stack stack = {
@@ -221,9 +217,8 @@ static void expect(const char *what, const char *by, const char *message)
   dea_finding_clear(ctx);
 }
 
-static void test_faults_have_a_place(void **state)
+TEST(test_faults_have_a_place)
 {
-  (void)state;
   expect("$MeshFormat\n2.2", "hello", "bad.msh:1: this is no .msh file");
   expect("2.2 0", "2.2 1", "bad.msh:2: the file is binary");
   expect("2.2 0", "3 0", "bad.msh:2: format 3 is not known");
@@ -254,17 +249,9 @@ static dea_status read_squares(struct dea_context *own)
   return status;
 }
 
-static void test_memory(void **state)
+TEST(test_memory)
 {
-  (void)state;
   assert_true(failing_ends(read_squares, DEA_OK) > 10);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_both_formats),        cmocka_unit_test(test_one_name_of_several_curves),
-      cmocka_unit_test(test_files_of_others),     cmocka_unit_test(test_extruded_by_groups),
-      cmocka_unit_test(test_faults_have_a_place), cmocka_unit_test(test_memory)};
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

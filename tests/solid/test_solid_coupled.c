@@ -112,9 +112,8 @@ static void check_derivatives(const struct dea_part_material *layer)
   }
 }
 
-static void test_derivatives_of_all_orders(void **state)
+TEST(test_derivatives_of_all_orders)
 {
-  (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= (order < 3 ? 2 : 1); order_z++) {
       const struct dea_part_material soft = film(1.5), hard = plastic();
@@ -127,9 +126,8 @@ static void test_derivatives_of_all_orders(void **state)
 
 /* The electric part alone is -(1/2) phi L phi, and the tangent's block of the potentials is -c^2 L.
  */
-static void test_capacity_is_the_electric_energy(void **state)
+TEST(test_capacity_is_the_electric_energy)
 {
-  (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
@@ -153,9 +151,8 @@ static void test_capacity_is_the_electric_energy(void **state)
 
 /* Turned and moved as a whole, and with a potential added everywhere, the element keeps its energy;
  * its forces turn with it and its charges stay. */
-static void test_rigid_motion_and_added_potential(void **state)
+TEST(test_rigid_motion_and_added_potential)
 {
-  (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
@@ -188,9 +185,8 @@ static void test_rigid_motion_and_added_potential(void **state)
 
 /* A potential that is linear in the reference thickness is the thin film's field, whatever the
  * displacements: energy, forces and tangent by u are those of dea_hex_evaluate. */
-static void test_linear_potential_is_the_thin_film(void **state)
+TEST(test_linear_potential_is_the_thin_film)
 {
-  (void)state;
   const struct dea_part_material soft = film(1.5);
   const double V = 4e3;
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
@@ -214,9 +210,8 @@ static void test_linear_potential_is_the_thin_film(void **state)
 
 /* Plate capacitor of a stretched, sheared block: charge eps (V/h) |F_1 x F_2|^2 a face, the
  * opposite on the other and none inside. */
-static void test_plate_capacitor(void **state)
+TEST(test_plate_capacitor)
 {
-  (void)state;
   static const double D[9] = {1.2, 0.1, 0.2, -0.1, 0.95, 0.1, 0.3, 0, 0.9};
   const struct dea_part_material soft = film(1.5);
   const double a = 100e-6, h = 44e-6, V = 3e3;
@@ -248,9 +243,8 @@ static void test_plate_capacitor(void **state)
   }
 }
 
-static void test_spread_in_place(void **state)
+TEST(test_spread_in_place)
 {
-  (void)state;
   enum { NODES = 3, SMALL = 9, WIDE = 12 };
   static double g3[SMALL], K3[SMALL * SMALL], g[WIDE], K[WIDE * WIDE];
   for (int i = 0; i < SMALL * SMALL; i++) {
@@ -268,9 +262,8 @@ static void test_spread_in_place(void **state)
   }
 }
 
-static void test_inverted_element(void **state)
+TEST(test_inverted_element)
 {
-  (void)state;
   static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
@@ -280,16 +273,4 @@ static void test_inverted_element(void **state)
   assert_int_equal(capacity(&soft, &s, L), DEA_E_DOMAIN);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_derivatives_of_all_orders),
-      cmocka_unit_test(test_capacity_is_the_electric_energy),
-      cmocka_unit_test(test_rigid_motion_and_added_potential),
-      cmocka_unit_test(test_linear_potential_is_the_thin_film),
-      cmocka_unit_test(test_plate_capacitor),
-      cmocka_unit_test(test_spread_in_place),
-      cmocka_unit_test(test_inverted_element),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -451,9 +451,8 @@ static void check_inverted(struct sample *s)
   assert_int_equal(type->metric(s->element, &s->film, s->X, mass, share), DEA_E_DOMAIN);
 }
 
-static void test_every_kind(void **state)
+TEST(test_every_kind)
 {
-  (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     struct dea_element_set set;
     assert_int_equal(dea_element_set_create(ctx, order, order > 2 ? 2 : order, &set), DEA_OK);
@@ -474,7 +473,7 @@ static void test_every_kind(void **state)
 
 /* A film whose pre-stretch lies at an angle, and the same with its axes along x and y in a body
  * that is turned: Psi(F; R D R^T) = Psi(F R; D), with P = P(F R) R^T and so twice for A. */
-static void test_pre_stretch_at_an_angle(void **state)
+TEST(test_pre_stretch_at_an_angle)
 {
   static const double D[3] = {1.5, 1.2, 1 / 1.8},
                       F[9] = {1.05, 0.1, 0.02, -0.03, 0.9, 0.1, 0, 0.04, 1.1};
@@ -482,7 +481,6 @@ static void test_pre_stretch_at_an_angle(void **state)
   const double R[9] = {c, -s, 0, s, c, 0, 0, 0, 1};
   struct dea_point turned, straight;
   double cof[9], FR[9] = {0}, P[9] = {0};
-  (void)state;
   for (int a = 0; a < 9; a++) {
     for (int k = 0; k < 3; k++) {
       FR[a] += F[a / 3 * 3 + k] * R[3 * k + a % 3];
@@ -521,9 +519,8 @@ static void test_pre_stretch_at_an_angle(void **state)
   }
 }
 
-static void test_orders_out_of_range(void **state)
+TEST(test_orders_out_of_range)
 {
-  (void)state;
   static const int orders[][2] = {
       {0, 1}, {1, 0}, {DEA_HEX_ORDER_MAX + 1, 1}, {1, DEA_HEX_ORDER_MAX + 1}};
   for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++) {
@@ -533,12 +530,4 @@ static void test_orders_out_of_range(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_every_kind),
-      cmocka_unit_test(test_pre_stretch_at_an_angle),
-      cmocka_unit_test(test_orders_out_of_range),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

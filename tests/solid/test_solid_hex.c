@@ -80,9 +80,8 @@ static void check_derivatives(const struct dea_part_material *layer)
   }
 }
 
-static void test_derivatives_of_all_orders(void **state)
+TEST(test_derivatives_of_all_orders)
 {
-  (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     for (int order_z = 1; order_z <= 2; order_z++) {
       const struct dea_part_material soft = film(1.5), hard = plastic();
@@ -100,9 +99,8 @@ static void test_derivatives_of_all_orders(void **state)
 
 /* Each level gives what the next one gives, to the bits: decisions of the line search hang on it.
  */
-static void test_levels_agree(void **state)
+TEST(test_levels_agree)
 {
-  (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
   const struct dea_part_material layers[] = {film(1.5), plastic()};
   for (int k = 0; k < 2; k++) {
@@ -123,9 +121,8 @@ static void test_levels_agree(void **state)
 }
 
 /* Turned and moved as a whole the element keeps its energy; its forces turn with it. */
-static void test_rigid_motion(void **state)
+TEST(test_rigid_motion)
 {
-  (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], turned[DEA_HEX_DOFS_MAX];
   const struct dea_part_material soft = film(1.5);
@@ -161,9 +158,8 @@ static void test_rigid_motion(void **state)
 
 /* Held flat, a pre-stretched film pulls in its plane with the stress of benchmark 1 and not through
  * its thickness; a field of V takes eps E^2 of it. */
-static void test_flat_film_has_the_true_pre_stress(void **state)
+TEST(test_flat_film_has_the_true_pre_stress)
 {
-  (void)state;
   static const double rest[DEA_HEX_DOFS_MAX] = {0}, none[DEA_HEX_PRESSURES_MAX] = {0};
   double X[DEA_HEX_DOFS_MAX];
   const struct dea_part_material soft = film(1.5);
@@ -190,9 +186,8 @@ static void test_flat_film_has_the_true_pre_stress(void **state)
   }
 }
 
-static void test_inverted_element_and_bad_order(void **state)
+TEST(test_inverted_element_and_bad_order)
 {
-  (void)state;
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX];
   const struct dea_part_material soft = film(1.5);
   assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
@@ -235,9 +230,8 @@ static void forces(const struct dea_grid *grid, const struct dea_part_material *
 }
 
 /* Patch test: a homogeneous deformation of a distorted mesh leaves no force on the inner nodes. */
-static void test_patch_and_area(void **state)
+TEST(test_patch_and_area)
 {
-  (void)state;
   static const double D[9] = {1.1, 0.05, 0, -0.02, 0.95, 0.03, 0.04, 0, 0.96};
   const double a = 3.75e-3, b = 15e-3, h = 44e-6;
   for (int order = 1; order <= 3; order++) {
@@ -315,16 +309,14 @@ static void check_joined(int fibres, double width)
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_blocks_are_joined(void **state)
+TEST(test_blocks_are_joined)
 {
-  (void)state;
   check_joined(4, 2e-3);
   check_joined(8, 1.2e-3);
 }
 
-static void test_meshes_that_cannot_be(void **state)
+TEST(test_meshes_that_cannot_be)
 {
-  (void)state;
   const struct dea_quarter good = {2, 1, 2e-3, 9e-3, 1e-4, 8, 1.2e-3, 1e-4, .fine = 3, .across = 2};
   struct dea_quarter bad[] = {good, good, good};
   struct dea_grid *grid = NULL;
@@ -346,24 +338,9 @@ static void make_grid(struct dea_context *failing)
   dea_grid_destroy(failing, grid);
 }
 
-static void test_each_allocation_of_a_mesh(void **state)
+TEST(test_each_allocation_of_a_mesh)
 {
-  (void)state;
   assert_true(failing_each(make_grid) > 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_derivatives_of_all_orders),
-      cmocka_unit_test(test_levels_agree),
-      cmocka_unit_test(test_rigid_motion),
-      cmocka_unit_test(test_flat_film_has_the_true_pre_stress),
-      cmocka_unit_test(test_inverted_element_and_bad_order),
-      cmocka_unit_test(test_patch_and_area),
-      cmocka_unit_test(test_blocks_are_joined),
-      cmocka_unit_test(test_meshes_that_cannot_be),
-      cmocka_unit_test(test_each_allocation_of_a_mesh),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -133,9 +133,8 @@ static double whole_load(const struct dea_solid_load *load, const double *v, dou
 }
 
 /* The same of a volume, whose pressure all pieces share. */
-static void test_derivatives_of_enclosed_volumes(void **state)
+TEST(test_derivatives_of_enclosed_volumes)
 {
-  (void)state;
   static const struct dea_enclosed enclosed[] = {
       {.volume_m3 = 20, .ambient_Pa = 2},
       {.liquid = true, .volume_m3 = 1e-3, .stiffness_Pa_per_m3 = 5}};
@@ -183,9 +182,8 @@ static void test_derivatives_of_enclosed_volumes(void **state)
   block_destroy();
 }
 
-static void test_derivatives(void **state)
+TEST(test_derivatives)
 {
-  (void)state;
   static const double stiffness[3] = {2, 0, 5}, origin[3] = {0.1, -0.2, 0.3};
   for (int order = 1; order <= 3; order++) {
     block_create(order, order < 3 ? 2 : 1, 0.1);
@@ -217,9 +215,8 @@ static void test_derivatives(void **state)
 
 /* A bistable table and a line: derivatives between the points and beyond them; the energy is the
  * integral of the force, and the force goes through the points without new extremes. */
-static void test_spring(void **state)
+TEST(test_spring)
 {
-  (void)state;
   enum { POINTS = 6 };
   static const double at[POINTS] = {-1, -0.3, 0.2, 0.9, 1.5, 3};
   static const double force[POINTS] = {-2, 0.5, 0.6, -1.5, -0.2, 4};
@@ -331,9 +328,8 @@ static void check_prediction(const struct dea_solid_load *load)
 }
 
 /* Pressed about 0.2 into the top, with pressures there already. */
-static void test_derivatives_of_contact(void **state)
+TEST(test_derivatives_of_contact)
 {
-  (void)state;
   block_create(2, 2, 0.1);
   struct dea_surface *surface = side_create(DEA_FACE_TOP);
   for (size_t i = 0; i < sizeof tips / sizeof tips[0]; i++) {
@@ -356,9 +352,8 @@ static void test_derivatives_of_contact(void **state)
 }
 
 /* The force on the tip is that which moves it: the derivative of the energy by its place. */
-static void test_force_by_place_of_tip(void **state)
+TEST(test_force_by_place_of_tip)
 {
-  (void)state;
   static struct dea_load_piece piece;
   block_create(2, 2, 0.1);
   struct dea_surface *surface = side_create(DEA_FACE_TOP);
@@ -430,9 +425,8 @@ static bool upmost(const void *self, int region, int ply, const double middle[3]
   return middle[2] > size[2] - 1e-9;
 }
 
-static void test_weight_and_traction(void **state)
+TEST(test_weight_and_traction)
 {
-  (void)state;
   static const double cuts[] = {0, 0.4, 1}, free_fall[3] = {1, -2, -9};
   const struct dea_block block = {straight, NULL, cuts, cuts, 2, 2, 7};
   const struct dea_ply ply = {size[2], 2, 2};
@@ -495,9 +489,8 @@ static double volume(void)
 
 /* Pressure on all sides of all elements: between two of them it cancels, and is left all around the
  * deformed block. Its energy is p V, and it has no resultant and no moment. */
-static void test_pressure_all_around(void **state)
+TEST(test_pressure_all_around)
 {
-  (void)state;
   static const double origin[3] = {5, -3, 2};
   static struct dea_load_piece piece;
   for (int order = 1; order <= 3; order++) {
@@ -535,9 +528,8 @@ static void test_pressure_all_around(void **state)
 
 /* Inside a surface that is held at its edge the forces are those of p n dA, and do not depend on
  * the origin where they should not. */
-static void test_pressure_does_not_know_its_origin(void **state)
+TEST(test_pressure_does_not_know_its_origin)
 {
-  (void)state;
   static const double origin[2][3] = {{0, 0, 0}, {5, -3, 2}};
   static struct dea_load_piece piece;
   block_create(2, 2, 0.1);
@@ -578,9 +570,8 @@ static void test_pressure_does_not_know_its_origin(void **state)
 /* ---- tips ---- */
 
 /* Distances by hand. */
-static void test_distances(void **state)
+TEST(test_distances)
 {
-  (void)state;
   static const double place[3] = {1, 2, 3};
   static const struct {
     struct dea_indenter tip;
@@ -611,9 +602,8 @@ static void test_distances(void **state)
 
 /* Everywhere about the tips: the normal is the gradient, of length one, the Hessian its slope
  * (except across a seam), and the distance is really one: the foot x - g n is on the surface. */
-static void test_slopes_of_distances(void **state)
+TEST(test_slopes_of_distances)
 {
-  (void)state;
   static const double place[3] = {0.1, -0.2, 0.3};
   for (size_t i = 0; i < sizeof tips / sizeof tips[0]; i++) {
     struct dea_indenter tip = tips[i];
@@ -650,9 +640,8 @@ static void test_slopes_of_distances(void **state)
   }
 }
 
-static void test_arguments(void **state)
+TEST(test_arguments)
 {
-  (void)state;
   static const struct dea_indenter bad[] = {
       {.shape = DEA_INDENTER_SPHERE, .radius_m = 0},
       {.shape = DEA_INDENTER_FLAT, .radius_m = 1, .axis = {0, 0, 1}, .edge_radius_m = 0},
@@ -678,20 +667,4 @@ static void test_arguments(void **state)
   block_destroy();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_derivatives),
-      cmocka_unit_test(test_derivatives_of_enclosed_volumes),
-      cmocka_unit_test(test_spring),
-      cmocka_unit_test(test_derivatives_of_contact),
-      cmocka_unit_test(test_force_by_place_of_tip),
-      cmocka_unit_test(test_weight_and_traction),
-      cmocka_unit_test(test_pressure_all_around),
-      cmocka_unit_test(test_pressure_does_not_know_its_origin),
-      cmocka_unit_test(test_distances),
-      cmocka_unit_test(test_slopes_of_distances),
-      cmocka_unit_test(test_arguments),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

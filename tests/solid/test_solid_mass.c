@@ -28,9 +28,8 @@ static double product(double a, double b, double c, double d)
   return (a * c + b * d) / 3 + (a * d + b * c) / 4;
 }
 
-static void test_mass_of_a_block(void **state)
+TEST(test_mass_of_a_block)
 {
-  (void)state;
   static const double cuts[] = {0, 0.35, 1};
   const double rho = 970, h = 0.7, z0 = 0.2, area = 3 * 2 + 0.5 * 0.4;
   const struct dea_part_material layer = {.density_kg_per_m3 = rho, .thickness_m = h};
@@ -57,9 +56,8 @@ static void test_mass_of_a_block(void **state)
   }
 }
 
-static void test_an_inverted_element_has_no_mass(void **state)
+TEST(test_an_inverted_element_has_no_mass)
 {
-  (void)state;
   double X[DEA_HEX_DOFS_MAX], mass[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
   const struct dea_part_material layer = {.density_kg_per_m3 = 1, .thickness_m = 1};
   assert_int_equal(dea_hex_shape_create(1, 1, &shape), DEA_OK);
@@ -74,11 +72,4 @@ static void test_an_inverted_element_has_no_mass(void **state)
   assert_int_equal(surface.type->mass(&surface, &layer, X, mass), DEA_E_DOMAIN);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_mass_of_a_block),
-      cmocka_unit_test(test_an_inverted_element_has_no_mass),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -101,18 +101,16 @@ static void check_law(const struct dea_law *law, const double *param)
   }
 }
 
-static void test_point_is_the_solid_in_plane_stress(void **state)
+TEST(test_point_is_the_solid_in_plane_stress)
 {
-  (void)state;
   for_each_law(check_law);
 }
 
 /* Stretches that are equal or nearly. A complex step through eigenvectors loses digits there, so
  * laws in principal form are compared by terms that have an invariant form too: sum l^2 = I1, and
  * sum l^4 = I1^2 - 2 I2 (a complex step at a gap of 1e-3 is good to 1e-9). */
-static void test_equal_stretches(void **state)
+TEST(test_equal_stretches)
 {
-  (void)state;
   static const double gaps[] = {0, 1e-16, 1e-12, 1e-8, 1e-5, 1e-3, 9e-3, 1.1e-2, 2e-2};
   static const double square[DEA_LAW_PARAM_MAX] = {80e3, 2}, fourth[DEA_LAW_PARAM_MAX] = {40e3, 4};
   static const double neo[DEA_LAW_PARAM_MAX] = {80e3};
@@ -138,9 +136,8 @@ static void test_equal_stretches(void **state)
   }
 }
 
-static void test_laws_that_are_refused(void **state)
+TEST(test_laws_that_are_refused)
 {
-  (void)state;
   const struct dea_part_material plastic = dea_part_material_bonded((const double[]){2, 0});
   const struct dea_part_material soft = yeoh_film(1.5);
   const struct dea_part_material fibrous = film(dea_law_find("holzapfel-gasser-ogden"), yeoh, 1, 1);
@@ -150,9 +147,8 @@ static void test_laws_that_are_refused(void **state)
 }
 
 /* The bond has the shear modulus of the film across it, 2 W'(I1)/l^4, three halves of it. */
-static void test_bond(void **state)
+TEST(test_bond)
 {
-  (void)state;
   struct dea_part_material soft = yeoh_film(1.5), bond;
   double area = 2.25, I1 = 2 * area + 1 / (area * area) - 3;
   double W1 = yeoh[0] + 2 * yeoh[1] * I1 + 3 * yeoh[2] * I1 * I1;
@@ -167,9 +163,8 @@ static void test_bond(void **state)
 
 /* Held flat the film pulls with the true stress of benchmark 1; a field takes eps E^2 of it. At
  * rest its energy is that of the stretched film. */
-static void test_flat_film_has_the_true_pre_stress(void **state)
+TEST(test_flat_film_has_the_true_pre_stress)
 {
-  (void)state;
   static const double flat[6] = {1, 0, 0, 1, 0, 0};
   static const double stretch[] = {1.1, 1.2, 1.3, 1.4, 1.5, 2.0};
   static const double nominal[] = {169.879e3, 280.470e3, 363.529e3,
@@ -228,9 +223,8 @@ static void check_element(const struct dea_part_material *layer)
   }
 }
 
-static void test_derivatives_of_all_orders(void **state)
+TEST(test_derivatives_of_all_orders)
 {
-  (void)state;
   for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
     const struct dea_part_material layer = yeoh_film(1.5);
     assert_int_equal(dea_flat_shape_create(order, &shape), DEA_OK);
@@ -239,9 +233,8 @@ static void test_derivatives_of_all_orders(void **state)
 }
 
 /* Turned and moved as a whole the element keeps its energy; its forces turn with it. */
-static void test_rigid_motion(void **state)
+TEST(test_rigid_motion)
 {
-  (void)state;
   static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
   double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX], turned[DEA_FLAT_DOFS_MAX];
   const struct dea_part_material soft = yeoh_film(1.5);
@@ -271,9 +264,8 @@ static void test_rigid_motion(void **state)
   }
 }
 
-static void test_bad_elements(void **state)
+TEST(test_bad_elements)
 {
-  (void)state;
   double X[DEA_FLAT_DOFS_MAX], u[DEA_FLAT_DOFS_MAX];
   const struct dea_part_material soft = yeoh_film(1.5);
   assert_int_equal(dea_flat_shape_create(0, &shape), DEA_E_ARGUMENT);
@@ -292,9 +284,8 @@ static void test_bad_elements(void **state)
 
 /* Patch test: a homogeneous deformation of a distorted mesh, out of its plane too, leaves no force
  * on the inner nodes. */
-static void test_patch_and_area(void **state)
+TEST(test_patch_and_area)
 {
-  (void)state;
   static const double D[6] = {1.1, 0.05, -0.02, 0.95, 0.3, -0.2};
   const double a = 3.75e-3, b = 15e-3, h = 44e-6;
   for (int order = 1; order <= 3; order++) {
@@ -341,9 +332,8 @@ static void test_patch_and_area(void **state)
 
 /* With fibres: one surface everywhere, the bond and the fibre on top of it where there is one, all
  * joined. */
-static void test_membrane_with_fibres(void **state)
+TEST(test_membrane_with_fibres)
 {
-  (void)state;
   const double h = 1e-4, t = 2e-4;
   struct dea_grid *grid;
   const struct dea_quarter quarter = {
@@ -386,9 +376,8 @@ static double areal_density(const void *self, int region, int ply)
 /* Loads on a membrane: it is its own upper and lower face and has no sides; weight by mass per
  * area.
  */
-static void test_faces_and_weight(void **state)
+TEST(test_faces_and_weight)
 {
-  (void)state;
   const double b = 15e-3, area = 0.25 * acos(-1) * b * b, free_fall[3] = {0, 0, -9.81};
   const struct dea_quarter quarter = {2, 1, 3.75e-3, b, 1e-4, .fine = 3, .membrane = true};
   struct dea_element_set elements;
@@ -432,27 +421,9 @@ static void make_grid(struct dea_context *failing)
   dea_grid_destroy(failing, grid);
 }
 
-static void test_each_allocation_of_a_mesh(void **state)
+TEST(test_each_allocation_of_a_mesh)
 {
-  (void)state;
   assert_true(failing_each(make_grid) > 5);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_point_is_the_solid_in_plane_stress),
-      cmocka_unit_test(test_equal_stretches),
-      cmocka_unit_test(test_laws_that_are_refused),
-      cmocka_unit_test(test_bond),
-      cmocka_unit_test(test_flat_film_has_the_true_pre_stress),
-      cmocka_unit_test(test_derivatives_of_all_orders),
-      cmocka_unit_test(test_rigid_motion),
-      cmocka_unit_test(test_bad_elements),
-      cmocka_unit_test(test_patch_and_area),
-      cmocka_unit_test(test_membrane_with_fibres),
-      cmocka_unit_test(test_faces_and_weight),
-      cmocka_unit_test(test_each_allocation_of_a_mesh),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

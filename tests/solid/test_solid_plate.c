@@ -217,9 +217,8 @@ static void check(const struct dea_fibre_disc *p, double tolerance)
   dea_layout_mesh_free(ctx, &mesh);
 }
 
-static void test_sectors_of_all_counts(void **state)
+TEST(test_sectors_of_all_counts)
 {
-  (void)state;
   static const int fibres[] = {0, 1, 2, 3, 4, 5, 6, 8, 12};
   static const double overlap[] = {-1e-3, 0, 0.75e-3};
   for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
@@ -232,9 +231,8 @@ static void test_sectors_of_all_counts(void **state)
   }
 }
 
-static void test_whole_discs(void **state)
+TEST(test_whole_discs)
 {
-  (void)state;
   static const int fibres[] = {0, 1, 3, 4, 6};
   for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
     struct dea_fibre_disc p = plate(fibres[i], 0.5e-3, 2e-3);
@@ -244,9 +242,8 @@ static void test_whole_discs(void **state)
 }
 
 /* Taper, glue, electrode layers, free ends, hinges, finer meshes; order 3 is far more exact. */
-static void test_all_that_a_design_can_ask_for(void **state)
+TEST(test_all_that_a_design_can_ask_for)
 {
-  (void)state;
   for (int bits = 0; bits < 64; bits++) {
     struct dea_fibre_disc p = plate(bits & 1 ? 4 : 3, bits & 2 ? 1e-3 : -0.5e-3, 2e-3);
     p.tip_width = bits & 4 ? 0.6e-3 : 2e-3;
@@ -281,9 +278,8 @@ static void heights(const struct dea_grid *grid, int ply, int bits, double *low,
 /* Over electrodes of 5 um a fibre with 50 um of glue lies on them, and on a filler beside them; a
  * fibre that ends before them lies on the film, and shares no node with the electrode's upper side.
  */
-static void test_what_fibres_lie_on(void **state)
+TEST(test_what_fibres_lie_on)
 {
-  (void)state;
   for (int on = 0; on < 2; on++) {
     struct dea_fibre_disc p = plate(4, on ? 1e-3 : 0, 2e-3);
     struct dea_grid *grid;
@@ -310,9 +306,8 @@ static void test_what_fibres_lie_on(void **state)
 
 /* Elements through the film: as thick as each other at the two faces, twice as thick as the one
  * before; what else a plate has is as it was. At the electrode's edge they are `fringe` wide. */
-static void test_elements_through_the_film(void **state)
+TEST(test_elements_through_the_film)
 {
-  (void)state;
   for (int through = 1; through <= 5; through++) {
     struct dea_fibre_disc p = plate(4, 0, 2e-3);
     struct dea_grid *grid;
@@ -367,9 +362,8 @@ static void check_bonds(const struct dea_grid *grid)
 }
 
 /* The film and both electrodes are surfaces at z = 0; the rest is where a solid film has it. */
-static void test_membranes(void **state)
+TEST(test_membranes)
 {
-  (void)state;
   for (int bits = 0; bits < 8; bits++) {
     bool on = bits & 1;
     double t = bits & 2 ? 5e-6 : 0, glue = bits & 4 ? 50e-6 : 0, low, high;
@@ -403,9 +397,8 @@ static void test_membranes(void **state)
 
 /* ---- what cannot be ---- */
 
-static void test_plates_that_cannot_be(void **state)
+TEST(test_plates_that_cannot_be)
 {
-  (void)state;
   const struct dea_fibre_disc good = plate(8, 0, 2e-3);
   struct dea_fibre_disc bad[8];
   for (size_t i = 0; i < 8; i++) {
@@ -434,9 +427,8 @@ static void make_plate(struct dea_context *failing)
   dea_layout_mesh_free(failing, &mesh);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   assert_true(failing_each(make_plate) > 8);
 }
 
@@ -455,9 +447,8 @@ static int nodes_between(const struct dea_fibre_disc *p, double from, double to)
 }
 
 /* Finer inside the circles of electrode and tips, whatever their order, and as before beyond. */
-static void test_finer_at_tips(void **state)
+TEST(test_finer_at_tips)
 {
-  (void)state;
   static const int fibres[] = {1, 3, 4, 8};
   static const double overlap[] = {-1e-3, 0, 0.75e-3};
   for (int i = 0; i < 12; i++) {
@@ -472,9 +463,8 @@ static void test_finer_at_tips(void **state)
   }
 }
 
-static void test_graded_cuts(void **state)
+TEST(test_graded_cuts)
 {
-  (void)state;
   double cuts[101];
   size_t n = dea_cuts_graded(1, 0.01, 0.02, 2, 0.1, 100, cuts);
   assert_true(n > 10 && n < 25);
@@ -499,19 +489,4 @@ static void test_graded_cuts(void **state)
   assert_int_equal(dea_cuts_graded(1, 0.01, 0, 2, 0.1, 100, cuts), 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_finer_at_tips),
-      cmocka_unit_test(test_graded_cuts),
-      cmocka_unit_test(test_sectors_of_all_counts),
-      cmocka_unit_test(test_whole_discs),
-      cmocka_unit_test(test_all_that_a_design_can_ask_for),
-      cmocka_unit_test(test_what_fibres_lie_on),
-      cmocka_unit_test(test_elements_through_the_film),
-      cmocka_unit_test(test_membranes),
-      cmocka_unit_test(test_plates_that_cannot_be),
-      cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

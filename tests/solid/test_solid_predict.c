@@ -82,9 +82,8 @@ static double apart_at(const struct dea_part_material *layer, double share)
 
 /* Without a step the tangent is the plain one; with one it differs by the square of the step, for
  * the stresses are linear in it. */
-static void test_stresses_of_a_step(void **state)
+TEST(test_stresses_of_a_step)
 {
-  (void)state;
   const struct dea_part_material layers[] = {film(), plastic()};
   sample();
   for (int k = 0; k < 2; k++) {
@@ -97,9 +96,8 @@ static void test_stresses_of_a_step(void **state)
 
 /* L of a linear field is its squared gradient times the volume, and of a constant 0; the volume is
  * shared out among the nodes. */
-static void test_metric(void **state)
+TEST(test_metric)
 {
-  (void)state;
   double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX], volume[DEA_HEX_NODES_MAX], sum = 0, whole = 0;
   const struct dea_part_material layer = film();
   sample();
@@ -126,9 +124,8 @@ static void test_metric(void **state)
 }
 
 /* (kappa_s/2) (J - 1)^2 near 1; without bound before J = 0. */
-static void test_barrier(void **state)
+TEST(test_barrier)
 {
-  (void)state;
   const struct dea_part_material layer = film();
   double slope, curvature, ahead, behind, ignored;
   assert_close(dea_part_material_pointwise(&layer, 1, &slope, &curvature), 0, 0, 1e-12);
@@ -142,12 +139,4 @@ static void test_barrier(void **state)
   assert_true(dea_part_material_pointwise(&layer, 1e-12, &slope, &curvature) > 10 * far);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_stresses_of_a_step),
-      cmocka_unit_test(test_metric),
-      cmocka_unit_test(test_barrier),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -342,9 +342,8 @@ static void check_turned(enum kind kind, int order, int order_z, size_t film_ele
 }
 
 /* The elastic energy is that of the stretches, whatever the permittivity does. */
-static void test_flat_energy_with_electrostriction(void **state)
+TEST(test_flat_energy_with_electrostriction)
 {
-  (void)state;
   const double a = 1.1, b = 0.95, F[9] = {a, 0, 0, 0, b, 0, 0, 0, 1};
   struct strip *s = strip_create(FLAT, 2, 1, 1);
   struct dea_field_mesh *mesh;
@@ -361,9 +360,8 @@ static void test_flat_energy_with_electrostriction(void **state)
   strip_destroy(s);
 }
 
-static void test_turned_film(void **state)
+TEST(test_turned_film)
 {
-  (void)state;
   for (int order = 1; order <= 3; order++) {
     for (int order_z = 1; order_z <= 3; order_z++) {
       check_turned(SOLID, order, order_z, 1);
@@ -377,9 +375,8 @@ static void test_turned_film(void **state)
 }
 
 /* Bending, u_x = k x z: the stretch along x is 1 + k z, also at the faces. */
-static void test_bending(void **state)
+TEST(test_bending)
 {
-  (void)state;
   const double k = 2000;
   for (int order_z = 1; order_z <= 3; order_z++) {
     struct strip *s = strip_create(SOLID, 2, order_z, 1);
@@ -404,9 +401,8 @@ static void test_bending(void **state)
 }
 
 /* Points of the joint of the two regions and of the two plies are there once a part. */
-static void test_parts_do_not_share_points(void **state)
+TEST(test_parts_do_not_share_points)
 {
-  (void)state;
   struct strip *s = strip_create(SOLID, 2, 2, 1);
   struct dea_field_mesh *mesh, *surface;
   assert_int_equal(dea_recover_volume(ctx, &s->in, &mesh), DEA_OK);
@@ -420,9 +416,8 @@ static void test_parts_do_not_share_points(void **state)
   strip_destroy(s);
 }
 
-static void test_inverted_element(void **state)
+TEST(test_inverted_element)
 {
-  (void)state;
   const double flat[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1};
   struct strip *s = strip_create(SOLID, 2, 2, 1);
   struct dea_field_mesh *mesh;
@@ -447,9 +442,8 @@ static void recover_both(struct dea_context *failing)
   dea_field_mesh_destroy(failing, mesh);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   memory_strip = strip_create(SOLID, 2, 1, 1);
   assert_true(failing_each(recover_both) > 20);
   strip_destroy(memory_strip);
@@ -496,9 +490,8 @@ static void fill_linear(const struct dea_grid *grid, double *value)
 /* Of elements of unequal lengths with one neighbour, or two, and of one alone beside a mirror
  * plane, in which xx and the scalar are even and xy odd. x^2 of half a length a has c = 2 a^2 / 3.
  */
-static void test_second_derivatives(void **state)
+TEST(test_second_derivatives)
 {
-  (void)state;
   static const double cuts[4] = {0, 0.3, 0.8, 1}, alone[2] = {0, 1};
   static const struct dea_ply ply = {44e-6, 1, 2};
   for (int mirrors = 0; mirrors < 2; mirrors++) {
@@ -541,16 +534,4 @@ static void test_second_derivatives(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_flat_energy_with_electrostriction),
-      cmocka_unit_test(test_turned_film),
-      cmocka_unit_test(test_bending),
-      cmocka_unit_test(test_parts_do_not_share_points),
-      cmocka_unit_test(test_inverted_element),
-      cmocka_unit_test(test_second_derivatives),
-      cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

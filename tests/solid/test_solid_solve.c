@@ -100,9 +100,8 @@ static double exact_strain(double voltage_V)
 
 /* With the factor of the last equilibrium a step takes one factorisation, and comes to the state
  * that tangents of its own find. */
-static void test_steps_with_one_factor(void **state)
+TEST(test_steps_with_one_factor)
 {
-  (void)state;
   struct disc follows = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   struct disc alone = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   struct dea_solid_report one, many;
@@ -129,9 +128,8 @@ static void test_steps_with_one_factor(void **state)
 
 /* A way in parts takes fewer of them with the bend of the part before, and ends in the same state.
  */
-static void test_bend(void **state)
+TEST(test_bend)
 {
-  (void)state;
   struct disc bent = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   struct disc straight = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   struct dea_solid_report one, other;
@@ -151,9 +149,8 @@ static void test_bend(void **state)
 
 /* 0 to 11 kV in steps of 1 kV without help, no unstable mode on the way, within 0.4 % of the disc
  * without thickness. Elements of 0.2 mm at the electrode edge. */
-static void test_plain_disc_to_11_kV(void **state)
+TEST(test_plain_disc_to_11_kV)
 {
-  (void)state;
   struct disc disc = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   assert_close(disc_strain(&disc, 0), 0, 0, 1e-10);
   for (int kV = 1; kV <= 11; kV++) {
@@ -164,9 +161,8 @@ static void test_plain_disc_to_11_kV(void **state)
 
 /* What is left of the difference is the thickness of the film: at the same field and with elements
  * that shrink along, it falls about in proportion. */
-static void test_difference_goes_with_the_thickness(void **state)
+TEST(test_difference_goes_with_the_thickness)
 {
-  (void)state;
   static const double H0[] = {100e-6, 50e-6, 25e-6};
   double difference[3];
   for (int i = 0; i < 3; i++) {
@@ -183,9 +179,8 @@ static void test_difference_goes_with_the_thickness(void **state)
 
 /* Flat films at zero voltage are stable, whatever pre-stretch, mesh and order through the
  * thickness. */
-static void test_no_false_modes_at_rest(void **state)
+TEST(test_no_false_modes_at_rest)
 {
-  (void)state;
   static const double pre_stretch[] = {1.0, 1.1, 1.5, 2.0};
   for (size_t i = 0; i < 4; i++) {
     for (int order_z = 1; order_z <= 2; order_z++) {
@@ -215,9 +210,8 @@ static bool film_inside(const void *self, int region, int ply)
 
 /* Pre-stretch 1.5, 100 um, PET fibres 2 mm x 100 um clamped at the frame, tip at the electrode
  * edge, against the programs of prototypes.h. */
-static void test_four_fibres_as_built(void **state)
+TEST(test_four_fibres_as_built)
 {
-  (void)state;
   static const double plastic[] = {2950e6, 0.38};
   const double h = 100e-6 / 2.25;
   struct dea_part_material layers[] = {{.law = dea_law_find("yeoh"),
@@ -272,9 +266,8 @@ static int clamp(const void *self, const double X[3])
   return X[0] < 1e-9 ? 1 | 2 | 4 : 0;
 }
 
-static void test_cantilever_under_end_shear(void **state)
+TEST(test_cantilever_under_end_shear)
 {
-  (void)state;
   static const double cuts[] = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1}, one[] = {0, 1};
   static const double part[] = {0.2, 0.5, 1.0}, wanted[] = {2.493, 4.933, 6.698};
   const struct dea_block block = {map_strip, NULL, cuts, one, 10, 1, 0};
@@ -331,26 +324,12 @@ static void make_solid(struct dea_context *failing)
   dea_solid_destroy(failing, solid);
 }
 
-static void test_each_allocation_of_a_solid(void **state)
+TEST(test_each_allocation_of_a_solid)
 {
-  (void)state;
   const struct dea_quarter quarter = {2, 2, a_m, b_m, 1e-4, .fine = 1};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &small_grid), DEA_OK);
   assert_true(failing_each(make_solid) > 15);
   dea_grid_destroy(ctx, small_grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_steps_with_one_factor),
-      cmocka_unit_test(test_bend),
-      cmocka_unit_test(test_plain_disc_to_11_kV),
-      cmocka_unit_test(test_difference_goes_with_the_thickness),
-      cmocka_unit_test(test_no_false_modes_at_rest),
-      cmocka_unit_test(test_four_fibres_as_built),
-      cmocka_unit_test(test_cantilever_under_end_shear),
-      cmocka_unit_test(test_each_allocation_of_a_solid),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -117,23 +117,14 @@ static void check_turned(double thickness_m)
   dea_free(ctx, v);
 }
 
-static void test_turned_film(void **state)
+TEST(test_turned_film)
 {
-  (void)state;
   check_turned(h_m);
 }
 
-static void test_turned_membrane(void **state)
+TEST(test_turned_membrane)
 {
-  (void)state;
   check_turned(0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_turned_film),
-      cmocka_unit_test(test_turned_membrane),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

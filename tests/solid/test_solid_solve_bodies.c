@@ -111,9 +111,8 @@ static void hold_both(struct bodies *it)
 }
 
 /* At turns of 60 and 15 degrees the followers lie where the rotation takes them. */
-static void test_followers_move_as_one(void **state)
+TEST(test_followers_move_as_one)
 {
-  (void)state;
   struct bodies it = two_bodies();
   hold_both(&it);
   double angle = sqrt(0.81 + 0.25 + 0.16), least = INFINITY, most = 0;
@@ -140,9 +139,8 @@ static void test_followers_move_as_one(void **state)
 }
 
 /* Forces of the supports of both bodies are the slopes of the least energy. */
-static void test_forces_are_slopes_of_the_energy(void **state)
+TEST(test_forces_are_slopes_of_the_energy)
 {
-  (void)state;
   static const double by = 1e-4;
   struct bodies it = two_bodies();
   hold_both(&it);
@@ -176,9 +174,8 @@ static void test_forces_are_slopes_of_the_energy(void **state)
 
 /* Forces and moments of all supports about the origin are in equilibrium: the moments are those of
  * a body, not what is conjugate to the rotation vector. */
-static void test_forces_and_moments_balance(void **state)
+TEST(test_forces_and_moments_balance)
 {
-  (void)state;
   struct bodies it = two_bodies();
   hold_both(&it);
   double force[3] = {0}, moment[3] = {0}, scale = 0;
@@ -233,9 +230,8 @@ static void force_beside(struct bodies *it, const double *u, const double *v, do
 
 /* Where bodies are held at large turns the tangent of what is free without that is the slope of all
  * forces: modes v of K v = lambda B v, v . B v = 1, have w . (dg/du v) = lambda w . B v. */
-static void test_tangent_is_slope_of_forces(void **state)
+TEST(test_tangent_is_slope_of_forces)
 {
-  (void)state;
   enum { MODES = 10 };
   static const double by = 1e-5;
   struct bodies it = two_bodies();
@@ -272,9 +268,8 @@ static void test_tangent_is_slope_of_forces(void **state)
 
 /* Of the same, with the forces that hold the bodies still at work: squares of frequencies, which
  * elements, loads and bodies are asked for, are where the negative pivots of K - x M change. */
-static void test_frequencies_are_where_pivots_change(void **state)
+TEST(test_frequencies_are_where_pivots_change)
 {
-  (void)state;
   enum { MODES = 8 };
   static const double beside = 1e-8;
   struct bodies it = two_bodies();
@@ -332,9 +327,8 @@ static void apply(const double R[9], const double v[3], double out[3])
 
 /* A bar between two bodies, bent and twisted, and the same turned by 80 degrees as a whole: the
  * energy stays, forces and moments turn. */
-static void test_turned_as_a_whole(void **state)
+TEST(test_turned_as_a_whole)
 {
-  (void)state;
   static const double ends[BODIES_MAX][3] = {{0, 0.5, 0.5}, {2, 0.5, 0.5}}, origin[3] = {0};
   static const double bend_t[3] = {-0.2, 0.3, 0.1}, bend_w[3] = {0.5, 0.3, -0.4};
   static const double whole_w[3] = {-0.8, 0.9, 0.7}, whole_t[3] = {0.1, -0.2, 0.3};
@@ -392,9 +386,8 @@ static int on_planes(const void *self, const double X[3])
 
 /* A bar that keeps its width, its end on a body that only shifts: pulled to a place, then by the
  * force that this took. W = mu/2 (I1 - 3 - 2 ln J). */
-static void test_body_that_only_shifts(void **state)
+TEST(test_body_that_only_shifts)
 {
-  (void)state;
   static const double end[BODIES_MAX][3] = {{2, 0, 0}}, stretch = 1.7, mu = 1e5;
   const struct dea_part_material layer = dea_part_material_bonded(no_width_change);
   struct bodies it =
@@ -439,9 +432,8 @@ static int by_size(const void *a, const void *b)
 
 /* A rigid block on springs under its bottom: six vibrations, of its mass and its tensor of inertia,
  * wherever its point of reference is. */
-static void test_vibrations_of_a_rigid_block(void **state)
+TEST(test_vibrations_of_a_rigid_block)
 {
-  (void)state;
   static const double points[2][BODIES_MAX][3] = {{{1, 0.5, 0}}, {{-0.3, 2, 0.7}}};
   static const double k[3] = {3e3, 5e3, 11e3}, rho = 700, a = 2, b = 1, h = 1;
   struct dea_part_material layer = dea_part_material_bonded(elastic);
@@ -478,9 +470,8 @@ static void test_vibrations_of_a_rigid_block(void **state)
 
 /* A rigid block without mass on six springs, one for each component, which carries four masses that
  * follow it without an element: its vibrations, and how far a force and a moment move it. */
-static void test_springs_and_point_masses(void **state)
+TEST(test_springs_and_point_masses)
 {
-  (void)state;
   static const double k[6] = {3e3, 5e3, 7e3, 200, 300, 500}, mass = 0.4, a = 0.6, b = 0.5,
                       none[3] = {0};
   static const double force[3] = {300, 0, 0}, moment[3] = {0, 0, 100};
@@ -644,9 +635,8 @@ static double tumble(int steps, double radius, double *energy_error)
 }
 
 /* Twice the steps, a fourth of the error, with and without damping by the steps. */
-static void test_tumbling_block(void **state)
+TEST(test_tumbling_block)
 {
-  (void)state;
   static const double radius[2] = {1, 0.6};
   for (int i = 0; i < 2; i++) {
     double energy[2];
@@ -678,9 +668,8 @@ static int layer_of_region(const void *self, int region, int ply)
 
 /* Bent and twisted by a dead force on a corner, the end of a bar moves alike whether it is rigid or
  * elastic and that much stiffer; turns of 20 degrees. */
-static void test_stiff_part(void **state)
+TEST(test_stiff_part)
 {
-  (void)state;
   static const double centre[BODIES_MAX][3] = {{1.5, 0.5, 0.5}}, corner[3] = {2, 1, 1};
   static const double force[3] = {1e3, 5e3, -8e3};
   const struct dea_part_material layers[2] = {dea_part_material_bonded(elastic),
@@ -709,9 +698,8 @@ static void test_stiff_part(void **state)
 
 /* ---- what cannot be ---- */
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   const struct dea_part_material layer = dea_part_material_bonded(elastic);
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid *solid;
@@ -770,21 +758,4 @@ static void test_errors(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_followers_move_as_one),
-      cmocka_unit_test(test_forces_are_slopes_of_the_energy),
-      cmocka_unit_test(test_forces_and_moments_balance),
-      cmocka_unit_test(test_tangent_is_slope_of_forces),
-      cmocka_unit_test(test_frequencies_are_where_pivots_change),
-      cmocka_unit_test(test_turned_as_a_whole),
-      cmocka_unit_test(test_body_that_only_shifts),
-      cmocka_unit_test(test_vibrations_of_a_rigid_block),
-      cmocka_unit_test(test_springs_and_point_masses),
-      cmocka_unit_test(test_tumbling_block),
-      cmocka_unit_test(test_stiff_part),
-      cmocka_unit_test(test_errors),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

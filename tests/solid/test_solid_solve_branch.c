@@ -84,9 +84,8 @@ static double middle_z(void)
 
 /* Euler: clamped ends, strain pi^2/3 (h/L)^2 for a thin strip, E from mu with nu = 0. The strain at
  * which the lowest mode has no stiffness, by bisection on the flat path. */
-static void test_strip_buckles_at_eulers_strain(void **state)
+TEST(test_strip_buckles_at_eulers_strain)
 {
-  (void)state;
   const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
   double below = 0.8 * euler, above = 1.2 * euler, value;
   create();
@@ -113,9 +112,8 @@ static void test_strip_buckles_at_eulers_strain(void **state)
 
 /* Pitchfork: left to either side the strip has the same energy, below that of the flat one, and is
  * the mirror image; deflection of the buckled strip from the length that it has to keep. */
-static void test_both_sides_of_the_pitchfork(void **state)
+TEST(test_both_sides_of_the_pitchfork)
 {
-  (void)state;
   const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
   double z[2], energy[2], flat;
   create();
@@ -147,9 +145,8 @@ static void test_both_sides_of_the_pitchfork(void **state)
 }
 
 /* As a user has it: a solve ends at a stable equilibrium and says that it left another. */
-static void test_a_solve_leaves_what_is_unstable(void **state)
+TEST(test_a_solve_leaves_what_is_unstable)
 {
-  (void)state;
   const double euler = acos(-1) * acos(-1) / 3 * thickness * thickness / (length * length);
   create();
   compress(0.5 * euler);
@@ -163,9 +160,8 @@ static void test_a_solve_leaves_what_is_unstable(void **state)
 
 /* Bending of a strip that is clamped at both ends: lambda = (E h^2/12) beta^4, beta L = 4.730041
  * and 7.853205. */
-static void test_modes_of_a_clamped_strip(void **state)
+TEST(test_modes_of_a_clamped_strip)
 {
-  (void)state;
   enum { COUNT = 6 };
   const double D = 2 * mu * thickness * thickness / 12;
   double value[COUNT];
@@ -232,9 +228,8 @@ static double *node_volumes(int order_z)
 
 /* Bending of a clamped square plate: lambda = (E h^2/12) (36.0/a^2)^2, and (73.4/a^2)^2 twice
  * (Leissa 1969, with Poisson's ratio 0 as with any): eigenvalues that come twice are both found. */
-static void test_modes_of_a_square_plate(void **state)
+TEST(test_modes_of_a_square_plate)
 {
-  (void)state;
   enum { COUNT = 4 };
   const double h = plate.size[2], D = 2 * mu * h * h / 12;
   const struct dea_part_material layer = dea_part_material_bonded(elastic);
@@ -268,14 +263,4 @@ static void test_modes_of_a_square_plate(void **state)
   destroy();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_modes_of_a_clamped_strip),
-      cmocka_unit_test(test_modes_of_a_square_plate),
-      cmocka_unit_test(test_strip_buckles_at_eulers_strain),
-      cmocka_unit_test(test_both_sides_of_the_pitchfork),
-      cmocka_unit_test(test_a_solve_leaves_what_is_unstable),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

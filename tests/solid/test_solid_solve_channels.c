@@ -120,9 +120,8 @@ static void assert_same_displacements(struct strip *a, struct strip *b)
 
 /* Both channels at one voltage are the one voltage of a solid without channels; shares of a voltage
  * are own voltages of that size, whichever way is gone. */
-static void test_shares_and_own_voltages(void **state)
+TEST(test_shares_and_own_voltages)
 {
-  (void)state;
   const double half[2] = {1, 0.5};
   struct strip one = strip_create(true, 0, NULL), two = strip_create(true, 2, NULL);
   struct strip shared = strip_create(true, 2, half), own = strip_create(true, 2, half);
@@ -181,9 +180,8 @@ static void check_matrix(bool membrane, double accuracy)
   strip_destroy(&strip);
 }
 
-static void test_charges_follow_voltages(void **state)
+TEST(test_charges_follow_voltages)
 {
-  (void)state;
   check_matrix(true, 1e-6);
   check_matrix(false, 1e-6);
 }
@@ -211,9 +209,8 @@ static void pull_end(struct strip *it, double first_V, double by_m, double *forc
 }
 
 /* Force of the support dW/dx and charge -dW/dV come from one energy: dF/dV = -dQ/dx. */
-static void test_force_and_charge(void **state)
+TEST(test_force_and_charge)
 {
-  (void)state;
   const double none[2] = {0, 0}, V = 3e3, x = 0.1e-3, step_V = 10, step_m = 1e-6;
   struct strip strip = strip_create(true, 2, none);
   double force[4], charge[4];
@@ -303,9 +300,8 @@ static void solve_stack(size_t films, double thickness_m, double voltage_V, doub
 
 /* n films in parallel are one film n times as thick at n times the voltage, and carry n times the
  * charge that one of them carries. */
-static void test_stack(void **state)
+TEST(test_stack)
 {
-  (void)state;
   const double voltage_V = 1500;
   double width[3], charge[3];
   solve_stack(FILMS, h_m, voltage_V, &width[0], &charge[0]);
@@ -333,9 +329,8 @@ static void unknown_channel(const void *self, int region, int ply, int *top, int
 
 /* The static response to an AC excitation of the whole, where channels are at voltages of their
  * own, against equilibria on both sides. */
-static void test_response_about_own_voltages(void **state)
+TEST(test_response_about_own_voltages)
 {
-  (void)state;
   static const double V[2] = {3e3, 1.5e3}, step_V = 20;
   static const struct dea_damping none;
   struct strip strip = strip_create(true, 2, (const double[]){1, 0.5});
@@ -375,9 +370,8 @@ static bool no_electrode(const void *self, const double X[3], double *share)
   return true;
 }
 
-static void test_refused(void **state)
+TEST(test_refused)
 {
-  (void)state;
   struct strip strip = strip_create(false, 2, NULL);
   const struct dea_part_material film = film_of(h_m);
   struct dea_solid_options options = {.order_z = 2,
@@ -403,15 +397,4 @@ static void test_refused(void **state)
   strip_destroy(&strip);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_shares_and_own_voltages),
-      cmocka_unit_test(test_charges_follow_voltages),
-      cmocka_unit_test(test_force_and_charge),
-      cmocka_unit_test(test_stack),
-      cmocka_unit_test(test_response_about_own_voltages),
-      cmocka_unit_test(test_refused),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -93,9 +93,8 @@ static double check_gaps(const struct dea_surface *top, const struct dea_contact
 
 /* The block is 20 contact radii wide and deep; a half space would give 4 % less force, which the
  * layer's factor knows. */
-static void test_hertz(void **state)
+TEST(test_hertz)
 {
-  (void)state;
   const double E = 1e6, nu = 0.3, d = 0.01;
   const struct dea_part_material soft = dea_part_material_bonded((const double[]){E, nu});
   struct dea_grid *grid = hertz_grid();
@@ -198,9 +197,8 @@ static void release(struct pressed *p)
 
 /* A membrane under tension T on a rigid disc of radius a, clamped at b: F = 2 pi T d / ln(b/a)
  * while d is small. The force is the slope of the energy, and a tip that has gone leaves none. */
-static void test_flat_punch_on_film(void **state)
+TEST(test_flat_punch_on_film)
 {
-  (void)state;
   struct pressed film;
   struct dea_solid_report report;
   const double edge = 1e-4, tension = 797.745e3 * film_h;
@@ -231,9 +229,8 @@ static void test_flat_punch_on_film(void **state)
 
 /* A sphere that comes deeper touches more of the film, and its normals turn: pressures that move
  * with the steps of Newton's method need neither shifts nor rounds of their own. */
-static void test_sphere_on_film(void **state)
+TEST(test_sphere_on_film)
 {
-  (void)state;
   struct pressed film;
   struct dea_solid_report report;
   const double touch_m = 0.5 * film_h + punch_m;
@@ -252,12 +249,4 @@ static void test_sphere_on_film(void **state)
   release(&film);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_hertz),
-      cmocka_unit_test(test_flat_punch_on_film),
-      cmocka_unit_test(test_sphere_on_film),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -118,9 +118,8 @@ static double strain(enum dea_solid_field_kind field, double h)
   return out;
 }
 
-static void test_fringe_of_a_disc_goes_with_its_thickness(void **state)
+TEST(test_fringe_of_a_disc_goes_with_its_thickness)
 {
-  (void)state;
   double difference[2];
   for (int i = 0; i < 2; i++) {
     double h = 44e-6 / (1 + i);
@@ -191,9 +190,8 @@ static struct body strip(enum dea_solid_field_kind field, const struct location 
  * them adds a length of h ln 4/(2 pi) to the capacitor (exact, by conformal mapping of the
  * half-film over the plane of symmetry: w = exp(2 pi z/h), t = sqrt(1 + w)). So little voltage that
  * nothing moves. Elements shrink towards the end of the plates, where the field is singular. */
-static void test_fringe_of_a_plate_is_exact(void **state)
+TEST(test_fringe_of_a_plate_is_exact)
 {
-  (void)state;
   enum { SIDE = 6, COUNT = 2 * SIDE };
   const double h = 1e-4, V = 20;
   const struct location location = {2 * h, 4 * h, h};
@@ -218,9 +216,8 @@ static void test_fringe_of_a_plate_is_exact(void **state)
 /* A stress-free film held at its ends buckles under a field, with the same number of unstable modes
  * of the flat state with both fields. (Between two of these voltages the coupled one has one less:
  * a free potential makes the bent film stiffer by a part of the order eps E^2/mu.) */
-static void test_unstable_modes_are_those_of_the_thin_film(void **state)
+TEST(test_unstable_modes_are_those_of_the_thin_film)
 {
-  (void)state;
   enum { COUNT = 12, VOLTAGES = 6 };
   static const int wanted[VOLTAGES] = {0, 0, 1, 2, 3, 4};
   static const double voltages[VOLTAGES] = {0, 1000, 1500, 2500, 3100, 3800};
@@ -316,9 +313,8 @@ static double lift(enum dea_solid_field_kind field, bool axes)
  * not resolve it (docs/verification/coupled.md). The axes at the nodes of a mirror plane change
  * nothing.
  */
-static void test_fibres_loads_and_axes(void **state)
+TEST(test_fibres_loads_and_axes)
 {
-  (void)state;
   double thin = lift(DEA_SOLID_FIELD_THIN, false), coupled = lift(DEA_SOLID_FIELD_COUPLED, false);
   assert_true(thin < -5e-6);
   assert_close(coupled / thin, 0.96, 0, 0.02);
@@ -335,9 +331,8 @@ static bool no_electrode(const void *self, const double X[3], double *share)
   return false;
 }
 
-static void test_a_field_needs_electrodes(void **state)
+TEST(test_a_field_needs_electrodes)
 {
-  (void)state;
   struct body body = {.location = {3.75e-3, 15e-3, 44e-6}};
   struct dea_part_material soft = film(1.5, 44e-6);
   const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
@@ -386,24 +381,12 @@ static void make_solid(struct dea_context *failing)
   dea_solid_destroy(failing, solid);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   const struct dea_quarter quarter = {1, 1, 3.75e-3, 15e-3, 44e-6, .fine = 1};
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &small_grid), DEA_OK);
   assert_true(failing_each(make_solid) > 18);
   dea_grid_destroy(ctx, small_grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_fringe_of_a_disc_goes_with_its_thickness),
-      cmocka_unit_test(test_fringe_of_a_plate_is_exact),
-      cmocka_unit_test(test_unstable_modes_are_those_of_the_thin_film),
-      cmocka_unit_test(test_fibres_loads_and_axes),
-      cmocka_unit_test(test_a_field_needs_electrodes),
-      cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

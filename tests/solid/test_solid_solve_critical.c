@@ -83,10 +83,9 @@ static void check_critical(const struct state *at, const struct dea_model_settin
 
 /* Of a membrane, which has a kink where it loses its tension, and of a solid film, by every number
  * one of the two, over four decades. */
-static void test_critical_voltages(void **state)
+TEST(test_critical_voltages)
 {
   only_nightly();
-  (void)state;
   static const int slack[] = {THICKNESS, STIFFENING,      PRE_STRETCH, FRAME,
                               WIDTH,     FIBRE_THICKNESS, GLUE},
                    breakdown[] = {MODULUS,   PERMITTIVITY,  ELECTRODE,   TIP,
@@ -103,9 +102,8 @@ static void test_critical_voltages(void **state)
 /* Laws: with all lengths s times as large so is a critical voltage; with all moduli and the
  * permittivity s times as large it stays; and as the voltage comes in by eps V^2 only, that of the
  * loss of tension goes with 1 / sqrt(eps). */
-static void test_laws_of_critical_voltages(void **state)
+TEST(test_laws_of_critical_voltages)
 {
-  (void)state;
   static const int lengths[] = {THICKNESS, ELECTRODE, FRAME,           TIP,
                                 WIDTH,     TIP_WIDTH, FIBRE_THICKNESS, GLUE};
   static const struct {
@@ -161,9 +159,8 @@ static void check_laws_of_pull_in(const double *slopes)
 /* Slopes of pull-in by the null vector of the tangent: the laws of above, and those of the exact
  * disc by differences, to what the mesh leaves: of a solid where the film's thickness changes at
  * the electrode's edge, of a membrane, which is in plane stress as the exact disc is, little. */
-static void test_pull_in(void **state)
+TEST(test_pull_in)
 {
-  (void)state;
   static const int compared[] = {THICKNESS, MODULUS, PRE_STRETCH, ELECTRODE, FRAME};
   static const double of_solid[] = {1e-4, 1e-6, 3e-3, 3e-3, 3e-3},
                       of_membrane[] = {1e-8, 1e-7, 5e-6, 5e-4, 5e-4};
@@ -189,9 +186,8 @@ static void test_pull_in(void **state)
 /* A limit point is that of the device, whichever way it is come to: on the way from 320 V attempts
  * fail that leave large forces, which no later residual must be taken relative to. And Taylor's
  * remainder, over four decades. */
-static void test_pull_in_exactly(void **state)
+TEST(test_pull_in_exactly)
 {
-  (void)state;
   static const double from_V[] = {250, 320};
   static const struct dea_model_settings film = {0}, membrane = {.film = DEA_FILM_MEMBRANE},
                                          coupled = {
@@ -210,13 +206,4 @@ static void test_pull_in_exactly(void **state)
   check_critical(&at, &coupled, DEA_EVENT_PULL_IN, (const int[]){PRE_STRETCH, ELECTRODE}, 2);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_critical_voltages),
-      cmocka_unit_test(test_laws_of_critical_voltages),
-      cmocka_unit_test(test_pull_in),
-      cmocka_unit_test(test_pull_in_exactly),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

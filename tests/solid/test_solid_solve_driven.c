@@ -57,9 +57,8 @@ static double balance(const struct dea_load_point *p)
 
 /* A ramp to 4 kV and a long hold: the film creeps to where model 3d has its equilibrium. Steps that
  * were tried and dropped leave no trace. */
-static void test_creep_to_the_equilibrium(void **state)
+TEST(test_creep_to_the_equilibrium)
 {
-  (void)state;
   const struct dea_device device = viscous_disc();
   struct dea_load_point ends[2], rest;
   for (int dropped = 0; dropped < 2; dropped++) {
@@ -95,9 +94,8 @@ static void test_creep_to_the_equilibrium(void **state)
 
 /* At a small voltage the capacitance stays, and a resistor charges it as every first-year student
  * knows. */
-static void test_resistor(void **state)
+TEST(test_resistor)
 {
-  (void)state;
   const struct dea_device device = viscous_disc();
   struct dea_model *model = model_create(&device);
   const double V = 50, R = 1e9;
@@ -115,9 +113,8 @@ static void test_resistor(void **state)
 }
 
 /* With mass the film overshoots after a jump, and the account of its energy closes. */
-static void test_inertia(void **state)
+TEST(test_inertia)
 {
-  (void)state;
   struct dea_device device = viscous_disc();
   device.film.branch_count = 0;
   struct dea_model *model = model_create(&device);
@@ -137,9 +134,8 @@ static void test_inertia(void **state)
 }
 
 /* A tip that is pressed in first is relieved by the voltage, and stays where it is. */
-static void test_tip(void **state)
+TEST(test_tip)
 {
-  (void)state;
   const struct dea_device device = viscous_disc();
   const struct dea_probe tip = {
       .shape = DEA_PROBE_SPHERE, .radius_m = 2e-3, .from_fibre_side = true};
@@ -158,13 +154,4 @@ static void test_tip(void **state)
   type->destroy(ctx, model);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_creep_to_the_equilibrium),
-      cmocka_unit_test(test_resistor),
-      cmocka_unit_test(test_inertia),
-      cmocka_unit_test(test_tip),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -85,9 +85,8 @@ static void expect(const char *part)
   }
 }
 
-static void test_unconstrained_bodies(void **state)
+TEST(test_unconstrained_bodies)
 {
-  (void)state;
   const struct dea_part_material layer = film();
   static const int free_ends[] = {0, 0}, slides[] = {1, 1 | 4}, turns[] = {4, 4}, held[] = {7, 0};
   const int *const loose[] = {free_ends, slides, turns};
@@ -100,9 +99,8 @@ static void test_unconstrained_bodies(void **state)
   clear();
 }
 
-static void test_inverted_element(void **state)
+TEST(test_inverted_element)
 {
-  (void)state;
   const struct dea_part_material layer = film();
   static const int held[] = {7, 7};
   assert_int_equal(solve(&layer, held, 0), DEA_OK);
@@ -119,9 +117,8 @@ static void test_inverted_element(void **state)
   clear();
 }
 
-static void test_law_that_ends(void **state)
+TEST(test_law_that_ends)
 {
-  (void)state;
   struct dea_part_material layer = film();
   static const int held[] = {7, 7};
   dea_part_material_set_law(&layer, dea_law_find("gent"), (const double[]){100e3, 3}); // I1 - 3 < 3
@@ -134,9 +131,8 @@ static void test_law_that_ends(void **state)
 
 /* Held at one end only, the film pulls in; a law that does not stiffen has no state beyond. The
  * state before stays. */
-static void test_voltage_beyond_any_equilibrium(void **state)
+TEST(test_voltage_beyond_any_equilibrium)
 {
-  (void)state;
   struct dea_part_material layer = film();
   dea_part_material_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
   assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
@@ -153,9 +149,8 @@ static void test_voltage_beyond_any_equilibrium(void **state)
 
 /* A descent that has lost its way - the forces stay as large as those of the elements - is given up
  * after `lost` iterations out of balance, well before all of its iterations are used up. */
-static void test_divergence_is_seen(void **state)
+TEST(test_divergence_is_seen)
 {
-  (void)state;
   struct dea_part_material layer = film();
   dea_part_material_set_law(&layer, dea_law_find("neo-hookean"), (const double[]){356.8e3});
   assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
@@ -191,9 +186,8 @@ static rlim_t address_space(void)
 }
 
 /* Memory that runs out, in PETSc or MUMPS, is called that, whatever there is of it. */
-static void test_memory_that_runs_out(void **state)
+TEST(test_memory_that_runs_out)
 {
-  (void)state;
   if (SANITIZED) {
     skip(); // the address space is taken
   }
@@ -233,9 +227,8 @@ static void test_memory_that_runs_out(void **state)
 }
 
 /* Each setting is one that the solver goes by, and one that cannot be is refused by its name. */
-static void test_settings(void **state)
+TEST(test_settings)
 {
-  (void)state;
   const struct dea_part_material layer = film();
   static const int held[] = {7, 0};
   struct dea_solid_settings own = dea_solid_settings_default();
@@ -266,9 +259,8 @@ static bool after_two(void *user)
 }
 
 /* An interruption is heard in the middle of a solve, which leaves the solid at its equilibrium. */
-static void test_interrupted(void **state)
+TEST(test_interrupted)
 {
-  (void)state;
   const struct dea_part_material layer = film();
   static const int held[] = {7, 7};
   struct dea_solid_report report;
@@ -295,17 +287,4 @@ static void test_interrupted(void **state)
   clear();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_unconstrained_bodies),
-      cmocka_unit_test(test_inverted_element),
-      cmocka_unit_test(test_law_that_ends),
-      cmocka_unit_test(test_voltage_beyond_any_equilibrium),
-      cmocka_unit_test(test_divergence_is_seen),
-      cmocka_unit_test(test_settings),
-      cmocka_unit_test(test_interrupted),
-      cmocka_unit_test(test_memory_that_runs_out),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

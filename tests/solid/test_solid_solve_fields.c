@@ -32,9 +32,8 @@ static const double *values(const struct dea_field_mesh *mesh, const char *name)
 }
 
 /* At rest: the true pre-stress of 797.7 kPa everywhere, over the stretched thickness. */
-static void test_rest(void **state)
+TEST(test_rest)
 {
-  (void)state;
   struct dea_model *model;
   struct dea_load_point point;
   struct dea_field_mesh *mesh;
@@ -69,9 +68,8 @@ static double along(const struct dea_profile *profile, const double *column, dou
 /* At 5 kV the middle surface is that of the exact disc, an independent model: displacement, both
  * stretches, both tensions; away from the electrode's edge, where they jump and the solid has a
  * layer of the size of its thickness. */
-static void test_exact_disc(void **state)
+TEST(test_exact_disc)
 {
-  (void)state;
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
   struct dea_model *model, *reference;
   struct dea_load_point point, wanted;
@@ -142,9 +140,8 @@ static void forget(struct kept *kept)
 }
 
 /* A model that goes on from a state answers as the one that never stopped. */
-static void test_state(void **state)
+TEST(test_state)
 {
-  (void)state;
   struct dea_model *first, *second;
   struct dea_load_point wanted, point;
   struct kept kept;
@@ -171,12 +168,4 @@ static void test_state(void **state)
   type->destroy(ctx, second);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_rest),
-      cmocka_unit_test(test_exact_disc),
-      cmocka_unit_test(test_state),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -26,9 +26,8 @@ static const struct dea_curve *take(const char *force, struct dea_design **desig
 
 /* All forces are within what is estimated, and that within the tolerance; the numbers
  * of computed points are those of a run that computes all. */
-static void test_interpolated(void **state)
+TEST(test_interpolated)
 {
-  (void)state;
   struct dea_design *designs[2];
   struct dea_device *devices[2];
   struct dea_result *results[2];
@@ -69,9 +68,8 @@ static void test_interpolated(void **state)
 }
 
 /* To the last digit, though the first line has gone to other voltages before the second begins. */
-static void test_beside(void **state)
+TEST(test_beside)
 {
-  (void)state;
   static const struct dea_override sets[] = {
       {"compute.voltage", "{values: [0 kV, 2 kV, 4 kV]}"},
       {"compute.force", "{depth: [0.2 mm, 0.4 mm], tolerance: 0}"}};
@@ -100,11 +98,4 @@ static void test_beside(void **state)
   dea_design_destroy(ctx, design);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_interpolated),
-      cmocka_unit_test(test_beside),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

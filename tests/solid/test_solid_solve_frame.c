@@ -109,9 +109,8 @@ static struct dea_solid_report run(double angle, double **u, size_t *count)
   return report;
 }
 
-static void test_turned_quarter(void **state)
+TEST(test_turned_quarter)
 {
-  (void)state;
   double *straight, *turned, largest = 0;
   size_t count, same;
   struct dea_solid_report a = run(0, &straight, &count), b = run(0.7, &turned, &same);
@@ -131,8 +130,4 @@ static void test_turned_quarter(void **state)
   dea_free(ctx, turned);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_turned_quarter)};
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -107,9 +107,8 @@ static double residual(struct dea_fronts *fronts, Mat K)
 }
 
 /* Boxes from one node to a plate, parts that hang together by nothing, and links across. */
-static void test_solves(void **state)
+TEST(test_solves)
 {
-  (void)state;
   static const struct net nets[] = {
       {{1, 1, 1}, 0, 1},   {{2, 1, 1}, 0, 1},      {{40, 1, 1}, 0, 0.1}, {{9, 8, 1}, 0, 0.1},
       {{7, 6, 3}, 0, 0.1}, {{12, 12, 2}, 60, 0.1}, {{1, 1, 200}, 3, 1}};
@@ -131,9 +130,8 @@ static void test_solves(void **state)
 }
 
 /* A block more in K is seen. */
-static void test_fits(void **state)
+TEST(test_fits)
 {
-  (void)state;
   static const struct net chain = {{6, 1, 1}, 0, 1};
   static const PetscInt ends[2] = {0, 5};
   const double block[36] = {0.1};
@@ -155,9 +153,8 @@ static void test_fits(void **state)
 
 /* A negative eigenvalue, and one of 0 but for rounding, wherever its pivot comes; the next factor
  * knows nothing of it. */
-static void test_refuses(void **state)
+TEST(test_refuses)
 {
-  (void)state;
   static const struct net free_net = {{6, 5, 2}, 0, 0};
   int negative;
   struct dea_fronts *fronts;
@@ -214,9 +211,8 @@ static int count_negative(Mat K)
 
 /* As many pivots below 0 as eigenvalues (Sylvester); no more than are asked for; and nothing of it
  * is left in the next factor. */
-static void test_counts(void **state)
+TEST(test_counts)
 {
-  (void)state;
   static const struct net box = {{7, 6, 3}, 20, 0.1};
   int negative, count = 0;
   struct dea_fronts *fronts;
@@ -240,13 +236,4 @@ static void test_counts(void **state)
   MatDestroy(&K);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_solves),
-      cmocka_unit_test(test_fits),
-      cmocka_unit_test(test_refuses),
-      cmocka_unit_test(test_counts),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -236,9 +236,8 @@ static struct state heavy_star(void)
 
 /* Four decades of the change, eight of the remainder: of linear elements by all numbers, of those
  * that are usual by some; of the membrane that of the lowest frequency too. */
-static void test_four_decades(void **state)
+TEST(test_four_decades)
 {
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6}, wide[] = {1e-1, 1e-2, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, ELECTRODE};
   static const struct dea_model_settings usual = {0};
@@ -247,10 +246,9 @@ static void test_four_decades(void **state)
   check_some(&at, &usual, numbers, 3, wide, 3, 1);
 }
 
-static void test_four_decades_of_a_membrane(void **state)
+TEST(test_four_decades_of_a_membrane)
 {
   only_nightly();
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {VOLTAGE, THICKNESS, ELECTRODE};
   static const struct dea_model_settings usual = {.film = DEA_FILM_MEMBRANE};
@@ -260,9 +258,8 @@ static void test_four_decades_of_a_membrane(void **state)
 }
 
 /* Electrodes of a thickness, whose tension counts with the film's. */
-static void test_electrodes_of_a_thickness(void **state)
+TEST(test_electrodes_of_a_thickness)
 {
-  (void)state;
   static const double shares[] = {1e-2, 1e-3, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, PRE_STRETCH};
   struct state at = star();
@@ -274,10 +271,9 @@ static void test_electrodes_of_a_thickness(void **state)
 
 /* What a device may have beside: a permittivity that goes with the stretch, fibres that end before
  * the frame, electrodes of a thickness; and what vibrates. */
-static void test_more_numbers(void **state)
+TEST(test_more_numbers)
 {
   only_nightly();
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {PERMITTIVITY_SLOPE,  POISSON_RATIO,     OUTER_GAP,
                                 ELECTRODE_THICKNESS, ELECTRODE_MODULUS, FILM_DENSITY,
@@ -293,9 +289,8 @@ static void test_more_numbers(void **state)
 }
 
 /* Its weight is a dead load that changes with the device, and so does its lowest frequency. */
-static void test_membrane_with_weight(void **state)
+TEST(test_membrane_with_weight)
 {
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {THICKNESS, PRE_STRETCH, FRAME, TIP, FIBRE_THICKNESS};
   struct state at = heavy_star();
@@ -304,9 +299,8 @@ static void test_membrane_with_weight(void **state)
 }
 
 /* With all lengths and the voltage s times as large a device vibrates at 1/s of its frequency. */
-static void test_frequency_of_all_lengths(void **state)
+TEST(test_frequency_of_all_lengths)
 {
-  (void)state;
   static const int lengths[] = {VOLTAGE, THICKNESS, ELECTRODE,       FRAME, TIP,
                                 WIDTH,   TIP_WIDTH, FIBRE_THICKNESS, GLUE};
   static const enum dea_solid_film films[] = {DEA_FILM_SOLID, DEA_FILM_MEMBRANE};
@@ -345,9 +339,8 @@ static void find_frequencies(const struct state *at, struct dea_model *near,
 }
 
 /* Higher modes, the second beside the third and the lowest in one question. */
-static void test_higher_modes(void **state)
+TEST(test_higher_modes)
 {
-  (void)state;
   enum { COUNT = 3 };
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[COUNT] = {VOLTAGE, THICKNESS, FIBRE_DENSITY};
@@ -392,9 +385,8 @@ static void test_higher_modes(void **state)
 }
 
 /* Two modes of the whole disc have the same frequency, by its symmetry: no slope of these. */
-static void test_pair_of_modes(void **state)
+TEST(test_pair_of_modes)
 {
-  (void)state;
   static const int number = THICKNESS;
   static const size_t modes[2] = {0, 1};
   static const struct dea_model_settings whole = {
@@ -421,10 +413,9 @@ static const struct dea_model_settings coupled[] = { // one element through the 
     {.field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1},
     {.field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1, .elements_z = 2}};
 
-static void test_coupled_field(void **state)
+TEST(test_coupled_field)
 {
   only_nightly();
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   const struct state at = heavy_star();
   check(&at, &coupled[0], shares, 3, 0);
@@ -445,9 +436,8 @@ static double sum_of(const double *slopes, const int *numbers, size_t count, int
  * larger, and vibrates at 1/s of its frequency; with all moduli and the permittivity s times as
  * large nothing moves; the voltage comes in by eps V^2 only, and the energy's slope by it is minus
  * the charge. */
-static void test_laws_of_a_coupled_field(void **state)
+TEST(test_laws_of_a_coupled_field)
 {
-  (void)state;
   enum { FIELD = 3, MARGIN, TENSION, CAPACITANCE, ENERGY };
   static const int lengths[] = {VOLTAGE, THICKNESS, ELECTRODE,       FRAME, TIP,
                                 WIDTH,   TIP_WIDTH, FIBRE_THICKNESS, GLUE},
@@ -473,9 +463,8 @@ static void test_laws_of_a_coupled_field(void **state)
 }
 
 /* A change of the order of the parts: the tip comes to lie off the electrode. */
-static void test_mesh_that_cannot_follow(void **state)
+TEST(test_mesh_that_cannot_follow)
 {
-  (void)state;
   struct state at = star(), sides[2] = {at, at};
   struct dea_model *model = NULL;
   double slope;
@@ -508,9 +497,8 @@ static struct state pressed_star(enum dea_probe_shape shape)
 }
 
 /* Numbers of every kind, four decades of the change. */
-static void test_force_of_a_tip(void **state)
+TEST(test_force_of_a_tip)
 {
-  (void)state;
   static const double shares[] = {1e-1, 1e-3, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, PRE_STRETCH, FIBRE_THICKNESS, DEPTH};
   const struct state at = pressed_star(DEA_PROBE_SPHERE);
@@ -519,10 +507,9 @@ static void test_force_of_a_tip(void **state)
 
 /* All numbers; the size of the tip and the place of the fibre tips over changes that leave the
  * points in touch the same. */
-static void test_force_of_a_flat_tip(void **state)
+TEST(test_force_of_a_flat_tip)
 {
   only_nightly();
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6}, smaller[] = {1e-3, 1e-5, 1e-7};
   static const int numbers[] = {VOLTAGE,         THICKNESS,     MODULUS, STIFFENING,   PERMITTIVITY,
                                 PRE_STRETCH,     ELECTRODE,     FRAME,   WIDTH,        TIP_WIDTH,
@@ -535,10 +522,9 @@ static void test_force_of_a_flat_tip(void **state)
 }
 
 /* The frequency of what vibrates on the tip, which it stays on. */
-static void test_frequency_on_a_tip(void **state)
+TEST(test_frequency_on_a_tip)
 {
   only_nightly();
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {DEPTH, TIP_SIZE, VOLTAGE, THICKNESS};
   struct state at = heavy_star();
@@ -566,10 +552,9 @@ static void check_laws_of_the_force(const struct state *at,
                -slopes[DEPTH * KEYS + CAPACITANCE] * at->voltage_V * at->voltage_V, 1e-4, 0);
 }
 
-static void test_laws_of_the_force(void **state)
+TEST(test_laws_of_the_force)
 {
   only_nightly();
-  (void)state;
   static const double shares[] = {1e-2, 1e-4, 1e-6};
   static const int numbers[] = {ELECTRODE, DEPTH, TIP_SIZE};
   const struct state at = pressed_star(DEA_PROBE_SPHERE);
@@ -579,24 +564,4 @@ static void test_laws_of_the_force(void **state)
   check_some(&at, &linear, numbers, 3, shares, 3, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_four_decades),
-      cmocka_unit_test(test_four_decades_of_a_membrane),
-      cmocka_unit_test(test_electrodes_of_a_thickness),
-      cmocka_unit_test(test_more_numbers),
-      cmocka_unit_test(test_membrane_with_weight),
-      cmocka_unit_test(test_frequency_of_all_lengths),
-      cmocka_unit_test(test_higher_modes),
-      cmocka_unit_test(test_pair_of_modes),
-      cmocka_unit_test(test_coupled_field),
-      cmocka_unit_test(test_laws_of_a_coupled_field),
-      cmocka_unit_test(test_mesh_that_cannot_follow),
-      cmocka_unit_test(test_force_of_a_tip),
-      cmocka_unit_test(test_force_of_a_flat_tip),
-      cmocka_unit_test(test_frequency_on_a_tip),
-      cmocka_unit_test(test_laws_of_the_force),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

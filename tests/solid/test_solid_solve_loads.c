@@ -86,9 +86,8 @@ static double stretch(double P)
 
 /* A block on springs, pressed down: the springs give way by traction over stiffness, whatever the
  * block does, and the block gets shorter. */
-static void test_slab_on_a_foundation(void **state)
+TEST(test_slab_on_a_foundation)
 {
-  (void)state;
   const struct dea_part_material soft = dea_part_material_bonded((const double[]){2e5, 0});
   static const double stiffness[3] = {0, 0, 4e5}, traction[3] = {0, 0, -6e4};
   slab_create(&soft, sideways);
@@ -118,9 +117,8 @@ static double density(const void *self, int region, int ply)
 }
 
 /* Hangs by its top and stretches under its weight: at a height z it carries what is below. */
-static void test_hanging_block(void **state)
+TEST(test_hanging_block)
 {
-  (void)state;
   const struct dea_part_material soft = dea_part_material_bonded((const double[]){2e5, 0});
   static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
   double way = 0;
@@ -137,9 +135,8 @@ static void test_hanging_block(void **state)
 
 /* All around, with three mirror planes through the origin of the pressure's volume: a cube stays
  * one of stretch l, and the Cauchy stress (mu (l^2 - 1) + lambda ln l^3)/l^3 is -p. */
-static void test_pressure_all_around(void **state)
+TEST(test_pressure_all_around)
 {
-  (void)state;
   const struct dea_part_material soft = dea_part_material_bonded((const double[]){8e5 / 3, 1. / 3});
   static const double origin[3] = {0, 0, 0}, p = 1.5e5;
   static const enum dea_face sides[] = {DEA_FACE_FIRST_HIGH, DEA_FACE_SECOND_HIGH, DEA_FACE_TOP};
@@ -170,12 +167,4 @@ static void test_pressure_all_around(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_slab_on_a_foundation),
-      cmocka_unit_test(test_hanging_block),
-      cmocka_unit_test(test_pressure_all_around),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -29,9 +29,8 @@ static double density(const void *self, int region, int ply)
   return rho;
 }
 
-static void test_inertia_of_rigid_motions(void **state)
+TEST(test_inertia_of_rigid_motions)
 {
-  (void)state;
   struct dea_part_material layer = dea_part_material_bonded((const double[]){2, 0});
   layer.density_kg_per_m3 = rho;
   struct dea_grid *grid = block_grid(ctx, &slab);
@@ -91,9 +90,8 @@ static double sag(const struct dea_device *device, const struct dea_model_settin
 
 /* A tensioned disc sags by rho g R^2/(4 sigma): small against its thickness, so that it stays as
  * tense as it was. */
-static void test_sag_of_a_disc(void **state)
+TEST(test_sag_of_a_disc)
 {
-  (void)state;
   for (enum dea_solid_film film = DEA_FILM_SOLID; film <= DEA_FILM_MEMBRANE; film++) {
     struct dea_device d = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
     const struct dea_model_settings settings = {.film = film};
@@ -152,9 +150,8 @@ static double strip_about_axis(double w, double r)
 
 /* A star of film, fibres and electrodes as a solid and with a membrane: mass and moment of inertia
  * about the axis against the sums over its parts. */
-static void test_mass_of_an_actuator(void **state)
+TEST(test_mass_of_an_actuator)
 {
-  (void)state;
   for (int kind = 0; kind < 4; kind++) {
     struct dea_device d = star(kind / 2);
     const struct dea_model_settings settings = {
@@ -196,10 +193,9 @@ static dea_status make_heavy(struct dea_device *d)
   return status;
 }
 
-static void test_unknown_densities_are_said(void **state)
+TEST(test_unknown_densities_are_said)
 {
   static const char note[] = "the density of the electrodes is unknown";
-  (void)state;
   struct dea_device d = star(true);
   assert_int_equal(make_heavy(&d), DEA_OK);
   assert_null(find_finding(ctx, DEA_NOTE, note));
@@ -210,13 +206,4 @@ static void test_unknown_densities_are_said(void **state)
   assert_int_equal(make_heavy(&d), DEA_E_DESIGN);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_inertia_of_rigid_motions),
-      cmocka_unit_test(test_sag_of_a_disc),
-      cmocka_unit_test(test_mass_of_an_actuator),
-      cmocka_unit_test(test_unknown_densities_are_said),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

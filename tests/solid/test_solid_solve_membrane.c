@@ -140,9 +140,8 @@ static void check_disc(const struct dea_quarter *mesh, double tolerance)
   actuator_destroy(&disc);
 }
 
-static void test_plain_disc_to_11_kV(void **state)
+TEST(test_plain_disc_to_11_kV)
 {
-  (void)state;
   check_disc(&(struct dea_quarter){2, 1, a_m, b_m, .fine = 2}, 3e-4);
   check_disc(&(struct dea_quarter){2, 1, a_m, b_m, .fine = 4, .edge = 2e-4}, 3e-5);
   check_disc(&(struct dea_quarter){3, 1, a_m, b_m, .fine = 2}, 3e-5);
@@ -150,9 +149,8 @@ static void test_plain_disc_to_11_kV(void **state)
 
 /* Flat films at zero voltage have no unstable mode. Without pre-stretch nothing holds a film out of
  * its plane; that is no instability either. */
-static void test_no_false_modes_at_rest(void **state)
+TEST(test_no_false_modes_at_rest)
 {
-  (void)state;
   static const double pre_stretch[] = {1.0, 1.1, 1.3, 1.5, 1.7, 2.0};
   for (size_t i = 0; i < 6; i++) {
     for (size_t fine = 1; fine <= 5; fine += 2) {
@@ -169,9 +167,8 @@ static void test_no_false_modes_at_rest(void **state)
 
 /* A film without pre-stretch under a voltage: in compression as it is, with as many unstable modes
  * as the mesh can show; without any when it may wrinkle. It is slack then and does not move. */
-static void test_slack_film(void **state)
+TEST(test_slack_film)
 {
-  (void)state;
   struct actuator stiff =
       actuator_create(&(struct dea_quarter){2, 1, a_m, b_m, .fine = 2}, 1, false);
   struct actuator slack =
@@ -195,9 +192,8 @@ static void test_slack_film(void **state)
 
 /* The paper's actuator with four fibres as built, see test_solid_solve.c. Against the membrane of
  * prototypes.h. */
-static void test_four_fibres_as_built(void **state)
+TEST(test_four_fibres_as_built)
 {
-  (void)state;
   struct actuator it = actuator_create(&(struct dea_quarter){2, 2, a_m, b_m, 0, 4, 2e-3, 100e-6,
                                                              .fine = 3, .across = 2, .edge = 1e-4},
                                        1.5, false);
@@ -215,9 +211,8 @@ static void test_four_fibres_as_built(void **state)
   actuator_destroy(&it);
 }
 
-static void test_law_that_is_refused(void **state)
+TEST(test_law_that_is_refused)
 {
-  (void)state;
   const struct dea_part_material layer = {.law = dea_law_find("holzapfel-gasser-ogden"),
                                           .param = {100e3, 400e3, 0.8, 0.1},
                                           .pre_stretch = {1, 1, 1},
@@ -237,12 +232,4 @@ static void test_law_that_is_refused(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plain_disc_to_11_kV), cmocka_unit_test(test_no_false_modes_at_rest),
-      cmocka_unit_test(test_slack_film),          cmocka_unit_test(test_four_fibres_as_built),
-      cmocka_unit_test(test_law_that_is_refused),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -60,9 +60,8 @@ static void check_exact(const struct dea_device *device, const struct dea_model_
 
 /* A film free of stress, flat below its buckling voltage: the compression of the exact disc over
  * its area, by 4 pi^2 D. */
-static void test_compression_ratio(void **state)
+TEST(test_compression_ratio)
 {
-  (void)state;
   const double pi = acos(-1), h = 100e-6;
   struct dea_device device = test_disc(test_yeoh(), 1, 3.75e-3, 0.25, 0);
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
@@ -95,9 +94,8 @@ static void test_compression_ratio(void **state)
  * (the exact disc has no thickness: it is as far from that as the default mesh); a finer mesh has
  * less. What raises and what lowers the edge is not set off against each other, so that more is
  * stated than found. Where the film is slack none is estimated. */
-static void test_estimated_error(void **state)
+TEST(test_estimated_error)
 {
-  (void)state;
   struct dea_device device = plain();
   const struct dea_model_settings finer = {.film = DEA_FILM_SOLID, .refinement = 2},
                                   finest = {.film = DEA_FILM_SOLID, .refinement = 3};
@@ -116,9 +114,8 @@ static void test_estimated_error(void **state)
   assert_true(isnan(coarse.electrode_edge_u_error_m));
 }
 
-static void test_permittivity_that_depends_on_stretch(void **state)
+TEST(test_permittivity_that_depends_on_stretch)
 {
-  (void)state;
   for (size_t i = 0; i < 2; i++) {
     struct dea_device device = plain();
     device.film.permittivity.slope = -0.6;
@@ -129,9 +126,8 @@ static void test_permittivity_that_depends_on_stretch(void **state)
 }
 
 /* On a membrane as the exact disc has them, their tension too. */
-static void test_electrodes_of_a_membrane(void **state)
+TEST(test_electrodes_of_a_membrane)
 {
-  (void)state;
   struct dea_device device = plain();
   device.electrode = test_material("neo-hookean", 400e3, 0, 0);
   device.electrode_thickness_m = 5e-6;
@@ -144,9 +140,8 @@ static void test_electrodes_of_a_membrane(void **state)
 /* Electrodes pull the disc together at rest (the film takes their force over within a thickness of
  * the rim, which the exact disc knows nothing of: the difference is as the thickness), and it
  * grows from there with the voltage. */
-static void test_electrode_layers(void **state)
+TEST(test_electrode_layers)
 {
-  (void)state;
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
   double difference[2];
   for (int i = 0; i < 2; i++) {
@@ -225,9 +220,8 @@ static void check_profile(const struct dea_device *of, enum dea_solid_film film,
   exact->destroy(ctx, reference);
 }
 
-static void test_profile(void **state)
+TEST(test_profile)
 {
-  (void)state;
   struct dea_device device = plain();
   check_profile(&device, DEA_FILM_SOLID, 1, 6e-3);
   check_profile(&device, DEA_FILM_MEMBRANE, 2, 1e-3);
@@ -240,9 +234,8 @@ static void test_profile(void **state)
 /* ---- against itself ---- */
 
 /* Of the whole actuator on both domains: at rest eps A/h. */
-static void test_capacitance_of_the_whole(void **state)
+TEST(test_capacitance_of_the_whole)
 {
-  (void)state;
   double h = 100e-6 / 2.25, exact = 2.8 * DEA_EPSILON_0 * acos(-1) * 3.75e-3 * 3.75e-3 / h;
   for (size_t i = 0; i < 2; i++) {
     struct dea_device device = plain();
@@ -268,9 +261,8 @@ static void check_charge(const struct dea_model_settings *settings, double volta
   solid->destroy(ctx, model);
 }
 
-static void test_charge(void **state)
+TEST(test_charge)
 {
-  (void)state;
   check_charge(&solid_film, 2e3);
   check_charge(&membrane, 2e3);
   check_charge(&membrane, 7.5e3); // wrinkled
@@ -279,9 +271,8 @@ static void test_charge(void **state)
 /* ---- fibres ---- */
 
 /* The more fibres hold the electrode, the less it grows between them; all bend down. */
-static void test_number_of_fibres(void **state)
+TEST(test_number_of_fibres)
 {
-  (void)state;
   static const int fibres[] = {1, 3, 6};
   double before = 1e3;
   for (size_t i = 0; i < sizeof fibres / sizeof fibres[0]; i++) {
@@ -297,9 +288,8 @@ static void test_number_of_fibres(void **state)
 /* A fibre over the electrode holds it more, and so do stiff electrodes; one that ends before it
  * less, and so do a narrow tip, a free end and glue. A hinge lies on the side of the film, whose
  * pull then bends the fibre less. */
-static void test_kinds_of_fibres(void **state)
+TEST(test_kinds_of_fibres)
 {
-  (void)state;
   struct dea_device device = test_star(4);
   struct dea_load_point usual = solve(solid, &device, NULL, 2e3);
   double edge = usual.electrode_edge_u_m;
@@ -334,9 +324,8 @@ static void test_kinds_of_fibres(void **state)
   assert_true(solve(solid, &device, NULL, 2e3).electrode_edge_u_m > 1.005 * edge);
 }
 
-static void test_what_it_refuses(void **state)
+TEST(test_what_it_refuses)
 {
-  (void)state;
   struct dea_device device = plain();
   struct dea_model *model;
   device.electrode = test_material("holzapfel-gasser-ogden", 100e3, 400e3, 0.8);
@@ -347,9 +336,8 @@ static void test_what_it_refuses(void **state)
 
 /* The potential as an unknown: the plates seem longer by the fringe in the film, h ln 4/(2 pi), and
  * by up to another 1/9 of the quarter of a millimetre of the elements at their edge. */
-static void test_potential(void **state)
+TEST(test_potential)
 {
-  (void)state;
   struct dea_device device = plain();
   double thin_F = solve(solid, &device, NULL, 4e3).capacitance_F;
   double a = device.electrode_radius_m, fringe = device.film_thickness_m * log(4) / (2 * acos(-1));
@@ -372,9 +360,8 @@ static int tear_down(void **state)
 
 /* The fringe of a coupled field at rest: a disc that is longer by h ln 4/(2 pi) at its edge
  * (docs/theory/coupled.md). Six elements through the film have it, one says that it does not. */
-static void test_fringe(void **state)
+TEST(test_fringe)
 {
-  (void)state;
   const double pi = acos(-1);
   struct dea_device device = plain();
   double a = device.electrode_radius_m, h = device.film_thickness_m;
@@ -393,11 +380,10 @@ static void test_fringe(void **state)
 
 /* Where fibres begin at the electrode's edge, a coupled field that is resolved elsewhere is not:
  * that is told, and of fibres that begin elsewhere it is not. */
-static void test_coupled_tips(void **state)
+TEST(test_coupled_tips)
 {
   only_nightly();
   static const double overlaps[] = {0, 1e-3};
-  (void)state;
   for (int i = 0; i < 2; i++) {
     const struct dea_model_settings settings = {
         .film = DEA_FILM_SOLID, .field = DEA_FIELD_COUPLED, .elements_z = 6};
@@ -441,32 +427,11 @@ static double covered(double poisson_ratio)
 
 /* Four strips 2 mm wide from 3.75 mm to the frame at 15 mm, over pi 15^2 mm^2; whatever law their
  * Poisson's ratio asks for. */
-static void test_film_under_fibres(void **state)
+TEST(test_film_under_fibres)
 {
-  (void)state;
   double exact = 4 * 2 * 11.25 / (acos(-1) * 15 * 15);
   assert_close(covered(0.38), exact, 1e-2, 0); // arcs at both ends
   assert_close(covered(0.495), covered(0.38), 0, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_compression_ratio),
-      cmocka_unit_test(test_estimated_error),
-      cmocka_unit_test(test_permittivity_that_depends_on_stretch),
-      cmocka_unit_test(test_electrodes_of_a_membrane),
-      cmocka_unit_test(test_electrode_layers),
-      cmocka_unit_test(test_profile),
-      cmocka_unit_test(test_capacitance_of_the_whole),
-      cmocka_unit_test(test_fringe),
-      cmocka_unit_test(test_coupled_tips),
-      cmocka_unit_test(test_charge),
-      cmocka_unit_test(test_number_of_fibres),
-      cmocka_unit_test(test_kinds_of_fibres),
-      cmocka_unit_test(test_what_it_refuses),
-      cmocka_unit_test(test_film_under_fibres),
-      cmocka_unit_test(test_potential),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, tear_down);
-}
+TESTS(context_set_up, tear_down)

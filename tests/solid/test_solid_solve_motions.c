@@ -37,9 +37,8 @@ static double shape_error(const struct dea_field_mesh *mesh, double k_per_m)
   return worst;
 }
 
-static void test_modes_of_a_disc(void **state)
+TEST(test_modes_of_a_disc)
 {
-  (void)state;
   enum { MODES = 5 };
   // zeros of J0, and of J4 and J8: a sector of pi/4 has every fourth number of nodal diameters
   static const double zero[] = {2.404825557695773, 5.520078110286311, 7.588342434503804,
@@ -73,9 +72,8 @@ static void test_modes_of_a_disc(void **state)
 }
 
 /* Four fibres, as built. */
-static void test_answer_to_a_slow_ripple(void **state)
+TEST(test_answer_to_a_slow_ripple)
 {
-  (void)state;
   struct dea_device d = test_star(4);
   struct dea_load_point at, less, more, points[2];
   const struct dea_ac_excitation excitation = {.amplitude_V = 50, .damping_ratio = 0.02};
@@ -100,9 +98,8 @@ static void test_answer_to_a_slow_ripple(void **state)
 
 /* A film with a branch answers slowly as one without does, less when it is fast, and lags between.
  * By little: what a voltage does to the tension does not depend on the film's stiffness. */
-static void test_answer_of_a_viscous_film(void **state)
+TEST(test_answer_of_a_viscous_film)
 {
-  (void)state;
   const struct dea_ac_excitation excitation = {.amplitude_V = 1};
   const double frequency_Hz[] = {1e-4, 1, 20};
   struct dea_device d = test_star(4);
@@ -131,12 +128,4 @@ static void test_answer_of_a_viscous_film(void **state)
   assert_true(lag[1] > 0.005 && lag[1] > lag[0] && lag[1] > lag[2] && lag[2] > 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_modes_of_a_disc),
-      cmocka_unit_test(test_answer_to_a_slow_ripple),
-      cmocka_unit_test(test_answer_of_a_viscous_film),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -115,10 +115,9 @@ static struct state stretched_disc(void)
 }
 
 /* A solid has pressures. With fibres it was run once (docs/theory/gradients.md). */
-static void test_beyond_pull_in(void **state)
+TEST(test_beyond_pull_in)
 {
   only_nightly();
-  (void)state;
   static const int numbers[] = {FRAME, PRE_STRETCH};
   const struct state at = stretched_disc();
   check(&at, &(struct dea_model_settings){.film = DEA_FILM_MEMBRANE}, 1.62, numbers, 1);
@@ -127,9 +126,8 @@ static void test_beyond_pull_in(void **state)
 
 /* Where the path turns the voltage's slopes are those of pull-in, by the tangent's null vector,
  * whatever is held; they are those of laws beyond it too. */
-static void test_where_it_turns(void **state)
+TEST(test_where_it_turns)
 {
-  (void)state;
   static const int numbers[] = {THICKNESS, MODULUS, PERMITTIVITY, PRE_STRETCH, ELECTRODE, FRAME};
   enum { COUNT = sizeof numbers / sizeof numbers[0], STRETCHES = 3 };
   const struct dea_model_settings film = {.film = DEA_FILM_MEMBRANE};
@@ -157,11 +155,4 @@ static void test_where_it_turns(void **state)
   dea_critical_end(ctx, &pull_in);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_beyond_pull_in),
-      cmocka_unit_test(test_where_it_turns),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -131,9 +131,8 @@ static struct answer run(int fibres, int sectors)
 
 /* Four fibres: 45 degrees with a plane of its own axes, the quarter, and all of it; three fibres:
  * 60 and 120 degrees. */
-static void test_domains_agree(void **state)
+TEST(test_domains_agree)
 {
-  (void)state;
   static const int domains[][2] = {{4, 1}, {4, 2}, {4, 8}, {3, 1}, {3, 2}};
   struct answer first = {0};
   for (size_t i = 0; i < sizeof domains / sizeof domains[0]; i++) {
@@ -151,8 +150,4 @@ static void test_domains_agree(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_domains_agree)};
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -46,9 +46,8 @@ static struct dea_load_point solve_once(const struct dea_device *device,
 
 /* 0 to 11 kV: between the two is the mesh, and the disc inside the electrode is stretched alike
  * everywhere: the capacitance goes as the square of its area. */
-static void test_plain_disc(void **state)
+TEST(test_plain_disc)
 {
-  (void)state;
   const struct dea_model_type *exact = dea_model_find("axisymmetric");
   struct dea_device device = test_star(0);
   struct dea_model *model = create(&device, &preview), *reference;
@@ -72,9 +71,8 @@ static void test_plain_disc(void **state)
 
 /* 0 to 8 kV in steps of 1 kV. Against the membrane of prototypes.h. Above, the film wrinkles: it
  * has no tension then in one direction, and no less. */
-static void test_four_fibres_as_built(void **state)
+TEST(test_four_fibres_as_built)
 {
-  (void)state;
   struct dea_device device = test_star(4);
   struct dea_model *model = create(&device, &preview);
   struct dea_load_point before = solve(model, 0);
@@ -105,9 +103,8 @@ static void test_four_fibres_as_built(void **state)
 
 /* Also stress-free, where nothing holds the film out of its plane. The capacitance is eps A/h, A
  * the area of the mesh. */
-static void test_rest(void **state)
+TEST(test_rest)
 {
-  (void)state;
   static const int fibres[] = {0, 1, 4};
   static const double pre_stretch[] = {1, 1.5, 2};
   for (size_t i = 0; i < 9; i++) {
@@ -127,9 +124,8 @@ static void test_rest(void **state)
 }
 
 /* The whole disc has the symmetric answer of the sector. */
-static void test_domains_agree(void **state)
+TEST(test_domains_agree)
 {
-  (void)state;
   struct dea_device device = test_star(3);
   struct dea_load_point sector = solve_once(&device, &preview, 3e3);
   const struct dea_model_settings whole = {.film = DEA_FILM_MEMBRANE, .domain = DEA_DOMAIN_DISC};
@@ -165,10 +161,9 @@ static void check_beside_solid(const struct dea_device *device, double of_edge)
   assert_close(capacitance[1] - 1, capacitance[0] - 1, 2.2 * of_edge, 0);
 }
 
-static void test_fibres_of_all_kinds(void **state)
+TEST(test_fibres_of_all_kinds)
 {
   only_nightly();
-  (void)state;
   static const int fibres[] = {1, 4, 6};
   for (size_t i = 0; i < 3; i++) {
     struct dea_device device = test_star(fibres[i]);
@@ -192,9 +187,8 @@ static void test_fibres_of_all_kinds(void **state)
 }
 
 /* What lies between film and fibre. */
-static void test_layers(void **state)
+TEST(test_layers)
 {
-  (void)state;
   struct dea_device device = test_star(4);
   device.bond_thickness_m = 50e-6;
   device.bond_modulus_Pa = 1e6;
@@ -213,9 +207,8 @@ static void test_layers(void **state)
 }
 
 /* Forces of a probe from both sides. */
-static void test_probe(void **state)
+TEST(test_probe)
 {
-  (void)state;
   double force[2][2];
   for (int film = 0; film < 2; film++) {
     for (int side = 0; side < 2; side++) {
@@ -242,16 +235,4 @@ static int tear_down(void **state)
   return context_tear_down(state);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plain_disc),
-      cmocka_unit_test(test_four_fibres_as_built),
-      cmocka_unit_test(test_rest),
-      cmocka_unit_test(test_domains_agree),
-      cmocka_unit_test(test_fibres_of_all_kinds),
-      cmocka_unit_test(test_layers),
-      cmocka_unit_test(test_probe),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, tear_down);
-}
+TESTS(context_set_up, tear_down)

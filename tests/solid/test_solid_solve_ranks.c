@@ -257,9 +257,8 @@ static void compare(const struct answer *many, const struct answer *one, int cas
 
 /* Same displacements, energy, extremes and inertia to what the solver leaves, and where one rank
  * fails all do. */
-static void test_ranks_agree(void **state)
+TEST(test_ranks_agree)
 {
-  (void)state;
   struct answer one[CASES], two[CASES], three[1];
   if (!have_mpirun()) {
     skip();
@@ -280,9 +279,8 @@ static void test_ranks_agree(void **state)
 
 /* An interruption of one rank, between two points, ends the sweep of all at the same point: else
  * the others wait for it in the next one (and `timeout` ends this test). */
-static void test_one_rank_interrupted(void **state)
+TEST(test_one_rank_interrupted)
 {
-  (void)state;
   char line[1200];
   int status, told;
   size_t points;
@@ -300,9 +298,8 @@ static void test_one_rank_interrupted(void **state)
 }
 
 /* A factor that finds no room is a failure, not a solution of something else. */
-static void test_no_room_for_the_factor(void **state)
+TEST(test_no_room_for_the_factor)
 {
-  (void)state;
   struct answer one[1];
   read_answers("PETSC_OPTIONS='-mat_mumps_icntl_14 -60'", 1, one);
   assert_int_equal(one[0].status, DEA_E_MEMORY);
@@ -325,9 +322,8 @@ static double last_stretch(const char *text)
 }
 
 /* dea run under mpirun: said and written once. */
-static void test_command_on_ranks(void **state)
+TEST(test_command_on_ranks)
 {
-  (void)state;
   static const char *const run = "run @/examples/plain-disc.yaml --model 3d --no-figures -o both "
                                  "--json --set 'compute.voltage={values: [0 kV, 2 kV]}'";
   char again[400];
@@ -357,11 +353,5 @@ int main(int argc, char **argv)
   if (argc > 2 && strcmp(argv[1], "ranks") == 0) {
     return run_as_rank(atoi(argv[2]));
   }
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_ranks_agree),
-      cmocka_unit_test(test_one_rank_interrupted),
-      cmocka_unit_test(test_no_room_for_the_factor),
-      cmocka_unit_test(test_command_on_ranks),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
+  return run_all(command_set_up, command_tear_down);
 }

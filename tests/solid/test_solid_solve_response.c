@@ -123,9 +123,8 @@ static double strip_push(const struct dea_material *film, double voltage_V)
 
 static const double V = 1500;
 
-static void test_one_degree_of_freedom(void **state)
+TEST(test_one_degree_of_freedom)
 {
-  (void)state;
   static const double ratio = 0.03;
   const struct dea_material film = test_material("gent", 43e3, 115, 0);
   struct dea_solid_response *response;
@@ -152,9 +151,8 @@ static void test_one_degree_of_freedom(void **state)
 
 /* The same strip with two branches: held for long, they know C and push back by 4 G/l^2 per strain
  * and volume, less what they have relaxed; l is the stretch since the flat film. */
-static void test_branches(void **state)
+TEST(test_branches)
 {
-  (void)state;
   enum { FREQUENCIES = 7 };
   const struct dea_material film = test_material("gent", 43e3, 115, 0);
   const struct dea_branches branches[2] = {{2, {{30e3, 0.01}, {20e3, 1}}}, {0}};
@@ -289,9 +287,8 @@ static struct dea_part_material bender_layer(void)
   return layer;
 }
 
-static void test_bender_against_static_solves(void **state)
+TEST(test_bender_against_static_solves)
 {
-  (void)state;
   struct dea_part_material layer = bender_layer();
   static const double cuts[] = {0, 0.3, 0.6, 1};
   static const double whole[] = {0, 1};
@@ -365,9 +362,8 @@ static void respond_with(int part_materials, double apart, double out[1][2][3])
 
 /* Constituents whose branches are the same are solved for as one, others each by itself: there may
  * be as many as there are. */
-static void test_many_part_materials(void **state)
+TEST(test_many_part_materials)
 {
-  (void)state;
   double one[1][2][3], alike[1][2][3], apart[1][2][3];
   respond_with(1, 0, one);
   respond_with(MANY, 0, alike);
@@ -382,13 +378,4 @@ static void test_many_part_materials(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_one_degree_of_freedom),
-      cmocka_unit_test(test_branches),
-      cmocka_unit_test(test_bender_against_static_solves),
-      cmocka_unit_test(test_many_part_materials),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -66,9 +66,8 @@ static double bend(struct dea_solid *s, const struct dea_grid *grid)
 }
 
 /* Back from where the strip nearly buckles, which the raised kappa alone says that it does not. */
-static void test_another_state(void **state)
+TEST(test_another_state)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *s = make(grid);
   struct dea_solid_saved_state here;
@@ -86,9 +85,8 @@ static void test_another_state(void **state)
 }
 
 /* The factor of a step in time has the mass in it. */
-static void test_after_time(void **state)
+TEST(test_after_time)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *s = make(grid);
   struct dea_solid_time *time;
@@ -105,9 +103,4 @@ static void test_after_time(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_another_state),
-                                     cmocka_unit_test(test_after_time)};
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -14,9 +14,8 @@ static double number(const json_t *point, const char *key)
 
 /* The paper's actuator as built, against the programs of prototypes.h at 5 and 6 kV: everything
  * moves away from the fibres. */
-static void test_four_fibres(void **state)
+TEST(test_four_fibres)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --model 3d --json "
                                "--set 'compute.voltage={values: [0 kV, 3 kV, 5 kV, 6 kV]}'"),
                    0);
@@ -42,9 +41,8 @@ static void test_four_fibres(void **state)
 
 /* Without fibres: the exact disc. Force and energy: charge is minus its derivative, so it falls
  * with V. */
-static void test_plain_disc(void **state)
+TEST(test_plain_disc)
 {
-  (void)state;
   static const char *const orders[] = {"{order: 2}", "{order: 3, order_z: 1}"};
   for (int i = 0; i < 2; i++) {
     char text[200];
@@ -65,9 +63,8 @@ static void test_plain_disc(void **state)
 
 /* A result names the libraries that have computed it, of this model PETSc with what it brings:
  * once, and not where another model alone has computed. */
-static void test_libraries(void **state)
+TEST(test_libraries)
 {
-  (void)state;
   static const char *const designs[] = {
       "plain-disc.yaml -m lumped", "plain-disc.yaml -m lumped -m 3d", "devices/cone-mass.yaml"};
   for (size_t i = 0; i < 3; i++) {
@@ -99,9 +96,8 @@ static const json_t *last_point(const char *arguments, json_t **root)
 /* Eight fibres hold the electrode more than four do, and it goes down too. The film as a membrane
  * is another element of another law of volume: the edge is the same to 5 %, and as it bends less
  * the way down to a fifth (docs/theory/membrane.md). */
-static void test_eight_fibres(void **state)
+TEST(test_eight_fibres)
 {
-  (void)state;
   json_t *roots[3];
   const json_t *eight =
       last_point("frdea-8.yaml --set 'compute.voltage={values: [0 kV, 3 kV]}'", &roots[0]);
@@ -123,9 +119,8 @@ static void test_eight_fibres(void **state)
 
 /* Keys of the mesh arrive: what is solved has the elements and nodes of the mesh that `dea mesh`
  * writes, and a whole disc those of its ten sectors. */
-static void test_mesh_of_the_design(void **state)
+TEST(test_mesh_of_the_design)
 {
-  (void)state;
   static const char keys[] = "@/examples/frdea-4.yaml --json --set fibres.count=5 "
                              "--set fibres.outer_end=free --set compute.solid.order=1 "
                              "--set compute.solid.order_z=1";
@@ -161,9 +156,8 @@ static void test_mesh_of_the_design(void **state)
 
 /* The preview says what it is, and keeps flat cells beside those of the fibres. Against the
  * membrane of prototypes.h, on the coarsest mesh. */
-static void test_preview(void **state)
+TEST(test_preview)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --model 3d --json -o preview "
                                "--set compute.solid.film=membrane --set 'report.figures=[svg]' "
                                "--set 'compute.voltage={values: [0 kV, 5 kV, 6 kV]}'"),
@@ -190,9 +184,8 @@ static void test_preview(void **state)
 
 /* Three meshes: more unknowns on each, another answer on each that lies near the others, and on the
  * finest that of a run of its own. */
-static void test_study_of_convergence(void **state)
+TEST(test_study_of_convergence)
 {
-  (void)state;
   assert_int_equal(command_run("run @/examples/frdea-4.yaml --model 3d --json "
                                "--study convergence --set 'compute.convergence="
                                "{refinement: [1, 1.2, 1.4], voltage: [1 kV]}'"),
@@ -227,16 +220,4 @@ static void test_study_of_convergence(void **state)
   json_decref(root);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_four_fibres),
-      cmocka_unit_test(test_plain_disc),
-      cmocka_unit_test(test_libraries),
-      cmocka_unit_test(test_eight_fibres),
-      cmocka_unit_test(test_mesh_of_the_design),
-      cmocka_unit_test(test_preview),
-      cmocka_unit_test(test_study_of_convergence),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

@@ -62,9 +62,8 @@ static double check(const struct dea_grid *grid, double share, int *negative)
   return lowest_Pa;
 }
 
-static void test_strip(void **state)
+TEST(test_strip)
 {
-  (void)state;
   static const double shares[] = {0.0036, 0.0045, 0.006, 0.008, 0.01};
   layer.law = dea_law_find("neo-hookean");
   assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
@@ -81,9 +80,8 @@ static void test_strip(void **state)
 }
 
 /* The same end where the lowest of more modes is looked for than are counted by default. */
-static void test_many_modes(void **state)
+TEST(test_many_modes)
 {
-  (void)state;
   static const int modes[] = {8, 40};
   layer.law = dea_law_find("neo-hookean");
   assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
@@ -108,9 +106,4 @@ static void test_many_modes(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_strip),
-                                     cmocka_unit_test(test_many_modes)};
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -47,9 +47,8 @@ static void sweep(enum dea_buckling_branch side, struct dea_load_point points[VO
 
 /* Where there is one state only, all find it; above the onset each has its own. Down is the side
  * that follows from 0 V. */
-static void test_model_goes_to_the_side_asked_for(void **state)
+TEST(test_model_goes_to_the_side_asked_for)
 {
-  (void)state;
   struct dea_load_point any[VOLTAGES], up[VOLTAGES];
   sweep(DEA_BRANCH_ANY, any);
   sweep(DEA_BRANCH_FIBRES, up);
@@ -67,9 +66,8 @@ static void test_model_goes_to_the_side_asked_for(void **state)
 
 /* Without fibres the film is flat, up to a voltage between 400 and 500 V; just beyond it the energy
  * of the buckled film is lower by a part in 10^7 only. */
-static void test_onset_without_fibres(void **state)
+TEST(test_onset_without_fibres)
 {
-  (void)state;
   struct dea_device flat = slack(4, DEA_END_CLAMPED);
   struct dea_load_point below, above;
   struct dea_model *model;
@@ -87,7 +85,7 @@ static void test_onset_without_fibres(void **state)
 /* Free fibres rise as a whole with the film, in a sweep and at once. The centre, as another
  * program has found it; at 0.7 kV, 0.15 kV above the onset, it has 125 um, where ours converges to
  * 139 um with the mesh (docs/verification/branches.md). */
-static void test_free_fibres_rise_with_the_film(void **state)
+TEST(test_free_fibres_rise_with_the_film)
 {
   static const struct {
     int fibres;
@@ -96,7 +94,6 @@ static void test_free_fibres_rise_with_the_film(void **state)
   const struct dea_model_settings settings = {.buckling_branch = DEA_BRANCH_FIBRES};
   struct dea_model *model = NULL;
   struct dea_load_point point;
-  (void)state;
   struct dea_device star = slack(4, DEA_END_FREE);
   assert_int_equal(dea_solid_module.create(ctx, &star, &settings, &model), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 600, &point), DEA_OK);
@@ -157,9 +154,8 @@ static struct dea_solid_continuation *trace_to(double voltage_V, double step)
 
 /* Stable all the way, without a limit point, and the same as a sweep. The two arms pass close by
  * each other: steps twice as long can jump to the other one. */
-static void test_path_from_rest_goes_down(void **state)
+TEST(test_path_from_rest_goes_down)
 {
-  (void)state;
   struct dea_continuation_point point = {0};
   struct dea_solid_report report;
   create(4, DEA_END_CLAMPED);
@@ -189,9 +185,8 @@ static bool take_front(struct dea_solid_report *report)
 
 /* Onto the other arm at 1 kV, and down with the voltage: at a limit point between 0.7 and 1 kV it
  * turns to an arm with one unstable mode, on which the voltage rises again. */
-static void test_other_arm_ends_at_a_limit_point(void **state)
+TEST(test_other_arm_ends_at_a_limit_point)
 {
-  (void)state;
   struct dea_continuation_point point = {0}, limit = {0};
   struct dea_solid_report report;
   create(4, DEA_END_CLAMPED);
@@ -233,11 +228,10 @@ static bool centre_above(const void *self, const double *u)
 /* Eight free fibres that hang, with a dimple at the centre that stands up, are a stable state: not
  * the one towards the fibres, which has less energy. A push inside the electrode finds the one, the
  * mirror image the other. */
-static void test_dimple_is_not_the_other_arm(void **state)
+TEST(test_dimple_is_not_the_other_arm)
 {
   struct dea_solid_report report;
   bool found;
-  (void)state;
   create(8, DEA_END_FREE);
   double *push = dea_alloc(ctx, 3 * grid->node_count, sizeof *push);
   assert_non_null(push);
@@ -263,15 +257,4 @@ static void test_dimple_is_not_the_other_arm(void **state)
   destroy();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_model_goes_to_the_side_asked_for),
-      cmocka_unit_test(test_onset_without_fibres),
-      cmocka_unit_test(test_free_fibres_rise_with_the_film),
-      cmocka_unit_test(test_path_from_rest_goes_down),
-      cmocka_unit_test(test_other_arm_ends_at_a_limit_point),
-      cmocka_unit_test(test_dimple_is_not_the_other_arm),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

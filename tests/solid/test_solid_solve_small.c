@@ -120,17 +120,12 @@ static void check_capacity(int order)
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_capacity(void **state)
+TEST(test_capacity)
 {
-  (void)state;
   assert_int_equal(dea_solid_start(ctx), DEA_OK);
   check_capacity(1);
   check_capacity(2);
   dea_solid_stop();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_capacity)};
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -39,9 +39,8 @@ static struct dea_solid *make(const struct dea_grid *grid, double soft)
   return s;
 }
 
-static void test_same_state(void **state)
+TEST(test_same_state)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *own = make(grid, 1), *soft = make(grid, 1.0 / 16);
   struct dea_solid_report of_own, of_soft;
@@ -68,9 +67,8 @@ static void test_same_state(void **state)
 
 /* Of a push so small that rounding hides the energy of the last steps, those with the modulus of
  * its own come yet. */
-static void test_small_push(void **state)
+TEST(test_small_push)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &strip);
   for (double share = 1e-7; share < 1e-5; share *= 3) {
     struct dea_solid *s = make(grid, 1.0 / 16);
@@ -82,9 +80,8 @@ static void test_small_push(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_is_its_own_again(void **state)
+TEST(test_is_its_own_again)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *s = make(grid, 1.0 / 16);
   struct dea_solid_report report;
@@ -98,11 +95,6 @@ static void test_is_its_own_again(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_state),
-                                     cmocka_unit_test(test_small_push),
-                                     cmocka_unit_test(test_is_its_own_again)};
   layer.law = dea_law_find("neo-hookean");
-  return dea_part_material_relax(&layer) == DEA_OK
-             ? cmocka_run_group_tests(tests, solid_set_up, solid_tear_down)
-             : 1;
+  return dea_part_material_relax(&layer) == DEA_OK ? run_all(solid_set_up, solid_tear_down) : 1;
 }

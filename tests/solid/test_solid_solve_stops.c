@@ -51,9 +51,8 @@ static dea_status sweep(const struct dea_model_type *type, const struct dea_devi
 
 /* A soft film: the solid's limit point is that of the exact disc to what its mesh leaves, from one
  * far step and from a few. */
-static void test_pull_in_agrees_with_the_exact_disc(void **state)
+TEST(test_pull_in_agrees_with_the_exact_disc)
 {
-  (void)state;
   struct dea_device device =
       disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 30e-6, 1.2, 2.6e-3, 15.5e-3);
   device.film.permittivity.at_rest = 4.8;
@@ -81,9 +80,8 @@ static void test_pull_in_agrees_with_the_exact_disc(void **state)
 
 /* Of a coupled field by its path, beside that with the field V/h. What the edges of the electrodes
  * pull is a few thicknesses wide. */
-static void test_pull_in_of_a_coupled_field(void **state)
+TEST(test_pull_in_of_a_coupled_field)
 {
-  (void)state;
   static const struct dea_model_settings coupled = {.film = DEA_FILM_SOLID,
                                                     .field = DEA_FIELD_COUPLED,
                                                     .order = 1,
@@ -150,9 +148,8 @@ static struct dea_event trace_pull_in(const struct dea_device *device)
  * of model 3d leapt past that to 384 V, and axisymmetric's path turns back at 230.8 V only. Both
  * find where the flat film's stiffness against a short wave of stretch vanishes, model 3d on ways
  * of any length. */
-static void test_local_pull_in_is_not_leapt_over(void **state)
+TEST(test_local_pull_in_is_not_leapt_over)
 {
-  (void)state;
   static const struct dea_model_settings coupled = {
       .film = DEA_FILM_SOLID, .field = DEA_FIELD_COUPLED, .order = 1, .order_z = 1};
   struct dea_device device =
@@ -201,9 +198,8 @@ static double check_pull_in(const struct dea_device *device,
 
 /* A membrane that goes slack close to its pull-in (random design 1): the path has a corner there,
  * and a load step that begins before it ends in a state that only the end of the law holds. */
-static void test_membrane_does_not_leap_over_pull_in(void **state)
+TEST(test_membrane_does_not_leap_over_pull_in)
 {
-  (void)state;
   struct dea_device device =
       disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 13.74e-6, 1.245, 8.619e-3, 33.66e-3);
   device.film.permittivity.at_rest = 4.8;
@@ -226,9 +222,8 @@ static dea_status watch_point(void *user, const struct dea_load_point *point)
 
 /* From one taut film (random design 531) to one that is an eighth as thick in one place: the path
  * is followed past where it turns unstable, which is told and not forgotten. */
-static void test_pull_in_that_the_path_passes(void **state)
+TEST(test_pull_in_that_the_path_passes)
 {
-  (void)state;
   static const struct dea_model_settings coarse = {
       .film = DEA_FILM_MEMBRANE, .order = 1, .order_z = 1};
   struct dea_device device = disc(test_material("yeoh", 183.361e3, -5.14587e3, 0.166696e3),
@@ -240,9 +235,8 @@ static void test_pull_in_that_the_path_passes(void **state)
 }
 
 /* By arc-length one comes to the equilibria of load steps, and the model stays where it was. */
-static void test_path_beside_load_steps(void **state)
+TEST(test_path_beside_load_steps)
 {
-  (void)state;
   struct dea_device device =
       disc(test_material("arruda-boyce", 15.36e3, 5.99, 0), 30e-6, 1.2, 2.6e-3, 15.5e-3);
   device.film.permittivity.at_rest = 4.8;
@@ -282,9 +276,8 @@ static void check_tension_lost(const struct dea_device *device, const struct dea
 
 /* A membrane that goes slack under its electrodes thins there without limit, which is before the
  * exact disc, whose film carries compression, pulls in. */
-static void test_loss_of_tension_is_located(void **state)
+TEST(test_loss_of_tension_is_located)
 {
-  (void)state;
   struct dea_device device =
       disc(test_material("neo-hookean", 280e3, 0, 0), 500e-6, 1.05, 2.27e-3, 22.6e-3);
   struct dea_event found;
@@ -297,9 +290,8 @@ static void test_loss_of_tension_is_located(void **state)
 /* A membrane under stiff electrodes (random design 1400) loses its tension at 8.2276 kV, where its
  * electrodes begin to buckle, and there are states until it pulls in at 8.574 kV. Load steps of 3.3
  * kV and of 0.25 kV end there alike. */
-static void test_pull_in_does_not_depend_on_the_steps(void **state)
+TEST(test_pull_in_does_not_depend_on_the_steps)
 {
-  (void)state;
   static const struct dea_model_settings coarse = {
       .film = DEA_FILM_MEMBRANE, .order = 1, .order_z = 1};
   struct dea_device device =
@@ -319,9 +311,8 @@ static void test_pull_in_does_not_depend_on_the_steps(void **state)
 /* A film free of stress that is flat at 0.5 kV, below where it buckles (0.505 kV), and has buckled
  * at 1 kV, of which a load step that comes there at once, from there or from 0 V, knows nothing: it
  * might have to the other side. A bender has no other side. */
-static void test_buckling_in_one_step(void **state)
+TEST(test_buckling_in_one_step)
 {
-  (void)state;
   struct dea_device device = disc(test_yeoh(), 101e-6, 1, 3.75e-3, 15e-3);
   struct dea_model *model;
   struct dea_load_point flat, buckled;
@@ -344,9 +335,8 @@ static void test_buckling_in_one_step(void **state)
  * of the plane turn unstable from 73 V on (random design 558): the film stays in its plane, in long
  * steps and in short ones, and has gone past nothing.
  */
-static void test_modes_of_the_mesh_are_not_followed(void **state)
+TEST(test_modes_of_the_mesh_are_not_followed)
 {
-  (void)state;
   static const struct dea_model_settings coarse = {
       .film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
   struct dea_device device = disc(test_material("mooney-rivlin", 4785.62, 788.913, 0), 12.75e-6,
@@ -372,9 +362,8 @@ static void test_modes_of_the_mesh_are_not_followed(void **state)
 /* Another, under electrodes of a thickness: behind the point where such modes turn unstable
  * rounding raises the film by 1.5e-6 of its thickness, which is flat all the same (random design
  * 792). */
-static void test_rounding_is_no_deflection(void **state)
+TEST(test_rounding_is_no_deflection)
 {
-  (void)state;
   static const struct dea_model_settings coarse = {
       .film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
   const struct dea_model_type *const types[] = {dea_model_find("axisymmetric"), &dea_solid_module};
@@ -402,9 +391,8 @@ static void test_rounding_is_no_deflection(void **state)
 /* On such a mesh a path that does not stay in the plane either is no reason to begin again from the
  * flat film: pull-in is found where the exact disc has it (random design 1082).
  */
-static void test_path_that_leaves_the_plane_of_a_coarse_mesh(void **state)
+TEST(test_path_that_leaves_the_plane_of_a_coarse_mesh)
 {
-  (void)state;
   static const struct dea_model_settings coarse = {
       .film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
   struct dea_device device =
@@ -424,9 +412,8 @@ static void test_path_that_leaves_the_plane_of_a_coarse_mesh(void **state)
 /* Electrodes eighty times as stiff as the film, laid on before it was stretched to three times its
  * size, draw it together to a third (random design 17 without its fibres): Newton's method does not
  * go there at once. */
-static void test_rest_under_stiff_electrodes(void **state)
+TEST(test_rest_under_stiff_electrodes)
 {
-  (void)state;
   const struct dea_model_settings coarse = {.film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
   const struct dea_model_type *const types[] = {dea_model_find("axisymmetric"), &dea_solid_module};
   struct dea_device device =
@@ -464,9 +451,8 @@ static void add_fibres(struct dea_device *device, int count, double width_m, dou
  * each point then and ended before the limit point. That is where study path has it, by arc length
  * that counts displacements some thousand times less, 2.81 kV and 1.393; further digits are of
  * this search itself. */
-static void test_pull_in_beside_fibre_tips(void **state)
+TEST(test_pull_in_beside_fibre_tips)
 {
-  (void)state;
   const struct dea_model_settings coarse = {.film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
   struct dea_device device = disc(test_material("mooney-rivlin", 9377.21, 882.893, 0), 518.5e-6,
                                   3.826, 6.449e-3, 12.46e-3);
@@ -493,9 +479,8 @@ static bool count_asked(void *user)
  * multipliers that follow took off a tenth of them each, 25 were not enough, and the path after
  * them took 600 times as long as the film of no fibres. Now the factor of a raised kappa takes them
  * to the same state. An iteration asks once or twice whether it is to end. */
-static void test_pressures_under_fibres_settle(void **state)
+TEST(test_pressures_under_fibres_settle)
 {
-  (void)state;
   const struct dea_model_settings coarse = {.film = DEA_FILM_SOLID, .order = 1, .order_z = 1};
   struct dea_device device =
       disc(test_material("yeoh", 180.7e3, -16.7e3, 6.6e3), 607.9e-6, 2.536, 1.01e-3, 8.057e-3);
@@ -516,9 +501,8 @@ static void test_pressures_under_fibres_settle(void **state)
 /* Fibres on one side bend a film from the first volt on: it has not buckled where it comes from
  * rest to 2 kV at once, and no path is followed to see whether it has.
  */
-static void test_fibres_bend_without_buckling(void **state)
+TEST(test_fibres_bend_without_buckling)
 {
-  (void)state;
   const struct dea_device device = test_star(4);
   struct dea_model *model;
   struct dea_load_point point;
@@ -533,25 +517,4 @@ static void test_fibres_bend_without_buckling(void **state)
   dea_solid_module.destroy(ctx, model);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull_in_that_the_path_passes),
-      cmocka_unit_test(test_path_beside_load_steps),
-      cmocka_unit_test(test_pull_in_agrees_with_the_exact_disc),
-      cmocka_unit_test(test_pull_in_of_a_coupled_field),
-      cmocka_unit_test(test_local_pull_in_is_not_leapt_over),
-      cmocka_unit_test(test_membrane_does_not_leap_over_pull_in),
-      cmocka_unit_test(test_loss_of_tension_is_located),
-      cmocka_unit_test(test_pull_in_does_not_depend_on_the_steps),
-      cmocka_unit_test(test_buckling_in_one_step),
-      cmocka_unit_test(test_modes_of_the_mesh_are_not_followed),
-      cmocka_unit_test(test_rounding_is_no_deflection),
-      cmocka_unit_test(test_path_that_leaves_the_plane_of_a_coarse_mesh),
-      cmocka_unit_test(test_rest_under_stiff_electrodes),
-      cmocka_unit_test(test_pull_in_beside_fibre_tips),
-      cmocka_unit_test(test_pressures_under_fibres_settle),
-      cmocka_unit_test(test_fibres_bend_without_buckling),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

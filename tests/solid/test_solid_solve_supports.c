@@ -58,9 +58,8 @@ static double stress(double stretch)
 
 /* Pulled to twice its length and pushed back to half of it, each in one call: the end is where it
  * was asked to be, its reaction is the closed form, and the rest follows at once. */
-static void test_bar_is_pulled_and_pushed(void **state)
+TEST(test_bar_is_pulled_and_pushed)
 {
-  (void)state;
   static const double stretch[] = {1.001, 2, 0.5, 1};
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
@@ -97,9 +96,8 @@ static int on_planes_turned(const void *self, const double X[3])
 }
 
 /* The same with the end in local axes, of which the second is the bar's. */
-static void test_prescribed_in_local_axes(void **state)
+TEST(test_prescribed_in_local_axes)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &bar);
   const struct dea_solid_options options = {.order_z = bar.order_z,
                                             .part_material_count = 1,
@@ -128,9 +126,8 @@ static void test_prescribed_in_local_axes(void **state)
 }
 
 /* What was prescribed is released: the bar goes back. A dead load in its place holds as much. */
-static void test_release_and_dead_load(void **state)
+TEST(test_release_and_dead_load)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
   struct dea_solid_report report;
@@ -161,9 +158,8 @@ static void test_release_and_dead_load(void **state)
 
 /* Through itself: no equilibrium there, and the solid stays at the last one on the way, where
  * reaction and displacement belong together. */
-static void test_way_that_ends(void **state)
+TEST(test_way_that_ends)
 {
-  (void)state;
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, along);
   struct dea_solid_report report;
@@ -184,9 +180,8 @@ static void test_way_that_ends(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_arguments(void **state)
+TEST(test_arguments)
 {
-  (void)state;
   static const double none[3] = {0, 0, 0};
   struct dea_grid *grid = block_grid(ctx, &bar);
   struct dea_solid *solid = block_solid(ctx, grid, bar.order_z, &soft, on_planes);
@@ -201,12 +196,5 @@ int main(void)
 {
   static const double param[] = {2e5, 0}; // modulus mu
   soft = dea_part_material_bonded(param);
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_bar_is_pulled_and_pushed),
-      cmocka_unit_test(test_prescribed_in_local_axes),
-      cmocka_unit_test(test_release_and_dead_load),
-      cmocka_unit_test(test_way_that_ends),
-      cmocka_unit_test(test_arguments),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
+  return run_all(solid_set_up, solid_tear_down);
 }

@@ -128,9 +128,8 @@ static void jump_to(struct film *film, double voltage_V)
 }
 
 /* Benchmark 6a: a small step of the voltage at t = 0. */
-static void test_creep_after_a_small_step(void **state)
+TEST(test_creep_after_a_small_step)
 {
-  (void)state;
   struct film film = {SQUARE, .pre_stretch = 1, .radius = 1, .branches = {1, {{2e5, 0.5}}}};
   const double field = 0.02 * sqrt(mu[0] / eps), steps = 40, end = 6;
   double slow = 0.02 * 0.02 / 6; // equibiaxial: eps E^2 = 6 mu strain
@@ -148,9 +147,8 @@ static void test_creep_after_a_small_step(void **state)
 
 /* A film at rest, and one that is held in an actuated state for long, stay where they are, for
  * branches that are soft or much stiffer than the law, in steps short or long. */
-static void test_held_film_stays(void **state)
+TEST(test_held_film_stays)
 {
-  (void)state;
   for (int kind = 0; kind < 4; kind++) {
     struct film film = {SQUARE, .pre_stretch = 1, .radius = 1,
                         .branches = {2, {{kind % 2 ? 1e7 : 5e4, 0.5}, {5e4, 1e-3}}}};
@@ -184,9 +182,8 @@ static int all_round(const void *self, const double X[3])
   return inside ? 0 : 7;
 }
 
-static void test_no_false_modes(void **state)
+TEST(test_no_false_modes)
 {
-  (void)state;
   static const double stretch[] = {1, 1.25, 1.5, 2}, ratio[] = {0.5, 20, 1000};
   for (int k = 0; k < 4; k++) {
     for (int i = 0; i < 3; i++) {
@@ -226,9 +223,8 @@ static const double pi = 3.14159265358979323846;
 
 /* Free vibration of small amplitude: the period is that of a string of the same tension, and the
  * steps' spectral radius says what becomes of its energy. */
-static void test_vibration_of_a_membrane(void **state)
+TEST(test_vibration_of_a_membrane)
 {
-  (void)state;
   static const double radius[] = {1, 0.5};
   for (int k = 0; k < 2; k++) {
     struct film film = {STRIP(8), .radius = radius[k]};
@@ -292,9 +288,8 @@ static void pulse(struct film film, double end, int steps, double out[2],
 
 /* Halving the steps divides the error by four: displacement and pressure, with branches, with
  * inertia, with both; and the balance of energy closes as fast. */
-static void test_second_order(void **state)
+TEST(test_second_order)
 {
-  (void)state;
   for (int kind = 0; kind < 3; kind++) {
     struct film film = {SQUARE, .pre_stretch = 1, .density_kg_per_m3 = kind > 0 ? 1000 : 0,
                         .radius = 0.8};
@@ -314,14 +309,4 @@ static void test_second_order(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_creep_after_a_small_step),
-      cmocka_unit_test(test_held_film_stays),
-      cmocka_unit_test(test_no_false_modes),
-      cmocka_unit_test(test_vibration_of_a_membrane),
-      cmocka_unit_test(test_second_order),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -108,9 +108,8 @@ static int on_planes(const void *self, const double X[3])
 /* Both sides of it. (Modes are counted too early by elements of order 2, whose areas change by
  * squares of x and y without the volume being asked: from lambda = 1.15 on, 2 % below the limit.)
  */
-static void test_free_film_through_its_limit_point(void **state)
+TEST(test_free_film_through_its_limit_point)
 {
-  (void)state;
   int limits = 0;
   double stretch = 1;
   create(&film, "neo-hookean", on_planes);
@@ -157,15 +156,13 @@ static int iterations_to_limit(bool rough)
 }
 
 /* A path that only leads to an event takes fewer iterations to the same one. */
-static void test_rough_path_leads_to_the_same_limit_point(void **state)
+TEST(test_rough_path_leads_to_the_same_limit_point)
 {
-  (void)state;
   assert_true(iterations_to_limit(true) < 0.9 * iterations_to_limit(false));
 }
 
-static void test_a_path_ends_without_voltage(void **state)
+TEST(test_a_path_ends_without_voltage)
 {
-  (void)state;
   struct dea_solid_report report;
   struct dea_continuation_point point;
   dea_status status = DEA_OK;
@@ -204,9 +201,8 @@ static double middle_z(void)
  * stays what it is and the film grows longer, by the square of the field over 4 mu: A^2 = (4/3) h^2
  * (r - 1), with r the square of the voltage over the critical one and A the deflection in the
  * middle. */
-static void test_film_buckles_under_voltage(void **state)
+TEST(test_film_buckles_under_voltage)
 {
-  (void)state;
   const double h = strip.size[2], pi = acos(-1);
   const double critical = 4 * pi * pi / 3 * h * h, goal = sqrt(2 * critical) * h; // L = 1
   struct dea_continuation_point point = {0};
@@ -247,9 +243,8 @@ static int clamped(const void *self, const double X[3])
 }
 
 /* Euler's strain pi^2/3 (h/L)^2, by prescribed displacements. */
-static void test_strip_buckles_at_eulers_strain(void **state)
+TEST(test_strip_buckles_at_eulers_strain)
 {
-  (void)state;
   const double h = strip.size[2], euler = acos(-1) * acos(-1) / 3 * h * h;
   const double to[3] = {-1.6 * euler, 0, 0};
   struct dea_continuation_point point = {0};
@@ -270,9 +265,8 @@ static void test_strip_buckles_at_eulers_strain(void **state)
   destroy();
 }
 
-static void test_what_cannot_be(void **state)
+TEST(test_what_cannot_be)
 {
-  (void)state;
   const struct dea_continuation_options wrong[] = {{0.1, 0, 0, false}, {0, 0, 1, false}};
   struct dea_continuation_point point;
   create(&film, "neo-hookean", on_planes);
@@ -314,24 +308,11 @@ static void trace_it(struct dea_context *failing)
   dea_solid_destroy(failing, solid);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   grid = block_grid(ctx, &film);
   assert_true(failing_each(trace_it) > 40);
   dea_grid_destroy(ctx, grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_free_film_through_its_limit_point),
-      cmocka_unit_test(test_rough_path_leads_to_the_same_limit_point),
-      cmocka_unit_test(test_a_path_ends_without_voltage),
-      cmocka_unit_test(test_film_buckles_under_voltage),
-      cmocka_unit_test(test_strip_buckles_at_eulers_strain),
-      cmocka_unit_test(test_what_cannot_be),
-      cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

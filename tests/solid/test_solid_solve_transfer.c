@@ -132,9 +132,8 @@ static double middle_z(void)
  * side, A^2 = (4/3) h^2 (r - 1) of a plate whose voltage to buckle is a percent off at most
  * (test_solid_solve_trace.c). (The first that the solid is asked for is an assembly that fails: K
  * has to keep its room.) */
-static void test_either_side(void **state)
+TEST(test_either_side)
 {
-  (void)state;
   const double h = strip.size[2], r = 1.8, voltage_V = sqrt(r) * critical_V();
   struct dea_solid_report report = {0};
   bool found;
@@ -158,9 +157,8 @@ static void test_either_side(void **state)
 
 /* Few iterations are not enough for a shape that is far from balance, but for one that is held near
  * to it until it has come into balance. */
-static void test_held(void **state)
+TEST(test_held)
 {
-  (void)state;
   const double h = strip.size[2], r = 1.8, voltage_V = sqrt(r) * critical_V();
   struct dea_solid_report report = {0};
   bool found;
@@ -176,9 +174,8 @@ static void test_held(void **state)
 }
 
 /* Only nodes around the crease move, none that is held or of the stiff half. */
-static void test_what_moves(void **state)
+TEST(test_what_moves)
 {
-  (void)state;
   size_t left;
   stiff = 100;
   create();
@@ -227,9 +224,8 @@ static void carry_it(struct dea_context *failing)
   dea_solid_destroy(failing, solid);
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   const struct block fine = strip;
   strip.count[0] = 8;
   strip.order = 2;
@@ -242,13 +238,4 @@ static void test_each_allocation(void **state)
   strip = fine;
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_either_side),
-      cmocka_unit_test(test_held),
-      cmocka_unit_test(test_what_moves),
-      cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -120,9 +120,8 @@ static void check_rectangle(const struct dea_material *material, double l, bool 
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_tense_rectangle(void **state)
+TEST(test_tense_rectangle)
 {
-  (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
   for (int membrane = 0; membrane < 2; membrane++) {
     check_rectangle(&gent, 2, membrane);
@@ -147,9 +146,8 @@ static void lowest(const struct dea_part_material *layer, const struct block *bl
 }
 
 /* The bulk modulus of the augmented Lagrangian is a means, not a material's. */
-static void test_no_trace_of_kappa(void **state)
+TEST(test_no_trace_of_kappa)
 {
-  (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
   const struct block thick = {{frame_x, frame_y, 4e-3}, {4, 3, 1}, 2, 2};
   struct dea_part_material layer = film_layer(&gent, 1.5);
@@ -172,9 +170,8 @@ static bool everywhere(const void *self, int region, int ply)
 
 /* A flat film under voltage has the tension sigma - eps E^2, and all its frequencies out of the
  * plane fall with the root of that; below 0 they are unstable, each of them. */
-static void test_voltage_takes_tension_away(void **state)
+TEST(test_voltage_takes_tension_away)
 {
-  (void)state;
   enum { OUT_OF_PLANE = 9, UNSTABLE_MAX = 27 }; // free nodes and their components
   const struct block film = {{frame_x, frame_y, 0}, {2, 2, 1}, 2, 1};
   struct dea_material gent = test_material("gent", 43e3, 115, 0);
@@ -221,9 +218,8 @@ static void test_voltage_takes_tension_away(void **state)
 }
 
 /* In a square the modes (1, 2) and (2, 1) are as fast; none of them may be left out. */
-static void test_modes_that_come_twice(void **state)
+TEST(test_modes_that_come_twice)
 {
-  (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
   const struct dea_part_material layer = film_layer(&gent, 4);
   const struct block film = {{frame_y, frame_y, 0}, {6, 6, 1}, 3, 1};
@@ -240,9 +236,8 @@ static void test_modes_that_come_twice(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_what_is_refused(void **state)
+TEST(test_what_is_refused)
 {
-  (void)state;
   const struct dea_material gent = test_material("gent", 43e3, 115, 0);
   struct dea_part_material layer = film_layer(&gent, 2);
   const struct block film = {{frame_x, frame_y, 0}, {2, 2, 1}, 2, 1};
@@ -260,14 +255,4 @@ static void test_what_is_refused(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_tense_rectangle),
-      cmocka_unit_test(test_no_trace_of_kappa),
-      cmocka_unit_test(test_voltage_takes_tension_away),
-      cmocka_unit_test(test_modes_that_come_twice),
-      cmocka_unit_test(test_what_is_refused),
-  };
-  return cmocka_run_group_tests(tests, solid_set_up, solid_tear_down);
-}
+TESTS(solid_set_up, solid_tear_down)

@@ -12,9 +12,8 @@ static double uniaxial(double l)
 /* Narrower than it wants to be, a film without field is a bundle of strings: the stress of a
  * uniaxial test along them, nothing across, whatever its width. Smaller than its natural size it
  * has no energy and no stress. */
-static void test_wrinkled_is_uniaxial_and_slack_is_nothing(void **state)
+TEST(test_wrinkled_is_uniaxial_and_slack_is_nothing)
 {
-  (void)state;
   static const double widths[] = {0.8, 0.5, 0.1, 0};
   struct dea_part_material layer = yeoh_film(1);
   struct dea_membrane_point point;
@@ -45,9 +44,8 @@ static void test_wrinkled_is_uniaxial_and_slack_is_nothing(void **state)
 
 /* With a field the energy is the lowest that a larger film folded into the place can have: least of
  * f over all stretches that are not smaller, looked for by brute force. */
-static void test_relaxed_energy_is_the_lowest(void **state)
+TEST(test_relaxed_energy_is_the_lowest)
 {
-  (void)state;
   const double G = 1.2, field = 6e7;
   const struct dea_part_material plain = yeoh_film(G);
   struct dea_part_material layer = plain;
@@ -80,9 +78,8 @@ static void test_relaxed_energy_is_the_lowest(void **state)
 }
 
 /* Stress and tangent of the relaxed energy by differences, and both go over smoothly. */
-static void test_derivatives_of_the_relaxed_energy(void **state)
+TEST(test_derivatives_of_the_relaxed_energy)
 {
-  (void)state;
   const double d = 1e-6, field = 6e7;
   struct dea_part_material layer = yeoh_film(1.2);
   layer.relaxed = true;
@@ -114,9 +111,8 @@ static void test_derivatives_of_the_relaxed_energy(void **state)
 
 /* A field beyond which the film thins without limit leaves it no natural width. Gent's law locks,
  * and always has one. */
-static void test_no_natural_width(void **state)
+TEST(test_no_natural_width)
 {
-  (void)state;
   static const double neo[DEA_LAW_PARAM_MAX] = {80e3}, gent[DEA_LAW_PARAM_MAX] = {80e3, 7};
   struct dea_part_material soft = film(dea_law_find("neo-hookean"), neo, 1, 1);
   struct dea_part_material locking = film(dea_law_find("gent"), gent, 1, 1);
@@ -133,13 +129,4 @@ static void test_no_natural_width(void **state)
   assert_true(2 * l * l + pow(l, -4) - 3 < 7);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_wrinkled_is_uniaxial_and_slack_is_nothing),
-      cmocka_unit_test(test_relaxed_energy_is_the_lowest),
-      cmocka_unit_test(test_derivatives_of_the_relaxed_energy),
-      cmocka_unit_test(test_no_natural_width),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

@@ -65,9 +65,8 @@ static double difference(const struct dea_grid *from, const struct dea_grid *to,
 
 /* Coarse to fine and back: only nodes on circles that the other mesh cuts short are off, and by no
  * more than that cut (of a chord, or of a parabola through three points) times the gradient. */
-static void test_linear(void **state)
+TEST(test_linear)
 {
-  (void)state;
   static const struct {
     int order, order_z, other, other_z;
     bool membrane;
@@ -87,9 +86,8 @@ static void test_linear(void **state)
 }
 
 /* To itself every field goes without loss. */
-static void test_itself(void **state)
+TEST(test_itself)
 {
-  (void)state;
   struct dea_grid *grid = quarter(2, 2, 3, false);
   size_t count = 3 * grid->node_count;
   double *u = calloc(count, sizeof *u), *v = calloc(count, sizeof *v);
@@ -106,9 +104,8 @@ static void test_itself(void **state)
   dea_grid_destroy(ctx, grid);
 }
 
-static void test_outside(void **state)
+TEST(test_outside)
 {
-  (void)state;
   struct dea_grid *grid = quarter(2, 2, 3, false), *other = quarter(2, 2, 3, false);
   double *u = calloc(3 * grid->node_count, sizeof *u);
   assert_non_null(u);
@@ -120,12 +117,4 @@ static void test_outside(void **state)
   dea_grid_destroy(ctx, other);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_linear),
-      cmocka_unit_test(test_itself),
-      cmocka_unit_test(test_outside),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -48,11 +48,10 @@ static bool is_slack(const json_t *at)
 
 /* Films without pre-stretch that are turned, moved and sheared in their plane: half of all that
  * they carry is compression, with electrodes at 0 V as without. */
-static void test_films_without_electrodes(void **state)
+TEST(test_films_without_electrodes)
 {
   only_nightly();
   static const char *const motions[] = {"twist", "shift", "shear"};
-  (void)state;
   for (size_t i = 0; i < sizeof motions / sizeof motions[0]; i++) {
     double ratio[2];
     for (int k = 0; k < 2; k++) {
@@ -70,9 +69,8 @@ static void test_films_without_electrodes(void **state)
 }
 
 /* Far beyond that nothing looks for its wrinkles one after the other. */
-static void test_film_twisted_far(void **state)
+TEST(test_film_twisted_far)
 {
-  (void)state;
   json_t *root = run("@/tests/cases/trust/twist.yaml", "--set 'bodies.hub.turn_z=5 degree'");
   assert_true(is_slack(point(root, 0)));
   assert_true(json_is_false(json_object_get(point(root, 0), "stable")));
@@ -84,7 +82,7 @@ static void test_film_twisted_far(void **state)
 /* What is stated is 0.9 to 3 times what meshes of half and a third of the size show
  * (docs/verification/error-bars.md): beside rows of narrow elements, whose slopes say nothing of
  * the wide ones next to them, and of a point between the nodes of a wide one. */
-static void test_stated_errors(void **state)
+TEST(test_stated_errors)
 {
   static const struct {
     const char *more, *monitor;
@@ -95,7 +93,6 @@ static void test_stated_errors(void **state)
       {"plies.film.thickness=50 um' --set plies.film.pre_stretch=1.2 --set 'bodies.hub.mass=5 g' "
        "--set 'compute.voltage={values: [2 kV]}",
        "hub", -1212.101e-6, 4}};
-  (void)state;
   for (size_t i = 0; i < sizeof of / sizeof of[0]; i++) {
     char set[200], value[30], error[30];
     snprintf(set, sizeof set, "--set '%s'", of[i].more);
@@ -131,9 +128,8 @@ static double curvature_share(const json_t *at, double V)
 
 /* A film on a stiff sheet takes all of the Maxwell stress as compression, and the sheet bears it.
  */
-static void test_film_on_a_sheet(void **state)
+TEST(test_film_on_a_sheet)
 {
-  (void)state;
   json_t *root = run("@/tests/cases/trust/unimorph-pet.yaml", "");
   assert_close(curvature_share(point(root, 0), 1e3), 1, 0, 6e-3);
   for (size_t i = 0; i < 2; i++) { // 1 and 3 kV
@@ -146,9 +142,8 @@ static void test_film_on_a_sheet(void **state)
 
 /* What is missing there is of the free edges, where the film bears nothing within its thickness: a
  * strip of four times the width, so little bent that it may bend to both sides, has all of it. */
-static void test_wide_film_on_a_sheet(void **state)
+TEST(test_wide_film_on_a_sheet)
 {
-  (void)state;
   json_t *root = run("@/tests/cases/trust/unimorph-pet.yaml",
                      "--set 'shapes.strip.x=40 mm' --set 'shapes.strip.width=80 mm' "
                      "--set 'shapes.strip.height=24 mm' --set 'shapes.root.height=28 mm' "
@@ -160,9 +155,8 @@ static void test_wide_film_on_a_sheet(void **state)
 }
 
 /* The same film on one of its own. */
-static void test_bender(void **state)
+TEST(test_bender)
 {
-  (void)state;
   json_t *root = run("@/examples/devices/bender.yaml", "--set 'compute.voltage={values: [1 kV]}'");
   assert_true(json_is_true(json_object_get(point(root, 0), "trusted")));
   assert_true(number(point(root, 0), "compression_ratio") < 0.2);
@@ -170,9 +164,8 @@ static void test_bender(void **state)
 }
 
 /* Fibres do not bear what the film before their tips has of compression. */
-static void test_fibres(void **state)
+TEST(test_fibres)
 {
-  (void)state;
   json_t *root = run("@/examples/frdea-4.yaml",
                      "-m 3d --set 'compute.voltage={values: [4 kV, 6.25 kV, 6.75 kV, 7 kV]}'");
   const double wanted[] = {0, 0.028, 0.90, 2.64}; // docs/theory/trust.md
@@ -206,9 +199,8 @@ static double pure_shear(double l2, double E, double G)
 
 /* A membrane has no stiffness across its wrinkles, and yet the width that a film takes which
  * nothing pulls. */
-static void test_membrane_that_nothing_pulls(void **state)
+TEST(test_membrane_that_nothing_pulls)
 {
-  (void)state;
   assert_close(pure_shear(1.2, 1e7, 0), 1.0025, 0, 5e-5);
   assert_close(pure_shear(1.2, 8e7, 0), 1.30, 0, 5e-4);
   json_t *root = run("@/tests/cases/trust/pure-shear.yaml", "");
@@ -223,11 +215,10 @@ static void test_membrane_that_nothing_pulls(void **state)
 }
 
 /* Right after a jump of the voltage the branches are springs; later they give way. */
-static void test_membrane_with_a_branch(void **state)
+TEST(test_membrane_with_a_branch)
 {
   struct dea_context *ctx;
   struct dea_run *run;
-  (void)state;
   assert_int_equal(command_run("run @/tests/cases/trust/pure-shear-viscous.yaml --no-figures "
                                "--force --study transient -o out.run"),
                    0);
@@ -248,7 +239,7 @@ static void test_membrane_with_a_branch(void **state)
 }
 
 /* One disc in both forms, and that disc exactly: the same law of breakdown, of the same area. */
-static void test_breakdown_of_both_forms(void **state)
+TEST(test_breakdown_of_both_forms)
 {
   static const char common[] =
       "compute: {voltage: {values: [3 kV]}}\nmaterials:\n  - name: mine\n    kind: elastomer\n"
@@ -265,7 +256,6 @@ static void test_breakdown_of_both_forms(void **state)
       "electrodes: [{ply: film, side: bottom, shape: spot, channel: ground}, "
       "{ply: film, side: top, shape: spot, channel: drive}]\nsupports: [{edge: film}]\n"};
   static const char *const models[] = {"-m axisymmetric", "-m 3d", "-m 3d"};
-  (void)state;
   double field[3], margin[3], probability[3];
   for (int i = 0; i < 3; i++) {
     char text[2000];
@@ -284,19 +274,4 @@ static void test_breakdown_of_both_forms(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_films_without_electrodes),
-      cmocka_unit_test(test_film_twisted_far),
-      cmocka_unit_test(test_stated_errors),
-      cmocka_unit_test(test_film_on_a_sheet),
-      cmocka_unit_test(test_wide_film_on_a_sheet),
-      cmocka_unit_test(test_bender),
-      cmocka_unit_test(test_fibres),
-      cmocka_unit_test(test_membrane_that_nothing_pulls),
-      cmocka_unit_test(test_membrane_with_a_branch),
-      cmocka_unit_test(test_breakdown_of_both_forms),
-  };
-  return cmocka_run_group_tests(tests, command_set_up, command_tear_down);
-}
+TESTS(command_set_up, command_tear_down)

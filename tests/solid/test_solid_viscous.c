@@ -39,9 +39,8 @@ static struct dea_point point_at(const struct dea_part_material *layer, const do
 }
 
 /* Stress against differences of the energy, tangent against those of the stress; symmetric. */
-static void test_derivatives(void **state)
+TEST(test_derivatives)
 {
-  (void)state;
   const double B[12] = {0, 0, 0, 0, 0, 0, 3e5, 2e5, 1.5e5, 2e4, -4e4, 3e4};
   const struct dea_part_material layer = {.viscous = B, .viscous_Pa = 2.2e5};
   const double d = 1e-6;
@@ -65,9 +64,8 @@ static void test_derivatives(void **state)
 
 /* A film that was held for long has A = C^-1, and no stress from its branch however short the step,
  * whatever its volume. At rest small motions cost b e : e. */
-static void test_held_film_has_no_stress(void **state)
+TEST(test_held_film_has_no_stress)
 {
-  (void)state;
   for (double step = 1e-9; step < 1e4; step *= 31) {
     struct dea_branch_step weights;
     dea_branch_step_set(&branch, step, &weights);
@@ -104,9 +102,8 @@ static void test_held_film_has_no_stress(void **state)
 
 /* Energy of the step counted from the unstretched film, with F G and the branch's own variable A,
  * is that counted from the stretched one with G A G. */
-static void test_pre_stretch_drops_out(void **state)
+TEST(test_pre_stretch_drops_out)
 {
-  (void)state;
   const double G[3] = {1.5, 1.2, 1 / 1.8};
   const double A[6] = {0.5, 0.7, 2.9, 0.1, -0.2, 0.05};
   static const int row[6] = {0, 1, 2, 1, 0, 0}, column[6] = {0, 1, 2, 2, 2, 1};
@@ -128,9 +125,8 @@ static void test_pre_stretch_drops_out(void **state)
 
 /* The weights are exact for C^-1 linear in time: one step is as good as many; so is what it
  * dissipates, but for its quadrature, from short steps to long ones. */
-static void test_one_step_is_as_good_as_many(void **state)
+TEST(test_one_step_is_as_good_as_many)
 {
-  (void)state;
   for (double step = 0.01; step < 50; step *= 3) {
     enum { PARTS = 400 };
     struct dea_branch_step whole, part;
@@ -162,9 +158,8 @@ static void test_one_step_is_as_good_as_many(void **state)
 }
 
 /* Work of the branch's stress along a motion = what it stores + what it dissipates. */
-static void test_work_is_stored_or_dissipated(void **state)
+TEST(test_work_is_stored_or_dissipated)
 {
-  (void)state;
   enum { STEPS = 4000 };
   struct dea_branch_step step;
   double C[6], from[6], to[6], A[6], F[9], next[9], P[9] = {0}, work = 0, dissipated = 0;
@@ -234,9 +229,8 @@ static void check_membrane(const struct dea_part_material *layer, const double F
 }
 
 /* A membrane: derivatives, and no stress where it was held for long. */
-static void test_flat(void **state)
+TEST(test_flat)
 {
-  (void)state;
   const double B[6] = {3e5, 2e5, 1.5e5, 0, 0, 3e4};
   const double F[6] = {1.2, 0.1, -0.2, 0.9, 0.3, 0.4};
   struct dea_part_material layer = soft_film(B);
@@ -263,9 +257,8 @@ static void compose_metric(double c11, double c22, double c12, double F[6])
 /* A film that wrinkles or is slack while its branches carry stress on axes of their own: its energy
  * is the least of all metrics that are not smaller than its place, looked for by brute force, and
  * wrinkles turn away from the axes of C for it. */
-static void test_relaxed_with_branches(void **state)
+TEST(test_relaxed_with_branches)
 {
-  (void)state;
   enum { CASES = 4, STEPS = 40 };
   const double B[6] = {3e5, 1.2e5, 2.2e5, 0, 0, 9e4}, field = 4e7;
   const double places[CASES][3] = {
@@ -309,16 +302,4 @@ static void test_relaxed_with_branches(void **state)
   assert_true(seen[DEA_WRINKLED] && seen[DEA_SLACK]);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_derivatives),
-      cmocka_unit_test(test_held_film_has_no_stress),
-      cmocka_unit_test(test_pre_stretch_drops_out),
-      cmocka_unit_test(test_one_step_is_as_good_as_many),
-      cmocka_unit_test(test_work_is_stored_or_dissipated),
-      cmocka_unit_test(test_flat),
-      cmocka_unit_test(test_relaxed_with_branches),
-  };
-  return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TESTS(NULL, NULL)

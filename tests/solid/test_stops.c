@@ -59,9 +59,8 @@ static json_t *summary(void)
 
 /* Pull-in of a soft film by the axisymmetric model, located to the digits that the traced path has,
  * from the far steps of a sweep; in the summary too. */
-static void test_pull_in_is_located(void **state)
+TEST(test_pull_in_is_located)
 {
-  (void)state;
   struct dea_device device = test_disc(test_material("ogden", 2e5, 1.7, 0), 1.6, 3.75e-3, 0.25, 0);
   assert_int_equal(run(&device, "axisymmetric", 12e3), DEA_E_NO_EQUILIBRIUM);
   const struct dea_curve *sweep = dea_result_find(result, "axisymmetric", "sweep");
@@ -84,9 +83,8 @@ static void test_pull_in_is_located(void **state)
 
 /* The annulus of a film that is hardly stretched loses its tension, and then its stability in the
  * plane: no end of a law. */
-static void test_slack_is_said(void **state)
+TEST(test_slack_is_said)
 {
-  (void)state;
   struct dea_device device = test_disc(test_yeoh(), 1.05, 7e-3, 0.47, 0);
   assert_int_equal(run(&device, "axisymmetric", 30e3), DEA_E_SLACK);
   const struct dea_curve *sweep = dea_result_find(result, "axisymmetric", "sweep");
@@ -103,9 +101,8 @@ static void test_slack_is_said(void **state)
 }
 
 /* Each kind of stop has its word, and what is no stop has none. */
-static void test_words(void **state)
+TEST(test_words)
 {
-  (void)state;
   assert_string_equal(dea_verdict_of(DEA_E_NO_EQUILIBRIUM), "pull_in");
   assert_string_equal(dea_verdict_of(DEA_E_SLACK), "slack");
   assert_string_equal(dea_verdict_of(DEA_E_DOMAIN), "law_end");
@@ -120,9 +117,8 @@ static void test_words(void **state)
 /* A thin film that is much stretched under thick, stiff electrodes: they draw it together to a
  * third, further than Newton's method goes at once. The tension along the radius is continuous over
  * the electrode's edge, whose circumference is the same on both sides. */
-static void test_stiff_electrodes_have_a_rest(void **state)
+TEST(test_stiff_electrodes_have_a_rest)
 {
-  (void)state;
   static const double thickness_m[] = {30e-6, 50e-6, 300e-6};
   for (size_t i = 0; i < 3; i++) {
     struct dea_device device =
@@ -152,9 +148,8 @@ static void test_stiff_electrodes_have_a_rest(void **state)
 
 /* A film that has no rest, here since its law ends before its pre-stretch, has a sweep without
  * points and a verdict like any other. */
-static void test_no_rest_has_a_verdict(void **state)
+TEST(test_no_rest_has_a_verdict)
 {
-  (void)state;
   static const char *const models[] = {"lumped", "axisymmetric"};
   struct dea_device device = test_disc(test_material("gent", 1e5, 3, 0), 2.5, 7e-3, 0.47, 0);
   for (size_t m = 0; m < 2; m++) {
@@ -185,9 +180,8 @@ static size_t leaps_said(void)
 /* A film that snaps past pull-in to where its law stiffens says so once, in the sweep: what else a
  * run solves on the way, to see how far the path is to go or in which steps a map is drawn, is
  * silent. */
-static void test_a_leap_is_said_once(void **state)
+TEST(test_a_leap_is_said_once)
 {
-  (void)state;
   static const char *const names[] = {"path", "operating-map", "sweep"};
   static const char *const models[] = {"lumped", "axisymmetric"};
   const struct dea_override voltage = {"compute.voltage", "{to: 4.5 kV, step: 0.75 kV}"};
@@ -206,15 +200,4 @@ static void test_a_leap_is_said_once(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pull_in_is_located),
-      cmocka_unit_test(test_slack_is_said),
-      cmocka_unit_test(test_words),
-      cmocka_unit_test(test_stiff_electrodes_have_a_rest),
-      cmocka_unit_test(test_no_rest_has_a_verdict),
-      cmocka_unit_test(test_a_leap_is_said_once),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -83,9 +83,8 @@ static double by_hand(const struct dea_override *overrides, size_t count, const 
 }
 
 /* Every mesh is that of a sweep with its refinement, and meshes are judged by monitors. */
-static void test_convergence(void **state)
+TEST(test_convergence)
 {
-  (void)state;
   static const char *const names[] = {"convergence"};
   const struct dea_override of[] = {{"compute.convergence.refinement", "[1, 1.5, 2]"},
                                     {"compute.convergence.voltage", "[1 kV, 3 kV]"}};
@@ -116,9 +115,8 @@ static void test_convergence(void **state)
 }
 
 /* A variant is the sweep of that design. */
-static void test_compare_design(void **state)
+TEST(test_compare_design)
 {
-  (void)state;
   static const char *const names[] = {"sweep", "compare-design"};
   const struct dea_override of = {"compute.compare",
                                   "[{name: thin, set: {plies.film.thickness: 80 um}}]"};
@@ -141,9 +139,8 @@ static void test_compare_design(void **state)
 }
 
 /* Bands of monitors by central differences over runs of their own. */
-static void test_uncertainty(void **state)
+TEST(test_uncertainty)
 {
-  (void)state;
   static const char *const names[] = {"sweep", "uncertainty"};
   static const struct {
     const char *key, *low, *high;
@@ -167,9 +164,8 @@ static void test_uncertainty(void **state)
 }
 
 /* Uncertainties of the law of two plies of one material: they deviate alike. */
-static void test_uncertain_laws(void **state)
+TEST(test_uncertain_laws)
 {
-  (void)state;
   static const char *const names[] = {"sweep", "uncertainty"};
   struct run run = {0};
   char text[6000];
@@ -209,9 +205,8 @@ static void test_uncertain_laws(void **state)
 }
 
 /* Limits against a number of a part: those of a sweep of that design, levels between its points. */
-static void test_operating_map(void **state)
+TEST(test_operating_map)
 {
-  (void)state;
   static const char *const names[] = {"operating-map"};
   const struct dea_override of[] = {
       {"compute.operating_map",
@@ -258,9 +253,8 @@ static void test_operating_map(void **state)
   end(&run);
 }
 
-static void test_operating_map_of_what_is_not_there(void **state)
+TEST(test_operating_map_of_what_is_not_there)
 {
-  (void)state;
   static const struct {
     const char *section, *message;
   } all[] = {
@@ -329,9 +323,8 @@ static struct dea_load_point at_one(const struct dea_override *overrides, size_t
 
 /* Two plates that end inside a film are longer by h ln 4/(2 pi) (docs/verification/coupled.md); the
  * mesh makes that somewhat more. */
-static void test_fringe(void **state)
+TEST(test_fringe)
 {
-  (void)state;
   static const struct dea_override of[] = {{"compute.solid.field", "coupled"},
                                            {"compute.solid.elements_z", "4"},
                                            {"compute.voltage", "{values: [10 V]}"}};
@@ -347,9 +340,8 @@ static void test_fringe(void **state)
 }
 
 /* The side that is asked for; the other one is its mirror image. */
-static void test_side(void **state)
+TEST(test_side)
 {
-  (void)state;
   double z_m[2], charge_C;
   for (int back = 0; back < 2; back++) {
     const struct dea_override of[] = {{"compute.solid.buckling_branch", back ? "back" : "fibres"},
@@ -363,17 +355,4 @@ static void test_side(void **state)
   assert_close(z_m[1], -z_m[0], 1e-4, 0);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_convergence),
-      cmocka_unit_test(test_compare_design),
-      cmocka_unit_test(test_uncertainty),
-      cmocka_unit_test(test_uncertain_laws),
-      cmocka_unit_test(test_operating_map),
-      cmocka_unit_test(test_fringe),
-      cmocka_unit_test(test_side),
-      cmocka_unit_test(test_operating_map_of_what_is_not_there),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

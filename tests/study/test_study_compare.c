@@ -46,9 +46,8 @@ static void tear_down_result(void)
   dea_design_destroy(ctx, design);
 }
 
-static void test_changes_reach_the_designs(void **state)
+TEST(test_changes_reach_the_designs)
 {
-  (void)state;
   set_up_result(GOOD_DESIGN COMPARE);
   const struct dea_design_variant *v = design->compute.compare;
   assert_int_equal(design->compute.compare_count, 3);
@@ -67,9 +66,8 @@ static void test_changes_reach_the_designs(void **state)
 static const char *const only[] = {"compare-design"};
 
 /* A film of twice the thickness does at twice the voltage what this one does. */
-static void test_designs_stand_beside_each_other(void **state)
+TEST(test_designs_stand_beside_each_other)
 {
-  (void)state;
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   for (int alone = 0; alone < 2;
        alone++) { // with the sweep, which is not computed twice, or without
@@ -95,9 +93,8 @@ static void test_designs_stand_beside_each_other(void **state)
 }
 
 /* The entry that changes nothing names the design itself; a file is found beside the first one. */
-static void test_other_files(void **state)
+TEST(test_other_files)
 {
-  (void)state;
   char text[4000];
   FILE *file = fopen(in_folder("eight.yaml"), "w");
   assert_non_null(file);
@@ -123,9 +120,8 @@ static void test_other_files(void **state)
 }
 
 /* The same disc made of plies, beside itself. */
-static void test_other_form(void **state)
+TEST(test_other_form)
 {
-  (void)state;
   char text[4000];
   FILE *file = fopen(in_folder("layers.yaml"), "w");
   assert_non_null(file);
@@ -156,9 +152,8 @@ static void test_other_form(void **state)
   tear_down_result();
 }
 
-static void test_errors_have_their_places(void **state)
+TEST(test_errors_have_their_places)
 {
-  (void)state;
   static const struct {
     const char *list, *part;
     size_t line; // after the design's
@@ -190,9 +185,8 @@ static void test_errors_have_their_places(void **state)
   dea_finding_clear(ctx);
 }
 
-static void test_is_kept(void **state)
+TEST(test_is_kept)
 {
-  (void)state;
   struct dea_run *run;
   char *text;
   static const struct dea_override svg = {"report.figures", "[svg]"};
@@ -246,22 +240,9 @@ static void compare_once(struct dea_context *failing)
   dea_design_destroy(failing, mine);
 }
 
-static void test_failing_memory(void **state)
+TEST(test_failing_memory)
 {
-  (void)state;
   assert_true(failing_each(compare_once) > 50);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_changes_reach_the_designs),
-      cmocka_unit_test(test_designs_stand_beside_each_other),
-      cmocka_unit_test(test_other_files),
-      cmocka_unit_test(test_other_form),
-      cmocka_unit_test(test_errors_have_their_places),
-      cmocka_unit_test(test_is_kept),
-      cmocka_unit_test(test_failing_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -22,9 +22,8 @@ static double value(double refinement, double order)
   return 3 + 0.2 * exp2(-order * refinement);
 }
 
-static void test_known_order(void **state)
+TEST(test_known_order)
 {
-  (void)state;
   static const double n[][3] = {{1, 2, 3}, {1, 1.5, 2}, {1, 1.5, 3}, {1, 3, 3.2}};
   static const double orders[] = {0.6, 1, 1.5, 2};
   for (size_t i = 0; i < sizeof n / sizeof n[0]; i++) {
@@ -44,9 +43,8 @@ static void test_known_order(void **state)
 }
 
 /* An order of 4 is not believed, nor one of 0.1: errors larger and smaller than true ones. */
-static void test_order_is_limited(void **state)
+TEST(test_order_is_limited)
 {
-  (void)state;
   static const double n[] = {1, 2, 3};
   double f[3], order, limit, errors[3];
   for (int m = 0; m < 3; m++) {
@@ -64,9 +62,8 @@ static void test_order_is_limited(void **state)
   assert_close(limit, f[2] - (f[1] - f[2]) / (sqrt(2) - 1), 1e-12, 0); // of order 1/2
 }
 
-static void test_no_order(void **state)
+TEST(test_no_order)
 {
-  (void)state;
   static const double n[] = {1, 2, 3, 4};
   double order, limit, errors[4];
   const double zigzag[] = {1.3, 1.1, 1.0, 1.02};
@@ -186,9 +183,8 @@ static const struct dea_convergence_row *row_of(const struct dea_convergence *c,
   return NULL;
 }
 
-static void test_meshes_are_judged(void **state)
+TEST(test_meshes_are_judged)
 {
-  (void)state;
   struct dea_convergence *c;
   struct dea_text verdict = {.ctx = ctx};
   set_up_result("{refinement: [1, 2, 3, 4], voltage: [4 kV, 6 kV, 8 kV]}");
@@ -217,9 +213,8 @@ static void test_meshes_are_judged(void **state)
 }
 
 /* What is written comes back to the bit, and says the same. */
-static void test_is_kept(void **state)
+TEST(test_is_kept)
 {
-  (void)state;
   struct dea_run *run;
   char *text, *again;
   set_up_result("{voltage: [6 kV], tolerance: 0.03}"); // three meshes by default
@@ -263,9 +258,8 @@ static void test_is_kept(void **state)
   tear_down_result();
 }
 
-static void test_only_where_asked(void **state)
+TEST(test_only_where_asked)
 {
-  (void)state;
   static const char *const wrong[] = {"convergense"}, *const force[] = {"force"};
   set_up_result("null");
   assert_int_equal(dea_study_run(ctx, &fake, NULL, 0, result), DEA_OK);
@@ -312,21 +306,11 @@ static void judge_once(struct dea_context *failing)
   dea_result_destroy(failing, mine);
 }
 
-static void test_failing_memory(void **state)
+TEST(test_failing_memory)
 {
-  (void)state;
   set_up_result("{refinement: [1, 2], voltage: [6 kV]}");
   assert_true(failing_each(judge_once) > 10);
   tear_down_result();
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_known_order),    cmocka_unit_test(test_order_is_limited),
-      cmocka_unit_test(test_no_order),       cmocka_unit_test(test_meshes_are_judged),
-      cmocka_unit_test(test_is_kept),        cmocka_unit_test(test_only_where_asked),
-      cmocka_unit_test(test_failing_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -108,9 +108,8 @@ static void end(struct dea_design *design, struct dea_device *device, struct dea
   dea_design_destroy(ctx, design);
 }
 
-static void test_depths_and_preloads(void **state)
+TEST(test_depths_and_preloads)
 {
-  (void)state;
   static const struct dea_override sets[] = {
       {"compute.voltage", "{from: 0 kV, to: 2 kV, step: 1 kV}"},
       {"compute.force",
@@ -153,9 +152,8 @@ static void test_depths_and_preloads(void **state)
 }
 
 /* A tip that has passed what it was pressed against, and a model that knows none. */
-static void test_nothing_touched(void **state)
+TEST(test_nothing_touched)
 {
-  (void)state;
   static const struct dea_override sets[] = {
       {"compute.voltage", "{to: 2 kV, step: 1 kV}"},
       {"compute.force", "{tip: flat, radius: 2 mm, side: back, depth: [-1 mm, 1 mm, 3 mm]}"}};
@@ -179,9 +177,8 @@ static void test_nothing_touched(void **state)
 }
 
 /* Without the section nothing is computed. */
-static void test_nothing_asked(void **state)
+TEST(test_nothing_asked)
 {
-  (void)state;
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
@@ -193,9 +190,8 @@ static void test_nothing_asked(void **state)
 
 /* A tip goes on from the depth before where the next one is deeper; the numbers are those of a
  * model of each depth's own. */
-static void test_deeper(void **state)
+TEST(test_deeper)
 {
-  (void)state;
   static const struct dea_override sets[] = {
       {"compute.voltage", "{from: 0 kV, to: 2 kV, step: 1 kV}"},
       {"compute.force", "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, 2 mm, 3 mm, 2 mm], "
@@ -305,9 +301,8 @@ static const char *const usual[3] = {TO_8_KV, "{" ONE_MM "}", NULL};
 
 /* Up to the voltage where tension is lost few points are computed, beyond it all, as they come in a
  * sweep of all. */
-static void test_interpolated(void **state)
+TEST(test_interpolated)
 {
-  (void)state;
   static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
   struct dea_design *design;
   struct dea_device *device;
@@ -348,9 +343,8 @@ static void test_interpolated(void **state)
 }
 
 /* With a tolerance of 0, with bands, of few voltages, of falling ones: every one is computed. */
-static void test_all_computed(void **state)
+TEST(test_all_computed)
 {
-  (void)state;
   static const char *const cases[][3] = {
       {TO_8_KV, "{" ONE_MM ", tolerance: 0}", NULL},
       {TO_8_KV, "{" ONE_MM "}", "{parameters: [{name: film.thickness, std: 1 um}]}"},
@@ -376,9 +370,8 @@ static void test_all_computed(void **state)
 }
 
 /* The way back is computed voltage by voltage from where the way up has ended. */
-static void test_back(void **state)
+TEST(test_back)
 {
-  (void)state;
   static const char *const settings[3] = {"{from: 0 kV, to: 8 kV, step: 0.1 kV, back: yes}",
                                           "{" ONE_MM "}", NULL};
   struct dea_design *design;
@@ -398,9 +391,8 @@ static void test_back(void **state)
 }
 
 /* A line that stops has its points up to there, and says why. */
-static void test_stops(void **state)
+TEST(test_stops)
 {
-  (void)state;
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
@@ -426,9 +418,8 @@ static void test_stops(void **state)
 }
 
 /* Where a state between others is not found, all are computed one after the other. */
-static void test_hidden(void **state)
+TEST(test_hidden)
 {
-  (void)state;
   struct dea_design *design;
   struct dea_device *device;
   struct dea_result *result;
@@ -450,9 +441,8 @@ static bool interrupted(void *user)
 }
 
 /* An interrupted line has what was computed, and nothing between. */
-static void test_interrupted(void **state)
+TEST(test_interrupted)
 {
-  (void)state;
   static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
   struct dea_design *design;
   struct dea_device *device;
@@ -483,9 +473,8 @@ static void assert_same_point(const struct dea_load_point *one, const struct dea
 
 /* Lines in processes of their own have the points of lines one after the other, up to the first
  * that stops; only the tip is pressed in here. */
-static void test_beside(void **state)
+TEST(test_beside)
 {
-  (void)state;
   static const char *const settings[3] = {
       TO_8_KV,
       "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, 2 mm, 0.5 mm, 3 mm], preload: [180 mN]}",
@@ -516,20 +505,4 @@ static void test_beside(void **state)
   }
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_depths_and_preloads),
-      cmocka_unit_test(test_deeper),
-      cmocka_unit_test(test_nothing_asked),
-      cmocka_unit_test(test_nothing_touched),
-      cmocka_unit_test(test_interpolated),
-      cmocka_unit_test(test_all_computed),
-      cmocka_unit_test(test_back),
-      cmocka_unit_test(test_stops),
-      cmocka_unit_test(test_hidden),
-      cmocka_unit_test(test_interrupted),
-      cmocka_unit_test(test_beside),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -149,9 +149,8 @@ static double point(const struct ran *r, size_t row, const char *key)
 }
 
 /* The line at 0 V is whole; that at 3 kV stops, says why, and that at 1 kV has its turn. */
-static void test_lines(void **state)
+TEST(test_lines)
 {
-  (void)state;
   struct dea_device *device = spring_device();
   struct ran r = run(device,
                      "{body: hub, from: 1 mm, to: 3 mm, steps: 4, back: yes,"
@@ -188,9 +187,8 @@ static void test_lines(void **state)
   dea_device_destroy(ctx, device);
 }
 
-static void test_force_and_pressure(void **state)
+TEST(test_force_and_pressure)
 {
-  (void)state;
   struct dea_device *device = spring_device();
   struct ran r =
       run(device, "{body: hub, force_from: 0 N, force_to: 1 N, steps: 2, voltage: [1 kV]}", DEA_OK);
@@ -206,7 +204,7 @@ static void test_force_and_pressure(void **state)
   dea_device_destroy(ctx, device);
 }
 
-static void test_bad_keys(void **state)
+TEST(test_bad_keys)
 {
   static const struct {
     const char *loading, *message;
@@ -220,7 +218,6 @@ static void test_bad_keys(void **state)
       {"{body: hub, turn_from: 0 degree, turn_to: 1 degree}", "need direction"},
       {"{body: hub, from: 0 mm, to: 1 mm}", "only designs with plies"},
   };
-  (void)state;
   for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
     const struct dea_override set = {"compute.loading", bad[i].loading};
     struct dea_design *design = NULL;
@@ -237,9 +234,8 @@ static void test_bad_keys(void **state)
 }
 
 /* A body that is not there, and pressures. */
-static void test_bad_device(void **state)
+TEST(test_bad_device)
 {
-  (void)state;
   struct dea_device *device = spring_device();
   const struct dea_override set = {"compute.loading", "{body: hup, from: 0 mm, to: 1 mm}"};
   struct dea_design *design;
@@ -253,13 +249,4 @@ static void test_bad_device(void **state)
   dea_device_destroy(ctx, device);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_lines),
-      cmocka_unit_test(test_force_and_pressure),
-      cmocka_unit_test(test_bad_keys),
-      cmocka_unit_test(test_bad_device),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

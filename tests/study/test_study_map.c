@@ -67,9 +67,8 @@ static void assert_row(const char *model, const struct dea_result_table *table, 
   end(&r);
 }
 
-static void test_limits_are_those_of_the_paths(void **state)
+TEST(test_limits_are_those_of_the_paths)
 {
-  (void)state;
   skip_sanitized();
   static const char *const models[] = {"lumped", "axisymmetric"};
   for (size_t m = 0; m < 2; m++) {
@@ -97,9 +96,8 @@ static void test_limits_are_those_of_the_paths(void **state)
 }
 
 /* Without stiff electrodes the film knows the field only: voltages go as its thickness. */
-static void test_limits_grow_with_the_thickness(void **state)
+TEST(test_limits_grow_with_the_thickness)
 {
-  (void)state;
   struct run r = run("lumped", map_only, 1, NULL, 0);
   const struct dea_result_table *table =
       dea_result_find_table(r.result, "lumped", "operating-map", "film_thickness");
@@ -121,9 +119,8 @@ static void test_limits_grow_with_the_thickness(void **state)
   end(&r);
 }
 
-static void test_figures(void **state)
+TEST(test_figures)
 {
-  (void)state;
   struct run r = run("lumped", map_only, 1, NULL, 0);
   for (size_t f = 0; f < 2; f++) { // the last is of other numbers
     const struct dea_figure *figure = &dea_operating_map_figures[f];
@@ -148,9 +145,8 @@ static void test_figures(void **state)
 
 /* The load lines hold the tips of the free actuator with no force; their work is the difference of
  * the potential energies of both ends, and none is above the largest force of the sweep. */
-static void test_work_of_the_load_lines(void **state)
+TEST(test_work_of_the_load_lines)
 {
-  (void)state;
   static const char *const names[] = {"sweep", "load-line"};
   static const struct dea_override quarters = {"compute.voltage",
                                                "{values: [0 kV, 1.5 kV, 3 kV, 4.5 kV, 6 kV]}"};
@@ -184,9 +180,8 @@ static void test_work_of_the_load_lines(void **state)
 }
 
 /* No design asks for them; a model without load line says so. */
-static void test_by_name_only(void **state)
+TEST(test_by_name_only)
 {
-  (void)state;
   static const char *const line_only[] = {"load-line"};
   struct run r = run("lumped", NULL, 0, NULL, 0);
   assert_int_equal(r.result->table_count, 0);
@@ -198,9 +193,8 @@ static void test_by_name_only(void **state)
 }
 
 /* What the varied designs are told stays with them. */
-static void test_varied_designs_leave_no_findings(void **state)
+TEST(test_varied_designs_leave_no_findings)
 {
-  (void)state;
   dea_finding_clear(ctx);
   size_t before = 0, after = 0;
   static const struct dea_override tight = {"electrodes", "{diameter: 17 mm unstretched}"};
@@ -218,15 +212,4 @@ static void test_varied_designs_leave_no_findings(void **state)
   end(&r);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_limits_are_those_of_the_paths),
-      cmocka_unit_test(test_limits_grow_with_the_thickness),
-      cmocka_unit_test(test_figures),
-      cmocka_unit_test(test_work_of_the_load_lines),
-      cmocka_unit_test(test_by_name_only),
-      cmocka_unit_test(test_varied_designs_leave_no_findings),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -67,9 +67,8 @@ static void find(const char *model, double (*out)[COLUMNS])
 
 /* Units. With s times all moduli and the permittivity nothing moves, and tension and energy are s
  * times as large; with s times all lengths and the voltage the device is the same, larger. */
-static void test_units(void **state)
+TEST(test_units)
 {
-  (void)state;
   for (int m = 0; m < 2; m++) {
     double e[KEYS][COLUMNS];
     find(models[m], e);
@@ -83,9 +82,8 @@ static void test_units(void **state)
 }
 
 /* The voltage comes in by eps V^2 only; by that the energy's slope is minus half of C V^2. */
-static void test_voltage(void **state)
+TEST(test_voltage)
 {
-  (void)state;
   for (int m = 0; m < 2; m++) {
     double slopes[1][COLUMNS], values[COLUMNS], e[KEYS][COLUMNS];
     find(models[m], e);
@@ -97,9 +95,8 @@ static void test_voltage(void **state)
 }
 
 /* Taylor's remainder of an answer by a number that the design file has in its own unit. */
-static void test_taylor(void **state)
+TEST(test_taylor)
 {
-  (void)state;
   for (int m = 0; m < 2; m++) {
     double slope, base, left[4];
     const char *const key = "pre_stretch";
@@ -120,9 +117,8 @@ static void test_taylor(void **state)
   }
 }
 
-static void test_unknown_key(void **state)
+TEST(test_unknown_key)
 {
-  (void)state;
   const char *const whole = "fibres.count";
   double value, slope;
   find_columns();
@@ -130,13 +126,4 @@ static void test_unknown_key(void **state)
   assert_non_null(strstr(dea_context_message(ctx), "'fibres.count' is no number of the design"));
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_units),
-      cmocka_unit_test(test_voltage),
-      cmocka_unit_test(test_taylor),
-      cmocka_unit_test(test_unknown_key),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

@@ -218,9 +218,8 @@ static const char *text(const struct dea_result_table *table, size_t row, const 
 
 /* Each voltage has its stable roots, the lower one in energy first, in two branches: one that comes
  * from 0 V, one that a push finds and that ends on the way down. */
-static void test_two_wells(void **state)
+TEST(test_two_wells)
 {
-  (void)state;
   struct ran r = run("{voltage: [3 kV, 0.5 kV, 2 kV], push: [10 um, 300 um], modes: 2}");
   static const struct {
     double voltage_V;
@@ -251,9 +250,8 @@ static void test_two_wells(void **state)
 }
 
 /* What a sensor reads over the states, and their points with the flag that there are several. */
-static void test_bands(void **state)
+TEST(test_bands)
 {
-  (void)state;
   struct ran r = run("{voltage: [0.5 kV, 2 kV], push: [300 um]}");
   assert_int_equal(r.bands->row_count, 2);
   assert_close(number(r.bands, 0, "states"), 1, 0, 0);
@@ -274,9 +272,8 @@ static void test_bands(void **state)
 }
 
 /* Pushes that are too small come back; without any only the sweep's states are there. */
-static void test_nothing_found(void **state)
+TEST(test_nothing_found)
 {
-  (void)state;
   struct ran r = run("{voltage: [2 kV, 3 kV], push: [10 um]}");
   assert_int_equal(r.found->row_count, 2);
   end(&r);
@@ -288,9 +285,8 @@ static void test_nothing_found(void **state)
 
 /* On finer meshes states follow the roots of those meshes, until there the upper one is lost to the
  * other. */
-static void test_finer_meshes(void **state)
+TEST(test_finer_meshes)
 {
-  (void)state;
   struct ran r = run("{voltage: [3 kV], push: [300 um], refinement: [2, 3, 4.9]}");
   const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "meshes");
   assert_non_null(t);
@@ -314,9 +310,8 @@ static void test_finer_meshes(void **state)
 
 /* Finer at the fibre tips only: the same meshes by another number, which the design may begin with.
  */
-static void test_finer_tips(void **state)
+TEST(test_finer_tips)
 {
-  (void)state;
   struct ran r = run("{voltage: [3 kV], push: [300 um], refinement: [2], refined: tips}");
   const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "meshes");
   assert_int_equal(t->row_count, 4);
@@ -341,9 +336,8 @@ static void test_finer_tips(void **state)
 
 /* The film as a membrane at the voltages of the search, on each mesh as far as it goes; it is no
  * state. Not where the design does not want it. */
-static void test_relaxed(void **state)
+TEST(test_relaxed)
 {
-  (void)state;
   struct ran r = run("{voltage: [2 kV, 3 kV], push: [300 um], refinement: [2]}");
   const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "relaxed");
   assert_non_null(t);
@@ -373,9 +367,8 @@ static void test_relaxed(void **state)
 }
 
 /* A device without a centre is drawn by its farthest place. */
-static void test_figure_without_centre(void **state)
+TEST(test_figure_without_centre)
 {
-  (void)state;
   without_centre = true;
   struct ran r = run("{voltage: [3 kV], push: [300 um], modes: 1, relaxed: no}");
   without_centre = false;
@@ -399,13 +392,13 @@ static void test_figure_without_centre(void **state)
 }
 
 /* Without the ability the states of the design's mesh are all; meshes have to rise. */
-static void test_no_finer_meshes(void **state)
+TEST(test_no_finer_meshes)
 {
-  (void)state;
   const struct dea_override set = {"compute.states", "{refinement: [1, 3, 2]}"};
   struct dea_design *design;
   struct dea_device *device;
   size_t count;
+  dea_finding_clear(ctx);
   assert_int_equal(read_and_build(ctx, GOOD_DESIGN, &set, 1, &design, &device), DEA_E_DESIGN);
   const struct dea_finding *found = dea_finding_get(ctx, &count);
   assert_int_equal(count, 2);
@@ -417,9 +410,8 @@ static void test_no_finer_meshes(void **state)
 
 /* Wells that mirror each other, of one energy to the bit, beside the unstable state between them.
  */
-static void test_mirrored(void **state)
+TEST(test_mirrored)
 {
-  (void)state;
   static const double x[] = {1, -1, 0};
   b = 0;
   struct ran r = run("{voltage: [2 kV], push: [300 um], modes: 1}");
@@ -435,9 +427,8 @@ static void test_mirrored(void **state)
 }
 
 /* A model that knows one state says so. */
-static void test_not_able(void **state)
+TEST(test_not_able)
 {
-  (void)state;
   static const char *const names[] = {"states"};
   struct ran r;
   assert_int_equal(read_and_build(ctx, GOOD_DESIGN, NULL, 0, &r.design, &r.device), DEA_OK);
@@ -448,14 +439,4 @@ static void test_not_able(void **state)
   end(&r);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_two_wells),       cmocka_unit_test(test_bands),
-      cmocka_unit_test(test_nothing_found),   cmocka_unit_test(test_finer_meshes),
-      cmocka_unit_test(test_no_finer_meshes), cmocka_unit_test(test_finer_tips),
-      cmocka_unit_test(test_mirrored),        cmocka_unit_test(test_not_able),
-      cmocka_unit_test(test_relaxed),         cmocka_unit_test(test_figure_without_centre),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

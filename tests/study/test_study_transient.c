@@ -57,9 +57,8 @@ static void end(struct dea_context *context, struct run *run)
 
 #define PULSES "drive: {waveform: {kind: square, high: 3 kV, frequency: 2 Hz, cycles: 4}}\n"
 
-static void test_pulses(void **state)
+TEST(test_pulses)
 {
-  (void)state;
   struct run run = run_text(ctx, DESIGN PULSES);
   assert_int_equal(run.status, DEA_OK);
   const struct dea_load_point *p = run.curve->points;
@@ -104,9 +103,8 @@ static void test_pulses(void **state)
 
 /* Voltage after voltage at a frequency whose cycles end at times that numbers round: what jumps at
  * the end of a cycle is none of it. */
-static void test_stairs(void **state)
+TEST(test_stairs)
 {
-  (void)state;
   struct run run = run_text(
       ctx, DESIGN "drive: {waveform: {kind: staircase, values: [0.2 kV, 0.4 kV, 0.6 kV, 0.8 kV,\n"
                   "  1 kV, 1.2 kV, 1.4 kV, 1.6 kV], frequency: 3 Hz, cycles: 1}}\n");
@@ -140,9 +138,8 @@ static void listen(void *user, const char *what, size_t done, size_t total)
 }
 
 /* A waveform without corners is told of on its way too. */
-static void test_progress(void **state)
+TEST(test_progress)
 {
-  (void)state;
   struct told told = {0};
   dea_context_set_progress(ctx, listen, &told);
   struct run run = run_text(
@@ -154,9 +151,8 @@ static void test_progress(void **state)
 }
 
 /* Corners that are one but for rounding, here one of the waveform and the end, take no step. */
-static void test_close_corners(void **state)
+TEST(test_close_corners)
 {
-  (void)state;
   struct run run = run_text(
       ctx, DESIGN "drive: {waveform: {kind: square, high: 1 kV, frequency: 10 Hz, cycles: 2}}\n"
                   "compute: {transient: {until: 0.15000000000000005 s}}\n");
@@ -170,9 +166,8 @@ static void test_close_corners(void **state)
 }
 
 /* A looser and a tighter tolerance agree as they promise. */
-static void test_tolerance(void **state)
+TEST(test_tolerance)
 {
-  (void)state;
   static const char *const more[2] = {"compute: {transient: {tolerance: 0.001}}\n",
                                       "compute: {transient: {tolerance: 0.0000001}}\n"};
   double edge_m[2];
@@ -188,9 +183,8 @@ static void test_tolerance(void **state)
   assert_close(edge_m[0], edge_m[1], 1e-2, 0);
 }
 
-static void test_interval_end_and_supply(void **state)
+TEST(test_interval_end_and_supply)
 {
-  (void)state;
   struct run run = run_text(
       ctx, DESIGN "drive: {waveform: {kind: step, to: 2 kV, duration: 1 s}, slew_limit: 1 kV/s,\n"
                   "        series_resistance: 100 Mohm, current_limit: 20 nA}\n"
@@ -210,9 +204,8 @@ static void test_interval_end_and_supply(void **state)
 
 /* More voltage than the film stands in the long run: what came before stays, and it is said when it
  * ended; with inertia it goes on. */
-static void test_pull_in(void **state)
+TEST(test_pull_in)
 {
-  (void)state;
 #define HOLD "drive: {waveform: {kind: constant, voltage: 2.65 kV, duration: 20 s}}\n"
   struct run run = run_text(ctx, DESIGN HOLD "compute: {coverage: 0.01}\n");
   assert_int_equal(run.status, DEA_E_NO_EQUILIBRIUM);
@@ -224,9 +217,8 @@ static void test_pull_in(void **state)
   end(ctx, &run);
 }
 
-static void test_interrupt(void **state)
+TEST(test_interrupt)
 {
-  (void)state;
   volatile sig_atomic_t flag = 1;
   dea_context_set_interrupt(ctx, &flag);
   struct run run = run_text(ctx, DESIGN PULSES);
@@ -237,9 +229,8 @@ static void test_interrupt(void **state)
 }
 
 /* Without a waveform the study cannot be asked for; a model without time says so. */
-static void test_not_for_all(void **state)
+TEST(test_not_for_all)
 {
-  (void)state;
   static const char *const names[] = {"transient"};
   struct run run = run_text(ctx, DESIGN);
   assert_int_equal(run.status, DEA_E_DESIGN);
@@ -267,20 +258,9 @@ static dea_status run_short(struct dea_context *context)
   return run.status;
 }
 
-static void test_each_allocation(void **state)
+TEST(test_each_allocation)
 {
-  (void)state;
   assert_true(failing_ends(run_short, DEA_OK) > 10);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_pulses),      cmocka_unit_test(test_stairs),
-      cmocka_unit_test(test_progress),    cmocka_unit_test(test_close_corners),
-      cmocka_unit_test(test_tolerance),   cmocka_unit_test(test_interval_end_and_supply),
-      cmocka_unit_test(test_pull_in),     cmocka_unit_test(test_interrupt),
-      cmocka_unit_test(test_not_for_all), cmocka_unit_test(test_each_allocation),
-  };
-  return cmocka_run_group_tests(tests, context_set_up, context_tear_down);
-}
+TESTS(context_set_up, context_tear_down)

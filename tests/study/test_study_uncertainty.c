@@ -54,9 +54,8 @@ static const struct dea_curve *run_sweep(const char *model)
 
 /* At rest C goes with l^4 / H, the electrode being given unstretched: 2 % and 4 x 0.01/1.5, of
  * opposite sign. */
-static void test_capacitance_at_rest(void **state)
+TEST(test_capacitance_at_rest)
 {
-  (void)state;
   set_up_result(GOOD_DESIGN GIVEN);
   const struct dea_curve *sweep = run_sweep("lumped");
   assert_non_null(sweep->std);
@@ -84,9 +83,8 @@ static char *law_design(const char *correlations)
 }
 
 /* All moduli larger by a share r are a voltage that is smaller by r/2. */
-static void test_law_goes_as_voltage(void **state)
+TEST(test_law_goes_as_voltage)
 {
-  (void)state;
   static const char *const models[] = {"lumped", "axisymmetric"};
   for (int m = 0; m < 2; m++) {
     set_up_result(law_design("[-1, 1, -1]")); // c2 is negative
@@ -111,9 +109,8 @@ static void test_law_goes_as_voltage(void **state)
 }
 
 /* Independent parameters: less than those that go together, and c1 the largest of them. */
-static void test_correlations_count(void **state)
+TEST(test_correlations_count)
 {
-  (void)state;
   set_up_result(law_design("[-1, 1, -1]"));
   const double together = run_sweep("lumped")->std[2].electrode_stretch;
   const struct dea_result_table *table =
@@ -139,9 +136,8 @@ static void test_correlations_count(void **state)
 
 /* Where a film that is a standard uncertainty thinner has gone slack the band is that of the
  * thicker one alone, and that is said. */
-static void test_other_side_alone(void **state)
+TEST(test_other_side_alone)
 {
-  (void)state;
   static const char steps[] = "compute:\n  voltage: {from: 0 kV, to: 16 kV, step: 0.1 kV}\n";
   static const char given[] = "  uncertainty: {parameters: [{name: film.thickness, std: 3 um}]}\n";
   char text[4000], thick[4000];
@@ -181,9 +177,8 @@ static void test_other_side_alone(void **state)
 }
 
 /* Nothing uncertain, no band; and none from what the section does not know. */
-static void test_nothing_and_errors(void **state)
+TEST(test_nothing_and_errors)
 {
-  (void)state;
   static const struct {
     const char *section, *part;
   } bad[] = {
@@ -228,9 +223,8 @@ static void test_nothing_and_errors(void **state)
 }
 
 /* The band is in results.h5, in the CSV, which reads as a measurement, and in the summary. */
-static void test_is_kept(void **state)
+TEST(test_is_kept)
 {
-  (void)state;
   struct dea_run *run;
   struct dea_measurement *measured;
   char *text;
@@ -286,19 +280,9 @@ static void run_once(struct dea_context *failing)
   dea_design_destroy(failing, mine);
 }
 
-static void test_failing_memory(void **state)
+TEST(test_failing_memory)
 {
-  (void)state;
   assert_true(failing_each(run_once) > 50);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_capacitance_at_rest), cmocka_unit_test(test_law_goes_as_voltage),
-      cmocka_unit_test(test_correlations_count),  cmocka_unit_test(test_other_side_alone),
-      cmocka_unit_test(test_nothing_and_errors),  cmocka_unit_test(test_is_kept),
-      cmocka_unit_test(test_failing_memory),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -132,9 +132,8 @@ static void release(void)
   dea_design_destroy(ctx, design);
 }
 
-static void test_points(void **state)
+TEST(test_points)
 {
-  (void)state;
   compute();
   const struct dea_curve *curve = dea_result_find(result, "spring", "modal");
   assert_non_null(curve);
@@ -166,9 +165,8 @@ static void test_points(void **state)
 
 /* The terminal shows what moves at the lowest frequency and at the peak of a mass on a spring,
  * which is at f^2 = (1 - 2 D^2) f0^2 and 1 / (2 D sqrt(1 - D^2)) times as high: D = 0.1. */
-static void test_peaks(void **state)
+TEST(test_peaks)
 {
-  (void)state;
   compute();
   const struct dea_result_table *table =
       dea_result_find_table(result, "spring", "frequency", "peaks");
@@ -216,9 +214,8 @@ static void check_phases(void)
 }
 
 /* Curves, shapes and figures of a run folder, there and back; and gone when it is cleared. */
-static void test_files(void **state)
+TEST(test_files)
 {
-  (void)state;
   static const char *const names[] = {"spring_modal.csv",
                                       "spring_frequency.csv",
                                       "fields/spring_modal_0000.vtu",
@@ -252,9 +249,8 @@ static void test_files(void **state)
   release();
 }
 
-static void test_models_without_mass(void **state)
+TEST(test_models_without_mass)
 {
-  (void)state;
   with_mass = false;
   compute();
   assert_null(dea_result_find(result, "spring", "modal"));
@@ -264,9 +260,8 @@ static void test_models_without_mass(void **state)
   with_mass = true;
 }
 
-static void test_wrong_range(void **state)
+TEST(test_wrong_range)
 {
-  (void)state;
   static const struct dea_override wrong = {"compute.frequency",
                                             "{bias: [1 kV], from: 1 kHz, to: 10 Hz}"};
   struct dea_design *bad;
@@ -283,12 +278,4 @@ static void test_wrong_range(void **state)
   dea_finding_clear(ctx);
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_points),      cmocka_unit_test(test_peaks),
-      cmocka_unit_test(test_files),       cmocka_unit_test(test_models_without_mass),
-      cmocka_unit_test(test_wrong_range),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)

@@ -22,9 +22,8 @@ static struct dea_waveform *make(const char *text)
 }
 
 /* Corners of 100 000 pulses are where they belong, to the last bit, and the jump is there. */
-static void test_corners_do_not_drift(void **state)
+TEST(test_corners_do_not_drift)
 {
-  (void)state;
   struct dea_waveform *w =
       make("kind: square\nlow: 1 kV\nhigh: 7 kV\nfrequency: 0.3 Hz\nduty: 40 %\ncycles: 100000\n");
   double t = 0, f = 0.3, duty = 0.4;
@@ -54,9 +53,8 @@ static void test_corners_do_not_drift(void **state)
 }
 
 /* The paper's protocol: 9 voltages, 15 cycles each, 0.5 Hz. */
-static void test_staircase(void **state)
+TEST(test_staircase)
 {
-  (void)state;
   struct dea_waveform *w =
       make("kind: staircase\nfrequency: 0.5 Hz\npause: 1 s\nrise_time: 10 ms\n");
   struct dea_wave_cycle cycle;
@@ -79,9 +77,8 @@ static void test_staircase(void **state)
   dea_waveform_destroy(w);
 }
 
-static void test_every_kind(void **state)
+TEST(test_every_kind)
 {
-  (void)state;
   static const struct {
     const char *text;
     double time_s, value_V, end_s;
@@ -117,9 +114,8 @@ static void test_every_kind(void **state)
 /* Lowest and highest voltage and the steepest slope of every kind, beside what 400 looks a cycle
  * find of the first cycles; and of so many cycles, or of bursts so far apart, that nobody looks at
  * all. */
-static void test_extent(void **state)
+TEST(test_extent)
 {
-  (void)state;
   static const struct {
     const char *text;
     double lowest_V, highest_V, slope_V_per_s;
@@ -163,9 +159,8 @@ static void test_extent(void **state)
 }
 
 /* The phase of a chirp turns with the frequency that it should have at each time. */
-static void test_chirp_frequency(void **state)
+TEST(test_chirp_frequency)
 {
-  (void)state;
   struct dea_waveform *w =
       make("kind: chirp\namplitude: 1 kV\nfrom: 1 Hz\nto: 100 Hz\nduration: 10 s\n");
   size_t turns = 0;
@@ -188,9 +183,8 @@ static void write_text(const char *name, const char *text)
   fclose(file);
 }
 
-static void test_table(void **state)
+TEST(test_table)
 {
-  (void)state;
   write_text("t.csv", "# a drive\ntime (ms);note;V (kV)\n0;a;0\n100;b;2,5\n100;;1\n400;c;1\n");
   struct dea_waveform *w = make("kind: table\nfile: t.csv\nrepeat: 3\n");
   assert_close(w->end_s, 1.2, 0, 1e-12);
@@ -202,9 +196,8 @@ static void test_table(void **state)
 
 /* A supply of 10 kV/s makes of 4 kV pulses of 0.5 s ramps of 0.4 s, and of 8 kV pulses triangles.
  */
-static void test_slow_supply(void **state)
+TEST(test_slow_supply)
 {
-  (void)state;
   struct dea_waveform *fast = make("kind: square\nhigh: 4 kV\nfrequency: 1 Hz\ncycles: 3\n"), *slow;
   assert_int_equal(dea_waveform_limit(ctx, fast, 1e4, 3, &slow), DEA_OK);
   for (int n = 0; n < 3; n++) {
@@ -230,9 +223,8 @@ static void test_slow_supply(void **state)
 
 /* A sine that is too fast in its middle: never faster than the supply, nor away from the sine where
  * that is slow. */
-static void test_slow_supply_and_sine(void **state)
+TEST(test_slow_supply_and_sine)
 {
-  (void)state;
   struct dea_waveform *fast = make("kind: sine\namplitude: 1 kV\nfrequency: 1 Hz\n"), *slow;
   assert_int_equal(dea_waveform_limit(ctx, fast, 5000, 10, &slow), DEA_OK); // up to 6283 V/s
   for (int i = 1; i < 10000; i++) {
@@ -264,9 +256,8 @@ static void check_error(const char *text, size_t line, size_t column, const char
            count > 0 ? f[0].text : "none");
 }
 
-static void test_errors(void **state)
+TEST(test_errors)
 {
-  (void)state;
   check_error("kind: squre\n", 1, 7, "there is no waveform 'squre'; did you mean 'square'?");
   check_error("high: 3 kV\n", 1, 1, "a waveform needs its kind: constant, step");
   check_error("kind: sine\namplitude: 1 kV\nfrequency: 1 Hz\nduty: 30 %\n", 4, 1,
@@ -296,18 +287,4 @@ static void test_errors(void **state)
   check_error("kind: table\nfile: bad.csv\n", 2, 1, "needs two times at least");
 }
 
-int main(void)
-{
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_corners_do_not_drift),
-      cmocka_unit_test(test_staircase),
-      cmocka_unit_test(test_every_kind),
-      cmocka_unit_test(test_extent),
-      cmocka_unit_test(test_chirp_frequency),
-      cmocka_unit_test(test_table),
-      cmocka_unit_test(test_slow_supply),
-      cmocka_unit_test(test_slow_supply_and_sine),
-      cmocka_unit_test(test_errors),
-  };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
-}
+TESTS(set_up, tear_down)
