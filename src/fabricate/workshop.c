@@ -87,7 +87,7 @@ void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out
   const int row = copy / layout->columns;
   double aside = copy % layout->columns * layout->pitch_m[0];
   out_m[0] = layout->first_m[0] + (layout->mirrored ? -aside : aside);
-  out_m[1] = layout->first_m[1] - row * layout->pitch_m[0];
+  out_m[1] = layout->first_m[1] - row * layout->pitch_m[1];
 }
 
 /* ---- all of it ---- */
