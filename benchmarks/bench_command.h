@@ -1,6 +1,5 @@
 /* Wall time of the command as a user starts it. */
-#ifndef DEA_BENCH_BENCH_COMMAND_H
-#define DEA_BENCH_BENCH_COMMAND_H
+#pragma once
 
 #include "timing.h"
 
@@ -45,5 +44,3 @@ static inline void bench_command(const char *name, char *const argv[], size_t ru
   }
   bench_print(name, 1e3 * bench_median(times, runs), "ms");
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Factorisations of the engine of solids, as PETSc counts them. */
-#ifndef BENCH_FACTORISATIONS_H
-#define BENCH_FACTORISATIONS_H
+#pragma once
 
 #include "model/solid/assembly/ranks.h"
 #include "timing.h"
@@ -23,5 +22,3 @@ static inline double bench_factorisations(void)
              ? info.count
              : -1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Timing for the benchmark programs: wall time, and one JSON line a figure. */
-#ifndef DEA_BENCH_BENCH_H
-#define DEA_BENCH_BENCH_H
+#pragma once
 
 #include "base/context.h"
 
@@ -66,5 +65,3 @@ static inline void bench_need(dea_status status, struct dea_context *ctx)
     exit(1);
   }
 }
-
-#endif

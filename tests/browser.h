@@ -1,6 +1,5 @@
 /* A headless Chromium that a test drives over the pipe of its DevTools protocol. */
-#ifndef DEA_TESTS_BROWSER_H
-#define DEA_TESTS_BROWSER_H
+#pragma once
 
 #include "testing.h"
 
@@ -238,5 +237,3 @@ static inline void browser_stop(struct browser *b)
   b->pid = -1;
   b->buffer = NULL;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Runs the command `dea` in a shell and reads what it says. */
-#ifndef DEA_TESTS_COMMAND_H
-#define DEA_TESTS_COMMAND_H
+#pragma once
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -111,5 +110,3 @@ static inline void command_folder_make(const char *name)
   snprintf(path, sizeof path, "%s/%s", command_folder, name);
   assert_int_equal(mkdir(path, 0777), 0);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The material kernels compiled with complex numbers (DEA_COMPLEX), behind plain signatures: the
  * types of law.h exist here in their real form only. Laws are named, everything is SI. */
-#ifndef DEA_TESTS_COMPLEX_MATERIAL_H
-#define DEA_TESTS_COMPLEX_MATERIAL_H
+#pragma once
 
 #include "base/status.h"
 
@@ -25,5 +24,3 @@ void complex_plane_electric(double eps_at_rest, double eps_slope, double nominal
 dea_status complex_point(const char *law, const double *param, const double complex F[9],
                          const double fibre[3], double complex *W, double complex P[9],
                          double complex A[81]);
-
-#endif

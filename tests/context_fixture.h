@@ -1,6 +1,5 @@
 /* One context for all tests of a program: TESTS(context_set_up, context_tear_down). */
-#ifndef DEA_TESTS_CONTEXT_FIXTURE_H
-#define DEA_TESTS_CONTEXT_FIXTURE_H
+#pragma once
 
 #include "base/context.h"
 
@@ -18,5 +17,3 @@ static inline int context_tear_down(void **state)
   dea_context_destroy(ctx);
   return 0;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Reads back what `dea fab` writes: entities of a DXF file and elements of an SVG file, in mm, by
  * means that share nothing with the writers. */
-#ifndef DEA_TESTS_CUT_FILE_H
-#define DEA_TESTS_CUT_FILE_H
+#pragma once
 
 #include "testing.h"
 
@@ -179,5 +178,3 @@ static inline double cut_length(const struct cut_shape *shape)
   }
   return length;
 }
-
-#endif

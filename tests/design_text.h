@@ -1,6 +1,5 @@
 /* A small good design, and reading it in tests. */
-#ifndef DEA_TESTS_DESIGN_TEXT_H
-#define DEA_TESTS_DESIGN_TEXT_H
+#pragma once
 
 #include "device/device.h"
 #include "study/design_file.h"
@@ -76,5 +75,3 @@ static inline dea_status read_and_build(struct dea_context *ctx, const char *tex
       dea_design_read_memory(ctx, "t.yaml", text, strlen(text), overrides, count, design);
   return status == DEA_OK ? dea_device_build(ctx, *design, device) : status;
 }
-
-#endif

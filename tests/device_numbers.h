@@ -1,6 +1,5 @@
 /* A device of model 3d as a function of its numbers, for tests of gradients by changed devices. */
-#ifndef DEA_TESTS_DEVICE_NUMBERS_H
-#define DEA_TESTS_DEVICE_NUMBERS_H
+#pragma once
 
 #include "devices.h"
 #include "model/model.h"
@@ -148,5 +147,3 @@ static inline struct state soft_disc(void)
   at.device.film.permittivity.at_rest = 4.8;
   return at;
 }
-
-#endif

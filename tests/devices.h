@@ -1,6 +1,5 @@
 /* Devices for tests, made without a design file. */
-#ifndef DEA_TESTS_DEVICES_H
-#define DEA_TESTS_DEVICES_H
+#pragma once
 
 #include "device/device.h"
 
@@ -57,5 +56,3 @@ static inline struct dea_device test_star(int fibres)
   d.fibre_thickness_m = 100e-6;
   return d;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The grid of a plate, its plies numbered whatever of them it has. */
-#ifndef DEA_TESTS_DISC_GRID_H
-#define DEA_TESTS_DISC_GRID_H
+#pragma once
 
 #include "model/solid/actuator/disc_mesh.h"
 
@@ -59,5 +58,3 @@ static dea_status disc_mesh(struct dea_context *in, const struct dea_fibre_disc 
   }
   return status;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What tolerances do to a disc, against designs that are changed by hand. */
-#ifndef DEA_TESTS_FAB_SENSITIVITY_H
-#define DEA_TESTS_FAB_SENSITIVITY_H
+#pragma once
 
 #include "fabricate/tolerance_effect.h"
 #include "model/model.h"
@@ -60,5 +59,3 @@ static inline void check_sensitivity(const struct dea_sensitivity *found,
     assert_close(found->effect_m[rows[i].which], difference, tolerance, 0);
   }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Runs a piece of work again and again; in the n-th run the n-th allocation fails. */
-#ifndef DEA_TESTS_FAILING_ALLOCATOR_H
-#define DEA_TESTS_FAILING_ALLOCATOR_H
+#pragma once
 
 #include "base/context.h"
 #include "testing.h"
@@ -107,5 +106,3 @@ static inline long failing_ends(dea_status (*call)(struct dea_context *ctx), dea
   assert_int_equal(attempt.status, wanted);
   return n;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A result with plausible numbers that no model computed: for tests of the writers. */
-#ifndef DEA_TESTS_FAKE_RESULT_H
-#define DEA_TESTS_FAKE_RESULT_H
+#pragma once
 
 #include "result/provenance.h"
 
@@ -102,5 +101,3 @@ static inline dea_status fake_result(struct dea_context *ctx, const struct dea_d
   DEA_TRY(ctx, fake_add_model(ctx, *out, "axisymmetric", 1.09 * scale, false));
   return fake_add_profiles(ctx, *out, "axisymmetric");
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A middle surface with a known shape that no model computed: a sector of a disc between its planes
  * of symmetry, an electrode in the middle, half a wedge-shaped fibre along the first plane. */
-#ifndef DEA_TESTS_FAKE_SURFACE_H
-#define DEA_TESTS_FAKE_SURFACE_H
+#pragma once
 
 #include "result/field_mesh.h"
 
@@ -67,5 +66,3 @@ static inline struct dea_field_mesh *fake_surface(struct dea_context *ctx, doubl
   }
   return mesh;
 }
-
-#endif

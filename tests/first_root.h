@@ -1,6 +1,5 @@
 /* The equilibrium of model lumped by a scan, which knows nothing of its path. */
-#ifndef DEA_TESTS_FIRST_ROOT_H
-#define DEA_TESTS_FIRST_ROOT_H
+#pragma once
 
 #include "model/lumped/lumped.h"
 
@@ -38,5 +37,3 @@ static inline double first_root(const struct dea_material *material, double pre_
   return dea_lumped_balance_eval(&lumped, high, field_V_per_m, &balance) == DEA_OK ? high
                                                                                    : (double)NAN;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Mass, centre and moments of what a grid is made of. */
-#ifndef DEA_TESTS_GRID_MOMENTS_H
-#define DEA_TESTS_GRID_MOMENTS_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 #include "solid_element.h"
@@ -45,5 +44,3 @@ static void grid_moments(const struct dea_grid *grid, const struct dea_part_mate
     add_moments(nodes, X, mass, sum);
   }
 }
-
-#endif

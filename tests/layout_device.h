@@ -1,6 +1,5 @@
 /* Devices of the general form, made by hand. */
-#ifndef DEA_TESTS_LAYOUT_DEVICE_H
-#define DEA_TESTS_LAYOUT_DEVICE_H
+#pragma once
 
 #include "device/device.h"
 #include "model/model.h"
@@ -132,5 +131,3 @@ static inline struct dea_model *layout_model(const struct dea_device *device,
   assert_int_equal(status, DEA_OK);
   return model;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The lowest frequency of a model, for tests of its gradients. Include after context_fixture.h. */
-#ifndef DEA_TESTS_LOWEST_FREQUENCY_H
-#define DEA_TESTS_LOWEST_FREQUENCY_H
+#pragma once
 
 #include "model/model.h"
 #include "testing.h"
@@ -17,5 +16,3 @@ static double frequency_of(const struct dea_model_type *type, struct dea_model *
   dea_field_mesh_destroy(ctx, shapes);
   return mode.frequency_Hz;
 }
-
-#endif

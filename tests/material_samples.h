@@ -1,7 +1,6 @@
 /* Parameter sets on which the battery of test_material_*.c runs every registered law, and what
  * these tests share. A law that is registered without a set here fails them. */
-#ifndef DEA_TESTS_MATERIAL_SAMPLES_H
-#define DEA_TESTS_MATERIAL_SAMPLES_H
+#pragma once
 
 #include "material/law.h"
 #include "testing.h"
@@ -82,5 +81,3 @@ static inline void assert_all_close(const char *what, const double *values, cons
     }
   }
 }
-
-#endif

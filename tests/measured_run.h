@@ -1,6 +1,5 @@
 /* A run whose answers are known, and a folder as of dea reduce beside it. */
-#ifndef DEA_TESTS_MEASURED_RUN_H
-#define DEA_TESTS_MEASURED_RUN_H
+#pragma once
 
 #include "command.h"
 #include "fake_result.h"
@@ -169,5 +168,3 @@ static inline int compare_set_up(void **state)
   write_history("red/history.csv", true);
   return 0;
 }
-
-#endif

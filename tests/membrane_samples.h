@@ -1,6 +1,5 @@
 /* Films of the tests of membrane elements, and surface gradients with known stretches. */
-#ifndef DEA_TESTS_MEMBRANE_SAMPLES_H
-#define DEA_TESTS_MEMBRANE_SAMPLES_H
+#pragma once
 
 #include "material_samples.h"
 #include "model/solid/element/membrane.h"
@@ -42,5 +41,3 @@ static inline void compose(double m1, double m2, double angle, double F[6])
     F[2 * i + 1] = m1 * s * Q[3 * i] + m2 * c * Q[3 * i + 1];
   }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What a call that fails must say. */
-#ifndef DEA_TESTS_MESSAGE_FIXTURE_H
-#define DEA_TESTS_MESSAGE_FIXTURE_H
+#pragma once
 
 #include "testing.h"
 
@@ -15,5 +14,3 @@ static inline void assert_message(dea_status status, dea_status wanted, const ch
              dea_context_message(ctx), part);
   }
 }
-
-#endif

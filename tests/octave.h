@@ -1,6 +1,5 @@
 /* Runs Octave in the folder of own_folder.h. */
-#ifndef DEA_TESTS_OCTAVE_H
-#define DEA_TESTS_OCTAVE_H
+#pragma once
 
 #include "own_folder.h"
 #include "testing.h"
@@ -33,5 +32,3 @@ static inline size_t read_raw(const char *name, double *values, size_t capacity)
   fclose(file);
   return n;
 }
-
-#endif

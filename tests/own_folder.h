@@ -1,6 +1,5 @@
 /* A context and a folder of its own for a program of tests; _GNU_SOURCE before all headers. */
-#ifndef DEA_TESTS_OWN_FOLDER_H
-#define DEA_TESTS_OWN_FOLDER_H
+#pragma once
 
 #include "base/context.h"
 
@@ -49,5 +48,3 @@ static inline size_t size_of(const char *name)
   struct stat info;
   return stat(in_folder(name), &info) == 0 ? (size_t)info.st_size : 0;
 }
-
-#endif

@@ -12,8 +12,7 @@
  * frame radius 15 mm, electrode radius 3.75 mm in the stretched film, 4 PET fibres of 2 mm x 100 um
  * clamped at the frame, their tips at the electrode's edge; a symmetric sector. Up is to the
  * fibres. */
-#ifndef DEA_TESTS_PROTOTYPES_H
-#define DEA_TESTS_PROTOTYPES_H
+#pragma once
 
 struct prototype_range {
   double low, high;
@@ -46,5 +45,3 @@ static const struct prototype_range prototype_slack_onset_V = {800, 900};
       fail_msg("%s = %.6g, wanted %.6g to %.6g", #value, in_range_, low_, high_);                  \
     }                                                                                              \
   } while (0)
-
-#endif

@@ -1,7 +1,6 @@
 /* Mesh of a quarter of a disc in a ring, with fibres along the axes and the diagonal: small, and
  * made in another way than the program's meshes of actuators. */
-#ifndef DEA_TESTS_QUARTER_GRID_H
-#define DEA_TESTS_QUARTER_GRID_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 
@@ -249,5 +248,3 @@ static inline dea_status dea_grid_quarter(struct dea_context *ctx, const struct 
                                q->membrane ? 0 : -0.5 * q->film_thickness, q->b, out));
   return DEA_OK;
 }
-
-#endif

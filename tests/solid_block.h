@@ -1,6 +1,5 @@
 /* A block of one material as a solid, for tests of loads and supports. */
-#ifndef DEA_TESTS_SOLID_BLOCK_H
-#define DEA_TESTS_SOLID_BLOCK_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 #include "testing.h"
@@ -48,5 +47,3 @@ static inline struct dea_solid *block_solid(struct dea_context *ctx, const struc
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
   return solid;
 }
-
-#endif

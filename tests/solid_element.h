@@ -1,6 +1,5 @@
 /* The functions of an element (element.h) with what a test has at hand. */
-#ifndef DEA_TESTS_SOLID_ELEMENT_H
-#define DEA_TESTS_SOLID_ELEMENT_H
+#pragma once
 
 #include "model/solid/element/hex.h"
 #include "model/solid/element/membrane.h"
@@ -56,5 +55,3 @@ static inline dea_status evaluate_membrane(const struct dea_flat_shape *shape,
       .part_material = part_material, .X = X, .u = u, .voltage_V = voltage_V};
   return element.type->evaluate(&element, &in, order, out);
 }
-
-#endif

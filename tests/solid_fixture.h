@@ -1,7 +1,6 @@
 /* One context and the solver of solids for all tests of a program:
  * TESTS(solid_set_up, solid_tear_down). */
-#ifndef DEA_TESTS_SOLID_FIXTURE_H
-#define DEA_TESTS_SOLID_FIXTURE_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -17,5 +16,3 @@ static inline int solid_tear_down(void **state)
   dea_solid_stop();
   return context_tear_down(state);
 }
-
-#endif

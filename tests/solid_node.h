@@ -1,6 +1,5 @@
 /* The node at a place, of which a test knows that there is one. */
-#ifndef DEA_TESTS_SOLID_NODE_H
-#define DEA_TESTS_SOLID_NODE_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 #include "testing.h"
@@ -15,5 +14,3 @@ static inline size_t node_near(const struct dea_grid *grid, double x, double y, 
   assert_true(hypot(hypot(X[0] - x, X[1] - y), X[2] - z) < 1e-9);
   return n;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What every test program needs beside cmocka. */
-#ifndef DEA_TESTS_TESTING_H
-#define DEA_TESTS_TESTING_H
+#pragma once
 
 #include <math.h>
 #include <setjmp.h>
@@ -93,5 +92,3 @@ static inline void only_nightly(void)
                close_value_ - close_wanted_);                                                      \
     }                                                                                              \
   } while (0)
-
-#endif

@@ -1,6 +1,5 @@
 /* Waveforms from text in tests. */
-#ifndef DEA_TESTS_WAVEFORM_TEXT_H
-#define DEA_TESTS_WAVEFORM_TEXT_H
+#pragma once
 
 #include "waveform/waveform.h"
 
@@ -20,5 +19,3 @@ static inline struct dea_waveform *waveform_of(struct dea_context *context, cons
   }
   return waveform;
 }
-
-#endif

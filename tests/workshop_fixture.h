@@ -1,7 +1,6 @@
 /* One workshop at a time, made from the text of a design; TESTS(workshop_set_up,
  * workshop_tear_down). */
-#ifndef DEA_TESTS_WORKSHOP_FIXTURE_H
-#define DEA_TESTS_WORKSHOP_FIXTURE_H
+#pragma once
 
 #include "design_text.h"
 #include "fabricate/workshop.h"
@@ -43,5 +42,3 @@ static inline int workshop_tear_down(void **state)
   dea_context_destroy(ctx);
   return 0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Blocks of neo-Hookean film between electrodes, in time; for programs of verification. */
-#ifndef DEA_VERIFY_FILM_BLOCKS_H
-#define DEA_VERIFY_FILM_BLOCKS_H
+#pragma once
 
 #include "verify.h"
 
@@ -161,5 +160,3 @@ static inline void jump_to(struct body *body, double voltage_V)
   verify_ok(ctx, dea_solid_time_close(ctx, body->time, NULL));
   dea_solid_time_accept(body->time);
 }
-
-#endif

@@ -7,8 +7,7 @@
  * Div D are central differences of order 8 of P(F(X)) and D(F(X), E(X)). Body forces b = -Div P,
  * tractions P N, charges rho = Div D and -D N come in as integrals with the shape functions over
  * elements and free faces. */
-#ifndef DEA_VERIFY_MANUFACTURED_H
-#define DEA_VERIFY_MANUFACTURED_H
+#pragma once
 
 #include "verify.h"
 
@@ -332,5 +331,3 @@ static void errors_of(const struct exact *exact, const struct dea_grid *grid,
     error[norm] = whole[norm] > 0 ? sqrt(error[norm] / whole[norm]) : NAN;
   }
 }
-
-#endif

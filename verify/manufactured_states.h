@@ -1,6 +1,5 @@
 /* The exact states of the patch tests and of the orders of convergence, and one solve of them. */
-#ifndef DEA_VERIFY_MANUFACTURED_STATES_H
-#define DEA_VERIFY_MANUFACTURED_STATES_H
+#pragma once
 
 #include "manufactured.h"
 
@@ -249,5 +248,3 @@ static inline void print_orders(const struct exact states[STATES], size_t count,
     }
   }
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Runs of a model on the paper's actuator with some keys changed; for programs that print numbers
  * of several. */
-#ifndef DEA_VERIFY_RUNS_H
-#define DEA_VERIFY_RUNS_H
+#pragma once
 
 #include "design/design.h"
 #include "model/model.h"
@@ -98,5 +97,3 @@ static inline double farthest_um(const struct swept *run, double voltage_V)
   const struct dea_load_point *p = point_of(run, voltage_V);
   return 1e6 * (p->highest_z_m > -p->lowest_z_m ? p->highest_z_m : p->lowest_z_m);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Parts of every verification program: a page on stdout, and a count of numbers out of tolerance.
  */
-#ifndef DEA_VERIFY_H
-#define DEA_VERIFY_H
+#pragma once
 
 #include "base/context.h"
 
@@ -52,5 +51,3 @@ static inline int verify_end(void)
 {
   return verify_failures == 0 ? 0 : 1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A DAQ with a fake library: the same protocol for all of them. */
-#ifndef DEA_TESTS_DAQ_BENCH_H
-#define DEA_TESTS_DAQ_BENCH_H
+#pragma once
 
 #include "emulator.h"
 #include "failing_allocator.h"
@@ -124,5 +123,3 @@ static inline void daq_bench_check_memory(const char *kind, const char *library)
   snprintf(b->text, sizeof b->text, "kind: %s\nlibrary: %s\n", kind, library);
   assert_true(failing_each(daq_bench_open_and_close) > 3);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* A protocol played on fake instruments, and what must hold of whatever came out. */
-#ifndef DEA_TESTS_DRIVE_TRIAL_H
-#define DEA_TESTS_DRIVE_TRIAL_H
+#pragma once
 
 #include "failing_allocator.h"
 #include "fake_instruments.h"
@@ -126,5 +125,3 @@ static inline void check_channels(const struct trial *t)
     }
   }
 }
-
-#endif

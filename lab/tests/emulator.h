@@ -1,7 +1,6 @@
 /* An instrument on the loopback interface: a thread that serves one TCP connection after the other,
  * and what it takes to open an instrument of a section of text. */
-#ifndef DEA_TESTS_EMULATOR_H
-#define DEA_TESTS_EMULATOR_H
+#pragma once
 
 #include "base/clock.h"
 #include "instrument/instrument.h"
@@ -240,5 +239,3 @@ static inline void emulator_check_clock(struct dea_context *ctx, struct dea_inst
     assert_true(sink->reading[i].time_s <= dea_clock_s() - zero_s);
   }
 }
-
-#endif

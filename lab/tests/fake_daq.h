@@ -1,7 +1,6 @@
 /* What tests see of a fake library of a DAQ: the calls that it got, and how it is to behave. Its
  * inputs see its output: input k of sample i is (k + 1) times what was played in it. */
-#ifndef DEA_TESTS_FAKE_DAQ_H
-#define DEA_TESTS_FAKE_DAQ_H
+#pragma once
 
 #include <stddef.h>
 
@@ -26,5 +25,3 @@ struct fake_daq {
 
 /* The one of a loaded library, by the symbol "fake_daq". */
 typedef struct fake_daq *(*fake_daq_get)(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* Instruments of tests: a DAQ without hardware, and a profile sensor on its clock. They keep what
  * was asked of them, and fail where they are told to. */
-#ifndef DEA_TESTS_FAKE_INSTRUMENTS_H
-#define DEA_TESTS_FAKE_INSTRUMENTS_H
+#pragma once
 
 #include "base/clock.h"
 #include "drive/drive_loop.h"
@@ -235,5 +234,3 @@ static inline void fake_sensor_open(const struct fake_daq *daq, struct fake_sens
   sensor->common.reading_count = 1;
   sensor->fail_start = sensor->fail_frame = sensor->wrong_frame = -1;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the fake libraries of DAQs share: their state, and the log of the calls that they get. */
-#ifndef DEA_TESTS_FAKE_LIBRARY_H
-#define DEA_TESTS_FAKE_LIBRARY_H
+#pragma once
 
 #include "fake_daq.h"
 
@@ -31,5 +30,3 @@ static inline bool fake_fails(const char *name, const char *format, va_list argu
   good_calls = 0;
   return true;
 }
-
-#endif

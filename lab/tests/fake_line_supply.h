@@ -1,8 +1,7 @@
 /* A high-voltage supply on a serial line, imitated on a pseudo-terminal: a small buffer, an answer
  * to each command, and an output that follows at a finite rate. What its output really is can be
  * asked at any moment. _GNU_SOURCE before all headers. */
-#ifndef DEA_TESTS_LINE_SUPPLY_H
-#define DEA_TESTS_LINE_SUPPLY_H
+#pragma once
 
 #include "base/clock.h"
 #include "fake_supply.h"
@@ -231,5 +230,3 @@ static inline bool line_supply_reaches(struct line_supply *s, double volts, doub
   }
   return false;
 }
-
-#endif

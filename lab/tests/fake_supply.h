@@ -2,8 +2,7 @@
  * commands, which it works off one after the other, whoever sent them, and an output that follows
  * what was set at a finite rate. What its output really is can be asked at any moment, and that is
  * what the tests compare with what dea says. */
-#ifndef DEA_TESTS_SUPPLY_H
-#define DEA_TESTS_SUPPLY_H
+#pragma once
 
 #include "base/clock.h"
 #include "testing.h"
@@ -354,5 +353,3 @@ static inline bool supply_reaches(struct supply *s, double volts, double within_
   }
   return false;
 }
-
-#endif

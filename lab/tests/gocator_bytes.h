@@ -1,6 +1,5 @@
 /* Messages of a Gocator, written field by field from the published tables. */
-#ifndef DEA_TESTS_GOCATOR_BYTES_H
-#define DEA_TESTS_GOCATOR_BYTES_H
+#pragma once
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -100,5 +99,3 @@ static inline void gocator_frame(struct gocator_bytes *b, int frame, int time_us
   b->bytes[b->message + 5] = 0;
   gocator_profile(b, 0, GOCATOR_WIDTH, 10000, 500, -20, 1000, frame == 0 ? gocator_ranges : moved);
 }
-
-#endif

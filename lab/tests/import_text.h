@@ -1,6 +1,5 @@
 /* Files made of bytes in a test's folder, and the tables that are read from them. */
-#ifndef DEA_TESTS_IMPORT_TEXT_H
-#define DEA_TESTS_IMPORT_TEXT_H
+#pragma once
 
 #include "failing_allocator.h"
 #include "import/import.h"
@@ -146,5 +145,3 @@ static inline bool is_said(enum dea_severity severity, const char *part)
   }
   return false;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* What the programs that test the reduction as a whole share. */
-#ifndef DEA_TESTS_LAB_REDUCED_H
-#define DEA_TESTS_LAB_REDUCED_H
+#pragma once
 
 #include "context_fixture.h"
 #include "lab_signals.h"
@@ -57,5 +56,3 @@ static inline struct dea_recording two_channels(double rate_Hz, size_t count)
   signal_channel(&r, "displacement", DEA_CHANNEL_DISPLACEMENT, rate_Hz, count);
   return r;
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* Recordings of a made-up bench whose truth is known: square cycles, a film in a frame under a line
  * laser, sensors with correlated noise, drift and failures. */
-#ifndef DEA_TESTS_LAB_SIGNALS_H
-#define DEA_TESTS_LAB_SIGNALS_H
+#pragma once
 
 #include "recording/recording.h"
 #include "testing.h"
@@ -273,5 +272,3 @@ static inline void signal_free(struct dea_recording *r)
   free(r->cycles);
   *r = (struct dea_recording){0};
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* The disk of a test that links the core: a pwrite in place of the C library's. */
-#ifndef DEA_TESTS_OWN_DISK_H
-#define DEA_TESTS_OWN_DISK_H
+#pragma once
 
 #include "base/clock.h"
 
@@ -37,5 +36,3 @@ ssize_t pwrite(int file, const void *from, size_t size, off_t at)
   }
   return pwritev(file, &(struct iovec){(void *)(uintptr_t)from, size}, 1, at);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Protocols from text in tests, in a folder of their own; _GNU_SOURCE before all headers. */
-#ifndef DEA_TESTS_PROTOCOL_TEXT_H
-#define DEA_TESTS_PROTOCOL_TEXT_H
+#pragma once
 
 #include "design_text.h"
 #include "film/film_of_design.h"
@@ -44,5 +43,3 @@ static inline struct dea_protocol *good_protocol(struct dea_context *context, co
   }
   return protocol;
 }
-
-#endif

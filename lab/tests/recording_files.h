@@ -1,6 +1,5 @@
 /* Files of such recordings in the program's own folder. */
-#ifndef DEA_TESTS_RECORDING_FILES_H
-#define DEA_TESTS_RECORDING_FILES_H
+#pragma once
 
 #include "own_folder.h"
 #include "recording_samples.h"
@@ -48,5 +47,3 @@ static inline int nothing_open(void **state)
   (void)state;
   return H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) == 0 ? 0 : -1;
 }
-
-#endif

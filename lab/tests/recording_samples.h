@@ -1,6 +1,5 @@
 /* Recordings whose every value is known, for the tests of what writes and reads them. */
-#ifndef DEA_TESTS_RECORDING_SAMPLES_H
-#define DEA_TESTS_RECORDING_SAMPLES_H
+#pragma once
 
 #include "recording/recorder.h"
 #include "testing.h"
@@ -145,5 +144,3 @@ static inline void sample_check(const struct dea_recording *r, size_t samples, s
                 r->channels[1].count >= (i + 1) * SAMPLE_CYCLE);
   }
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* The SHVPS as a supply of fake_line_supply.h, and `dea drive` on it. _GNU_SOURCE before all
  * headers. */
-#ifndef DEA_TESTS_SHVPS_SUPPLY_H
-#define DEA_TESTS_SHVPS_SUPPLY_H
+#pragma once
 
 #include "fake_line_supply.h"
 #include "supply_drive.h"
@@ -81,5 +80,3 @@ static inline pid_t shvps_arm(const char *file)
   supply_end_guards(0);
   return supply_begin(arguments);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* `dea drive --arm` on an imitated supply, as a process of its own that a test can stop and kill.
  */
-#ifndef DEA_TESTS_SUPPLY_DRIVE_H
-#define DEA_TESTS_SUPPLY_DRIVE_H
+#pragma once
 
 #include "command.h"
 #include "fake_supply.h"
@@ -149,5 +148,3 @@ static inline bool supply_said_zero(void)
 {
   return strstr(command_out, "output            at 0 V") != NULL;
 }
-
-#endif

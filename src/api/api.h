@@ -1,6 +1,5 @@
 /* What the files of the public interface share: the objects behind its handles. */
-#ifndef DEA_API_API_H
-#define DEA_API_API_H
+#pragma once
 
 #include "base/context.h"
 #include "base/text.h"
@@ -122,5 +121,3 @@ void api_mesh_free(struct dea_context *ctx, struct api_mesh *mesh);
 
 /* Adds the pictures of a fragment of a report as one SVG. */
 void api_svg_add(struct dea_text *out, const char *fragment);
-
-#endif

@@ -2,7 +2,6 @@
 #include "api/api.h"
 
 #include "material/law.h"
-#include "model/film.h"
 #include "model/solid_access.h"
 
 #include <math.h>

@@ -2,7 +2,6 @@
  * colours and the key of a plot. */
 #include "api/api.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,7 +3,6 @@
 
 #include "result/copies.h"
 
-#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 

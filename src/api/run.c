@@ -5,7 +5,6 @@
 #include "result/provenance.h"
 
 #include <stdio.h>
-#include <string.h>
 
 dea_status api_model_find(dea_context *ctx, const char *name, const struct dea_model_type **out)
 {

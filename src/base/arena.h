@@ -7,8 +7,7 @@
  *   }
  *   dea_arena_free(&arena);
  */
-#ifndef DEA_BASE_ARENA_H
-#define DEA_BASE_ARENA_H
+#pragma once
 
 #include "base/context.h"
 
@@ -26,5 +25,3 @@ void *dea_arena_alloc(struct dea_arena *arena, size_t count, size_t size);
 dea_status dea_arena_status(const struct dea_arena *arena);
 /* Frees every piece; the arena is as new. One of zeros, without a context, is fine. */
 void dea_arena_free(struct dea_arena *arena);
-
-#endif

@@ -1,6 +1,5 @@
 /* Files of web/ that go into a page, embedded by CMake (cmake/embed.cmake). */
-#ifndef DEA_BASE_ASSETS_H
-#define DEA_BASE_ASSETS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -10,5 +9,3 @@ extern const char dea_asset_script[]; // the scripts, one after the other
 extern const size_t dea_asset_script_length;
 extern const char dea_asset_core[]; // web/explorer.c as WebAssembly; length 0: not built
 extern const size_t dea_asset_core_length;
-
-#endif

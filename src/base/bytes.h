@@ -1,6 +1,5 @@
 /* Growing binary data, little-endian whatever the machine is. */
-#ifndef DEA_BASE_BYTES_H
-#define DEA_BASE_BYTES_H
+#pragma once
 
 #include "base/context.h"
 
@@ -25,5 +24,3 @@ void dea_bytes_add_f64(struct dea_bytes *bytes, double value);
 /* Writes over the eight bytes from `at`, which are there (nothing after a failure). */
 void dea_bytes_set_u64(struct dea_bytes *bytes, size_t at, uint64_t value);
 void dea_bytes_free(struct dea_bytes *bytes);
-
-#endif

@@ -1,10 +1,7 @@
 /* The computer's clock. */
-#ifndef DEA_BASE_CLOCK_H
-#define DEA_BASE_CLOCK_H
+#pragma once
 
 /* Seconds of a clock that only goes forward, from an unknown start. */
 double dea_clock_s(void);
 /* Waits; a signal ends it early. At most an hour, nothing for less than 0. */
 void dea_clock_wait(double seconds);
-
-#endif

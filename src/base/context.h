@@ -8,8 +8,7 @@
  * which keeps state of its own, and are for one thread at a time unless that HDF5 was built
  * thread-safe.
  */
-#ifndef DEA_BASE_CONTEXT_H
-#define DEA_BASE_CONTEXT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -146,5 +145,3 @@ bool dea_context_is_alone(const struct dea_context *ctx);
 /* Whether any of those processes was interrupted; from then on dea_interrupted says so on all. Each
  * of them has to ask at the same place: else one of them waits for ever. */
 bool dea_interrupted_anywhere(struct dea_context *ctx);
-
-#endif

@@ -1,7 +1,6 @@
 /* Correlations of several uncertain numbers, as files list them: 2 with 1, 3 with 1, 3 with 2, ...
  */
-#ifndef DEA_BASE_CORRELATIONS_H
-#define DEA_BASE_CORRELATIONS_H
+#pragma once
 
 #include "base/context.h"
 #include "base/value.h"
@@ -16,5 +15,3 @@ dea_status dea_correlations_check(struct dea_context *ctx, const struct dea_quan
 /* The factor L [n][n] of their matrix, lower, C = L L^T: L times independent normal numbers are
  * normal ones with these correlations. Unit matrix without any. listed: checked. */
 void dea_correlations_factor(const struct dea_quantity *listed, size_t count, size_t n, double *L);
-
-#endif

@@ -1,6 +1,5 @@
 /* Titles and names of CSV files. */
-#ifndef DEA_BASE_CSV_LINE_H
-#define DEA_BASE_CSV_LINE_H
+#pragma once
 
 #include "base/text.h"
 
@@ -12,5 +11,3 @@ void dea_csv_fold(const char *text, char *out);
 void dea_csv_split_title(const char *title, char *name, char *unit);
 /* A name as one field: in quotes where it has a comma or quotes of its own. */
 void dea_csv_add_name(struct dea_text *text, const char *name);
-
-#endif

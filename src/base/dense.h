@@ -1,7 +1,6 @@
 /* Small dense systems, of at most DEA_DENSE_MAX unknowns. Here LAPACK does it (dense.c); a page's
  * explorer has web/dense_wasm.c in its place. */
-#ifndef DEA_BASE_DENSE_H
-#define DEA_BASE_DENSE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -15,5 +14,3 @@ dea_status dea_dense_solve(size_t n, double *A, double *b);
 /* Number of negative eigenvalues of a symmetric A [n x n], which is destroyed: those of D in its
  * LDL^T with pivots (Sylvester). Errors as above; a singular matrix is none. */
 dea_status dea_dense_negative(size_t n, double *A, int *negative);
-
-#endif

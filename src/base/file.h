@@ -1,6 +1,5 @@
 /* Files read whole, and their names. */
-#ifndef DEA_BASE_FILE_H
-#define DEA_BASE_FILE_H
+#pragma once
 
 #include "base/context.h"
 
@@ -30,5 +29,3 @@ const char *dea_path_stem(const char *path, size_t *length);
 /* Path of a file that is named in another one: it counts from that one's folder. Owned by the
  * caller (dea_free); NULL on failure. */
 char *dea_path_beside(struct dea_context *ctx, const char *file, const char *name);
-
-#endif

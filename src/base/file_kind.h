@@ -1,6 +1,5 @@
 /* The kinds of files that people write, told by the first key of each. */
-#ifndef DEA_BASE_FILE_KIND_H
-#define DEA_BASE_FILE_KIND_H
+#pragma once
 
 #include "base/yaml.h"
 
@@ -9,5 +8,3 @@
  * DEA_E_DESIGN. */
 dea_status dea_file_kind_check(struct dea_context *ctx, const struct dea_yaml *document,
                                const char *own);
-
-#endif

@@ -1,6 +1,5 @@
 /* A folder that one process at a time writes into. */
-#ifndef DEA_BASE_FOLDER_LOCK_H
-#define DEA_BASE_FOLDER_LOCK_H
+#pragma once
 
 #include "base/context.h"
 
@@ -16,5 +15,3 @@ dea_status dea_folder_lock(struct dea_context *ctx, const char *directory,
                            struct dea_folder_lock **out);
 /* Gives it back and frees it; NULL is fine. */
 void dea_folder_unlock(struct dea_context *ctx, struct dea_folder_lock *lock);
-
-#endif

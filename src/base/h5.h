@@ -2,8 +2,7 @@
  *
  * A struct h5 remembers the first failure, after which all calls do nothing, so that a row of calls
  * is checked once at its end. Its error stack is turned into the message of dea_fail. */
-#ifndef DEA_BASE_H5_H
-#define DEA_BASE_H5_H
+#pragma once
 
 #include "base/context.h"
 
@@ -73,5 +72,3 @@ char *dea_h5_get_long_text(struct h5 *h, hid_t group, const char *name);
 /* Number of links of a group, and the name of one of them in alphabetical order. */
 size_t dea_h5_link_count(struct h5 *h, hid_t group);
 void dea_h5_link_name(struct h5 *h, hid_t group, size_t index, char *out, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* Writing HTML: whatever comes from outside goes through here and arrives as text. */
-#ifndef DEA_BASE_HTML_H
-#define DEA_BASE_HTML_H
+#pragma once
 
 #include "base/text.h"
 
@@ -26,5 +25,3 @@ void dea_html_json_text(struct dea_text *out, const char *text);
 void dea_html_json_number(struct dea_text *out, double value, int digits);
 /* Bytes as base64. */
 void dea_html_base64(struct dea_text *out, const void *bytes, size_t length);
-
-#endif

@@ -1,6 +1,5 @@
 /* Small things on jansson that the writers share. */
-#ifndef DEA_BASE_JSON_H
-#define DEA_BASE_JSON_H
+#pragma once
 
 #include "base/context.h"
 
@@ -13,5 +12,3 @@ void dea_json_put_count(json_t *object, const char *key, size_t count);
 void dea_json_put_text(json_t *object, const char *key, const char *text);
 /* Text of root with a final newline; takes root. out: owned by the caller (dea_free). */
 dea_status dea_json_text(struct dea_context *ctx, json_t *root, char **out);
-
-#endif

@@ -1,7 +1,6 @@
 /* Parts of the program that are loaded when they are needed, since the libraries that they bring
  * along take longer to load than most commands to run. */
-#ifndef DEA_BASE_MODULE_H
-#define DEA_BASE_MODULE_H
+#pragma once
 
 #include "base/context.h"
 
@@ -19,5 +18,3 @@ bool dea_module_find(const char *file, char *out, size_t size);
  * is built when ..."). DEA_E_UNSUPPORTED when it is not there or cannot be loaded. */
 dea_status dea_module_open(struct dea_context *ctx, const char *file, const char *symbol,
                            const char *what, const char *advice, const void **out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Other programs, started as processes: what they say is kept, and they have a time limit. */
-#ifndef DEA_BASE_PROGRAM_H
-#define DEA_BASE_PROGRAM_H
+#pragma once
 
 #include "base/context.h"
 
@@ -37,5 +36,3 @@ enum dea_program_end dea_program_wait(const struct dea_context *ctx,
 
 /* The last `lines` lines of a text; lent. */
 const char *dea_last_lines(const char *text, int lines);
-
-#endif

@@ -1,6 +1,5 @@
 /* Nodes, weights and nodal bases on [-1, 1]. */
-#ifndef DEA_BASE_QUADRATURE_H
-#define DEA_BASE_QUADRATURE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -17,5 +16,3 @@ void dea_lobatto_nodes(size_t order, double *x);
 /* Lagrange basis on given nodes at one place: value[j] = l_j(at), slope[j] = l_j'(at).
  * nodes, value, slope: [count]. */
 void dea_lagrange(size_t count, const double *nodes, double at, double *value, double *slope);
-
-#endif

@@ -1,6 +1,5 @@
 /* Numbers for people's eyes. */
-#ifndef DEA_BASE_ROUNDED_H
-#define DEA_BASE_ROUNDED_H
+#pragma once
 
 #include <math.h>
 
@@ -9,5 +8,3 @@ static inline double dea_rounded(double value)
 {
   return 1e-6 * round(1e6 * value) + 0.0;
 }
-
-#endif

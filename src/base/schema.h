@@ -3,8 +3,7 @@
  * A record is a section of the file and a struct in C; a field is one key of it and one member.
  * From the same table come the reader (all errors at once, each at its place), the list of values
  * for `dea check`, the tables of `dea schema` and a JSON Schema for editors. */
-#ifndef DEA_BASE_SCHEMA_H
-#define DEA_BASE_SCHEMA_H
+#pragma once
 
 #include "base/text.h"
 #include "base/units.h"
@@ -154,5 +153,3 @@ void dea_schema_print_text(const struct dea_record *record, struct dea_text *out
 void dea_schema_print_markdown(const struct dea_record *record, struct dea_text *out);
 /* The dotted paths of the values that are in no list, a line each. */
 void dea_schema_print_keys(const struct dea_record *record, struct dea_text *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Single values of a schema: what schema.c and kinds read sections with. Not for others. */
-#ifndef DEA_BASE_SCHEMA_VALUE_H
-#define DEA_BASE_SCHEMA_VALUE_H
+#pragma once
 
 #include "base/schema.h"
 
@@ -29,5 +28,3 @@ dea_status dea_schema_kind(const struct dea_reader *reader, const struct dea_nod
 /* Sets the member at target to what says "absent". */
 void dea_schema_value_absent(const struct dea_field *field, char *target,
                              struct dea_location location);
-
-#endif

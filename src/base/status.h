@@ -3,8 +3,7 @@
  * Codes below DEA_STATUS_SUSPECT leave every object passed in as it was; from it on the object that
  * was being worked on holds only what its documentation promises (for example the points that were
  * computed before the failure). */
-#ifndef DEA_BASE_STATUS_H
-#define DEA_BASE_STATUS_H
+#pragma once
 
 // X(code, exit code of the command, message)
 #define DEA_STATUS_LIST(X)                                                                         \
@@ -39,5 +38,3 @@ const char *dea_status_message(dea_status status);
 const char *dea_status_name(dea_status status);
 /* Exit code that the command `dea` gives for a status. */
 int dea_status_exit_code(dea_status status);
-
-#endif

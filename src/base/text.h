@@ -1,6 +1,5 @@
 /* A growing text, and small things on text. */
-#ifndef DEA_BASE_TEXT_H
-#define DEA_BASE_TEXT_H
+#pragma once
 
 #include "base/context.h"
 
@@ -40,5 +39,3 @@ const char *dea_nearest_name(const char *word, const char *const candidates[], s
 
 /* Number of a text in the C locale, whatever the program's locale; *end as in strtod. */
 double dea_text_to_double(const char *text, const char **end);
-
-#endif

@@ -1,6 +1,5 @@
 /* Numbers with a unit, read through udunits2 and converted to SI. */
-#ifndef DEA_BASE_UNITS_H
-#define DEA_BASE_UNITS_H
+#pragma once
 
 #include "base/context.h"
 
@@ -18,5 +17,3 @@ enum { DEA_WHY_SIZE = 400 };
  * DEA_E_MEMORY or DEA_E_TOOL (no unit database) and why is "". */
 bool dea_units_read(struct dea_context *ctx, const char *text, struct dea_measure due, double *si,
                     char why[DEA_WHY_SIZE]);
-
-#endif

@@ -1,6 +1,5 @@
 /* A value of an input file: the value, where it comes from and where it stands. */
-#ifndef DEA_BASE_VALUE_H
-#define DEA_BASE_VALUE_H
+#pragma once
 
 #include "base/context.h"
 
@@ -60,5 +59,3 @@ struct dea_listing {
 };
 
 void dea_listing_free(struct dea_context *ctx, struct dea_listing *listing);
-
-#endif

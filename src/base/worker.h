@@ -1,7 +1,6 @@
 /* Work in processes beside this one. Each is a copy of this one (fork), so that it has all that was
  * there; what it does is not seen here, but for the bytes and findings that it hands back. */
-#ifndef DEA_BASE_WORKER_H
-#define DEA_BASE_WORKER_H
+#pragma once
 
 #include "base/bytes.h"
 
@@ -45,5 +44,3 @@ bool dea_send_all(int socket, const void *bytes, size_t length);
 /* "signal 9" or "exit code 1", of what waitpid says; out, filled. */
 enum { DEA_ENDED_BY = 24 };
 const char *dea_ended_by(int how, char out[DEA_ENDED_BY]);
-
-#endif

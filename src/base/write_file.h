@@ -1,6 +1,5 @@
 /* Files of a run folder: folders, names, and writing that is complete or does not happen. */
-#ifndef DEA_BASE_WRITE_FILE_H
-#define DEA_BASE_WRITE_FILE_H
+#pragma once
 
 #include "base/text.h"
 
@@ -50,5 +49,3 @@ dea_status dea_text_file_write(struct dea_context *ctx, const char *directory, c
  * the thread formats in the C locale. */
 void *dea_c_locale_enter(void);
 void dea_c_locale_leave(void *before);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Only what a design needs is taken: one document of sections, lists and values. Anchors with
  * aliases, tags, several documents and repeated keys are errors, each with its place. */
-#ifndef DEA_BASE_YAML_H
-#define DEA_BASE_YAML_H
+#pragma once
 
 #include "base/context.h"
 
@@ -69,5 +68,3 @@ dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
                            const char *text, const struct dea_node *const values[]);
 /* Member of a section with that key, or NULL. */
 const struct dea_node *dea_node_find(const struct dea_node *section, const char *key);
-
-#endif

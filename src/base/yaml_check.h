@@ -1,6 +1,5 @@
 /* What yaml.c asks of a text before it builds a tree of it. Not for others. */
-#ifndef DEA_BASE_YAML_CHECK_H
-#define DEA_BASE_YAML_CHECK_H
+#pragma once
 
 #include "base/context.h"
 
@@ -17,5 +16,3 @@ struct dea_yaml_text {
  * than DEA_YAML_DEPTH_MAX and more than DEA_YAML_NODES_MAX values: DEA_E_DESIGN after a finding.
  * libyaml alone takes minutes for a few megabytes of "[", since each token costs it the depth. */
 dea_status dea_yaml_check(struct dea_context *ctx, const struct dea_yaml_text *text);
-
-#endif

@@ -1,11 +1,8 @@
 /* A YAML tree as text. */
-#ifndef DEA_BASE_YAML_WRITE_H
-#define DEA_BASE_YAML_WRITE_H
+#pragma once
 
 #include "base/text.h"
 #include "base/yaml.h"
 
 /* Adds a document that dea_yaml_parse reads as the same tree; comments are not in the tree. */
 void dea_yaml_write(const struct dea_node *root, struct dea_text *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the command asks of the bench, a component of its own (lab/): lab/src/cli/bench.c, or
  * no_bench.c in a build without it, as are cmd_drive, cmd_reduce, cmd_recording and cmd_import. */
-#ifndef DEA_CLI_BENCH_H
-#define DEA_CLI_BENCH_H
+#pragma once
 
 #include "base/schema.h"
 #include "cli/cli.h"
@@ -13,5 +12,3 @@ dea_status cli_bench_protocol_keys(struct dea_cli *cli, struct dea_text *out);
 dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_record **out);
 /* Path of the module for .mat files into out[size]; false when it is not here. */
 bool cli_bench_find_matio(char *out, size_t size);
-
-#endif

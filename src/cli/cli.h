@@ -1,6 +1,5 @@
 /* The command `dea`: a table of commands, one cmd_*.c each. Only this folder prints. */
-#ifndef DEA_CLI_CLI_H
-#define DEA_CLI_CLI_H
+#pragma once
 
 #include "base/text.h"
 #include "base/units.h"
@@ -249,5 +248,3 @@ void cli_watch(struct dea_cli *cli);
  * voltage has to come down first: hang-up, quit and the like count as an interruption too (hang-up
  * not under nohup). Progress is left out while stderr does not take it. */
 void cli_voltage_is_on(void);
-
-#endif

@@ -4,7 +4,6 @@
 #include "model/solid/actuator/mesh_file.h"
 
 #include <math.h>
-#include <string.h>
 #include <sys/stat.h>
 
 struct request {

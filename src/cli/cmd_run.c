@@ -16,7 +16,6 @@
 #include "study/study.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { STUDIES_MAX = 8, TABLE_ROWS = 9, SHOWN_MAX = 4, SHOWN_WIDTH = 16 };

@@ -1,6 +1,5 @@
 /* The example designs that come with the program. */
-#ifndef DEA_CLI_DATA_FILES_H
-#define DEA_CLI_DATA_FILES_H
+#pragma once
 
 #include "cli/cli.h"
 
@@ -23,5 +22,3 @@ dea_status cli_examples_find(struct dea_context *ctx, const char *outcome,
 void cli_data_free(struct dea_context *ctx, struct cli_data_list *list);
 /* Length of a name without its last ending: 5 for "fig02.yaml". */
 size_t cli_data_stem(const char *name);
-
-#endif

@@ -1,7 +1,6 @@
 #include "cli/models.h"
 
 #include "base/file.h"
-#include "device/device.h"
 
 #include <string.h>
 #include <unistd.h>

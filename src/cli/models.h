@@ -1,6 +1,5 @@
 /* Names of models in a design or on the command line. */
-#ifndef DEA_CLI_MODELS_H
-#define DEA_CLI_MODELS_H
+#pragma once
 
 #include "base/text.h"
 #include "cli/cli.h"
@@ -12,5 +11,3 @@ const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *nam
 /* Value of `compute.compare` that names design files after their names without folder and ending:
  * paths count from here. */
 void cli_designs_text(const char *const files[], size_t count, struct dea_text *out);
-
-#endif

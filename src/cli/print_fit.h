@@ -1,6 +1,5 @@
 /* What `dea fit` prints. */
-#ifndef DEA_CLI_PRINT_FIT_H
-#define DEA_CLI_PRINT_FIT_H
+#pragma once
 
 #include "identify/device_fit.h"
 #include "io/breakdown_fit.h"
@@ -14,5 +13,3 @@ void cli_print_breakdown_fit(const struct dea_breakdown_fit *fit);
 
 /* Lives of specimens, and Weibull's law of them. */
 void cli_print_life_fit(const struct dea_life_fit *fit);
-
-#endif

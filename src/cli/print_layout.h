@@ -1,6 +1,5 @@
 /* What `dea check` says of any device. */
-#ifndef DEA_CLI_PRINT_LAYOUT_H
-#define DEA_CLI_PRINT_LAYOUT_H
+#pragma once
 
 #include "base/text.h"
 #include "device/layout.h"
@@ -15,5 +14,3 @@ dea_status cli_row_print(const char *name, size_t length, struct dea_text *text)
 dea_status cli_layout_print(struct dea_context *ctx, const struct dea_layout *layout);
 /* The same as an object. */
 json_t *cli_layout_json(const struct dea_layout *layout);
-
-#endif

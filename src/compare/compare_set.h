@@ -1,7 +1,6 @@
 /* Curves beside a reference: models, simulations and a measurement in one figure and one table, or
  * pairs, each in a figure with its difference. */
-#ifndef DEA_COMPARE_COMPARE_SET_H
-#define DEA_COMPARE_COMPARE_SET_H
+#pragma once
 
 #include "base/json.h"
 #include "compare/measured.h"
@@ -100,5 +99,3 @@ json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance
  * known. Script, data and pictures each. */
 dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compare_set *set,
                                 const struct dea_plot_format *format, const char *directory);
-
-#endif

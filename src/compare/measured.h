@@ -1,6 +1,5 @@
 /* What was measured of an actuator: the folder that `dea reduce` writes, or a table alone. */
-#ifndef DEA_COMPARE_MEASURED_H
-#define DEA_COMPARE_MEASURED_H
+#pragma once
 
 #include "io/csv.h"
 #include "table/csv_columns.h"
@@ -50,5 +49,3 @@ dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measu
 void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured);
 /* Column of dea_point_columns that a column of the history is; -1: none (the time). */
 int dea_measured_point_column(enum dea_measured_column column);
-
-#endif

@@ -3,8 +3,7 @@
  * design file -> struct dea_design -> const struct dea_device. A design is editable; a device is
  * what the models see. The schema (one table, design/design_schema.c) says key, unit, range,
  * default and meaning of every member. */
-#ifndef DEA_DESIGN_DESIGN_H
-#define DEA_DESIGN_DESIGN_H
+#pragma once
 
 #include "base/value.h"
 #include "base/yaml.h"
@@ -179,5 +178,3 @@ const struct dea_settings *dea_design_settings(const struct dea_design *design,
 double dea_design_highest_V(const struct dea_design *design);
 /* NULL is fine. */
 void dea_design_destroy(struct dea_context *ctx, struct dea_design *design);
-
-#endif

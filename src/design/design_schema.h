@@ -1,6 +1,5 @@
 /* The schema of a design file: the table, and the struct that it fills. */
-#ifndef DEA_DESIGN_DESIGN_SCHEMA_H
-#define DEA_DESIGN_DESIGN_SCHEMA_H
+#pragma once
 
 #include "base/schema.h"
 #include "design/design.h"
@@ -45,5 +44,3 @@ struct dea_design_schema {
 };
 void dea_design_schema_fill(const struct dea_design_sections *sections,
                             struct dea_design_schema *out);
-
-#endif

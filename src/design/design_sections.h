@@ -1,7 +1,6 @@
 /* Reading of design files with sections that others own. Everyone above the studies reads with
  * study/design_file.h, which knows theirs. */
-#ifndef DEA_DESIGN_DESIGN_SECTIONS_H
-#define DEA_DESIGN_DESIGN_SECTIONS_H
+#pragma once
 
 #include "design/design.h"
 
@@ -18,5 +17,3 @@ dea_status dea_design_read_memory_with(struct dea_context *ctx,
                                        const char *bytes, size_t length,
                                        const struct dea_override *overrides, size_t override_count,
                                        struct dea_design **out);
-
-#endif

@@ -2,8 +2,7 @@
  * Reasons for the defaults: docs/fabrication.md. A design of the general form has kerf to blank,
  * ring.width_m and frame_gap_m of its frame, marks, cure, and tolerances of thickness and
  * pre-stretch; the rest is 0. */
-#ifndef DEA_DESIGN_FABRICATION_H
-#define DEA_DESIGN_FABRICATION_H
+#pragma once
 
 #include "base/value.h"
 
@@ -43,5 +42,3 @@ struct dea_fabrication {
     struct dea_quantity frame_m;                // inner diameter
   } tolerance;
 };
-
-#endif

@@ -1,8 +1,7 @@
 /* The general form of a design: the parts of a device as they stand in the file, with their places
  * (docs/theory/devices.md). Names are resolved when the device is made (device/generator_parts.c).
  */
-#ifndef DEA_DESIGN_PARTS_H
-#define DEA_DESIGN_PARTS_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/value.h"
@@ -148,5 +147,3 @@ bool dea_parts_in_time(const struct dea_parts *parts);
 
 /* NULL is fine. */
 void dea_parts_destroy(struct dea_context *ctx, struct dea_parts *parts);
-
-#endif

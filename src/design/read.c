@@ -1,5 +1,4 @@
 #include "design/read.h"
-#include "base/file.h"
 #include "base/file_kind.h"
 #include "design/design_schema.h"
 

@@ -1,6 +1,5 @@
 /* Reading of one design: its text, with changes, by the schema. */
-#ifndef DEA_DESIGN_READ_H
-#define DEA_DESIGN_READ_H
+#pragma once
 
 #include "design/design.h"
 
@@ -22,5 +21,3 @@ dea_status dea_design_read_source(struct dea_context *ctx, const struct dea_desi
  * the list `materials`, under the name "film.material" or "plies.NAME.material". Findings for what
  * is wrong in them; DEA_E_MEMORY. */
 dea_status dea_material_lines_expand(struct dea_context *ctx, struct dea_yaml *yaml);
-
-#endif

@@ -1,6 +1,5 @@
 /* Tables of the general form of a design, and the lists that they fill. */
-#ifndef DEA_DESIGN_SCHEMA_PARTS_H
-#define DEA_DESIGN_SCHEMA_PARTS_H
+#pragma once
 
 #include "base/schema.h"
 #include "design/parts.h"
@@ -44,5 +43,3 @@ extern const size_t dea_parts_field_count;
 dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shape_schema *schema,
                           const char *beside, const struct dea_parts_raw *raw,
                           struct dea_parts **out);
-
-#endif

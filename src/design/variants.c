@@ -2,7 +2,6 @@
 
 #include "base/file.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* Place of what is wrong with a variant. The command line has none of its own (a line counts from

@@ -2,8 +2,7 @@
  *
  * Reference configuration of all lengths here: the pre-stretched, flat film (what is cut, glued and
  * measured), except film_thickness_unstretched_m. A device is constant once built. */
-#ifndef DEA_DEVICE_DEVICE_H
-#define DEA_DEVICE_DEVICE_H
+#pragma once
 
 #include "design/design.h"
 #include "device/layout.h"
@@ -74,5 +73,3 @@ dea_status dea_device_refuse_densities(struct dea_context *ctx, struct dea_locat
  * electrodes, by the law of its material. */
 void dea_device_fit_breakdown(struct dea_device *device);
 void dea_device_destroy(struct dea_context *ctx, struct dea_device *device);
-
-#endif

@@ -1,6 +1,5 @@
 /* The layout of a disc in a round frame. */
-#ifndef DEA_DEVICE_DISC_LAYOUT_H
-#define DEA_DEVICE_DISC_LAYOUT_H
+#pragma once
 
 #include "device/device.h"
 
@@ -24,5 +23,3 @@ dea_status dea_disc_layout_own_monitors(struct dea_context *ctx, const struct de
  * are said there are taken too. */
 dea_status dea_disc_layout_add_monitors(struct dea_context *ctx, const struct dea_device *device,
                                         struct dea_layout *to, bool *fit);
-
-#endif

@@ -1,7 +1,6 @@
 /* Generators: what makes a device of a design. A new one is a file generator_<name>.c and a line
  * here. */
-#ifndef DEA_DEVICE_GENERATOR_H
-#define DEA_DEVICE_GENERATOR_H
+#pragma once
 
 #include "device/device.h"
 
@@ -54,5 +53,3 @@ dea_status dea_generator_check_reach(struct dea_context *ctx, const struct dea_m
 dea_status dea_generator_check_film_in_time(struct dea_context *ctx,
                                             const struct dea_design *design,
                                             const struct dea_generator_film *film);
-
-#endif

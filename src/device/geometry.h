@@ -1,6 +1,5 @@
 /* Geometry of a device: lengths of the stretched film, and whether the parts fit together. */
-#ifndef DEA_DEVICE_GEOMETRY_H
-#define DEA_DEVICE_GEOMETRY_H
+#pragma once
 
 #include "device/device.h"
 
@@ -15,5 +14,3 @@ dea_status dea_geometry_fit_studies(struct dea_context *ctx, const struct dea_de
 /* Adds a finding for each thing that does not fit, at the value at fault. Fails only for memory. */
 dea_status dea_geometry_check(struct dea_context *ctx, const struct dea_design *design,
                               const struct dea_device *device);
-
-#endif

@@ -2,8 +2,7 @@
  * made of every value of the design file, defaults among them, but those of a table of keys that do
  * not matter, and of what files and the catalogue add to it: materials and contours. A key that is
  * new in the schema is part of it. */
-#ifndef DEA_DEVICE_IDENTITY_H
-#define DEA_DEVICE_IDENTITY_H
+#pragma once
 
 #include "device/device.h"
 
@@ -13,5 +12,3 @@ bool dea_identity_has(const char *path);
  * out too; NULL: none. */
 void dea_device_identity(const struct dea_design *design, const struct dea_device *device,
                          const char *but, struct dea_text *out);
-
-#endif

@@ -3,8 +3,7 @@
  *
  * All lengths are lengths of the flat film as it is stretched when parts are bonded to it; z goes
  * up through the plies. A layout is constant once made. */
-#ifndef DEA_DEVICE_LAYOUT_H
-#define DEA_DEVICE_LAYOUT_H
+#pragma once
 
 #include "base/arena.h"
 #include "geometry/region.h"
@@ -205,5 +204,3 @@ dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *
 dea_status dea_layout_create(struct dea_context *ctx, struct dea_layout **out);
 /* NULL is fine. */
 void dea_layout_destroy(struct dea_context *ctx, struct dea_layout *layout);
-
-#endif

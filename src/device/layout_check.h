@@ -1,6 +1,5 @@
 /* Whether the parts of a layout lie where they can. */
-#ifndef DEA_DEVICE_LAYOUT_CHECK_H
-#define DEA_DEVICE_LAYOUT_CHECK_H
+#pragma once
 
 #include "device/layout.h"
 
@@ -17,5 +16,3 @@ double dea_layout_overlap_m2(const struct dea_layout *layout, size_t a, size_t b
 double dea_layout_active_area_m2(const struct dea_layout *layout, size_t ply);
 /* Whether a point lies in a region or on its boundary. */
 bool dea_layout_holds(const struct dea_layout *layout, size_t region, const double x_m[2]);
-
-#endif

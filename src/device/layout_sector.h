@@ -1,7 +1,6 @@
 /* The sector of a layout between two of its lines of symmetry, of which the whole is mirrored
  * copies (docs/theory/devices.md, "Symmetry"). */
-#ifndef DEA_DEVICE_LAYOUT_SECTOR_H
-#define DEA_DEVICE_LAYOUT_SECTOR_H
+#pragma once
 
 #include "device/layout.h"
 
@@ -32,5 +31,3 @@ int dea_layout_sector_keeps(const struct dea_layout_sector *sector);
  * axes Q (rows), 0 elsewhere. */
 int dea_layout_sector_holds(const struct dea_layout_sector *sector, const double x_m[2],
                             double near_m, double Q[9]);
-
-#endif

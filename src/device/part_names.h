@@ -1,6 +1,5 @@
 /* Parts of a design by name. */
-#ifndef DEA_DEVICE_PART_NAMES_H
-#define DEA_DEVICE_PART_NAMES_H
+#pragma once
 
 #include "base/value.h"
 
@@ -19,5 +18,3 @@ struct dea_part_names {
  * nearest, or which there are. */
 dea_status dea_part_find(struct dea_context *ctx, const struct dea_part_names *names,
                          const char *name, struct dea_location location, size_t *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Shapes of a design as regions. */
-#ifndef DEA_DEVICE_SHAPE_REGIONS_H
-#define DEA_DEVICE_SHAPE_REGIONS_H
+#pragma once
 
 #include "design/design.h"
 #include "device/layout.h"
@@ -10,5 +9,3 @@
  * one, leaves an empty region. */
 dea_status dea_shape_regions_make(struct dea_context *ctx, const struct dea_design *design,
                                   struct dea_layout *layout);
-
-#endif

@@ -1,6 +1,5 @@
 /* dea optimise: a question's best design, or front, with its files. */
-#ifndef DEA_EXPLORE_BEST_H
-#define DEA_EXPLORE_BEST_H
+#pragma once
 
 #include "explore/case_key.h"
 #include "explore/optimise.h"
@@ -33,5 +32,3 @@ const char *dea_optimum_bound(const struct dea_case_key *case_key, const struct 
 dea_status dea_optimise_run(const struct dea_case_key *case_key,
                             const struct dea_optimise_options *options,
                             struct dea_optimise_report *report);
-
-#endif

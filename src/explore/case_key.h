@@ -1,7 +1,6 @@
 /* What a file of dea sweep asks, resolved: the device as an evaluator, its variables and columns.
  */
-#ifndef DEA_EXPLORE_CASE_KEY_H
-#define DEA_EXPLORE_CASE_KEY_H
+#pragma once
 
 #include "base/arena.h"
 #include "explore/evaluator.h"
@@ -83,5 +82,3 @@ void dea_case_key_flags_name(const struct dea_case_key *case_key, size_t k, char
  */
 double dea_limit_margin(const struct dea_case_key *case_key, const struct dea_limit *limit,
                         const double *q);
-
-#endif

@@ -1,7 +1,6 @@
 /* What is explored: some numbers in, named quantities out. A device is one (case_key.h); tests have
  * functions in closed form. */
-#ifndef DEA_EXPLORE_EVALUATOR_H
-#define DEA_EXPLORE_EVALUATOR_H
+#pragma once
 
 #include "base/context.h"
 
@@ -43,5 +42,3 @@ static inline size_t dea_evaluator_values(const struct dea_evaluator *evaluator)
 {
   return evaluator->value_count * (evaluator->gradients ? 1 + evaluator->param_count : 1);
 }
-
-#endif

@@ -1,7 +1,6 @@
 /* A file of `dea sweep` and `dea optimise`: a design, the values of it that change, and what is
  * asked of each of the designs (docs/explore.md). */
-#ifndef DEA_EXPLORE_EXPLORE_FILE_H
-#define DEA_EXPLORE_EXPLORE_FILE_H
+#pragma once
 
 #include "identify/device_file.h"
 
@@ -94,5 +93,3 @@ dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
 dea_status dea_explore_correlations_check(struct dea_context *ctx,
                                           const struct dea_explore_file *file);
 void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file);
-
-#endif

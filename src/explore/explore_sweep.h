@@ -1,6 +1,5 @@
 /* Many designs: all cases of a plan, evaluated, kept, and written as tables. */
-#ifndef DEA_EXPLORE_EXPLORE_SWEEP_H
-#define DEA_EXPLORE_EXPLORE_SWEEP_H
+#pragma once
 
 #include "explore/plan.h"
 #include "explore/store.h"
@@ -44,5 +43,3 @@ dea_status dea_sweep_draw(const struct dea_case_key *case_key, const struct dea_
 dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,
                            const struct dea_store *store, const struct dea_plot_format *format,
                            const char *folder);
-
-#endif

@@ -4,7 +4,6 @@
 #include "base/write_file.h"
 
 #include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

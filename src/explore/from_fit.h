@@ -1,6 +1,5 @@
 /* Parameters that dea fit has found as variables of an exploration (key `from_fit`). */
-#ifndef DEA_EXPLORE_FROM_FIT_H
-#define DEA_EXPLORE_FROM_FIT_H
+#pragma once
 
 #include "explore/explore_file.h"
 #include "study/device_param.h"
@@ -9,5 +8,3 @@
  * values, standard uncertainties and correlations. What is wrong becomes findings at from_fit. */
 dea_status dea_from_fit_take(struct dea_context *ctx, const struct dea_design *design,
                              const struct dea_device *device, struct dea_explore_file *io);
-
-#endif

@@ -1,6 +1,5 @@
 /* The best design: within bounds and limits, for one objective or the front of two. */
-#ifndef DEA_EXPLORE_OPTIMISE_H
-#define DEA_EXPLORE_OPTIMISE_H
+#pragma once
 
 #include "explore/explore_file.h"
 #include "explore/store.h"
@@ -59,5 +58,3 @@ bool dea_search_look(const struct dea_search *search, const double *p, double *o
 unsigned dea_search_marks(const struct dea_search *search, const double *p, size_t k);
 /* Whether it was built with NLopt. */
 bool dea_search_is_built(void);
-
-#endif

@@ -1,7 +1,6 @@
 /* In which order cases are evaluated: neighbours after each other, in groups that begin from the
  * solution of one of them. */
-#ifndef DEA_EXPLORE_ORDER_H
-#define DEA_EXPLORE_ORDER_H
+#pragma once
 
 #include "explore/plan.h"
 
@@ -21,5 +20,3 @@ dea_status dea_order_make(const struct dea_case_key *case_key, const struct dea_
 dea_status dea_order_of(struct dea_context *ctx, const double *p, size_t count, size_t params,
                         const bool *whole, size_t group, struct dea_order *out);
 void dea_order_free(struct dea_context *ctx, struct dea_order *order);
-
-#endif

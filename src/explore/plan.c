@@ -2,9 +2,7 @@
 
 #include "base/correlations.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
 // Points of the unit cube -------------------------------------------------------------------------
 

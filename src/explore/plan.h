@@ -1,6 +1,5 @@
 /* Which designs: the numbers of every case of a grid or of samples. */
-#ifndef DEA_EXPLORE_PLAN_H
-#define DEA_EXPLORE_PLAN_H
+#pragma once
 
 #include "explore/case_key.h"
 
@@ -33,5 +32,3 @@ struct dea_plan {
 dea_status dea_plan_check(const struct dea_case_key *case_key);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
 dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* Processes that evaluate cases. One that dies, whatever of, costs its case a reason and no more.
  */
-#ifndef DEA_EXPLORE_POOL_H
-#define DEA_EXPLORE_POOL_H
+#pragma once
 
 #include "explore/evaluator.h"
 
@@ -23,5 +22,3 @@ void dea_pool_destroy(struct dea_pool *pool);
  * interruption, without the cases that were under way. */
 dea_status dea_pool_run(struct dea_pool *pool, dea_case_source source, dea_case_sink sink,
                         void *user);
-
-#endif

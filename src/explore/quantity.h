@@ -1,7 +1,6 @@
 /* What is kept of a design: a column of load points, what a monitor of a device made of plies
  * shows, or a voltage at which the film comes to an end. */
-#ifndef DEA_EXPLORE_QUANTITY_H
-#define DEA_EXPLORE_QUANTITY_H
+#pragma once
 
 #include "base/value.h"
 #include "device/device.h"
@@ -28,5 +27,3 @@ struct dea_explored {
  */
 dea_status dea_explored_find(struct dea_context *ctx, const struct dea_device *device,
                              const struct dea_label *label, struct dea_explored *out, bool *good);
-
-#endif

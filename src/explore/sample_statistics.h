@@ -1,6 +1,5 @@
 /* What samples say: moments, quantiles, the probability of a limit, Sobol indices. */
-#ifndef DEA_EXPLORE_SAMPLE_STATISTICS_H
-#define DEA_EXPLORE_SAMPLE_STATISTICS_H
+#pragma once
 
 #include "base/context.h"
 
@@ -22,5 +21,3 @@ dea_status dea_spread_find(struct dea_context *ctx, const double *values, size_t
  */
 void dea_sobol_index(const double *a, const double *b, const double *ab, size_t samples,
                      double *first, double *total);
-
-#endif

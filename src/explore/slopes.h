@@ -1,7 +1,6 @@
 /* Gradients of a question's quantities, by the model's own where it has them
  * (docs/theory/gradients.md). */
-#ifndef DEA_EXPLORE_SLOPES_H
-#define DEA_EXPLORE_SLOPES_H
+#pragma once
 
 #include "explore/case_key.h"
 
@@ -10,5 +9,3 @@
  * at a design. The evaluator without gradients where the model has none of its own, or the file's
  * method wants none. user: lent by the question. */
 struct dea_evaluator dea_case_key_with_slopes(const struct dea_case_key *case_key);
-
-#endif

@@ -1,6 +1,5 @@
 /* A sweep on a cluster that runs Slurm: an array of jobs, one a part, and one that collects. */
-#ifndef DEA_EXPLORE_SLURM_H
-#define DEA_EXPLORE_SLURM_H
+#pragma once
 
 #include "base/context.h"
 
@@ -17,5 +16,3 @@ struct dea_slurm_options {
  * the jobs into array and merge. DEA_E_TOOL where there is no sbatch or it refuses. */
 dea_status dea_slurm_submit(struct dea_context *ctx, const struct dea_slurm_options *options,
                             char array[32], char merge[32]);
-
-#endif

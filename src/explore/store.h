@@ -1,8 +1,7 @@
 /* The cases that are done, in files that only grow: whole lines, each with a checksum. Whatever
  * ends the program, what was kept stays and counts once; a computer that fails may take the last
  * second with it. */
-#ifndef DEA_EXPLORE_STORE_H
-#define DEA_EXPLORE_STORE_H
+#pragma once
 
 #include "explore/evaluator.h"
 
@@ -34,5 +33,3 @@ const struct dea_case *dea_store_get(const struct dea_store *store, size_t index
 const struct dea_case *dea_store_find(const struct dea_store *store, const double *p);
 /* Lines that were not whole: of a program that was ended as it wrote. */
 size_t dea_store_torn(const struct dea_store *store);
-
-#endif

@@ -1,6 +1,5 @@
 /* What draws PDF, SVG and PNG: cairo, which is a module. */
-#ifndef DEA_FABRICATE_CAIRO_CANVAS_H
-#define DEA_FABRICATE_CAIRO_CANVAS_H
+#pragma once
 
 #include "figures/canvas.h"
 
@@ -8,5 +7,3 @@
 bool dea_canvas_find(char *out, size_t size);
 /* The type that draws with cairo. DEA_E_UNSUPPORTED when that is not installed. */
 dea_status dea_canvas_open(struct dea_context *ctx, const struct dea_canvas_type **out);
-
-#endif

@@ -1,7 +1,6 @@
 /* A document for people: headings, text and tables, the same for every form that it is written in.
  */
-#ifndef DEA_FABRICATE_DOCUMENT_H
-#define DEA_FABRICATE_DOCUMENT_H
+#pragma once
 
 #include "base/text.h"
 #include "figures/canvas.h"
@@ -45,5 +44,3 @@ void dea_document_html(const struct dea_document *document, const char *drawing,
                        struct dea_text *out);
 /* Pages of A4, on a canvas that begins with one. */
 void dea_document_pages(const struct dea_paper *paper, const struct dea_document *document);
-
-#endif

@@ -1,8 +1,7 @@
 /* A sheet as DXF (AC1015, which is AutoCAD 2000): tool paths in mm, a layer for each way of
  * working.
  */
-#ifndef DEA_FABRICATE_DXF_H
-#define DEA_FABRICATE_DXF_H
+#pragma once
 
 #include "base/text.h"
 #include "fabricate/workshop.h"
@@ -13,5 +12,3 @@ dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, stru
  * flat film and without kerf: what a shape of kind `drawing` reads. Letters that a layer's name may
  * not have are "_". DEA_E_MEMORY is the only failure. */
 dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* The plan: every length that the parts are made from, in the stretched film (what the unstretched
  * film gets is smaller by the pre-stretch), seen from the fibres, x along the first fibre. */
-#ifndef DEA_FABRICATE_FAB_GEOMETRY_H
-#define DEA_FABRICATE_FAB_GEOMETRY_H
+#pragma once
 
 #include "device/device.h"
 
@@ -41,5 +40,3 @@ dea_status dea_fab_geometry_make(struct dea_context *ctx, const struct dea_desig
                                  const struct dea_device *device, struct dea_fab_geometry *out);
 /* A finding when the kerf is too wide for the smallest feature. */
 dea_status dea_fab_check_cutter(struct dea_context *ctx, const struct dea_fab_geometry *plan);
-
-#endif

@@ -1,8 +1,7 @@
 /* What the parts of a device of any layout have in common: the frame around it, the film as it is
  * cut, and marks that meet in all sheets. Lengths in the flat film, from the centre of the box of
  * plies and bodies. */
-#ifndef DEA_FABRICATE_FAB_ROOM_H
-#define DEA_FABRICATE_FAB_ROOM_H
+#pragma once
 
 #include "fabricate/fab_geometry.h"
 
@@ -41,5 +40,3 @@ size_t dea_ply_count_like(const struct dea_layout *layout, size_t ply);
 size_t dea_face_count_like(const struct dea_layout *layout, size_t ply, bool top);
 /* From the film free of stress to the flat one, as a matrix. */
 void dea_ply_stretch(const struct dea_layout_ply *ply, double out[2][2]);
-
-#endif

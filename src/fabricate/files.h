@@ -1,6 +1,5 @@
 /* The folder of files for the workshop. */
-#ifndef DEA_FABRICATE_FILES_H
-#define DEA_FABRICATE_FILES_H
+#pragma once
 
 #include "fabricate/workshop.h"
 
@@ -22,5 +21,3 @@ typedef dea_status (*dea_file_sink)(void *user, const char *name);
 dea_status dea_workshop_files(const struct dea_workshop *workshop,
                               const struct dea_workshop_options *options, dea_file_sink sink,
                               void *user);
-
-#endif

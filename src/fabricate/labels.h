@@ -1,6 +1,5 @@
 /* Words in files: those beside a sheet, and text of a design that other programs read. */
-#ifndef DEA_FABRICATE_LABELS_H
-#define DEA_FABRICATE_LABELS_H
+#pragma once
 
 #include "base/text.h"
 #include "fabricate/workshop.h"
@@ -15,5 +14,3 @@ double dea_sheet_labels_height(const struct dea_sheet_layout *layout);
 unsigned dea_letter_next(const char **text);
 /* Text of a design inside XML or HTML: its special letters as entities, always good UTF-8. */
 void dea_xml_add(struct dea_text *out, const char *text);
-
-#endif

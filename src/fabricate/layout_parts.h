@@ -8,8 +8,7 @@
  *   ply-PLY             outline of a ply, in the flat film; of a film that the frame holds: none
  *   body-BODY           outline of a rigid body
  */
-#ifndef DEA_FABRICATE_LAYOUT_PARTS_H
-#define DEA_FABRICATE_LAYOUT_PARTS_H
+#pragma once
 
 #include "fabricate/workshop.h"
 
@@ -28,5 +27,3 @@ void dea_stencil_name(const struct dea_layout *layout, size_t ply, bool top, cha
 void dea_body_name(const struct dea_layout *layout, size_t body, char *out);
 /* Pieces that a part falls into once it is cut. */
 size_t dea_part_pieces(const struct dea_part *part);
-
-#endif

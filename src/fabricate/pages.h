@@ -1,6 +1,5 @@
 /* A PDF at scale 1:1: a page with dimensions for each part, and one for each sheet with copies. */
-#ifndef DEA_FABRICATE_PAGES_H
-#define DEA_FABRICATE_PAGES_H
+#pragma once
 
 #include "fabricate/workshop.h"
 #include "figures/canvas.h"
@@ -8,5 +7,3 @@
 /* Draws all pages on a canvas that begins with a page of dea_pages_first_size. */
 void dea_pages_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);
 void dea_pages_first_size(const struct dea_workshop *workshop, double out_mm[2]);
-
-#endif

@@ -1,7 +1,6 @@
 /* A part as it is cut from a sheet: contours, lines that are only drawn, and words on it. Lengths
  * in metres, of the finished part: the kerf comes in where tool paths are written. */
-#ifndef DEA_FABRICATE_PART_H
-#define DEA_FABRICATE_PART_H
+#pragma once
 
 #include "design/design.h"
 #include "geometry/contour.h"
@@ -106,5 +105,3 @@ double dea_part_length_m(const struct dea_part *part, enum dea_layer layer);
 dea_status dea_part_check(const struct dea_part *part, double feature_m, double kerf_m);
 
 void dea_part_free(struct dea_part *part);
-
-#endif

@@ -1,6 +1,5 @@
 /* The parts: one file each and one line here, in the order of the work. */
-#ifndef DEA_FABRICATE_PART_LIST_H
-#define DEA_FABRICATE_PART_LIST_H
+#pragma once
 
 #include "fabricate/fab_geometry.h"
 #include "fabricate/part.h"
@@ -44,5 +43,3 @@ void dea_draw_fibre(const struct dea_fab_geometry *plan, int number, enum dea_la
 /* What a fibre that the frame holds has on the ring: a closed contour; nothing of a free one. */
 void dea_draw_anchor(const struct dea_fab_geometry *plan, int number, enum dea_layer layer,
                      struct dea_part *part);
-
-#endif

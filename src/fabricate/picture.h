@@ -1,12 +1,9 @@
 /* The drawing of an actuator (figures/device_drawing.h) with what the workshop adds to it:
  * frame, leads with their pads, anchors of fibres, alignment marks. */
-#ifndef DEA_FABRICATE_PICTURE_H
-#define DEA_FABRICATE_PICTURE_H
+#pragma once
 
 #include "fabricate/workshop.h"
 #include "figures/canvas.h"
 
 void dea_picture_size(const struct dea_workshop *workshop, double out_mm[2]);
 void dea_picture_draw(const struct dea_paper *paper, const struct dea_workshop *workshop);
-
-#endif

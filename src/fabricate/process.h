@@ -1,6 +1,5 @@
 /* The process sheet: what is needed, what is done, what is checked, with the design's numbers. */
-#ifndef DEA_FABRICATE_PROCESS_H
-#define DEA_FABRICATE_PROCESS_H
+#pragma once
 
 #include "fabricate/document.h"
 #include "fabricate/workshop.h"
@@ -29,5 +28,3 @@ double dea_plies_mass_kg(const struct dea_layout *layout);
  * document: zero but for its context; to be freed also after a failure. */
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                              bool sensitivity, struct dea_document *document);
-
-#endif

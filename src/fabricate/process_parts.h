@@ -1,6 +1,5 @@
 /* What the process sheets of all devices have in common. */
-#ifndef DEA_FABRICATE_PROCESS_PARTS_H
-#define DEA_FABRICATE_PROCESS_PARTS_H
+#pragma once
 
 #include "fabricate/document.h"
 #include "fabricate/workshop.h"
@@ -21,5 +20,3 @@ void dea_process_add_voltage(struct dea_document *document, double voltage_V, do
 /* Bill, steps and checks of a device that is no disc (process_layout.c). */
 dea_status dea_process_write_layout(struct dea_context *ctx, const struct dea_workshop *workshop,
                                     bool sensitivity, struct dea_document *document);
-
-#endif

@@ -1,11 +1,8 @@
 /* A sheet as SVG for laser cutters: user units are mm, hairlines, a group for each layer. */
-#ifndef DEA_FABRICATE_SVG_H
-#define DEA_FABRICATE_SVG_H
+#pragma once
 
 #include "base/text.h"
 #include "fabricate/workshop.h"
 
 /* The file of part number `index` with all its copies. DEA_E_MEMORY is the only failure. */
 dea_status dea_svg_write(const struct dea_workshop *workshop, size_t index, struct dea_text *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the workshop's tolerances do to a displacement: slope times tolerance, by a model's gradient
  * (docs/fabrication.md, docs/theory/gradients.md). */
-#ifndef DEA_FABRICATE_TOLERANCE_EFFECT_H
-#define DEA_FABRICATE_TOLERANCE_EFFECT_H
+#pragma once
 
 #include "device/device.h"
 #include "result/observation.h"
@@ -53,5 +52,3 @@ struct dea_layout_sensitivity {
 dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
                                        const struct dea_device *device,
                                        struct dea_layout_sensitivity *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* From a design to what a workshop needs: parts, and sheets with as many copies as are asked for.
  * Theory and defaults: docs/fabrication.md. */
-#ifndef DEA_FABRICATE_WORKSHOP_H
-#define DEA_FABRICATE_WORKSHOP_H
+#pragma once
 
 #include "base/arena.h"
 #include "fabricate/fab_room.h"
@@ -41,5 +40,3 @@ void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out
  * marked stays as it is. out: [*count], owned by the caller. */
 dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct dea_part *part,
                              size_t i, struct dea_vertex **out, size_t *count);
-
-#endif

@@ -1,7 +1,6 @@
 /* What drawings are drawn on: pages of a PDF, an SVG or a PNG. Lengths in mm from the lower left
  * corner, y upwards; colours 0xRRGGBB. */
-#ifndef DEA_FIGURES_CANVAS_H
-#define DEA_FIGURES_CANVAS_H
+#pragma once
 
 #include "geometry/contour.h"
 
@@ -49,5 +48,3 @@ struct dea_paper {
   const struct dea_canvas_type *type;
   struct dea_canvas *canvas;
 };
-
-#endif

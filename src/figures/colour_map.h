@@ -1,6 +1,5 @@
 /* What the figures of the film's middle surface share: which one, its colours, its data. */
-#ifndef DEA_FIGURES_COLOUR_MAP_H
-#define DEA_FIGURES_COLOUR_MAP_H
+#pragma once
 
 #include "figures/run_figures.h"
 #include "figures/surface_lattice.h"
@@ -47,5 +46,3 @@ double dea_nice_below(double largest);
 dea_status dea_colour_map_write(struct dea_context *ctx, const struct dea_text *gp,
                                 const struct dea_text *dat, const char *name,
                                 const char *directory);
-
-#endif

@@ -4,8 +4,7 @@
  * From above and to scale: plies (a colour a material), electrodes (a colour a channel), rigid
  * bodies, supports, pressures, monitors, lines of symmetry, with sizes. Below that a section along
  * x through the middle, its thickness not to scale, and a legend. */
-#ifndef DEA_FIGURES_DEVICE_DRAWING_H
-#define DEA_FIGURES_DEVICE_DRAWING_H
+#pragma once
 
 #include "base/text.h"
 #include "device/layout.h"
@@ -37,5 +36,3 @@ void dea_device_drawing_draw(const struct dea_paper *paper,
  * only failure, which marks the text too. */
 dea_status dea_device_drawing_add_svg(const struct dea_device_drawing *drawing, int number,
                                       struct dea_text *out);
-
-#endif

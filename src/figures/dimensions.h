@@ -1,7 +1,6 @@
 /* What technical drawings are made of: labels with leaders, dimensions with arrows, title and scale
  * of a page. Lengths in mm on the page. */
-#ifndef DEA_FIGURES_DIMENSIONS_H
-#define DEA_FIGURES_DIMENSIONS_H
+#pragma once
 
 #include "figures/canvas.h"
 
@@ -37,5 +36,3 @@ void dea_dimensions_fit(const struct dea_paper *paper, double x_mm, double y_mm,
                         bool bold, unsigned colour, double width_mm, const char *text);
 /* Length in mm, at most three decimals: "46.667". */
 void dea_length_text(char *out, size_t size, double length_m);
-
-#endif

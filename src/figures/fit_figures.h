@@ -1,6 +1,5 @@
 /* Figures of a fit of a material and of a device. */
-#ifndef DEA_FIGURES_FIT_FIGURES_H
-#define DEA_FIGURES_FIT_FIGURES_H
+#pragma once
 
 #include "identify/device_fit.h"
 #include "identify/fit.h"
@@ -15,5 +14,3 @@ dea_status dea_fit_draw(struct dea_context *ctx, const struct dea_fit *fit,
  * the residuals below. */
 dea_status dea_device_fit_draw(struct dea_context *ctx, const struct dea_device_fit *fit,
                                const struct dea_plot_format *format, const char *directory);
-
-#endif

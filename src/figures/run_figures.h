@@ -1,7 +1,6 @@
 /* Drawing the figures of a run: those of figure_list.h, each a file figure_<name>.c that defines
  * one `const struct dea_figure`, and those of the studies. */
-#ifndef DEA_FIGURES_RUN_FIGURES_H
-#define DEA_FIGURES_RUN_FIGURES_H
+#pragma once
 
 #include "plot/plot.h"
 #include "result/figure.h"
@@ -29,5 +28,3 @@ struct dea_figure_options {
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
                              const char *directory, const struct dea_figure_options *options,
                              size_t *drawn);
-
-#endif

@@ -1,7 +1,6 @@
 /* The middle surface of a film as it is drawn: patches and lines of the whole disc, from the
  * elements of the part that was computed and their mirrored copies. */
-#ifndef DEA_FIGURES_SURFACE_LATTICE_H
-#define DEA_FIGURES_SURFACE_LATTICE_H
+#pragma once
 
 #include "result/field_mesh.h"
 
@@ -57,5 +56,3 @@ dea_status dea_surface_lattice_outlines(struct dea_context *ctx, const struct de
 dea_status dea_surface_lattice_section(struct dea_context *ctx,
                                        const struct dea_surface_lattice *drawing, double angle,
                                        double **out, size_t *count);
-
-#endif

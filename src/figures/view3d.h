@@ -1,6 +1,5 @@
 /* The deformed film in space or seen from above, for one voltage or several. */
-#ifndef DEA_FIGURES_VIEW3D_H
-#define DEA_FIGURES_VIEW3D_H
+#pragma once
 
 #include "figures/colour_map.h"
 
@@ -59,5 +58,3 @@ dea_status dea_view3d_write_one(struct dea_context *ctx, const struct dea_view3d
                                 const struct dea_result *result,
                                 const struct dea_figure_options *options, const char *directory,
                                 bool *drawn);
-
-#endif

@@ -1,6 +1,5 @@
 /* The figure of a fit of Weibull's law: how many have broken or failed, and the law. */
-#ifndef DEA_FIGURES_WEIBULL_PICTURE_H
-#define DEA_FIGURES_WEIBULL_PICTURE_H
+#pragma once
 
 #include "identify/weibull.h"
 #include "plot/plot.h"
@@ -21,5 +20,3 @@ struct dea_weibull_picture {
  * uncertainties. Drawn as format says. */
 dea_status dea_weibull_draw(struct dea_context *ctx, const struct dea_weibull_picture *picture,
                             const struct dea_plot_format *format, const char *directory);
-
-#endif

@@ -1,6 +1,5 @@
 /* Union, difference and intersection of regions. Arcs stay exact (docs/theory/geometry.md). */
-#ifndef DEA_GEOMETRY_BOOLEAN_H
-#define DEA_GEOMETRY_BOOLEAN_H
+#pragma once
 
 #include "geometry/region.h"
 
@@ -19,5 +18,3 @@ bool dea_boolean_find(char *out, size_t size);
 dea_status dea_region_combine(struct dea_context *ctx, enum dea_boolean what,
                               const struct dea_region *a, const struct dea_region *b,
                               struct dea_region *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* A tree of boxes, for finding those that meet another box without looking at all. */
-#ifndef DEA_GEOMETRY_BOX_TREE_H
-#define DEA_GEOMETRY_BOX_TREE_H
+#pragma once
 
 #include "base/context.h"
 
@@ -23,5 +22,3 @@ void dea_box_tree_free(struct dea_context *ctx, struct dea_box_tree *tree);
 /* The items whose boxes meet `side`, one a call: *cursor starts at 0; false at the end. */
 bool dea_box_tree_next(const struct dea_box_tree *tree, const double side[4], size_t *cursor,
                        size_t *item);
-
-#endif

@@ -2,8 +2,7 @@
  * LWPOLYLINE of a DXF file: a vertex says how the contour goes on to the next one.
  *
  * Closed contours of a part go counter-clockwise, so their inside lies on the left. */
-#ifndef DEA_GEOMETRY_CONTOUR_H
-#define DEA_GEOMETRY_CONTOUR_H
+#pragma once
 
 #include "base/context.h"
 
@@ -75,5 +74,3 @@ struct dea_gap {
  * narrower than `limit_m` are looked for. */
 struct dea_gap dea_contour_gap(const struct dea_contour *first, const struct dea_contour *second,
                                double limit_m);
-
-#endif

@@ -1,6 +1,5 @@
 /* The pieces of regions in one list, with a tree to find those that are near. */
-#ifndef DEA_GEOMETRY_CONTOUR_PIECES_H
-#define DEA_GEOMETRY_CONTOUR_PIECES_H
+#pragma once
 
 #include "base/arena.h"
 #include "geometry/box_tree.h"
@@ -29,5 +28,3 @@ bool dea_pieces_next(const struct dea_pieces *pieces, const double box[4], size_
  * look.
  */
 bool dea_pieces_apart(const struct dea_pieces *pieces, size_t i, size_t j);
-
-#endif

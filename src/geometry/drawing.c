@@ -1,7 +1,6 @@
 #define _POSIX_C_SOURCE 200809L // strcasecmp
 #include "geometry/drawing.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,5 @@
 /* Drawings from files: contours by layer, which become regions. DXF and SVG. */
-#ifndef DEA_GEOMETRY_DRAWING_H
-#define DEA_GEOMETRY_DRAWING_H
+#pragma once
 
 #include "geometry/region.h"
 
@@ -125,5 +124,3 @@ dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t c
 /* A finding at a line and DEA_E_DESIGN. */
 dea_status dea_drawing_fault(const struct dea_drawing *drawing, size_t line, const char *format,
                              ...) DEA_PRINTF(3, 4);
-
-#endif

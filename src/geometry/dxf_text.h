@@ -1,6 +1,5 @@
 /* Text of a DXF file. */
-#ifndef DEA_GEOMETRY_DXF_TEXT_H
-#define DEA_GEOMETRY_DXF_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -20,5 +19,3 @@ void dea_dxf_text_set_page(struct dea_dxf_text *as, const char *name);
 /* Text as UTF-8, in place, with its escapes \U+XXXX and \M+NXXXX; cut where it does not fit. */
 void dea_dxf_text_decode(struct dea_dxf_text *as, char text[DEA_DXF_TEXT_SIZE]);
 void dea_dxf_text_free(struct dea_dxf_text *as);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the module that knows GEOS does for boolean.c: union, difference and intersection of
  * polygons. */
-#ifndef DEA_GEOMETRY_OVERLAY_H
-#define DEA_GEOMETRY_OVERLAY_H
+#pragma once
 
 #include "geometry/boolean.h"
 
@@ -23,5 +22,3 @@ struct dea_overlay_type {
   dea_status (*overlay)(struct dea_context *ctx, enum dea_boolean what, const struct dea_rings *a,
                         const struct dea_rings *b, struct dea_rings *out);
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* Points by their place: the one that was added before at the same place, or nearly so. */
-#ifndef DEA_GEOMETRY_POINT_MAP_H
-#define DEA_GEOMETRY_POINT_MAP_H
+#pragma once
 
 #include "base/context.h"
 
@@ -19,5 +18,3 @@ size_t dea_point_map_find(const struct dea_point_map *map, const double x_m[2]);
 /* The same; adds the point when there is none. */
 dea_status dea_point_map_add(struct dea_point_map *map, const double x_m[2], size_t *index);
 void dea_point_map_free(struct dea_point_map *map);
-
-#endif

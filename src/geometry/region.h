@@ -3,8 +3,7 @@
  * An outline goes counter-clockwise and the holes in it, which go clockwise, follow it: the inside
  * lies on the left everywhere. What adds contours does not look at them (dea_region_check does);
  * the measures hold for contours that do not cross. */
-#ifndef DEA_GEOMETRY_REGION_H
-#define DEA_GEOMETRY_REGION_H
+#pragma once
 
 #include "geometry/contour.h"
 
@@ -94,5 +93,3 @@ void dea_region_add_grid(struct dea_region *region, const struct dea_region *fro
 /* Adds `count` copies, rotated about a centre by multiples of an angle [rad]. */
 void dea_region_add_polar(struct dea_region *region, const struct dea_region *from, size_t count,
                           const double centre_m[2], double step_rad);
-
-#endif

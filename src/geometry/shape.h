@@ -1,6 +1,5 @@
 /* Shapes that a region is made of. */
-#ifndef DEA_GEOMETRY_SHAPE_H
-#define DEA_GEOMETRY_SHAPE_H
+#pragma once
 
 #include "geometry/region.h"
 #include "geometry/shape_list.h"
@@ -46,5 +45,3 @@ extern const struct dea_shape_type *const dea_shape_types[];
 dea_status dea_region_add_shape(struct dea_region *region, const struct dea_shape_type *type,
                                 const double *value, const double (*point_m)[2], size_t point_count,
                                 struct dea_location location);
-
-#endif

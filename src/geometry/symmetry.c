@@ -4,7 +4,6 @@
 #include "geometry/contour_pieces.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,5 @@
 /* Rotations and reflections that map regions onto themselves. */
-#ifndef DEA_GEOMETRY_SYMMETRY_H
-#define DEA_GEOMETRY_SYMMETRY_H
+#pragma once
 
 #include "geometry/region.h"
 
@@ -22,5 +21,3 @@ struct dea_symmetry {
 dea_status dea_symmetry_find(struct dea_context *ctx, const struct dea_region *const regions[],
                              const int labels[], size_t count, double tolerance_m,
                              struct dea_symmetry *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* A fit file of breakdown tests: a table of films that broke or survived. */
-#ifndef DEA_IDENTIFY_BREAKDOWN_FILE_H
-#define DEA_IDENTIFY_BREAKDOWN_FILE_H
+#pragma once
 
 #include "identify/fit_head.h"
 
@@ -20,5 +19,3 @@ extern const struct dea_record dea_breakdown_file_record;
 dea_status dea_breakdown_file_read(struct dea_context *ctx, const char *file,
                                    struct dea_breakdown_file **out);
 void dea_breakdown_file_destroy(struct dea_context *ctx, struct dea_breakdown_file *fit);
-
-#endif

@@ -3,8 +3,7 @@
  * l1 is the stretch that the machine gives. The other direction of the plane follows from the test:
  * uniaxial l2 = l1^-1/2 (free; exact for a law without direction), planar l2 = 1 (clamped wide),
  * equibiaxial l2 = l1. The third is free, and the material keeps its volume. */
-#ifndef DEA_IDENTIFY_COUPON_H
-#define DEA_IDENTIFY_COUPON_H
+#pragma once
 
 #include "base/arena.h"
 #include "material/material.h"
@@ -52,5 +51,3 @@ dea_status dea_coupon_follow(struct dea_arena *arena, const double *time_s, doub
 /* Drucker's stability in log strain: whether the derivatives of the Kirchhoff stresses by the
  * logarithms of the two stretches are a positive matrix at (l1, l2). */
 bool dea_coupon_is_stable(const struct dea_material *material, double l1, double l2);
-
-#endif

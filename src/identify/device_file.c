@@ -1,7 +1,5 @@
 #include "identify/device_file.h"
 
-#include "base/file.h"
-
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_device_file, member)
 #define CURVE_AT(member) offsetof(struct dea_device_curve_text, member)

@@ -1,6 +1,5 @@
 /* A fit file of a device: a design, the keys of it that are fitted, and measured curves. */
-#ifndef DEA_IDENTIFY_DEVICE_FILE_H
-#define DEA_IDENTIFY_DEVICE_FILE_H
+#pragma once
 
 #include "identify/fit_file.h"
 
@@ -45,5 +44,3 @@ extern const struct dea_record dea_device_file_record;
 dea_status dea_device_file_read(struct dea_context *ctx, const char *file,
                                 struct dea_device_file **out);
 void dea_device_file_destroy(struct dea_context *ctx, struct dea_device_file *fit);
-
-#endif

@@ -1,7 +1,6 @@
 /* A fit of a device to its measured curves: plain data that job/device_fit_run.c fills and output
  * writes. Least squares and statistics are those of materials (docs/theory/fit.md). */
-#ifndef DEA_IDENTIFY_DEVICE_FIT_H
-#define DEA_IDENTIFY_DEVICE_FIT_H
+#pragma once
 
 #include "base/text.h"
 #include "identify/device_file.h"
@@ -103,5 +102,3 @@ struct dea_device_candidate {
 /* Fills weak, pairs and next from what was fitted (least_squares and statistics). */
 dea_status dea_device_identify(struct dea_context *ctx, struct dea_device_fit *fit,
                                const struct dea_device_candidate *candidates, size_t count);
-
-#endif

@@ -1,8 +1,7 @@
 /* A fit of a material: the law and its branches, error bars, what the measurements cannot tell.
  *
  * docs/theory/fit.md says how each number is found, docs/fit.md how it is used. */
-#ifndef DEA_IDENTIFY_FIT_H
-#define DEA_IDENTIFY_FIT_H
+#pragma once
 
 #include "base/text.h"
 #include "identify/fit_model.h"
@@ -128,5 +127,3 @@ double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupo
 /* Stretch of a mode, at least 1, with that I1. */
 double dea_fit_stretch_as_far(enum dea_coupon_mode mode, double I1);
 dea_status dea_fit_identify_next(struct dea_context *ctx, struct dea_fit *fit);
-
-#endif

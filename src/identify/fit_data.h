@@ -1,7 +1,6 @@
 /* Measurements as a fit takes them: stretch, nominal stress, uncertainty, in time where they are.
  */
-#ifndef DEA_IDENTIFY_FIT_DATA_H
-#define DEA_IDENTIFY_FIT_DATA_H
+#pragma once
 
 #include "identify/fit_file.h"
 
@@ -32,5 +31,3 @@ struct dea_fit_series {
  * only odd (slack rows, repeated rows, a stretch that is never reached) a warning. */
 dea_status dea_fit_series_make(struct dea_arena *arena, const struct dea_fit_test *test,
                                const struct dea_fit_raw *raw, struct dea_fit_series *out);
-
-#endif

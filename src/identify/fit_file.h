@@ -1,6 +1,5 @@
 /* A fit file: which law, which parameters are free, which tests. */
-#ifndef DEA_IDENTIFY_FIT_FILE_H
-#define DEA_IDENTIFY_FIT_FILE_H
+#pragma once
 
 #include "identify/coupon.h"
 #include "identify/fit_head.h"
@@ -67,5 +66,3 @@ extern const struct dea_record dea_fit_record;
  * failure. */
 dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out);
 void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit);
-
-#endif

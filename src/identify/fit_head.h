@@ -1,6 +1,5 @@
 /* What the fit files of materials and of devices have in common, and how both are read. */
-#ifndef DEA_IDENTIFY_FIT_HEAD_H
-#define DEA_IDENTIFY_FIT_HEAD_H
+#pragma once
 
 #include "base/schema.h"
 
@@ -87,5 +86,3 @@ dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *n
  * name; what: "test". */
 dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_t count,
                                size_t size, const char *what);
-
-#endif

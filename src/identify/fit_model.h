@@ -1,7 +1,6 @@
 /* A law with branches as a problem of least squares: parameters, residuals over the tests, a start.
  */
-#ifndef DEA_IDENTIFY_FIT_MODEL_H
-#define DEA_IDENTIFY_FIT_MODEL_H
+#pragma once
 
 #include "identify/fit_data.h"
 #include "identify/least_squares.h"
@@ -68,5 +67,3 @@ dea_status dea_fit_model_problem(struct dea_arena *arena, const struct dea_fit_m
 /* Stresses of one series as "residuals", for their derivatives by the parameters. */
 dea_status dea_fit_model_stress(struct dea_arena *arena, const struct dea_fit_model *model,
                                 const struct dea_fit_series *series, struct dea_lsq_problem *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* What measurements hold of the parameters of a fit: J'J over those that are free, each in units
  * that give its own column the length 1. For D-optimality: which measurement would add most. */
-#ifndef DEA_IDENTIFY_INFORMATION_H
-#define DEA_IDENTIFY_INFORMATION_H
+#pragma once
 
 #include "identify/least_squares.h"
 
@@ -19,5 +18,3 @@ void dea_information_start(const struct dea_lsq_fit *fit, double variance, const
 void dea_information_add(struct dea_information *to, const double *J, size_t rows, double weight);
 /* ln det A, and the diagonal of its inverse [count]. */
 double dea_information_factor(const struct dea_information *of, double *variance);
-
-#endif

@@ -7,8 +7,7 @@
  * chi2    sum of r_i^2                                                        1
  *
  * Derivations: docs/theory/fit.md. */
-#ifndef DEA_IDENTIFY_LEAST_SQUARES_H
-#define DEA_IDENTIFY_LEAST_SQUARES_H
+#pragma once
 
 #include "base/arena.h"
 
@@ -116,5 +115,3 @@ struct dea_lsq_interval {
 dea_status dea_lsq_profile(struct dea_context *ctx, const struct dea_lsq_problem *problem,
                            const struct dea_lsq_fit *fit, size_t j, double rise, double variance,
                            double step, struct dea_lsq_interval *out);
-
-#endif

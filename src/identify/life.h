@@ -1,8 +1,7 @@
 /* The life of a specimen that was cycled: when it failed by a criterion, or that it survived. The
  * criterion is applied to what was recorded, so that a recording goes on behind a failure and
  * another criterion may be asked later (docs/theory/reduction.md, "Lives"). */
-#ifndef DEA_IDENTIFY_LIFE_H
-#define DEA_IDENTIFY_LIFE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -49,5 +48,3 @@ struct dea_life {
  * counts in any. rows->count > 0. */
 void dea_life_judge(const struct dea_life_rows *rows, const struct dea_life_criterion *criterion,
                     struct dea_life *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* A fit file of life tests: specimens that were cycled until they failed or the test ended. */
-#ifndef DEA_IDENTIFY_LIFE_FILE_H
-#define DEA_IDENTIFY_LIFE_FILE_H
+#pragma once
 
 #include "identify/fit_head.h"
 #include "identify/life.h"
@@ -35,5 +34,3 @@ extern const struct dea_record dea_life_file_record;
 dea_status dea_life_file_read(struct dea_context *ctx, const char *file,
                               struct dea_life_file **out);
 void dea_life_file_destroy(struct dea_context *ctx, struct dea_life_file *fit);
-
-#endif

@@ -16,8 +16,7 @@
  * docs/theory/fit.md. A life takes the place of the field where specimens are cycled (life.h):
  * then s, h and A are the same of all and n, p held at 0.
  */
-#ifndef DEA_IDENTIFY_WEIBULL_H
-#define DEA_IDENTIFY_WEIBULL_H
+#pragma once
 
 #include "base/context.h"
 
@@ -61,5 +60,3 @@ double dea_weibull_z(const struct dea_weibull_fit *fit, double field_V_per_m, do
 /* Field by which that share of reference films breaks, and the standard uncertainty of its
  * logarithm. */
 double dea_weibull_quantile(const struct dea_weibull_fit *fit, double share, double *log_std);
-
-#endif

@@ -1,6 +1,5 @@
 /* A fit of breakdown tests: the films as they are read, Weibull's law of them, and its files. */
-#ifndef DEA_IO_BREAKDOWN_FIT_H
-#define DEA_IO_BREAKDOWN_FIT_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/json.h"
@@ -47,5 +46,3 @@ dea_status dea_breakdown_fit_folder(struct dea_context *ctx, const struct dea_br
 dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
                                    const char *command, const struct dea_plot_format *format,
                                    const char *directory);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a run keeps while it goes: results.h5 and the state of the model after every point, and the
  * fields that the design asks for. So an end at any time costs one point, and the run can go on. */
-#ifndef DEA_IO_CHECKPOINT_H
-#define DEA_IO_CHECKPOINT_H
+#pragma once
 
 #include "result/checkpoint_sink.h"
 
@@ -38,5 +37,3 @@ dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_resul
  * points. */
 void dea_checkpoint_forget(struct dea_context *ctx, const char *directory, const char *model,
                            size_t count);
-
-#endif

@@ -1,6 +1,5 @@
 /* Tables as CSV: comma, decimal point, display units in the header. */
-#ifndef DEA_IO_CSV_H
-#define DEA_IO_CSV_H
+#pragma once
 
 #include "base/csv_line.h"
 #include "result/result.h"
@@ -55,5 +54,3 @@ struct dea_measurement {
 dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
                                 struct dea_measurement **out);
 void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *measurement);
-
-#endif

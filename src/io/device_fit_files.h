@@ -1,6 +1,5 @@
 /* Files of a fit of a device: design, CSV, JSON and figures. */
-#ifndef DEA_IO_DEVICE_FIT_FILES_H
-#define DEA_IO_DEVICE_FIT_FILES_H
+#pragma once
 
 #include "base/json.h"
 #include "identify/device_fit.h"
@@ -16,5 +15,3 @@ dea_status dea_device_fit_folder(struct dea_context *ctx, const struct dea_devic
 dea_status dea_device_fit_write(struct dea_context *ctx, const struct dea_device_fit *fit,
                                 const char *command, const struct dea_plot_format *format,
                                 const char *directory);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a run folder gets of a result beside figures and fields: one file export_<name>.c and one
  * line in export_list.h each. */
-#ifndef DEA_IO_EXPORT_H
-#define DEA_IO_EXPORT_H
+#pragma once
 
 #include "io/export_list.h"
 #include "result/result.h"
@@ -18,5 +17,3 @@ struct dea_export {
 #define DEA_EXPORT_DECLARE(name) extern const struct dea_export dea_export_##name;
 DEA_EXPORT_LIST(DEA_EXPORT_DECLARE)
 #undef DEA_EXPORT_DECLARE
-
-#endif

@@ -1,6 +1,5 @@
 /* What the files of a fit of a material and of a device have in common. */
-#ifndef DEA_IO_FIT_COMMON_H
-#define DEA_IO_FIT_COMMON_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/json.h"
@@ -46,5 +45,3 @@ dea_status dea_fit_folder_make(struct dea_context *ctx, const char *directory, c
 dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, const char *name,
                                 const struct dea_text *yaml, const struct dea_text *csv,
                                 json_t *root);
-
-#endif

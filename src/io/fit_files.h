@@ -1,6 +1,5 @@
 /* A fit and its files: the tests as they are read, the material, CSV, JSON and figures. */
-#ifndef DEA_IO_FIT_FILES_H
-#define DEA_IO_FIT_FILES_H
+#pragma once
 
 #include "base/json.h"
 #include "identify/fit.h"
@@ -33,5 +32,3 @@ dea_status dea_fit_folder(struct dea_context *ctx, const struct dea_fit_file *fi
 /* Writes NAME.yaml, fit.csv, fit.json and the figures. */
 dea_status dea_fit_write(struct dea_context *ctx, const struct dea_fit *fit, const char *command,
                          const struct dea_plot_format *format, const char *directory);
-
-#endif

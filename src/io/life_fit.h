@@ -1,6 +1,5 @@
 /* A fit of life tests: the specimens as they are read, Weibull's law of their lives, its files. */
-#ifndef DEA_IO_LIFE_FIT_H
-#define DEA_IO_LIFE_FIT_H
+#pragma once
 
 #include "base/arena.h"
 #include "base/json.h"
@@ -40,5 +39,3 @@ dea_status dea_life_fit_folder(struct dea_context *ctx, const struct dea_life_fi
 dea_status dea_life_fit_write(struct dea_context *ctx, const struct dea_life_fit *fit,
                               const char *command, const struct dea_plot_format *format,
                               const char *directory);
-
-#endif

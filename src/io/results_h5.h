@@ -1,6 +1,5 @@
 /* results.h5: everything of a run in one file, written and read. Schema in docs/formats.md. */
-#ifndef DEA_IO_RESULTS_H5_H
-#define DEA_IO_RESULTS_H5_H
+#pragma once
 
 #include "result/result.h"
 
@@ -24,5 +23,3 @@ struct dea_run {
  * the caller, NULL on failure. */
 dea_status dea_run_read(struct dea_context *ctx, const char *path, struct dea_run **out);
 void dea_run_destroy(struct dea_context *ctx, struct dea_run *run);
-
-#endif

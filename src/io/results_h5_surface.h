@@ -1,6 +1,5 @@
 /* Meshes with fields in results.h5. */
-#ifndef DEA_IO_RESULTS_H5_SURFACE_H
-#define DEA_IO_RESULTS_H5_SURFACE_H
+#pragma once
 
 #include "base/h5.h"
 #include "result/result.h"
@@ -12,5 +11,3 @@ void dea_results_h5_put_surface(struct h5 *h, hid_t group, const struct dea_surf
 /* Adds the surface of a group to the result. */
 void dea_results_h5_get_surface(struct h5 *h, hid_t group, const char *model,
                                 struct dea_result *result);
-
-#endif

@@ -1,6 +1,5 @@
 /* Tables of studies in results.h5. */
-#ifndef DEA_IO_RESULTS_H5_TABLES_H
-#define DEA_IO_RESULTS_H5_TABLES_H
+#pragma once
 
 #include "base/h5.h"
 #include "result/result.h"
@@ -10,5 +9,3 @@ void dea_results_h5_put_table(struct h5 *h, hid_t group, const struct dea_result
 /* Adds the table of a group to the result; its names are interned in the context. */
 void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
                               struct dea_result *result);
-
-#endif

@@ -1,6 +1,5 @@
 /* MODEL_state.h5: the state of a model after a point of a sweep. */
-#ifndef DEA_IO_STATE_FILE_H
-#define DEA_IO_STATE_FILE_H
+#pragma once
 
 #include "result/state.h"
 
@@ -25,5 +24,3 @@ dea_status dea_state_file_read(struct dea_context *ctx, const char *model,
 /* How far it is only. */
 dea_status dea_state_file_reach(struct dea_context *ctx, const char *path,
                                 struct dea_state_reach *reach);
-
-#endif

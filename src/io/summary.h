@@ -1,6 +1,5 @@
 /* summary.json: the result of a run for scripts. Schema in docs/formats.md. */
-#ifndef DEA_IO_SUMMARY_H
-#define DEA_IO_SUMMARY_H
+#pragma once
 
 #include "result/result.h"
 
@@ -10,5 +9,3 @@ enum { DEA_SUMMARY_SCHEMA = 1 };
  * summary.json holds and `dea run --json` prints; the context's notes and warnings with it. Numbers
  * that are not finite are left out. out: owned by the caller (dea_free), NULL on failure. */
 dea_status dea_summary_text(struct dea_context *ctx, const struct dea_result *result, char **out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts of summary.json: what studies say. */
-#ifndef DEA_IO_SUMMARY_STUDIES_H
-#define DEA_IO_SUMMARY_STUDIES_H
+#pragma once
 
 #include "base/json.h"
 #include "result/result.h"
@@ -12,5 +11,3 @@ json_t *dea_points_json(const struct dea_context *ctx, const struct dea_curve *c
  * model's object. */
 void dea_summary_put_studies(const struct dea_context *ctx, const struct dea_result *result,
                              const char *model, json_t *object);
-
-#endif

@@ -1,7 +1,6 @@
 /* Fields for ParaView, meshio and the like: VTU files (unstructured grid, appended raw binary,
  * little-endian, headers of 64 bits) and a PVD file that lines them up by voltage. */
-#ifndef DEA_IO_VTU_H
-#define DEA_IO_VTU_H
+#pragma once
 
 #include "result/field_mesh.h"
 
@@ -22,5 +21,3 @@ struct dea_pvd_entry {
  * readers take entries of one time for parts of one whole. */
 dea_status dea_pvd_write(struct dea_context *ctx, const struct dea_pvd_entry *entries, size_t count,
                          const char *path);
-
-#endif

@@ -1,6 +1,5 @@
 /* The design that a run computed, read again from the run. */
-#ifndef DEA_JOB_DESIGN_OF_RUN_H
-#define DEA_JOB_DESIGN_OF_RUN_H
+#pragma once
 
 #include "io/results_h5.h"
 
@@ -8,5 +7,3 @@
  * dea_device_build) those that could be made, or NULL. */
 dea_status dea_design_of_run(struct dea_context *ctx, const struct dea_run *run,
                              struct dea_design **design, struct dea_device **device);
-
-#endif

@@ -1,13 +1,10 @@
 #include "job/device_fit_model.h"
 
-#include "base/write_file.h"
 #include "result/compare.h"
-#include "study/design_file.h"
 #include "study/force.h"
 #include "study/observe.h"
 #include "study/study.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

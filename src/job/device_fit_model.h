@@ -1,6 +1,5 @@
 /* A device as a function of numbers of its design: load points at given voltages, for a fit. */
-#ifndef DEA_JOB_DEVICE_FIT_MODEL_H
-#define DEA_JOB_DEVICE_FIT_MODEL_H
+#pragma once
 
 #include "identify/device_fit.h"
 #include "model/model.h"
@@ -111,5 +110,3 @@ struct dea_device_values {
 dea_status dea_device_design_text(struct dea_context *ctx, const struct dea_design_bytes *file,
                                   const struct dea_device *device,
                                   const struct dea_device_values *with, struct dea_text *out);
-
-#endif

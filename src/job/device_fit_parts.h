@@ -1,6 +1,5 @@
 /* Parts of a fit of a device (device_fit_run.h). */
-#ifndef DEA_JOB_DEVICE_FIT_PARTS_H
-#define DEA_JOB_DEVICE_FIT_PARTS_H
+#pragma once
 
 #include "job/device_fit_model.h"
 
@@ -13,5 +12,3 @@ dea_status dea_device_stops_make(struct dea_context *ctx, struct dea_device_fit 
 dea_status dea_device_design_make(struct dea_context *ctx, struct dea_device_fit *fit,
                                   const struct dea_design_bytes *file,
                                   const struct dea_device *device);
-
-#endif

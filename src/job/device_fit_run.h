@@ -1,8 +1,7 @@
 /* A fit of a device as it was really built: keys of its design, from measured curves of the whole.
  *
  * docs/theory/fit.md says how each number is found, docs/fit.md how it is used. */
-#ifndef DEA_JOB_DEVICE_FIT_RUN_H
-#define DEA_JOB_DEVICE_FIT_RUN_H
+#pragma once
 
 #include "identify/device_fit.h"
 
@@ -11,5 +10,3 @@
  * give it. out: owned by the caller (dea_device_fit_destroy), NULL on failure. */
 dea_status dea_device_fit_run(struct dea_context *ctx, const struct dea_device_file *file,
                               const struct dea_fit_options *options, struct dea_device_fit **out);
-
-#endif

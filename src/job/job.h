@@ -1,6 +1,5 @@
 /* A run from its start to its folder: what `dea run` and dea_run have in common. */
-#ifndef DEA_JOB_JOB_H
-#define DEA_JOB_JOB_H
+#pragma once
 
 #include "base/folder_lock.h"
 #include "io/checkpoint.h"
@@ -49,5 +48,3 @@ dea_status dea_job_write(struct dea_context *ctx, struct dea_job *job,
 const char *dea_job_folder(const struct dea_job *job, const struct dea_result *result);
 /* Frees what the job has made. */
 void dea_job_end(struct dea_context *ctx, struct dea_job *job);
-
-#endif

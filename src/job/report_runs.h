@@ -1,6 +1,5 @@
 /* The report of runs: reads them, computes what the page shows beyond what they have, writes. */
-#ifndef DEA_JOB_REPORT_RUNS_H
-#define DEA_JOB_REPORT_RUNS_H
+#pragma once
 
 #include "report/report.h"
 
@@ -11,5 +10,3 @@
  * DEA_REPORT_RUNS_MAX runs or none, DEA_E_IO as dea_run_read or dea_measured_read. */
 dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], size_t count,
                           const struct dea_report_options *options, const char *path);
-
-#endif

@@ -1,6 +1,5 @@
 /* The run folder: results.h5, summary.json, CSV tables, design.yaml, figures/, fields/. */
-#ifndef DEA_JOB_RUN_FOLDER_H
-#define DEA_JOB_RUN_FOLDER_H
+#pragma once
 
 #include "result/result.h"
 
@@ -37,5 +36,3 @@ dea_status dea_run_folder_write(struct dea_context *ctx, const struct dea_result
 
 /* The name of the folder of figures within a run folder. */
 #define DEA_FIGURE_FOLDER "figures"
-
-#endif

@@ -7,8 +7,7 @@
  * B        sum of G_i (e_i A_i + w_0i C_n^-1): the branches in the step's energy Pa
  *
  *   A_n+1 = e A_n + w_0 C_n^-1 + w_1 C_n+1^-1 */
-#ifndef DEA_MATERIAL_BRANCH_H
-#define DEA_MATERIAL_BRANCH_H
+#pragma once
 
 #include "material/material.h"
 
@@ -46,5 +45,3 @@ double dea_equal_energy(const struct dea_material *material, const struct dea_eq
  * in it. */
 double dea_equal_loss(const struct dea_material *material, const struct dea_equal_tensor *A,
                       double length_s, double stretch, double stretch_new);
-
-#endif

@@ -3,8 +3,7 @@
  * A material has one or more parameter sets for its law, its permittivity and its breakdown field;
  * the first of each is the default. Numbers are SI and keep their place; texts are lent by the
  * document that they were read from. */
-#ifndef DEA_MATERIAL_CATALOGUE_H
-#define DEA_MATERIAL_CATALOGUE_H
+#pragma once
 
 #include "base/schema.h"
 #include "material/material.h"
@@ -147,5 +146,3 @@ struct dea_material_choice {
  * and those of an unknown temperature a note. */
 dea_status dea_material_select(struct dea_context *ctx, const struct dea_material_data *data,
                                const struct dea_material_choice *choice, struct dea_material *out);
-
-#endif

@@ -10,8 +10,7 @@
  * Conventions: W = 0 in the unstretched state. The incompressibility constraint of the first two is
  * the caller's, so their stress is free up to a pressure; the third resists a change of volume
  * itself and has no stress in the unstretched state. */
-#ifndef DEA_MATERIAL_LAW_H
-#define DEA_MATERIAL_LAW_H
+#pragma once
 
 #include "base/status.h"
 #include "material/scalar.h"
@@ -74,5 +73,3 @@ struct dea_law {
 const struct dea_law *DEA_NAME(dea_law_find)(const char *name);
 /* All laws in the order of law_list.h; *count is set. Static storage. */
 const struct dea_law *const *DEA_NAME(dea_law_all)(size_t *count);
-
-#endif

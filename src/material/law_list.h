@@ -1,7 +1,6 @@
 /* The registered laws, in the order in which they are listed. A new law is one file law_<name>.c
  * that defines dea_law_<name>, and one line here. */
-#ifndef DEA_MATERIAL_LAW_LIST_H
-#define DEA_MATERIAL_LAW_LIST_H
+#pragma once
 
 #define DEA_LAW_LIST(X)                                                                            \
   X(neo_hookean)                                                                                   \
@@ -13,5 +12,3 @@
   X(arruda_boyce)                                                                                  \
   X(hgo)                                                                                           \
   X(compressible_neo_hookean)
-
-#endif

@@ -1,8 +1,7 @@
 /* A material as the models use it: a law with its numbers, permittivity, density, breakdown.
  *
  * It is filled by the catalogue (data/materials) or from a design file, and is plain data. */
-#ifndef DEA_MATERIAL_MATERIAL_H
-#define DEA_MATERIAL_MATERIAL_H
+#pragma once
 
 #include "material/law.h"
 
@@ -72,5 +71,3 @@ struct dea_material {
   double stretch_min,
       stretch_max; // range of the law's data (uniaxial or biaxial stretch); 0 unknown
 };
-
-#endif

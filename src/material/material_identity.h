@@ -1,11 +1,8 @@
 /* The identity of a material: a text of every number that models see. */
-#ifndef DEA_MATERIAL_MATERIAL_IDENTITY_H
-#define DEA_MATERIAL_MATERIAL_IDENTITY_H
+#pragma once
 
 #include "base/text.h"
 #include "material/material.h"
 
 /* Adds all of a material but its names and the uncertainties of its numbers. */
 void dea_material_identity(const struct dea_material *material, struct dea_text *out);
-
-#endif

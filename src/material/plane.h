@@ -1,7 +1,6 @@
 /* An incompressible film in plane stress whose principal axes are known: the two in-plane stretches
  * give everything (lambda_3 = 1/(lambda_1 lambda_2), paper eq 2). */
-#ifndef DEA_MATERIAL_PLANE_H
-#define DEA_MATERIAL_PLANE_H
+#pragma once
 
 #include "material/material.h"
 
@@ -54,5 +53,3 @@ double dea_breakdown_probability(const struct dea_breakdown *breakdown, double m
  * is no range. */
 void dea_breakdown_probability_band(const struct dea_breakdown *breakdown, double margin,
                                     double out[2]);
-
-#endif

@@ -3,8 +3,7 @@
  * pressure (incompressibility) is the caller's.
  *
  * Tensors are row-major: F[3 i + J] = dx_i/dX_J, P[3 i + J], A[9 (3 i + J) + 3 k + L]. */
-#ifndef DEA_MATERIAL_POINT_H
-#define DEA_MATERIAL_POINT_H
+#pragma once
 
 #include "material/law.h"
 
@@ -26,5 +25,3 @@ dea_status DEA_NAME(dea_point_elastic)(const struct dea_law *law, const double *
 dea_status DEA_NAME(dea_point_stress)(const struct dea_law *law, const double *param,
                                       const dea_scalar F[9], const double fibre[3],
                                       struct dea_point *out);
-
-#endif

@@ -5,8 +5,7 @@
  * gives the derivative of the very same source to rounding error (Squire and Trapp, SIAM Review 40,
  * 1998). So: elementary functions through <tgmath.h>, comparisons on DEA_RE(x) only, no fabs, fmax,
  * conj or abs on such numbers. */
-#ifndef DEA_MATERIAL_SCALAR_H
-#define DEA_MATERIAL_SCALAR_H
+#pragma once
 
 #include <tgmath.h>
 
@@ -18,6 +17,4 @@ typedef double _Complex dea_scalar;
 typedef double dea_scalar;
 #define DEA_RE(x) (x)
 #define DEA_NAME(name) name
-#endif
-
 #endif

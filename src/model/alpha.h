@@ -1,6 +1,5 @@
 /* Weights of generalised-alpha (Chung, Hulbert 1993; docs/theory/time.md, section 3). */
-#ifndef DEA_MODEL_ALPHA_H
-#define DEA_MODEL_ALPHA_H
+#pragma once
 
 /* Symbol   meaning                                                             unit
  * m, f     a_m and a_f: shares of the begin in accelerations and in forces     1 */
@@ -10,5 +9,3 @@ struct dea_alpha {
 
 /* By the spectral radius, 0 to 1: what a step leaves of a motion too fast for it. */
 struct dea_alpha dea_alpha_of(double spectral_radius);
-
-#endif

@@ -17,8 +17,7 @@
  *
  * For a film of given shape this is one linear equation for V, so a model asks for V(C) and its
  * derivative while it looks for its shape, and for the whole state once it has found it. */
-#ifndef DEA_MODEL_CIRCUIT_H
-#define DEA_MODEL_CIRCUIT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -72,5 +71,3 @@ double dea_circuit_voltage(const struct dea_circuit *circuit, const struct dea_c
 void dea_circuit_advance(const struct dea_circuit *circuit, const struct dea_circuit_state *last,
                          const struct dea_time_step *step, const struct dea_circuit_film *film,
                          struct dea_circuit_state *out);
-
-#endif

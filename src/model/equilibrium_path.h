@@ -7,8 +7,7 @@
  *
  * so that limit points (pull-in, snap-back) are points like any other. The inertia of K = d2Pi/du2
  * says how many unstable modes there are at fixed voltage. Theory: docs/theory/path.md. */
-#ifndef DEA_MODEL_EQUILIBRIUM_PATH_H
-#define DEA_MODEL_EQUILIBRIUM_PATH_H
+#pragma once
 
 #include "model/model.h"
 
@@ -79,5 +78,3 @@ dea_status dea_path_trace(struct dea_context *ctx, struct dea_path *path,
 /* Load point of the current state. */
 dea_status dea_path_point(struct dea_context *ctx, struct dea_path *path,
                           struct dea_load_point *out);
-
-#endif

@@ -6,8 +6,7 @@
  * E~       nominal field V/H0                                  V/m   paper eq 4
  * l1, l2   in-plane stretches, counted from the unstretched film
  * W        energy per unstretched volume of the film           Pa    paper eq 6 */
-#ifndef DEA_MODEL_FILM_H
-#define DEA_MODEL_FILM_H
+#pragma once
 
 #include "device/device.h"
 #include "material/plane.h"
@@ -53,5 +52,3 @@ double dea_film_modulus(const struct dea_film *film);
 
 /* H0 sqrt(mu/eps) [V]: the voltage that makes the Maxwell stress of order mu. */
 double dea_film_voltage_scale(const struct dea_film *film);
-
-#endif

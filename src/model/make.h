@@ -1,6 +1,5 @@
 /* What all models have in common: how they are created, and what they say of a leap. */
-#ifndef DEA_MODEL_MAKE_H
-#define DEA_MODEL_MAKE_H
+#pragma once
 
 #include "model/model.h"
 
@@ -18,5 +17,3 @@ dea_status dea_model_make(
  * another state. */
 dea_status dea_model_say_passed(struct dea_context *ctx, const char *name, double from_V,
                                 double to_V, const struct dea_event *passed);
-
-#endif

@@ -1,8 +1,7 @@
 /* The one interface of the models: three ways to answer the same question.
  *
  * A model is one folder and one line in model_list.h. Studies know nothing else of it. */
-#ifndef DEA_MODEL_MODEL_H
-#define DEA_MODEL_MODEL_H
+#pragma once
 
 #include "base/context.h"
 #include "device/device.h"
@@ -375,5 +374,3 @@ const struct dea_model_type *dea_model_find(const char *name);
 dea_status dea_model_seek(struct dea_context *ctx, const char *name, struct dea_location place,
                           const struct dea_model_type **out);
 const struct dea_model_type *const *dea_model_all(size_t *count);
-
-#endif

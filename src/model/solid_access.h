@@ -1,7 +1,6 @@
 /* The engine of solids for those who bring a mesh of their own: what its module offers beside the
  * model "3d". Arrays lie in the order of the mesh's nodes. */
-#ifndef DEA_MODEL_SOLID_ACCESS_H
-#define DEA_MODEL_SOLID_ACCESS_H
+#pragma once
 
 #include "base/context.h"
 #include "material/law.h"
@@ -140,5 +139,3 @@ dea_status dea_solid_leave(dea_status status);
 
 /* Loads the module. *out: static storage of it. */
 dea_status dea_solid_access_open(struct dea_context *ctx, const struct dea_solid_access **out);
-
-#endif

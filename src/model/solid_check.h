@@ -1,7 +1,6 @@
 /* What model "3d" does not take of a design, as far as it is known without a mesh: in the core, so
  * that no module is loaded for it. */
-#ifndef DEA_MODEL_SOLID_CHECK_H
-#define DEA_MODEL_SOLID_CHECK_H
+#pragma once
 
 #include "device/device.h"
 
@@ -11,5 +10,3 @@ dea_status dea_solid_check_design(struct dea_context *ctx, const struct dea_desi
 /* The same of the material of one ply. */
 dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout *layout,
                                size_t ply);
-
-#endif

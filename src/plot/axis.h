@@ -1,6 +1,5 @@
 /* An axis of a drawing: what range it shows, where its tics are. */
-#ifndef DEA_PLOT_AXIS_H
-#define DEA_PLOT_AXIS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -18,5 +17,3 @@ struct dea_axis dea_axis_create(double low, double high, const double fixed[2], 
 double dea_axis_place(const struct dea_axis *axis, double value);
 /* Value of the i-th tic from 0; false beyond the last. */
 bool dea_axis_tic(const struct dea_axis *axis, int i, double *value);
-
-#endif

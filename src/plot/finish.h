@@ -1,6 +1,5 @@
 /* What gnuplot leaves out of its pictures. */
-#ifndef DEA_PLOT_FINISH_H
-#define DEA_PLOT_FINISH_H
+#pragma once
 
 #include "base/context.h"
 
@@ -20,5 +19,3 @@ dea_status dea_svg_finish(struct dea_context *ctx, const char *svg, const char *
  * bytes: owned by the caller (dea_free). */
 dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t length,
                           double dots_per_m, char **out, size_t *out_length);
-
-#endif

@@ -1,6 +1,5 @@
 /* Drawing by a gnuplot process. */
-#ifndef DEA_PLOT_GNUPLOT_H
-#define DEA_PLOT_GNUPLOT_H
+#pragma once
 
 #include "base/context.h"
 
@@ -14,5 +13,3 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
  * name and all that a drawing of that name leaves: script, data, pictures. */
 dea_status dea_gnuplot_make_way(struct dea_context *ctx, const char *directory, const char *name,
                                 bool force);
-
-#endif

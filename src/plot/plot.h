@@ -1,7 +1,6 @@
 /* A figure before it is drawn: panels with series and marks. What it shows is decided by who fills
  * it, what it looks like in plot/write.c only. */
-#ifndef DEA_PLOT_PLOT_H
-#define DEA_PLOT_PLOT_H
+#pragma once
 
 #include "base/text.h"
 
@@ -129,5 +128,3 @@ struct dea_plot_format {
 /* The plot as gnuplot draws it (plot/gnuplot.h): writes NAME.gp and NAME.dat into directory. */
 dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
                           const struct dea_plot_format *format, const char *directory);
-
-#endif

@@ -1,6 +1,5 @@
 /* What all gnuplot scripts begin with. */
-#ifndef DEA_PLOT_SCRIPT_H
-#define DEA_PLOT_SCRIPT_H
+#pragma once
 
 #include "plot/plot.h"
 
@@ -15,5 +14,3 @@ void dea_script_head(struct dea_text *gp, const char *name, const char *caption,
 /* Opens the loop over the formats: terminal, sizes of signs and the file that is drawn into. The
  * caller closes it with "}". */
 void dea_script_terminals(struct dea_text *gp);
-
-#endif

@@ -1,6 +1,5 @@
 /* The report: runs as one self-contained HTML file (docs/report.md). */
-#ifndef DEA_REPORT_REPORT_H
-#define DEA_REPORT_REPORT_H
+#pragma once
 
 #include "io/results_h5.h"
 
@@ -33,5 +32,3 @@ struct dea_report_run {
 dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run *runs,
                             size_t count, const struct dea_report_options *options,
                             const char *path);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the sections of a report share. A section appends to the text of the report; one that has
  * nothing to show adds nothing. Numbers are formatted in the C locale. */
-#ifndef DEA_REPORT_SECTION_H
-#define DEA_REPORT_SECTION_H
+#pragma once
 
 #include "base/html.h"
 #include "io/csv.h"
@@ -52,5 +51,3 @@ void dea_explorer_add_core(struct dea_report *report);
 dea_status dea_section_fit(struct dea_report *report);
 /* Of all runs: curves in one figure, last points in one table. */
 dea_status dea_section_compare(struct dea_report *report);
-
-#endif

@@ -1,6 +1,5 @@
 /* Who keeps a sweep as it goes, so that what is there outlives its end. */
-#ifndef DEA_RESULT_CHECKPOINT_SINK_H
-#define DEA_RESULT_CHECKPOINT_SINK_H
+#pragma once
 
 #include "result/result.h"
 #include "result/state.h"
@@ -21,5 +20,3 @@ struct dea_checkpoint_sink {
                       const struct dea_curve *curve, const struct dea_field_mesh *fields,
                       const struct dea_state *state);
 };
-
-#endif

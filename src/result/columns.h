@@ -4,8 +4,7 @@
  * A column of load points is a number. The first DEA_LOAD_POINT_COLUMNS are the members of struct
  * dea_load_point; those that follow are of the monitors and channels of the devices that a context
  * has seen (result/observation.h), and mean the same in all of its results. */
-#ifndef DEA_RESULT_COLUMNS_H
-#define DEA_RESULT_COLUMNS_H
+#pragma once
 
 #include "base/arena.h"
 #include "result/load_point.h"
@@ -95,5 +94,3 @@ const struct dea_point_state *dea_point_state_find(const char *key);
 const char *dea_event_name(enum dea_event_kind kind);
 /* Kind of that name; false when there is none. */
 bool dea_event_find(const char *name, enum dea_event_kind *kind);
-
-#endif

@@ -1,6 +1,5 @@
 /* Misfit of two curves, quantity by quantity. */
-#ifndef DEA_RESULT_COMPARE_H
-#define DEA_RESULT_COMPARE_H
+#pragma once
 
 #include "base/arena.h"
 #include "result/columns.h"
@@ -68,5 +67,3 @@ double dea_interpolate_slope(const double *x, const double *y, size_t count, siz
 /* Value at `at` of the straight pieces through (x[i], y[i]), x never falling (of two equal ones the
  * later counts); NAN outside. */
 double dea_interpolate_linear(const double *x, const double *y, size_t count, double at);
-
-#endif

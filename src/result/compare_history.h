@@ -1,6 +1,5 @@
 /* Histories beside measured ones, on one clock. */
-#ifndef DEA_RESULT_COMPARE_HISTORY_H
-#define DEA_RESULT_COMPARE_HISTORY_H
+#pragma once
 
 #include "result/compare.h"
 
@@ -33,5 +32,3 @@ void dea_clock_shift_find(const struct dea_voltage_track *a, const struct dea_vo
 dea_status dea_compare_history(struct dea_context *ctx, const struct dea_curve *curve, int column,
                                const struct dea_clock_shift *clock, const double *time_s,
                                const double *values, size_t count, struct dea_misfit *out);
-
-#endif

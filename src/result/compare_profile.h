@@ -1,6 +1,5 @@
 /* Profiles across the film beside measured ones. */
-#ifndef DEA_RESULT_COMPARE_PROFILE_H
-#define DEA_RESULT_COMPARE_PROFILE_H
+#pragma once
 
 #include "result/compare.h"
 
@@ -31,5 +30,3 @@ void dea_film_line_free(struct dea_context *ctx, struct dea_film_line *line);
 dea_status dea_film_line_compare(struct dea_context *ctx, const struct dea_film_line *line,
                                  const double *x_m, const double *z_m, const double *z_std_m,
                                  size_t count, struct dea_misfit *out);
-
-#endif

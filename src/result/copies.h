@@ -1,6 +1,5 @@
 /* The mirrored copies of a part that make up the whole (struct dea_field_mesh). */
-#ifndef DEA_RESULT_COPIES_H
-#define DEA_RESULT_COPIES_H
+#pragma once
 
 #include "result/field_mesh.h"
 
@@ -22,5 +21,3 @@ void dea_copy_move(const struct dea_copy *copy, const double in[3], double out[3
  * many points. out: owned by the caller, NULL on failure. */
 dea_status dea_field_mesh_whole(struct dea_context *ctx, const struct dea_field_mesh *mesh,
                                 struct dea_field_mesh **out);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Points carry their place in the stretched flat film; where the parts of a device meet there is
  * one point a part, so that a value that jumps there has both its sides. */
-#ifndef DEA_RESULT_FIELD_MESH_H
-#define DEA_RESULT_FIELD_MESH_H
+#pragma once
 
 #include "base/context.h"
 
@@ -80,5 +79,3 @@ const struct dea_mesh_field *dea_field_mesh_find(const struct dea_field_mesh *me
                                                  const char *name);
 /* Points or cells that a field has values of. */
 size_t dea_mesh_field_count(const struct dea_field_mesh *mesh, const struct dea_mesh_field *field);
-
-#endif

@@ -1,7 +1,6 @@
 /* Figures of a result, and what they are made of. Those of a study stand in its file, the others in
  * folder output. */
-#ifndef DEA_RESULT_FIGURE_H
-#define DEA_RESULT_FIGURE_H
+#pragma once
 
 #include "plot/plot.h"
 #include "result/result.h"
@@ -66,5 +65,3 @@ enum { DEA_COLUMN_UNIT_SIZE = 32 };
 void dea_figure_unit(const char *unit, char out[DEA_COLUMN_UNIT_SIZE]);
 /* "true field (V/\302\265m)": header and unit of a column as a label. */
 void dea_figure_label(const struct dea_column *column, char *out, size_t size);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * Values are SI. NAN means that the model has no such quantity; writers then leave the key out.
  * The keys are published and stay as they are. z is positive towards the fibre side. */
-#ifndef DEA_RESULT_LOAD_POINT_H
-#define DEA_RESULT_LOAD_POINT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -172,5 +171,3 @@ struct dea_event {
   enum dea_event_kind kind;
   struct dea_load_point point;
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* What a model tells of the monitors, bodies and channels of a device (docs/theory/devices.md). */
-#ifndef DEA_RESULT_OBSERVATION_H
-#define DEA_RESULT_OBSERVATION_H
+#pragma once
 
 #include "base/arena.h"
 #include "device/layout.h"
@@ -117,5 +116,3 @@ struct dea_observation {
   const double (*body)[DEA_OBSERVED_COUNT]; // each body as a monitor of it would tell
   const struct dea_channel_values *channel;
 };
-
-#endif

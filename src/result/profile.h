@@ -1,6 +1,5 @@
 /* Values along a line of the film, and the list of them for C, CSV, HDF5 and figures. */
-#ifndef DEA_RESULT_PROFILE_H
-#define DEA_RESULT_PROFILE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -26,5 +25,3 @@ struct dea_profile {
   const double *tension_r_N_per_m, *tension_t_N_per_m;
   const double *z_m; // displacement out of the plane, of the film's middle surface
 };
-
-#endif

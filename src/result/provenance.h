@@ -1,6 +1,5 @@
 /* Where a result comes from: program, libraries, input, time. */
-#ifndef DEA_RESULT_PROVENANCE_H
-#define DEA_RESULT_PROVENANCE_H
+#pragma once
 
 #include "result/result.h"
 
@@ -17,5 +16,3 @@ void dea_provenance_add_libraries(const char *libraries, struct dea_provenance *
 void dea_sha256_hex(const void *bytes, size_t length, char out[65]);
 /* Names and versions, found at run time, of the libraries in use: "libyaml 0.2.5, HDF5 1.10.8". */
 void dea_libraries_text(char *out, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* What every study fills and every output reads. */
-#ifndef DEA_RESULT_RESULT_H
-#define DEA_RESULT_RESULT_H
+#pragma once
 
 #include "base/arena.h"
 #include "design/design.h"
@@ -167,5 +166,3 @@ double dea_result_highest_V(const struct dea_result *result);
 /* Curve of that model and kind, or NULL; lent. */
 const struct dea_curve *dea_result_find(const struct dea_result *result, const char *model,
                                         const char *kind);
-
-#endif

@@ -1,7 +1,6 @@
 /* What a sequence of ever finer meshes says of its answers: order of convergence, value at element
  * size 0, and how far each mesh is from it (docs/theory/convergence.md). */
-#ifndef DEA_RESULT_RICHARDSON_H
-#define DEA_RESULT_RICHARDSON_H
+#pragma once
 
 #include "base/text.h"
 #include "result/result.h"
@@ -60,5 +59,3 @@ size_t dea_convergence_enough(const struct dea_convergence *convergence, double 
 const char *dea_order_text(enum dea_order_kind kind);
 /* One sentence a voltage on which mesh is enough, with a line's end after each. */
 void dea_convergence_verdict(const struct dea_convergence *convergence, struct dea_text *out);
-
-#endif

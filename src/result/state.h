@@ -1,8 +1,7 @@
 /* The state of a model between two solves: arrays from which it goes on as if it had never stopped,
  * and marks of what they belong to (mesh, materials, ...), which have to be the same when they come
  * back. What the arrays mean only the model knows. */
-#ifndef DEA_RESULT_STATE_H
-#define DEA_RESULT_STATE_H
+#pragma once
 
 #include "base/context.h"
 
@@ -45,5 +44,3 @@ dea_status dea_state_copy_values(struct dea_context *ctx, const struct dea_state
                                  struct dea_state *out);
 /* Frees the values of a state that owns them. */
 void dea_state_free_values(struct dea_context *ctx, struct dea_state *state);
-
-#endif

@@ -1,7 +1,6 @@
 /* Tables that studies make of what they computed: named columns with unit and meaning, which CSV,
  * JSON, HDF5, the terminal and the report write without knowing the study. */
-#ifndef DEA_RESULT_TABLE_H
-#define DEA_RESULT_TABLE_H
+#pragma once
 
 #include "base/text.h"
 #include "material/material.h"
@@ -112,5 +111,3 @@ void dea_result_table_cell_text(const struct dea_result_table *table, size_t row
                                 size_t value, int digits, struct dea_text *out);
 /* "rise time (s)": the title of a column, without unit for 1 or the row's own. */
 void dea_result_table_column_title(const struct dea_result_column *column, struct dea_text *out);
-
-#endif

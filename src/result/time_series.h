@@ -1,6 +1,5 @@
 /* What a curve in time says: its cycles, its balance of energy. */
-#ifndef DEA_RESULT_TIME_SERIES_H
-#define DEA_RESULT_TIME_SERIES_H
+#pragma once
 
 #include "result/result.h"
 
@@ -33,5 +32,3 @@ dea_status dea_time_series_cycles(struct dea_context *ctx, const struct dea_curv
 size_t dea_time_series_level_end(const struct dea_cycle *cycles, size_t count, size_t first);
 /* false when the curve has no energies. */
 bool dea_time_series_balance(const struct dea_curve *curve, struct dea_energy_balance *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* How far a curve is to be trusted, and how far its device lives, from the flags of its points
  * (docs/theory/trust.md). */
-#ifndef DEA_RESULT_TRUST_H
-#define DEA_RESULT_TRUST_H
+#pragma once
 
 #include "base/text.h"
 #include "result/result.h"
@@ -28,5 +27,3 @@ unsigned dea_result_doubts(const struct dea_result *result, const char *model, d
 enum { DEA_VOLTAGE_WORDS = 160 };
 const char *dea_voltage_words(const struct dea_result *result, const char *model, double voltage_V,
                               char out[DEA_VOLTAGE_WORDS]);
-
-#endif

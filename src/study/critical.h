@@ -1,7 +1,6 @@
 /* Voltages at which a film comes to an end, found to solver accuracy, and their slopes by numbers
  * of the device (docs/theory/critical.md). */
-#ifndef DEA_STUDY_CRITICAL_H
-#define DEA_STUDY_CRITICAL_H
+#pragma once
 
 #include "model/model.h"
 
@@ -46,5 +45,3 @@ void dea_critical_end(struct dea_context *ctx, struct dea_critical *critical);
 dea_status dea_critical_slopes(struct dea_context *ctx, const struct dea_critical *critical,
                                const struct dea_design_change *changes, size_t change_count,
                                double *slopes);
-
-#endif

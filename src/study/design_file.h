@@ -1,6 +1,5 @@
 /* Reading of design files with the sections of all studies. */
-#ifndef DEA_STUDY_DESIGN_FILE_H
-#define DEA_STUDY_DESIGN_FILE_H
+#pragma once
 
 #include "design/design_schema.h"
 
@@ -16,5 +15,3 @@ dea_status dea_design_read_memory(struct dea_context *ctx, const char *name, con
                                   size_t override_count, struct dea_design **out);
 /* The table of a design file with the keys of all studies. */
 void dea_design_file_schema(struct dea_design_schema *out);
-
-#endif

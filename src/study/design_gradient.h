@@ -1,7 +1,6 @@
 /* Numbers of a design that can change little by little, and the slopes of a model's answers by them
  * (docs/theory/gradients.md). */
-#ifndef DEA_STUDY_DESIGN_GRADIENT_H
-#define DEA_STUDY_DESIGN_GRADIENT_H
+#pragma once
 
 #include "study/critical.h"
 #include "study/material_numbers.h"
@@ -104,5 +103,3 @@ dea_status dea_design_gradient_at(struct dea_context *ctx, const struct dea_mode
                                   double voltage_V, const char *const *keys, size_t key_count,
                                   const int *columns, size_t column_count, double *values,
                                   double *slopes);
-
-#endif

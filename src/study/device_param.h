@@ -1,7 +1,6 @@
 /* Numbers of a design that may change: keys of the file, or of the film's material; and the device
  * that is built with other values in their place. */
-#ifndef DEA_STUDY_DEVICE_PARAM_H
-#define DEA_STUDY_DEVICE_PARAM_H
+#pragma once
 
 #include "device/device.h"
 #include "identify/device_fit.h"
@@ -59,5 +58,3 @@ const struct dea_device_param *dea_device_param_tie(const struct dea_device_para
 /* A value of a parameter into its material (param->material); nothing of a key of the design. */
 void dea_device_param_put(const struct dea_device_param *param, double value,
                           struct dea_material *material);
-
-#endif

@@ -1,6 +1,5 @@
 /* The indenter of compute.force, for studies that press it in before something else happens. */
-#ifndef DEA_STUDY_FORCE_H
-#define DEA_STUDY_FORCE_H
+#pragma once
 
 #include "model/model.h"
 
@@ -14,5 +13,3 @@ double dea_force_first_depth_m(const struct dea_design *design);
  * DEA_E_NOT_CONVERGED when no depth gives a preload. */
 dea_status dea_force_indent(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, const struct dea_design *design, size_t stop);
-
-#endif

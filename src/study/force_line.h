@@ -1,7 +1,6 @@
 /* One load line of study "force": a model that a tip is pressed into goes through voltages, of
  * which those that lie between others on a smooth line are interpolated. */
-#ifndef DEA_STUDY_FORCE_LINE_H
-#define DEA_STUDY_FORCE_LINE_H
+#pragma once
 
 #include "model/model.h"
 #include "result/result.h"
@@ -21,5 +20,3 @@ struct dea_force_line {
  * or DEA_E_INTERRUPTED, those before are added, when interrupted only computed ones. */
 dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_line *asked,
                                struct dea_curve *curve);
-
-#endif

@@ -1,6 +1,5 @@
 /* Of the study "sensitivity": what moves the voltages at which the film comes to an end. */
-#ifndef DEA_STUDY_LIMIT_SLOPES_H
-#define DEA_STUDY_LIMIT_SLOPES_H
+#pragma once
 
 #include "result/result.h"
 #include "study/design_gradient.h"
@@ -10,5 +9,3 @@
  * voltage of the design. */
 dea_status dea_limit_slopes_add(struct dea_context *ctx, const struct dea_model_type *type,
                                 struct dea_result *result);
-
-#endif

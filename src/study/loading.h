@@ -1,6 +1,5 @@
 /* Where study "loading" ends, for other studies. */
-#ifndef DEA_STUDY_LOADING_H
-#define DEA_STUDY_LOADING_H
+#pragma once
 
 #include "study/study.h"
 
@@ -17,5 +16,3 @@ bool dea_loading_asked(const struct dea_design *design);
 dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,
                            struct dea_result *result, double voltage_V, struct dea_model **out,
                            struct dea_load_point *at, struct dea_loaded *loaded);
-
-#endif

@@ -1,7 +1,6 @@
 /* Numbers of a device's materials that can change little by little, by their names: one table for
  * what matters (study sensitivity), for searches, sweeps, fits and uncertainties. */
-#ifndef DEA_STUDY_MATERIAL_NUMBERS_H
-#define DEA_STUDY_MATERIAL_NUMBERS_H
+#pragma once
 
 #include "device/device.h"
 
@@ -33,5 +32,3 @@ const struct dea_material *dea_material_of(const struct dea_device *device, size
 /* What keys of the design are about it begin with: "film", "plies.NAME". */
 void dea_material_prefix(const struct dea_device *device, size_t material,
                          char out[DEA_MATERIAL_PREFIX_SIZE]);
-
-#endif

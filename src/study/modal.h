@@ -1,6 +1,5 @@
 /* What study "modal" tells of a design. */
-#ifndef DEA_STUDY_MODAL_H
-#define DEA_STUDY_MODAL_H
+#pragma once
 
 #include "design/design.h"
 
@@ -8,5 +7,3 @@
 
 /* Whether a design asks for it. */
 bool dea_modal_asked(const struct dea_design *design);
-
-#endif

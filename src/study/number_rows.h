@@ -1,6 +1,5 @@
 /* What tables about the numbers of a design share: columns, texts, and the order of their rows. */
-#ifndef DEA_STUDY_NUMBER_ROWS_H
-#define DEA_STUDY_NUMBER_ROWS_H
+#pragma once
 
 #include "result/table.h"
 #include "study/design_gradient.h"
@@ -29,5 +28,3 @@ struct dea_tolerated dea_number_tolerated(const struct dea_design_number *number
 /* order [count]: places of the sizes above 0, the largest first, equal ones as they come. How many
  * they are. */
 size_t dea_numbers_order(const double *sizes, size_t count, size_t *order);
-
-#endif

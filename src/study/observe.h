@@ -1,6 +1,5 @@
 /* What the monitors and channels of a device show, as columns of a study's curves. */
-#ifndef DEA_STUDY_OBSERVE_H
-#define DEA_STUDY_OBSERVE_H
+#pragma once
 
 #include "model/model.h"
 #include "result/columns.h"
@@ -51,5 +50,3 @@ dea_status dea_observe_currents_in_time(struct dea_context *ctx, const struct de
                                         struct dea_plot *plot);
 dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
                                        struct dea_plot *plot);
-
-#endif

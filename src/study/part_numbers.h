@@ -1,7 +1,6 @@
 /* Numbers of a design of the general form that can change little by little, and devices with others
  * in their place. */
-#ifndef DEA_STUDY_PART_NUMBERS_H
-#define DEA_STUDY_PART_NUMBERS_H
+#pragma once
 
 #include "study/design_gradient.h"
 
@@ -19,5 +18,3 @@ dea_status dea_part_numbers(struct dea_context *ctx, const struct dea_design *de
 dea_status dea_part_change(struct dea_context *ctx, const struct dea_design *design,
                            const struct dea_design_number *number, double value,
                            struct dea_arena *scratch, struct dea_device *out);
-
-#endif

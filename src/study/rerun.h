@@ -1,8 +1,7 @@
 /* What study "uncertainty" asks of who runs it: numbers of the design by their keys, and studies of
  * the same design with other numbers. It is handed over by a result, as a study that read designs
  * itself would tie the reader of designs, which knows all studies, to itself. */
-#ifndef DEA_STUDY_RERUN_H
-#define DEA_STUDY_RERUN_H
+#pragma once
 
 #include "study/device_param.h"
 #include "study/study.h"
@@ -28,5 +27,3 @@ struct dea_rerun {
 
 /* For the member `rerun` of a result. */
 extern const struct dea_rerun dea_rerun_designs;
-
-#endif

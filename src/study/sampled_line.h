@@ -1,7 +1,6 @@
 /* Load points at rising voltages of which some are computed and the others interpolated between
  * them (docs/theory/loads.md, "Voltages between computed ones"). Knows nothing of models. */
-#ifndef DEA_STUDY_SAMPLED_LINE_H
-#define DEA_STUDY_SAMPLED_LINE_H
+#pragma once
 
 #include "result/load_point.h"
 
@@ -22,5 +21,3 @@ size_t dea_sampled_line_halve(const struct dea_sampled_line *line, double tolera
 
 /* Interpolates what is not computed, with flag and estimated errors. */
 void dea_sampled_line_fill(const struct dea_sampled_line *line);
-
-#endif

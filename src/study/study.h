@@ -1,8 +1,7 @@
 /* Studies: what is asked of a model. They speak to the model interface only and fill a result.
  *
  * A study is one file and one line in study_list.h. */
-#ifndef DEA_STUDY_STUDY_H
-#define DEA_STUDY_STUDY_H
+#pragma once
 
 #include "model/model.h"
 #include "result/figure.h"
@@ -102,5 +101,3 @@ dea_status dea_study_stop_by_stop(
                        struct dea_result *result, struct dea_curve *curve));
 /* All studies in their order; static storage. */
 const struct dea_study *const *dea_study_all(size_t *count);
-
-#endif

@@ -1,6 +1,5 @@
 /* What study "uncertainty" tells of a design. */
-#ifndef DEA_STUDY_UNCERTAINTY_H
-#define DEA_STUDY_UNCERTAINTY_H
+#pragma once
 
 #include "study/rerun.h"
 
@@ -12,5 +11,3 @@ bool dea_uncertainty_written(const struct dea_design *design);
  * findings. */
 dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_design *design,
                                  const struct dea_device *device, const struct dea_rerun *rerun);
-
-#endif

@@ -1,6 +1,5 @@
 /* One of several computations that a study sets beside each other. */
-#ifndef DEA_STUDY_VARIANT_H
-#define DEA_STUDY_VARIANT_H
+#pragma once
 
 #include "model/model.h"
 #include "result/result.h"
@@ -25,5 +24,3 @@ dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type 
 dea_status dea_variant_of_sweep(struct dea_context *ctx, const struct dea_model_type *type,
                                 const struct dea_model *model, const char *study, const char *name,
                                 struct dea_result *result);
-
-#endif

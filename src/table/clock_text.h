@@ -1,6 +1,5 @@
 /* Times that are written as text: "09:15:00.5", "2026-03-02 09:15:00". */
-#ifndef DEA_TABLE_CLOCK_TEXT_H
-#define DEA_TABLE_CLOCK_TEXT_H
+#pragma once
 
 #include "table/slices.h"
 
@@ -23,5 +22,3 @@ struct dea_text_clock {
  * where the others have none. */
 bool dea_text_clock_next(struct dea_text_clock *clock, struct dea_slice field, double fraction_s,
                          double *seconds);
-
-#endif

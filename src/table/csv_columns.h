@@ -1,6 +1,5 @@
 /* Columns of numbers of a CSV file, found by their titles. */
-#ifndef DEA_TABLE_CSV_COLUMNS_H
-#define DEA_TABLE_CSV_COLUMNS_H
+#pragma once
 
 #include "base/units.h"
 
@@ -38,5 +37,3 @@ void dea_csv_columns_free(struct dea_context *ctx, struct dea_csv_columns *colum
  * or as dea_units_read. */
 bool dea_csv_unit(struct dea_context *ctx, const char *unit, struct dea_measure due, double *factor,
                   char why[DEA_WHY_SIZE]);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a file of lines of numbers is like: where they begin, what parts them. */
-#ifndef DEA_TABLE_CSV_DIALECT_H
-#define DEA_TABLE_CSV_DIALECT_H
+#pragma once
 
 #include "table/imported_table.h"
 #include "table/slices.h"
@@ -27,5 +26,3 @@ bool dea_csv_is_comment(struct dea_slice line);
  * also then. */
 dea_status dea_csv_dialect_find(struct dea_context *ctx, const char *file, struct dea_slice text,
                                 struct dea_csv_dialect *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* CSV and its relatives: lines of numbers with any separator, whatever stands above them. */
-#ifndef DEA_TABLE_CSV_TEXT_H
-#define DEA_TABLE_CSV_TEXT_H
+#pragma once
 
 #include "table/imported_table.h"
 
@@ -8,5 +7,3 @@
  * from the lines above them. Errors are findings with line and column, DEA_E_IO then. */
 dea_status dea_table_read_text(struct dea_context *ctx, struct dea_slice text,
                                struct dea_table *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* The fields of a text table by row, for readers that want some of its columns only. */
-#ifndef DEA_TABLE_FIELDS_H
-#define DEA_TABLE_FIELDS_H
+#pragma once
 
 #include "table/text_rows.h"
 
@@ -31,5 +30,3 @@ bool dea_fields_number(struct dea_context *ctx, const struct dea_fields *fields,
                        struct dea_slice field, struct dea_text_marks *marks, double *value);
 /* Leaves it empty. */
 void dea_fields_free(struct dea_context *ctx, struct dea_fields *fields);
-
-#endif

@@ -1,6 +1,5 @@
 /* Columns of numbers of a file of others, as it has them. */
-#ifndef DEA_TABLE_IMPORTED_TABLE_H
-#define DEA_TABLE_IMPORTED_TABLE_H
+#pragma once
 
 #include "base/context.h"
 #include "table/slices.h"
@@ -49,5 +48,3 @@ dea_status dea_table_note(struct dea_context *ctx, struct dea_table *table, cons
 bool dea_name_ends(const char *file, const char *outcome);
 /* NULL is fine. */
 void dea_table_destroy(struct dea_context *ctx, struct dea_table *table);
-
-#endif

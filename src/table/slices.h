@@ -1,6 +1,5 @@
 /* Pieces of the text of a file that is never changed: lines, fields, numbers. */
-#ifndef DEA_TABLE_SLICES_H
-#define DEA_TABLE_SLICES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -42,5 +41,3 @@ bool dea_slice_has_groups(struct dea_slice slice);
 
 /* True for the same bytes; of empty ones the text may be NULL. */
 bool dea_slice_same(struct dea_slice a, struct dea_slice b);
-
-#endif

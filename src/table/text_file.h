@@ -1,6 +1,5 @@
 /* Bytes of a text file, whatever its encoding, as text that slices are taken of. */
-#ifndef DEA_TABLE_TEXT_FILE_H
-#define DEA_TABLE_TEXT_FILE_H
+#pragma once
 
 #include "table/imported_table.h"
 #include "table/slices.h"
@@ -15,5 +14,3 @@ dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *byte
                               struct dea_table *out);
 /* Whether the first bytes are text. */
 bool dea_text_file_is(const unsigned char *head, size_t length);
-
-#endif

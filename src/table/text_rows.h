@@ -1,6 +1,5 @@
 /* Rows of numbers of a text file into the columns of a table. */
-#ifndef DEA_TABLE_TEXT_ROWS_H
-#define DEA_TABLE_TEXT_ROWS_H
+#pragma once
 
 #include "table/csv_dialect.h"
 
@@ -29,5 +28,3 @@ dea_status dea_text_lines_read(struct dea_context *ctx, struct dea_slice text,
 dea_status dea_text_rows_read(struct dea_context *ctx, struct dea_slice text,
                               const struct dea_csv_dialect *dialect, const struct dea_slice *titles,
                               const struct dea_slice *units, struct dea_table *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Titles of columns: names, units, what they look like. */
-#ifndef DEA_TABLE_TITLES_H
-#define DEA_TABLE_TITLES_H
+#pragma once
 
 #include "base/context.h"
 #include "table/slices.h"
@@ -21,5 +20,3 @@ bool dea_title_has_odd_unit(const char *name);
 /* A line of titles into exactly `count` of them; separator ' ': parted by two blanks, or by one
  * where no bracket is open, or by the end of a bracket. false when there are more or less. */
 bool dea_titles_part(struct dea_slice line, char separator, size_t count, struct dea_slice *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* Words that columns and numbers of files are known by; of those that fit a name the first counts.
  */
-#ifndef DEA_TABLE_WORD_LIST_H
-#define DEA_TABLE_WORD_LIST_H
+#pragma once
 
 // X(language, word in lower case, where it stands in a name, what that then is)
 // where: PART anywhere; WORD as a word of its own; WHOLE it is the whole name
@@ -91,5 +90,3 @@
   X(SYMBOL, "i", WHOLE, AMPERE)                                                                    \
   X(ENGLISH, "current", WHOLE, AMPERE)                                                             \
   X(GERMAN, "strom", WHOLE, AMPERE)
-
-#endif

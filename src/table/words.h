@@ -1,6 +1,5 @@
 /* What a column may be, by words of its name; they are a table, word_list.h. */
-#ifndef DEA_TABLE_WORDS_H
-#define DEA_TABLE_WORDS_H
+#pragma once
 
 #include "table/slices.h"
 
@@ -29,5 +28,3 @@ enum dea_clock_part { DEA_CLOCK_NOTHING, DEA_CLOCK_RATE, DEA_CLOCK_INTERVAL, DEA
 enum dea_clock_part dea_word_clock(const char *name);
 /* Whether 'A' behind that name is a unit without brackets: "channel_A" is no current. */
 bool dea_word_takes_ampere(struct dea_slice name);
-
-#endif

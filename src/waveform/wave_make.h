@@ -1,6 +1,5 @@
 /* What the kinds of waveforms are made with. */
-#ifndef DEA_WAVEFORM_WAVE_MAKE_H
-#define DEA_WAVEFORM_WAVE_MAKE_H
+#pragma once
 
 #include "waveform/waveform.h"
 
@@ -65,5 +64,3 @@ double dea_wave_sine_of(double cycles);
  * frequency of at most highest_Hz. */
 void dea_wave_sine_extent(double mean_V, double amplitude_V, double from_cycles, double to_cycles,
                           double highest_Hz, struct dea_wave_extent *out);
-
-#endif

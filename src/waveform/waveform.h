@@ -3,8 +3,7 @@
  * A waveform knows nothing of what it drives: a study plays it to a model, a laboratory to an
  * amplifier. A kind is one file wave_<kind>.c and one line in wave_list.h. Times are found from
  * whole numbers of cycles, never by adding up, so that nothing drifts over thousands of cycles. */
-#ifndef DEA_WAVEFORM_WAVEFORM_H
-#define DEA_WAVEFORM_WAVEFORM_H
+#pragma once
 
 #include "base/schema.h"
 
@@ -88,5 +87,3 @@ dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform
 
 /* Tables of all kinds for printing, ended by NULL. */
 extern const struct dea_record *const dea_wave_records[];
-
-#endif

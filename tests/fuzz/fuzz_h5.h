@@ -2,8 +2,7 @@
  * something else than they should: a good file in which
  * objects and attributes are edited as the input says, three bytes an edit: of what, how, with
  * what. (Files with flipped bytes are HDF5's to refuse; what they then say is ours.) */
-#ifndef DEA_TESTS_FUZZ_H5_H
-#define DEA_TESTS_FUZZ_H5_H
+#pragma once
 
 #include "base/context.h"
 
@@ -157,5 +156,3 @@ static inline void fuzz_h5_edit_file(const char *path, const uint8_t *data, size
     H5Fclose(file);
   }
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* One importer on hostile bytes: reads a table and makes what it can of it. */
-#ifndef DEA_TESTS_FUZZ_IMPORT_H
-#define DEA_TESTS_FUZZ_IMPORT_H
+#pragma once
 
 #include "import/import.h"
 
@@ -54,5 +53,3 @@ static inline int fuzz_bytes(const char *name, const uint8_t *data, size_t size)
   }
   return 0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Feeds lines of text to a target, in parts of any size. */
-#ifndef DEA_TESTS_FUZZ_LINES_H
-#define DEA_TESTS_FUZZ_LINES_H
+#pragma once
 
 #include "instrument/line_reader.h"
 
@@ -24,5 +23,3 @@ static inline void feed_lines(const uint8_t *data, size_t size, size_t part, siz
   }
   *dropped = reader.dropped;
 }
-
-#endif

@@ -4,13 +4,11 @@
 #include "base/write_file.h"
 #include "cli/cli.h"
 #include "import/import.h"
-#include "result/provenance.h"
 #include "study/design_file.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 struct request {

@@ -2,8 +2,7 @@
  * measurement, and still burns the film. Two limits beside that of the lasting current: how often
  * it is exceeded within 10 s, and how much charge flows above it within about 1 s. What charging
  * the film explains counts for neither. Definitions: docs/theory/interlocks.md. */
-#ifndef DEA_LAB_DRIVE_ARC_WATCH_H
-#define DEA_LAB_DRIVE_ARC_WATCH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -40,5 +39,3 @@ void dea_arc_watch_start(struct dea_arc_watch *watch, const struct dea_arc_limit
  */
 enum dea_arc_verdict dea_arc_watch_sample(struct dea_arc_watch *watch, double change_V,
                                           double current_A);
-
-#endif

@@ -1,6 +1,5 @@
 /* Plays a protocol through its instruments into a recording, and always comes back to 0 V. */
-#ifndef DEA_LAB_DRIVE_DRIVE_H
-#define DEA_LAB_DRIVE_DRIVE_H
+#pragma once
 
 #include "base/context.h"
 #include "instrument/zero.h"
@@ -45,5 +44,3 @@ dea_status dea_drive_run(struct dea_context *ctx, const struct dea_protocol *pro
  * `checked`. DEA_E_INSTRUMENT when it is not known to be at 0 V. */
 dea_status dea_drive_zero(struct dea_context *ctx, const struct dea_protocol *protocol,
                           const char *state_folder, bool checked, struct dea_zero *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* The loop of `dea drive` on instruments that are open already. */
-#ifndef DEA_LAB_DRIVE_DRIVE_LOOP_H
-#define DEA_LAB_DRIVE_DRIVE_LOOP_H
+#pragma once
 
 #include "drive/drive.h"
 #include "drive/guard.h"
@@ -43,5 +42,3 @@ dea_status dea_drive_find_roles(struct dea_context *ctx, const struct dea_protoc
 dea_status dea_drive_recorder(struct dea_context *ctx, const struct dea_protocol *protocol,
                               const struct dea_drive_bench *bench, const char *file,
                               const struct dea_instrument *sensor, struct dea_recorder **out);
-
-#endif

@@ -1,7 +1,6 @@
 /* What is asked of the amplifier, sample after sample: the protocol's sequence, and from any of
  * them on a ramp to 0 V. */
-#ifndef DEA_LAB_DRIVE_DRIVE_OUTPUT_H
-#define DEA_LAB_DRIVE_DRIVE_OUTPUT_H
+#pragma once
 
 #include "protocol/protocol.h"
 
@@ -22,5 +21,3 @@ size_t dea_drive_output_next(struct dea_drive_output *output, size_t capacity, d
 void dea_drive_output_ramp(struct dea_drive_output *output);
 /* The same from another voltage, also of one that is over. */
 void dea_drive_output_ramp_from(struct dea_drive_output *output, double volts);
-
-#endif

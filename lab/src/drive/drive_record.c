@@ -5,7 +5,6 @@
 #include "result/provenance.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static dea_status wrong_bench(struct dea_context *ctx, const char *what)

@@ -1,6 +1,5 @@
 /* The limits of a protocol, looked at in every sample that comes in. */
-#ifndef DEA_LAB_DRIVE_DRIVE_WATCH_H
-#define DEA_LAB_DRIVE_DRIVE_WATCH_H
+#pragma once
 
 #include "drive/arc_watch.h"
 #include "drive/leak_watch.h"
@@ -47,5 +46,3 @@ bool dea_drive_watch_is_over(const struct dea_protocol *protocol, size_t input, 
  * second ends it too. */
 bool dea_drive_watch_sample(struct dea_drive_watch *watch, double asked_V, const double *values,
                             char why[DEA_WHY_ENDED_SIZE]);
-
-#endif

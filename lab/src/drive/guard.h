@@ -1,8 +1,7 @@
 /* A process that outlives the one that drives. When that one dies, or gives no sign of life for too
  * long, it brings the supply to 0 V by a connection of its own; when that one says that it has
  * ended, it goes. Signals of the terminal do not reach it. */
-#ifndef DEA_LAB_DRIVE_GUARD_H
-#define DEA_LAB_DRIVE_GUARD_H
+#pragma once
 
 #include "drive/supply.h"
 #include "protocol/protocol.h"
@@ -38,5 +37,3 @@ enum dea_guard_state dea_guard_beat(struct dea_guard *guard);
 /* The program has done all that it can do. The guard goes, or, where the output is not known to be
  * at 0 V, goes on bringing it there as if the program had died: until it is, or for 10 minutes. */
 void dea_guard_end(struct dea_context *ctx, struct dea_guard *guard, bool known);
-
-#endif

@@ -3,8 +3,7 @@
  * earlier equal cycles, its base line, so that what charges the film, C dV/dt, is on both sides.
  * How the base line is learned and followed, and what ends a measurement:
  * docs/theory/interlocks.md. */
-#ifndef DEA_LAB_DRIVE_LEAK_WATCH_H
-#define DEA_LAB_DRIVE_LEAK_WATCH_H
+#pragma once
 
 #include "protocol/protocol.h"
 
@@ -55,5 +54,3 @@ void dea_leak_watch_start(struct dea_leak_watch *watch, const struct dea_protoco
  * base line, and the largest limit. */
 enum dea_leak_event dea_leak_watch_sample(struct dea_leak_watch *watch, double time_s,
                                           double asked_V, double current_A);
-
-#endif

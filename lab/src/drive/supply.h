@@ -7,8 +7,7 @@
  * file. The program that drives it ends then, and the guard of one that has died gives the supply
  * away until that is done. A lock goes with its process: nothing asks for longer than that lives.
  */
-#ifndef DEA_LAB_DRIVE_SUPPLY_H
-#define DEA_LAB_DRIVE_SUPPLY_H
+#pragma once
 
 #include "base/context.h"
 #include "instrument/instrument.h"
@@ -45,5 +44,3 @@ bool dea_supply_give(struct dea_supply *supply, double within_s);
 dea_status dea_supply_leave(struct dea_context *ctx, struct dea_supply *supply, const char *text);
 /* Lets the next program have it. One that is closed is fine. */
 void dea_supply_close(struct dea_supply *supply);
-
-#endif

@@ -1,8 +1,7 @@
 /* Writes a recording in a thread of its own, so that a disk that blocks holds up nothing that is
  * played. What is given waits in a queue of a fixed size; one that is full is a failure, unless the
  * instruments wait too (a simulated bench). Completed cycles are brought to the disk itself. */
-#ifndef DEA_LAB_DRIVE_WRITER_H
-#define DEA_LAB_DRIVE_WRITER_H
+#pragma once
 
 #include "recording/recorder.h"
 
@@ -30,5 +29,3 @@ dea_status dea_writer_add_cycle(struct dea_context *ctx, struct dea_writer *writ
  */
 dea_status dea_writer_finish(struct dea_context *ctx, struct dea_writer *writer, const char *output,
                              const char *ended);
-
-#endif

@@ -1,6 +1,5 @@
 #include "film/film_table.h"
 
-#include "base/text.h"
 #include "study/observe.h"
 
 #include <math.h>

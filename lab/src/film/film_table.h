@@ -1,7 +1,6 @@
 /* A film of any device at rest against the voltage: model 3d at voltages of which one after the
  * other is computed when it is wanted, and between them even in the voltage. */
-#ifndef DEA_LAB_FILM_TABLE_H
-#define DEA_LAB_FILM_TABLE_H
+#pragma once
 
 #include "model/model.h"
 
@@ -26,5 +25,3 @@ struct dea_film_step {
 };
 dea_status dea_film_table_charge(struct dea_context *ctx, struct dea_film_table *table,
                                  const struct dea_film_step *step, double *film_V);
-
-#endif

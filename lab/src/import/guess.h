@@ -1,6 +1,5 @@
 /* What a column may be, by its name and unit; the words of names are table/word_list.h. */
-#ifndef DEA_LAB_IMPORT_GUESS_H
-#define DEA_LAB_IMPORT_GUESS_H
+#pragma once
 
 #include "import/import.h"
 
@@ -10,4 +9,3 @@ enum { DEA_GUESS_TIME = -1, DEA_GUESS_NOTHING = -2, DEA_GUESS_UNCERTAINTY = -3 }
 int dea_guess_by_name(const char *name);
 /* si: SI unit of the column's unit. */
 int dea_guess_by_unit(const char *name, const char *si);
-#endif

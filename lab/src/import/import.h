@@ -1,8 +1,7 @@
 /* Files of other programs: read into a table of columns, which a mapping makes a recording of.
  *
  * A format is one file import_<name>.c and one line in import_list.h. */
-#ifndef DEA_LAB_IMPORT_IMPORT_H
-#define DEA_LAB_IMPORT_IMPORT_H
+#pragma once
 
 #include "base/schema.h"
 #include "recording/recording.h"
@@ -74,5 +73,3 @@ dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table,
  * were left, become notes. out: owned by the caller, NULL on failure. */
 dea_status dea_table_record(struct dea_context *ctx, const struct dea_table *table,
                             const struct dea_mapping *mapping, struct dea_recording **out);
-
-#endif

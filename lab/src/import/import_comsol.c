@@ -8,7 +8,6 @@
 #include "table/text_rows.h"
 #include "table/titles.h"
 
-#include <ctype.h>
 #include <string.h>
 
 enum { HEAD_LINES = 200, NOTE_SIZE = 4000 };

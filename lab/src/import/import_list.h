@@ -1,6 +1,5 @@
 /* The formats of files that can be imported; the first that recognises a file reads it. */
-#ifndef DEA_LAB_IMPORT_IMPORT_LIST_H
-#define DEA_LAB_IMPORT_IMPORT_LIST_H
+#pragma once
 
 // X(name of the `const struct dea_importer`)
 #define DEA_IMPORTER_LIST(X)                                                                       \
@@ -12,5 +11,3 @@
   X(dea_import_tektronix)                                                                          \
   X(dea_import_rigol)                                                                              \
   X(dea_import_csv)
-
-#endif

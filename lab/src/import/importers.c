@@ -8,7 +8,6 @@
 #include "table/text_file.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 

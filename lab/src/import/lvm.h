@@ -1,6 +1,5 @@
 /* Inside of the reader of .lvm: channels, their clocks, and the table that they become. */
-#ifndef DEA_LAB_IMPORT_LVM_H
-#define DEA_LAB_IMPORT_LVM_H
+#pragma once
 
 #include "import/import.h"
 #include "table/slices.h"
@@ -59,5 +58,3 @@ void dea_lvm_begin_segment(struct dea_lvm *lvm);
 void dea_lvm_keep_row(struct dea_lvm *lvm, size_t row);
 /* Between counting and keeping. */
 dea_status dea_lvm_add_columns(struct dea_lvm *lvm);
-
-#endif

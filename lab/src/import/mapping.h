@@ -1,6 +1,5 @@
 /* A mapping as it was read. */
-#ifndef DEA_LAB_IMPORT_MAPPING_H
-#define DEA_LAB_IMPORT_MAPPING_H
+#pragma once
 
 #include "import/import.h"
 
@@ -31,5 +30,3 @@ struct dea_mapping {
 
 /* Whether a column's name is meant: letters of either case; '*' is any text when `pattern`. */
 bool dea_mapping_matches(const char *name, const char *wanted, bool pattern);
-
-#endif

@@ -1,8 +1,7 @@
 /* MATLAB's .mat files, through libmatio: a module that is loaded on demand (base/module.h).
  *
  * libmatio and the HDF5 below it keep state of their own: one thread at a time. */
-#ifndef DEA_LAB_IMPORT_MAT_H
-#define DEA_LAB_IMPORT_MAT_H
+#pragma once
 
 #include "import/import.h"
 
@@ -44,5 +43,3 @@ struct dea_mat_type {
                       enum dea_mat_version version);
   dea_status (*read)(struct dea_context *ctx, const char *file, struct dea_table *out);
 };
-
-#endif

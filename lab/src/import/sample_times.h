@@ -1,6 +1,5 @@
 /* Times of samples: an interval where they are uniform. */
-#ifndef DEA_LAB_IMPORT_SAMPLE_TIMES_H
-#define DEA_LAB_IMPORT_SAMPLE_TIMES_H
+#pragma once
 
 #include "import/import.h"
 
@@ -25,5 +24,3 @@ dea_status dea_clock_check_seconds(struct dea_context *ctx, const struct dea_tab
                                    size_t column);
 /* Whether two of them are the same to a thousandth of a step. */
 bool dea_clock_same(const struct dea_clock *a, const struct dea_clock *b);
-
-#endif

@@ -1,6 +1,5 @@
 #include "import/scale.h"
 
-#include "base/text.h"
 #include "base/units.h"
 #include "table/titles.h"
 

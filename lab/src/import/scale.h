@@ -1,6 +1,5 @@
 /* From a column's numbers to SI. */
-#ifndef DEA_LAB_IMPORT_SCALE_H
-#define DEA_LAB_IMPORT_SCALE_H
+#pragma once
 
 #include "import/mapping.h"
 
@@ -15,5 +14,3 @@ struct dea_scale_text {
 dea_status dea_scale_find(struct dea_context *ctx, const struct dea_table_column *column,
                           const char *si, const struct dea_scale_text *text,
                           struct dea_location location, double *factor, double *offset, bool *good);
-
-#endif

@@ -3,8 +3,7 @@
  * A file is a row of segments: a lead-in of 28 bytes, metadata (what objects there are, where their
  * values lie, their properties), raw values. What a segment does not say stays as the one before
  * said it. Source: NI, "TDMS File Format Internal Structure". */
-#ifndef DEA_LAB_IMPORT_TDMS_H
-#define DEA_LAB_IMPORT_TDMS_H
+#pragma once
 
 #include "import/import.h"
 
@@ -88,5 +87,3 @@ bool dea_tdms_is_linear(const struct dea_tdms_object *object);
 /* Reads a segment's metadata: objects, where their values are, and properties. Errors are findings
  * with the byte, DEA_E_IO. */
 dea_status dea_tdms_metadata(struct dea_tdms *tdms, struct dea_tdms_bytes *bytes, bool new_list);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which of some readings is asked for next, one question at a time and each once an interval. */
-#ifndef DEA_LAB_INSTRUMENT_ASKING_H
-#define DEA_LAB_INSTRUMENT_ASKING_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -20,5 +19,3 @@ void dea_asking_start(struct dea_asking *asking, double now_s);
 /* Whether a reading is to be asked for now: `reading` and `asked_s` are it then. *next_s: when its
  * answer is late, or when the next one is due; INFINITY without readings. */
 bool dea_asking_next(struct dea_asking *asking, double now_s, double *next_s);
-
-#endif

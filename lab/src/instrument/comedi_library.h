@@ -1,8 +1,7 @@
 /* What is used of comedilib, the library of Linux' drivers for DAQs: its functions, structures and
  * numbers as its reference publishes them, so that neither its header nor it are needed to build.
  */
-#ifndef DEA_LAB_INSTRUMENT_COMEDI_LIBRARY_H
-#define DEA_LAB_INSTRUMENT_COMEDI_LIBRARY_H
+#pragma once
 
 #include "base/context.h"
 
@@ -95,5 +94,3 @@ struct dea_comedi_library {
 /* DEA_E_UNSUPPORTED with advice. */
 dea_status dea_comedi_open(struct dea_context *ctx, const char *file,
                            struct dea_comedi_library *out);
-
-#endif

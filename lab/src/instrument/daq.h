@@ -1,7 +1,6 @@
 /* What DAQs have in common: a queue for the output whose playing starts with its first sample, and
  * room for what the inputs give. */
-#ifndef DEA_LAB_INSTRUMENT_DAQ_H
-#define DEA_LAB_INSTRUMENT_DAQ_H
+#pragma once
 
 #include "instrument/instrument_make.h"
 
@@ -55,5 +54,3 @@ dea_status dea_daq_part(struct dea_context *ctx, const struct dea_daq *daq, cons
  */
 dea_status dea_daq_check_rate(struct dea_context *ctx, const char *device, double asked_Hz,
                               double actual_Hz);
-
-#endif

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { WRONG_MOST = 2, COMPARED_LEAST = 3, BINS_A_LAG = 64 };
 static const double off_most_s = 5, off_from = 0.2; // for how long, and of the largest voltage

@@ -7,8 +7,7 @@
  * meter may be as slow as it likes. 0 V is believed of a meter that was seen away from it, as was
  * sent, the last time that it was looked at there, and that has contradicted nothing.
  * Zero-initialised: of nothing sent. */
-#ifndef DEA_LAB_INSTRUMENT_EVIDENCE_H
-#define DEA_LAB_INSTRUMENT_EVIDENCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -70,5 +69,3 @@ const char *dea_evidence_doubt(const struct dea_evidence *evidence);
 /* "measures 0.8 kV as the peak of 8 readings where 2 kV was set"; gain: of these voltages. */
 void dea_evidence_text(const struct dea_evidence *evidence, double gain,
                        char out[DEA_EVIDENCE_TEXT_SIZE]);
-
-#endif

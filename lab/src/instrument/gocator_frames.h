@@ -1,6 +1,5 @@
 /* Frames of a Gocator on one grid of positions and on the recording's clock. */
-#ifndef DEA_LAB_INSTRUMENT_GOCATOR_FRAMES_H
-#define DEA_LAB_INSTRUMENT_GOCATOR_FRAMES_H
+#pragma once
 
 #include "base/context.h"
 #include "instrument/gocator_parse.h"
@@ -38,5 +37,3 @@ void dea_gocator_frames_see(struct dea_gocator_frames *frames, const struct dea_
 bool dea_gocator_frames_time(struct dea_gocator_frames *frames, const struct dea_gdp_stamp *stamp,
                              double arrived_s, double start_s, double *time_s, size_t *lost);
 void dea_gocator_frames_free(struct dea_context *ctx, struct dea_gocator_frames *frames);
-
-#endif

@@ -19,8 +19,7 @@
  *
  * Text: "OK,M00,00,V151290,D0,M01,01,V18520,D0": type (hexadecimal), id, value [1/1000 mm] or
  * INVALID, decision; without "OK," when it is sent unasked. "ERROR,reason". */
-#ifndef DEA_LAB_INSTRUMENT_GOCATOR_PARSE_H
-#define DEA_LAB_INSTRUMENT_GOCATOR_PARSE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -97,5 +96,3 @@ struct dea_gocator_value {
 bool dea_gocator_value_next(const char **cursor, struct dea_gocator_value *out);
 /* Whether a line says ERROR; *reason: what follows, lent. */
 bool dea_gocator_refused(const char *line, const char **reason);
-
-#endif

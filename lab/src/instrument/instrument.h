@@ -5,8 +5,7 @@
  * reads the analogue inputs on the same clock, sends profiles, or answers single readings; any of
  * these together. Voltages here are those on the wire, before the amplifier's gain and the
  * channels' factors. */
-#ifndef DEA_LAB_INSTRUMENT_INSTRUMENT_H
-#define DEA_LAB_INSTRUMENT_INSTRUMENT_H
+#pragma once
 
 #include "instrument/zero.h"
 #include "protocol/protocol.h"
@@ -142,5 +141,3 @@ dea_status dea_instrument_address(struct dea_context *ctx,
                                   char out[DEA_INSTRUMENT_ADDRESS_SIZE]);
 /* Reads the sections of all instruments without opening any: wrong keys become findings. */
 dea_status dea_instrument_check(struct dea_context *ctx, const struct dea_protocol *protocol);
-
-#endif

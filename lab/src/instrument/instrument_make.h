@@ -1,6 +1,5 @@
 /* What the kinds of instruments are made with. */
-#ifndef DEA_LAB_INSTRUMENT_INSTRUMENT_MAKE_H
-#define DEA_LAB_INSTRUMENT_INSTRUMENT_MAKE_H
+#pragma once
 
 #include "instrument/instrument.h"
 #include "instrument/instrument_list.h"
@@ -52,5 +51,3 @@ void dea_instrument_add_displacement(struct dea_instrument *instrument,
  * be at 0 V then. */
 dea_status dea_instrument_give_up(struct dea_context *ctx, struct dea_instrument *instrument,
                                   dea_status status);
-
-#endif

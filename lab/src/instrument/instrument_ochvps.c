@@ -9,7 +9,6 @@
 #include "instrument/line_supply.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { COMMANDS_MAX = 16 };

@@ -18,7 +18,6 @@
 #include "instrument/serial.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { LEAST = 161, MOST = 16207 };
 static const double drift = 2e-4;

@@ -6,7 +6,6 @@
 #include "instrument/sim_noise.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { FAST, REAL };

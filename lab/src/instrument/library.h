@@ -1,6 +1,5 @@
 /* Libraries of vendors, loaded when an instrument is opened, since few computers have them. */
-#ifndef DEA_LAB_INSTRUMENT_LIBRARY_H
-#define DEA_LAB_INSTRUMENT_LIBRARY_H
+#pragma once
 
 #include "base/schema.h"
 
@@ -23,5 +22,3 @@ dea_status dea_library_check(const struct dea_reader *reader, const struct dea_l
 dea_status dea_library_open(struct dea_context *ctx, const char *file, const char *what,
                             const char *advice, const struct dea_library_symbol *symbols,
                             size_t count, void *table);
-
-#endif

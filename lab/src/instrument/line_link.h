@@ -1,6 +1,5 @@
 /* A connection to an instrument that speaks in lines of text. */
-#ifndef DEA_LAB_INSTRUMENT_LINE_LINK_H
-#define DEA_LAB_INSTRUMENT_LINE_LINK_H
+#pragma once
 
 #include "instrument/line_reader.h"
 #include "instrument/socket.h"
@@ -21,5 +20,3 @@ dea_status dea_line_alone(struct dea_context *ctx, const struct dea_line_link *l
                           const char *line, const char *bytes, size_t length);
 /* The same for all that has come and was not read yet, before a question is sent. */
 dea_status dea_line_unasked(struct dea_context *ctx, const struct dea_line_link *link);
-
-#endif

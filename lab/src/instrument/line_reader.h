@@ -1,6 +1,5 @@
 /* Lines of text out of a stream of bytes, however it is cut into pieces. */
-#ifndef DEA_LAB_INSTRUMENT_LINE_READER_H
-#define DEA_LAB_INSTRUMENT_LINE_READER_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -20,5 +19,3 @@ struct dea_line_reader {
  * a control character other than a tab is dropped whole and counted: reading goes on at the next.
  */
 const char *dea_line_next(struct dea_line_reader *reader, const char **bytes, size_t *length);
-
-#endif

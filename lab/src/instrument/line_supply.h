@@ -5,8 +5,7 @@
  * It gives one sign only, and whole volts. Where "at 0 V" depends on it, a voltage that was read
  * back is believed only behind the answer to another question (`sync`) that no voltage can be
  * mistaken for: an answer that came late could be that to an older question. */
-#ifndef DEA_LAB_INSTRUMENT_LINE_SUPPLY_H
-#define DEA_LAB_INSTRUMENT_LINE_SUPPLY_H
+#pragma once
 
 #include "instrument/instrument_make.h"
 #include "instrument/line_link.h"
@@ -131,5 +130,3 @@ dea_status dea_line_supply_wait(struct dea_context *ctx, struct dea_line_link *l
                                 const char **line);
 dea_status dea_line_supply_send(struct dea_context *ctx, const struct dea_line_link *link,
                                 double timeout_s, const char *command);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * A voltage of the output counts as set once the question `confirm`, which is sent behind it, was
  * answered. */
-#ifndef DEA_LAB_INSTRUMENT_SCPI_H
-#define DEA_LAB_INSTRUMENT_SCPI_H
+#pragma once
 
 #include "instrument/asking.h"
 #include "instrument/instrument_make.h"
@@ -105,5 +104,3 @@ struct dea_zero dea_scpi_stop(struct dea_context *ctx, struct dea_instrument *in
 struct dea_zero dea_scpi_zero(struct dea_context *ctx, const void *raw,
                               const struct dea_protocol *protocol,
                               const struct dea_instrument_past *past);
-
-#endif

@@ -1,6 +1,5 @@
 /* Commands and responses of SCPI instruments (SCPI 1999, IEEE 488.2). */
-#ifndef DEA_LAB_INSTRUMENT_SCPI_PARSE_H
-#define DEA_LAB_INSTRUMENT_SCPI_PARSE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -43,5 +42,3 @@ bool dea_scpi_configures(const char *command);
 /* Whether it has no line's end in it, behind which another command would begin, nor any other
  * control character. */
 bool dea_scpi_is_one_line(const char *command);
-
-#endif

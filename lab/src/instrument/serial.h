@@ -1,7 +1,6 @@
 /* Serial lines to instruments (RS-232, RS-422, a USB adapter), read and written as a connection of
  * socket.h. */
-#ifndef DEA_LAB_INSTRUMENT_SERIAL_H
-#define DEA_LAB_INSTRUMENT_SERIAL_H
+#pragma once
 
 #include "instrument/socket.h"
 
@@ -36,5 +35,3 @@ void dea_serial_holder_text(long holder, char out[DEA_SERIAL_HOLDER_SIZE]);
 /* What tells the line, from when it was plugged in until it is pulled out, from what gets its name
  * later; "": it is closed. */
 void dea_serial_mark(const struct dea_socket *line, char *out, size_t size);
-
-#endif

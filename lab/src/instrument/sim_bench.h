@@ -4,8 +4,7 @@
  * fast as its slew limit lets it, the film is charged with at most its current limit, and the model
  * moves the film. What an input reads at a sample is what is there just before the output changes,
  * as with a DAQ whose inputs and outputs have one clock. */
-#ifndef DEA_LAB_INSTRUMENT_SIM_BENCH_H
-#define DEA_LAB_INSTRUMENT_SIM_BENCH_H
+#pragma once
 
 #include "protocol/protocol.h"
 
@@ -48,5 +47,3 @@ dea_status dea_sim_bench_sample(struct dea_sim_bench *bench, double control_V,
 /* Height [m] at a radius >= 0 of the stretched flat film at the last sample: that of the model when
  * it knows one, else a cone from the frame to the fibre tips and on to the centre. */
 double dea_sim_bench_height(struct dea_sim_bench *bench, double radius_m);
-
-#endif

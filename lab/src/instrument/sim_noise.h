@@ -1,7 +1,6 @@
 /* What the simulated bench adds to the truth. Everything comes from one stream of random numbers,
  * drawn sample after sample, so that a seed gives the same recording however it is read. */
-#ifndef DEA_LAB_INSTRUMENT_SIM_NOISE_H
-#define DEA_LAB_INSTRUMENT_SIM_NOISE_H
+#pragma once
 
 #include "instrument/sim_bench.h"
 
@@ -34,5 +33,3 @@ void dea_sim_read_inputs(const struct dea_protocol *protocol, const struct dea_s
 void dea_sim_read_profile(struct dea_sim_bench *bench, const struct dea_sim_noise *noise,
                           double time_s, struct dea_sim_random *random, const double *x_m,
                           size_t points, double *z_m);
-
-#endif

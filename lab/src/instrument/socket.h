@@ -1,7 +1,6 @@
 /* TCP connections to instruments, and what is read and written like one (serial.h): every wait
  * ends, a lost connection is a sentence, and no write raises SIGPIPE. */
-#ifndef DEA_LAB_INSTRUMENT_SOCKET_H
-#define DEA_LAB_INSTRUMENT_SOCKET_H
+#pragma once
 
 #include "base/context.h"
 
@@ -40,5 +39,3 @@ bool dea_socket_is_lost(const struct dea_socket *connection);
 bool dea_socket_claim(const struct dea_socket *connection, int *claim);
 /* A closed one is fine. */
 void dea_socket_close(struct dea_socket *connection);
-
-#endif

@@ -4,8 +4,7 @@
  * At most one question is open at a time, so that an answer can belong to nothing else, and a
  * voltage counts as set once it was confirmed: a supply never has more to do than one voltage, and
  * one that takes longer than `behind` for it has failed. */
-#ifndef DEA_LAB_INSTRUMENT_TIMED_OUTPUT_H
-#define DEA_LAB_INSTRUMENT_TIMED_OUTPUT_H
+#pragma once
 
 #include "base/context.h"
 #include "base/value.h"
@@ -71,5 +70,3 @@ double dea_timed_hold(struct dea_timed_output *output, double now_s);
  * goes to 0 V along the ramp; what contradicts what was sent DEA_E_INSTRUMENT. */
 dea_status dea_timed_measured(struct dea_context *ctx, struct dea_timed_output *output,
                               const struct dea_protocol *protocol, const char *name, double volts);
-
-#endif

@@ -1,7 +1,6 @@
 /* What is known of an output that was brought to 0 V. "At 0 V" is what was read back, and nothing
  * else. */
-#ifndef DEA_LAB_INSTRUMENT_ZERO_H
-#define DEA_LAB_INSTRUMENT_ZERO_H
+#pragma once
 
 enum dea_zero_state {
   DEA_ZERO_NONE,      // there is no output, or it was never armed
@@ -34,5 +33,3 @@ const char *dea_zero_name(enum dea_zero_state state);
  * to be at 0 V (2.1 V read back; it had measured another voltage than was set)". volts: at the
  * output. */
 void dea_zero_text(struct dea_zero zero, char out[DEA_ZERO_TEXT_SIZE]);
-
-#endif

@@ -2,7 +2,6 @@
 #include "matio/matio_module.h"
 
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 

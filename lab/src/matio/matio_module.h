@@ -1,6 +1,5 @@
 /* Inside of the module that knows libmatio. */
-#ifndef DEA_LAB_MATIO_MATIO_MODULE_H
-#define DEA_LAB_MATIO_MATIO_MODULE_H
+#pragma once
 
 #include "import/mat.h"
 
@@ -15,5 +14,3 @@ dea_status dea_matio_write(struct dea_context *ctx, const char *file,
 /* Whether a file of version 5 holds as much as its variables say; DEA_E_IO. */
 dea_status dea_matio_check(struct dea_context *ctx, const char *file);
 dea_status dea_matio_read(struct dea_context *ctx, const char *file, struct dea_table *out);
-
-#endif

@@ -1,8 +1,7 @@
 /* The film on the bench as its design and a model tell of it: what the checks of a protocol and the
  * simulated bench ask. Who has designs and models fills in the functions (job/film_of_design.h);
  * the bench knows neither. */
-#ifndef DEA_LAB_PROTOCOL_BENCH_FILM_H
-#define DEA_LAB_PROTOCOL_BENCH_FILM_H
+#pragma once
 
 #include "base/context.h"
 #include "result/load_point.h"
@@ -76,5 +75,3 @@ struct dea_bench_film_type {
   dea_status (*profile)(struct dea_context *ctx, struct dea_bench_model *model,
                         struct dea_profile *out);
 };
-
-#endif

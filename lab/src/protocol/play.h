@@ -1,8 +1,5 @@
 /* What the scripts of `dea drive --export` end with, embedded by CMake. */
-#ifndef DEA_LAB_PROTOCOL_PLAY_H
-#define DEA_LAB_PROTOCOL_PLAY_H
+#pragma once
 
 extern const char dea_asset_play_python[]; // play_nidaqmx.py
 extern const char dea_asset_play_matlab[]; // play_matlab.m
-
-#endif

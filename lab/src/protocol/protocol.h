@@ -2,8 +2,7 @@
  *
  * A YAML file with the reader of design files: every value in its unit, every error at its place.
  */
-#ifndef DEA_LAB_PROTOCOL_PROTOCOL_H
-#define DEA_LAB_PROTOCOL_PROTOCOL_H
+#pragma once
 
 #include "protocol/bench_film.h"
 #include "recording/recording.h"
@@ -191,5 +190,3 @@ struct dea_protocol_plan {
  * an error finding, what a user should know a warning or a note. DEA_E_INTERLOCK with errors. */
 dea_status dea_protocol_check(struct dea_context *ctx, const struct dea_protocol *protocol,
                               struct dea_protocol_plan *plan);
-
-#endif

@@ -1,6 +1,5 @@
 /* Parts of dea_protocol_check; not for others. */
-#ifndef DEA_LAB_PROTOCOL_PROTOCOL_CHECK_H
-#define DEA_LAB_PROTOCOL_PROTOCOL_CHECK_H
+#pragma once
 
 #include "protocol/protocol.h"
 
@@ -38,5 +37,3 @@ dea_status dea_protocol_check_interlocks(struct dea_context *ctx,
 dea_status dea_protocol_check_film(struct dea_context *ctx, const struct dea_protocol *protocol,
                                    const struct dea_protocol_peak *peak,
                                    struct dea_protocol_plan *plan);
-
-#endif

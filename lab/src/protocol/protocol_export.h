@@ -1,7 +1,6 @@
 /* A protocol as files for a computer that has no `dea`: a waveform, and scripts that play it and
  * record all channels as CSV that `dea import` reads. */
-#ifndef DEA_LAB_PROTOCOL_PROTOCOL_EXPORT_H
-#define DEA_LAB_PROTOCOL_PROTOCOL_EXPORT_H
+#pragma once
 
 #include "protocol/protocol.h"
 
@@ -13,5 +12,3 @@ enum { DEA_EXPORT_SAMPLES_MAX = 20 * 1000 * 1000 };
  * protocol without channels or with more samples than such scripts can hold. */
 dea_status dea_protocol_export(struct dea_context *ctx, const struct dea_protocol *protocol,
                                const char *directory);
-
-#endif

@@ -1,6 +1,5 @@
 /* The schema of a protocol file: the table, and the struct that it fills. */
-#ifndef DEA_LAB_PROTOCOL_PROTOCOL_SCHEMA_H
-#define DEA_LAB_PROTOCOL_PROTOCOL_SCHEMA_H
+#pragma once
 
 #include "protocol/protocol.h"
 
@@ -18,5 +17,3 @@ extern const struct dea_record dea_protocol_record; // its base: a struct dea_pr
 /* Reads the specimen that a protocol names; beside: the protocol. What is wrong is a finding. */
 dea_status dea_specimen_read(struct dea_context *ctx, const char *beside,
                              const struct dea_label *file, struct dea_specimen *out);
-
-#endif

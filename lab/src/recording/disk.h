@@ -5,8 +5,7 @@
  * reaches the file, which then is as if the program had been killed at that moment; HDF5 itself is
  * told that all is well. A file that another program has cut off is no longer written either, and
  * no longer read: HDF5 would take what is missing for its own tables. */
-#ifndef DEA_LAB_RECORDING_DISK_H
-#define DEA_LAB_RECORDING_DISK_H
+#pragma once
 
 #include "base/h5.h"
 
@@ -26,5 +25,3 @@ bool dea_disk_use(hid_t access, struct dea_disk *disk);
 bool dea_disk_is_named(const struct dea_disk *disk, const char *path);
 /* Brings what was written so far to the disk itself. */
 void dea_disk_sync(struct dea_disk *disk);
-
-#endif

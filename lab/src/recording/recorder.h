@@ -3,8 +3,7 @@
  * The file is open for one writer and many readers (HDF5's SWMR): data reach the operating system
  * in an order in which the file is valid at any moment, so a program that is killed loses at most
  * what came after the last flush. */
-#ifndef DEA_LAB_RECORDING_RECORDER_H
-#define DEA_LAB_RECORDING_RECORDER_H
+#pragma once
 
 #include "recording/recording.h"
 
@@ -65,5 +64,3 @@ bool dea_recording_is_written(const char *file);
  * early, NULL or "" when it came to its end. DEA_E_IO too when the file has been removed or
  * replaced meanwhile. */
 dea_status dea_recorder_finish(struct dea_recorder *recorder, const char *ended);
-
-#endif

@@ -2,8 +2,7 @@
  *
  * `dea drive` writes one while it runs (recorder.h), importers make one of other programs' files,
  * reductions read one. All values are SI; a missing or invalid value is NAN. */
-#ifndef DEA_LAB_RECORDING_RECORDING_H
-#define DEA_LAB_RECORDING_RECORDING_H
+#pragma once
 
 #include "base/context.h"
 
@@ -146,5 +145,3 @@ static inline double dea_channel_time(const struct dea_channel *channel, size_t 
 }
 /* Number of samples before time_s: the first index at or after it, count when there is none. */
 size_t dea_channel_index(const struct dea_channel *channel, double time_s);
-
-#endif

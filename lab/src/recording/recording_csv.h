@@ -1,6 +1,5 @@
 /* A recording as CSV files, for programs that do not read HDF5. */
-#ifndef DEA_LAB_RECORDING_RECORDING_CSV_H
-#define DEA_LAB_RECORDING_RECORDING_CSV_H
+#pragma once
 
 #include "recording/recording.h"
 
@@ -15,5 +14,3 @@ dea_status dea_recording_write_tables(struct dea_context *ctx,
                                       bool force);
 /* Unit that the values times the factor of their kind are in; lent. */
 const char *dea_channel_display_unit(const struct dea_channel *channel);
-
-#endif

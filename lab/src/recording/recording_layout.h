@@ -11,8 +11,7 @@
  *   profiles            x_m [points], time_s [n], z_m [n][points]
  *   cycles [n][5]       step, number, start_s, end_s, level_V; other programs may have none
  *   events [n][5]       time_s, kind, channel, value, limit; older files have none */
-#ifndef DEA_LAB_RECORDING_RECORDING_LAYOUT_H
-#define DEA_LAB_RECORDING_RECORDING_LAYOUT_H
+#pragma once
 
 #define DEA_RECORDING_FORMAT "dea recording"
 enum {
@@ -26,5 +25,3 @@ enum {
 #define DEA_STATE_RUNNING "running"
 #define DEA_STATE_COMPLETE "complete"
 #define DEA_STATE_ENDED "ended: "
-
-#endif

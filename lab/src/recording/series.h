@@ -1,6 +1,5 @@
 /* A dataset that grows by rows while a program measures, and its reader that trusts nothing. */
-#ifndef DEA_LAB_RECORDING_SERIES_H
-#define DEA_LAB_RECORDING_SERIES_H
+#pragma once
 
 #include "base/h5.h"
 
@@ -37,5 +36,3 @@ void dea_series_read(struct h5 *h, hid_t group, const char *name, size_t width, 
                      size_t *count, bool *cut);
 /* Length of the second dimension of a dataset; 1 for a one-dimensional one, 0 for others. */
 size_t dea_series_width(struct h5 *h, hid_t group, const char *name);
-
-#endif

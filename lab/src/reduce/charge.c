@@ -1,7 +1,5 @@
 #include "reduce/reduce_parts.h"
 
-#include <string.h>
-
 /* Samples of a channel, first <= i < first + count; count 0: none. */
 struct window {
   size_t first, count;

@@ -1,7 +1,6 @@
 #include "reduce/reduce_parts.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Samples begin <= i < end that are active, or at rest. */
 struct run {

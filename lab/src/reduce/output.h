@@ -1,6 +1,5 @@
 /* A reduction as files: tables, JSON, figures. */
-#ifndef DEA_LAB_REDUCE_OUTPUT_H
-#define DEA_LAB_REDUCE_OUTPUT_H
+#pragma once
 
 #include "base/json.h"
 #include "base/text.h"
@@ -73,5 +72,3 @@ dea_status dea_reduction_folder(struct dea_context *ctx, const char *directory, 
 dea_status dea_reduction_write(struct dea_context *ctx, const struct dea_recording *recording,
                                const struct dea_reduction *reduction, const char *command,
                                const struct dea_plot_format *format, const char *directory);
-
-#endif

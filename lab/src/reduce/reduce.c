@@ -1,6 +1,5 @@
 #include "reduce/reduce_parts.h"
 
-#include <stdio.h>
 #include <string.h>
 
 /* What the steps hand on. */

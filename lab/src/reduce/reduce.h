@@ -4,8 +4,7 @@
  * statistics, times, force, discharges. Each is a pure function of arrays, so that it can be
  * checked alone; reduce.c puts them together. What is subtracted, fitted or left out is in the
  * result, so that it can be printed. */
-#ifndef DEA_LAB_REDUCE_REDUCE_H
-#define DEA_LAB_REDUCE_REDUCE_H
+#pragma once
 
 #include "recording/recording.h"
 
@@ -119,5 +118,3 @@ struct dea_reduce_options {
 dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recording,
                       const struct dea_reduce_options *options, struct dea_reduction **out);
 void dea_reduction_destroy(struct dea_context *ctx, struct dea_reduction *reduction);
-
-#endif

@@ -1,6 +1,5 @@
 /* The steps of the reduction: functions of arrays. Definitions: docs/theory/reduction.md. */
-#ifndef DEA_LAB_REDUCE_REDUCE_PARTS_H
-#define DEA_LAB_REDUCE_REDUCE_PARTS_H
+#pragma once
 
 #include "reduce/reduce.h"
 
@@ -245,5 +244,3 @@ dea_status dea_profiles_reduce(struct dea_context *ctx, const struct dea_profile
 dea_status dea_profiles_levels(struct dea_context *ctx, const struct dea_profiles *profiles,
                                const struct dea_cycle_parts *parts, const double *offsets,
                                struct dea_reduction *reduction);
-
-#endif

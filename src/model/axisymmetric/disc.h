@@ -5,8 +5,7 @@
  * R the radius in the stretched flat film and a the electrode radius. One element inside, where the
  * solution of an isotropic film is linear, and graded ones outside, where it is analytic: the error
  * falls exponentially with their order. */
-#ifndef DEA_MODEL_AXISYMMETRIC_DISC_H
-#define DEA_MODEL_AXISYMMETRIC_DISC_H
+#pragma once
 
 #include "model/film.h"
 
@@ -60,5 +59,3 @@ void dea_disc_stretch(const struct dea_disc *disc, const double *u, size_t e, do
 /* Energy [in the unit 2 pi h a^2 mu] and capacitance [F], without the cost of a tangent. */
 dea_status dea_disc_totals(const struct dea_disc *disc, const double *u, double voltage_V,
                            double *energy, double *capacitance_F);
-
-#endif

@@ -7,8 +7,7 @@
  * l_A, l_P the same, counted from the unstretched film: l_a l_pre, ...    1     paper eq 16
  * R        coverage of the film by the electrode                          1     paper eq 17
  * s        nominal stress, mean of the two in-plane directions            Pa    paper eqs 5, 13 */
-#ifndef DEA_MODEL_LUMPED_LUMPED_H
-#define DEA_MODEL_LUMPED_LUMPED_H
+#pragma once
 
 #include "material/branch.h"
 #include "model/film.h"
@@ -56,5 +55,3 @@ dea_status dea_lift_force(const struct dea_lumped *lumped, const struct dea_lift
 dea_status dea_lift_force_max(const struct dea_lumped *lumped, const struct dea_lift *lift,
                               double nominal_field_V_per_m, double height_free_m, double *force_N,
                               double *height_m);
-
-#endif

@@ -1,6 +1,5 @@
 /* The lumped model in time (docs/theory/time.md, section 5). */
-#ifndef DEA_MODEL_LUMPED_MOTION_H
-#define DEA_MODEL_LUMPED_MOTION_H
+#pragma once
 
 #include "model/lumped/lumped.h"
 #include "model/model.h"
@@ -40,5 +39,3 @@ struct dea_lumped dea_lumped_frozen(const struct dea_lumped_motion *motion,
 dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea_time_step *step,
                               double *error);
 void dea_lumped_accept(struct dea_lumped_motion *motion);
-
-#endif

@@ -1,6 +1,5 @@
 /* The mesh of a device: that of blocks which a disc brings along, or a free one. */
-#ifndef DEA_MODEL_SOLID_ACTUATOR_DISC_MESH_H
-#define DEA_MODEL_SOLID_ACTUATOR_DISC_MESH_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 
@@ -26,5 +25,3 @@ dea_status dea_device_mesh_create(struct dea_context *ctx, const struct dea_devi
 dea_status dea_device_mesh_follow(struct dea_context *ctx, const struct dea_device *device,
                                   const struct dea_model_settings *settings,
                                   const struct dea_layout_mesh *like, struct dea_layout_mesh *out);
-
-#endif

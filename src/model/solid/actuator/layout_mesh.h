@@ -1,7 +1,6 @@
 /* The mesh of a device (docs/theory/devices.md): a plane mesh, of gmsh or of the blocks of a disc,
  * extruded through the plies of its layout. */
-#ifndef DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
-#define DEA_MODEL_SOLID_ACTUATOR_LAYOUT_MESH_H
+#pragma once
 
 #include "device/layout_sector.h"
 #include "model/model.h"
@@ -73,5 +72,3 @@ size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, b
 /* Whether that marks a node of any copy of the sector. */
 bool dea_layout_mesh_marks_copy(const struct dea_layout_mesh *mesh, size_t region, bool edge,
                                 size_t within);
-
-#endif

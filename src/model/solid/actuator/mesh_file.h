@@ -1,6 +1,5 @@
 /* The meshes of model 3d as files, with names for their parts. */
-#ifndef DEA_MODEL_SOLID_ACTUATOR_MESH_FILE_H
-#define DEA_MODEL_SOLID_ACTUATOR_MESH_FILE_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 
@@ -8,5 +7,3 @@
  * that matter: frame, electrodes, mirror planes; of a membrane lines. See dea_msh_write. */
 dea_status dea_layout_mesh_write(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                                  const char *path);
-
-#endif

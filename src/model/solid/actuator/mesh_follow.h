@@ -1,6 +1,5 @@
 /* Meshes that follow the numbers of their layout (docs/theory/gradients.md, "Shapes"). */
-#ifndef DEA_MODEL_SOLID_ACTUATOR_MESH_FOLLOW_H
-#define DEA_MODEL_SOLID_ACTUATOR_MESH_FOLLOW_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 
@@ -12,5 +11,3 @@
 dea_status dea_mesh_follow(struct dea_context *ctx, const struct dea_layout *layout,
                            const struct dea_model_settings *settings,
                            const struct dea_layout_mesh *like, struct dea_layout_mesh *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a part of a material is made of, as the elements take it. */
-#ifndef DEA_MODEL_SOLID_ACTUATOR_PART_OF_MATERIAL_H
-#define DEA_MODEL_SOLID_ACTUATOR_PART_OF_MATERIAL_H
+#pragma once
 
 #include "model/solid/point/part_material.h"
 
@@ -16,5 +15,3 @@ struct dea_part_material dea_part_material_free(enum dea_part part, double young
 void dea_part_material_set_permittivity(struct dea_part_material *part_material,
                                         const struct dea_permittivity *permittivity,
                                         double thickness_m);
-
-#endif

@@ -1,7 +1,6 @@
 /* Sizes of elements by what each adds to an estimated error (docs/theory/trust.md, "Adaptive
  * refinement"). */
-#ifndef DEA_MODEL_SOLID_ADAPTER_ADAPT_H
-#define DEA_MODEL_SOLID_ADAPTER_ADAPT_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 
@@ -9,5 +8,3 @@
  * at: [quad_count of the plane mesh] x, y, size [m]. */
 dea_status dea_adapt_sizes(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                            const double *part, double wanted, double (*at)[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* The side that a film without tension has buckled to (docs/theory/branches.md). */
-#ifndef DEA_MODEL_SOLID_ADAPTER_BUCKLING_BRANCH_H
-#define DEA_MODEL_SOLID_ADAPTER_BUCKLING_BRANCH_H
+#pragma once
 
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"
@@ -26,5 +25,3 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
  * no crease, and each column leans as that slopes. out: [node_count][3]. */
 void dea_buckling_branch_fold(const struct dea_solid *solid, const struct dea_grid *grid,
                               const struct dea_film_band *film, int sign, double *out);
-
-#endif

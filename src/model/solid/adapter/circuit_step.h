@@ -2,8 +2,7 @@
  * (docs/theory/time.md). The voltage of a step is that of the circuit for the capacitance which the
  * film then has. Where channels have sources of their own all sources are ideal, and their voltages
  * those of the step. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_CIRCUIT_STEP_H
-#define DEA_MODEL_SOLID_ADAPTER_CIRCUIT_STEP_H
+#pragma once
 
 #include "model/model.h"
 #include "model/solid/motion/time.h"
@@ -49,5 +48,3 @@ double dea_circuit_step_charged_J(const struct dea_circuit_step *driven);
 /* Mean current from the source of each channel into the film in the last step, [channel_count + 1]
  * with ground, 0 of a jump; lent. NULL: currents of channels are not found. */
 const double *dea_circuit_step_currents_A(const struct dea_circuit_step *driven);
-
-#endif

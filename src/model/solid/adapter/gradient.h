@@ -1,8 +1,7 @@
 /* Slopes of quantities of a solid's equilibrium by numbers of its design, by one linear answer a
  * quantity and differences of the residual at fixed unknowns a number (docs/theory/gradients.md).
  */
-#ifndef DEA_MODEL_SOLID_ADAPTER_GRADIENT_H
-#define DEA_MODEL_SOLID_ADAPTER_GRADIENT_H
+#pragma once
 
 #include "model/model.h"
 #include "model/solid/adapter/step_outcome.h"
@@ -75,5 +74,3 @@ bool dea_gradient_asks_mode(const struct dea_gradient_ask *ask);
 /* `gradient` of struct dea_model_type. The frequency is this file's own. */
 dea_status dea_gradient_find(struct dea_context *ctx, const struct dea_gradient_owner *owner,
                              const struct dea_gradient_ask *ask, double *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* A rigid probe against the middle of the device, as study "force" presses it. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_INDENT_H
-#define DEA_MODEL_SOLID_ADAPTER_INDENT_H
+#pragma once
 
 #include "model/model.h"
 #include "model/solid/actuator/layout_mesh.h"
@@ -43,5 +42,3 @@ dea_status dea_indent_create_variant(struct dea_context *ctx, const struct dea_l
                                      const struct dea_indent *other, struct dea_indent **out);
 void dea_indent_end_variant(struct dea_context *ctx, struct dea_solid *solid,
                             const struct dea_indent *other, struct dea_indent *variant);
-
-#endif

@@ -1,6 +1,5 @@
 /* Small motions as a model tells of them (model/model.h): points and shapes. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_MOTIONS_H
-#define DEA_MODEL_SOLID_ADAPTER_MOTIONS_H
+#pragma once
 
 #include "model/model.h"
 #include "model/solid/adapter/solid_observe.h"
@@ -28,5 +27,3 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
                                const struct dea_ac_excitation *excitation,
                                const double *frequency_Hz, size_t count,
                                struct dea_load_point *points);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the plies of a layout are made of, and where its mesh has them. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_PLIES_H
-#define DEA_MODEL_SOLID_ADAPTER_PLIES_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/assembly/film_state.h"
@@ -30,5 +29,3 @@ int dea_plies_held(const void *self, const double X[3]);
 bool dea_plies_frame(const void *self, const double X[3], double Q[9]);
 /* Of a coupled field: faces of plies with electrodes, at the ratios of their channels. */
 bool dea_plies_electrode(const void *self, const double X[3], double *share);
-
-#endif

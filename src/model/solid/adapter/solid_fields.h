@@ -1,6 +1,5 @@
 /* Fields of a solid at its last equilibrium (recover.h). */
-#ifndef DEA_MODEL_SOLID_ADAPTER_SOLID_FIELDS_H
-#define DEA_MODEL_SOLID_ADAPTER_SOLID_FIELDS_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 #include "model/solid/recovery/recover_error.h"
@@ -23,5 +22,3 @@ struct dea_solid_quantity {
 dea_status dea_solid_errors(struct dea_context *ctx, struct dea_solid *solid,
                             const struct dea_solid_quantity *of, size_t count, double *error_m,
                             double *part);
-
-#endif

@@ -1,6 +1,5 @@
 /* Monitors and channels of a layout at an equilibrium of its solid. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_SOLID_OBSERVE_H
-#define DEA_MODEL_SOLID_ADAPTER_SOLID_OBSERVE_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/assembly/solid.h"
@@ -56,5 +55,3 @@ size_t dea_observer_probes(const struct dea_observer *observer, struct dea_solid
  * moment on a body that may turn). */
 bool dea_observer_force_way(const struct dea_observer *observer, const struct dea_solid *solid,
                             size_t monitor, enum dea_observed motion, double *way);
-
-#endif

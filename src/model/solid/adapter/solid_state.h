@@ -1,8 +1,7 @@
 /* State of a solid between two solves: displacements, multipliers, voltage, dead loads, places of
  * held nodes and parameters of loads, and those of the equilibrium before, from which the next one
  * is predicted. Prescribed displacements and goals of loads are asked for anew after a load. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_SOLID_STATE_H
-#define DEA_MODEL_SOLID_ADAPTER_SOLID_STATE_H
+#pragma once
 
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"
@@ -13,5 +12,3 @@ dea_status dea_solid_save(struct dea_context *ctx, struct dea_solid *solid, stru
  * when an array is missing or of another length; the solid is then as it was. */
 dea_status dea_solid_load(struct dea_context *ctx, struct dea_solid *solid,
                           const struct dea_state *state);
-
-#endif

@@ -1,8 +1,7 @@
 /* Where a model of a solid stands, whatever device the solid is of: its last equilibrium, and the
  * way to the next one. What model/model.h asks of all such models is done here: their struct
  * dea_model begins with a struct dea_solver_state, which the functions of a type see. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_SOLVER_STATE_H
-#define DEA_MODEL_SOLID_ADAPTER_SOLVER_STATE_H
+#pragma once
 
 #include "model/solid/adapter/circuit_step.h"
 #include "model/solid/adapter/step_outcome.h"
@@ -76,5 +75,3 @@ void dea_solver_state_end_history(struct dea_context *ctx, struct dea_solver_sta
 dea_status dea_solver_state_save(struct dea_context *ctx,
                                  const struct dea_solver_state *solver_state,
                                  struct dea_state *out);
-
-#endif

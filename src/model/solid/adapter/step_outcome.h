@@ -1,7 +1,6 @@
 /* A solid on its way to a voltage, and the verdict where it does not get there
  * (docs/theory/stops.md). */
-#ifndef DEA_MODEL_SOLID_ADAPTER_STEP_OUTCOME_H
-#define DEA_MODEL_SOLID_ADAPTER_STEP_OUTCOME_H
+#pragma once
 
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/equilibrium/solve_incremental.h"
@@ -59,5 +58,3 @@ const struct dea_event *dea_step_outcome_passed(const struct dea_step_outcome *o
 dea_status dea_step_outcome_watch(struct dea_context *ctx, struct dea_step_outcome *outcome,
                                   double way, const struct dea_solid_saved_state *from,
                                   double *share);
-
-#endif

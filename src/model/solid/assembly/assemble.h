@@ -1,6 +1,5 @@
 /* Energy, forces and tangent of the whole solid. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_ASSEMBLE_H
-#define DEA_MODEL_SOLID_ASSEMBLY_ASSEMBLE_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -32,5 +31,3 @@ void dea_solid_keep_scales(struct dea_solid *s);
 
 /* Before pieces of loads are evaluated at u. */
 void dea_solid_loads_prepare(const struct dea_solid *s, const double *u);
-
-#endif

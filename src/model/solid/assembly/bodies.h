@@ -2,8 +2,7 @@
  * w. t is the displacement of a node of the body's own, L w that of the node after it, so that all
  * unknowns are lengths and all that is conjugate to them are forces. Nodes that follow are held in
  * K: what acts on them goes to the two nodes of their body. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_BODIES_H
-#define DEA_MODEL_SOLID_ASSEMBLY_BODIES_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -55,5 +54,3 @@ double dea_solid_bodies_curvature(const struct dea_solid *s, const double *g, co
  * A: not ended. */
 dea_status dea_solid_bodies_add_diagonal(struct dea_context *ctx, struct dea_solid *s, Mat A,
                                          double factor, const double *d, size_t apart);
-
-#endif

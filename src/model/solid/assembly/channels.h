@@ -1,8 +1,7 @@
 /* Electrodes on several voltages: charge by channel, and how it follows the voltages
  * (docs/theory/devices.md). Charges and voltages have a place for ground, [0], and one for each
  * channel. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_CHANNELS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_CHANNELS_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -40,5 +39,3 @@ dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *sol
  * supports. Not for a coupled field. */
 dea_status dea_solid_voltage_force(struct dea_context *ctx, struct dea_solid *solid, size_t channel,
                                    double *force);
-
-#endif

@@ -3,8 +3,7 @@
  * the displacements of held components [node_count][3] (0 where free), the channels' own voltages
  * [channel_count], the parameters of all loads.
  * Only what they are differs between them; a step goes a share of the way of all of them alike. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_CONTROLS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_CONTROLS_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -22,5 +21,3 @@ void dea_solid_controls_set(struct dea_solid *s, const double *controls);
 /* Sets work.increment: from the held components' displacements to those of the controls. false:
  * they are there. */
 bool dea_solid_controls_increment(struct dea_solid *s, const double *controls);
-
-#endif

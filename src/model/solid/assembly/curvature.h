@@ -1,6 +1,5 @@
 /* v . K v of small motions, as exactly as elements have it (docs/theory/vibration.md). */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_CURVATURE_H
-#define DEA_MODEL_SOLID_ASSEMBLY_CURVATURE_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -17,5 +16,3 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
  * work.g undefined. */
 dea_status dea_solid_motion(struct dea_context *ctx, struct dea_solid *s, double *v,
                             const double *q, double *stiffness, double *mass);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a solid gives its elements: a kind, and what they are asked with. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_ELEMENTS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_ELEMENTS_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -21,5 +20,3 @@ struct dea_solid_element_place {
 /* An element at unknowns u [dofs] and a voltage. */
 void dea_solid_element_input(const struct dea_solid *s, size_t e, const double *u, double voltage_V,
                              struct dea_solid_element_place *place, struct dea_element_input *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* What is said of the film at the last equilibrium: capacitance and extremes. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_FILM_STATE_H
-#define DEA_MODEL_SOLID_ASSEMBLY_FILM_STATE_H
+#pragma once
 
 #include "material/plane.h"
 #include "model/solid/assembly/solid.h"
@@ -62,5 +61,3 @@ dea_status dea_solid_capacitance_wide(struct dea_context *ctx, struct dea_solid 
                                       double *capacitance_F);
 dea_status dea_solid_capacitance_slope(struct dea_context *ctx, struct dea_solid *solid,
                                        double *out, bool *known);
-
-#endif

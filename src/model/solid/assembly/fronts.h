@@ -1,7 +1,6 @@
 /* Cholesky's factor of a K that is positive definite, by fronts (docs/theory/fronts.md): of one
  * process, with three unknowns a node. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_FRONTS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_FRONTS_H
+#pragma once
 
 #include "model/solid/assembly/ranks.h"
 
@@ -23,5 +22,3 @@ dea_status dea_fronts_factor(struct dea_context *ctx, struct dea_fronts *fronts,
                              int *negative);
 /* x = K^-1 right with the last factor; vectors of K's rows, not the same. */
 dea_status dea_fronts_solve(struct dea_context *ctx, struct dea_fronts *fronts, Vec right, Vec x);
-
-#endif

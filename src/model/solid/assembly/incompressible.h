@@ -1,7 +1,6 @@
 /* How J = 1 is brought in: multipliers, the bulk modulus kappa, and the tangent of the solid as
  * good as incompressible, whose inertia counts the unstable modes (docs/theory/branches.md). */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_INCOMPRESSIBLE_H
-#define DEA_MODEL_SOLID_ASSEMBLY_INCOMPRESSIBLE_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -24,5 +23,3 @@ void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s);
 dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s);
 /* That, and its factor. */
 dea_status dea_solid_factor_stiff(struct dea_context *ctx, struct dea_solid *s, int *negative);
-
-#endif

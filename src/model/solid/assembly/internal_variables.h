@@ -2,8 +2,7 @@
  * (docs/theory/time.md).
  *
  * Every rank keeps all points: a step costs next to nothing beside its tangents. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
-#define DEA_MODEL_SOLID_ASSEMBLY_INTERNAL_VARIABLES_H
+#pragma once
 
 #include "base/arena.h"
 #include "model/solid/assembly/solid.h"
@@ -59,5 +58,3 @@ dea_status dea_internal_variables_close(struct dea_context *ctx,
 /* The state that was closed is the accepted one. */
 void dea_internal_variables_accept(struct dea_internal_variables *variables,
                                    const struct dea_solid *solid);
-
-#endif

@@ -1,8 +1,7 @@
 /* Matrices that do not depend on the state, of numbers between the nodes: the consistent mass of
  * the part materials' densities (docs/theory/vibration.md), the volume lumped to the nodes, and the
  * integral of grad : grad that shifts K (docs/theory/branches.md). */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_MASS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_MASS_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -20,5 +19,3 @@ dea_status dea_solid_add_laplace(struct dea_context *ctx, struct dea_solid *s, M
                                  double amount_Pa);
 /* The same of 1 Pa as a matrix of K's pattern, owned by the caller. */
 dea_status dea_solid_create_laplace(struct dea_context *ctx, struct dea_solid *s, Mat *out);
-
-#endif

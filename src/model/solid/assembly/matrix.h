@@ -1,7 +1,6 @@
 /* The matrix K of a solid and linear algebra with it: rows node by node, split over the ranks, in
  * the local axes of nodes that have them. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_MATRIX_H
-#define DEA_MODEL_SOLID_ASSEMBLY_MATRIX_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -76,5 +75,3 @@ dea_status dea_solid_to_vector(struct dea_context *ctx, const struct dea_solid *
  * carried along. */
 dea_status dea_solid_from_vector(struct dea_context *ctx, const struct dea_solid *s, Vec vector,
                                  double *out);
-
-#endif

@@ -1,7 +1,6 @@
 /* The potential of a coupled field: unknowns, electrodes, and the solution at given displacements
  * (docs/theory/coupled.md). Nothing to do for a thin film, where problem.field is NULL. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_POTENTIAL_H
-#define DEA_MODEL_SOLID_ASSEMBLY_POTENTIAL_H
+#pragma once
 
 #include "model/solid/assembly/matrix.h"
 
@@ -23,5 +22,3 @@ dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *
  * the voltage, and are solved for only where it has none or there are charges. */
 dea_status dea_solid_scale_potential(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                      double *u);
-
-#endif

@@ -1,6 +1,5 @@
 /* A solid from within: what is solved, how, where it is, what that takes, what is known of it. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_PROBLEM_H
-#define DEA_MODEL_SOLID_ASSEMBLY_PROBLEM_H
+#pragma once
 
 #include "base/arena.h"
 #include "model/solid/assembly/ranks.h"
@@ -252,5 +251,3 @@ static inline double dea_solid_dot(const struct dea_solid *s, const double *a, c
   }
   return sum;
 }
-
-#endif

@@ -5,8 +5,7 @@
  *   (K + S C S^T)^-1 r = K^-1 r - Z M^-1 Z^T r,
  *
  * and K + S C S^T has as many negative eigenvalues less than K as M has. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_RANK_ONE_H
-#define DEA_MODEL_SOLID_ASSEMBLY_RANK_ONE_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -21,5 +20,3 @@ dea_status dea_solid_rank_one_correct(struct dea_context *ctx, struct dea_solid 
                                       Vec x);
 /* v . S C S^T v at the state. v: [dofs]. */
 double dea_solid_rank_one_curvature(const struct dea_solid *s, const double *v);
-
-#endif

@@ -5,8 +5,7 @@
  * split. What a decision hangs on is summed on one rank and sent to the others, so that all see the
  * same bits and go the same way. All functions but dea_solid_rank, dea_solid_share and
  * dea_solid_petsc are calls that all ranks make. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_RANKS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_RANKS_H
+#pragma once
 
 #include "base/context.h"
 
@@ -47,5 +46,3 @@ dea_status dea_solid_petsc(struct dea_context *ctx, int code, const char *call);
 
 /* Returns from a function where a call of PETSc fails. */
 #define DEA_PETSC(ctx, call) DEA_TRY(ctx, dea_solid_petsc(ctx, call, #call))
-
-#endif

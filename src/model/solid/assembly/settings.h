@@ -1,7 +1,6 @@
 /* How a solid is solved: tolerances and limits of Newton's method, of load steps, of paths and of
  * modes. What they do stands in docs/theory/branches.md and where they are used. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_SETTINGS_H
-#define DEA_MODEL_SOLID_ASSEMBLY_SETTINGS_H
+#pragma once
 
 #include "base/context.h"
 
@@ -137,5 +136,3 @@ dea_status dea_solid_settings_set(struct dea_context *ctx, struct dea_solid_sett
 /* DEA_E_ARGUMENT for a number that is not above 0, or no power of 2 where it has to be one. */
 dea_status dea_solid_settings_check(struct dea_context *ctx,
                                     const struct dea_solid_settings *settings);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * PETSc must be initialised (dea_solid_start). Under mpirun all ranks make the same calls with the
  * same arguments and get the same answers; the work is split among them. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
-#define DEA_MODEL_SOLID_ASSEMBLY_SOLID_H
+#pragma once
 
 #include "model/solid/assembly/ranks.h"
 #include "model/solid/assembly/settings.h"
@@ -155,5 +154,3 @@ dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
  * ranks call it and get the whole. */
 dea_status dea_solid_mass_apply(struct dea_context *ctx, const struct dea_solid *solid,
                                 const double *v, double *out);
-
-#endif

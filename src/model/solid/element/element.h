@@ -5,8 +5,7 @@
  * X, u     place in the stretched flat film, displacement; [nodes][3]     m
  * psi      potential over its scale c; [nodes]                            m
  * N_a      basis function of node a                                       1 */
-#ifndef DEA_MODEL_SOLID_ELEMENT_ELEMENT_H
-#define DEA_MODEL_SOLID_ELEMENT_ELEMENT_H
+#pragma once
 
 #include "base/context.h"
 #include "model/solid/element/element_list.h"
@@ -233,5 +232,3 @@ static inline void dea_element_spread(int nodes, const double *g3, const double 
     }
   }
 }
-
-#endif

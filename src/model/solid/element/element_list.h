@@ -1,7 +1,6 @@
 /* The kinds of elements. A new one is one file that defines dea_element_<name>, and one line here.
  */
-#ifndef DEA_MODEL_SOLID_ELEMENT_ELEMENT_LIST_H
-#define DEA_MODEL_SOLID_ELEMENT_ELEMENT_LIST_H
+#pragma once
 
 #define DEA_ELEMENT_LIST(X)                                                                        \
   X(HEXAHEDRON, hexahedron)                                                                        \
@@ -15,5 +14,3 @@ enum dea_element_kind {
 #undef DEA_ELEMENT_KIND
       DEA_ELEMENT_COUNT
 };
-
-#endif

@@ -1,6 +1,5 @@
 /* From values at Gauss points to values at nodes, for the elements that recover. */
-#ifndef DEA_MODEL_SOLID_ELEMENT_GAUSS_TO_NODES_H
-#define DEA_MODEL_SOLID_ELEMENT_GAUSS_TO_NODES_H
+#pragma once
 
 #include "model/solid/element/element.h"
 
@@ -29,5 +28,3 @@ void dea_fit_nodes(const struct dea_gauss_fit *fit, int width, const double *at,
 /* Numbers of nodes, and F, stress, energy and field of all of them. */
 void dea_recovered_set(const struct dea_gauss_fit *fit, double (*at)[DEA_FIT_VALUES],
                        struct dea_recovered *out);
-
-#endif

@@ -16,8 +16,7 @@
  *
  * p0 frees the flat film of thickness stress; p_k is a multiplier per element that an outer loop
  * moves until theta vanishes. */
-#ifndef DEA_MODEL_SOLID_ELEMENT_HEX_H
-#define DEA_MODEL_SOLID_ELEMENT_HEX_H
+#pragma once
 
 #include "model/solid/element/hex_shape.h"
 
@@ -87,5 +86,3 @@ dea_status dea_hex_state(const struct dea_element *element, const struct dea_ele
   .constraint = dea_hex_constraint, .mass = dea_hex_mass, .mass_times = dea_hex_mass_times,        \
   .metric = dea_hex_metric, .strains = dea_hex_strains, .membrane_state = dea_hex_membrane_state,  \
   .recover = dea_hex_recover, .state = dea_hex_state
-
-#endif

@@ -1,6 +1,5 @@
 /* The basis of a hexahedron. */
-#ifndef DEA_MODEL_SOLID_ELEMENT_HEX_SHAPE_H
-#define DEA_MODEL_SOLID_ELEMENT_HEX_SHAPE_H
+#pragma once
 
 #include "model/solid/element/element.h"
 
@@ -29,5 +28,3 @@ struct dea_hex_shape {
 
 /* order, order_z: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
 dea_status dea_hex_shape_create(int order, int order_z, struct dea_hex_shape *out);
-
-#endif

@@ -5,8 +5,7 @@
  * plain triple product, one of order 3 a sixth (docs/performance.md).
  *
  * xi_a: local axes; nodes and Gauss points with the first axis fastest. */
-#ifndef DEA_MODEL_SOLID_ELEMENT_HEX_TENSOR_H
-#define DEA_MODEL_SOLID_ELEMENT_HEX_TENSOR_H
+#pragma once
 
 #include "model/solid/element/hex_shape.h"
 
@@ -34,5 +33,3 @@ void dea_hex_sum_flux(const struct dea_hex_shape *shape, int columns, const doub
  * nodes], to which it is added. */
 void dea_hex_add_tangent(const struct dea_hex_shape *shape, double (*A)[9][DEA_HEX_PAIRS],
                          double *K);
-
-#endif

@@ -1,7 +1,6 @@
 /* The basis of a membrane: flat quadrilaterals of three unknowns a node (docs/theory/membrane.md).
  */
-#ifndef DEA_MODEL_SOLID_ELEMENT_MEMBRANE_H
-#define DEA_MODEL_SOLID_ELEMENT_MEMBRANE_H
+#pragma once
 
 #include "model/solid/element/element.h"
 #include "model/solid/point/membrane_point.h"
@@ -23,5 +22,3 @@ struct dea_flat_shape {
 
 /* order: 1 to DEA_HEX_ORDER_MAX; DEA_E_ARGUMENT otherwise. */
 dea_status dea_flat_shape_create(int order, struct dea_flat_shape *out);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * with the tangent A, the slope B of the constraints J = 1 and of those that loads hold at the
  * solid's state, and the slopes of a quantity Q by displacements and pressures. */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_ADJOINT_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_ADJOINT_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -53,5 +52,3 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *adjoint, const double 
 /* Solutions with the factor that all answers took, and whether it is a new one. */
 int dea_adjoint_solutions(const struct dea_adjoint *adjoint);
 bool dea_adjoint_factorised(const struct dea_adjoint *adjoint);
-
-#endif

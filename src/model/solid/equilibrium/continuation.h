@@ -5,8 +5,7 @@
  * displacements: it may turn back at a limit point, and go below 0 or above 1.
  *
  * Length along the path: ds^2 = d tau^2 + (root mean square of du over the volume / unit_m)^2. */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_CONTINUATION_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_CONTINUATION_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -85,5 +84,3 @@ dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid 
                                       const double *goal,
                                       const struct dea_continuation_options *options,
                                       struct dea_solid_continuation **out);
-
-#endif

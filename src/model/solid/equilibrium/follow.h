@@ -1,7 +1,6 @@
 /* From one equilibrium to another close by with the factor of the first (docs/theory/branches.md).
  */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_FOLLOW_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_FOLLOW_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -16,5 +15,3 @@
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double from_V,
                             bool on_the_way, struct dea_solid_report *report, double *rate,
                             bool *there);
-
-#endif

@@ -1,7 +1,6 @@
 /* From one equilibrium to the next voltage and loads, and from an unstable equilibrium down to a
  * stable one (docs/theory/branches.md). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_LOAD_STEPS_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_LOAD_STEPS_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -39,5 +38,3 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *solid, cons
 
 /* Whether solves stay at an unstable equilibrium that they have found; at first they leave it. */
 void dea_solid_accept_unstable(struct dea_solid *solid, bool stay);
-
-#endif

@@ -4,8 +4,7 @@
  * volume lumped to the nodes as B, lambda [N/m per m^3] is the stiffness of the mode per volume
  * that moves; with the consistent mass it is the square of an angular frequency. It is negative for
  * an unstable mode. */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_MODES_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_MODES_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -35,5 +34,3 @@ dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *so
                                    double *vector);
 /* A mode v [count] with its sign so that its largest component is positive. */
 void dea_mode_orient(size_t count, double *v);
-
-#endif

@@ -1,7 +1,6 @@
 /* One equilibrium at the controls as they are: Newton descent on the energy with multipliers that
  * follow (docs/theory/branches.md). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_NEWTON_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_NEWTON_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -35,5 +34,3 @@ dea_status dea_solid_predict(struct dea_context *ctx, struct dea_solid *s, doubl
 bool dea_solid_resolved(const struct dea_solid *s, double change);
 /* Moves the multipliers of the loads; the largest violation over what is allowed. */
 double dea_solid_update_loads(struct dea_solid *s);
-
-#endif

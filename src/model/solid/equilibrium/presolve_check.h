@@ -1,6 +1,5 @@
 /* What can be said of a solid before anything is solved. */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_PRESOLVE_CHECK_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_PRESOLVE_CHECK_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -8,5 +7,3 @@
  * asked where loads may hold). A message says where and what to do. Nothing to do the second time.
  */
 dea_status dea_solid_check(struct dea_context *ctx, struct dea_solid *solid);
-
-#endif

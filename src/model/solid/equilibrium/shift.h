@@ -1,6 +1,5 @@
 /* How far a tangent is from positive definite (docs/theory/branches.md, Shift). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_SHIFT_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_SHIFT_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -9,5 +8,3 @@
  * that of those found where they are not all, 0 where none is. All ranks get the same bits. */
 dea_status dea_solid_lowest_by_laplace(struct dea_context *ctx, struct dea_solid *s, Mat L,
                                        int negative, double *lowest_Pa);
-
-#endif

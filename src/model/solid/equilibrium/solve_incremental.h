@@ -1,7 +1,6 @@
 /* To the next voltage by load steps, and where they end along the path of equilibria to the cause
  * (docs/theory/stops.md). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_SOLVE_INCREMENTAL_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_SOLVE_INCREMENTAL_H
+#pragma once
 
 #include "base/arena.h"
 #include "model/solid/assembly/solid.h"
@@ -91,5 +90,3 @@ dea_status dea_solid_detect_missed_limit_point(struct dea_context *ctx, struct d
                                                const struct dea_solid_watch *watch,
                                                struct dea_solid_report *report,
                                                struct dea_solid_stop *stop, bool *flat);
-
-#endif

@@ -1,6 +1,5 @@
 /* Which of the equilibria of a wrinkled film is taken (docs/theory/membrane.md, "Free edges"). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_SPREAD_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_SPREAD_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -10,5 +9,3 @@
  * it was. */
 dea_status dea_solid_spread(struct dea_context *ctx, struct dea_solid *solid,
                             struct dea_solid_report *report);
-
-#endif

@@ -1,7 +1,6 @@
 /* A state of one mesh on another: from displacements of whatever origin to the equilibrium that is
  * nearest to them (docs/theory/states.md). */
-#ifndef DEA_MODEL_SOLID_EQUILIBRIUM_TRANSFER_SOLUTION_H
-#define DEA_MODEL_SOLID_EQUILIBRIUM_TRANSFER_SOLUTION_H
+#pragma once
 
 #include "model/solid/assembly/solid.h"
 
@@ -18,5 +17,3 @@ dea_status dea_solid_untangle(struct dea_context *ctx, struct dea_solid *solid, 
 dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid *solid,
                                        double voltage_V, const double *displacement_m,
                                        struct dea_solid_report *report, bool *found);
-
-#endif

@@ -1,7 +1,6 @@
 /* Rigid tips: signed distance to a sphere, a flat-ended cylinder, a cylinder on its side
  * (docs/theory/loads.md). */
-#ifndef DEA_MODEL_SOLID_LOAD_INDENTER_H
-#define DEA_MODEL_SOLID_LOAD_INDENTER_H
+#pragma once
 
 #include "base/context.h"
 
@@ -23,5 +22,3 @@ dea_status dea_indenter_check(struct dea_context *ctx, struct dea_indenter *tip)
  * [1/m], NULL when it is not wanted. */
 double dea_indenter_distance(const struct dea_indenter *tip, const double place_m[3],
                              const double x_m[3], double normal[3], double *hessian);
-
-#endif

@@ -1,8 +1,7 @@
 /* Something beside the elements that stores energy by the displacements: a spring, a rigid tip, a
  * pressure (docs/theory/loads.md). It comes in pieces of a few nodes each: a face of an element,
  * whose nodes are coupled in the tangent anyway. */
-#ifndef DEA_MODEL_SOLID_LOAD_LOAD_H
-#define DEA_MODEL_SOLID_LOAD_LOAD_H
+#pragma once
 
 #include "model/solid/point/part_material.h"
 
@@ -62,5 +61,3 @@ struct dea_solid_load {
   /* The constraint of multiplier i at u; NULL: it is one of the whole, which `whole` takes. */
   void (*constraint)(const void *self, size_t i, const double *u, struct dea_load_constraint *out);
 };
-
-#endif

@@ -1,8 +1,7 @@
 /* Loads on a solid (docs/theory/loads.md). Dead ones are added to nodal forces, as
  * dea_solid_force lends them; the others are objects whose dea_solid_load goes to
  * dea_solid_add_load and that outlive the solid. Surfaces are lent and outlive the objects. */
-#ifndef DEA_MODEL_SOLID_LOAD_LOADS_H
-#define DEA_MODEL_SOLID_LOAD_LOADS_H
+#pragma once
 
 #include "model/solid/load/indenter.h"
 #include "model/solid/load/load.h"
@@ -128,5 +127,3 @@ void dea_contact_hold(struct dea_contact *contact, const struct dea_contact *oth
  * surface in their order; lent. */
 const double *dea_contact_pressure(const struct dea_contact *contact);
 struct dea_solid_load dea_contact_load(struct dea_contact *contact);
-
-#endif

@@ -1,6 +1,5 @@
 /* Cuts of a line into elements whose size grows from its ends. */
-#ifndef DEA_MODEL_SOLID_MESH_CUTS_H
-#define DEA_MODEL_SOLID_MESH_CUTS_H
+#pragma once
 
 #include <stddef.h>
 
@@ -14,5 +13,3 @@ size_t dea_cuts_graded(double length, double first, double last, double growth, 
 /* Cuts of [0, 1] into `count` elements, at least one, through a layer between two faces: from each
  * face each is twice as thick as the one before it, up to eight times. cuts: [count + 1]. */
 void dea_cuts_through(size_t count, double *cuts);
-
-#endif

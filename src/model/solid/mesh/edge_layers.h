@@ -1,7 +1,6 @@
 /* Rows of thin elements along named curves of a plane mesh, where what is extruded from it has
  * layers as wide as it is thick (docs/theory/mesh.md, "Edge layers"). */
-#ifndef DEA_MODEL_SOLID_MESH_EDGE_LAYERS_H
-#define DEA_MODEL_SOLID_MESH_EDGE_LAYERS_H
+#pragma once
 
 #include "model/solid/mesh/plane_mesh.h"
 
@@ -15,5 +14,3 @@ struct dea_edge_layers {
  * are short; where they would be bad elements the mesh stays as it is. */
 dea_status dea_edge_layers_add(struct dea_context *ctx, struct dea_plane_mesh *mesh,
                                const struct dea_edge_layers *layers);
-
-#endif

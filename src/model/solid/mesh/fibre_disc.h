@@ -1,8 +1,7 @@
 /* Mesh of an actuator: a disc of film in its frame, electrodes, radial fibres on the upper face
  * (docs/theory/mesh.md). Lengths in m, of the stretched flat film; its middle plane is z = 0 and
  * the axis of the first fibre is y = 0, x > 0. */
-#ifndef DEA_MODEL_SOLID_MESH_FIBRE_DISC_H
-#define DEA_MODEL_SOLID_MESH_FIBRE_DISC_H
+#pragma once
 
 #include "device/device.h"
 #include "model/solid/mesh/plane_mesh.h"
@@ -55,5 +54,3 @@ enum { DEA_FIBRE_DISC_LINE_MAX = 256, DEA_FIBRE_DISC_THROUGH_MAX = 16 };
 /* Which of the two straight edges of the domain a node is on: bit 1 at the angle 0, bit 2 at
  * dea_fibre_disc_angle. 0 in the whole disc. */
 int dea_fibre_disc_edges(const struct dea_fibre_disc *plate, const double X[3]);
-
-#endif

@@ -1,6 +1,5 @@
 /* Free plane meshes by Gmsh, which is run as a program and never linked (docs/theory/mesh.md). */
-#ifndef DEA_MODEL_SOLID_MESH_GMSH_H
-#define DEA_MODEL_SOLID_MESH_GMSH_H
+#pragma once
 
 #include "geometry/contour.h"
 #include "model/solid/mesh/plane_mesh.h"
@@ -40,5 +39,3 @@ struct dea_gmsh_plan {
  * by the caller, NULL on failure. */
 dea_status dea_gmsh_mesh(struct dea_context *ctx, const struct dea_gmsh_plan *plan,
                          struct dea_plane_mesh **out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Meshes of layered plates: plane meshes of quadrilaterals, extruded through plies. */
-#ifndef DEA_MODEL_SOLID_MESH_GRID_H
-#define DEA_MODEL_SOLID_MESH_GRID_H
+#pragma once
 
 #include "base/arena.h"
 #include "model/solid/element/element.h"
@@ -77,5 +76,3 @@ size_t dea_grid_nearest(const struct dea_grid *grid, const double X_m[3]);
 
 /* As dea_plane_mesh_smallest_jacobian, in the plane. */
 double dea_grid_smallest_jacobian(const struct dea_grid *grid);
-
-#endif

@@ -1,6 +1,5 @@
 /* Plane meshes from files of Gmsh (.msh, ASCII, formats 2.2 and 4.1). */
-#ifndef DEA_MODEL_SOLID_MESH_MSH_READ_H
-#define DEA_MODEL_SOLID_MESH_MSH_READ_H
+#pragma once
 
 #include "model/solid/mesh/plane_mesh.h"
 
@@ -26,5 +25,3 @@ dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *
 #define DEA_MSH_JACOBIAN_MIN 0.05
 
 enum { DEA_MSH_FILE_MAX = 1000000000 }; // bytes
-
-#endif

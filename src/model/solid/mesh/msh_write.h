@@ -1,6 +1,5 @@
 /* Meshes for other programs: Gmsh's format 2.2 in ASCII. */
-#ifndef DEA_MODEL_SOLID_MESH_MSH_WRITE_H
-#define DEA_MODEL_SOLID_MESH_MSH_WRITE_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 
@@ -25,5 +24,3 @@ struct dea_msh_groups {
  * (3) that are of a group. DEA_E_ARGUMENT when the elements are not of order 2. */
 dea_status dea_msh_write(struct dea_context *ctx, const struct dea_msh_groups *groups,
                          const struct dea_grid *grid, const char *path);
-
-#endif

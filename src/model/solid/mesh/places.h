@@ -1,6 +1,5 @@
 /* Nodes found by their place, so that rounding cannot part two that are meant to be one. */
-#ifndef DEA_MODEL_SOLID_MESH_PLACES_H
-#define DEA_MODEL_SOLID_MESH_PLACES_H
+#pragma once
 
 #include "base/context.h"
 
@@ -21,5 +20,3 @@ void dea_places_release(struct dea_context *ctx, struct dea_places *places);
 
 /* Node at a place, made when there is none. */
 int dea_places_node(struct dea_places *places, const double x[2]);
-
-#endif

@@ -1,7 +1,6 @@
 /* Plane meshes of quadrilaterals: of mapped blocks, or free ones with named groups (.msh files,
  * gmsh). Extruded through plies they are the mesh of a layered device (grid.h). */
-#ifndef DEA_MODEL_SOLID_MESH_PLANE_MESH_H
-#define DEA_MODEL_SOLID_MESH_PLANE_MESH_H
+#pragma once
 
 #include "base/context.h"
 
@@ -65,5 +64,3 @@ struct dea_block {
  * 1e-9 of it are one. out: owned by the caller, NULL on failure. */
 dea_status dea_blocks_mesh(struct dea_context *ctx, int order, const struct dea_block *blocks,
                            size_t block_count, double length_m, struct dea_plane_mesh **out);
-
-#endif

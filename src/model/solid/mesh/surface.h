@@ -1,6 +1,5 @@
 /* Surfaces of a solid: faces of its elements, on which loads act (docs/theory/loads.md). */
-#ifndef DEA_MODEL_SOLID_MESH_SURFACE_H
-#define DEA_MODEL_SOLID_MESH_SURFACE_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 
@@ -61,5 +60,3 @@ double *dea_surface_weights(struct dea_context *ctx, const struct dea_surface *s
                             const struct dea_face_shape *shape);
 /* Reference area [m^2]. */
 double dea_surface_area(const struct dea_surface *surface);
-
-#endif

@@ -1,6 +1,5 @@
 /* Displacements of one mesh at the nodes of another of the same body. */
-#ifndef DEA_MODEL_SOLID_MESH_TRANSFER_H
-#define DEA_MODEL_SOLID_MESH_TRANSFER_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 
@@ -10,5 +9,3 @@
  * node is farther from all elements than a fifth of one's half-width. */
 dea_status dea_grid_transfer(struct dea_context *ctx, const struct dea_grid *from, const double *u,
                              const struct dea_grid *to, double *out);
-
-#endif

@@ -1,8 +1,7 @@
 /* Small motions of a solid about its last equilibrium (docs/theory/vibration.md): K v = omega^2 M v
  * with the tangent K there and the consistent mass M, and the response to an AC excitation of the
  * voltage. */
-#ifndef DEA_MODEL_SOLID_MOTION_RESPONSE_H
-#define DEA_MODEL_SOLID_MOTION_RESPONSE_H
+#pragma once
 
 #include "model/solid/assembly/internal_variables.h"
 
@@ -53,5 +52,3 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
 
 /* Modes that it has. */
 size_t dea_solid_response_modes(const struct dea_solid_response *response);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * without inertia the first two terms; with it generalised-alpha, Pi with its pressures at the end
  * of the step. A step is tried, closed, looked at, and then taken or dropped. */
-#ifndef DEA_MODEL_SOLID_MOTION_TIME_H
-#define DEA_MODEL_SOLID_MOTION_TIME_H
+#pragma once
 
 #include "model/solid/assembly/internal_variables.h"
 
@@ -93,5 +92,3 @@ const struct dea_solid_charged *dea_solid_time_charged(const struct dea_solid_ti
 
 /* Largest component of a displacement from where the solid was at the start [m]. */
 double dea_solid_time_motion(const struct dea_solid_time *time);
-
-#endif

@@ -4,8 +4,7 @@
  * F        dx/dX, its in-plane columns F_1, F_2; F[2 i + J] here                       1
  * G        pre-stretch, symmetric; C = G c G with c_JL = F_J . F_L                     1
  * W        energy per volume of film, with field (tension.h)                           Pa */
-#ifndef DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
-#define DEA_MODEL_SOLID_POINT_MEMBRANE_POINT_H
+#pragma once
 
 #include "model/solid/point/part_material.h"
 #include "model/solid/point/tension.h"
@@ -43,5 +42,3 @@ dea_status dea_membrane_point_in_time(const struct dea_part_material *part_mater
  * first vector is along F_1. P: per reference length [3][2], F: of the plane [3][2], area: |F_1 x
  * F_2|. out: 11 22 12. */
 void dea_membrane_force(const double P[6], const double F[6], double area, double out[3]);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * with a permittivity that may depend on the area stretch |F_1 x F_2| (docs/theory/mesh.md). A
  * part material of a compressible law (fibre) has W alone of the first line. */
-#ifndef DEA_MODEL_SOLID_POINT_PART_MATERIAL_H
-#define DEA_MODEL_SOLID_POINT_PART_MATERIAL_H
+#pragma once
 
 #include "material/material.h"
 #include "material/point.h"
@@ -103,5 +102,3 @@ void dea_part_material_restress(const double F[9], const double cof[9], double J
 
 /* Cofactors dJ/dF of a 3 x 3 matrix, row by row; returns its determinant J. */
 double dea_cofactors(const double F[9], double cof[9]);
-
-#endif

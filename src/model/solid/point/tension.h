@@ -7,8 +7,7 @@
  * B        branches of a step in time (viscous.h), in the plane and across the film    Pa
  * g        W(C) - (eps/2)(V/H)^2 det C + 1/2 (B : C + B_33/det C), per volume          Pa
  * S, D     2 dg/dC and 2 dS/dC                                                         Pa */
-#ifndef DEA_MODEL_SOLID_POINT_TENSION_H
-#define DEA_MODEL_SOLID_POINT_TENSION_H
+#pragma once
 
 #include "material/plane.h"
 
@@ -34,5 +33,3 @@ dea_status dea_tension_taut(const struct dea_tension *film, const double C[3],
  * is positive semidefinite. DEA_E_DOMAIN also where the film thins without limit. */
 dea_status dea_tension_relaxed(const struct dea_tension *film, const double C[3],
                                struct dea_tension_point *out);
-
-#endif

@@ -11,8 +11,7 @@
  * with A_i counted like C, G A G of the unstretched material, the equations are the same.
  *
  * Symmetric tensors are in the order 11 22 33 23 13 12. */
-#ifndef DEA_MODEL_SOLID_POINT_VISCOUS_H
-#define DEA_MODEL_SOLID_POINT_VISCOUS_H
+#pragma once
 
 #include "material/branch.h"
 #include "model/solid/point/part_material.h"
@@ -59,5 +58,3 @@ void dea_branch_update(const struct dea_branch_weights *weights, const double A[
  * [J/m^3]: the integral of G/(2 tau) tr(X + X^-1 - 2), X = A C, with A at the begin. */
 double dea_branch_dissipation(const struct dea_branch *branch, const struct dea_branch_step *step,
                               const double A[6], const double from[6], const double to[6]);
-
-#endif

@@ -1,6 +1,5 @@
 /* What a surface of a solid shows along a straight line through its centre. */
-#ifndef DEA_MODEL_SOLID_RECOVERY_LINE_PROFILE_H
-#define DEA_MODEL_SOLID_RECOVERY_LINE_PROFILE_H
+#pragma once
 
 #include "model/model.h"
 #include "result/field_mesh.h"
@@ -13,5 +12,3 @@
 dea_status dea_line_profile(struct dea_context *ctx, const struct dea_field_mesh *surface,
                             double plus, double minus, double pre_stretch, double **columns,
                             struct dea_profile *out);
-
-#endif

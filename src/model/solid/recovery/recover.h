@@ -8,8 +8,7 @@
  *
  * Stress is the true (Cauchy) total stress P F^T / J: elastic part, pressure and Maxwell stress
  * together, so that a free face has none normal to it. */
-#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_H
-#define DEA_MODEL_SOLID_RECOVERY_RECOVER_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 #include "result/field_mesh.h"
@@ -40,5 +39,3 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
  * electrodes and whether under a fibre. */
 dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in, int ply,
                                struct dea_field_mesh **out);
-
-#endif

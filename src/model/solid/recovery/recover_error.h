@@ -1,6 +1,5 @@
 /* How far displacements of a mesh are from those of an ever finer one (docs/theory/trust.md). */
-#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_ERROR_H
-#define DEA_MODEL_SOLID_RECOVERY_RECOVER_ERROR_H
+#pragma once
 
 #include "model/solid/recovery/recover.h"
 
@@ -26,5 +25,3 @@ struct dea_recover_quantity {
 dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_input *in,
                               const double (*mirror)[3], const struct dea_recover_quantity *of,
                               size_t count, double *error, double *part);
-
-#endif

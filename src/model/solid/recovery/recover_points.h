@@ -1,6 +1,5 @@
 /* What recovery on a volume and on a surface share: columns of elements, sums at points. */
-#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_POINTS_H
-#define DEA_MODEL_SOLID_RECOVERY_RECOVER_POINTS_H
+#pragma once
 
 #include "model/solid/recovery/recover.h"
 
@@ -43,5 +42,3 @@ void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
 /* Fields that volume and surface have in common. */
 extern const struct dea_mesh_field dea_recover_displacement, dea_recover_plane_stretch,
     dea_recover_tension, dea_recover_true_field;
-
-#endif

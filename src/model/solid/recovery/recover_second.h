@@ -1,7 +1,6 @@
 /* Second derivatives in the plane of what is linear within each element (docs/theory/trust.md,
  * "Neighbours' slopes"). */
-#ifndef DEA_MODEL_SOLID_RECOVERY_RECOVER_SECOND_H
-#define DEA_MODEL_SOLID_RECOVERY_RECOVER_SECOND_H
+#pragma once
 
 #include "model/solid/mesh/grid.h"
 
@@ -24,5 +23,3 @@ struct dea_recover_second {
  * P_2 the Legendre polynomial; 0 where no neighbour tells. */
 dea_status dea_recover_second(struct dea_context *ctx, const struct dea_recover_second *in,
                               double *c);
-
-#endif
