@@ -20,7 +20,6 @@ static const char *command_before = "";    // what stands before the command: a 
 
 static inline int command_set_up(void **state)
 {
-  (void)state;
   char here[400];
   if (getcwd(here, sizeof here) == NULL) { // where ctest runs: the build
     return -1;
@@ -31,7 +30,6 @@ static inline int command_set_up(void **state)
 
 static inline int command_tear_down(void **state)
 {
-  (void)state;
   char text[600];
   snprintf(text, sizeof text, "rm -rf '%s'", command_folder);
   return system(text);

@@ -31,13 +31,11 @@ static inline dea_status workshop_make(const char *text, const struct dea_overri
 
 static inline int workshop_set_up(void **state)
 {
-  (void)state;
   return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
 }
 
 static inline int workshop_tear_down(void **state)
 {
-  (void)state;
   workshop_clear();
   dea_context_destroy(ctx);
   return 0;

@@ -4,7 +4,6 @@
 #define _POSIX_C_SOURCE 200809L // sockets
 #include "fake_library.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

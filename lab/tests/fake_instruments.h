@@ -145,7 +145,6 @@ static inline dea_status fake_get(struct dea_context *context, struct dea_instru
 static inline struct dea_zero fake_stop(struct dea_context *context,
                                         struct dea_instrument *instrument)
 {
-  (void)context;
   ((struct fake_daq *)instrument)->stops++;
   ((struct fake_daq *)instrument)->stopped_s = dea_clock_s();
   return (struct dea_zero){DEA_ZERO_COMMANDED, (double)NAN, NULL};
@@ -153,8 +152,6 @@ static inline struct dea_zero fake_stop(struct dea_context *context,
 
 static inline void fake_close(struct dea_context *context, struct dea_instrument *instrument)
 {
-  (void)context;
-  (void)instrument;
   fail_msg("closed by the loop");
 }
 
@@ -179,7 +176,6 @@ static inline dea_status fake_sensor_get(struct dea_context *context,
 {
   struct fake_sensor *sensor = (struct fake_sensor *)instrument;
   double rate_Hz = 1000, now_s = (double)sensor->daq->got / rate_Hz;
-  (void)timeout_s;
   while ((double)sensor->frames * fake_frame_s <= now_s) {
     double time_s = (double)sensor->frames * fake_frame_s, z_m[3] = {time_s, NAN, -time_s};
     if ((long)sensor->frames == sensor->fail_frame) {
@@ -195,7 +191,6 @@ static inline dea_status fake_sensor_get(struct dea_context *context,
 static inline struct dea_zero fake_sensor_stop(struct dea_context *context,
                                                struct dea_instrument *instrument)
 {
-  (void)context;
   ((struct fake_sensor *)instrument)->stops++;
   return (struct dea_zero){DEA_ZERO_NONE, (double)NAN, NULL};
 }

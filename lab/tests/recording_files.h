@@ -44,6 +44,5 @@ static inline void make(const char *name, bool plain, size_t cycles, const char 
 /* What HDF5 still has open. */
 static inline int nothing_open(void **state)
 {
-  (void)state;
   return H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_ALL) == 0 ? 0 : -1;
 }

@@ -40,8 +40,6 @@ static const char *model_name(size_t index, bool *moves)
 
 static dea_status find_pull_in(struct dea_context *c, struct dea_bench_model *model, double *out)
 {
-  (void)c;
-  (void)model;
   *out = pull_in_V;
   return DEA_OK;
 }
@@ -49,7 +47,6 @@ static dea_status find_pull_in(struct dea_context *c, struct dea_bench_model *mo
 static dea_status at_voltage(struct dea_context *c, struct dea_bench_model *model, double voltage_V,
                              struct dea_bench_point *out)
 {
-  (void)model;
   if (fabs(voltage_V) > pull_in_V) {
     return dea_fail(c, DEA_E_NO_EQUILIBRIUM, "pulled in");
   }
@@ -81,14 +78,11 @@ static dea_status advance(struct dea_context *c, struct dea_bench_model *model, 
 
 static void accept_state(struct dea_bench_model *model)
 {
-  (void)model;
 }
 
 static dea_status no_profile(struct dea_context *c, struct dea_bench_model *model,
                              struct dea_profile *out)
 {
-  (void)c;
-  (void)model;
   *out = (struct dea_profile){.count = 0};
   return DEA_OK;
 }
@@ -114,7 +108,6 @@ static dea_status read_film(struct dea_context *c, const char *file, const char 
 static dea_status open_model(struct dea_context *c, const struct dea_bench_film *film,
                              const char *name, const char *monitor, struct dea_bench_model **out)
 {
-  (void)monitor;
   assert_ptr_equal(film->type, &capacitor);
   *out = dea_alloc(c, 1, sizeof **out);
   assert_non_null(*out);

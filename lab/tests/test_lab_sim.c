@@ -4,7 +4,6 @@
 #include "failing_allocator.h"
 #include "instrument/instrument.h"
 #include "instrument/sim_bench.h"
-#include "model/lumped/lumped.h"
 #include "protocol_text.h"
 #include "study/design_file.h"
 #include "study/study.h"

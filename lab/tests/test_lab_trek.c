@@ -30,7 +30,6 @@ struct trek {
 static dea_status trek_start(struct dea_context *context, struct dea_instrument *instrument)
 {
   struct trek *t = (struct trek *)instrument;
-  (void)context;
   t->start_s = dea_clock_s();
   return DEA_OK;
 }
@@ -65,7 +64,6 @@ static dea_status trek_get(struct dea_context *context, struct dea_instrument *i
                            double timeout_s, const struct dea_sink *sink)
 {
   struct trek *t = (struct trek *)instrument;
-  (void)context;
   dea_clock_wait(fmin(timeout_s, 0.01));
   for (int i = 0; i < 5 && (double)t->given < (dea_clock_s() - t->start_s) * rate_Hz; i++) {
     trek_follow(t);
@@ -81,8 +79,6 @@ static dea_status trek_get(struct dea_context *context, struct dea_instrument *i
 
 static void trek_close(struct dea_context *context, struct dea_instrument *instrument)
 {
-  (void)context;
-  (void)instrument;
 }
 
 static const struct dea_instrument_type trek_type = {

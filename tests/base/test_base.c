@@ -1,7 +1,6 @@
 /* base: context, arena, text, what a schema prints, places for files. */
 #define _GNU_SOURCE // mkdtemp
 #include "base/arena.h"
-#include "base/file.h"
 #include "base/schema.h"
 #include "base/text.h"
 #include "base/write_file.h"

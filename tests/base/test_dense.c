@@ -2,7 +2,6 @@
 #include "base/dense.h"
 #include "testing.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 dea_status small_dense_solve(size_t n, double *A, double *b);

@@ -50,7 +50,6 @@ TEST(test_last_words)
 
 static bool always(void *user)
 {
-  (void)user;
   return true;
 }
 

@@ -9,7 +9,6 @@ static struct dea_device *device;
 
 static int set_up(void **state)
 {
-  (void)state;
   design = NULL;
   device = NULL;
   return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
@@ -17,7 +16,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-  (void)state;
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
   dea_context_destroy(ctx);

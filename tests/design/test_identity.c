@@ -8,7 +8,6 @@
 
 #include "context_fixture.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

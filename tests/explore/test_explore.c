@@ -246,8 +246,6 @@ TEST(test_order)
 /* q = p0^2 + p1; case 3 has no second value, case 5 ends its process, case 6 that with a signal. */
 static dea_status square(void *user, struct dea_context *own, struct dea_case *io)
 {
-  (void)user;
-  (void)own;
   if (io->number == 5 || io->number == 6) {
     io->number == 5 ? _exit(3) : (void)kill(getpid(), SIGKILL);
   }

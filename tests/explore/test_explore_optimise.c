@@ -17,7 +17,6 @@ static bool gradients, partly;
 static dea_status three(void *user, struct dea_context *own, struct dea_case *io)
 {
   const double x = io->p[0], y = io->p[1];
-  (void)own;
   if (x > 4.5) { // such a device has no equilibrium
     snprintf(io->why, sizeof io->why, "none");
     return DEA_OK;
@@ -43,8 +42,6 @@ static double pick(const void *user, size_t k, const double *q)
 
 static double product_margin(const void *user, size_t limit, const double *q)
 {
-  (void)user;
-  (void)limit;
   return (q[1] - 2) / 2;
 }
 
@@ -212,10 +209,6 @@ static size_t designs, stop_at;
 
 static void count_design(void *user, const char *what, size_t done, size_t total)
 {
-  (void)user;
-  (void)what;
-  (void)done;
-  (void)total;
   designs++;
   stopped = designs == stop_at || stopped;
 }

@@ -40,7 +40,6 @@ static void check_page(void)
 
 static void fake_page(struct dea_canvas *canvas, double width_mm, double height_mm)
 {
-  (void)canvas;
   check_page();
   page_width = width_mm;
   page_height = height_mm;
@@ -49,7 +48,6 @@ static void fake_page(struct dea_canvas *canvas, double width_mm, double height_
 static void fake_contour(struct dea_canvas *canvas, const struct dea_contour *contour, double scale,
                          double x_mm, double y_mm)
 {
-  (void)canvas;
   for (size_t i = 0; i < dea_contour_pieces(contour); i++) {
     const struct dea_piece piece = dea_contour_piece(contour, i);
     assert_true(isfinite(x_mm + scale * piece.from[0]) && isfinite(y_mm + scale * piece.from[1]));
@@ -58,7 +56,6 @@ static void fake_contour(struct dea_canvas *canvas, const struct dea_contour *co
 
 static void fake_line(struct dea_canvas *canvas, double x0, double y0, double x1, double y1)
 {
-  (void)canvas;
   assert_true(isfinite(x0) && isfinite(y0) && isfinite(x1) && isfinite(y1));
 }
 
@@ -74,12 +71,10 @@ static void fake_stroke(struct dea_canvas *canvas, double width_mm, unsigned col
 
 static void fake_clip(struct dea_canvas *canvas)
 {
-  (void)canvas;
 }
 
 static double fake_width(struct dea_canvas *canvas, double size_mm, bool bold, const char *text)
 {
-  (void)canvas;
   return size_mm * (bold ? 0.68 : 0.6) * (double)strlen(text); // as DejaVu Sans has it, about
 }
 
@@ -87,7 +82,6 @@ static void fake_text(struct dea_canvas *canvas, double x_mm, double y_mm, doubl
                       double angle, enum dea_align align, bool bold, unsigned colour,
                       const char *text)
 {
-  (void)colour;
   assert_true(word_count < WORDS_MAX && angle == 0);
   double width = fake_width(canvas, size_mm, bold, text);
   double x = x_mm - (align == DEA_ALIGN_LEFT ? 0 : align == DEA_ALIGN_CENTRE ? 0.5 : 1) * width;

@@ -1,9 +1,7 @@
 /* Fuzz target: files of Gmsh, as plane meshes. */
 #include "model/solid/mesh/msh_read.h"
 
-#include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

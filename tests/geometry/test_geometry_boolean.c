@@ -5,8 +5,6 @@
 #include "geometry/shape.h"
 #include "message_fixture.h"
 
-#include <string.h>
-
 static const double pi = 3.14159265358979323846;
 static const struct dea_location here = {"t.yaml", 3, 4};
 

@@ -107,7 +107,6 @@ static struct trial trial;
 
 static int trial_set_up(void **state)
 {
-  (void)state;
   memset(&trial, 0, sizeof trial);
   trial.memory.ctx = ctx;
   snprintf(trial.file.branches.text, sizeof trial.file.branches.text, "none");
@@ -116,7 +115,6 @@ static int trial_set_up(void **state)
 
 static int trial_tear_down(void **state)
 {
-  (void)state;
   dea_arena_free(&trial.memory);
   dea_finding_clear(ctx);
   dea_context_clear(ctx);

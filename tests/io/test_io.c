@@ -7,7 +7,6 @@
 #include "fake_result.h"
 #include "figures/colour_map.h"
 #include "figures/run_figures.h"
-#include "io/csv.h"
 #include "io/results_h5.h"
 #include "io/summary.h"
 #include "job/run_folder.h"
@@ -32,15 +31,11 @@ static struct dea_result *result;
 
 static int remove_entry(const char *path, const struct stat *info, int type, struct FTW *ftw)
 {
-  (void)info;
-  (void)type;
-  (void)ftw;
   return remove(path);
 }
 
 static int setup(void **state)
 {
-  (void)state;
   const char *base = getenv("TMPDIR");
   snprintf(folder, sizeof folder, "%s/dea-test-XXXXXX", base != NULL ? base : P_tmpdir);
   assert_non_null(mkdtemp(folder));
@@ -52,7 +47,6 @@ static int setup(void **state)
 
 static int teardown(void **state)
 {
-  (void)state;
   dea_result_destroy(ctx, result);
   result = NULL;
   dea_context_destroy(ctx);

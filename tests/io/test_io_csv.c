@@ -18,7 +18,6 @@ static struct dea_context *ctx;
 
 static int setup(void **state)
 {
-  (void)state;
   const char *base = getenv("TMPDIR");
   snprintf(folder, sizeof folder, "%s/dea-test-XXXXXX", base != NULL ? base : P_tmpdir);
   if (mkdtemp(folder) == NULL || dea_context_create(NULL, &ctx) != DEA_OK) {
@@ -30,7 +29,6 @@ static int setup(void **state)
 
 static int teardown(void **state)
 {
-  (void)state;
   dea_context_destroy(ctx);
   unlink(path);
   return rmdir(folder);

@@ -15,7 +15,6 @@ static char folder[512], path[600];
 
 static int set_up(void **state)
 {
-  (void)state;
   char here[400];
   if (getcwd(here, sizeof here) == NULL) {
     return -1;
@@ -30,7 +29,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-  (void)state;
   dea_context_destroy(ctx);
   unlink(path);
   return rmdir(folder);

@@ -27,8 +27,6 @@ static double fake_limit_V = INFINITY; // it fails above
 static dea_status fake_create(struct dea_context *c, const struct dea_device *device,
                               const struct dea_model_settings *settings, struct dea_model **out)
 {
-  (void)settings;
-  (void)device;
   *out = dea_alloc(c, 1, sizeof **out);
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
@@ -55,7 +53,6 @@ static dea_status fake_solve(struct dea_context *c, struct dea_model *model, dou
 static dea_status fake_fields(struct dea_context *c, struct dea_model *model,
                               enum dea_fields_part part, struct dea_field_mesh **out)
 {
-  (void)part;
   *out = fake_surface(c, model->voltage_V);
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
@@ -85,7 +82,6 @@ static dea_status fake_load(struct dea_context *c, struct dea_model *model,
 static dea_status fake_profile(struct dea_context *c, struct dea_model *model,
                                struct dea_profile *out)
 {
-  (void)c;
   double *at = &model->profile[0][0];
   for (size_t i = 0; i < 28; i++) {
     at[i] = model->voltage_V + (double)i;

@@ -256,7 +256,6 @@ TEST(test_repeated_stretches)
 static dea_status fourth_power(const double *p, dea_scalar I1, dea_scalar I2, dea_scalar I4,
                                struct dea_law_energy *e)
 {
-  (void)I4;
   *e = (struct dea_law_energy){.W = p[0] / 4.0 * (I1 * I1 - 2.0 * I2 - 3.0),
                                .W1 = p[0] / 2.0 * I1,
                                .W2 = -p[0] / 2.0,

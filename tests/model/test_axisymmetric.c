@@ -32,8 +32,6 @@ TEST(test_benchmark_4)
 
 static dea_status ignore_point(void *user, const struct dea_load_point *point)
 {
-  (void)user;
-  (void)point;
   return DEA_OK;
 }
 

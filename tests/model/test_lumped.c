@@ -5,8 +5,6 @@
 #include "model/model.h"
 #include "testing.h"
 
-#include <stdlib.h>
-
 static struct dea_model *make(const struct dea_device *device)
 {
   struct dea_model *model;

@@ -6,14 +6,21 @@
 #include "result/trust.h"
 #include "testing.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-static struct dea_context *context(void)
+#include "context_fixture.h" // after: its context shadows no name of the headers above
+
+static struct dea_result *result; // of each test, which may add to it
+
+static int before(void **state)
 {
-  struct dea_context *ctx;
-  assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
-  return ctx;
+  return dea_result_create(ctx, NULL, NULL, &result) == DEA_OK ? 0 : -1;
+}
+
+static int after(void **state)
+{
+  dea_result_destroy(ctx, result);
+  return 0;
 }
 
 TEST(test_empty_point_is_nan_everywhere)
@@ -80,7 +87,6 @@ TEST(test_flags_are_read_as_they_are_written)
 /* Up and down again: what is doubtful on the way down ends the prediction too. */
 TEST(test_trust_ends_at_the_lowest_doubt)
 {
-  struct dea_context *ctx = context();
   struct dea_load_point points[7];
   for (int i = 0; i < 7; i++) {
     points[i] = dea_load_point_empty();
@@ -107,15 +113,11 @@ TEST(test_trust_ends_at_the_lowest_doubt)
   dea_trust_text(&trust, &text);
   assert_non_null(strstr(dea_text_get(&text), "; from 2 kV on a part of the film has no tension"));
   dea_text_free(&text);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_curves_grow_and_are_found)
 {
-  struct dea_context *ctx = context();
-  struct dea_result *result;
   struct dea_curve *curve;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
   assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_OK);
   for (int i = 0; i < 1000; i++) {
     struct dea_load_point p = dea_load_point_empty();
@@ -127,19 +129,14 @@ TEST(test_curves_grow_and_are_found)
   assert_int_equal(found->count, 1000);
   assert_close(found->points[999].voltage_V, 999.0, 0, 0);
   assert_null(dea_result_find(result, "axisymmetric", "sweep"));
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_names_are_checked)
 {
-  struct dea_context *ctx = context();
-  struct dea_result *result;
   struct dea_curve *curve;
   char name[DEA_NAME_SIZE + 1];
   memset(name, 'x', DEA_NAME_SIZE);
   name[DEA_NAME_SIZE] = '\0';
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
   assert_int_equal(dea_result_add_curve(ctx, result, name, "sweep", &curve), DEA_E_ARGUMENT);
   assert_int_equal(dea_result_add_curve(ctx, result, "a/b", "sweep", &curve), DEA_E_ARGUMENT);
   assert_int_equal(dea_result_add_curve(ctx, result, "", "sweep", &curve), DEA_E_ARGUMENT);
@@ -147,23 +144,19 @@ TEST(test_names_are_checked)
   assert_int_equal(dea_result_add_curve(ctx, result, "lumped", "sweep", &curve), DEA_E_ARGUMENT);
   assert_null(curve);
   assert_int_equal(result->curve_count, 1);
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_profiles_are_copied)
 {
-  struct dea_context *ctx = context();
   struct dea_design design = fake_design();
-  struct dea_result *result = NULL;
-  assert_int_equal(fake_result(ctx, &design, 1.0, &result), DEA_OK);
-  assert_int_equal(result->profile_count, 6);
-  const struct dea_profile_record *last = &result->profiles[5];
+  struct dea_result *made = NULL;
+  assert_int_equal(fake_result(ctx, &design, 1.0, &made), DEA_OK);
+  assert_int_equal(made->profile_count, 6);
+  const struct dea_profile_record *last = &made->profiles[5];
   assert_close(last->voltage_V, 5000.0, 0, 0);
   assert_close(last->columns[30], 15e-3, 1e-15, 0);           // radius at the frame
   assert_close(last->columns[4 * 31], 35.0 - 15.0, 1e-15, 0); // radial tension at the centre
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
+  dea_result_destroy(ctx, made);
 }
 
 TEST(test_sha256_of_a_known_text)
@@ -175,7 +168,6 @@ TEST(test_sha256_of_a_known_text)
 
 TEST(test_provenance_says_what_ran)
 {
-  struct dea_context *ctx = context();
   struct dea_provenance p = {.wall_s = 0.0};
   const struct dea_override o[] = {{"a.b", "1 mm"}, {"c", "2"}};
   assert_int_equal(dea_provenance_fill(ctx, "abc", 3, o, 2, "dea run x", &p), DEA_OK);
@@ -192,16 +184,15 @@ TEST(test_provenance_says_what_ran)
   assert_int_equal(dea_provenance_fill(ctx, "", 0, NULL, 0, NULL, &p), DEA_OK);
   assert_null(p.overrides);
   dea_free(ctx, p.input);
-  dea_context_destroy(ctx);
 }
 
-static void make_result(struct dea_context *ctx)
+static void make_result(struct dea_context *context)
 {
   struct dea_design design = fake_design();
-  struct dea_result *result = NULL;
-  dea_status status = fake_result(ctx, &design, 1.0, &result);
-  failing_check(ctx, status);
-  dea_result_destroy(ctx, result);
+  struct dea_result *made = NULL;
+  dea_status status = fake_result(context, &design, 1.0, &made);
+  failing_check(context, status);
+  dea_result_destroy(context, made);
 }
 
 TEST(test_every_allocation_may_fail)
@@ -212,15 +203,14 @@ TEST(test_every_allocation_may_fail)
 // Comparison -------------------------------------------------------------------------------------
 
 /* Curve of a result with stretch = 1 + (v/v0)^2 and z = 1e-6 v at `count` voltages up to v_max. */
-static void parabola(struct dea_context *ctx, struct dea_result *result, const char *model,
-                     size_t count, double v_max, double scale, double shift)
+static void parabola(const char *model, size_t count, double v_max, double shift)
 {
   struct dea_curve *curve;
   assert_int_equal(dea_result_add_curve(ctx, result, model, "sweep", &curve), DEA_OK);
   for (size_t i = 0; i < count; i++) {
     struct dea_load_point p = dea_load_point_empty();
     p.voltage_V = v_max * (double)i / (double)(count - 1);
-    p.electrode_stretch = 1.0 + scale * pow(p.voltage_V / 1e4, 2.0) + shift;
+    p.electrode_stretch = 1.0 + pow(p.voltage_V / 1e4, 2.0) + shift;
     p.centre_z_m = 1e-6 * p.voltage_V;
     assert_int_equal(dea_curve_add_point(ctx, curve, &p), DEA_OK);
   }
@@ -228,12 +218,9 @@ static void parabola(struct dea_context *ctx, struct dea_result *result, const c
 
 TEST(test_compare_finds_a_known_offset)
 {
-  struct dea_context *ctx = context();
-  struct dea_result *result;
   struct dea_comparison *c;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
-  parabola(ctx, result, "a", 11, 5000.0, 1.0, 0.01);
-  parabola(ctx, result, "b", 11, 5000.0, 1.0, 0.0);
+  parabola("a", 11, 5000.0, 0.01);
+  parabola("b", 11, 5000.0, 0.0);
   const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
   assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_OK);
   assert_int_equal(c->misfit_count, 2);
@@ -247,18 +234,13 @@ TEST(test_compare_finds_a_known_offset)
   assert_close(m->relative_largest, 0.04, 1e-12, 0);
   assert_close(c->misfits[1].largest, 0.0, 0, 0); // z is the same
   dea_comparison_destroy(ctx, c);
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_compare_interpolates_between_voltages)
 {
-  struct dea_context *ctx = context();
-  struct dea_result *result;
   struct dea_comparison *c;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
-  parabola(ctx, result, "a", 101, 5000.0, 1.0, 0.0);
-  parabola(ctx, result, "b", 8, 7000.0, 1.0, 0.0); // 0, 1, ..., 7 kV: six in common
+  parabola("a", 101, 5000.0, 0.0);
+  parabola("b", 8, 7000.0, 0.0); // 0, 1, ..., 7 kV: six in common
   const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
   assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_OK);
   assert_int_equal(c->misfits[0].count, 6);
@@ -268,18 +250,13 @@ TEST(test_compare_interpolates_between_voltages)
   assert_int_equal(dea_compare_curves(ctx, b, a, NULL, -1, &c), DEA_OK);
   assert_int_equal(c->misfits[0].count, 6);
   dea_comparison_destroy(ctx, c);
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_compare_reports_nothing_in_common)
 {
-  struct dea_context *ctx = context();
-  struct dea_result *result;
   struct dea_comparison *c;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
-  parabola(ctx, result, "a", 11, 5000.0, 1.0, 0.0);
-  parabola(ctx, result, "b", 11, 5000.0, 1.0, 0.0);
+  parabola("a", 11, 5000.0, 0.0);
+  parabola("b", 11, 5000.0, 0.0);
   for (size_t i = 0; i < 11; i++) {
     result->curves[1].points[i].voltage_V += 6000.0;
   }
@@ -290,18 +267,13 @@ TEST(test_compare_reports_nothing_in_common)
   int force = dea_point_column_find("force_N");
   assert_int_equal(dea_compare_curves(ctx, a, a, NULL, force, &c), DEA_E_ARGUMENT);
   assert_string_equal(dea_context_message(ctx), "neither of the two has force_N");
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_compare_up_and_down)
 {
-  struct dea_context *ctx = context();
-  struct dea_result *result;
   struct dea_comparison *c;
-  assert_int_equal(dea_result_create(ctx, NULL, NULL, &result), DEA_OK);
-  parabola(ctx, result, "a", 11, 5000.0, 1.0, 0.0);
-  parabola(ctx, result, "b", 6, 5000.0, 1.0, 0.0);
+  parabola("a", 11, 5000.0, 0.0);
+  parabola("b", 6, 5000.0, 0.0);
   struct dea_curve *a = &result->curves[0];
   for (size_t i = 0; i < 10; i++) { // back down, with another stretch there
     struct dea_load_point p = a->points[9 - i];
@@ -316,8 +288,6 @@ TEST(test_compare_up_and_down)
   assert_false(c->part_only);
   assert_int_equal(c->misfits[0].count, 21);
   dea_comparison_destroy(ctx, c);
-  dea_result_destroy(ctx, result);
-  dea_context_destroy(ctx);
 }
 
 TEST(test_interpolation_adds_no_extremes)
@@ -338,7 +308,7 @@ TEST(test_interpolation_adds_no_extremes)
   assert_close(dea_interpolate(x, line, 2, 0.3), 1.6, 1e-14, 0);
 }
 
-static void compare_once(struct dea_context *ctx)
+static void compare_once(struct dea_context *context)
 {
   static const double v[] = {0.0, 1000.0, 2000.0};
   struct dea_load_point points[3];
@@ -350,10 +320,10 @@ static void compare_once(struct dea_context *ctx)
   struct dea_curve a = {.model = "a", .points = points, .count = 3}, b = a;
   b.count = 2;
   struct dea_comparison *c;
-  dea_status status = dea_compare_curves(ctx, &a, &b, NULL, -1, &c);
-  failing_check(ctx, status);
+  dea_status status = dea_compare_curves(context, &a, &b, NULL, -1, &c);
+  failing_check(context, status);
   assert_true((status == DEA_OK) == (c != NULL));
-  dea_comparison_destroy(ctx, c);
+  dea_comparison_destroy(context, c);
 }
 
 TEST(test_compare_with_failing_allocations)
@@ -361,4 +331,4 @@ TEST(test_compare_with_failing_allocations)
   assert_true(failing_each(compare_once) > 6);
 }
 
-TESTS(NULL, NULL)
+TESTS_EACH(context_set_up, context_tear_down, before, after)

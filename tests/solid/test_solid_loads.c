@@ -17,7 +17,6 @@ static const double size[3] = {3, 2, 1.5};
 
 static void map_block(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = size[0] * s + 0.2 * t * t;
   x[1] = size[1] * t - 0.1 * s * t;
 }
@@ -47,8 +46,6 @@ static void block_destroy(void)
 
 static bool all(const void *self, int region, int ply, const double middle[3])
 {
-  (void)self;
-  (void)middle;
   assert_int_equal(region, 7);
   return ply == 0;
 }
@@ -405,23 +402,18 @@ static void resultant(const double *force, double scale, double sum[6])
 
 static double density(const void *self, int region, int ply)
 {
-  (void)self;
   return region == 7 && ply == 0 ? 1200 : 0;
 }
 
 /* Weight of the block in a slanted field, and its moment: the block is straight here. */
 static void straight(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = size[0] * s;
   x[1] = size[1] * t;
 }
 
 static bool upmost(const void *self, int region, int ply, const double middle[3])
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return middle[2] > size[2] - 1e-9;
 }
 

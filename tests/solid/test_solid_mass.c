@@ -4,21 +4,15 @@
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
-#include <stdlib.h>
-
 /* A parallelogram on unequal elements: x = 3 s + 0.5 t, y = 2 t - 0.4 s. */
 static void map_block(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = 3 * s + 0.5 * t;
   x[1] = 2 * t - 0.4 * s;
 }
 
 static int first(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return 0;
 }
 

@@ -367,9 +367,6 @@ TEST(test_membrane_with_fibres)
 
 static double areal_density(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return 0.05;
 }
 

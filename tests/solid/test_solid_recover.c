@@ -14,13 +14,11 @@ static struct dea_context *ctx;
 
 static int set_up(void **state)
 {
-  (void)state;
   return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
-  (void)state;
   dea_context_destroy(ctx);
   return 0;
 }
@@ -38,7 +36,6 @@ static void map_strip(const void *self, double s, double t, double x[2])
 
 static bool fibre_on_second(const void *self, int region, int ply)
 {
-  (void)self;
   return ply == 0 || region == 1;
 }
 
@@ -453,14 +450,12 @@ TEST(test_each_allocation)
 
 static void map_square(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = length_m * s;
   x[1] = length_m * t;
 }
 
 static bool everywhere(const void *self, int region, int ply)
 {
-  (void)self;
   return region == 0 && ply == 0;
 }
 

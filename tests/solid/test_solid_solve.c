@@ -14,8 +14,6 @@
 
 static bool inner_region(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region == 0;
 }
 
@@ -26,7 +24,6 @@ static const double a_m = 3.75e-3, b_m = 15e-3;
 /* Symmetry planes x = 0 and y = 0; the frame holds the edge. */
 static int disc_held(const void *self, const double X[3])
 {
-  (void)self;
   if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
     return 1 | 2 | 4;
   }
@@ -197,14 +194,11 @@ TEST(test_no_false_modes_at_rest)
 
 static int sheet_layer(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply;
 }
 
 static bool film_inside(const void *self, int region, int ply)
 {
-  (void)self;
   return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
@@ -255,14 +249,12 @@ TEST(test_four_fibres_as_built)
 
 static void map_strip(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = 10 * s;
   x[1] = t;
 }
 
 static int clamp(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 ? 1 | 2 | 4 : 0;
 }
 

@@ -61,14 +61,11 @@ static int held(const void *self, const double X[3])
 {
   double c = cos(angle_of_test), s = sin(angle_of_test), half = 0.5 * width_m;
   double a = c * X[0] + s * X[1] - half, b = -s * X[0] + c * X[1] - half;
-  (void)self;
   return fmax(fabs(a), fabs(b)) > half * (1 - 1e-9) ? 1 | 2 | 4 : 0;
 }
 
 static bool second(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region == 1;
 }
 

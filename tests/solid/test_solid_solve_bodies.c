@@ -72,14 +72,11 @@ static void solve(struct bodies *it)
 
 static int clamped(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 ? 7 : 0;
 }
 
 static int free_nodes(const void *self, const double X[3])
 {
-  (void)self;
-  (void)X;
   return 0;
 }
 
@@ -380,7 +377,6 @@ static int end_of_bar(const double X[3])
 
 static int on_planes(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 
@@ -412,7 +408,6 @@ TEST(test_body_that_only_shifts)
 
 static int whole_block(const double X[3])
 {
-  (void)X;
   return 1;
 }
 
@@ -655,14 +650,11 @@ static int last_third(const double X[3])
 
 static int none_follows(const double X[3])
 {
-  (void)X;
   return 0;
 }
 
 static int layer_of_region(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region;
 }
 

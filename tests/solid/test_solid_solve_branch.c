@@ -25,14 +25,12 @@ static struct dea_solid_report report;
 
 static void map_strip(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = length * s;
   x[1] = width * t;
 }
 
 static int clamped(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 || X[0] > length - 1e-9 ? 7 : 0;
 }
 
@@ -191,7 +189,6 @@ static const struct block plate = {{1, 1, 0.01}, {4, 4, 1}, 3, 2};
 
 static int clamped_around(const void *self, const double X[3])
 {
-  (void)self;
   bool inside = X[0] > 1e-9 && X[0] < 1 - 1e-9 && X[1] > 1e-9 && X[1] < 1 - 1e-9;
   return inside ? 0 : 7;
 }

@@ -38,15 +38,11 @@ static void map_third(const void *self, double s, double t, double x[2])
 
 static bool all_but_the_middle(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region != 1;
 }
 
 static void two_channels(const void *self, int region, int ply, int *top, int *bottom)
 {
-  (void)self;
-  (void)ply;
   *top = region == 0 ? 1 : 2;
   *bottom = 0;
 }
@@ -54,7 +50,6 @@ static void two_channels(const void *self, int region, int ply, int *top, int *b
 /* Its ends and sides are held, as in a frame. */
 static int framed(const void *self, const double X[3])
 {
-  (void)self;
   bool end = X[0] < 1e-9 || X[0] > length_m - 1e-9;
   bool side = X[1] < 1e-9 || X[1] > 0.5 * length_m - 1e-9;
   return end || side ? 1 | 2 | 4 : 0;
@@ -232,23 +227,17 @@ enum { FILMS = 4 };
 
 static void map_square(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = length_m * s;
   x[1] = length_m * t;
 }
 
 static bool everywhere(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 
 static void alternating(const void *self, int region, int ply, int *top, int *bottom)
 {
-  (void)self;
-  (void)region;
   *bottom = ply % 2;
   *top = 1 - ply % 2;
 }
@@ -256,7 +245,6 @@ static void alternating(const void *self, int region, int ply, int *top, int *bo
 /* Pulled out in its plane and let go in thickness: a corner of a stack between mirror planes. */
 static int corner(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-9 || X[0] > length_m - 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) |
          (X[2] < 1e-9 ? 4 : 0);
 }
@@ -320,9 +308,6 @@ TEST(test_stack)
 
 static void unknown_channel(const void *self, int region, int ply, int *top, int *bottom)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   *top = 2;
   *bottom = 0;
 }
@@ -365,7 +350,6 @@ TEST(test_response_about_own_voltages)
 
 static bool no_electrode(const void *self, const double X[3], double *share)
 {
-  (void)self;
   *share = X[2] > 0 ? 1 : 0;
   return true;
 }

@@ -7,8 +7,6 @@
 
 #include "solid_fixture.h"
 
-#include <string.h>
-
 static const double pi = 3.14159265358979323846;
 
 /* ---- Hertz ---- */
@@ -17,7 +15,6 @@ static const double side = 20, radius = 100;
 
 static void map_square(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = side * s;
   x[1] = side * t;
 }
@@ -25,15 +22,11 @@ static void map_square(const void *self, double s, double t, double x[2])
 /* Bonded at the bottom; mirror planes x = 0 and y = 0. */
 static int bonded(const void *self, const double X[3])
 {
-  (void)self;
   return X[2] < 1e-9 ? 7 : (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0);
 }
 
 static bool upmost(const void *self, int region, int ply, const double middle[3])
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return middle[2] > side - 1e-9;
 }
 
@@ -131,7 +124,6 @@ static const double film_h = 100e-6 / 2.25, punch_m = 1.5e-3, frame_m = 15e-3;
 
 static int disc_held(const void *self, const double X[3])
 {
-  (void)self;
   if (hypot(X[0], X[1]) > frame_m * (1 - 1e-9)) {
     return 1 | 2 | 4;
   }

@@ -8,7 +8,6 @@
 
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double epsilon = 2.8 * DEA_EPSILON_0;
@@ -33,14 +32,11 @@ struct location {
 
 static int sheet_layer(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply;
 }
 
 static bool electrode_film(const void *self, int region, int ply)
 {
-  (void)self;
   return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
@@ -59,6 +55,21 @@ static int disc_held(const void *self, const double X[3])
     return 1 | 2 | 4;
   }
   return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0);
+}
+
+static struct dea_solid_options options_of(enum dea_solid_field_kind field,
+                                           const struct dea_part_material *materials, size_t count,
+                                           const struct location *self)
+{
+  return (struct dea_solid_options){.order_z = 2,
+                                    .field = field,
+                                    .part_material_count = count,
+                                    .part_materials = materials,
+                                    .part_material_of = sheet_layer,
+                                    .active = electrode_film,
+                                    .held = disc_held,
+                                    .electrode = faces,
+                                    .self = self};
 }
 
 struct body {
@@ -82,15 +93,7 @@ static struct body disc(enum dea_solid_field_kind field, double h, size_t fine, 
   const struct dea_part_material soft = film(1.5, h);
   const struct dea_quarter quarter = {
       2, 2, body.location.a, body.location.b, h, .fine = fine, .edge = edge};
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .field = field,
-                                            .part_material_count = 1,
-                                            .part_materials = &soft,
-                                            .part_material_of = sheet_layer,
-                                            .active = electrode_film,
-                                            .held = disc_held,
-                                            .electrode = faces,
-                                            .self = &body.location};
+  const struct dea_solid_options options = options_of(field, &soft, 1, &body.location);
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
   return body;
@@ -155,9 +158,6 @@ static bool strip_faces(const void *self, const double X[3], double *share)
 
 static bool everywhere(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 
@@ -246,7 +246,6 @@ TEST(test_unstable_modes_are_those_of_the_thin_film)
 static bool swapped(const void *self, const double X[3], double Q[9])
 {
   static const double axes[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
-  (void)self;
   memcpy(Q, axes, sizeof axes);
   return X[0] < 1e-12;
 }
@@ -263,8 +262,6 @@ static dea_status spring(const void *self, size_t piece, const double *u, enum d
 {
   const size_t *node = self;
   double way = u[3 * *node + 2];
-  (void)piece;
-  (void)level;
   memset(out, 0, sizeof *out);
   out->node_count = 1;
   out->nodes[0] = (int)*node;
@@ -284,16 +281,9 @@ static double lift(enum dea_solid_field_kind field, bool axes)
   const struct dea_part_material layers[] = {film(1.5, h), dea_part_material_bonded(plastic)};
   const struct dea_quarter quarter = {2,    2,      3.75e-3,   15e-3,       h,           4,
                                       2e-3, 100e-6, .fine = 1, .across = 1, .edge = 1e-4};
-  const struct dea_solid_options options = {.order_z = 2,
-                                            .field = field,
-                                            .part_material_count = 2,
-                                            .part_materials = layers,
-                                            .part_material_of = sheet_layer,
-                                            .active = electrode_film,
-                                            .held = axes ? swapped_held : disc_held,
-                                            .frame = axes ? swapped : NULL,
-                                            .electrode = faces,
-                                            .self = &body.location};
+  struct dea_solid_options options = options_of(field, layers, 2, &body.location);
+  options.held = axes ? swapped_held : disc_held;
+  options.frame = axes ? swapped : NULL;
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
   size_t tip = node_near(body.grid, 3.75e-3, 0, 0.5 * h), centre = node_near(body.grid, 0, 0, 0);
@@ -325,8 +315,6 @@ TEST(test_fibres_loads_and_axes)
 
 static bool no_electrode(const void *self, const double X[3], double *share)
 {
-  (void)self;
-  (void)X;
   *share = 1;
   return false;
 }
@@ -336,15 +324,8 @@ TEST(test_a_field_needs_electrodes)
   struct body body = {.location = {3.75e-3, 15e-3, 44e-6}};
   struct dea_part_material soft = film(1.5, 44e-6);
   const struct dea_quarter quarter = {2, 2, 3.75e-3, 15e-3, 44e-6, .fine = 1};
-  struct dea_solid_options options = {.order_z = 2,
-                                      .field = DEA_SOLID_FIELD_COUPLED,
-                                      .part_material_count = 1,
-                                      .part_materials = &soft,
-                                      .part_material_of = sheet_layer,
-                                      .active = electrode_film,
-                                      .held = disc_held,
-                                      .electrode = no_electrode,
-                                      .self = &body.location};
+  struct dea_solid_options options = options_of(DEA_SOLID_FIELD_COUPLED, &soft, 1, &body.location);
+  options.electrode = no_electrode;
   assert_int_equal(dea_grid_quarter(ctx, &quarter, &body.grid), DEA_OK);
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_E_ARGUMENT);
   options.electrode = NULL;
@@ -362,15 +343,8 @@ static const struct location small_place = {3.75e-3, 15e-3, 44e-6};
 static void make_solid(struct dea_context *failing)
 {
   const struct dea_part_material soft = film(1.5, 44e-6);
-  const struct dea_solid_options options = {.order_z = 1,
-                                            .field = DEA_SOLID_FIELD_COUPLED,
-                                            .part_material_count = 1,
-                                            .part_materials = &soft,
-                                            .part_material_of = sheet_layer,
-                                            .active = electrode_film,
-                                            .held = disc_held,
-                                            .electrode = faces,
-                                            .self = &small_place};
+  struct dea_solid_options options = options_of(DEA_SOLID_FIELD_COUPLED, &soft, 1, &small_place);
+  options.order_z = 1;
   struct dea_solid *solid = NULL;
   struct dea_solid_report report;
   dea_status status = dea_solid_create(failing, small_grid, &options, &solid);

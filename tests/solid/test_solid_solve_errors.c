@@ -14,16 +14,12 @@
 
 static void map_square(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = 1e-2 * s;
   x[1] = 1e-2 * t;
 }
 
 static bool everywhere(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 

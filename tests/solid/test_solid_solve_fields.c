@@ -11,7 +11,6 @@ static struct dea_device disc;
 
 static int set_up(void **state)
 {
-  (void)state;
   type = dea_model_find("3d");
   disc = test_disc(test_yeoh(), 1.5, 3.75e-3, 0.25, 0);
   return dea_context_create(NULL, &ctx) == DEA_OK && type != NULL ? 0 : -1;
@@ -19,7 +18,6 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-  (void)state;
   dea_context_destroy(ctx);
   return 0;
 }

@@ -47,14 +47,11 @@ static bool frame(const void *self, const double X[3], double Q[9])
 
 static int layer_of(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply;
 }
 
 static bool active(const void *self, int region, int ply)
 {
-  (void)self;
   return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 

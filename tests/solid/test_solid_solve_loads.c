@@ -16,20 +16,16 @@ static struct dea_solid_report report;
 /* Up and down only. */
 static int sideways(const void *self, const double X[3])
 {
-  (void)self;
-  (void)X;
   return 1 | 2;
 }
 
 static int hangs(const void *self, const double X[3])
 {
-  (void)self;
   return 1 | 2 | (X[2] > 2 - 1e-9 ? 4 : 0);
 }
 
 static int on_planes(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 
@@ -51,9 +47,6 @@ static void slab_destroy(void)
 /* Faces on the outside of the slab. */
 static bool outside(const void *self, int region, int ply, const double middle[3])
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   bool inside = true;
   for (int i = 0; i < 3; i++) {
     inside = inside && middle[i] > 1e-9 && middle[i] < slab.size[i] - 1e-9;
@@ -110,9 +103,6 @@ TEST(test_slab_on_a_foundation)
 
 static double density(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return 1000;
 }
 

@@ -17,15 +17,11 @@ static const double rho = 970;
 
 static int end_held(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 ? 7 : 0;
 }
 
 static double density(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return rho;
 }
 

@@ -20,21 +20,17 @@ static int layer_of(const void *self, int region, int ply)
 {
   static const int layers[] = {
       [DEA_PLY_SURFACE] = FILM, [DEA_PLY_BOND] = BOND, [DEA_PLY_FIBRE_ON_BOND] = FIBRE};
-  (void)self;
-  (void)region;
   return layers[ply];
 }
 
 static bool active(const void *self, int region, int ply)
 {
-  (void)self;
   return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_SURFACE;
 }
 
 /* Symmetry planes x = 0 and y = 0; the frame holds the edge. */
 static int held(const void *self, const double X[3])
 {
-  (void)self;
   if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
     return 1 | 2 | 4;
   }

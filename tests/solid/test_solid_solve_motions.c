@@ -10,7 +10,6 @@
 #include "solid_fixture.h" // after: its context shadows no name of the headers above
 
 #include <math.h>
-#include <string.h>
 
 extern const struct dea_model_type dea_solid_module;
 static const double pi = 3.14159265358979323846;

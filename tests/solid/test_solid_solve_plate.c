@@ -14,14 +14,11 @@ static const double a_m = 3.75e-3, b_m = 15e-3, h_m = 100e-6 / 2.25;
 
 static int layer_of(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply == DISC_FILM ? 0 : 1;
 }
 
 static bool active(const void *self, int region, int ply)
 {
-  (void)self;
   return (region & DEA_FIBRE_DISC_ELECTRODE) != 0 && ply == DISC_FILM;
 }
 

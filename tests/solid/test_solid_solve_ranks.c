@@ -25,20 +25,16 @@ static const double a_m = 3.75e-3, b_m = 15e-3;
 
 static int sheet_layer(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply;
 }
 
 static bool film_inside(const void *self, int region, int ply)
 {
-  (void)self;
   return region == DEA_REGION_ELECTRODE && ply == DEA_PLY_FILM;
 }
 
 static int quarter_held(const void *self, const double X[3])
 {
-  (void)self;
   if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
     return 1 | 2 | 4;
   }
@@ -170,8 +166,6 @@ static volatile sig_atomic_t interrupted;
 static dea_status solve_together(struct dea_context *context, struct dea_model *model,
                                  double voltage_V, struct dea_load_point *out)
 {
-  (void)context;
-  (void)model;
   *out = (struct dea_load_point){.voltage_V = voltage_V};
   dea_solid_any(false);
   interrupted = voltage_V > 0 && dea_solid_rank() > 0;

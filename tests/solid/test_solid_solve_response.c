@@ -19,36 +19,29 @@ static const double l1 = 1.5, l2 = 2, mass = 3e-3;
 
 static void map_strip(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = length * s;
   x[1] = width * t;
 }
 
 static void map_bar(const void *self, double s, double t, double x[2])
 {
-  (void)self;
   x[0] = length + bar * s;
   x[1] = width * t;
 }
 
 static int layer_of(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region;
 }
 
 static bool strip_active(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region == 0;
 }
 
 /* Everything goes along x only, the film's far end not at all. */
 static int along_x(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 ? 7 : 6;
 }
 
@@ -190,14 +183,11 @@ static const struct block bender = {{10e-3, 4e-3, 0}, {3, 1, 1}, 2, 2};
 
 static bool upper(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply == 1;
 }
 
 static int clamped(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 ? 7 : 0;
 }
 
@@ -323,8 +313,6 @@ enum { MANY = 20 };
 
 static int one_of_many(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply == 0 ? 3 : MANY - 1;
 }
 

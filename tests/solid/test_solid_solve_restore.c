@@ -18,7 +18,6 @@ static struct dea_part_material layer = {
 
 static int ends(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 || X[0] > strip.size[0] - 1e-9 ? 1 | 2 | 4 : 0;
 }
 

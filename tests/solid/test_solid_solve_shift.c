@@ -17,7 +17,6 @@ static struct dea_part_material layer = {.param = {1e5}, .pre_stretch = {1, 1, 1
 
 static int ends(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 || X[0] > strip.size[0] - 1e-9 ? 1 | 2 | 4 : 0;
 }
 

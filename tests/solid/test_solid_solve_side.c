@@ -221,7 +221,6 @@ TEST(test_other_arm_ends_at_a_limit_point)
 
 static bool centre_above(const void *self, const double *u)
 {
-  (void)self;
   return u[3 * centre + 2] > 0;
 }
 

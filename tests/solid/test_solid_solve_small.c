@@ -15,8 +15,6 @@ static const double epsilon = 2.8 * DEA_EPSILON_0;
 
 static int sheet_layer(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
   return ply;
 }
 
@@ -24,14 +22,12 @@ static int sheet_layer(const void *self, int region, int ply)
 static bool swapped(const void *self, const double X[3], double Q[9])
 {
   static const double axes[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
-  (void)self;
   memcpy(Q, axes, sizeof axes);
   return X[0] < 1e-12;
 }
 
 static int held(const void *self, const double X[3])
 {
-  (void)self;
   if (hypot(X[0], X[1]) > b_m * (1 - 1e-9)) {
     return 1 | 2 | 4;
   }
@@ -40,7 +36,6 @@ static int held(const void *self, const double X[3])
 
 static bool faces(const void *self, const double X[3], double *share)
 {
-  (void)self;
   *share = X[2] > 0 ? 1 : 0;
   return hypot(X[0], X[1]) < a_m * (1 + 1e-9) && fabs(fabs(X[2]) - 0.5 * h_m) < 1e-6 * h_m;
 }
@@ -49,9 +44,6 @@ static bool faces(const void *self, const double X[3], double *share)
 static dea_status spring(const void *self, size_t piece, const double *u, enum dea_eval_order level,
                          struct dea_load_piece *out)
 {
-  (void)self;
-  (void)piece;
-  (void)level;
   memset(out, 0, sizeof *out);
   out->node_count = 1;
   out->energy_J = 0.5 * u[2] * u[2];

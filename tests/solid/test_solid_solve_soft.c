@@ -9,14 +9,12 @@
 #include "solid_fixture.h"
 
 #include <math.h>
-#include <string.h>
 
 static const struct block strip = {{20, 3, 0.2}, {16, 3, 1}, 2, 2};
 static struct dea_part_material layer = {.param = {1e5}, .pre_stretch = {1, 1, 1}, .kappa_Pa = 1e7};
 
 static int ends(const void *self, const double X[3])
 {
-  (void)self;
   return X[0] < 1e-9 || X[0] > strip.size[0] - 1e-9 ? 1 | 2 | 4 : 0;
 }
 

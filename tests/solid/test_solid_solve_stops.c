@@ -9,7 +9,6 @@
 #include "context_fixture.h" // after: its context shadows no name of the headers above
 
 #include <math.h>
-#include <string.h>
 
 extern const struct dea_model_type dea_solid_module;
 
@@ -118,8 +117,6 @@ static double wave_stiffness(const struct dea_device *device, const struct dea_l
 
 static dea_status pass_point(void *user, const struct dea_load_point *point)
 {
-  (void)user;
-  (void)point;
   return DEA_OK;
 }
 

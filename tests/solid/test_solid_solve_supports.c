@@ -16,14 +16,12 @@ static struct dea_part_material soft; // of modulus mu, Poisson's ratio 0
 /* Slides on the three planes through the origin. */
 static int on_planes(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 
 /* Along the bar only, so that it cannot buckle. */
 static int along(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-9 ? 1 : 0) | 2 | 4;
 }
 
@@ -84,7 +82,6 @@ TEST(test_bar_is_pulled_and_pushed)
 static bool turned_end(const void *self, const double X[3], double Q[9])
 {
   static const double turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1};
-  (void)self;
   memcpy(Q, turn, sizeof turn);
   return X[0] > length - 1e-9;
 }

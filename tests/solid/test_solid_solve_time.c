@@ -27,7 +27,6 @@ struct film {
 /* One element of 1 mm, free but for its planes of symmetry. */
 static int on_planes(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-12 ? 1 : 0) | (X[1] < 1e-12 ? 2 : 0) | (X[2] < 1e-12 ? 4 : 0);
 }
 
@@ -35,9 +34,6 @@ static int on_planes(const void *self, const double X[3])
 
 static bool everywhere(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 

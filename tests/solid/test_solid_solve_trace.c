@@ -18,9 +18,6 @@ static struct dea_solid_continuation *trace;
 
 static bool all_active(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 
@@ -101,7 +98,6 @@ static const struct block film = {{1, 1, 0.1}, {1, 1, 1}, 2, 2};
 
 static int on_planes(const void *self, const double X[3])
 {
-  (void)self;
   return (X[0] < 1e-9 ? 1 : 0) | (X[1] < 1e-9 ? 2 : 0) | (X[2] < 1e-9 ? 4 : 0);
 }
 

@@ -20,9 +20,6 @@ static double *u;
 
 static bool all_active(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 
@@ -38,8 +35,6 @@ static int iterations; // of a descent; 0: as many as by default
 
 static int second_half(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)ply;
   return region;
 }
 

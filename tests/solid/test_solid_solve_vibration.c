@@ -20,14 +20,12 @@ static const double frame_x = 0.1, frame_y = 0.05, rho = 1000, h = 20e-6;
 
 static int square_frame(const void *self, const double X[3])
 {
-  (void)self;
   bool edge = X[0] < 1e-9 || X[0] > frame_y - 1e-9 || X[1] < 1e-9 || X[1] > frame_y - 1e-9;
   return edge ? 7 : 0;
 }
 
 static int all_around(const void *self, const double X[3])
 {
-  (void)self;
   bool edge = X[0] < 1e-9 || X[0] > frame_x - 1e-9 || X[1] < 1e-9 || X[1] > frame_y - 1e-9;
   return edge ? 7 : 0;
 }
@@ -162,9 +160,6 @@ TEST(test_no_trace_of_kappa)
 
 static bool everywhere(const void *self, int region, int ply)
 {
-  (void)self;
-  (void)region;
-  (void)ply;
   return true;
 }
 

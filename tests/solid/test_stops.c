@@ -15,13 +15,11 @@ static struct dea_design *design;
 
 static int set_up(void **state)
 {
-  (void)state;
   return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
 }
 
 static int tear_down(void **state)
 {
-  (void)state;
   dea_context_destroy(ctx);
   return 0;
 }

@@ -10,6 +10,7 @@
 
 #include "own_folder.h"
 #include "study/design_file.h"
+#include "study_result.h"
 
 #include <math.h>
 
@@ -25,30 +26,9 @@
            "      set: {fibres: null, film: {law: b}}\n"
 #define COMPARE_ONE VOLTAGES "  compare: [{name: eight, set: {fibres.count: 8}}]\n"
 
-static struct dea_design *design;
-static struct dea_device *device;
-static struct dea_result *result;
-
-static void set_up_result(const char *text)
-{
-  dea_status status = read_and_build(ctx, text, NULL, 0, &design, &device);
-  if (status != DEA_OK) {
-    print_findings(ctx);
-  }
-  assert_int_equal(status, DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-}
-
-static void tear_down_result(void)
-{
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
-}
-
 TEST(test_changes_reach_the_designs)
 {
-  set_up_result(GOOD_DESIGN COMPARE);
+  set_up_result(GOOD_DESIGN COMPARE, NULL, 0);
   const struct dea_design_variant *v = design->compute.compare;
   assert_int_equal(design->compute.compare_count, 3);
   assert_close(design->fibres.count.si, 4, 0, 0);
@@ -71,7 +51,7 @@ TEST(test_designs_stand_beside_each_other)
   const struct dea_model_type *type = dea_model_find("axisymmetric");
   for (int alone = 0; alone < 2;
        alone++) { // with the sweep, which is not computed twice, or without
-    set_up_result(GOOD_DESIGN COMPARE);
+    set_up_result(GOOD_DESIGN COMPARE, NULL, 0);
     assert_int_equal(dea_study_run(ctx, type, alone ? only : NULL, alone ? 1 : 0, result), DEA_OK);
     assert_true(alone == (dea_result_find(result, "axisymmetric", "sweep") == NULL));
     assert_int_equal(result->variant_count, 4);

@@ -95,7 +95,6 @@ static const double fails_above_V = 7e3; // on the finest mesh
 static dea_status create(struct dea_context *context, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
@@ -148,26 +147,13 @@ static const struct dea_model_type fake = {.name = "fake",
                                            .profile = profile,
                                            .size = size};
 
-static struct dea_design *design;
-static struct dea_device *device;
-static struct dea_result *result;
+#include "study_result.h" // after the models: its names shadow none of theirs
 
-static void set_up_result(const char *section)
+static void set_up_meshes(const char *section)
 {
   const struct dea_override sets[] = {{"compute.convergence", section},
                                       {"report", "{figures: [svg]}"}};
-  assert_int_equal(
-      dea_design_read_memory(ctx, "t.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
-}
-
-static void tear_down_result(void)
-{
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
+  set_up_result(GOOD_DESIGN, sets, 2);
 }
 
 static const char *const only[] = {"convergence"};
@@ -187,7 +173,7 @@ TEST(test_meshes_are_judged)
 {
   struct dea_convergence *c;
   struct dea_text verdict = {.ctx = ctx};
-  set_up_result("{refinement: [1, 2, 3, 4], voltage: [4 kV, 6 kV, 8 kV]}");
+  set_up_meshes("{refinement: [1, 2, 3, 4], voltage: [4 kV, 6 kV, 8 kV]}");
   assert_int_equal(dea_study_run(ctx, &fake, only, 1, result), DEA_E_NOT_CONVERGED);
   assert_int_equal(result->curve_count, 0); // only that study
   assert_int_equal(result->variant_count, 4);
@@ -217,7 +203,7 @@ TEST(test_is_kept)
 {
   struct dea_run *run;
   char *text, *again;
-  set_up_result("{voltage: [6 kV], tolerance: 0.03}"); // three meshes by default
+  set_up_meshes("{voltage: [6 kV], tolerance: 0.03}"); // three meshes by default
   assert_int_equal(dea_study_run(ctx, &fake, only, 1, result), DEA_OK);
   assert_int_equal(dea_run_folder_write(ctx, result, in_folder("run"), NULL), DEA_OK);
   assert_true(there("run/fake_convergence.csv") && there("run/fake_convergence_errors.csv"));
@@ -261,7 +247,7 @@ TEST(test_is_kept)
 TEST(test_only_where_asked)
 {
   static const char *const wrong[] = {"convergense"}, *const force[] = {"force"};
-  set_up_result("null");
+  set_up_meshes("null");
   assert_int_equal(dea_study_run(ctx, &fake, NULL, 0, result), DEA_OK);
   assert_int_equal(result->variant_count, 0);
   assert_int_equal(dea_study_check(ctx, wrong, 1, design), DEA_E_ARGUMENT);
@@ -269,7 +255,7 @@ TEST(test_only_where_asked)
   assert_int_equal(dea_study_check(ctx, force, 1, design), DEA_E_DESIGN);
   assert_non_null(strstr(dea_context_message(ctx), "compute.force.depth"));
   tear_down_result();
-  set_up_result("{}"); // the section alone asks for it, at quarters of 8 kV
+  set_up_meshes("{}"); // the section alone asks for it, at quarters of 8 kV
   assert_int_equal(dea_study_run(ctx, &fake, NULL, 0, result), DEA_OK);
   assert_int_equal(result->variant_count, 3);
   assert_close(result->variants[0].curve.points[1].voltage_V, 4e3, 1e-12, 0);
@@ -308,7 +294,7 @@ static void judge_once(struct dea_context *failing)
 
 TEST(test_failing_memory)
 {
-  set_up_result("{refinement: [1, 2], voltage: [6 kV]}");
+  set_up_meshes("{refinement: [1, 2], voltage: [6 kV]}");
   assert_true(failing_each(judge_once) > 10);
   tear_down_result();
 }

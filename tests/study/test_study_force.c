@@ -25,8 +25,6 @@ static double force(const struct dea_model *model)
 static dea_status create(struct dea_context *context, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  (void)settings;
-  (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   created++;
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
@@ -49,7 +47,6 @@ static dea_status report(const struct dea_model *model, struct dea_load_point *o
 static dea_status solve(struct dea_context *context, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  (void)context;
   model->voltage_V = voltage_V;
   return report(model, out);
 }
@@ -57,7 +54,6 @@ static dea_status solve(struct dea_context *context, struct dea_model *model, do
 static dea_status indent(struct dea_context *context, struct dea_model *model,
                          const struct dea_probe *tip, double depth_m, struct dea_load_point *out)
 {
-  (void)context;
   assert_close(tip->radius_m, 2e-3, 1e-12, 0);
   assert_true(tip->shape == DEA_PROBE_FLAT && !tip->from_fibre_side);
   assert_close(model->voltage_V, 0, 0, 0); // pressed first, voltage after
@@ -75,7 +71,6 @@ static dea_status save(struct dea_context *context, struct dea_model *model, str
 static dea_status load(struct dea_context *context, struct dea_model *model,
                        const struct dea_state *state)
 {
-  (void)context;
   const double *voltage_V = dea_state_find(state, "voltage", 1);
   assert_true(voltage_V != NULL && *voltage_V == 0 && model->depth_m > 0);
   model->voltage_V = *voltage_V;
@@ -269,7 +264,6 @@ static dea_status film_solve(struct dea_context *context, struct dea_model *mode
 static dea_status film_load(struct dea_context *context, struct dea_model *model,
                             const struct dea_state *state)
 {
-  (void)context;
   model->voltage_V = *dea_state_find(state, "voltage", 1);
   jumped = false; // states are kept of taut films only
   return DEA_OK;
@@ -436,7 +430,6 @@ TEST(test_hidden)
 
 static bool interrupted(void *user)
 {
-  (void)user;
   return film.solves == 14;
 }
 

@@ -16,8 +16,6 @@ struct dea_model {
 static dea_status create(struct dea_context *context, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  (void)settings;
-  (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   if (*out == NULL) {
     return DEA_E_MEMORY;
@@ -49,7 +47,6 @@ static dea_status report(struct dea_model *m, struct dea_load_point *out)
 static dea_status solve(struct dea_context *context, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  (void)context;
   model->voltage_V = voltage_V;
   return report(model, out);
 }
@@ -78,7 +75,6 @@ static dea_status move(struct dea_context *context, struct dea_model *m,
 static dea_status observe(struct dea_context *context, struct dea_model *m,
                           struct dea_observation *out)
 {
-  (void)context;
   for (int i = 0; i < DEA_OBSERVED_COUNT; i++) {
     m->body[0][i] = 0;
   }

@@ -53,7 +53,6 @@ static double root(double voltage_V, int which)
 static dea_status create(struct dea_context *context, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   if (*out != NULL) {
     double finest = fmax(settings->refinement, settings->tip_refinement);
@@ -98,7 +97,6 @@ static dea_status solve(struct dea_context *context, struct dea_model *m, double
 static dea_status soften(struct dea_context *context, struct dea_model *m, size_t count,
                          double *stiffness_N_per_m4)
 {
-  (void)context;
   for (size_t i = 0; i < count; i++) {
     stiffness_N_per_m4[i] = 3 * m->x * m->x - a_of(m->voltage_V) + (double)i;
   }
@@ -108,7 +106,6 @@ static dea_status soften(struct dea_context *context, struct dea_model *m, size_
 static dea_status push(struct dea_context *context, struct dea_model *m, const struct dea_push *way,
                        struct dea_load_point *out, bool *found)
 {
-  (void)context;
   *found = way->kind == DEA_PUSH_MODE && way->mode == 0;
   if (*found) {
     m->x = descend(m, m->x + way->side * way->amplitude_m / length_m);
@@ -120,7 +117,6 @@ static dea_status push(struct dea_context *context, struct dea_model *m, const s
 static dea_status carry(struct dea_context *context, struct dea_model *m,
                         const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
-  (void)context;
   m->voltage_V = from->voltage_V;
   m->x = descend(m, from->x);
   report(m, out);
@@ -152,7 +148,6 @@ static dea_status save(struct dea_context *context, struct dea_model *m, struct 
 static dea_status load(struct dea_context *context, struct dea_model *m,
                        const struct dea_state *state)
 {
-  (void)context;
   const double *kept = dea_state_find(state, "x", 2);
   m->x = kept[0];
   m->voltage_V = kept[1];

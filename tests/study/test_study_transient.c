@@ -131,7 +131,6 @@ struct told {
 static void listen(void *user, const char *what, size_t done, size_t total)
 {
   struct told *told = user;
-  (void)what;
   assert_true(total == 100 && done > told->done && done <= total);
   told->times++;
   told->done = done;

@@ -19,8 +19,6 @@ static bool with_mass = true;
 static dea_status create(struct dea_context *context, const struct dea_device *device,
                          const struct dea_model_settings *settings, struct dea_model **out)
 {
-  (void)settings;
-  (void)device;
   *out = dea_alloc(context, 1, sizeof **out);
   return *out != NULL ? DEA_OK : DEA_E_MEMORY;
 }
@@ -33,7 +31,6 @@ static void destroy(struct dea_context *context, struct dea_model *model)
 static dea_status solve(struct dea_context *context, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  (void)context;
   *out = dea_load_point_empty();
   out->voltage_V = model->voltage_V = voltage_V;
   return DEA_OK;
@@ -77,7 +74,6 @@ static dea_status respond(struct dea_context *context, struct dea_model *model,
                           const struct dea_ac_excitation *excitation, const double *frequency_Hz,
                           size_t count, struct dea_load_point *points)
 {
-  (void)context;
   double square = square_Hz2(model->voltage_V);
   for (size_t i = 0; i < count; i++) {
     double f = frequency_Hz[i], gap = 1 - f * f / square;
