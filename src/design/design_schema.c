@@ -227,7 +227,7 @@ static const struct dea_field design_fields[] = {
                    .default_text = "off"),
     DEA_NUMBER_ROW("temperature", AT(temperature_K), "K", "23 degC",
                    "temperature of the device: chooses among sets of a material that were measured "
-                   "at different ones",
+                   "at different ones, and shifts the times of branches (wlf)",
                    .min = 100, .max = 600, .absent_text = "unknown"),
     {.key = "drive",
      .kind = DEA_FIELD_RECORD,

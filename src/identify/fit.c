@@ -1,5 +1,7 @@
 #include "identify/fit.h"
 
+#include "material/branch.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -22,6 +24,24 @@ struct work {
 static struct dea_fit_rows all_rows(const struct dea_fit *fit)
 {
   return (struct dea_fit_rows){fit->series, fit->series_count, SIZE_MAX, 0, 0, fit->scatter_Pa};
+}
+
+/* The times that the tests span at the reference temperature, as far as the shift can be guessed.
+ */
+static void widen_times(struct work *w)
+{
+  const struct dea_fit_file *file = w->fit->file;
+  double longest = 1, shortest = 1;
+  const bool shifts = file->reference_K.origin != DEA_ABSENT;
+  for (size_t s = 0; s < w->fit->series_count && shifts; s++) {
+    const double off_K = dea_fit_temperature_K(file, w->fit->series[s].test) - file->reference_K.si;
+    const double shift =
+        dea_branch_shift(DEA_FIT_WLF_C1, DEA_FIT_WLF_C2_K, fmax(off_K, -0.5 * DEA_FIT_WLF_C2_K));
+    longest = fmax(longest, shift);
+    shortest = fmin(shortest, shift);
+  }
+  w->from_s /= longest;
+  w->to_s /= shortest;
 }
 
 /* Whether all fitted rows have uncertainties; none have: the scatter is found. */
@@ -55,6 +75,7 @@ static dea_status look_at_uncertainties(struct work *w)
       w->timed = true;
     }
   }
+  widen_times(w);
   if (rows == 0) {
     return dea_fail(w->ctx, DEA_E_DESIGN, "no test is there to be fitted (use: fit)");
   }
@@ -270,7 +291,7 @@ static dea_status try_law(struct work *w, const struct dea_label *name, struct d
   DEA_TRY(w->ctx, dea_fit_model_solve(w->ctx, model, &rows, &found));
   candidate->chi2 = found.chi2;
   candidate->aicc = criterion(&found, candidate->free_count, fit->scale_known);
-  dea_fit_model_material(model, found.p, material);
+  dea_fit_model_material(model, found.p, NULL, material);
   dea_lsq_free(&found);
   DEA_TRY(w->ctx, check_rest(w, material));
   find_stability(fit, material, candidate);
@@ -583,7 +604,7 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, choose_law(w));
   DEA_TRY(w->ctx, solve_chosen(w));
   DEA_TRY(w->ctx, settle_open(w));
-  dea_fit_model_material(&fit->model, fit->least_squares.p, &w->materials[fit->chosen]);
+  dea_fit_model_material(&fit->model, fit->least_squares.p, NULL, &w->materials[fit->chosen]);
   DEA_TRY(w->ctx, check_rest(w, &w->materials[fit->chosen]));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));

@@ -1,5 +1,6 @@
 #include "identify/fit_file.h"
 
+#include <math.h>
 #include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -76,6 +77,9 @@ static const struct dea_field test_fields[] = {
     DEA_NUMBER_ROW("stretch", TEST_AT(stretch), "1", "3",
                    "stretch that is held in a relaxation; of other tests the one that they go to",
                    .above_min = true, .max = 100, .absent_text = "in the file"),
+    DEA_NUMBER_ROW("temperature", TEST_AT(temperature_K), "K", "40 degC",
+                   "temperature of this test", .min = 100, .max = 600,
+                   .absent_text = "that of the file"),
 };
 static const struct dea_record test_record = {"test", "a test of the material", test_fields,
                                               COUNT(test_fields)};
@@ -101,6 +105,10 @@ static const struct dea_field fit_fields[] = {
                   .absent_text = "none"),
     DEA_NUMBER_ROW("temperature", AT(temperature_K), "K", "23 degC", "temperature of the tests",
                    .min = 100, .max = 600, .absent_text = "unknown"),
+    DEA_NUMBER_ROW("reference_temperature", AT(reference_K), "K", "20 degC",
+                   "temperature from which the branches' times shift to that of each test, by "
+                   "constants of Williams, Landel and Ferry that are fitted",
+                   .min = 100, .max = 600, .absent_text = "no shift"),
     DEA_LABEL_ROW("laws", AT(laws), "[neo-hookean, yeoh, ogden-2]",
                   "laws to fit; of several the one that foretells held-out tests best is taken; "
                   "NAME-N: its first N terms",
@@ -139,6 +147,13 @@ static const struct dea_field fit_fields[] = {
 const struct dea_record dea_fit_record = {
     "fit file", "measurements of a material and what is fitted", fit_fields, COUNT(fit_fields)};
 
+double dea_fit_temperature_K(const struct dea_fit_file *file, const struct dea_fit_test *test)
+{
+  const bool is_own = test->temperature_K.origin != DEA_ABSENT;
+  const struct dea_quantity *temperature = is_own ? &test->temperature_K : &file->temperature_K;
+  return temperature->origin != DEA_ABSENT ? temperature->si : NAN;
+}
+
 /* What the table cannot say of a test. */
 static dea_status check_test(struct dea_context *ctx, const struct dea_fit_test *test)
 {
@@ -172,6 +187,13 @@ static dea_status check(struct dea_context *ctx, const void *file)
   const struct dea_fit_file *fit = file;
   for (size_t i = 0; i < fit->test_count; i++) {
     DEA_TRY(ctx, check_test(ctx, &fit->tests[i]));
+    if (fit->reference_K.origin != DEA_ABSENT &&
+        isnan(dea_fit_temperature_K(fit, &fit->tests[i]))) {
+      DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, fit->tests[i].name.location,
+                                   "'%.60s' has no temperature, which a fit with a "
+                                   "reference_temperature needs",
+                                   fit->tests[i].name.text));
+    }
   }
   if (fit->parameter_count > 0 && fit->law_count > 1) {
     DEA_TRY(ctx,

@@ -5,7 +5,7 @@
 #include "identify/fit_head.h"
 
 enum {
-  DEA_FIT_TESTS_MAX = 16,
+  DEA_FIT_TESTS_MAX = 32,
   DEA_FIT_LAWS_MAX = 8,
 };
 
@@ -44,12 +44,14 @@ struct dea_fit_test {
   struct dea_choice kind, mode, use; // enum dea_fit_kind, dea_coupon_mode, dea_fit_use
   struct dea_label columns[DEA_FIT_COLUMNS];
   struct dea_quantity length_m, section_m2, relative, absolute_Pa, rate_per_s, ramp_s, stretch;
+  struct dea_quantity temperature_K; // absent: the file's
 };
 
 struct dea_fit_file {
   struct dea_fit_head head;
   struct dea_label material, branches;
   struct dea_quantity temperature_K; // of the tests; absent: unknown
+  struct dea_quantity reference_K; // from which branches shift to each test's; absent: they do not
   struct dea_label laws[DEA_FIT_LAWS_MAX];
   size_t law_count;
   struct dea_quantity branch_s[DEA_BRANCHES_MAX];
@@ -65,4 +67,6 @@ extern const struct dea_record dea_fit_record;
 /* Errors are findings with their places; DEA_E_DESIGN then. out: owned by the caller, NULL on
  * failure. */
 dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out);
+/* Temperature of a test; NAN: unknown. */
+double dea_fit_temperature_K(const struct dea_fit_file *file, const struct dea_fit_test *test);
 void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit);

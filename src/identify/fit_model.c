@@ -1,6 +1,7 @@
 #include "identify/fit_model.h"
 
 #include "base/units.h"
+#include "material/branch.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -221,7 +222,16 @@ dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file
 {
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   int terms;
-  *out = (struct dea_fit_model){.law = find_law(name->text, &terms)};
+  *out = (struct dea_fit_model){
+      .law = find_law(name->text, &terms),
+      .file = file,
+      .reference_K = file->reference_K.origin != DEA_ABSENT ? file->reference_K.si : NAN,
+      .coldest_K = INFINITY};
+  for (size_t s = 0; s < series_count; s++) {
+    if (dea_fit_series_used(&series[s])) {
+      out->coldest_K = fmin(out->coldest_K, dea_fit_temperature_K(file, series[s].test));
+    }
+  }
   snprintf(out->name, sizeof out->name, "%.63s", name->text);
   if (out->law == NULL || out->law->anisotropic || out->law->compressible != NULL) {
     DEA_TRY(ctx, unknown_law(ctx, name, out->law));
@@ -260,6 +270,29 @@ dea_status dea_fit_model_make(struct dea_context *ctx, const struct dea_fit_file
              : dea_fail(ctx, DEA_E_DESIGN, "the parameters of '%s' have errors", name->text);
 }
 
+/* c1 and c2, of which c2 keeps the formula's pole below the coldest test. */
+static void add_shift(struct dea_fit_model *model)
+{
+  struct dea_fit_param *c1 = &model->params[model->count], *c2 = c1 + 1;
+  *c1 = (struct dea_fit_param){.name = "wlf c1",
+                               .unit = "1",
+                               .started = true,
+                               .start = DEA_FIT_WLF_C1,
+                               .low = 0,
+                               .high = 100,
+                               .scale = 1,
+                               .prior = NAN,
+                               .prior_std = NAN};
+  *c2 = *c1;
+  snprintf(c2->name, sizeof c2->name, "wlf c2");
+  c2->unit = "K";
+  c2->start = DEA_FIT_WLF_C2_K;
+  c2->low = fmax(1, model->reference_K - model->coldest_K + 1);
+  c2->high = 1e5;
+  c2->scale = 10;
+  model->count += 2;
+}
+
 void dea_fit_model_branches(struct dea_fit_model *model, size_t count, double from_s, double to_s,
                             const struct dea_quantity *times)
 {
@@ -288,6 +321,9 @@ void dea_fit_model_branches(struct dea_fit_model *model, size_t count, double fr
     snprintf(modulus->name, sizeof modulus->name, "modulus %zu", b + 1);
     snprintf(time->name, sizeof time->name, "time %zu", b + 1);
   }
+  if (count > 0 && !isnan(model->reference_K)) {
+    add_shift(model);
+  }
 }
 
 size_t dea_fit_model_free(const struct dea_fit_model *model)
@@ -300,13 +336,19 @@ size_t dea_fit_model_free(const struct dea_fit_model *model)
 }
 
 void dea_fit_model_material(const struct dea_fit_model *model, const double *p,
-                            struct dea_material *out)
+                            const struct dea_fit_test *test, struct dea_material *out)
 {
+  const size_t shift = model->law_count + 2 * model->branch_count;
+  double factor = 1;
+  if (test != NULL && shift < model->count) {
+    factor = dea_branch_shift(p[shift], p[shift + 1],
+                              dea_fit_temperature_K(model->file, test) - model->reference_K);
+  }
   *out = (struct dea_material){.law = model->law, .branch_count = model->branch_count};
   memcpy(out->param, p, model->law_count * sizeof *p);
   for (size_t b = 0; b < model->branch_count; b++) {
     out->branches[b].modulus_Pa = p[model->law_count + 2 * b];
-    out->branches[b].time_s = exp(p[model->law_count + 2 * b + 1]);
+    out->branches[b].time_s = factor * exp(p[model->law_count + 2 * b + 1]);
   }
 }
 
@@ -334,12 +376,12 @@ static dea_status residual(void *user, const double *p, double *r)
   const struct residuals *w = user;
   struct dea_material material;
   size_t n = 0;
-  dea_fit_model_material(w->model, p, &material);
   for (size_t s = 0; s < w->rows->count; s++) {
     const struct dea_fit_series *series = &w->rows->series[s];
     if (!dea_fit_series_used(series)) {
       continue;
     }
+    dea_fit_model_material(w->model, p, series->test, &material);
     dea_status status = dea_coupon_stress(&material, &series->coupon, &w->shares[s], w->stress);
     if (status != DEA_OK) {
       return status;
@@ -417,7 +459,7 @@ static dea_status stress_of(void *user, const double *p, double *r)
 {
   struct stresses *w = user;
   struct dea_material material;
-  dea_fit_model_material(w->model, p, &material);
+  dea_fit_model_material(w->model, p, w->series->test, &material);
   return dea_coupon_stress(&material, &w->series->coupon, &w->shares, r);
 }
 

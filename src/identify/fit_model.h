@@ -7,6 +7,10 @@
 
 enum { DEA_FIT_PARAM_NAME = 128 };
 
+// J. D. Ferry's constants of many polymers, from which a search begins
+#define DEA_FIT_WLF_C1 8.86
+#define DEA_FIT_WLF_C2_K 101.6
+
 /* A parameter. Numbers are those that the search sees: the logarithm of a relaxation time. */
 struct dea_fit_param {
   char name[DEA_FIT_PARAM_NAME];    // "c1", "modulus 2", "time 2"
@@ -23,13 +27,15 @@ struct dea_fit_param {
 dea_status dea_fit_param_take(struct dea_context *ctx, const struct dea_fit_parameter_text *text,
                               struct dea_fit_param *param);
 
-/* The first law_count parameters are the law's, in its order; then modulus and time of each branch.
- */
+/* The first law_count parameters are the law's, in its order; then modulus and time of each branch;
+ * then c1 and c2 of the shift, where there is one. */
 struct dea_fit_model {
   char name[DEA_NAME_SIZE]; // as asked for: "ogden-2"
   const struct dea_law *law;
   struct dea_fit_param params[DEA_LSQ_PARAMS_MAX];
   size_t count, law_count, branch_count;
+  const struct dea_fit_file *file; // lent
+  double reference_K, coldest_K;   // of a shift, NAN: none; of the fitted tests
 };
 
 /* The tests that are fitted, all or but a part of one. */
@@ -50,9 +56,9 @@ void dea_fit_model_branches(struct dea_fit_model *model, size_t count, double fr
                             const struct dea_quantity *times);
 /* Free parameters. */
 size_t dea_fit_model_free(const struct dea_fit_model *model);
-/* The material at p. */
+/* The material at p, as it is in a test; NULL: at the reference temperature. */
 void dea_fit_model_material(const struct dea_fit_model *model, const double *p,
-                            struct dea_material *out);
+                            const struct dea_fit_test *test, struct dea_material *out);
 /* Whether a series counts as fitted: its test is for that. */
 bool dea_fit_series_used(const struct dea_fit_series *series);
 

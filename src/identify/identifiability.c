@@ -74,7 +74,7 @@ double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupo
 void dea_fit_identify_stability(struct dea_fit *fit)
 {
   struct dea_material material;
-  dea_fit_model_material(&fit->model, fit->least_squares.p, &material);
+  dea_fit_model_material(&fit->model, fit->least_squares.p, NULL, &material);
   for (int mode = 0; mode < DEA_COUPON_MODES; mode++) {
     struct dea_fit_stability *stability = &fit->stability[mode];
     *stability = (struct dea_fit_stability){.mode = (enum dea_coupon_mode)mode, .to = 1};

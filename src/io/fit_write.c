@@ -40,13 +40,44 @@ static void add_temperature(struct dea_text *out, const char *indent,
   }
 }
 
+/* A range, where it is known. unit: with a space in front. */
+static void add_range(struct dea_text *out, const char *indent, const char *key,
+                      const struct dea_data_range *range, const char *unit)
+{
+  if (range->count == 2) {
+    dea_text_add(out, "%s%s: [%.10g%s, %.10g%s]\n", indent, key, range->limits[0].si, unit,
+                 range->limits[1].si, unit);
+  }
+}
+
 static void add_notes(struct dea_text *out, const char *indent, const struct dea_data_notes *notes)
 {
   add_key(out, indent, "source", notes->source);
   add_key(out, indent, "uncertainty", notes->uncertainty);
   add_key(out, indent, "range", notes->range);
   add_temperature(out, indent, &notes->temperature_K);
+  add_range(out, indent, "temperature_range", &notes->temperatures, " K");
   add_key(out, indent, "note", notes->note);
+}
+
+/* Temperature of all tests; with a shift the reference, and the range of those that were fitted. */
+static void add_temperatures(struct dea_text *out, const char *indent, const struct dea_fit *fit)
+{
+  double low = INFINITY, high = -INFINITY;
+  if (fit->file->reference_K.origin == DEA_ABSENT) {
+    add_temperature(out, indent, &fit->file->temperature_K);
+    return;
+  }
+  for (size_t s = 0; s < fit->series_count; s++) {
+    if (dea_fit_series_used(&fit->series[s])) {
+      const double here_K = dea_fit_temperature_K(fit->file, fit->series[s].test);
+      low = fmin(low, here_K);
+      high = fmax(high, here_K);
+    }
+  }
+  add_temperature(out, indent, &fit->file->reference_K);
+  dea_text_add(out, low < high ? "%stemperature_range: [%.10g K, %.10g K]\n" : "", indent, low,
+               high);
 }
 
 /* This fit and its files, with their hashes. */
@@ -67,7 +98,7 @@ static void add_source(struct dea_text *out, const char *indent, const struct de
     }
   }
   add_key(out, indent, "source", dea_text_get(&source));
-  add_temperature(out, indent, &fit->file->temperature_K);
+  add_temperatures(out, indent, fit);
   out->failed = out->failed || source.failed;
   dea_text_free(&source);
 }
@@ -135,6 +166,19 @@ static void add_law(struct dea_text *out, const struct dea_fit *fit)
   dea_text_free(&note);
 }
 
+/* The branches' shift, and the temperatures of the tests. */
+static void add_shift(struct dea_text *out, const struct dea_fit *fit)
+{
+  const size_t j = fit->model.count - 2;
+  add_value(out, "    wlf: {", "c1", fit->values[j].value, "1");
+  add_value(out, ", ", "c2", fit->values[j + 1].value, "K");
+  if (has_std(fit, j) && has_std(fit, j + 1)) {
+    add_value(out, ", ", "c1_uncertainty", fit->values[j].std, "1");
+    add_value(out, ", ", "c2_uncertainty", fit->values[j + 1].std, "K");
+  }
+  dea_text_add(out, "}\n");
+}
+
 static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
 {
   bool any = false;
@@ -155,19 +199,12 @@ static void add_viscosity(struct dea_text *out, const struct dea_fit *fit)
     }
     dea_text_add(out, "}\n");
   }
+  if (any && fit->model.law_count + 2 * fit->model.branch_count < fit->model.count) {
+    add_shift(out, fit);
+  }
   if (any) {
     add_source(out, "    ", fit);
     dea_text_add(out, "    note: belongs to the law fit\n");
-  }
-}
-
-/* A range, where it is known. unit: with a space in front. */
-static void add_range(struct dea_text *out, const char *indent, const char *key,
-                      const struct dea_data_range *range, const char *unit)
-{
-  if (range->count == 2) {
-    dea_text_add(out, "%s%s: [%.10g%s, %.10g%s]\n", indent, key, range->limits[0].si, unit,
-                 range->limits[1].si, unit);
   }
 }
 

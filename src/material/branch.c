@@ -17,6 +17,11 @@ struct dea_branch_weights dea_branch_weights(double length_s, double relaxation_
   return w;
 }
 
+double dea_branch_shift(double c1, double c2_K, double off_K)
+{
+  return pow(10, -c1 * off_K / (c2_K + off_K));
+}
+
 struct dea_equal_tensor dea_equal_inverse(double stretch)
 {
   double square = stretch * stretch;

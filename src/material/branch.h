@@ -18,6 +18,10 @@ struct dea_branch_weights {
 /* Weights of a step of length_s >= 0; accurate for any ratio to the relaxation time. */
 struct dea_branch_weights dea_branch_weights(double length_s, double relaxation_time_s);
 
+/* Factor a of all relaxation times at off_K from the reference temperature, by Williams, Landel and
+ * Ferry (1955): log10 a = -c1 off/(c2 + off); off_K > -c2_K. */
+double dea_branch_shift(double c1, double c2_K, double off_K);
+
 /* The film under equal stretches l in its plane: tensors have two numbers, in the plane (p) and
  * across (z). C^-1 = (l^-2, l^4). */
 struct dea_equal_tensor {

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/file_kind.h"
+#include "material/branch.h"
 #include "material/plane.h"
 
 #include <dirent.h>
@@ -227,10 +228,22 @@ static const char *id_of(const struct sets *sets, size_t i)
   return ((const struct dea_label *)(const void *)label)->text;
 }
 
-static double temperature_of(const struct sets *sets, size_t i)
+static const struct dea_data_notes *notes_of(const struct sets *sets, size_t i)
 {
   const char *notes = (const char *)sets->notes + i * sets->stride;
-  return ((const struct dea_data_notes *)(const void *)notes)->temperature_K.si;
+  return (const struct dea_data_notes *)(const void *)notes;
+}
+
+static const double near_K = 5; // so far the numbers of one temperature are taken for another's
+
+/* How far a temperature is from those of a set, in whose range it counts as just near: one that was
+ * measured closer goes first. NAN: not known. */
+static double find_distance(const struct dea_data_notes *notes, double at_K)
+{
+  const struct dea_quantity *limits = notes->temperatures.limits;
+  return notes->temperatures.count == 2
+             ? fmax(near_K, fmax(limits[0].si - at_K, at_K - limits[1].si))
+             : fabs(at_K - notes->temperature_K.si);
 }
 
 static bool is_given(const struct dea_quantity *temperature)
@@ -244,7 +257,7 @@ static int find_nearest(const struct sets *sets, const struct dea_quantity *temp
   int nearest = 0;
   double least_K = INFINITY;
   for (size_t i = 0; i < sets->count && is_given(temperature); i++) {
-    const double off_K = fabs(temperature_of(sets, i) - temperature->si);
+    const double off_K = find_distance(notes_of(sets, i), temperature->si);
     if (off_K < least_K) {
       nearest = (int)i;
       least_K = off_K;
@@ -259,21 +272,27 @@ static dea_status check_temperature(struct dea_context *ctx, const char *materia
                                     const struct dea_quantity *temperature,
                                     struct dea_text *unknown)
 {
-  static const double near_K = 5, freezing_K = 273.15;
+  static const double freezing_K = 273.15;
   if (!is_given(temperature) || sets->count == 0) {
     return DEA_OK;
   }
-  const double at_K = temperature_of(sets, (size_t)set);
-  if (isnan(at_K)) {
+  const struct dea_data_notes *notes = notes_of(sets, (size_t)set);
+  const double off_K = find_distance(notes, temperature->si);
+  if (isnan(off_K)) {
     dea_text_add(unknown, "%s%s", dea_text_get(unknown)[0] != '\0' ? ", " : "", sets->what);
     return DEA_OK;
   }
-  return fabs(at_K - temperature->si) <= near_K
-             ? DEA_OK
-             : dea_finding_add(ctx, DEA_WARNING, temperature->location,
-                               "the %s '%s' of '%s' was measured at %.4g degC, not at %.4g degC",
-                               sets->what, id_of(sets, (size_t)set), material, at_K - freezing_K,
-                               temperature->si - freezing_K);
+  if (off_K <= near_K) {
+    return DEA_OK;
+  }
+  const bool is_range = notes->temperatures.count == 2;
+  char at[64];
+  snprintf(at, sizeof at, is_range ? "holds from %.4g to %.4g degC" : "was measured at %.4g degC",
+           (is_range ? notes->temperatures.limits[0] : notes->temperature_K).si - freezing_K,
+           notes->temperatures.limits[1].si - freezing_K);
+  return dea_finding_add(ctx, DEA_WARNING, temperature->location,
+                         "the %s '%s' of '%s' %s, not at %.4g degC", sets->what,
+                         id_of(sets, (size_t)set), material, at, temperature->si - freezing_K);
 }
 
 /* Index of the set with that id (see dea_material_choice for ""); -1 after adding a finding. */
@@ -360,10 +379,17 @@ static void take_breakdown(const struct dea_breakdown_set *set, struct dea_break
   dea_breakdown_specialise(0, 0, out);
 }
 
-/* Branches as moduli; a ratio is of the law's shear modulus at rest. */
+/* Branches as moduli, a ratio being of the law's shear modulus at rest, with their times at the
+ * temperature of the device. */
 static dea_status take_viscosity(struct dea_context *ctx, const struct dea_viscosity_set *set,
-                                 struct dea_material *out)
+                                 const struct dea_quantity *temperature, struct dea_material *out)
 {
+  double shift = 1;
+  if (is_given(temperature) && set->has_wlf) { // a temperature out of range: its end
+    const struct dea_quantity *limits = set->notes.temperatures.limits;
+    const double at_K = fmin(fmax(temperature->si, limits[0].si), limits[1].si);
+    shift = dea_branch_shift(set->wlf_c1.si, set->wlf_c2_K.si, at_K - set->notes.temperature_K.si);
+  }
   snprintf(out->viscosity_id, sizeof out->viscosity_id, "%.63s", set->id.text);
   out->viscosity_assumed = set->assumed.value == 1;
   out->branch_count = set->branch_count;
@@ -376,7 +402,7 @@ static dea_status take_viscosity(struct dea_context *ctx, const struct dea_visco
                                    out->name));
       return dea_fail(ctx, DEA_E_DESIGN, "a branch of '%s' has no modulus", out->name);
     }
-    out->branches[i].time_s = branch->time_s.si;
+    out->branches[i].time_s = shift * branch->time_s.si;
     out->branches[i].modulus_Pa =
         relative ? branch->ratio.si * out->law->shear_modulus(out->param) : branch->modulus_Pa.si;
   }
@@ -434,7 +460,7 @@ dea_status dea_material_select(struct dea_context *ctx, const struct dea_materia
     take_breakdown(&data->breakdown[breakdown], &out->breakdown);
   }
   if (viscous && data->viscosity_count > 0) {
-    DEA_TRY(ctx, take_viscosity(ctx, &data->viscosity[viscosity], out));
+    DEA_TRY(ctx, take_viscosity(ctx, &data->viscosity[viscosity], temperature, out));
   }
   if (data->has_resistivity) {
     out->resistivity_ohm_m = data->resistivity.value_ohm_m.si;

@@ -10,17 +10,18 @@
 
 enum { DEA_MATERIAL_VERSION = 1, DEA_MATERIAL_SETS_MAX = 8 };
 
-/* What every set of numbers says about itself; NULL where nothing is said. */
-struct dea_data_notes {
-  const char *uncertainty, *range, *source, *note;
-  struct dea_quantity temperature_K; // that it was measured at; NAN: unknown
-};
-
-/* Range of stretch that the data cover, or of values that the sources give. count is 0 when it is
- * not known, else 2. */
+/* Range of stretch or temperature that the data cover, or of values that the sources give. count is
+ * 0 when it is not known, else 2. */
 struct dea_data_range {
   struct dea_quantity limits[2];
   size_t count;
+};
+
+/* What every set of numbers says about itself; NULL where nothing is said. */
+struct dea_data_notes {
+  const char *uncertainty, *range, *source, *note;
+  struct dea_quantity temperature_K;  // that it was measured at; NAN: unknown
+  struct dea_data_range temperatures; // at which it holds too
 };
 
 /* Parameters of one law. */
@@ -70,6 +71,10 @@ struct dea_viscosity_set {
   struct dea_choice assumed; // 1: plausible numbers, not measured ones
   struct dea_branch_data branches[DEA_BRANCHES_MAX];
   size_t branch_count;
+  /* Constants of Williams, Landel and Ferry with the notes' temperature as reference, with standard
+   * uncertainties; NAN: not given. */
+  bool has_wlf;
+  struct dea_quantity wlf_c1, wlf_c2_K, wlf_c1_std, wlf_c2_std_K;
   struct dea_data_notes notes;
 };
 

@@ -36,6 +36,18 @@
        .max = 600,                                                                                 \
        .doc = "temperature that they were measured at",                                            \
        .example = "23 degC"},                                                                      \
+      {.key = "temperature_range",                                                                 \
+       .kind = DEA_FIELD_NUMBER,                                                                   \
+       .offset = offsetof(type, member.temperatures.limits),                                       \
+       .unit = "K",                                                                                \
+       .min = 100,                                                                                 \
+       .max = 600,                                                                                 \
+       .list_min = 2,                                                                              \
+       .list_max = 2,                                                                              \
+       .element_size = sizeof(struct dea_quantity),                                                \
+       .count_offset = offsetof(type, member.temperatures.count),                                  \
+       .doc = "lowest and highest temperature at which they hold",                                 \
+       .example = "[0 degC, 80 degC]"},                                                            \
   {                                                                                                \
     .key = "note", .kind = DEA_FIELD_TEXT, .offset = offsetof(type, member.note),                  \
     .doc = "anything else a user should know", .example = "\"as bought, before curing\""           \
@@ -171,6 +183,22 @@ static const struct dea_field branch_fields[] = {
 static const struct dea_record branch_record = {"branch", "spring and dashpot in series",
                                                 branch_fields, COUNT(branch_fields)};
 
+static const struct dea_field wlf_fields[] = {
+    DEA_NUMBER_ROW("c1", offsetof(struct dea_viscosity_set, wlf_c1), "1", "2.4",
+                   "first constant of Williams, Landel and Ferry", .above_min = true, .max = 100,
+                   .required = true),
+    DEA_NUMBER_ROW("c2", offsetof(struct dea_viscosity_set, wlf_c2_K), "K", "57 K",
+                   "second constant", .above_min = true, .max = 1e5, .required = true),
+    DEA_NUMBER_ROW("c1_uncertainty", offsetof(struct dea_viscosity_set, wlf_c1_std), "1", "0.3",
+                   "standard uncertainty of c1", .max = 100, .absent_text = "not given"),
+    DEA_NUMBER_ROW("c2_uncertainty", offsetof(struct dea_viscosity_set, wlf_c2_std_K), "K", "8 K",
+                   "standard uncertainty of c2", .max = 1e5, .absent_text = "not given"),
+};
+
+static const struct dea_record wlf_record = {
+    "shift with temperature", "log10 a = -c1 (T - T0)/(c2 + T - T0); T0: the set's temperature",
+    wlf_fields, COUNT(wlf_fields)};
+
 static const struct dea_field viscosity_fields[] = {
     ID_FIELD(struct dea_viscosity_set, "set"),
     {.key = "branches",
@@ -187,6 +215,13 @@ static const struct dea_field viscosity_fields[] = {
     DEA_CHOICE_ROW("assumed", offsetof(struct dea_viscosity_set, assumed), dea_no_yes, "yes",
                    "whether the numbers are plausible rather than measured; runs then say so",
                    .default_text = "no"),
+    {.key = "wlf",
+     .kind = DEA_FIELD_RECORD,
+     .record = &wlf_record,
+     .present_offset = offsetof(struct dea_viscosity_set, has_wlf),
+     .absent_text = "none",
+     .doc = "factor a of all times at the temperature T; holds in temperature_range",
+     .example = "{c1: 2.4, c2: 57 K}"},
     NOTE_FIELDS(struct dea_viscosity_set, notes),
 };
 
@@ -394,14 +429,14 @@ static dea_status check_length(const struct dea_reader *reader, const struct dea
                           label->text, DEA_NAME_SIZE - 1);
 }
 
-static dea_status check_range(const struct dea_reader *reader, const struct dea_data_range *range)
+static dea_status check_range(const struct dea_reader *reader, const struct dea_data_range *range,
+                              const char *key)
 {
   if (range->count != 2 || !(range->limits[0].si >= range->limits[1].si)) {
     return DEA_OK;
   }
-  return dea_schema_error(reader, range->limits[1].location,
-                          "stretch_range must rise; %g is not above %g", range->limits[1].si,
-                          range->limits[0].si);
+  return dea_schema_error(reader, range->limits[1].location, "%s must rise; %g is not above %g",
+                          key, range->limits[1].si, range->limits[0].si);
 }
 
 /* The range of what sources give holds what was taken. */
@@ -436,7 +471,7 @@ static dea_status check_breakdown(const struct dea_reader *reader,
   struct dea_context *ctx = reader->ctx;
   for (size_t i = 0; i < data->breakdown_count; i++) {
     const struct dea_breakdown_set *set = &data->breakdown[i];
-    DEA_TRY(ctx, check_range(reader, &set->range));
+    DEA_TRY(ctx, check_range(reader, &set->range, "stretch_range"));
     DEA_TRY(ctx, check_values(reader, &set->at_rest_V_per_m, &set->values));
     DEA_TRY(ctx, check_pair(reader, &set->thickness_exponent, &set->thickness_m,
                             "thickness_exponent", "reference_thickness"));
@@ -449,6 +484,21 @@ static dea_status check_breakdown(const struct dea_reader *reader,
   return DEA_OK;
 }
 
+/* A shift is of a temperature, in a range that its formula has. */
+static dea_status check_shift(const struct dea_reader *reader, const struct dea_viscosity_set *set)
+{
+  const struct dea_data_notes *notes = &set->notes;
+  DEA_TRY(reader->ctx, check_range(reader, &notes->temperatures, "temperature_range"));
+  if (!set->has_wlf || isnan(set->wlf_c2_K.si) ||
+      (!isnan(notes->temperature_K.si) && notes->temperatures.count == 2 &&
+       set->wlf_c2_K.si > notes->temperature_K.si - notes->temperatures.limits[0].si)) {
+    return DEA_OK;
+  }
+  return dea_schema_error(reader, set->wlf_c1.location,
+                          "wlf needs a temperature, its reference, and a temperature_range that "
+                          "ends less than c2 below it");
+}
+
 static dea_status check_sets(const struct dea_reader *reader, const struct dea_material_data *data)
 {
   struct dea_context *ctx = reader->ctx;
@@ -458,13 +508,13 @@ static dea_status check_sets(const struct dea_reader *reader, const struct dea_m
   DEA_TRY(ctx, check_length(reader, &data->name));
   for (size_t i = 0; i < data->law_count; i++) {
     DEA_TRY(ctx, check_length(reader, &data->laws[i].id));
-    DEA_TRY(ctx, check_range(reader, &data->laws[i].range));
+    DEA_TRY(ctx, check_range(reader, &data->laws[i].range, "stretch_range"));
     for (size_t j = 0; j < i; j++) {
       DEA_TRY(ctx, check_id(reader, &data->laws[i].id, &data->laws[j].id));
     }
   }
   for (size_t i = 0; i < data->permittivity_count; i++) {
-    DEA_TRY(ctx, check_range(reader, &data->permittivity[i].range));
+    DEA_TRY(ctx, check_range(reader, &data->permittivity[i].range, "stretch_range"));
     DEA_TRY(ctx,
             check_values(reader, &data->permittivity[i].at_rest, &data->permittivity[i].values));
     for (size_t j = 0; j < i; j++) {
@@ -472,6 +522,7 @@ static dea_status check_sets(const struct dea_reader *reader, const struct dea_m
     }
   }
   for (size_t i = 0; i < data->viscosity_count; i++) {
+    DEA_TRY(ctx, check_shift(reader, &data->viscosity[i]));
     for (size_t j = 0; j < i; j++) {
       DEA_TRY(ctx, check_id(reader, &data->viscosity[i].id, &data->viscosity[j].id));
     }

@@ -271,6 +271,38 @@ TEST(test_branches_find_themselves)
   dea_fit_destroy(ctx, fit);
 }
 
+/* Relaxations at three temperatures of a branch whose time goes with 10^(-c1 dT/(c2 + dT)): that
+ * law is found with its constants. */
+TEST(test_shift_with_temperature)
+{
+  const double known[5] = {2e4, 3e4, 3, 2.5, 60}, off_K[3] = {-20, 0, 40};
+  add_law("neo-hookean");
+  snprintf(trial.file.branches.text, sizeof trial.file.branches.text, "1");
+  trial.file.reference_K = (struct dea_quantity){.si = 293.15, .origin = DEA_GIVEN};
+  for (int t = 0; t < 3; t++) {
+    const double time = known[2] * pow(10, -known[3] * off_K[t] / (known[4] + off_K[t]));
+    struct dea_fit_series *series = add_series(DEA_FIT_RELAXATION, 40, 30);
+    trial.file.tests[t].temperature_K =
+        (struct dea_quantity){.si = 293.15 + off_K[t], .origin = DEA_GIVEN};
+    series->time_s = dea_arena_alloc(&trial.memory, series->rows, sizeof(double));
+    for (size_t i = 0; i < series->rows; i++) { // a jump: the spring's stress decays
+      series->stretch[i] = 2;
+      series->time_s[i] = pow(10, -1 + 4 * (double)i / 39);
+      series->stress_Pa[i] = (known[0] + known[1] * exp(-series->time_s[i] / time)) * (2 - 0.25);
+    }
+    assert_int_equal(dea_coupon_follow(&trial.memory, series->time_s, 1e-9, &series->coupon),
+                     DEA_OK);
+  }
+  struct dea_fit *fit = run_trial();
+  assert_int_equal(fit->model.count, 5);
+  assert_string_equal(fit->model.params[4].name, "wlf c2");
+  for (size_t j = 0; j < 5; j++) {
+    assert_close(fit->values[j].value, known[j], 1e-5, 0);
+    assert_true(fit->values[j].std > 0 && fit->values[j].std < 0.05 * known[j]);
+  }
+  dea_fit_destroy(ctx, fit);
+}
+
 /* One uniaxial test of small stretches holds c10 and c01 by their sum only, a biaxial one parts
  * them. */
 TEST(test_what_cannot_be_told_apart)
@@ -366,7 +398,7 @@ TEST(test_silicones)
         fail_msg("%s by %s: %s", names[i], laws[k], dea_context_message(ctx));
       }
       if (status == DEA_OK) {
-        dea_fit_model_material(&fit->model, fit->least_squares.p, &found);
+        dea_fit_model_material(&fit->model, fit->least_squares.p, NULL, &found);
         assert_true(found.law->shear_modulus(found.param) > 0);
         const double share = fit->curves[0].rms_Pa / series->stress_Pa[series->rows - 1];
         if (k > 0 && !(share < (k == 2 ? 7e-3 : 0.05))) {

@@ -64,7 +64,7 @@ static void has_units_and_sources(const struct dea_catalogue_entry *entry)
       sources++;
     }
     if (value->origin == DEA_GIVEN && value->unit != NULL && strcmp(value->unit, "1") != 0) {
-      assert_non_null(strpbrk(value->text, "abcdefghijklmnopqrstuvwxyzPVGM"));
+      assert_non_null(strpbrk(value->text, "abcdefghijklmnopqrstuvwxyzPVGMK"));
     }
   }
   assert_int_equal(sources, data->law_count + data->permittivity_count + data->breakdown_count +
@@ -245,6 +245,11 @@ TEST(test_bad_files)
        "     stretch_range: [2, 1]}\n",
        "stretch_range must rise", 6},
       {"dea_material: 1\nname: bad\nkind: plastic\n"
+       "viscosity:\n  - {id: a, branches: [{modulus: 1 kPa, time: 1 s}], source: s,\n"
+       "     wlf: {c1: 2, c2: 30 K}, temperature: 20 degC, temperature_range: [-20 degC, 50 "
+       "degC]}\n",
+       "a temperature_range that ends less than c2 below it", 6},
+      {"dea_material: 1\nname: bad\nkind: plastic\n"
        "density: {value: 1000 kg/m^3, value_range: [900 kg/m^3, 950 kg/m^3], source: s}\n",
        "the range 900 to 950 does not hold the value 1000", 4},
       {"dea_material: 1\nname: bad\nkind: plastic\n"
@@ -306,12 +311,25 @@ TEST(test_temperature)
   assert_int_equal(findings[1].severity, DEA_WARNING);
   assert_non_null(strstr(findings[1].text, "'cycles-0C' of 'vhb-4905' was measured at 0 degC, not "
                                            "at 100 degC"));
+  at.si = 273.15 - 60;
+  choice.law = choice.viscosity = "cycles-shifted";
+  assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
+  assert_close(film.branches[2].time_s, 7.94 * pow(10, 2.65 * 20 / (64.66 - 20)), 1e-12, 0);
+  findings = dea_finding_get(ctx, &count); // of law, permittivity and viscosity
+  assert_int_equal(count, 7);
+  assert_non_null(strstr(findings[4].text,
+                         "'cycles-shifted' of 'vhb-4905' holds from 0 to 80 degC, "
+                         "not at -60 degC"));
+  at.si = 273.15 + 30; // between two sets of one temperature
+  choice.law = choice.viscosity = NULL;
+  assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
+  assert_string_equal(film.law_id, "cycles-shifted");
+  assert_close(film.branches[2].time_s, 7.94 * pow(10, -2.65 * 10 / (64.66 + 10)), 1e-12, 0);
   at.origin = DEA_ABSENT;
-  choice.law = NULL;
   assert_int_equal(dea_material_select(ctx, &entry->data, &choice, &film), DEA_OK);
   assert_string_equal(film.law_id, "arruda-boyce-2016");
   (void)dea_finding_get(ctx, &count);
-  assert_int_equal(count, 4);
+  assert_int_equal(count, 8); // the permittivity at 30 degC is 10 K off
   dea_catalogue_destroy(ctx, entry);
 }
 
