@@ -265,6 +265,31 @@ static double power(const double *force_N)
   return log((force_N[0] - force_N[2]) / (force_N[0] - force_N[1])) / log(2);
 }
 
+/* What a force that is linear in the voltage may be; forces at 0, 3 and 6 kV. */
+static void reading(const double *four_N, const double *eight_N)
+{
+  const double stiffer = 281.2 / 178.4, weaker = 1.5 / 2.8, change_N = four_N[0] - four_N[2],
+               change8_N = eight_N[0] - eight_N[2];
+  printf(
+      "\nThe group's other constants, 281.2 kPa for the first of Yeoh's law and a permittivity of "
+      "1.5 (the article with the rest of the law was not at\nhand), make the film %.2f times as "
+      "stiff and the field's stress %.2f times as large. In proportion a tip at 2 mm feels %.0f mN "
+      "before any\nvoltage, and 6 kV change %.0f and %.0f mN: further from the paper's number.\n",
+      stiffer, weaker, 1e3 * stiffer * four_N[0], 1e3 * weaker * change_N,
+      1e3 * weaker * change8_N);
+  printf(
+      "\n**A hypothesis that fits**: a signal proportional to the supply's command, coupled into "
+      "the cell. Of the force that the paper gives, 73 %% of the\ncell's range (25 g, 0.245 N), "
+      "two properties are not those of a film: it is linear in V, and equal to 0.13 %% for four "
+      "and eight fibres,\nwhere the film's change differs by %.0f %%. An electrostatic "
+      "attraction of tip and electrode is not it either: like the film's force it\ngoes with "
+      "V^2. Tests, each with the same commands: the film cut, or the leads off it, and the tip "
+      "in its place (a film's force is gone, a\ncoupled signal stays); the other polarity (a "
+      "coupled signal changes its sign, a force does not). Neither is known to have been "
+      "made.\n",
+      100 * (change8_N / change_N - 1));
+}
+
 static void force_numbers(void)
 {
   const double depths_mm[] = {0, 0.5, 1, 1.5, 2};
@@ -300,6 +325,7 @@ static void force_numbers(void)
         "side).\nThe paper does not say how deep the tip was, so its 0.18 N cannot be predicted; a "
         "change of 0.18 N by 6 kV is out of reach of\nthis design at any of these depths.\n",
         last_mm, 1e3 * (four[4][0] - four[4][2]), 1e3 * (eight[4][0] - eight[4][2]));
+    reading(four[4], eight[4]);
   }
   puts("");
 }
