@@ -304,6 +304,36 @@ TEST(test_vhb)
   assert_int_equal(holds, 24);
 }
 
+/* Cycles at three temperatures: the written material shifts its branches, and says from where to
+ * where. */
+TEST(test_shift)
+{
+  static char material[COMMAND_TEXT_MAX];
+#define CYCLE(degrees, temperature)                                                                \
+  "  - {name: at " degrees ", kind: cyclic, " temperature "file: " DEA_SOURCE_DIR                  \
+  "/examples/fit/vhb-4905/cycles/" degrees "C-0.1-to-4.csv}\n"
+#define HEAD                                                                                       \
+  "dea_fit: 1\nname: mine\nlaws: [neo-hookean]\nbranches: 2\nreference_temperature: 20 degC\n"     \
+  "tests:\n"
+  command_write("mine.yaml",
+                HEAD CYCLE("0", "temperature: 0 degC, ") CYCLE("20", "temperature: 20 degC, ")
+                    CYCLE("40", "temperature: 40 degC, "));
+  assert_int_equal(command_run("fit mine.yaml --force"), 0);
+  assert_contains(command_out, "  wlf c2 ");
+  command_read("mine.fit/mine.yaml", material);
+  assert_contains(material, "    wlf: {c1: ");
+  assert_contains(material, "    temperature: 293.15 K\n"
+                            "    temperature_range: [273.15 K, 313.15 K]\n");
+  command_before = "env DEA_MATERIALS=mine.fit";
+  assert_int_equal(command_run("materials mine"), 0);
+  assert_contains(command_out, "c2_uncertainty");
+  command_before = "";
+  command_write("mine.yaml", HEAD CYCLE("0", ""));
+  command_expect("fit mine.yaml --force", 3,
+                 "mine.yaml:7:12: error: 'at 0' has no temperature, which a fit with a "
+                 "reference_temperature needs");
+}
+
 /* Strain by creep of the standard linear solid, E and E_1 with time tau in parallel, under a stress
  * that rises evenly within a time; strains of 0.5 % at most. */
 static double creep_strain(double t, double stress, double rise_s)
