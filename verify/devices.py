@@ -269,8 +269,33 @@ WANTED = [
     ("Fluorinated elastomer, area +253 % at 46 V/um (Feng et al., Nat. Commun. 15 (2024) 4222)", "second hand", "modulus, permittivity, pre-strain"),
     ("Acrylic tape of 0.5 mm at stretches (4, 1), (3, 2), (2, 2): 5.7, 5.2, 8.0 kV (github.com/Khushi7kumari/Wrinkling-Stability)",
      "second hand", "whether these are measured breakdown voltages"),
+    ("Acrylic capacitor pressed to 39 kPa, capacitance 1.35 times that at rest (pressure_cap_data.csv of github.com/ericstewart36/ionotronics)", "data",
+     "whether the plates slip, area of the plates, time"),
+    ("The same in cycles, capacitance 28.8 to 29.2 pF (uniaxial_cap_cycle_data.csv)", "data", "stretch of the cycles"),
     ("Contractile film with fibres, 7 and 8 kV (github.com/sherwood01v/mesh-reinforcement-dea-project)", "code", "the recordings, which are not in it"),
 ]
+
+
+def number_at(text, start):
+    """The table row of a page that starts so, as its cells."""
+    row = next(r for r in text.splitlines() if r.startswith(start))
+    return [c.strip() for c in row.strip("|").split("|")]
+
+
+def elsewhere():
+    """Rows of devices whose designs other pages run: (device, quantity, measured, low, high, page)."""
+    with open(os.path.join(ROOT, "docs/validation/paper.md"), encoding="utf-8") as file:
+        paper = file.read()
+    bounds = sorted(abs(float(x)) / 1000 for x in number_at(paper, "| **band** |")[-1].split(" ... "))
+    yield "The paper's actuator, four fibres", "largest displacement at 8 kV (mm)", 0.5, *bounds, "paper"
+    for name, cell in (("four", 4), ("eight", 8)):
+        change = max(-float(number_at(paper, f"| {d} mm |")[cell]) for d in ("0.5", "1.0", "1.5", "2.0"))
+        yield f"The paper's actuator, {name} fibres", "size of the force's change by 6 kV (mN), any depth", 180, 0, change, "paper"
+    with open(os.path.join(ROOT, "docs/validation/vhb-under-voltage.csv"), encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["measured drop (kPa)"] and row["stretch"] in ("1.25", "1.5", "2", "2.5", "2.95"):
+                low, high = (float(row[k]) for k in ("low (kPa)", "high (kPa)"))
+                yield "Strip of VHB 4905 under 6 kV", f"fall of the stress at {row['stretch']} (kPa)", float(row["measured drop (kPa)"]), low, high, "vhb-under-voltage"
 
 
 def predict(device, folder):
@@ -352,7 +377,7 @@ def write_csv(found):
 
 
 def main():
-    found = list(rows())
+    found, others = list(rows()), list(elsewhere())
     write_csv(found)
     figure(found)
     telling = [p for p in found if p["telling"]]
@@ -363,7 +388,8 @@ higher or lower between corners was not searched). Nothing is fitted to the meas
 strip, and no value moved into its band by that. Inputs are given in the source, or those of the catalogue with its spread, or assumed; bands whose ends
 are within a factor of two are counted by themselves.
 
-**In the band: {sum(p['inside'] for p in found)} of {len(found)} values, of {len(DEVICES)} tests from four sources. Of the bands within a factor of two: {sum(p['inside'] for p in telling)} of {len(telling)}.**
+**In the band: {sum(p['inside'] for p in found)} of {len(found)} values, of {len(DEVICES)} tests from four sources. Of the bands within a factor of two: {sum(p['inside'] for p in telling)} of {len(telling)}.
+With the three devices of other pages: {sum(p['inside'] for p in found) + sum(low <= m <= high for _, _, m, low, high, _ in others)} of {len(found) + len(others)} values, of {len(DEVICES) + len({o[0] for o in others})} devices.**
 Two of the measured values, the frequency ratios, are known as intervals only; both intervals are in their bands.
 [devices.csv](devices.csv) has all numbers.
 
@@ -393,6 +419,12 @@ Two of the measured values, the frequency ratios, are known as intervals only; b
         for name, low, mid, high, unit, origin in device["inputs"]:
             line([name + (f" ({unit})" if unit else ""), low, mid, high, origin])
         print()
+    print("## Devices of other pages\n")
+    line(["device", "quantity", "measured", "band", "in the band", "page"])
+    line(["---"] * 6)
+    for device, quantity, measured, low, high, page in others:
+        line([device, quantity, number(measured), f"{number(low)} to {number(high)}", "yes" if low <= measured <= high else "**no**", f"[{page}.md]({page}.md)"])
+    print()
     print(READING)
     print("## Wanted\n\nDevices that were looked for, what could be read of them, and what is missing. None of them is counted.\n")
     line(["device", "read", "missing"])
@@ -400,8 +432,8 @@ Two of the measured values, the frequency ratios, are known as intervals only; b
     for row in WANTED:
         line(row)
     print("""
-Measured elsewhere in this project: the paper's actuators ([paper.md](paper.md), [paper-inverse.md](paper-inverse.md)), relaxation
-of VHB 4910 ([vhb.md](vhb.md)), and a strip of VHB 4905 under 6 kV (`scripts/verify vhb-voltage`).""")
+Materials of others, not devices: relaxation of VHB 4910 ([vhb.md](vhb.md)), cycles of VHB 4905 at five temperatures
+([vhb-temperature.md](vhb-temperature.md)).""")
 
 
 READING = """## What these say
@@ -415,6 +447,11 @@ READING = """## What these say
   permittivity of this tape changes with stretch. Its value at rest would need a permittivity of 6.7 at the size assumed.
 * **Acrylic discs wrinkle within the band**, at 5.4 kV and 2.3 times the area (nominal 4.6 kV and 2.9), with an assumed pre-stretch. With carbon black the disc
   agrees up to 3 kV and grows ever more slowly above: stiffness, resistance, or another film.
+
+* **The paper's actuator** reaches its 0.5 mm at the end of the band only, and its force is out of reach at any depth of the tip, with the other
+  sign and another power of the voltage ([paper.md](paper.md)).
+* **A strip of VHB 4905 under 6 kV** loses the stress that lies between free and held width at all stretches, by a course that no one strip has
+  ([vhb-under-voltage.md](vhb-under-voltage.md)).
 
 The pre-stretch of each film and the stiffness of each electrode make the wide bands.
 
