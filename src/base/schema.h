@@ -94,6 +94,14 @@ extern const char *const dea_no_yes[];
     .doc = text, __VA_ARGS__                                                                       \
   }
 
+#define DEA_FIELD_ROW(its_kind, name, at, ...)                                                     \
+  {                                                                                                \
+    .key = name, .kind = DEA_FIELD_##its_kind, .offset = at, __VA_ARGS__                           \
+  }
+/* Of such a row: it is a list. */
+#define DEA_LIST(least, most, type, count)                                                         \
+  .list_min = least, .list_max = most, .element_size = sizeof(type), .count_offset = count
+
 /* Whether the keys of a section are those of the field's record. */
 bool dea_field_has_record(const struct dea_field *field);
 

@@ -10,12 +10,10 @@ static const struct dea_field compare_fields[] = {
     DEA_LABEL_ROW("file", offsetof(struct dea_design_variant, file), "frdea-8.yaml",
                   "design file to be compared with; its path counts from the folder of this one",
                   .absent_text = "this file"),
-    {.key = "set",
-     .kind = DEA_FIELD_SECTION,
-     .offset = offsetof(struct dea_design_variant, set),
-     .absent_text = "nothing",
-     .doc = "keys of a design file with other values, as with --set; null takes a key away",
-     .example = "{fibres.count: 8}"},
+    DEA_FIELD_ROW(
+        SECTION, "set", offsetof(struct dea_design_variant, set), .absent_text = "nothing",
+        .doc = "keys of a design file with other values, as with --set; null takes a key away",
+        .example = "{fibres.count: 8}"),
 };
 
 const struct dea_record dea_compare_record = {"compare", "a design that this one is compared with",

@@ -7,13 +7,10 @@
 #define AT(member) offsetof(struct dea_design_raw, design.member)
 
 static const struct dea_field drive_fields[] = {
-    {.key = "waveform",
-     .kind = DEA_FIELD_SECTION,
-     .offset = AT(drive.section),
-     .kinds = dea_wave_records,
-     .absent_text = "none",
-     .doc = "voltage asked of the supply; its keys go with its kind",
-     .example = "{kind: square, high: 7 kV, frequency: 0.5 Hz}"},
+    DEA_FIELD_ROW(SECTION, "waveform", AT(drive.section), .kinds = dea_wave_records,
+                  .absent_text = "none",
+                  .doc = "voltage asked of the supply; its keys go with its kind",
+                  .example = "{kind: square, high: 7 kV, frequency: 0.5 Hz}"),
     DEA_NUMBER_ROW("series_resistance", AT(drive.series_resistance_ohm), "ohm", "1 Mohm",
                    "resistance between supply and film, that of the electrodes in it", .max = 1e15,
                    .default_text = "0 ohm"),

@@ -97,15 +97,13 @@ static const struct dea_field channel_fields[] = {
            .default_text = "1", .min = -1e6, .max = 1e6),
     NUMBER(dea_parts_channel, voltage_V, "voltage", "V", "voltage of its own", "2 kV",
            .default_text = "0 V", .min = -1e6, .max = 1e6),
-    {.key = "waveform",
-     .kind = DEA_FIELD_SECTION,
-     .offset = offsetof(struct dea_parts_channel, section),
-     .kinds = dea_wave_records,
-     .kinds_elsewhere = true,
-     .absent_text = "ratio times drive.waveform",
-     .doc = "voltage in time of a source of its own, to which `voltage` is added; keys as those of "
+    DEA_FIELD_ROW(
+        SECTION, "waveform", offsetof(struct dea_parts_channel, section), .kinds = dea_wave_records,
+        .kinds_elsewhere = true, .absent_text = "ratio times drive.waveform",
+        .doc =
+            "voltage in time of a source of its own, to which `voltage` is added; keys as those of "
             "drive.waveform",
-     .example = "{kind: sine, mean: 2 kV, amplitude: 1 kV, frequency: 1 Hz}"},
+        .example = "{kind: sine, mean: 2 kV, amplitude: 1 kV, frequency: 1 Hz}"),
 };
 
 static const char *const holds[] = {"clamped", "hinged", "x", "y", "z", NULL}; // dea_parts_hold
@@ -156,13 +154,10 @@ static const struct dea_field spring_fields[] = {
     NUMBER(dea_parts_spring, stiffness_N_m_per_rad, "turn_stiffness", "N.m/radian",
            "moment by turn, of a direction turn_x, turn_y, turn_z", "1 mN.m/radian", .group = 1,
            .option = 2, .max = 1e12),
-    {.key = "table",
-     .kind = DEA_FIELD_ROWS,
-     .offset = offsetof(struct dea_parts_spring, table),
-     .group = 1,
-     .option = 3,
-     .doc = "how far it is from free_at, rising, and the force that pulls back; it may fall",
-     .example = "[[0 mm, 0 mN], [1 mm, 5 mN], [2 mm, 3 mN]]"},
+    DEA_FIELD_ROW(
+        ROWS, "table", offsetof(struct dea_parts_spring, table), .group = 1, .option = 3,
+        .doc = "how far it is from free_at, rising, and the force that pulls back; it may fall",
+        .example = "[[0 mm, 0 mN], [1 mm, 5 mN], [2 mm, 3 mN]]"),
     NUMBER(dea_parts_spring, free_at_m, "free_at", "m", "shift at which it has no force", "1 mm",
            .default_text = "0 mm", .group = 2, .option = 1),
     NUMBER(dea_parts_spring, free_at_rad, "free_at_angle", "radian",
@@ -226,18 +221,13 @@ RECORD(monitor, "what results are reported of");
 #define NO_ITEMS .absent_text = "none"
 
 const struct dea_field dea_parts_fields[] = {
-    {.key = "shapes",
-     .kind = DEA_FIELD_SECTION,
-     .offset = RAW(shapes),
-     .list_min = 1,
-     .list_max = DEA_PARTS_SHAPES_MAX,
-     .element_size = sizeof(const struct dea_node *),
-     .count_offset = RAW(shape_count),
-     .required = true,
-     .doc =
-         "named parts of the plane, in the flat film as it is stretched when parts are bonded to "
-         "it; their keys go with their kind",
-     .example = "[{name: film, kind: circle, radius: 20 mm}]"},
+    DEA_FIELD_ROW(SECTION, "shapes", RAW(shapes), .list_min = 1, .list_max = DEA_PARTS_SHAPES_MAX,
+                  .element_size = sizeof(const struct dea_node *), .count_offset = RAW(shape_count),
+                  .required = true,
+                  .doc = "named parts of the plane, in the flat film as it is stretched when parts "
+                         "are bonded to "
+                         "it; their keys go with their kind",
+                  .example = "[{name: film, kind: circle, radius: 20 mm}]"),
     ITEMS("plies", ply, plies, DEA_PARTS_PLIES_MAX,
           "sheets from bottom to top: films, stiff electrodes, glue, stiffeners, flexible frames; "
           "the key that makes a file one of the general form",

@@ -6,18 +6,10 @@
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_parts_shape, member)
 
-static const struct dea_field name_field = {.key = "name",
-                                            .kind = DEA_FIELD_LABEL,
-                                            .offset = AT(name),
-                                            .required = true,
-                                            .doc = "its name",
-                                            .example = "film"};
-static const struct dea_field kind_field = {.key = "kind",
-                                            .kind = DEA_FIELD_LABEL,
-                                            .offset = AT(kind),
-                                            .required = true,
-                                            .doc = "kind of shape",
-                                            .example = "circle"};
+static const struct dea_field name_field =
+    DEA_LABEL_ROW("name", AT(name), "film", "its name", .required = true);
+static const struct dea_field kind_field =
+    DEA_LABEL_ROW("kind", AT(kind), "circle", "kind of shape", .required = true);
 
 #define OF(least, most, text, sample)                                                              \
   {                                                                                                \
@@ -67,8 +59,7 @@ static const struct dea_field copy_fields[] = {
     NUMBER(angle_rad, "angle", "radian", "then turned about `about`, counter-clockwise",
            "45 degree", .default_text = "0 degree"),
     NUMBER(about_m, "about", "m", "point that it is turned about", "[0 mm, 0 mm]",
-           .default_text = "[0 mm, 0 mm]", .list_min = 2, .list_max = 2,
-           .element_size = sizeof(struct dea_quantity), .count_offset = AT(about_count)),
+           .default_text = "[0 mm, 0 mm]", DEA_LIST(2, 2, struct dea_quantity, AT(about_count))),
     NUMBER(x, "x", "m", "then moved along x", "5 mm", .default_text = "0 mm"),
     NUMBER(y, "y", "m", "then moved along y", "5 mm", .default_text = "0 mm"),
 };
@@ -107,14 +98,10 @@ static struct dea_field parameter_field(const struct dea_shape_parameter *p, siz
 {
   bool angle = p->unit == DEA_SHAPE_ANGLE;
   bool zero = p->optional && p->default_value == 0;
-  struct dea_field field = {.key = p->name,
-                            .kind = DEA_FIELD_NUMBER,
-                            .offset = AT(value) + index * sizeof(struct dea_quantity),
-                            .unit = angle ? "radian" : "m",
-                            .doc = p->doc,
-                            .example = angle ? "45 degree" : "5 mm",
-                            .required = !p->optional,
-                            .default_text = zero ? (angle ? "0 degree" : "0 mm") : NULL};
+  struct dea_field field = DEA_NUMBER_ROW(
+      p->name, AT(value) + index * sizeof(struct dea_quantity), angle ? "radian" : "m",
+      angle ? "45 degree" : "5 mm", p->doc, .required = !p->optional,
+      .default_text = zero ? (angle ? "0 degree" : "0 mm") : NULL);
   if (p->unit == DEA_SHAPE_LENGTH) {
     field.max = 10;
     field.above_min = !p->optional;
@@ -122,12 +109,9 @@ static struct dea_field parameter_field(const struct dea_shape_parameter *p, siz
   return field;
 }
 
-static const struct dea_field points_field = {.key = "points",
-                                              .kind = DEA_FIELD_ROWS,
-                                              .offset = AT(points),
-                                              .required = true,
-                                              .example =
-                                                  "[[0 mm, 0 mm], [5 mm, 0 mm], [5 mm, 3 mm]]"};
+static const struct dea_field points_field =
+    DEA_FIELD_ROW(ROWS, "points", AT(points), .required = true,
+                  .example = "[[0 mm, 0 mm], [5 mm, 0 mm], [5 mm, 3 mm]]");
 
 /* Starts the next kind with the keys that all have; returns its fields. */
 static struct dea_field *start(struct dea_shape_schema *out, const char *name, const char *doc)

@@ -46,12 +46,11 @@ static const struct dea_field fields[] = {
         "the same inside the circles of the electrode's edge and the fibre tips, where the film "
         "goes slack first, where that is finer; elements also grow slower there (of a disc)",
         .min = 1, .max = 6, .absent_text = "as refinement"),
-    {.key = "adapt",
-     .kind = DEA_FIELD_RECORD,
-     .record = &adapt_record,
-     .present_offset = AT(adapt.asked),
-     .doc = "finer where the error of a monitor at the last voltage comes from, until it is small "
-            "enough; of devices made of `plies`"},
+    DEA_FIELD_ROW(
+        RECORD, "adapt", 0, .record = &adapt_record, .present_offset = AT(adapt.asked),
+        .doc =
+            "finer where the error of a monitor at the last voltage comes from, until it is small "
+            "enough; of devices made of `plies`"),
     DEA_INTEGER_ROW("order", AT(order), "3", "order of the elements in the plane", .min = 1,
                     .max = 3, .default_text = "2"),
     DEA_INTEGER_ROW("order_z", AT(order_z), "3",

@@ -15,8 +15,7 @@ static const struct dea_field specimen_fields[] = {
     DEA_LABEL_ROW("reduced", OF(reduced), "[F12-week1.reduced, F12-week2.reduced]",
                   "folders that dea reduce wrote of its recordings, in time, counted from the "
                   "folder of this file",
-                  .list_min = 1, .list_max = DEA_LIFE_PARTS_MAX,
-                  .element_size = sizeof(struct dea_label), .count_offset = OF(reduced_count),
+                  DEA_LIST(1, DEA_LIFE_PARTS_MAX, struct dea_label, OF(reduced_count)),
                   .lone = true, .absent_text = "its life is given"),
     DEA_NUMBER_ROW(
         "life", OF(life), "1", "120000",
@@ -33,17 +32,11 @@ static const struct dea_record specimen_record = {"specimen", "a specimen that w
 static const struct dea_field fields[] = {
     DEA_FIT_HEAD_FIELDS("name of what is fitted", "batch-7", "none", "what was cycled",
                         "discs of batch 7 at 3 kV, 10 Hz"),
-    {.key = "life",
-     .kind = DEA_FIELD_RECORD,
-     .offset = AT(specimens),
-     .record = &specimen_record,
-     .required = true,
-     .list_min = 1,
-     .list_max = DEA_LIFE_SPECIMENS_MAX,
-     .element_size = sizeof(struct dea_life_specimen),
-     .count_offset = AT(specimen_count),
-     .doc = "the specimens, those that survived too",
-     .example = "[{name: F12, reduced: F12.reduced}, {name: F13, life: 120000, failed: yes}]"},
+    DEA_FIELD_ROW(
+        RECORD, "life", AT(specimens), .record = &specimen_record, .required = true,
+        .doc = "the specimens, those that survived too",
+        .example = "[{name: F12, reduced: F12.reduced}, {name: F13, life: 120000, failed: yes}]",
+        DEA_LIST(1, DEA_LIFE_SPECIMENS_MAX, struct dea_life_specimen, AT(specimen_count))),
     DEA_CHOICE_ROW("clock", AT(clock), dea_life_clock_names, "under_voltage",
                    "what a life is counted in: cycles, time (h), time under voltage (h), charge "
                    "brought to the film (mC)",

@@ -12,46 +12,23 @@
 /* Fields that every set of numbers has: uncertainty, range in words, temperature, source
  * (required), note. */
 #define NOTE_FIELDS(type, member)                                                                  \
-  {.key = "source",                                                                                \
-   .kind = DEA_FIELD_TEXT,                                                                         \
-   .offset = offsetof(type, member.source),                                                        \
-   .required = true,                                                                               \
-   .doc = "where the numbers come from",                                                           \
-   .example = "\"data sheet, maker, year\""},                                                      \
-      {.key = "uncertainty",                                                                       \
-       .kind = DEA_FIELD_TEXT,                                                                     \
-       .offset = offsetof(type, member.uncertainty),                                               \
-       .doc = "uncertainty, in words or as +- value",                                              \
-       .example = "\"+- 5 %\""},                                                                   \
-      {.key = "range",                                                                             \
-       .kind = DEA_FIELD_TEXT,                                                                     \
-       .offset = offsetof(type, member.range),                                                     \
-       .doc = "range in which the numbers hold, in words",                                         \
-       .example = "\"23 degC, below 1 Hz\""},                                                      \
-      {.key = "temperature",                                                                       \
-       .kind = DEA_FIELD_NUMBER,                                                                   \
-       .offset = offsetof(type, member.temperature_K),                                             \
-       .unit = "K",                                                                                \
-       .min = 100,                                                                                 \
-       .max = 600,                                                                                 \
-       .doc = "temperature that they were measured at",                                            \
-       .example = "23 degC"},                                                                      \
-      {.key = "temperature_range",                                                                 \
-       .kind = DEA_FIELD_NUMBER,                                                                   \
-       .offset = offsetof(type, member.temperatures.limits),                                       \
-       .unit = "K",                                                                                \
-       .min = 100,                                                                                 \
-       .max = 600,                                                                                 \
-       .list_min = 2,                                                                              \
-       .list_max = 2,                                                                              \
-       .element_size = sizeof(struct dea_quantity),                                                \
-       .count_offset = offsetof(type, member.temperatures.count),                                  \
-       .doc = "lowest and highest temperature at which they hold",                                 \
-       .example = "[0 degC, 80 degC]"},                                                            \
-  {                                                                                                \
-    .key = "note", .kind = DEA_FIELD_TEXT, .offset = offsetof(type, member.note),                  \
-    .doc = "anything else a user should know", .example = "\"as bought, before curing\""           \
-  }
+  DEA_FIELD_ROW(TEXT, "source", offsetof(type, member.source), .required = true,                   \
+                .doc = "where the numbers come from", .example = "\"data sheet, maker, year\""),   \
+      DEA_FIELD_ROW(TEXT, "uncertainty", offsetof(type, member.uncertainty),                       \
+                    .doc = "uncertainty, in words or as +- value", .example = "\"+- 5 %\""),       \
+      DEA_FIELD_ROW(TEXT, "range", offsetof(type, member.range),                                   \
+                    .doc = "range in which the numbers hold, in words",                            \
+                    .example = "\"23 degC, below 1 Hz\""),                                         \
+      DEA_NUMBER_ROW("temperature", offsetof(type, member.temperature_K), "K", "23 degC",          \
+                     "temperature that they were measured at", .min = 100, .max = 600),            \
+      DEA_NUMBER_ROW(                                                                              \
+          "temperature_range", offsetof(type, member.temperatures.limits), "K",                    \
+          "[0 degC, 80 degC]", "lowest and highest temperature at which they hold", .min = 100,    \
+          .max = 600,                                                                              \
+          DEA_LIST(2, 2, struct dea_quantity, offsetof(type, member.temperatures.count))),         \
+      DEA_FIELD_ROW(TEXT, "note", offsetof(type, member.note),                                     \
+                    .doc = "anything else a user should know",                                     \
+                    .example = "\"as bought, before curing\"")
 
 #define STRETCH_RANGE_FIELD(type)                                                                  \
   {                                                                                                \
@@ -80,18 +57,13 @@ static const struct dea_field law_fields[] = {
     ID_FIELD(struct dea_law_set, "set"),
     DEA_LABEL_ROW("law", offsetof(struct dea_law_set, law_name), "yeoh", "hyperelastic law",
                   .required = true),
-    {.key = "parameters",
-     .kind = DEA_FIELD_SECTION,
-     .offset = offsetof(struct dea_law_set, parameters),
-     .required = true,
-     .doc = "parameters of the law, each with its unit",
-     .example = "{c1: 178.4 kPa, c2: -6.0 kPa, c3: 4.2 kPa}"},
-    {.key = "standard_uncertainties",
-     .kind = DEA_FIELD_SECTION,
-     .offset = offsetof(struct dea_law_set, uncertainties),
-     .absent_text = "not given",
-     .doc = "standard uncertainties of parameters, each with its unit",
-     .example = "{c1: 2.1 kPa}"},
+    DEA_FIELD_ROW(SECTION, "parameters", offsetof(struct dea_law_set, parameters), .required = true,
+                  .doc = "parameters of the law, each with its unit",
+                  .example = "{c1: 178.4 kPa, c2: -6.0 kPa, c3: 4.2 kPa}"),
+    DEA_FIELD_ROW(SECTION, "standard_uncertainties", offsetof(struct dea_law_set, uncertainties),
+                  .absent_text = "not given",
+                  .doc = "standard uncertainties of parameters, each with its unit",
+                  .example = "{c1: 2.1 kPa}"),
     DEA_NUMBER_ROW("correlations", offsetof(struct dea_law_set, correlations), "1", "[-0.8]",
                    "correlations of these in the law's order: 2 with 1, 3 with 1, 3 with 2, ...",
                    .min = -1, .max = 1, .list_max = DEA_LAW_PARAM_MAX * (DEA_LAW_PARAM_MAX - 1) / 2,
@@ -201,27 +173,20 @@ static const struct dea_record wlf_record = {
 
 static const struct dea_field viscosity_fields[] = {
     ID_FIELD(struct dea_viscosity_set, "set"),
-    {.key = "branches",
-     .kind = DEA_FIELD_RECORD,
-     .offset = offsetof(struct dea_viscosity_set, branches),
-     .record = &branch_record,
-     .required = true,
-     .list_min = 1,
-     .list_max = DEA_BRANCHES_MAX,
-     .element_size = sizeof(struct dea_branch_data),
-     .count_offset = offsetof(struct dea_viscosity_set, branch_count),
-     .doc = "Maxwell branches beside the law, which is the slow limit",
-     .example = "[{ratio: 0.05, time: 1 s}]"},
+    DEA_FIELD_ROW(RECORD, "branches", offsetof(struct dea_viscosity_set, branches),
+                  .record = &branch_record, .required = true,
+                  .doc = "Maxwell branches beside the law, which is the slow limit",
+                  .example = "[{ratio: 0.05, time: 1 s}]",
+                  DEA_LIST(1, DEA_BRANCHES_MAX, struct dea_branch_data,
+                           offsetof(struct dea_viscosity_set, branch_count))),
     DEA_CHOICE_ROW("assumed", offsetof(struct dea_viscosity_set, assumed), dea_no_yes, "yes",
                    "whether the numbers are plausible rather than measured; runs then say so",
                    .default_text = "no"),
-    {.key = "wlf",
-     .kind = DEA_FIELD_RECORD,
-     .record = &wlf_record,
-     .present_offset = offsetof(struct dea_viscosity_set, has_wlf),
-     .absent_text = "none",
-     .doc = "factor a of all times at the temperature T; holds in temperature_range",
-     .example = "{c1: 2.4, c2: 57 K}"},
+    DEA_FIELD_ROW(RECORD, "wlf", 0, .record = &wlf_record,
+                  .present_offset = offsetof(struct dea_viscosity_set, has_wlf),
+                  .absent_text = "none",
+                  .doc = "factor a of all times at the temperature T; holds in temperature_range",
+                  .example = "{c1: 2.4, c2: 57 K}"),
     NOTE_FIELDS(struct dea_viscosity_set, notes),
 };
 
@@ -274,32 +239,23 @@ static const struct dea_field material_fields[] = {
                   "ELASTOSIL Film 2030 (Wacker)", "what the material is", .absent_text = "none"),
     DEA_CHOICE_ROW("kind", offsetof(struct dea_material_data, kind), kinds, "elastomer",
                    "kind of material", .required = true),
-    {.key = "density",
-     .kind = DEA_FIELD_RECORD,
-     .record = &density_record,
-     .present_offset = offsetof(struct dea_material_data, has_density),
-     .absent_text = "unknown",
-     .doc = "mass density"},
+    DEA_FIELD_ROW(RECORD, "density", 0, .record = &density_record,
+                  .present_offset = offsetof(struct dea_material_data, has_density),
+                  .absent_text = "unknown", .doc = "mass density"),
     SET_LIST_FIELD("laws", laws, law_count, law_record, "none",
                    "sets of parameters of hyperelastic laws; the first is the default"),
-    {.key = "elastic",
-     .kind = DEA_FIELD_RECORD,
-     .record = &elastic_record,
-     .present_offset = offsetof(struct dea_material_data, has_elastic),
-     .absent_text = "none",
-     .doc = "linear elastic constants"},
+    DEA_FIELD_ROW(RECORD, "elastic", 0, .record = &elastic_record,
+                  .present_offset = offsetof(struct dea_material_data, has_elastic),
+                  .absent_text = "none", .doc = "linear elastic constants"),
     SET_LIST_FIELD("permittivity", permittivity, permittivity_count, permittivity_record, "unknown",
                    "relative permittivity; the first is the default"),
     SET_LIST_FIELD("breakdown", breakdown, breakdown_count, breakdown_record, "unknown",
                    "breakdown field; the first is the default; left out when unknown"),
     SET_LIST_FIELD("viscosity", viscosity, viscosity_count, viscosity_record, "none",
                    "viscosity; the first is the default; left out when unknown"),
-    {.key = "resistivity",
-     .kind = DEA_FIELD_RECORD,
-     .record = &resistivity_record,
-     .present_offset = offsetof(struct dea_material_data, has_resistivity),
-     .absent_text = "unknown",
-     .doc = "electrical resistivity, for leakage"},
+    DEA_FIELD_ROW(RECORD, "resistivity", 0, .record = &resistivity_record,
+                  .present_offset = offsetof(struct dea_material_data, has_resistivity),
+                  .absent_text = "unknown", .doc = "electrical resistivity, for leakage"),
 };
 
 const struct dea_record dea_material_file_record = {"material file", "data file of a material",

@@ -1,5 +1,4 @@
 /* Figures of a result, and what they are made of. Those of a study stand in its file, the others in
- * folder output. */
 #pragma once
 
 #include "plot/plot.h"
@@ -20,6 +19,12 @@ struct dea_figure {
   dea_status (*write)(struct dea_context *ctx, const struct dea_result *result,
                       const struct dea_figure_options *options, const char *directory, bool *drawn);
 };
+
+/* One of a study. */
+#define DEA_STUDY_FIGURE(its_name, its_study, its_build, text)                                     \
+  {                                                                                                \
+    .name = its_name, .study = its_study, .build = its_build, .caption = text                      \
+  }
 
 // Parts for the figures --------------------------------------------------------------------------
 

@@ -31,6 +31,12 @@ enum dea_cell_kind {
     .key = name, .kind = DEA_CELL_TEXT, .title = head, .meaning = what                             \
   }
 
+/* Any other column; what else there is to say of it comes last, by its member. */
+#define DEA_RESULT_COLUMN(its_kind, name, head, ...)                                               \
+  {                                                                                                \
+    .key = name, .kind = DEA_CELL_##its_kind, .title = head, __VA_ARGS__                           \
+  }
+
 /* Who writes a table; HDF5 has every table and column. SCREEN: the terminal and the report;
  * TERMINAL: that alone, of what the report draws by itself. */
 enum { DEA_IN_JSON = 1, DEA_IN_CSV = 2, DEA_IN_SCREEN = 4, DEA_IN_TERMINAL = 8 };
@@ -59,6 +65,13 @@ struct dea_result_table_type {
   const struct dea_result_column *columns; // [column_count]
   size_t column_count;
 };
+
+/* One of these columns, an array; what else there is to say of it comes last, by its member. */
+#define DEA_RESULT_TABLE(its_study, its_name, its_columns, ...)                                    \
+  {                                                                                                \
+    .study = its_study, .name = its_name, .columns = its_columns,                                  \
+    .column_count = sizeof its_columns / sizeof its_columns[0], __VA_ARGS__                        \
+  }
 
 struct dea_cell {
   double number; // NAN: none

@@ -96,130 +96,61 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 enum { ALL = DEA_IN_JSON | DEA_IN_SCREEN };
 
 static const struct dea_result_column fact_columns[] = {
-    {.key = "tolerance",
-     .display_unit = "%",
-     .factor = 100,
-     .title = "tolerance",
-     .meaning = "relative error that is small enough for a displacement"},
-    {.key = "verdict",
-     .kind = DEA_CELL_TEXT,
-     .title = "verdict",
-     .meaning = "voltage by voltage the mesh that is enough"},
+    DEA_NUMBER_COLUMN("tolerance", NULL, "%", 100, "tolerance",
+                      "relative error that is small enough for a displacement"),
+    DEA_TEXT_COLUMN("verdict", "verdict", "voltage by voltage the mesh that is enough"),
 };
 static const struct dea_result_column mesh_columns[] = {
-    {.key = "name", .kind = DEA_CELL_TEXT, .title = "mesh", .meaning = "name of the mesh"},
-    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
-    {.key = "elements", .kind = DEA_CELL_COUNT, .title = "elements", .meaning = "of the mesh"},
-    {.key = "nodes", .kind = DEA_CELL_COUNT, .title = "nodes", .meaning = "of the mesh"},
-    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
-    {.key = "wall_s",
-     .si_unit = "s",
-     .display_unit = "s",
-     .title = "time",
-     .meaning = "that the mesh took"},
-    {.key = "complete", .kind = DEA_CELL_FLAG, .title = "complete", .meaning = "to the last point"},
-    {.key = "stopped", .kind = DEA_CELL_TEXT, .title = "stopped", .meaning = "why it stopped"},
+    DEA_TEXT_COLUMN("name", "mesh", "name of the mesh"),
+    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "elements", "elements", .meaning = "of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "nodes", "nodes", .meaning = "of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
+    DEA_NUMBER_COLUMN("wall_s", "s", "s", 1, "time", "that the mesh took"),
+    DEA_RESULT_COLUMN(FLAG, "complete", "complete", .meaning = "to the last point"),
+    DEA_TEXT_COLUMN("stopped", "stopped", "why it stopped"),
 };
 static const struct dea_result_column quantity_columns[] = {
-    {.key = "quantity",
-     .kind = DEA_CELL_QUANTITY,
-     .title = "quantity",
-     .meaning = "of load points"},
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage"},
-    {.key = "values",
-     .kind = DEA_CELL_VALUE,
-     .list = true,
-     .hidden = DEA_IN_SCREEN,
-     .title = "value",
-     .meaning = "on each mesh"},
-    {.key = "errors",
-     .list = true,
-     .display_unit = "%",
-     .factor = 100,
-     .title = "error",
-     .meaning = "estimated relative error on each mesh"},
-    {.key = "order", .title = "order", .meaning = "observed order of convergence"},
-    {.key = "extrapolated",
-     .kind = DEA_CELL_VALUE,
-     .title = "extrapolated",
-     .meaning = "value at element size 0"},
-    {.key = "remark",
-     .kind = DEA_CELL_TEXT,
-     .title = "remark",
-     .meaning = "what is wrong with the sequence"},
+    DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity", .meaning = "of load points"),
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage"),
+    DEA_RESULT_COLUMN(VALUE, "values", "value", .list = true, .hidden = DEA_IN_SCREEN,
+                      .meaning = "on each mesh"),
+    DEA_RESULT_COLUMN(NUMBER, "errors", "error", .list = true, .display_unit = "%", .factor = 100,
+                      .meaning = "estimated relative error on each mesh"),
+    DEA_NUMBER_COLUMN("order", NULL, NULL, 1, "order", "observed order of convergence"),
+    DEA_RESULT_COLUMN(VALUE, "extrapolated", "extrapolated", .meaning = "value at element size 0"),
+    DEA_TEXT_COLUMN("remark", "remark", "what is wrong with the sequence"),
 };
 static const struct dea_result_column enough_columns[] = {
-    {.key = "voltage_V", .si_unit = "V", .title = "V", .meaning = "voltage"},
-    {.key = "refinement",
-     .null = true,
-     .title = "refinement",
-     .meaning = "coarsest mesh that is, with all finer ones, within the tolerance"},
+    DEA_NUMBER_COLUMN("voltage_V", "V", NULL, 1, "V", "voltage"),
+    DEA_RESULT_COLUMN(NUMBER, "refinement", "refinement", .null = true,
+                      .meaning =
+                          "coarsest mesh that is, with all finer ones, within the tolerance"),
 };
 static const struct dea_result_column error_columns[] = {
-    {.key = "quantity",
-     .kind = DEA_CELL_QUANTITY,
-     .title = "quantity",
-     .meaning = "of load points"},
-    {.key = "unit", .kind = DEA_CELL_TEXT, .title = "unit", .meaning = "of the value"},
-    {.key = "voltage_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .title = "V",
-     .meaning = "voltage"},
-    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
-    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
-    {.key = "value", .kind = DEA_CELL_VALUE, .title = "value", .meaning = "on this mesh"},
-    {.key = "error",
-     .display_unit = "%",
-     .factor = 100,
-     .title = "estimated error",
-     .meaning = "relative error on this mesh"},
-    {.key = "order", .title = "observed order", .meaning = "of convergence"},
-    {.key = "extrapolated",
-     .kind = DEA_CELL_VALUE,
-     .title = "extrapolated",
-     .meaning = "value at element size 0"},
-    {.key = "remark", .kind = DEA_CELL_TEXT, .title = "remark", .meaning = "on the sequence"},
+    DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity", .meaning = "of load points"),
+    DEA_TEXT_COLUMN("unit", "unit", "of the value"),
+    DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage"),
+    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
+    DEA_RESULT_COLUMN(VALUE, "value", "value", .meaning = "on this mesh"),
+    DEA_NUMBER_COLUMN("error", NULL, "%", 100, "estimated error", "relative error on this mesh"),
+    DEA_NUMBER_COLUMN("order", NULL, NULL, 1, "observed order", "of convergence"),
+    DEA_RESULT_COLUMN(VALUE, "extrapolated", "extrapolated", .meaning = "value at element size 0"),
+    DEA_TEXT_COLUMN("remark", "remark", "on the sequence"),
 };
 
-static const struct dea_result_table_type fact_table = {.study = study_name,
-                                                        .name = "",
-                                                        .title = "convergence",
-                                                        .where = ALL,
-                                                        .one_row = true,
-                                                        .columns = fact_columns,
-                                                        .column_count = COUNT(fact_columns)};
-static const struct dea_result_table_type mesh_table = {.study = study_name,
-                                                        .name = "meshes",
-                                                        .title = "meshes",
-                                                        .where = ALL,
-                                                        .columns = mesh_columns,
-                                                        .column_count = COUNT(mesh_columns)};
-static const struct dea_result_table_type quantity_table = {
-    .study = study_name,
-    .name = "quantities",
-    .title = "estimated errors on each mesh",
-    .where = ALL,
-    .columns = quantity_columns,
-    .column_count = COUNT(quantity_columns)};
-static const struct dea_result_table_type enough_table = {.study = study_name,
-                                                          .name = "enough",
-                                                          .title = "mesh that is enough",
-                                                          .where = DEA_IN_JSON,
-                                                          .columns = enough_columns,
-                                                          .column_count = COUNT(enough_columns)};
-static const struct dea_result_table_type error_table = {.study = study_name,
-                                                         .name = "errors",
-                                                         .title = "estimated errors",
-                                                         .where = DEA_IN_CSV,
-                                                         .columns = error_columns,
-                                                         .column_count = COUNT(error_columns)};
+static const struct dea_result_table_type fact_table = DEA_RESULT_TABLE(
+    study_name, "", fact_columns, .title = "convergence", .where = ALL, .one_row = true);
+static const struct dea_result_table_type mesh_table =
+    DEA_RESULT_TABLE(study_name, "meshes", mesh_columns, .title = "meshes", .where = ALL);
+static const struct dea_result_table_type quantity_table =
+    DEA_RESULT_TABLE(study_name, "quantities", quantity_columns,
+                     .title = "estimated errors on each mesh", .where = ALL);
+static const struct dea_result_table_type enough_table = DEA_RESULT_TABLE(
+    study_name, "enough", enough_columns, .title = "mesh that is enough", .where = DEA_IN_JSON);
+static const struct dea_result_table_type error_table = DEA_RESULT_TABLE(
+    study_name, "errors", error_columns, .title = "estimated errors", .where = DEA_IN_CSV);
 
 static dea_status put_facts(struct dea_context *ctx, const struct dea_convergence *c,
                             struct dea_result_table *table)
@@ -489,12 +420,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "convergence",
-        .study = study_name,
-        .caption = "estimated error of displacements on ever finer meshes",
-        .build = build,
-    },
+    DEA_STUDY_FIGURE("convergence", study_name, build,
+                     "estimated error of displacements on ever finer meshes"),
 };
 
 // The study --------------------------------------------------------------------------------------

@@ -52,12 +52,12 @@ static const struct dea_field fields[] = {
     DEA_NUMBER_ROW(
         "depth", AT(depths_m), "m", "[0 mm, 1 mm, 2 mm]",
         "how far the tip is pressed beyond touching the flat film, at 0 V; negative: a gap",
-        .min = -0.1, .max = 0.1, .list_min = 1, .list_max = DEA_DESIGN_STOPS_MAX,
-        .element_size = sizeof(struct dea_quantity), .count_offset = AT(depth_count)),
+        .min = -0.1, .max = 0.1,
+        DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity, AT(depth_count))),
     DEA_NUMBER_ROW("preload", AT(preloads_N), "N", "[0.18 N]",
                    "forces that the tip is pressed to at 0 V, instead of depths or besides",
-                   .above_min = true, .max = 100, .list_min = 1, .list_max = DEA_DESIGN_STOPS_MAX,
-                   .element_size = sizeof(struct dea_quantity), .count_offset = AT(preload_count)),
+                   .above_min = true, .max = 100,
+                   DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity, AT(preload_count))),
     DEA_NUMBER_ROW("tolerance", AT(tolerance), "1", "0",
                    "estimated error of forces that are interpolated between computed ones, over "
                    "what the force changes by along its line, where the film has tension; ten "
@@ -515,20 +515,13 @@ static dea_status build_load_line(struct dea_context *ctx, const struct dea_resu
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "tip_force",
-        .study = study_name,
-        .caption = "force on the tip against the voltage, for each depth that it is held at (where "
-                   "voltages are interpolated, markers are at the computed ones)",
-        .build = build_tip_force,
-    },
-    {
-        .name = "load_line",
-        .study = study_name,
-        .caption = "force on the tip against the depth that it is held at, for some voltages (?: "
-                   "not to be trusted at one of the depths, i: interpolated at one)",
-        .build = build_load_line,
-    },
+    DEA_STUDY_FIGURE(
+        "tip_force", study_name, build_tip_force,
+        "force on the tip against the voltage, for each depth that it is held at (where "
+        "voltages are interpolated, markers are at the computed ones)"),
+    DEA_STUDY_FIGURE("load_line", study_name, build_load_line,
+                     "force on the tip against the depth that it is held at, for some voltages (?: "
+                     "not to be trusted at one of the depths, i: interpolated at one)"),
 };
 
 // Table ------------------------------------------------------------------------------------------
@@ -536,14 +529,9 @@ static const struct dea_figure figures[] = {
 static const struct dea_result_column line_columns[] = {
     DEA_NUMBER_COLUMN("tip_depth_m", "m", "mm", 1e3, "depth",
                       "how far the tip is pressed beyond touching the flat film"),
-    {.key = "voltages",
-     .kind = DEA_CELL_COUNT,
-     .title = "voltages",
-     .meaning = "points of the line"},
-    {.key = "computed",
-     .kind = DEA_CELL_COUNT,
-     .title = "computed",
-     .meaning = "how many of them are; the others are interpolated"},
+    DEA_RESULT_COLUMN(COUNT, "voltages", "voltages", .meaning = "points of the line"),
+    DEA_RESULT_COLUMN(COUNT, "computed", "computed",
+                      .meaning = "how many of them are; the others are interpolated"),
     DEA_NUMBER_COLUMN("first_force_N", "N", "mN", 1e3, "first force",
                       "force on the tip at the first voltage"),
     DEA_NUMBER_COLUMN("last_force_N", "N", "mN", 1e3, "last force", "and at the last one"),
@@ -554,13 +542,10 @@ static const struct dea_result_column line_columns[] = {
     DEA_NUMBER_COLUMN("interpolation_error", "1", "%", 100, "of the rest",
                       "largest of the other numbers, over what each changes by on the line"),
 };
-static const struct dea_result_table_type line_table = {
-    .study = study_name,
-    .name = "lines",
+static const struct dea_result_table_type line_table = DEA_RESULT_TABLE(
+    study_name, "lines", line_columns,
     .title = "force on the tip at the first and the last voltage, and how many points are computed",
-    .where = DEA_IN_JSON | DEA_IN_SCREEN,
-    .columns = line_columns,
-    .column_count = sizeof line_columns / sizeof line_columns[0]};
+    .where = DEA_IN_JSON | DEA_IN_SCREEN);
 
 /* A film that is pressed further than it stretches lets the tip pass: no force, and nothing amiss
  * in its state. */

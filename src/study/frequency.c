@@ -26,8 +26,8 @@ struct settings {
 static const struct dea_field fields[] = {
     DEA_NUMBER_ROW("bias", AT(biases_V), "V", "[4 kV, 6 kV]",
                    "voltages that the excitation lies upon, in the order to be computed",
-                   .above_min = true, .max = 1e6, .list_min = 1, .list_max = DEA_DESIGN_STOPS_MAX,
-                   .element_size = sizeof(struct dea_quantity), .count_offset = AT(bias_count)),
+                   .above_min = true, .max = 1e6,
+                   DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity, AT(bias_count))),
     DEA_NUMBER_ROW("excitation", AT(excitation_V), "V", "100 V",
                    "amplitude of the excitation: small against the bias", .alias = "ripple",
                    .above_min = true, .max = 1e6, .default_text = "1 V"),
@@ -460,19 +460,12 @@ static dea_status build_monitors(struct dea_context *ctx, const struct dea_resul
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "bode",
-        .study = study_name,
-        .caption = "displacement that a small AC excitation of the voltage makes, and its phase",
-        .build = build,
-    },
-    {
-        .name = "bode_monitors",
-        .study = study_name,
-        .caption = "displacement of the monitors that a small AC excitation of the voltage makes, "
-                   "along the axis that they move along most, and its phase",
-        .build = build_monitors,
-    },
+    DEA_STUDY_FIGURE("bode", study_name, build,
+                     "displacement that a small AC excitation of the voltage makes, and its phase"),
+    DEA_STUDY_FIGURE(
+        "bode_monitors", study_name, build_monitors,
+        "displacement of the monitors that a small AC excitation of the voltage makes, "
+        "along the axis that they move along most, and its phase"),
 };
 
 // Peaks, for the terminal ------------------------------------------------------------------------

@@ -21,36 +21,28 @@ static const struct dea_result_column slope_columns[] = {
     LIMIT,
     LIMIT_VOLTAGE,
     DEA_NUMBER_IN_ROW,
-    {.key = "slope", .title = "slope", .meaning = "of the voltage by the number, V by its unit"},
-    {.key = "elasticity",
-     .title = "per cent by one per cent",
-     .meaning = "d ln(voltage) / d ln(number)"},
+    DEA_NUMBER_COLUMN("slope", NULL, NULL, 1, "slope",
+                      "of the voltage by the number, V by its unit"),
+    DEA_NUMBER_COLUMN("elasticity", NULL, NULL, 1, "per cent by one per cent",
+                      "d ln(voltage) / d ln(number)"),
     DEA_NUMBER_TOLERANCE,
     DEA_NUMBER_COLUMN("change_V", "V", "V", 1, "change by tolerance", "of the voltage"),
 };
-static const struct dea_result_table_type slope_table = {
-    .study = study_name,
-    .name = "limit_slopes",
-    .title = "slopes of the limits by the design's numbers",
-    .where = DEA_IN_JSON | DEA_IN_CSV,
-    .columns = slope_columns,
-    .column_count = COUNT(slope_columns)};
+static const struct dea_result_table_type slope_table = DEA_RESULT_TABLE(
+    study_name, "limit_slopes", slope_columns,
+    .title = "slopes of the limits by the design's numbers", .where = DEA_IN_JSON | DEA_IN_CSV);
 
 static const struct dea_result_column matter_columns[] = {
     LIMIT,
     LIMIT_VOLTAGE,
     DEA_TEXT_COLUMN("number", "1 % of", "of the design"),
     DEA_TEXT_COLUMN("number_text", "value", "of the number"),
-    {.key = "change", .title = "changes it by, %", .meaning = "in per cent by one per cent"},
+    DEA_NUMBER_COLUMN("change", NULL, NULL, 1, "changes it by, %", "in per cent by one per cent"),
     DEA_TEXT_COLUMN("tolerance_text", "tolerance", "of the workshop"),
     DEA_TEXT_COLUMN("change_text", "changes", "of the voltage by the tolerance"),
 };
-static const struct dea_result_table_type matter_table = {.study = study_name,
-                                                          .name = "limits",
-                                                          .title = "what moves the limits",
-                                                          .where = DEA_IN_SCREEN,
-                                                          .columns = matter_columns,
-                                                          .column_count = COUNT(matter_columns)};
+static const struct dea_result_table_type matter_table = DEA_RESULT_TABLE(
+    study_name, "limits", matter_columns, .title = "what moves the limits", .where = DEA_IN_SCREEN);
 
 // One limit --------------------------------------------------------------------------------------
 

@@ -13,13 +13,8 @@ static const struct dea_result_column columns[] = {
                       "that holds them there: an upper bound, of rigid rods"),
 };
 static const char study_name[] = "load-line";
-static const struct dea_result_table_type force_table = {.study = study_name,
-                                                         .name = "forces",
-                                                         .title = "load lines",
-                                                         .where = DEA_IN_CSV,
-                                                         .columns = columns,
-                                                         .column_count =
-                                                             sizeof columns / sizeof columns[0]};
+static const struct dea_result_table_type force_table =
+    DEA_RESULT_TABLE(study_name, "forces", columns, .title = "load lines", .where = DEA_IN_CSV);
 
 static bool is_fatal(dea_status status)
 {

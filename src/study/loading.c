@@ -217,7 +217,7 @@ enum value { AT_SHIFT, AT_TURN, OF_FORCE, OF_MOMENT, AT_PRESSURE, VALUES };
 static const struct dea_result_column point_columns[] = {
     VOLTAGE,
     POINT("number of the point, from 1"),
-    {.key = "back", .kind = DEA_CELL_FLAG, .title = "back", .meaning = "on the way back"},
+    DEA_RESULT_COLUMN(FLAG, "back", "back", .meaning = "on the way back"),
     DEA_NUMBER_COLUMN("shift_m", "m", "mm", 1e3, "shift", "of the body along the direction"),
     DEA_NUMBER_COLUMN("turn_rad", "rad", degree, degrees, "turn", "of the body"),
     DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force", "of what holds or pushes the body"),
@@ -231,18 +231,11 @@ static const struct dea_result_column point_columns[] = {
                       "potential energy at this voltage, 0 at rest"),
     DEA_NUMBER_COLUMN("min_tension_N_per_m", "N/m", "N/m", 1, "smallest tension",
                       "below 0 the film is slack"),
-    {.key = "unstable_modes",
-     .kind = DEA_CELL_COUNT,
-     .title = "unstable modes",
-     .meaning = "of the device as it is held"},
-    {.key = "trusted",
-     .kind = DEA_CELL_FLAG,
-     .title = "trusted",
-     .meaning = "whether the numbers are to be trusted"},
-    {.key = "flags",
-     .kind = DEA_CELL_TEXT,
-     .title = "flags",
-     .meaning = "what has to be known of them (docs/theory/trust.md)"},
+    DEA_RESULT_COLUMN(COUNT, "unstable_modes", "unstable modes",
+                      .meaning = "of the device as it is held"),
+    DEA_RESULT_COLUMN(FLAG, "trusted", "trusted",
+                      .meaning = "whether the numbers are to be trusted"),
+    DEA_TEXT_COLUMN("flags", "flags", "what has to be known of them (docs/theory/trust.md)"),
 };
 
 static const struct dea_result_column line_columns[] = {
@@ -257,12 +250,9 @@ static const struct dea_result_column line_columns[] = {
     DEA_NUMBER_COLUMN("least_force_N", "N", "mN", 1e3, "least force",
                       "first minimum of the force beyond it: a weight below it snaps back"),
     DEA_NUMBER_COLUMN("least_shift_m", "m", "mm", 1e3, "at shift", "shift of that minimum"),
-    {.key = "points", .kind = DEA_CELL_COUNT, .title = "points", .meaning = "of the line"},
-    {.key = "complete",
-     .kind = DEA_CELL_FLAG,
-     .title = "complete",
-     .meaning = "whether the line came to its end"},
-    {.key = "stopped", .kind = DEA_CELL_TEXT, .title = "stopped", .meaning = "why it did not"},
+    DEA_RESULT_COLUMN(COUNT, "points", "points", .meaning = "of the line"),
+    DEA_RESULT_COLUMN(FLAG, "complete", "complete", .meaning = "whether the line came to its end"),
+    DEA_TEXT_COLUMN("stopped", "stopped", "why it did not"),
 };
 
 static const struct dea_result_table_type tables[] = {
@@ -800,14 +790,11 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "loading",
-        .study = study_name,
-        .caption = "force that holds or pushes a body against its displacement, or displacement "
-                   "against the pressure, for each voltage; dashed: the way back; grey: not to be "
-                   "trusted",
-        .build = build,
-    },
+    DEA_STUDY_FIGURE(
+        "loading", study_name, build,
+        "force that holds or pushes a body against its displacement, or displacement "
+        "against the pressure, for each voltage; dashed: the way back; grey: not to be "
+        "trusted"),
 };
 
 // The study --------------------------------------------------------------------------------------

@@ -87,7 +87,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 
 static const struct dea_result_column mode_columns[] = {
     DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage that it vibrates about"),
-    {.key = "mode", .kind = DEA_CELL_COUNT, .title = "mode", .meaning = "from the lowest on"},
+    DEA_RESULT_COLUMN(COUNT, "mode", "mode", .meaning = "from the lowest on"),
     DEA_NUMBER_COLUMN("frequency_Hz", "Hz", "Hz", 1, "frequency", "in vacuo; negative: unstable"),
     DEA_NUMBER_COLUMN("mode_out_of_plane", "1", "%", 100, "out of plane",
                       "share of its kinetic energy that is out of the plane"),
@@ -172,12 +172,8 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "modes",
-        .study = study_name,
-        .caption = "frequencies of the lowest modes in vacuo against the voltage; 0: unstable",
-        .build = build,
-    },
+    DEA_STUDY_FIGURE("modes", study_name, build,
+                     "frequencies of the lowest modes in vacuo against the voltage; 0: unstable"),
 };
 
 // The study --------------------------------------------------------------------------------------

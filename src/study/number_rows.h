@@ -7,7 +7,7 @@
 /* Columns of a number: its key, its value and its unit. */
 #define DEA_NUMBER_IN_ROW                                                                          \
   DEA_TEXT_COLUMN("number", "number", "of the design"),                                            \
-      {.key = "number_value", .title = "value", .meaning = "of the number, in its unit"},          \
+      DEA_NUMBER_COLUMN("number_value", NULL, NULL, 1, "value", "of the number, in its unit"),     \
       DEA_TEXT_COLUMN("number_unit", "unit", "of the number")
 #define DEA_NUMBER_TOLERANCE                                                                       \
   {                                                                                                \

@@ -5,19 +5,17 @@
 #include <string.h>
 
 static const struct dea_result_column pass_columns[] = {
-    {.key = "pass", .kind = DEA_CELL_COUNT, .title = "pass", .meaning = "number of the mesh"},
-    {.key = "elements", .kind = DEA_CELL_COUNT, .title = "elements", .meaning = "of the mesh"},
-    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
+    DEA_RESULT_COLUMN(COUNT, "pass", "pass", .meaning = "number of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "elements", "elements", .meaning = "of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
     DEA_NUMBER_COLUMN("value", "1", "1", 1, "monitor",
                       "motion of the monitor: displacement in m, or stretch"),
     DEA_NUMBER_COLUMN("error", "1", "1", 1, "error", "its estimated error"),
-    {.key = "within",
-     .kind = DEA_CELL_FLAG,
-     .title = "small enough",
-     .meaning = "the error is the tolerance or less"},
+    DEA_RESULT_COLUMN(FLAG, "within", "small enough",
+                      .meaning = "the error is the tolerance or less"),
 };
 static const struct dea_result_column source_columns[] = {
-    {.key = "channel", .kind = DEA_CELL_TEXT, .title = "channel", .meaning = "name in the design"},
+    DEA_TEXT_COLUMN("channel", "channel", "name in the design"),
     DEA_NUMBER_COLUMN("lowest_V", "V", "kV", 1e-3, "lowest", "voltage of the channel"),
     DEA_NUMBER_COLUMN("highest_V", "V", "kV", 1e-3, "highest", "voltage of the channel"),
     DEA_NUMBER_COLUMN("largest_charge_C", "C", "nC", 1e9, "charge", "largest size of its charge"),
@@ -389,22 +387,12 @@ static dea_status build_charges(struct dea_context *ctx, const struct dea_result
 }
 
 const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
-    {.name = "monitors",
-     .study = "sweep",
-     .caption = "displacement of the monitors, along the axis that they move along most",
-     .build = build_displacement},
-    {.name = "monitors_stretch",
-     .study = "sweep",
-     .caption = "stretch between the points of lines, and mean stretch of regions",
-     .build = build_stretches},
-    {.name = "monitors_turn",
-     .study = "sweep",
-     .caption = "turns of rigid bodies",
-     .build = build_turns},
-    {.name = "channels",
-     .study = "sweep",
-     .caption = "charge on the channels",
-     .build = build_charges},
+    DEA_STUDY_FIGURE("monitors", "sweep", build_displacement,
+                     "displacement of the monitors, along the axis that they move along most"),
+    DEA_STUDY_FIGURE("monitors_stretch", "sweep", build_stretches,
+                     "stretch between the points of lines, and mean stretch of regions"),
+    DEA_STUDY_FIGURE("monitors_turn", "sweep", build_turns, "turns of rigid bodies"),
+    DEA_STUDY_FIGURE("channels", "sweep", build_charges, "charge on the channels"),
 };
 
 dea_status dea_observe_displacement_in_time(struct dea_context *ctx,

@@ -49,17 +49,11 @@ static const struct dea_field axis_fields[] = {
 static const struct dea_record axis_record = {"parameter", "a number that a map is against",
                                               axis_fields, COUNT(axis_fields)};
 static const struct dea_field fields[] = {
-    {.key = "parameters",
-     .kind = DEA_FIELD_RECORD,
-     .offset = AT(parameters),
-     .record = &axis_record,
-     .list_min = 1,
-     .list_max = AXES_MAX,
-     .element_size = sizeof(struct axis_keys),
-     .count_offset = AT(parameter_count),
-     .absent_text = "pre-stretch and thickness of the film",
-     .doc = "numbers of the design, a map each",
-     .example = "[{name: plies.film.thickness, from: 50 um, to: 200 um}]"},
+    DEA_FIELD_ROW(RECORD, "parameters", AT(parameters), .record = &axis_record,
+                  .absent_text = "pre-stretch and thickness of the film",
+                  .doc = "numbers of the design, a map each",
+                  .example = "[{name: plies.film.thickness, from: 50 um, to: 200 um}]",
+                  DEA_LIST(1, AXES_MAX, struct axis_keys, AT(parameter_count))),
     DEA_LABEL_ROW("quantity", AT(quantity), "hub_z_m",
                   "whose levels are drawn, of load points or monitors",
                   .absent_text = "z of the fibre tips, strain, or what a monitor shows most"),
@@ -241,35 +235,21 @@ static const struct dea_result_column scale_columns[] = {
                       "of the electrode's radius, from one level to the next; without fibres"),
     DEA_TEXT_COLUMN("displacements", "displacements",
                     "\"upper bounds\", or nothing where they are predictions"),
-    {.key = "quantity",
-     .kind = DEA_CELL_QUANTITY,
-     .hidden = DEA_IN_TERMINAL,
-     .title = "levels of",
-     .meaning = "what the levels are of"},
-    {.key = "level_base",
-     .kind = DEA_CELL_VALUE,
-     .hidden = DEA_IN_TERMINAL,
-     .title = "levels from",
-     .meaning = "what the levels are counted from"},
-    {.key = "level_step",
-     .kind = DEA_CELL_VALUE,
-     .hidden = DEA_IN_TERMINAL,
-     .title = "step of levels",
-     .meaning = "from one level to the next"},
+    DEA_RESULT_COLUMN(QUANTITY, "quantity", "levels of", .hidden = DEA_IN_TERMINAL,
+                      .meaning = "what the levels are of"),
+    DEA_RESULT_COLUMN(VALUE, "level_base", "levels from", .hidden = DEA_IN_TERMINAL,
+                      .meaning = "what the levels are counted from"),
+    DEA_RESULT_COLUMN(VALUE, "level_step", "step of levels", .hidden = DEA_IN_TERMINAL,
+                      .meaning = "from one level to the next"),
 };
 static const struct dea_result_column limit_columns[] = {
     {0}, // of the number
     VOLTAGE("slack_V", "slack above", "voltage at which the film loses its tension"),
     VOLTAGE("breakdown_V", "breakdown above", "voltage of breakdown"),
     VOLTAGE("pull_in_V", "pull-in", "voltage of pull-in"),
-    {.key = "level_V",
-     .si_unit = "V",
-     .display_unit = "kV",
-     .factor = 1e-3,
-     .list = true,
-     .hidden = DEA_IN_SCREEN,
-     .title = "level",
-     .meaning = "voltages at which the levels are reached"}};
+    DEA_RESULT_COLUMN(NUMBER, "level_V", "level", .si_unit = "V", .display_unit = "kV",
+                      .factor = 1e-3, .list = true, .hidden = DEA_IN_SCREEN,
+                      .meaning = "voltages at which the levels are reached")};
 
 /* A table of columns of its own, [count], copied. */
 static dea_status add_table(struct dea_context *ctx, struct dea_result *result, const char *model,
@@ -313,13 +293,10 @@ static dea_status fill_column(struct dea_context *ctx, const struct axis *axis, 
   dea_key_part(number->key, name);
   dea_key_part(number->unit, unit);
   snprintf(key, sizeof key, "%s%s%s%s", own ? "own_" : "", name, bare ? "" : "_", bare ? "" : unit);
-  *out = (struct dea_result_column){
-      .key = dea_intern(ctx, key),
-      .si_unit = number->unit,
-      .display_unit = number->unit,
-      .factor = 1,
-      .title = axis->title != NULL ? axis->title : dea_intern(ctx, number->key),
-      .meaning = own ? "of the design itself" : "number of the design"};
+  *out = (struct dea_result_column)DEA_NUMBER_COLUMN(
+      dea_intern(ctx, key), number->unit, number->unit, 1,
+      axis->title != NULL ? axis->title : dea_intern(ctx, number->key),
+      own ? "of the design itself" : "number of the design");
   for (size_t i = COUNT(units); i > 0; i--) {
     if (strcmp(units[i - 1].si, number->unit) == 0 && fabs(number->value) < units[i - 1].below) {
       out->display_unit = units[i - 1].shown;

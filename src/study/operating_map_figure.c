@@ -238,22 +238,10 @@ static dea_status build_others(struct dea_context *ctx, const struct dea_result 
 }
 
 const struct dea_figure dea_operating_map_figures[DEA_OPERATING_MAP_FIGURES] = {
-    {
-        .name = "map_pre_stretch",
-        .study = study,
-        .caption = "where the actuator can be used: voltage and pre-stretch",
-        .build = build_pre_stretch,
-    },
-    {
-        .name = "map_film_thickness",
-        .study = study,
-        .caption = "where the actuator can be used: voltage and film thickness",
-        .build = build_film_thickness,
-    },
-    {
-        .name = "map",
-        .study = study,
-        .caption = "where the actuator can be used: voltage and numbers of its design",
-        .build = build_others,
-    },
+    DEA_STUDY_FIGURE("map_pre_stretch", study, build_pre_stretch,
+                     "where the actuator can be used: voltage and pre-stretch"),
+    DEA_STUDY_FIGURE("map_film_thickness", study, build_film_thickness,
+                     "where the actuator can be used: voltage and film thickness"),
+    DEA_STUDY_FIGURE("map", study, build_others,
+                     "where the actuator can be used: voltage and numbers of its design"),
 };

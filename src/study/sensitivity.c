@@ -40,8 +40,8 @@ static const struct dea_field fields[] = {
         "stretch", AT(stretches), "1", "[1.2, 1.5]",
         "stretches of the electrode's edge (1 at rest) that the path is followed to, through limit "
         "points: what matters to the voltage and the rest at such a stretch",
-        .min = 1, .above_min = true, .max = 20, .list_min = 1, .list_max = DEA_DESIGN_STOPS_MAX,
-        .element_size = sizeof(struct dea_quantity), .count_offset = AT(stretch_count)),
+        .min = 1, .above_min = true, .max = 20,
+        DEA_LIST(1, DEA_DESIGN_STOPS_MAX, struct dea_quantity, AT(stretch_count))),
     DEA_INTEGER_ROW(
         "modes", AT(modes), "3",
         "with study modal: of how many frequencies, from the lowest on, slopes are wanted",
@@ -112,32 +112,23 @@ enum {
 static const struct dea_result_column slope_columns[] = {
     VOLTAGE,
     DEA_NUMBER_IN_ROW,
-    {.key = "quantity",
-     .kind = DEA_CELL_QUANTITY,
-     .title = "quantity",
-     .meaning = "of load points, or of a monitor"},
-    {.key = "value", .kind = DEA_CELL_VALUE, .title = "quantity's value", .meaning = "there"},
+    DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity",
+                      .meaning = "of load points, or of a monitor"),
+    DEA_RESULT_COLUMN(VALUE, "value", "quantity's value", .meaning = "there"),
     SLOPE,
-    {.key = "elasticity",
-     .title = "per cent by one per cent",
-     .meaning = "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"},
+    DEA_NUMBER_COLUMN("elasticity", NULL, NULL, 1, "per cent by one per cent",
+                      "d ln(quantity) / d ln(number); of a stretch that of the stretch less 1"),
     DEA_NUMBER_TOLERANCE,
-    {.key = "change",
-     .kind = DEA_CELL_VALUE,
-     .title = "change by tolerance",
-     .meaning = "of the quantity"},
+    DEA_RESULT_COLUMN(VALUE, "change", "change by tolerance", .meaning = "of the quantity"),
     MODE,
     TIP_DEPTH,
     HELD_STRETCH,
     LOADED,
     FLAGS,
 };
-static const struct dea_result_table_type slope_table = {.study = study_name,
-                                                         .name = "slopes",
-                                                         .title = "slopes by the design's numbers",
-                                                         .where = DEA_IN_JSON | DEA_IN_CSV,
-                                                         .columns = slope_columns,
-                                                         .column_count = COUNT(slope_columns)};
+static const struct dea_result_table_type slope_table =
+    DEA_RESULT_TABLE(study_name, "slopes", slope_columns, .title = "slopes by the design's numbers",
+                     .where = DEA_IN_JSON | DEA_IN_CSV);
 
 static const struct dea_result_column matter_columns[] = {
     VOLTAGE,
@@ -164,12 +155,8 @@ static const struct dea_result_column matter_columns[] = {
                     "by the tolerance, of the quantity that the rows are sorted by"),
     FLAGS,
 };
-static const struct dea_result_table_type matter_table = {.study = study_name,
-                                                          .name = "matters",
-                                                          .title = "what matters",
-                                                          .where = DEA_IN_SCREEN,
-                                                          .columns = matter_columns,
-                                                          .column_count = COUNT(matter_columns)};
+static const struct dea_result_table_type matter_table = DEA_RESULT_TABLE(
+    study_name, "matters", matter_columns, .title = "what matters", .where = DEA_IN_SCREEN);
 
 // Study ------------------------------------------------------------------------------------------
 

@@ -45,8 +45,8 @@ static const struct dea_field fields[] = {
                     .min = 0, .max = DEA_SOFT_MODES_MAX, .default_text = "6"),
     DEA_NUMBER_ROW("push", AT(pushes_m), "m", "[50 um, 100 um, 200 um]",
                    "largest displacements of the pushes", .above_min = true, .max = 0.1,
-                   .default_text = "[200 um, 400 um]", .list_min = 1, .list_max = PUSHES_MAX,
-                   .element_size = sizeof(struct dea_quantity), .count_offset = AT(push_count)),
+                   .default_text = "[200 um, 400 um]",
+                   DEA_LIST(1, PUSHES_MAX, struct dea_quantity, AT(push_count))),
     DEA_NUMBER_ROW(
         "apart", AT(apart_m), "m", "1 um",
         "states are one where the root mean square of what their films differ by is less",
@@ -704,52 +704,30 @@ enum { ALL = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN };
 
 static const struct dea_result_column state_columns[] = {
     KV("voltage_V", "V", "voltage"),
-    {.key = "state",
-     .kind = DEA_CELL_TEXT,
-     .title = "state",
-     .meaning = "its branch: of the same letter where each leads to the other"},
+    DEA_TEXT_COLUMN("state", "state",
+                    "its branch: of the same letter where each leads to the other"),
     UJ("energy_J", "energy", "potential energy, 0 at rest"),
     UJ("above_J", "above the lowest", "energy above that of the lowest state found"),
     SHAPE,
-    {.key = "unstable_modes",
-     .kind = DEA_CELL_COUNT,
-     .title = "unstable modes",
-     .meaning = "negative modes of the tangent"},
+    DEA_RESULT_COLUMN(COUNT, "unstable_modes", "unstable modes",
+                      .meaning = "negative modes of the tangent"),
     DEA_NUMBER_COLUMN("stiffness_N_per_m4", "N/m^4", "N/m^4", 1, "softest",
                       "stiffness of the softest motion by volume; none: not searched"),
     FLAGS,
-    {.key = "copies",
-     .kind = DEA_CELL_COUNT,
-     .title = "copies",
-     .meaning = "times that it was found again as a copy by symmetry"},
-    {.key = "reached", .kind = DEA_CELL_TEXT, .title = "reached", .meaning = "how, at first"},
-    {.key = "leads_up",
-     .kind = DEA_CELL_TEXT,
-     .title = "leads up to",
-     .meaning = "state at the next voltage; -: none was found"},
-    {.key = "leads_down",
-     .kind = DEA_CELL_TEXT,
-     .title = "down to",
-     .meaning = "state at the voltage before; -: none was found"},
+    DEA_RESULT_COLUMN(COUNT, "copies", "copies",
+                      .meaning = "times that it was found again as a copy by symmetry"),
+    DEA_TEXT_COLUMN("reached", "reached", "how, at first"),
+    DEA_TEXT_COLUMN("leads_up", "leads up to", "state at the next voltage; -: none was found"),
+    DEA_TEXT_COLUMN("leads_down", "down to", "state at the voltage before; -: none was found"),
 };
 static const struct dea_result_column band_columns[] = {
     KV("voltage_V", "V", "voltage"),
-    {.key = "states",
-     .kind = DEA_CELL_COUNT,
-     .title = "states",
-     .meaning = "stable states found, copies by symmetry not counted"},
-    {.key = "lowest",
-     .kind = DEA_CELL_TEXT,
-     .title = "lowest",
-     .meaning = "state of the lowest energy of those found"},
-    {.key = "up",
-     .kind = DEA_CELL_TEXT,
-     .title = "from below",
-     .meaning = "state that the sweep from 0 V comes to"},
-    {.key = "searched",
-     .kind = DEA_CELL_FLAG,
-     .title = "searched",
-     .meaning = "pushed along soft motions; not where the film is taut"},
+    DEA_RESULT_COLUMN(COUNT, "states", "states",
+                      .meaning = "stable states found, copies by symmetry not counted"),
+    DEA_TEXT_COLUMN("lowest", "lowest", "state of the lowest energy of those found"),
+    DEA_TEXT_COLUMN("up", "from below", "state that the sweep from 0 V comes to"),
+    DEA_RESULT_COLUMN(FLAG, "searched", "searched",
+                      .meaning = "pushed along soft motions; not where the film is taut"),
     UM("centre_z_min_m", "centre, least", "of all states found"),
     UM("centre_z_max_m", "centre, most", "of all states found"),
     UM("fibre_tip_z_min_m", "tip, least", "of all states found"),
@@ -760,43 +738,25 @@ static const struct dea_result_column band_columns[] = {
     UM("highest_z_m", "highest z", "largest displacement out of the plane of all states found"),
 };
 
-static const struct dea_result_table_type state_table = {.study = study_name,
-                                                         .name = "found",
-                                                         .title = "stable states",
-                                                         .where = ALL,
-                                                         .columns = state_columns,
-                                                         .column_count = COUNT(state_columns)};
-static const struct dea_result_table_type band_table = {.study = study_name,
-                                                        .name = "bands",
-                                                        .title =
-                                                            "what a sensor reads over the states",
-                                                        .where = ALL,
-                                                        .columns = band_columns,
-                                                        .column_count = COUNT(band_columns)};
+static const struct dea_result_table_type state_table =
+    DEA_RESULT_TABLE(study_name, "found", state_columns, .title = "stable states", .where = ALL);
+static const struct dea_result_table_type band_table =
+    DEA_RESULT_TABLE(study_name, "bands", band_columns,
+                     .title = "what a sensor reads over the states", .where = ALL);
 
 static const struct dea_result_column mesh_columns[] = {
     KV("voltage_V", "V", "voltage"),
-    {.key = "state",
-     .kind = DEA_CELL_TEXT,
-     .title = "state",
-     .meaning = "branch of the design's mesh that it was carried from"},
-    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
-    {.key = "unknowns", .kind = DEA_CELL_COUNT, .title = "unknowns", .meaning = "of the mesh"},
-    {.key = "is",
-     .kind = DEA_CELL_TEXT,
-     .title = "is",
-     .meaning = "the state that it is on this mesh; -: none was found from there"},
+    DEA_TEXT_COLUMN("state", "state", "branch of the design's mesh that it was carried from"),
+    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
+    DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
+    DEA_TEXT_COLUMN("is", "is", "the state that it is on this mesh; -: none was found from there"),
     UJ("energy_J", "energy", "potential energy, 0 at rest"),
     UJ("above_J", "above the lowest", "energy above that of the lowest state on this mesh"),
     SHAPE,
     FLAGS,
 };
-static const struct dea_result_table_type mesh_table = {.study = study_name,
-                                                        .name = "meshes",
-                                                        .title = "states on finer meshes",
-                                                        .where = ALL,
-                                                        .columns = mesh_columns,
-                                                        .column_count = COUNT(mesh_columns)};
+static const struct dea_result_table_type mesh_table = DEA_RESULT_TABLE(
+    study_name, "meshes", mesh_columns, .title = "states on finer meshes", .where = ALL);
 
 /* Name of the state that one leads to; "" at the end of the voltages. */
 static void name_lead(const struct search *s, const struct state *state, int way,
@@ -997,17 +957,13 @@ static int compare_numbers(const void *a, const void *b)
 
 static const struct dea_result_column relaxed_columns[] = {
     KV("voltage_V", "V", "voltage"),
-    {.key = "refinement", .title = "refinement", .meaning = "of the mesh"},
+    DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
     SHAPE,
     FLAGS,
 };
-static const struct dea_result_table_type relaxed_table = {
-    .study = study_name,
-    .name = "relaxed",
-    .title = "mean of a film that wrinkles freely",
-    .where = ALL,
-    .columns = relaxed_columns,
-    .column_count = COUNT(relaxed_columns)};
+static const struct dea_result_table_type relaxed_table =
+    DEA_RESULT_TABLE(study_name, "relaxed", relaxed_columns,
+                     .title = "mean of a film that wrinkles freely", .where = ALL);
 
 /* Rows of one mesh, as far as its model goes. */
 static dea_status put_relaxed_mesh(struct search *s, const struct dea_model_settings *settings,
@@ -1275,22 +1231,15 @@ static dea_status build_profiles(struct dea_context *ctx, const struct dea_resul
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "states",
-        .study = study_name,
-        .caption =
-            "centre, or the place farthest out of the plane, and energy of the stable states "
-            "that were found; dashed: mean of a film that wrinkles freely; one line where each "
-            "leads to the other (?: not to be trusted at its highest voltage)",
-        .build = build_states,
-    },
-    {
-        .name = "state_profiles",
-        .study = study_name,
-        .caption = "shape of each state at its highest voltage (of model 3d: to the right along a "
-                   "fibre, to the left between fibres; ?: not to be trusted)",
-        .build = build_profiles,
-    },
+    DEA_STUDY_FIGURE(
+        "states", study_name, build_states,
+        "centre, or the place farthest out of the plane, and energy of the stable states "
+        "that were found; dashed: mean of a film that wrinkles freely; one line where each "
+        "leads to the other (?: not to be trusted at its highest voltage)"),
+    DEA_STUDY_FIGURE(
+        "state_profiles", study_name, build_profiles,
+        "shape of each state at its highest voltage (of model 3d: to the right along a "
+        "fibre, to the left between fibres; ?: not to be trusted)"),
 };
 
 // The study --------------------------------------------------------------------------------------

@@ -559,8 +559,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 enum { ALL = DEA_IN_JSON | DEA_IN_SCREEN };
 
 static const struct dea_result_column fact_columns[] = {
-    {.key = "points", .kind = DEA_CELL_COUNT, .title = "points", .meaning = "points in time"},
-    {.key = "end_s", .si_unit = "s", .display_unit = "s", .title = "end", .meaning = "last time"},
+    DEA_RESULT_COLUMN(COUNT, "points", "points", .meaning = "points in time"),
+    DEA_NUMBER_COLUMN("end_s", "s", "s", 1, "end", "last time"),
     DEA_TEXT_COLUMN("quantity", "cycles of",
                     "quantity of load points that the cycles are read from"),
 };
@@ -576,64 +576,35 @@ static const struct dea_result_column energy_columns[] = {
                       "difference, relative to the largest of these energies"),
 };
 static const struct dea_result_column cycle_columns[] = {
-    {.key = "start_s", .si_unit = "s", .title = "start", .meaning = "time"},
-    {.key = "end_s", .si_unit = "s", .title = "end", .meaning = "time"},
-    {.key = "level_V", .si_unit = "V", .title = "V", .meaning = "of the waveform"},
-    {.key = "amplitude",
-     .kind = DEA_CELL_VALUE,
-     .title = "amplitude",
-     .meaning = "highest - lowest"},
-    {.key = "farthest",
-     .kind = DEA_CELL_VALUE,
-     .title = "farthest",
-     .meaning = "of the highest and lowest, the one farther from the start"},
-    {.key = "highest", .kind = DEA_CELL_VALUE, .title = "highest", .meaning = "value"},
-    {.key = "lowest", .kind = DEA_CELL_VALUE, .title = "lowest", .meaning = "value"},
-    {.key = "rise_time_10_90_s",
-     .si_unit = "s",
-     .title = "rise 10-90",
-     .meaning = "time from 10 to 90 % of the way to the farthest"},
+    DEA_NUMBER_COLUMN("start_s", "s", NULL, 1, "start", "time"),
+    DEA_NUMBER_COLUMN("end_s", "s", NULL, 1, "end", "time"),
+    DEA_NUMBER_COLUMN("level_V", "V", NULL, 1, "V", "of the waveform"),
+    DEA_RESULT_COLUMN(VALUE, "amplitude", "amplitude", .meaning = "highest - lowest"),
+    DEA_RESULT_COLUMN(VALUE, "farthest", "farthest",
+                      .meaning = "of the highest and lowest, the one farther from the start"),
+    DEA_RESULT_COLUMN(VALUE, "highest", "highest", .meaning = "value"),
+    DEA_RESULT_COLUMN(VALUE, "lowest", "lowest", .meaning = "value"),
+    DEA_NUMBER_COLUMN("rise_time_10_90_s", "s", NULL, 1, "rise 10-90",
+                      "time from 10 to 90 % of the way to the farthest"),
 };
 static const struct dea_result_column creep_columns[] = {
     DEA_NUMBER_COLUMN("level_V", "V", "kV", 1e-3, "V", "of the waveform"),
-    {.key = "cycles", .kind = DEA_CELL_COUNT, .title = "cycles", .meaning = "at this voltage"},
-    {.key = "first", .kind = DEA_CELL_VALUE, .title = "first", .meaning = "farthest of the first"},
-    {.key = "last", .kind = DEA_CELL_VALUE, .title = "last", .meaning = "farthest of the last"},
-    {.key = "creep", .kind = DEA_CELL_VALUE, .title = "creep", .meaning = "last - first"},
-    {.key = "rise_s",
-     .hidden = DEA_IN_JSON,
-     .si_unit = "s",
-     .display_unit = "s",
-     .title = "rise 10-90",
-     .meaning = "rise time of the first"},
+    DEA_RESULT_COLUMN(COUNT, "cycles", "cycles", .meaning = "at this voltage"),
+    DEA_RESULT_COLUMN(VALUE, "first", "first", .meaning = "farthest of the first"),
+    DEA_RESULT_COLUMN(VALUE, "last", "last", .meaning = "farthest of the last"),
+    DEA_RESULT_COLUMN(VALUE, "creep", "creep", .meaning = "last - first"),
+    DEA_RESULT_COLUMN(NUMBER, "rise_s", "rise 10-90", .hidden = DEA_IN_JSON, .si_unit = "s",
+                      .display_unit = "s", .meaning = "rise time of the first"),
 };
 
-static const struct dea_result_table_type fact_table = {.study = study_name,
-                                                        .name = "",
-                                                        .title = "in time",
-                                                        .where = ALL,
-                                                        .one_row = true,
-                                                        .columns = fact_columns,
-                                                        .column_count = COUNT(fact_columns)};
-static const struct dea_result_table_type energy_table = {.study = study_name,
-                                                          .name = "energy",
-                                                          .title = "energy",
-                                                          .where = ALL,
-                                                          .one_row = true,
-                                                          .columns = energy_columns,
-                                                          .column_count = COUNT(energy_columns)};
-static const struct dea_result_table_type cycle_table = {.study = study_name,
-                                                         .name = "cycles",
-                                                         .title = "cycles",
-                                                         .where = DEA_IN_JSON,
-                                                         .columns = cycle_columns,
-                                                         .column_count = COUNT(cycle_columns)};
-static const struct dea_result_table_type creep_table = {.study = study_name,
-                                                         .name = "creep",
-                                                         .title = "farthest value of each cycle",
-                                                         .where = ALL,
-                                                         .columns = creep_columns,
-                                                         .column_count = COUNT(creep_columns)};
+static const struct dea_result_table_type fact_table = DEA_RESULT_TABLE(
+    study_name, "", fact_columns, .title = "in time", .where = ALL, .one_row = true);
+static const struct dea_result_table_type energy_table = DEA_RESULT_TABLE(
+    study_name, "energy", energy_columns, .title = "energy", .where = ALL, .one_row = true);
+static const struct dea_result_table_type cycle_table =
+    DEA_RESULT_TABLE(study_name, "cycles", cycle_columns, .title = "cycles", .where = DEA_IN_JSON);
+static const struct dea_result_table_type creep_table = DEA_RESULT_TABLE(
+    study_name, "creep", creep_columns, .title = "farthest value of each cycle", .where = ALL);
 
 static dea_status put_facts(struct dea_context *ctx, const struct dea_curve *curve, int column,
                             const char *model, struct dea_result *result)
@@ -884,61 +855,23 @@ static dea_status build_current(struct dea_context *ctx, const struct dea_result
 }
 
 static const struct dea_figure figures[] = {
-    {
-        .name = "history",
-        .study = study_name,
-        .caption = "voltage and displacement against time",
-        .build = build,
-    },
-    {
-        .name = "history_force",
-        .study = study_name,
-        .caption = "out-of-plane force against time",
-        .build = build_force,
-    },
-    {
-        .name = "history_current",
-        .study = study_name,
-        .caption = "current of the supply against time",
-        .build = build_current,
-    },
-    {
-        .name = "history_monitors",
-        .study = study_name,
-        .caption =
-            "displacement of the monitors against time, along the axis that they move along most",
-        .build = dea_observe_displacement_in_time,
-    },
-    {
-        .name = "history_monitors_stretch",
-        .study = study_name,
-        .caption = "stretch of lines and regions against time",
-        .build = dea_observe_stretches_in_time,
-    },
-    {
-        .name = "history_monitors_turn",
-        .study = study_name,
-        .caption = "turns of rigid bodies against time",
-        .build = dea_observe_turns_in_time,
-    },
-    {
-        .name = "history_voltages",
-        .study = study_name,
-        .caption = "voltages of the channels against time",
-        .build = dea_observe_voltages_in_time,
-    },
-    {
-        .name = "history_currents",
-        .study = study_name,
-        .caption = "currents of the channels' sources against time, means of the steps",
-        .build = dea_observe_currents_in_time,
-    },
-    {
-        .name = "history_channels",
-        .study = study_name,
-        .caption = "charge on the channels against time",
-        .build = dea_observe_charges_in_time,
-    },
+    DEA_STUDY_FIGURE("history", study_name, build, "voltage and displacement against time"),
+    DEA_STUDY_FIGURE("history_force", study_name, build_force, "out-of-plane force against time"),
+    DEA_STUDY_FIGURE("history_current", study_name, build_current,
+                     "current of the supply against time"),
+    DEA_STUDY_FIGURE(
+        "history_monitors", study_name, dea_observe_displacement_in_time,
+        "displacement of the monitors against time, along the axis that they move along most"),
+    DEA_STUDY_FIGURE("history_monitors_stretch", study_name, dea_observe_stretches_in_time,
+                     "stretch of lines and regions against time"),
+    DEA_STUDY_FIGURE("history_monitors_turn", study_name, dea_observe_turns_in_time,
+                     "turns of rigid bodies against time"),
+    DEA_STUDY_FIGURE("history_voltages", study_name, dea_observe_voltages_in_time,
+                     "voltages of the channels against time"),
+    DEA_STUDY_FIGURE("history_currents", study_name, dea_observe_currents_in_time,
+                     "currents of the channels' sources against time, means of the steps"),
+    DEA_STUDY_FIGURE("history_channels", study_name, dea_observe_charges_in_time,
+                     "charge on the channels against time"),
 };
 
 // The study --------------------------------------------------------------------------------------

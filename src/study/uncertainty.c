@@ -66,23 +66,18 @@ static const struct dea_record given_record = {"parameter", "a number that is un
                                                sizeof given_fields / sizeof given_fields[0]};
 
 static const struct dea_field fields[] = {
-    {.key = "parameters",
-     .kind = DEA_FIELD_RECORD,
-     .offset = AT(parameters),
-     .record = &given_record,
-     .list_min = 1,
-     .list_max = GIVEN_MAX,
-     .element_size = sizeof(struct given),
-     .count_offset = AT(parameter_count),
-     .absent_text = "those of the films' laws",
-     .doc = "what is uncertain, beside the parameters of the films' laws whose uncertainty their "
+    DEA_FIELD_ROW(
+        RECORD, "parameters", AT(parameters), .record = &given_record,
+        .absent_text = "those of the films' laws",
+        .doc =
+            "what is uncertain, beside the parameters of the films' laws whose uncertainty their "
             "material gives",
-     .example = "[{name: film.thickness, std: 2 um}]"},
+        .example = "[{name: film.thickness, std: 2 um}]",
+        DEA_LIST(1, GIVEN_MAX, struct given, AT(parameter_count))),
     DEA_NUMBER_ROW("correlations", AT(correlations), "1", "[-0.3]",
                    "correlations of these parameters: 2 with 1, 3 with 1, 3 with 2, ...", .min = -1,
-                   .max = 1, .list_min = 1, .list_max = PAIRS_MAX,
-                   .element_size = sizeof(struct dea_quantity),
-                   .count_offset = AT(correlation_count), .absent_text = "none"),
+                   .max = 1, DEA_LIST(1, PAIRS_MAX, struct dea_quantity, AT(correlation_count)),
+                   .absent_text = "none"),
 };
 
 static const struct dea_record record = {
@@ -456,28 +451,18 @@ static dea_status tell_sides(struct work *w)
 
 /* What one standard uncertainty of each does, at the last point that has a band. */
 static const struct dea_result_column effect_columns[] = {
-    {.key = "quantity",
-     .kind = DEA_CELL_QUANTITY,
-     .title = "quantity",
-     .meaning = "that is changed: of the sweep; the force at the end of its study"},
+    DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity",
+                      .meaning =
+                          "that is changed: of the sweep; the force at the end of its study"),
     DEA_NUMBER_COLUMN("voltage_V", "V", "kV", 1e-3, "V", "voltage of the change"),
-    {.key = "parameter",
-     .kind = DEA_CELL_TEXT,
-     .title = "uncertain",
-     .meaning = "number of the design or of a film's law; all: of all together"},
-    {.key = "std", .kind = DEA_CELL_TEXT, .title = "std", .meaning = "its standard uncertainty"},
-    {.key = "change",
-     .kind = DEA_CELL_VALUE,
-     .title = "change",
-     .meaning = "of the quantity by one std"},
+    DEA_TEXT_COLUMN("parameter", "uncertain",
+                    "number of the design or of a film's law; all: of all together"),
+    DEA_TEXT_COLUMN("std", "std", "its standard uncertainty"),
+    DEA_RESULT_COLUMN(VALUE, "change", "change", .meaning = "of the quantity by one std"),
 };
-static const struct dea_result_table_type effect_table = {
-    .study = study_name,
-    .name = "effects",
-    .title = "what one standard uncertainty changes",
-    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
-    .columns = effect_columns,
-    .column_count = sizeof effect_columns / sizeof effect_columns[0]};
+static const struct dea_result_table_type effect_table = DEA_RESULT_TABLE(
+    study_name, "effects", effect_columns, .title = "what one standard uncertainty changes",
+    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN);
 
 /* Last point of a curve that has a band in that column; SIZE_MAX: none, or no such curve. */
 static size_t last_with_band(const struct dea_curve *curve, int column)

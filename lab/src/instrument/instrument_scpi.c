@@ -81,15 +81,11 @@ static const struct dea_field fields[] = {
                          "command that sets the control voltage, with %g for the number; timed by "
                          "software",
                          "SOUR:VOLT %g", .absent_text = "it plays nothing"),
-    {.key = "output_factor",
-     .kind = DEA_FIELD_NUMBER,
-     .offset = offsetof(struct dea_scpi_raw, output_factor),
-     .unit = "1",
-     .default_text = "1",
-     .doc =
-         "what is sent for 1 V of control voltage; of a high-voltage supply that is set in V, the "
-         "amplifier's gain",
-     .example = "1000"},
+    DEA_NUMBER_ROW(
+        "output_factor", offsetof(struct dea_scpi_raw, output_factor), "1", "1000",
+        "what is sent for 1 V of control voltage; of a high-voltage supply that is set in V, the "
+        "amplifier's gain",
+        .default_text = "1"),
     DEA_INSTRUMENT_TIME(struct dea_scpi_raw, output_interval_s, "output_interval",
                         "shortest time between two commands of the output", "20 ms", 60),
     DEA_INSTRUMENT_TIME(struct dea_scpi_raw, queue_s, "queue",
@@ -119,10 +115,8 @@ static const struct dea_field fields[] = {
                         "longest time that a voltage may take to be confirmed; longer ends the "
                         "measurement",
                         "0.5 s", 5),
-    {.key = "watchdog",
-     .kind = DEA_FIELD_RECORD,
-     .record = &watchdog_record,
-     .doc = "its own watchdog, which switches it off when the computer is silent"},
+    DEA_FIELD_ROW(RECORD, "watchdog", 0, .record = &watchdog_record,
+                  .doc = "its own watchdog, which switches it off when the computer is silent"),
 };
 const struct dea_record dea_instrument_scpi_record = {
     "scpi", "answers or plays by SCPI on a TCP port", fields, DEA_INSTRUMENT_COUNT(fields)};

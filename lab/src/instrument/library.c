@@ -18,14 +18,9 @@ struct list {
 };
 
 static const struct dea_field fields[] = {
-    {.key = "libraries",
-     .kind = DEA_FIELD_LABEL,
-     .offset = offsetof(struct list, libraries),
-     .list_max = LISTED_MAX,
-     .element_size = sizeof(struct dea_label),
-     .count_offset = offsetof(struct list, count),
-     .doc = "libraries that protocols may name besides the usual ones",
-     .example = "[/opt/ni/lib/libnidaqmx.so.1]"},
+    DEA_LABEL_ROW("libraries", offsetof(struct list, libraries), "[/opt/ni/lib/libnidaqmx.so.1]",
+                  "libraries that protocols may name besides the usual ones",
+                  DEA_LIST(0, LISTED_MAX, struct dea_label, offsetof(struct list, count))),
 };
 static const struct dea_record record = {"list", "what instruments may load", fields, 1};
 
