@@ -10,27 +10,20 @@ enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_STD, PROFILE_COLUMNS };
 
 static const struct dea_csv_wanted profile_columns[PROFILE_COLUMNS] = {
     [PROFILE_V] =
-        {.name = "v", .title = "V (kV)", .measure = {"V", "1 kV"}, .needed = true, .filled = true},
+        DEA_CSV_COLUMN("v", "V", "1 kV", .title = "V (kV)", .needed = true, .filled = true),
     [PROFILE_X] =
-        {.name = "x", .title = "x (mm)", .measure = {"m", "1 mm"}, .needed = true, .filled = true},
-    [PROFILE_Z] = {.name = "z", .title = "z (um)", .measure = {"m", "1 um"}, .needed = true},
-    [PROFILE_STD] = {.name = "z std", .title = "z std (um)", .measure = {"m", "1 um"}},
+        DEA_CSV_COLUMN("x", "m", "1 mm", .title = "x (mm)", .needed = true, .filled = true),
+    [PROFILE_Z] = DEA_CSV_COLUMN("z", "m", "1 um", .title = "z (um)", .needed = true),
+    [PROFILE_STD] = DEA_CSV_COLUMN("z std", "m", "1 um", .title = "z std (um)"),
 };
 
 static const struct dea_csv_wanted history_columns[DEA_MEASURED_COLUMNS] = {
-    [DEA_MEASURED_TIME] = {.name = "time",
-                           .title = "time (s)",
-                           .measure = {"s", "1 s"},
-                           .needed = true,
-                           .filled = true},
-    [DEA_MEASURED_VOLTAGE] = {.name = "v", .title = "V (kV)", .measure = {"V", "1 kV"}},
-    [DEA_MEASURED_CENTRE] = {.name = "z centre",
-                             .title = "z centre (um)",
-                             .measure = {"m", "1 um"}},
-    [DEA_MEASURED_TIP] = {.name = "z fibre tip",
-                          .title = "z fibre tip (um)",
-                          .measure = {"m", "1 um"}},
-    [DEA_MEASURED_FORCE] = {.name = "force", .title = "force (mN)", .measure = {"N", "1 mN"}},
+    [DEA_MEASURED_TIME] =
+        DEA_CSV_COLUMN("time", "s", "1 s", .title = "time (s)", .needed = true, .filled = true),
+    [DEA_MEASURED_VOLTAGE] = DEA_CSV_COLUMN("v", "V", "1 kV", .title = "V (kV)"),
+    [DEA_MEASURED_CENTRE] = DEA_CSV_COLUMN("z centre", "m", "1 um", .title = "z centre (um)"),
+    [DEA_MEASURED_TIP] = DEA_CSV_COLUMN("z fibre tip", "m", "1 um", .title = "z fibre tip (um)"),
+    [DEA_MEASURED_FORCE] = DEA_CSV_COLUMN("force", "N", "1 mN", .title = "force (mN)"),
 };
 
 int dea_measured_point_column(enum dea_measured_column column)

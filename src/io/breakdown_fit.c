@@ -22,28 +22,14 @@ enum { FILE_MAX = 100000000 };
 enum column { VOLTAGE, FIELD, THICKNESS, STRETCH, AREA, SURVIVED, COLUMNS };
 
 static const struct dea_csv_wanted wanted[COLUMNS] = {
-    [VOLTAGE] = {.name = "voltage",
-                 .title = "voltage (kV)",
-                 .measure = {"V", "1 kV"},
-                 .filled = true},
-    [FIELD] = {.name = "field",
-               .title = "field (V/um)",
-               .measure = {"V/m", "80 V/um"},
-               .filled = true},
-    [THICKNESS] = {.name = "thickness",
-                   .title = "thickness (um)",
-                   .measure = {"m", "100 um"},
-                   .filled = true},
-    [STRETCH] = {.name = "stretch", .title = "stretch", .measure = {"1", "1.5"}, .filled = true},
-    [AREA] = {.name = "area",
-              .title = "area (mm^2)",
-              .measure = {"m^2", "20 mm^2"},
-              .filled = true},
-    [SURVIVED] = {.name = "survived",
-                  .title = "survived",
-                  .measure = {"1", "1"},
-                  .needed = true,
-                  .filled = true},
+    [VOLTAGE] = DEA_CSV_COLUMN("voltage", "V", "1 kV", .title = "voltage (kV)", .filled = true),
+    [FIELD] = DEA_CSV_COLUMN("field", "V/m", "80 V/um", .title = "field (V/um)", .filled = true),
+    [THICKNESS] =
+        DEA_CSV_COLUMN("thickness", "m", "100 um", .title = "thickness (um)", .filled = true),
+    [STRETCH] = DEA_CSV_COLUMN("stretch", "1", "1.5", .title = "stretch", .filled = true),
+    [AREA] = DEA_CSV_COLUMN("area", "m^2", "20 mm^2", .title = "area (mm^2)", .filled = true),
+    [SURVIVED] =
+        DEA_CSV_COLUMN("survived", "1", "1", .title = "survived", .needed = true, .filled = true),
 };
 
 /* What the file says for all films, or the table for each; both or neither are errors. */

@@ -16,6 +16,11 @@ struct dea_csv_wanted {
   bool strain;                // a column that is called a strain counts too: it is 1 less
 };
 
+#define DEA_CSV_COLUMN(its_name, its_unit, its_example, ...)                                       \
+  {                                                                                                \
+    .name = its_name, .measure = {its_unit, its_example}, __VA_ARGS__                              \
+  }
+
 struct dea_csv_columns {
   const char *file; // interned
   size_t rows;
