@@ -1,9 +1,10 @@
 #include "cli/cli.h"
 #include "cli/print_fit.h"
-#include "io/breakdown_fit.h"
+#include "identify/fit_tests.h"
+#include "io/breakdown_write.h"
 #include "io/device_fit_files.h"
 #include "io/fit_files.h"
-#include "io/life_fit.h"
+#include "io/life_write.h"
 #include "job/device_fit_run.h"
 
 struct request {

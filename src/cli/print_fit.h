@@ -1,9 +1,9 @@
 /* What `dea fit` prints. */
 #pragma once
 
+#include "identify/breakdown_fit.h"
 #include "identify/device_fit.h"
-#include "io/breakdown_fit.h"
-#include "io/life_fit.h"
+#include "identify/life_fit.h"
 
 void cli_print_fit(const struct dea_fit *fit);
 void cli_print_device_fit(const struct dea_device_fit *fit);

@@ -9,6 +9,7 @@
 
 const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1] = {
     "uniaxial", "planar", "equibiaxial", "relaxation", "cyclic", "creep", NULL};
+const char *const dea_fit_use_names[] = {"fit", "check", "predict", NULL};
 
 const struct dea_fit_column_type dea_fit_columns[DEA_FIT_COLUMNS] = {
     [DEA_FIT_TIME] = {"time", "s", "time (s)"},
@@ -37,8 +38,6 @@ static const struct dea_field column_fields[] = {
 static const struct dea_record column_record = {
     "columns", "titles of the columns, without their units", column_fields, COUNT(column_fields)};
 
-static const char *const uses[] = {"fit", "check", "predict", NULL};
-
 static const struct dea_field test_fields[] = {
     DEA_LABEL_ROW("name", TEST_AT(name), "tension to 3", "name of the test", .required = true),
     DEA_LABEL_ROW("file", TEST_AT(file), "tension.csv",
@@ -49,7 +48,7 @@ static const struct dea_field test_fields[] = {
     DEA_CHOICE_ROW("mode", TEST_AT(mode), dea_coupon_mode_names, "uniaxial",
                    "how the piece of a relaxation or cyclic test is held",
                    .default_text = "uniaxial"),
-    DEA_CHOICE_ROW("use", TEST_AT(use), uses, "check",
+    DEA_CHOICE_ROW("use", TEST_AT(use), dea_fit_use_names, "check",
                    "fit: fitted; check: only compared; predict: no stress is needed",
                    .default_text = "fit"),
     DEA_FIELD_ROW(RECORD, "columns", TEST_AT(columns), .record = &column_record,

@@ -21,6 +21,7 @@ enum dea_fit_kind { // the first three: slow, or in time where times or a rate a
 extern const char *const dea_fit_kind_names[DEA_FIT_KINDS + 1]; // ended by NULL
 
 enum dea_fit_use { DEA_FIT_USED, DEA_FIT_CHECKED, DEA_FIT_PREDICTED };
+extern const char *const dea_fit_use_names[]; // ended by NULL
 
 /* Columns of a test's file. */
 enum dea_fit_column {

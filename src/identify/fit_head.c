@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name)
+static dea_status check_name(struct dea_context *ctx, const struct dea_label *name)
 {
   return strlen(name->text) < DEA_NAME_SIZE && strpbrk(name->text, "/\\ \t:#'\"") == NULL
              ? DEA_OK
@@ -47,7 +47,7 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
   DEA_TRY(ctx, dea_schema_read(&reader, record, dea_yaml_root(head->document), "", head));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) {
     DEA_TRY(ctx, check(ctx, head));
-    DEA_TRY(ctx, dea_fit_name_check(ctx, &head->name));
+    DEA_TRY(ctx, check_name(ctx, &head->name));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   return found == 0 ? DEA_OK
@@ -103,5 +103,31 @@ void dea_fit_head_destroy(struct dea_context *ctx, void *fit)
   if (head != NULL) {
     dea_yaml_destroy(ctx, head->document);
     dea_free(ctx, head);
+  }
+}
+
+void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
+                         dea_status (*run)(void *fit, const void *file), dea_status *status)
+{
+  struct dea_arena *fit = dea_alloc(ctx, 1, size);
+  if (fit == NULL) {
+    *status = DEA_E_MEMORY;
+    return NULL;
+  }
+  fit->ctx = ctx;
+  *status = run(fit, file);
+  if (*status != DEA_OK) {
+    dea_fit_frame_destroy(ctx, fit);
+    *status = dea_fail_chain(ctx, *status, __func__, __FILE__, __LINE__);
+    return NULL;
+  }
+  return fit;
+}
+
+void dea_fit_frame_destroy(struct dea_context *ctx, void *fit)
+{
+  if (fit != NULL) {
+    dea_arena_free(fit);
+    dea_free(ctx, fit);
   }
 }

@@ -1,6 +1,7 @@
 /* What the fit files of materials and of devices have in common, and how both are read. */
 #pragma once
 
+#include "base/arena.h"
 #include "base/schema.h"
 
 #include <stddef.h>
@@ -80,9 +81,14 @@ dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
 /* fit: begins with its head, or NULL. */
 void dea_fit_head_destroy(struct dea_context *ctx, void *fit);
 
-/* A finding where the name of what a fit writes cannot be that of a file. */
-dea_status dea_fit_name_check(struct dea_context *ctx, const struct dea_label *name);
 /* A finding for each name that stands twice. items: [count] of `size` bytes that begin with their
  * name; what: "test". */
 dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_t count,
                                size_t size, const char *what);
+
+/* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
+ * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */
+void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
+                         dea_status (*run)(void *fit, const void *file), dea_status *status);
+/* NULL is fine. */
+void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);

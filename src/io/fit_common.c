@@ -7,34 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-const char *const dea_fit_use_names[] = {"fit", "check", "predict"};
-
-void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
-                         dea_status (*run)(void *fit, const void *file), dea_status *status)
-{
-  struct dea_arena *fit = dea_alloc(ctx, 1, size);
-  if (fit == NULL) {
-    *status = DEA_E_MEMORY;
-    return NULL;
-  }
-  fit->ctx = ctx;
-  *status = run(fit, file);
-  if (*status != DEA_OK) {
-    dea_fit_frame_destroy(ctx, fit);
-    *status = dea_fail_chain(ctx, *status, __func__, __FILE__, __LINE__);
-    return NULL;
-  }
-  return fit;
-}
-
-void dea_fit_frame_destroy(struct dea_context *ctx, void *fit)
-{
-  if (fit != NULL) {
-    dea_arena_free(fit);
-    dea_free(ctx, fit);
-  }
-}
-
 void dea_fit_add_field(struct dea_text *out, double value)
 {
   if (isfinite(value)) {

@@ -7,16 +7,6 @@
 
 enum { DEA_FIT_JSON_SCHEMA = 1 };
 
-/* Words of enum dea_fit_use. */
-extern const char *const dea_fit_use_names[];
-
-/* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
- * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */
-void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
-                         dea_status (*run)(void *fit, const void *file), dea_status *status);
-/* NULL is fine. */
-void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);
-
 /* Adds ",1.25", with nothing behind the comma where the value is no number. */
 void dea_fit_add_field(struct dea_text *out, double value);
 

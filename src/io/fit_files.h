@@ -1,22 +1,9 @@
-/* A fit and its files: the tests as they are read, the material, CSV, JSON and figures. */
+/* The files of a fit of a material: the material, CSV, JSON and figures. */
 #pragma once
 
 #include "base/json.h"
 #include "identify/fit.h"
 #include "plot/plot.h"
-
-/* The tests of a fit file, in its order. */
-struct dea_fit_tests {
-  struct dea_fit_series series[DEA_FIT_TESTS_MAX];
-  size_t count;
-  struct dea_arena memory;
-};
-
-/* Reads the CSV files of all tests, named from the fit file's folder. All errors become findings
- * with their places; DEA_E_IO then, or DEA_E_DESIGN. out: freed by the caller after success. */
-dea_status dea_fit_tests_read(struct dea_context *ctx, const struct dea_fit_file *file,
-                              struct dea_fit_tests *out);
-void dea_fit_tests_free(struct dea_fit_tests *tests);
 
 /* Adds "yeoh.yaml": the material as the catalogue reads it. What is not fitted comes from the
  * catalogue's material that the fit file names. */

@@ -1,4 +1,5 @@
 /* Figures of a result, and what they are made of. Those of a study stand in its file, the others in
+ * folder figures. */
 #pragma once
 
 #include "plot/plot.h"

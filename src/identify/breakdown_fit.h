@@ -1,11 +1,9 @@
-/* A fit of breakdown tests: the films as they are read, Weibull's law of them, and its files. */
+/* A fit of breakdown tests: the films as they are read, and Weibull's law of them. */
 #pragma once
 
 #include "base/arena.h"
-#include "base/json.h"
 #include "identify/breakdown_file.h"
 #include "identify/weibull.h"
-#include "plot/plot.h"
 
 struct dea_breakdown_fit {
   struct dea_arena memory;               // the first member
@@ -35,14 +33,3 @@ double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double sh
 double dea_breakdown_fit_stretch(const struct dea_breakdown_fit *fit);
 /* Field of a film over what the law gives it in place of the reference: on the reference. */
 double dea_breakdown_fit_reference_field(const struct dea_breakdown_fit *fit, size_t i);
-
-json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *command);
-/* As dea_fit_folder. */
-dea_status dea_breakdown_fit_folder(struct dea_context *ctx, const struct dea_breakdown_file *file,
-                                    const char *directory, bool force);
-/* Writes NAME.yaml, the catalogue's material with this law of breakdown, fit.csv, fit.json and
- * figure fit: the share of broken films over the field, by Kaplan and Meier and by the law with its
- * band of two standard uncertainties. */
-dea_status dea_breakdown_fit_write(struct dea_context *ctx, const struct dea_breakdown_fit *fit,
-                                   const char *command, const struct dea_plot_format *format,
-                                   const char *directory);

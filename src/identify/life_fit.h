@@ -1,11 +1,9 @@
-/* A fit of life tests: the specimens as they are read, Weibull's law of their lives, its files. */
+/* A fit of life tests: the specimens as they are read, and Weibull's law of their lives. */
 #pragma once
 
 #include "base/arena.h"
-#include "base/json.h"
 #include "identify/life_file.h"
 #include "identify/weibull.h"
-#include "plot/plot.h"
 
 struct dea_life_fit {
   struct dea_arena memory;          // the first member
@@ -30,12 +28,3 @@ void dea_life_fit_destroy(struct dea_context *ctx, struct dea_life_fit *fit);
 /* Least share of specimens of which it is 95 % certain that fewer have failed by the shortest
  * survived life, where none has failed: 1 - 0.05^(1/n). */
 double dea_life_fit_bound(const struct dea_life_fit *fit, double *life);
-
-json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command);
-/* As dea_fit_folder. */
-dea_status dea_life_fit_folder(struct dea_context *ctx, const struct dea_life_file *file,
-                               const char *directory, bool force);
-/* Writes fit.csv, a row a specimen, fit.json and, where there is a law, figure fit. */
-dea_status dea_life_fit_write(struct dea_context *ctx, const struct dea_life_fit *fit,
-                              const char *command, const struct dea_plot_format *format,
-                              const char *directory);

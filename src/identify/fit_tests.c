@@ -1,6 +1,7 @@
+#include "identify/fit_tests.h"
+
 #include "base/csv_line.h"
 #include "base/file.h"
-#include "io/fit_files.h"
 #include "result/provenance.h"
 #include "table/csv_columns.h"
 
