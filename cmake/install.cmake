@@ -1,11 +1,13 @@
 # Install rules: library, command, headers, data, examples, manual page, completions, libdea.pc.
 
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME core) # the other one is lab
 install(TARGETS libdea dea
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 get_property(modules GLOBAL PROPERTY DEA_MODULES)
+list(REMOVE_ITEM modules dea_matio_module)
 if(modules)
   install(TARGETS ${modules} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea)
 endif()
@@ -34,7 +36,14 @@ install(FILES ${PROJECT_BINARY_DIR}/src/completion.fish RENAME dea.fish
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/lab/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}/lab)
+if(DEA_LAB)
+  install(TARGETS dea-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT lab)
+  if(TARGET dea_matio_module)
+    install(TARGETS dea_matio_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/dea COMPONENT lab)
+  endif()
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/lab/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}/lab COMPONENT lab)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/lab/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/dea/lab COMPONENT lab)
+endif()
 
 # A program that links the static library needs its dependencies too; one that links the shared
 # library does not. udunits and HDF5 are given by path: their packages name their .pc files

@@ -17,7 +17,7 @@
 enum { SETS_MAX = 16 };
 static const double pi = 3.14159265358979323846;
 
-static const char protocol_file[] = DEA_SOURCE_DIR "/examples/bench/cyclic.yaml";
+static const char protocol_file[] = DEA_SOURCE_DIR "/lab/examples/cyclic.yaml";
 /* Those of the example, and a force cell. */
 static const char channels[] =
     "[{name: amplifier voltage, quantity: voltage, input: ai0, per_volt: 1 kV}, "
@@ -347,7 +347,7 @@ int main(int argc, char **argv)
   write_elastic(ctx);
   printf("# The bench, from end to end\n"
          "\n"
-         "Written by `scripts/verify bench`. A protocol (`examples/bench/cyclic.yaml`%s) is played "
+         "Written by `scripts/verify bench`. A protocol (`lab/examples/cyclic.yaml`%s) is played "
          "to the simulated\n"
          "bench, recorded, read back and reduced (`dea drive --sim`, `dea reduce`). The truth is "
          "study `transient` of model `lumped`, averaged over\n"

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#define EXAMPLE "@/examples/bench/cyclic.yaml"
+#define EXAMPLE "@/lab/examples/cyclic.yaml"
 
 TEST(test_dry_run)
 {

@@ -35,7 +35,7 @@ static pid_t start_with(const char *file, const char *err)
         freopen(err, "w", stderr) == NULL) {
       _exit(99);
     }
-    execl(DEA_COMMAND, "dea", "drive", DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", "--sim", "-o",
+    execl(DEA_COMMAND, "dea", "drive", DEA_SOURCE_DIR "/lab/examples/cyclic.yaml", "--sim", "-o",
           file, "--set", "sequence=null", "--set",
           "waveform={kind: constant, voltage: 5 kV, duration: 60 s}", "--set",
           "sim={kind: sim, pace: real}", "--set", "safety.ramp=20 kV/s", (char *)NULL);
@@ -247,14 +247,14 @@ TEST(test_two_into_one_file)
   assert_int_equal(dea_context_create(NULL, &ctx), DEA_OK);
   pid_t child = start("two.h5");
   wait_for_samples(ctx, "two.h5", 100);
-  assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --sim -o two.h5 --force"), 5);
+  assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --sim -o two.h5 --force"), 5);
   assert_contains(command_err, "'two.h5' is being written by another program");
   assert_int_equal(kill(child, SIGINT), 0);
   assert_int_equal(waitpid(child, &status, 0), child);
   assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 130);
   assert_int_equal(command_run("recording two.h5"), 0);
   assert_contains(command_out, "interrupted");
-  assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --sim -o two.h5 --force --set "
+  assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --sim -o two.h5 --force --set "
                                "sequence=null --set 'waveform={kind: constant, voltage: 1 kV}'"),
                    0); // nobody writes it now
   child = start("lost.h5");

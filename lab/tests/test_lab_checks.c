@@ -51,7 +51,7 @@ TEST(test_first_example_is_inside_the_margin)
   double stretch;
   dea_finding_clear(ctx);
   assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design,
-                                     DEA_SOURCE_DIR "/examples/bench/first.yaml", NULL, 0, &p),
+                                     DEA_SOURCE_DIR "/lab/examples/first.yaml", NULL, 0, &p),
                    DEA_OK);
   assert_true(p->safety.largest_field_V_per_m.origin == DEA_ABSENT);
   assert_true(p->safety.field_reason.text[0] == '\0' && p->safety.field_margin.si == 1.2);
@@ -72,7 +72,7 @@ TEST(test_example_passes)
   double stretch;
   dea_finding_clear(ctx);
   assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design,
-                                     DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", NULL, 0, &p),
+                                     DEA_SOURCE_DIR "/lab/examples/cyclic.yaml", NULL, 0, &p),
                    DEA_OK);
   dea_status status = dea_protocol_check(ctx, p, &plan);
   if (status != DEA_OK || dea_finding_count(ctx, DEA_WARNING) > 0) {

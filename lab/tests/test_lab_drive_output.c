@@ -283,7 +283,7 @@ TEST(test_examples_do_not_trip)
     static struct dea_drive_watch w;
     struct dea_drive_output output;
     double asked_V, before_V = 0;
-    snprintf(file, sizeof file, DEA_SOURCE_DIR "/examples/bench/%s.yaml", files[f]);
+    snprintf(file, sizeof file, DEA_SOURCE_DIR "/lab/examples/%s.yaml", files[f]);
     assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design, file, NULL, 0, &p), DEA_OK);
     assert_int_equal(dea_protocol_check(ctx, p, &plan), DEA_OK);
     dea_drive_output_start(&output, p);

@@ -14,7 +14,7 @@ static char log_text[LOG_MAX];
   " --set 'sequence=[{waveform: {kind: square, high: 4 kV, frequency: 2 Hz, duty: 60 %, "          \
   "cycles: 2}}]'"                                                                                  \
   " --set safety.ramp=20kV/s --set safety.trip_time=20ms "
-#define EXPORT "drive @/examples/bench/cyclic.yaml --force --export ex" SETS
+#define EXPORT "drive @/lab/examples/cyclic.yaml --force --export ex" SETS
 
 static void make_files(void)
 {
@@ -91,10 +91,10 @@ TEST(test_waveform)
     assert_true(voltage_kV == due && control_V == due);
   }
   assert_string_equal(strchr(at, '\n'), "\n");
-  assert_int_equal(command_run("drive @/examples/bench/cyclic.yaml --export ex" SETS), 5);
+  assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --export ex" SETS), 5);
   assert_contains(command_err, "--force replaces it");
   assert_int_equal(
-      command_run("drive @/examples/bench/cyclic.yaml --export no --set channels=null"), 2);
+      command_run("drive @/lab/examples/cyclic.yaml --export no --set channels=null"), 2);
   assert_contains(command_err, "nothing to be recorded");
 }
 

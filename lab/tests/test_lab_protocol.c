@@ -10,7 +10,7 @@ static struct dea_protocol *read_example(const char *name)
 {
   char file[700];
   struct dea_protocol *protocol;
-  snprintf(file, sizeof file, "%s/examples/bench/%s", DEA_SOURCE_DIR, name);
+  snprintf(file, sizeof file, "%s/lab/examples/%s", DEA_SOURCE_DIR, name);
   dea_finding_clear(ctx);
   if (dea_protocol_read(ctx, &dea_film_of_design, file, NULL, 0, &protocol) != DEA_OK) {
     print_findings(ctx);

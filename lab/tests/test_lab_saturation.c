@@ -26,7 +26,7 @@ TEST(test_too_small_range)
   char file[sizeof path];
   snprintf(file, sizeof file, "%s", in_folder("range.h5"));
   assert_int_equal(dea_protocol_read(ctx, &dea_film_of_design,
-                                     DEA_SOURCE_DIR "/examples/bench/cyclic.yaml", sets, 3,
+                                     DEA_SOURCE_DIR "/lab/examples/cyclic.yaml", sets, 3,
                                      &protocol),
                    DEA_OK);
   const struct dea_drive_options options = {.simulate = true, .file = file};

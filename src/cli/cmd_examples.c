@@ -55,9 +55,7 @@ static int list_examples(struct dea_cli *cli, const struct cli_data_list *list)
     printf("%-18.*s %s\n", (int)cli_data_stem(list->files[i].name), list->files[i].name, title);
   }
   if (!cli->quiet) {
-    fprintf(stderr, "\nStart with one of them:  dea examples NAME > my.yaml && dea run my.yaml\n"
-                    "Those in bench are protocols and name a design:  dea examples --copy DIR && "
-                    "dea drive DIR/bench/first.yaml\n");
+    fprintf(stderr, "\nStart with one of them:  dea examples NAME > my.yaml && dea run my.yaml\n");
   }
   return 0;
 }

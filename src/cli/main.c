@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L // isatty, fstat
 #include "base/text.h"
 #include "base/version.h"
+#include "cli/bench.h"
 #include "cli/cli.h"
 
 #include <fcntl.h>
@@ -182,6 +183,7 @@ static int finish_output(int code, bool wanted_closed)
 
 int main(int argc, char **argv)
 {
+  cli_bench_enter(argv);
   bool closed = open_standard_files();
   struct dea_cli cli = {.commands = commands, .follower = is_follower(), .ranks = count_ranks()};
   if (cli.follower && !silence()) {

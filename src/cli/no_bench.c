@@ -1,9 +1,26 @@
-/* In place of the bench in a build without it (DEA_LAB=OFF). */
+/* In place of the bench, of which the program dea has nothing. */
+#define _POSIX_C_SOURCE 200809L // readlink
 #include "cli/bench.h"
+
+#include <string.h>
+#include <unistd.h>
+
+void cli_bench_enter(char **argv)
+{
+  static const char name[] = "dea-lab";
+  char path[4096];
+  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - sizeof name);
+  if (length > 0) {
+    path[length] = '\0';
+    char *end = strrchr(path, '/');
+    strcpy(end != NULL ? end + 1 : path, name);
+    execv(path, argv);
+  }
+}
 
 static dea_status fail(struct dea_context *ctx)
 {
-  return dea_fail(ctx, DEA_E_UNSUPPORTED, "this build has no bench: build with -DDEA_LAB=ON");
+  return dea_fail(ctx, DEA_E_UNSUPPORTED, "the bench is not installed: it is the package dea-lab");
 }
 
 struct request {
@@ -17,11 +34,11 @@ static int run(struct dea_cli *cli, void *request)
 }
 
 static const struct cli_option options[] = {
-    {NULL, 0, CLI_FILE, "FILE", "not in this build", CLI_AT(words), .most = CLI_WORDS_MAX}, {0}};
+    {NULL, 0, CLI_FILE, "FILE", "not installed", CLI_AT(words), .most = CLI_WORDS_MAX}, {0}};
 
 #define NO_COMMAND(command)                                                                        \
   const struct dea_command cmd_##command = {.name = #command,                                      \
-                                            .summary = "Not in this build: it has no bench",       \
+                                            .summary = "Not installed: package dea-lab",       \
                                             .options = options,                                    \
                                             .request_size = sizeof(struct request),                \
                                             .run = run}

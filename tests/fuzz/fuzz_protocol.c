@@ -1,5 +1,5 @@
 /* Fuzz target: reading a protocol and its instruments' sections, and checking what it would play,
- * without playing it. Its paths count from examples/bench, where a design is. */
+ * without playing it. Its paths count from lab/examples, where a design is. */
 #include "film/film_of_design.h"
 #include "instrument/instrument.h"
 
@@ -11,7 +11,7 @@ static void look(struct dea_context *ctx, const char *text, size_t length)
 {
   struct dea_protocol *protocol;
   dea_status status =
-      dea_protocol_read_memory(ctx, &dea_film_of_design, DEA_SOURCE_DIR "/examples/bench/fuzz.yaml",
+      dea_protocol_read_memory(ctx, &dea_film_of_design, DEA_SOURCE_DIR "/lab/examples/fuzz.yaml",
                                text, length, NULL, 0, &protocol);
   if (status == DEA_E_DESIGN && dea_finding_count(ctx, DEA_ERROR) == 0) {
     __builtin_trap(); // an error that nobody is told about

@@ -32,6 +32,7 @@ dea fab my.yaml -o fab >/dev/null
 [ "$(find fab -name '*.dxf' | wc -l)" -gt 0 ] || fail "no files for the workshop"
 dea examples --copy designs >examples.txt 2>&1
 [ -s designs/devices/cone-mass.yaml ] || fail "no examples"
+dea drive /usr/share/dea/lab/examples/first.yaml --sim -o bench.h5 >/dev/null || fail "the simulated bench"
 [ -s /usr/share/man/man1/dea.1.gz ] || fail "no manual page"
 bash -c '. /usr/share/bash-completion/completions/dea' || fail "the completion does not load"
 python3 -c 'import dea; r = dea.run(dea.Design("my.yaml"), models="lumped")

@@ -4,6 +4,11 @@
 #include "import/mat.h"
 #include "instrument/instrument.h"
 
+void cli_bench_enter(char **argv)
+{
+  (void)argv;
+}
+
 dea_status cli_bench_importers(struct dea_cli *cli, struct dea_text *out)
 {
   size_t count;
