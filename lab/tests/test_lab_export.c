@@ -93,8 +93,8 @@ TEST(test_waveform)
   assert_string_equal(strchr(at, '\n'), "\n");
   assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --export ex" SETS), 5);
   assert_contains(command_err, "--force replaces it");
-  assert_int_equal(
-      command_run("drive @/lab/examples/cyclic.yaml --export no --set channels=null"), 2);
+  assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --export no --set channels=null"),
+                   2);
   assert_contains(command_err, "nothing to be recorded");
 }
 

@@ -7,8 +7,8 @@ source=$(cd "$1" && pwd)
 cd "$2"
 list=$(mktemp)
 trap 'rm -f "$list"' EXIT
-# one object of each source, the newest, also where it is compiled into several targets
-find src lab -name '*.c.o' -path '*.dir/*' -printf '%T@ %p\n' | sort -rn | cut -d ' ' -f 2- | awk '
+# one object of each source, the newest, also where it is compiled into several targets, but not what stands for the bench
+find src lab -name '*.c.o' ! -name no_bench.c.o -path '*.dir/*' -printf '%T@ %p\n' | sort -rn | cut -d ' ' -f 2- | awk '
   { source = $0; sub(/.*\.dir\//, "", source); sub(/\.o$/, "", source) }
   !(source in seen) { seen[source] = 1; print source, $0 }' | while read -r name object; do
   # not those of sources that are gone

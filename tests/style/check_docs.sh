@@ -5,7 +5,7 @@ cd "$1"
 list=$(
   for page in *.md docs/*.md docs/*/*.md lab/docs/*.md; do
     [ "$page" = CHANGELOG.md ] && continue # it tells the past
-    grep -oE '(lab/src|lab/tests|src|tests|benchmarks|verify|scripts|examples|cmake|web|matlab)/[A-Za-z0-9_./-]*[*<]?' "$page" |
+    grep -oE '(lab/src|lab/tests|lab/examples|src|tests|benchmarks|verify|scripts|examples|cmake|web|matlab)/[A-Za-z0-9_./-]*[*<]?' "$page" |
       grep -v '[*<]$' | sed "s|[.-]*\$||; s|^|$page .|; s| \\.| |" || true
     grep -oE '\]\([^)#: ]+[)#]' "$page" | sed "s/^](//; s/[)#]\$//; s|^|$page $(dirname "$page")/|" || true
   done | sort -u
