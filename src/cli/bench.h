@@ -1,6 +1,6 @@
 /* What the command asks of the bench, a component of its own (lab/): lab/src/cli/bench.c of the
- * program dea-lab, or no_bench.c of the program dea, as are cmd_drive, cmd_reduce, cmd_recording and
- * cmd_import. */
+ * program dea-lab, or no_bench.c of the program dea, as are cmd_drive, cmd_reduce, cmd_recording
+ * and cmd_import. */
 #pragma once
 
 #include "base/schema.h"

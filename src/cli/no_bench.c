@@ -38,7 +38,7 @@ static const struct cli_option options[] = {
 
 #define NO_COMMAND(command)                                                                        \
   const struct dea_command cmd_##command = {.name = #command,                                      \
-                                            .summary = "Not installed: package dea-lab",       \
+                                            .summary = "Not installed: package dea-lab",           \
                                             .options = options,                                    \
                                             .request_size = sizeof(struct request),                \
                                             .run = run}

@@ -9,14 +9,10 @@ list=$(mktemp)
 trap 'rm -f "$list"' EXIT
 # one object of each source, the newest, also where it is compiled into several targets, but not what stands for the bench
 find src lab -name '*.c.o' ! -name no_bench.c.o -path '*.dir/*' -printf '%T@ %p\n' | sort -rn | cut -d ' ' -f 2- | awk '
-  { source = $0; sub(/.*\.dir\//, "", source); sub(/\.o$/, "", source) }
+  { source = $0; sub(/.*\.dir\//, "", source); sub(/\.o$/, "", source)
+    if (!sub(/^__\//, "", source)) { source = ($0 ~ /^lab/ ? "lab/src/" : "src/") source } }
   !(source in seen) { seen[source] = 1; print source, $0 }' | while read -r name object; do
   # not those of sources that are gone
-  case $object in
-    lab/*) name=lab/src/$name ;;
-    */__/*) name=${name#__/} ;;
-    *) name=src/$name ;;
-  esac
   if [ -e "$source/$name" ]; then echo "$object"; fi
 done >"$list"
 [ -s "$list" ] || { echo "no object files under $2/src: the check is broken"; exit 1; }
