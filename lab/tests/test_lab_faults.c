@@ -10,7 +10,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-enum { TOGETHER = 8 };
+enum { TOGETHER = 8, METERS_TOGETHER = 16 };
 static const double zero_V = 20, limit_s = 60, after_s = 2;
 
 enum fault {
@@ -44,9 +44,37 @@ struct run {
   double alarm_s;        // from the fault to the end of the program
 };
 
-static size_t next_run, run_count;
+static size_t run_count;
 static struct run *runs;
-static pthread_mutex_t next_lock = PTHREAD_MUTEX_INITIALIZER;
+
+/* Runs of a kind, some of them at a time. */
+static struct {
+  atomic_size_t next;
+  size_t count;
+  void (*make)(size_t i);
+} work;
+
+static void *make_some(void *user)
+{
+  for (size_t i; (i = atomic_fetch_add(&work.next, 1)) < work.count;) {
+    work.make(i);
+  }
+  return user;
+}
+
+static void make_all(size_t count, void (*make)(size_t i), size_t together)
+{
+  pthread_t threads[METERS_TOGETHER];
+  atomic_store(&work.next, 0);
+  work.count = count;
+  work.make = make;
+  for (size_t i = 0; i < together; i++) {
+    assert_int_equal(pthread_create(&threads[i], NULL, make_some, NULL), 0);
+  }
+  for (size_t i = 0; i < together; i++) {
+    pthread_join(threads[i], NULL);
+  }
+}
 
 static double uniform(unsigned *seed, double from, double to)
 {
@@ -75,9 +103,24 @@ static void start_supply(struct supply *s, const struct run *r)
   supply_start(s);
 }
 
+static pid_t begin_drive(const char *folder)
+{
+  pid_t child = fork();
+  if (child == 0) {
+    if (chdir(folder) != 0 || freopen("out", "w", stdout) == NULL ||
+        freopen("err", "w", stderr) == NULL) {
+      _exit(99);
+    }
+    setenv("XDG_STATE_HOME", folder, 1);
+    execl(DEA_COMMAND, "dea", "drive", "p.yaml", "--arm", "-o", "r.h5", (char *)NULL);
+    _exit(98);
+  }
+  return child;
+}
+
 static pid_t start_drive(const struct run *r, const char *folder, int port)
 {
-  char command[2048], name[600];
+  char name[600];
   snprintf(name, sizeof name, "%s/p.yaml", folder);
   FILE *file = fopen(name, "wb");
   if (file == NULL) {
@@ -93,15 +136,7 @@ static pid_t start_drive(const struct run *r, const char *folder, int port)
           "     output: \"VOLT %%g\", output_factor: 1000, output_off: OUTP OFF%s}\n",
           zero_V, port, r->measures ? ", measure: \"MEAS:VOLT?\", is_off: \"OUTP?\"" : "");
   fclose(file);
-  snprintf(command, sizeof command,
-           "cd '%s' && XDG_STATE_HOME='%s' exec '%s' drive p.yaml --arm -o r.h5 >out 2>err", folder,
-           folder, DEA_COMMAND);
-  pid_t child = fork();
-  if (child == 0) {
-    execl("/bin/sh", "sh", "-c", command, (char *)NULL);
-    _exit(98);
-  }
-  return child;
+  return begin_drive(folder);
 }
 
 /* The recording cannot grow any more. */
@@ -177,8 +212,9 @@ static void end_guard(pid_t guard)
 }
 
 /* Plays, lets the fault come and go, and looks at the supply until some time after the end. */
-static void make_run(struct run *r)
+static void make_run(size_t i)
 {
+  struct run *r = &runs[i];
   struct supply *s = malloc(sizeof *s);
   char folder[560], state[64];
   int status;
@@ -230,19 +266,6 @@ static void make_run(struct run *r)
   end_guard(guard);
   supply_stop(s);
   free(s);
-}
-
-static void *make_runs(void *user)
-{
-  for (;;) {
-    pthread_mutex_lock(&next_lock);
-    size_t i = next_run++;
-    pthread_mutex_unlock(&next_lock);
-    if (i >= run_count) {
-      return user;
-    }
-    make_run(&runs[i]);
-  }
 }
 
 /* What must never be. A guard may still have been at work on what a dead program left. */
@@ -312,19 +335,13 @@ static const char *table, *meter_table;
 
 TEST(test_faults_at_random_moments)
 {
-  pthread_t threads[TOGETHER];
   size_t wrong = 0;
   runs = calloc(run_count, sizeof *runs);
   assert_non_null(runs);
   for (size_t i = 0; i < run_count; i++) {
     choose(&runs[i], first_seed + (unsigned)i);
   }
-  for (size_t i = 0; i < TOGETHER; i++) {
-    assert_int_equal(pthread_create(&threads[i], NULL, make_runs, NULL), 0);
-  }
-  for (size_t i = 0; i < TOGETHER; i++) {
-    pthread_join(threads[i], NULL);
-  }
+  make_all(run_count, make_run, TOGETHER);
   print_histogram();
   if (table != NULL) {
     write_table(table);
@@ -346,7 +363,6 @@ TEST(test_faults_at_random_moments)
 
 // Meters that lie, outputs that do something else -------------------------------------------------
 
-enum { METERS_TOGETHER = 16 };
 static const double played_s = 12, deaf_s = 8, watched_s = 20, top_V = 2000;
 
 enum wave { SQUARE, SINE, TRIANGLE, TRAPEZOID, PULSES, WAVES };
@@ -480,21 +496,6 @@ static void write_meter_protocol(const struct meter_run *r, const struct imitati
   fclose(file);
 }
 
-static pid_t begin_drive(const char *folder)
-{
-  pid_t child = fork();
-  if (child == 0) {
-    if (chdir(folder) != 0 || freopen("out", "w", stdout) == NULL ||
-        freopen("err", "w", stderr) == NULL) {
-      _exit(99);
-    }
-    setenv("XDG_STATE_HOME", folder, 1);
-    execl(DEA_COMMAND, "dea", "drive", "p.yaml", "--arm", "-o", "r.h5", (char *)NULL);
-    _exit(98);
-  }
-  return child;
-}
-
 static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, const char *folder)
 {
   double began_s = dea_clock_s(), ended_s = INFINITY, wrong_s = INFINITY, up_s = began_s;
@@ -544,8 +545,9 @@ static void play_meter(struct meter_run *r, struct imitation *m, pid_t child, co
   end_guard(guard);
 }
 
-static void make_meter_run(struct meter_run *r)
+static void make_meter_run(size_t i)
 {
+  struct meter_run *r = &meters[i];
   struct imitation *m = malloc(sizeof *m);
   char folder[560];
   snprintf(folder, sizeof folder, "%s/meter-%u", command_folder, r->seed);
@@ -569,19 +571,6 @@ static void make_meter_run(struct meter_run *r)
     supply_stop(&m->network);
   }
   free(m);
-}
-
-static void *make_meter_runs(void *user)
-{
-  for (;;) {
-    pthread_mutex_lock(&next_lock);
-    size_t i = next_run++;
-    pthread_mutex_unlock(&next_lock);
-    if (i >= meter_count) {
-      return user;
-    }
-    make_meter_run(&meters[i]);
-  }
 }
 
 static bool says_wrong(const struct meter_run *r)
@@ -616,20 +605,13 @@ static void write_meter_table(const char *path)
  * something else than what was asked is noticed. */
 TEST(test_meters_that_lie)
 {
-  pthread_t threads[METERS_TOGETHER];
   size_t wrong = 0;
   meters = calloc(meter_count, sizeof *meters);
   assert_non_null(meters);
-  next_run = 0;
   for (size_t i = 0; i < meter_count; i++) {
     choose_meter(&meters[i], first_seed + (unsigned)i);
   }
-  for (size_t i = 0; i < METERS_TOGETHER; i++) {
-    assert_int_equal(pthread_create(&threads[i], NULL, make_meter_runs, NULL), 0);
-  }
-  for (size_t i = 0; i < METERS_TOGETHER; i++) {
-    pthread_join(threads[i], NULL);
-  }
+  make_all(meter_count, make_meter_run, METERS_TOGETHER);
   if (meter_table != NULL) {
     write_meter_table(meter_table);
   }

@@ -14,6 +14,17 @@ struct request {
   struct dea_plot_format format;
 };
 
+/* Ends what was printed of a fit, if there is one, and reports. */
+static int finish(struct dea_cli *cli, const struct request *request, bool printed,
+                  dea_status status)
+{
+  if (printed && !request->json && status == DEA_OK) {
+    printf("\nwritten to %s\n", request->output);
+  }
+  fflush(stdout);
+  return cli_report(cli, status);
+}
+
 static dea_status fit_file(struct dea_cli *cli, const struct request *request,
                            struct dea_fit_file **file, struct dea_fit_tests *tests,
                            struct dea_fit **fit)
@@ -36,12 +47,8 @@ static int fit_material(struct dea_cli *cli, const struct request *request)
     cli_print_json(dea_fit_json(fit, cli->command_line));
   } else if (fit != NULL) {
     cli_print_fit(fit);
-    if (status == DEA_OK) {
-      printf("\nwritten to %s\n", request->output);
-    }
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
+  const int code = finish(cli, request, fit != NULL, status);
   dea_fit_destroy(cli->ctx, fit);
   dea_fit_tests_free(&tests);
   dea_fit_file_destroy(cli->ctx, file);
@@ -67,12 +74,8 @@ static int fit_device(struct dea_cli *cli, const struct request *request)
     cli_print_json(dea_device_fit_json(fit, cli->command_line));
   } else if (fit != NULL) {
     cli_print_device_fit(fit);
-    if (status == DEA_OK) {
-      printf("\nwritten to %s\n", request->output);
-    }
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
+  const int code = finish(cli, request, fit != NULL, status);
   dea_device_fit_destroy(cli->ctx, fit);
   dea_device_file_destroy(cli->ctx, file);
   return code;
@@ -98,12 +101,8 @@ static int fit_breakdown(struct dea_cli *cli, const struct request *request)
     cli_print_json(dea_breakdown_fit_json(fit, cli->command_line));
   } else if (fit != NULL) {
     cli_print_breakdown_fit(fit);
-    if (status == DEA_OK) {
-      printf("\nwritten to %s\n", request->output);
-    }
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
+  const int code = finish(cli, request, fit != NULL, status);
   dea_breakdown_fit_destroy(cli->ctx, fit);
   dea_breakdown_file_destroy(cli->ctx, file);
   return code;
@@ -128,12 +127,8 @@ static int fit_life(struct dea_cli *cli, const struct request *request)
     cli_print_json(dea_life_fit_json(fit, cli->command_line));
   } else if (fit != NULL) {
     cli_print_life_fit(fit);
-    if (status == DEA_OK) {
-      printf("\nwritten to %s\n", request->output);
-    }
-    fflush(stdout);
   }
-  int code = cli_report(cli, status);
+  const int code = finish(cli, request, fit != NULL, status);
   dea_life_fit_destroy(cli->ctx, fit);
   dea_life_file_destroy(cli->ctx, file);
   return code;

@@ -587,17 +587,6 @@ bool dea_case_key_warms(const struct dea_case_key *case_key)
   return case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
 }
 
-bool dea_variable_range(const struct dea_variable *variable, double *low, double *high)
-{
-  *low = variable->low;
-  *high = variable->high;
-  for (size_t i = 0; i < variable->value_count; i++) {
-    *low = i == 0 ? variable->values[i] : fmin(*low, variable->values[i]);
-    *high = i == 0 ? variable->values[i] : fmax(*high, variable->values[i]);
-  }
-  return !isnan(*low) && !isnan(*high);
-}
-
 int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key)
 {
   for (size_t i = 0; i < case_key->quantity_count; i++) {

@@ -68,8 +68,6 @@ dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct d
 void dea_case_key_destroy(struct dea_case_key *case_key);
 /* Whether a design is solved faster from one nearby. */
 bool dea_case_key_warms(const struct dea_case_key *case_key);
-/* Values that a variable can take lie from *low to *high; false: it has no bounds. */
-bool dea_variable_range(const struct dea_variable *variable, double *low, double *high);
 /* Number of a quantity of the question by its key, or -1. */
 int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key);
 /* Whether a quantity is taken with the tip of compute.force held at its first depth. */

@@ -96,15 +96,6 @@ size_t dea_face_like(const struct dea_layout *layout, size_t ply, bool top)
   return i;
 }
 
-size_t dea_face_count_like(const struct dea_layout *layout, size_t ply, bool top)
-{
-  size_t count = 0;
-  for (size_t i = 0; i < layout->ply_count; i++) {
-    count += dea_face_like(layout, i, top) == ply ? 1 : 0;
-  }
-  return count;
-}
-
 void dea_ply_stretch(const struct dea_layout_ply *ply, double out[2][2])
 {
   double c = cos(ply->angle_rad), s = sin(ply->angle_rad);

@@ -35,8 +35,7 @@ size_t dea_ply_like(const struct dea_layout *layout, size_t ply);
 /* Number of the first ply of which that face is printed as this one's: with electrodes of the same
  * regions, and the same pre-stretch. DEA_LAYOUT_NONE when no electrode lies on the face. */
 size_t dea_face_like(const struct dea_layout *layout, size_t ply, bool top);
-/* How many plies, or faces, are like this one, which is the first of them. */
+/* How many plies are like this one, which is the first of them. */
 size_t dea_ply_count_like(const struct dea_layout *layout, size_t ply);
-size_t dea_face_count_like(const struct dea_layout *layout, size_t ply, bool top);
 /* From the film free of stress to the flat one, as a matrix. */
 void dea_ply_stretch(const struct dea_layout_ply *ply, double out[2][2]);

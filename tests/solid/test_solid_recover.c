@@ -10,18 +10,7 @@
 
 #include <stdlib.h>
 
-static struct dea_context *ctx;
-
-static int set_up(void **state)
-{
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_context_destroy(ctx);
-  return 0;
-}
+#include "context_fixture.h" // after: its context shadows no name of the headers above
 
 /* ---- a strip: two regions side by side, a film and a fibre on the second ---- */
 
@@ -529,4 +518,4 @@ TEST(test_second_derivatives)
   }
 }
 
-TESTS(set_up, tear_down)
+TESTS(context_set_up, context_tear_down)

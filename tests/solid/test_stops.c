@@ -9,20 +9,9 @@
 
 #include <jansson.h>
 
-static struct dea_context *ctx;
+#include "context_fixture.h" // after: its context shadows no name of the headers above
 static struct dea_result *result;
 static struct dea_design *design;
-
-static int set_up(void **state)
-{
-  return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-  dea_context_destroy(ctx);
-  return 0;
-}
 
 /* A sweep and a path of one model for a device. */
 static dea_status run(const struct dea_device *device, const char *model, double highest_V)
@@ -198,4 +187,4 @@ TEST(test_a_leap_is_said_once)
   }
 }
 
-TESTS(set_up, tear_down)
+TESTS(context_set_up, context_tear_down)
