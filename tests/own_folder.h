@@ -1,4 +1,4 @@
-/* A context and a folder of its own for a program of tests; _GNU_SOURCE before all headers. */
+/* A context and a folder of its own for a program of tests. */
 #pragma once
 
 #include "base/context.h"

@@ -1,6 +1,6 @@
 /* A high-voltage supply on a serial line, imitated on a pseudo-terminal: a small buffer, an answer
  * to each command, and an output that follows at a finite rate. What its output really is can be
- * asked at any moment. _GNU_SOURCE before all headers. */
+ * asked at any moment. */
 #pragma once
 
 #include "base/clock.h"

@@ -1,4 +1,4 @@
-/* Protocols from text in tests, in a folder of their own; _GNU_SOURCE before all headers. */
+/* Protocols from text in tests, in a folder of their own. */
 #pragma once
 
 #include "design_text.h"

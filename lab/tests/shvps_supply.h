@@ -1,5 +1,4 @@
-/* The SHVPS as a supply of fake_line_supply.h, and `dea drive` on it. _GNU_SOURCE before all
- * headers. */
+/* The SHVPS as a supply of fake_line_supply.h, and `dea drive` on it. */
 #pragma once
 
 #include "fake_line_supply.h"

@@ -1,5 +1,4 @@
 /* dea drive: what it says before anything is played, and what it refuses. */
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 
 #include <jansson.h>

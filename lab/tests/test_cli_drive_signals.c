@@ -1,7 +1,6 @@
 /* dea drive: signals in the middle of a measurement bring the voltage down along the ramp, however
  * many they are; after SIGKILL the recording is there. */
 // ctest: slow, heavy
-#define _GNU_SOURCE
 #include "command.h"
 
 #include "recording/recording.h"

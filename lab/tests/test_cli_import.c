@@ -1,5 +1,4 @@
 /* dea import: what it prints, what it writes, and its exit codes. */
-#define _GNU_SOURCE
 #include "command.h"
 #include "recording/recording.h"
 

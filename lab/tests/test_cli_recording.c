@@ -1,5 +1,4 @@
 /* `dea recording`: what it says, the copy it makes of a killed one, its tables. */
-#define _GNU_SOURCE
 #include "command.h"
 #include "recording_samples.h"
 

@@ -1,6 +1,5 @@
 /* dea reduce: what it writes is what other programs, and dea compare, read. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 
 #include "command.h"

@@ -1,5 +1,4 @@
 // dea drive --arm with fake libraries of DAQs: from the protocol to the recording and back to 0 V.
-#define _POSIX_C_SOURCE 200809L // mkdtemp
 #include "recording/recording.h"
 #include "testing.h"
 

@@ -1,6 +1,5 @@
 /* What must not be played: refused at its place, with the numbers that say why. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "first_root.h"
 #include "protocol/protocol_export.h"

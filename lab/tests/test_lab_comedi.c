@@ -1,5 +1,4 @@
 // DAQs by comedi, with a fake library and board in place of it.
-#define _POSIX_C_SOURCE 200809L // sockets
 #include "daq_bench.h"
 #include "failing_allocator.h"
 

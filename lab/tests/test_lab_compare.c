@@ -1,6 +1,5 @@
 /* dea compare with several curves and with what dea reduce writes: misfits that were computed by
  * hand, profiles, histories on one clock. */
-#define _GNU_SOURCE // mkdtemp
 #include "measured_run.h"
 #include "result/compare_history.h"
 

@@ -1,7 +1,6 @@
 /* dea compare with what dea reduce writes: figures with bands, files that are wrong, failing
  * allocations. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "compare/compare_set.h"
 #include "failing_allocator.h"
 #include "measured_run.h"

@@ -1,7 +1,6 @@
 /* lab/recording: damaged and hostile files are refused or told as what they are; no memory, no
  * disk. */
 // ctest: quick, heavy
-#define _GNU_SOURCE
 #include "failing_allocator.h"
 
 #include "message_fixture.h"

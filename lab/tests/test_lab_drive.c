@@ -2,7 +2,6 @@
  * comes down to 0 V within the ramp, every instrument is stopped once, and the recording is
  * readable. */
 // ctest: slow, heavy
-#define _GNU_SOURCE
 #include "drive_trial.h"
 
 #include <stdatomic.h>

@@ -1,5 +1,4 @@
 /* dea_drive_run: an instrument that cannot be opened leaves none of the others as it was set up. */
-#define _GNU_SOURCE
 #include "drive/drive.h"
 #include "emulator.h"
 #include "instrument/line_reader.h"

@@ -1,6 +1,5 @@
 /* lab/drive/drive_output and drive_watch: what is asked of the amplifier, sample by sample,
  * and what of its answer ends a measurement. */
-#define _GNU_SOURCE
 #include "drive/drive.h"
 #include "drive/drive_output.h"
 #include "drive/drive_watch.h"

@@ -1,7 +1,6 @@
 /* dea drive --export: the waveform, and the scripts, run with stand-ins for NI-DAQmx and for
  * MATLAB's toolbox: what they write, that they end at 0 V, and that dea reads what they record. */
 // ctest: slow, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 
 #include <stdbool.h>

@@ -4,7 +4,6 @@
  * prints how long it took to 0 V, or to the alarm, and writes a table of the runs
  * (verify/drive-faults.sh). */
 // ctest: supply
-#define _GNU_SOURCE
 #include "shvps_supply.h"
 
 #include <signal.h>

@@ -1,6 +1,5 @@
 /* What the bench makes of a film whose answers are known: a capacitor with a leak that pulls in at
  * 2 kV. Neither design nor model is in it: the interface of the bench is all that it gets. */
-#define _GNU_SOURCE // mkdtemp
 #include "instrument/sim_bench.h"
 #include "own_folder.h"
 #include "protocol/protocol.h"

@@ -1,5 +1,4 @@
 // The Gocator's messages and its connection, against an emulator on the loopback interface.
-#define _POSIX_C_SOURCE 200809L // sockets
 #include "base/clock.h"
 #include "emulator.h"
 #include "failing_allocator.h"

@@ -1,7 +1,6 @@
 /* dea drive --arm that is killed, crashes, or is stopped: a second process brings the supply to 0
  * V. */
 // ctest: supply
-#define _GNU_SOURCE
 #include "supply_drive.h"
 
 /* Waits until it is at 0 V and stays there; how long that took, INFINITY: it did not. */

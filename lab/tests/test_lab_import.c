@@ -1,5 +1,4 @@
 /* Import of text: CSV in the dialects of instruments and spreadsheets. */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 static const double t3[] = {0, 0.001, 0.002}, v3[] = {0, 0.5, -1.25e3};

@@ -1,5 +1,4 @@
 /* Files as instruments and spreadsheets of other countries write them (lab/tests/cases). */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 #include "recording/recording.h"

@@ -1,5 +1,4 @@
 /* Files of load frames as they are written, each by a mapping, and times that are text. */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 #include "table/clock_text.h"

@@ -1,5 +1,4 @@
 /* Import of LabVIEW's text measurements, written line by line from NI's published layout. */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 #define HEADER(x, headings, rest)                                                                  \

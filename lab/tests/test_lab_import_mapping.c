@@ -1,6 +1,5 @@
 /* From tables to recordings: guesses, mappings and their errors, clocks, profiles; COMSOL's export.
  */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 /* A recording of a text file; mapping: NULL guesses. */

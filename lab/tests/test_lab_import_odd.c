@@ -1,5 +1,4 @@
 /* Import of text that could be read in two ways, one of which gives wrong numbers in silence. */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 #include "recording/recording.h"

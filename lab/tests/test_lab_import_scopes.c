@@ -1,5 +1,4 @@
 /* Files of oscilloscopes: one shot, 1 kHz from -1 ms on, as each maker writes it. */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 static const double times_s[] = {-1e-3, 0, 1e-3, 2e-3}, first_V[] = {0, 1.5, 3, 1.5},

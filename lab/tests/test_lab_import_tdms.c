@@ -1,5 +1,4 @@
 /* Import of LabVIEW's binary measurements, built byte by byte from NI's published layout. */
-#define _GNU_SOURCE
 #include "import_text.h"
 
 #include <stdint.h>

@@ -2,7 +2,6 @@
  * announced is there, and every value is the right one. `test_lab_killed COUNT [SEED]` makes that
  * many kills at random moments (verify/recordings.sh). */
 // ctest: quick, heavy
-#define _GNU_SOURCE
 #include "own_disk.h"
 #include "own_folder.h"
 #include "recording_samples.h"

@@ -1,7 +1,6 @@
 /* lab/drive/leak_watch: a leakage current is compared with its base line. Films are imitated:
  * charging current, a leak, noise, and what a healthy bench shows besides. */
 // ctest: quick, heavy
-#define _GNU_SOURCE
 #include "drive/drive_watch.h"
 #include "protocol_text.h"
 

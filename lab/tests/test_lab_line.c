@@ -1,7 +1,6 @@
 /* Several programs at one serial line: what drives it, `dea drive --zero`, the guard of a program
  * that died. One at a time speaks, and "at 0 V" is not said while another one may go on. */
 // ctest: supply
-#define _GNU_SOURCE // posix_openpt, ptsname_r, mkdtemp
 #include "shvps_supply.h"
 
 /* The machine may be busy, and what is looked at is not how fast they are. */

@@ -1,5 +1,4 @@
 /* .mat files: what dea_mat_write makes, as Octave reads it. */
-#define _GNU_SOURCE
 #include "import/mat.h"
 #include "octave.h"
 #include "testing.h"

@@ -1,5 +1,4 @@
 // DAQs of National Instruments, with a fake library in place of NI-DAQmx.
-#define _POSIX_C_SOURCE 200809L // sockets
 #include "daq_bench.h"
 #include "failing_allocator.h"
 

@@ -1,7 +1,6 @@
 /* The open high-voltage supply with eight channels, imitated on a pseudo-terminal: what dea drive
  * plays on it, and what it says of the output when the supply fails. */
 // ctest: supply
-#define _GNU_SOURCE // posix_openpt, ptsname_r
 #include "supply_drive.h"
 
 #include "fake_line_supply.h"

@@ -1,7 +1,6 @@
 /* Files that Octave wrote, read to the last bit; and version 7.3 of .mat, which Octave cannot
  * write: it comes from our own writer, which is libmatio's, and from HDF5 itself for what MATLAB
  * adds. */
-#define _GNU_SOURCE
 #include "base/h5.h"
 #include "import/mat.h"
 #include "import_text.h"

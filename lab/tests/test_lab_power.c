@@ -3,7 +3,6 @@
  * of the writes, or some pages of each. What was announced by then has to be there, and what is
  * read is right. 40 cuts by fixed seeds; `test_lab_power COUNT [SEED [TABLE]]` makes as many as
  * wanted (verify/recordings.sh), and also breaks pages into sectors, of which it only tells. */
-#define _GNU_SOURCE
 #include "own_folder.h"
 #include "recording_samples.h"
 

@@ -1,6 +1,5 @@
 /* protocol: reading with all errors at their places; the sequence on its clock. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "protocol_text.h"
 

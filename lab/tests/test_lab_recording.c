@@ -1,5 +1,4 @@
 /* lab/recording: what goes into a file comes out of it. */
-#define _GNU_SOURCE
 #include "recording_files.h"
 
 #include <string.h>

@@ -1,5 +1,4 @@
 /* Recordings of one measurement that two programs made: joined, on one clock. */
-#define _GNU_SOURCE
 #include "failing_allocator.h"
 #include "recording_files.h"
 

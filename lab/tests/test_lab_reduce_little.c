@@ -1,5 +1,4 @@
 /* The reduction where there is little, or something is wrong with it. */
-#define _POSIX_C_SOURCE 200809L // mkdtemp
 #include "failing_allocator.h"
 
 #include "lab_reduced.h"

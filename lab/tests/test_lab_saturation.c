@@ -1,6 +1,5 @@
 /* A sensor whose range is too small, from the simulated bench to the table: said while it is
  * measured, and left out where it was cut off. */
-#define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "drive/drive.h"
 #include "film/film_of_design.h"

@@ -1,5 +1,4 @@
 // SCPI instruments against an emulator on the loopback interface.
-#define _GNU_SOURCE // sockets, syscall
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "instrument/line_reader.h"

@@ -1,7 +1,6 @@
 /* Instruments on serial lines against imitations on pseudo-terminals: a Keyence LK and an optoNCDT,
  * with fragments, garbage, wrong modes, silence and a pulled cable. */
 // ctest: slow
-#define _GNU_SOURCE // posix_openpt, ptsname_r, CRTSCTS
 #include "emulator.h"
 #include "failing_allocator.h"
 #include "instrument/asking.h"

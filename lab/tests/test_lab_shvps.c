@@ -3,7 +3,6 @@
  * or is pulled out, and when dea itself is killed or stopped. `test_lab_shvps COUNT [SEED]` makes
  * that many runs with a fault at a random moment. */
 // ctest: supply
-#define _GNU_SOURCE // posix_openpt, ptsname_r
 #include "shvps_supply.h"
 
 /* Whether the supply was at 0 V if dea said so, and stayed there. */

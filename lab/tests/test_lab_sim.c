@@ -1,6 +1,5 @@
 /* The simulated bench: without noise what the model says, with noise what was asked for. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "instrument/instrument.h"
 #include "instrument/sim_bench.h"

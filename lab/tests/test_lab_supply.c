@@ -1,5 +1,4 @@
 /* One supply, one program: what is kept of a supply on this computer, and its lock. */
-#define _GNU_SOURCE // mkdtemp, kill
 #include "drive/supply.h"
 #include "own_folder.h"
 #include "testing.h"

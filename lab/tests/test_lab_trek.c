@@ -1,7 +1,6 @@
 /* A SCPI generator before a high-voltage amplifier (a Trek) whose voltage monitor, a divider, a DAQ
  * reads: all imitated. What is said of the output when the amplifier fails, or the monitor lies. */
 // ctest: supply
-#define _GNU_SOURCE
 #include "drive/drive_loop.h"
 #include "fake_supply.h"
 #include "protocol_text.h"

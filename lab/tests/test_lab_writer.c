@@ -1,6 +1,5 @@
 /* lab/drive/writer: what is recorded waits in a queue while the disk blocks; nothing waits for it,
  * and one that is full is a failure after which the recording holds what was taken. */
-#define _GNU_SOURCE
 #include "drive/writer.h"
 #include "own_disk.h"
 #include "own_folder.h"

@@ -1,7 +1,6 @@
 /* "At 0 V" is said of what was read back and of nothing else, and what is not known stays known as
  * that: dea drive on an imitated supply that is slow, hangs, lies, or cannot be read. */
 // ctest: supply
-#define _GNU_SOURCE
 #include "supply_drive.h"
 
 /* Whether the supply was at 0 V when dea said so, and stayed there. */

@@ -1,5 +1,4 @@
 /* The public interface, as a program uses it that knows <dea.h> alone. */
-#define _GNU_SOURCE // mkdtemp
 #include <dea.h>
 
 #include "testing.h"

@@ -1,6 +1,5 @@
 /* Two threads with a context each, whose first 3D runs coincide. */
 // ctest: solid
-#define _DEFAULT_SOURCE // fork, pthread_barrier_t
 #include <dea.h>
 
 #include "testing.h"

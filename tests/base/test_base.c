@@ -1,5 +1,4 @@
 /* base: context, arena, text, what a schema prints, places for files. */
-#define _GNU_SOURCE // mkdtemp
 #include "base/arena.h"
 #include "base/schema.h"
 #include "base/text.h"

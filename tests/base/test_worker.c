@@ -1,6 +1,5 @@
 /* Work in processes beside this one. */
 // ctest: quick
-#define _POSIX_C_SOURCE 200809L // nanosleep
 #include "base/worker.h"
 #include "testing.h"
 

@@ -1,6 +1,5 @@
 /* dea check, schema, materials: what they print and their exit codes. */
 // ctest: quick, heavy
-#define _POSIX_C_SOURCE 200809L // mkdtemp
 #include "command.h"
 
 #include <jansson.h>

@@ -1,6 +1,5 @@
 /* dea fab as a user runs it. */
 // ctest: slow, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 #include <stdbool.h>
 

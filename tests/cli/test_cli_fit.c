@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* dea fit, as a user runs it: an example, its files, bad data. */
 // ctest: quick, heavy
 #include "command.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* dea fit of breakdown tests and of life tests, as a user runs it: the examples, their files, what
  * may be wrong. */
 // ctest: quick, heavy

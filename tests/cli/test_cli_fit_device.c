@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* dea fit of a device, as a user runs it: the example, its files, what may be wrong. */
 // ctest: slow, heavy
 #include "command.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* dea fit of a device through model 3d. */
 // ctest: solid
 #include "command.h"

@@ -1,5 +1,4 @@
 /* dea mesh: the summary, and the file as Gmsh's documentation of its format 2.2 has it. */
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 
 #include <jansson.h>

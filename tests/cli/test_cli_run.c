@@ -1,6 +1,5 @@
 /* dea run: what scripts and people get. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp, usleep
 #include "command.h"
 
 #include <jansson.h>

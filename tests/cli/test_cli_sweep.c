@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* dea sweep as a user runs it: tables, parts, going on after being killed, what may be wrong. */
 // ctest: slow, heavy
 #include "command.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* What a fit knows of a device, as variables of dea sweep and dea optimise (key from_fit). */
 // ctest: quick, heavy
 #include "command.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* Every number that `dea run --sensitivity` has a slope by is a variable of searches and sweeps. */
 // ctest: solid
 #include "command.h"

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* dea sweep through model 3d: designs that begin from a neighbour's solution. */
 // ctest: solid
 #include "command.h"

@@ -1,5 +1,4 @@
 /* Other programs as processes: what they say, how they end, how long they may take. */
-#define _POSIX_C_SOURCE 200809L // kill, nanosleep
 #include "base/clock.h"
 #include "base/program.h"
 #include "testing.h"

@@ -1,5 +1,4 @@
 /* results.h5 as Octave's load takes it, under the names of docs/formats.md. */
-#define _GNU_SOURCE
 #include "fake_result.h"
 #include "fake_surface.h"
 #include "io/results_h5.h"

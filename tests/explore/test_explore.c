@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* Parts of src/explore on functions in closed form: sequences, quantiles, indices, processes, and a
  * store that is cut off anywhere. */
 #include "base/correlations.h"

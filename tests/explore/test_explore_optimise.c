@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* Searches for optima that are known in closed form, to 1e-4: with limits, whole numbers, gradients
  * of the evaluator, designs without values, a front, and searches that go on, also after Ctrl-C. */
 #include "explore/optimise.h"

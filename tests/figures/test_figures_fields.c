@@ -1,6 +1,5 @@
 /* What a run with fields leaves: surfaces in results.h5, and drawings of them. */
 // ctest: slow, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "fake_result.h"

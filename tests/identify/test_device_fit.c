@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 /* A device fitted to its curves: closed form, coverage, what cannot be told apart, slack. */
 // ctest: quick, heavy
 #include "design_text.h"

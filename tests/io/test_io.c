@@ -1,6 +1,5 @@
 /* output: what is written is read back; files are whole or absent; errors say what is wrong. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp, setenv, nftw
 #include "base/file.h"
 #include "base/write_file.h"
 #include "failing_allocator.h"

@@ -1,5 +1,4 @@
 /* output: CSV tables, written and read; tables of measurements and what is wrong with them. */
-#define _GNU_SOURCE // mkdtemp
 #include "base/file.h"
 #include "base/write_file.h"
 #include "failing_allocator.h"

@@ -1,5 +1,4 @@
 /* VTU and PVD files, read by a small reader of their own. */
-#define _GNU_SOURCE // mkdtemp
 #include "base/bytes.h"
 #include "failing_allocator.h"
 #include "io/vtu.h"

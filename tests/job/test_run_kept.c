@@ -1,6 +1,5 @@
 /* What is kept while a run goes, and a run that goes on later; with a model of a few lines in the
  * place of the engine. */
-#define _GNU_SOURCE // mkdtemp
 #include "failing_allocator.h"
 #include "fake_result.h"
 #include "fake_surface.h"

@@ -1,5 +1,4 @@
 /* The catalogue: every material of the tree reads, and own directories go first. */
-#define _POSIX_C_SOURCE 200809L // setenv, mkdtemp
 #include "command.h"
 #include "device/device.h"
 #include "identify/coupon.h"

@@ -1,5 +1,4 @@
 /* Room that a figure leaves for what stands beside its panel. */
-#define _GNU_SOURCE // mkdtemp
 #include "own_folder.h"
 #include "plot/plot.h"
 #include "testing.h"

@@ -1,6 +1,5 @@
 /* dea report: what comes from a run arrives as text; the page is whole and asks for nothing. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "base/html.h"
 #include "command.h"
 #include "failing_allocator.h"

@@ -1,7 +1,6 @@
 /* The page of dea report in a browser: it opens from disk without an error and without a request,
  * its sliders move what they say, and what it computes is what the command computes. */
 // ctest: browser, nightly
-#define _GNU_SOURCE // mkdtemp
 #include "browser.h"
 #include "command.h"
 #include "fake_result.h"

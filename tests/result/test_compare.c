@@ -1,6 +1,5 @@
 /* dea compare and dea plot, as a user runs them. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 #include "fake_result.h"
 #include "job/run_folder.h"

@@ -2,7 +2,6 @@
  * missing, fails, crashes, hangs, or writes something else. The first are skipped where gmsh is
  * not installed. */
 // ctest: slow, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "testing.h"
 
 #include "model/solid/mesh/gmsh.h"

@@ -1,5 +1,4 @@
 /* Free plane meshes: files of Gmsh read, what is wrong with them said, and extruded. */
-#define _GNU_SOURCE // strdup
 #include "failing_allocator.h"
 #include "message_fixture.h"
 #include "model/solid/mesh/grid.h"

@@ -42,7 +42,7 @@ static dea_status create(const struct dea_fibre_disc *p, struct dea_grid **out)
   return status;
 }
 
-static bool close(double x, double y)
+static bool is_close(double x, double y)
 {
   return fabs(x - y) < 1e-9 * b;
 }
@@ -102,9 +102,9 @@ static void check_conforming(const struct dea_fibre_disc *p, const struct dea_gr
     bool frame = true, first = true, last = true;
     for (int c = 0; c < 4; c++) {
       const double *X = grid->X + 3 * faces[i].corner[c];
-      frame = frame && close(hypot(X[0], X[1]), b);
-      first = first && close(X[1], 0) && X[0] > -1e-9;
-      last = last && close(-sin(beta) * X[0] + cos(beta) * X[1], 0);
+      frame = frame && is_close(hypot(X[0], X[1]), b);
+      first = first && is_close(X[1], 0) && X[0] > -1e-9;
+      last = last && is_close(-sin(beta) * X[0] + cos(beta) * X[1], 0);
     }
     bool whole = p->sectors == dea_fibre_disc_sectors(p);
     assert_true(frame || (!whole && (first || last)));
@@ -182,8 +182,8 @@ static void check_held(const struct dea_fibre_disc *p, const struct dea_grid *gr
     const double *X = grid->X + 3 * n;
     double Q[9];
     int bits = dea_layout_sector_holds(&mesh.sector, X, mesh.near_m, Q);
-    bool first = !whole && close(X[1], 0) && X[0] > -1e-9;
-    bool last = !whole && close(-sin(beta) * X[0] + cos(beta) * X[1], 0) &&
+    bool first = !whole && is_close(X[1], 0) && X[0] > -1e-9;
+    bool last = !whole && is_close(-sin(beta) * X[0] + cos(beta) * X[1], 0) &&
                 cos(beta) * X[0] + sin(beta) * X[1] > -1e-9;
     assert_true((bits & 4) == 0 && (first || last || bits == 0));
     // the held components span the normals

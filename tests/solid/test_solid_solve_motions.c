@@ -1,7 +1,6 @@
 /* Small motions as model 3d tells of them: a plain disc against the membrane's Bessel functions,
  * the slope of the static answer, notes. */
 // ctest: solid
-#define _GNU_SOURCE // j0
 #include "devices.h"
 #include "model/model.h"
 #include "model/solid/assembly/solid.h"

@@ -1,7 +1,6 @@
 /* Two and three ranks under mpirun find what one finds. The program runs itself again under mpirun
  * with the argument "ranks" and reads what rank 0 prints. */
 // ctest: solid
-#define _GNU_SOURCE // mkdtemp, popen
 #include "command.h"
 #include "devices.h"
 #include "model/solid/assembly/film_state.h"

@@ -1,6 +1,5 @@
 /* dea run --model 3d. */
 // ctest: solid
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 #include "prototypes.h"
 

@@ -1,6 +1,5 @@
 /* What model 3d says of its own numbers: slack films, films on stiff sheets, breakdown. */
 // ctest: solid
-#define _GNU_SOURCE // mkdtemp
 #include "command.h"
 #include "io/results_h5.h"
 #include "material/material.h"

@@ -1,6 +1,5 @@
 /* Study "compare-design": designs made by changes of a file and by other files, set beside it. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "io/results_h5.h"

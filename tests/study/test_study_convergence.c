@@ -1,6 +1,5 @@
 /* Study "convergence": the estimate against values whose order and limit are known, and the study
  * with a model that has such values. */
-#define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "io/results_h5.h"

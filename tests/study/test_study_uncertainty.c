@@ -1,7 +1,6 @@
 /* Study "uncertainty": bands against closed forms, against the same film at another voltage, and in
  * the files of a run. */
 // ctest: quick, heavy
-#define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "failing_allocator.h"
 #include "io/csv.h"

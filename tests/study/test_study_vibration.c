@@ -1,6 +1,5 @@
 /* Studies "modal" and "frequency" with a model of one mass on a spring that the voltage softens:
  * what they ask for, and what of it arrives in files and figures. */
-#define _GNU_SOURCE // mkdtemp
 #include "design_text.h"
 #include "fake_surface.h"
 #include "io/results_h5.h"

@@ -1,5 +1,4 @@
 /* waveform: values, corners and cycles of every kind; what a slow supply makes of them; errors. */
-#define _GNU_SOURCE // mkdtemp
 #include "testing.h"
 #include "waveform_text.h"
 
