@@ -1,0 +1,180 @@
+/* Controls beside the voltage of the model "3d": bodies and pressures that are moved. */
+#include "model/solid/adapter/solid_model.h"
+#include "model/solid/equilibrium/load_steps.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static dea_status check_control(struct dea_context *ctx, const struct dea_model *model,
+                                const struct dea_control *control, double value)
+{
+  const struct dea_layout *l = model->layout;
+  bool pressure = control->kind == DEA_CONTROL_PRESSURE;
+  if (pressure
+          ? l->pressure_count == 0
+          : control->body >= l->body_count || control->component < 0 || control->component > 5) {
+    return dea_fail(ctx, DEA_E_ARGUMENT, "the device has no such %s to be moved",
+                    pressure ? "pressure" : "body");
+  }
+  int keeps = dea_layout_sector_keeps(&model->mesh.sector);
+  if (!pressure && ((keeps >> control->component) & 1) == 0) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "a sector of the device cannot show this motion, which breaks its symmetry "
+                    "(compute.solid.domain: whole)");
+  }
+  return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a control has to be a number");
+}
+
+static double where_control_is(const struct dea_model *model, const struct dea_control *control)
+{
+  double place[6];
+  if (control->kind == DEA_CONTROL_PRESSURE) {
+    return model->pressure_factor;
+  }
+  dea_solid_body_place(model->solid, control->body, place, place + 3);
+  return control->kind == DEA_CONTROL_PLACE ? place[control->component]
+                                            : model->push[control->body][control->component];
+}
+
+/* What the next solve goes to. */
+static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
+                              const struct dea_control *control, double value)
+{
+  size_t body = control->body;
+  double place[6] = {0};
+  switch (control->kind) {
+  case DEA_CONTROL_PLACE:
+    place[control->component] = value;
+    model->controls[body].place |= 1 << control->component;
+    DEA_TRY(ctx, dea_solid_body_prescribe(ctx, model->solid, body, 1 << control->component, place,
+                                          place + 3));
+    break;
+  case DEA_CONTROL_FORCE:
+    model->push[body][control->component] = value;
+    model->controls[body].force |= 1 << control->component;
+    dea_solid_body_load(model, body, model->push[body]);
+    break;
+  case DEA_CONTROL_PRESSURE:
+    model->pressure_factor = value;
+    dea_solid_pressures_set(model, value);
+    break;
+  }
+  return DEA_OK;
+}
+
+static bool is_same(const struct dea_control *a, const struct dea_control *b)
+{
+  return a->kind == b->kind && a->body == b->body && a->component == b->component;
+}
+
+/* After the way of a control that succeeded; from: the state before. */
+static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
+                               const struct dea_control *control, double from_value, double value,
+                               const struct dea_solid_saved_state *from)
+{
+  struct dea_step_outcome *outcome = &model->at.outcome;
+  bool force = control->kind == DEA_CONTROL_FORCE, turns = control->component >= 3;
+  double share;
+  if (!is_same(control, &model->moved)) {
+    outcome->rate[1] = 0;
+  }
+  model->moved = *control;
+  DEA_TRY(ctx, dea_step_outcome_watch(ctx, outcome, value - from_value, from, &share));
+  dea_solid_model_note_states(model, !isnan(share));
+  if (isnan(share)) {
+    return DEA_OK;
+  }
+  double limit = from_value + share * (value - from_value);
+  outcome->passed.point.force_N = force && !turns ? limit : NAN;
+  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                         "model 3d: at %.4g kV it leaps past a limit point at %.6g %s to another "
+                         "state",
+                         1e-3 * model->at.voltage_V, force ? 1e3 * limit : limit,
+                         !force  ? "of the control"
+                         : turns ? "mN m"
+                                 : "mN");
+}
+
+/* To what the control has been set to. */
+static dea_status follow_control(struct dea_context *ctx, struct dea_model *model,
+                                 const struct dea_control *control, double from_value, double value)
+{
+  struct dea_solid_saved_state from;
+  dea_status status = dea_solid_save_state(ctx, model->solid, &from);
+  if (status == DEA_OK) {
+    status = dea_solid_reach(ctx, model->solid, model->at.voltage_V, &model->at.report);
+  }
+  if (status == DEA_OK && !model->at.report.snapped) {
+    status = look_at_move(ctx, model, control, from_value, value, &from);
+  }
+  dea_solid_saved_state_free(&from);
+  return status;
+}
+
+/* A limit point of the control at a value. */
+static dea_status fail_at_limit(struct dea_context *ctx, const struct dea_model *model,
+                                const struct dea_control *control, double value)
+{
+  const bool turns = control->component >= 3;
+  double scale = 1e3, largest = 0;
+  const char *name = turns ? "moment limit" : "force limit", *unit = turns ? "mN m" : "mN";
+  if (control->kind == DEA_CONTROL_PRESSURE) {
+    for (size_t i = 0; i < model->layout->pressure_count; i++) {
+      largest = fmax(largest, fabs(model->layout->pressures[i].pressure_Pa));
+    }
+    scale = 1e-3 * largest;
+    name = "pressure limit";
+    unit = "kPa";
+  } else if (control->kind == DEA_CONTROL_PLACE) {
+    scale = turns ? 1 : 1e3;
+    name = "limit point";
+    unit = turns ? "rad" : "mm";
+  }
+  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                  "%s at %.5g %s and %.4g kV: beyond it there is no stable equilibrium", name,
+                  scale * value, unit, 1e-3 * model->at.voltage_V);
+}
+
+dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_control *control, double value,
+                                struct dea_load_point *out)
+{
+  char why[200];
+  DEA_TRY(ctx, check_control(ctx, model, control, value));
+  dea_solver_state_end_history(ctx, &model->at);
+  double from = where_control_is(model, control);
+  DEA_TRY(ctx, set_control(ctx, model, control, value));
+  dea_status status = follow_control(ctx, model, control, from, value);
+  if (status != DEA_OK) {
+    double reached = from + model->at.report.way * (value - from);
+    snprintf(why, sizeof why, "%s", dea_context_message(ctx));
+    DEA_TRY(ctx, set_control(ctx, model, control, reached));
+    if (status == DEA_E_NO_EQUILIBRIUM) {
+      return fail_at_limit(ctx, model, control, from + model->at.report.limit * (value - from));
+    }
+    return dea_fail(ctx, status, "stopped %.3g of the way to the next value (%s)",
+                    model->at.report.way, why);
+  }
+  if (model->at.report.snapped) {
+    dea_solid_model_note_states(model, true);
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: a state at %.4g kV is unstable (buckling or snapping) "
+                                 "under this load; it goes on from the stable one below it",
+                                 1e-3 * model->at.voltage_V));
+  }
+  DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
+  return DEA_OK;
+}
+
+/* A step in time, in which a control may move. */
+dea_status dea_solid_model_advance(struct dea_context *ctx, struct dea_model *model,
+                                   const struct dea_time_step *step, struct dea_load_point *out,
+                                   double *error)
+{
+  if (step->control != NULL) {
+    DEA_TRY(ctx, check_control(ctx, model, step->control, step->value));
+    DEA_TRY(ctx, set_control(ctx, model, step->control, step->value));
+  }
+  DEA_TRY(ctx, dea_solver_state_advance(ctx, model, step, out, error));
+  return DEA_OK;
+}
