@@ -7,6 +7,8 @@
 #include "study/force.h"
 #include "base/schema.h"
 #include "base/worker.h"
+#include "result/columns.h"
+#include "result/observation.h"
 #include "result/trust.h"
 #include "study/force_line.h"
 #include "study/study.h"
@@ -236,6 +238,7 @@ static dea_status take_line(struct dea_context *ctx, struct press *p, struct dea
   const struct dea_design *design = p->result->design;
   const struct dea_force_line line = {.type = p->type,
                                       .model = p->model,
+                                      .device = p->result->device,
                                       .pressed = p->kept ? &p->at : NULL,
                                       .voltages_V = design->compute.voltages_V,
                                       .count = design->compute.voltage_count,
@@ -247,10 +250,18 @@ static dea_status take_line(struct dea_context *ctx, struct press *p, struct dea
 /* The same in another process, which hands back its points. */
 static dea_status line_aside(struct dea_context *ctx, void *user, struct dea_bytes *out)
 {
-  struct dea_curve line = {0};
+  struct dea_curve line = {.memory = {.ctx = ctx}};
   dea_status status = take_line(ctx, user, &line);
-  dea_bytes_add(out, line.points, line.count * sizeof *line.points);
+  for (size_t i = 0; i < line.count; i++) {
+    const struct dea_load_point *point = &line.points[i];
+    const size_t count = point->monitors != NULL ? point->monitors->count : 0;
+    dea_bytes_add(out, point, sizeof *point);
+    dea_bytes_add(out, &count, sizeof count);
+    dea_bytes_add(out, count > 0 ? point->monitors->at : NULL,
+                  count * sizeof point->monitors->at[0]);
+  }
   dea_free(ctx, line.points);
+  dea_arena_free(&line.memory);
   return status;
 }
 
@@ -290,6 +301,33 @@ static dea_status take_lines(struct dea_context *ctx, struct press *press, size_
   return DEA_OK;
 }
 
+/* One point and what its monitors show, from *at on; false: there is no whole one. */
+static bool next_point(const char *bytes, size_t length, size_t *at, struct dea_arena *memory,
+                       struct dea_load_point *out)
+{
+  const size_t head = sizeof *out + sizeof(size_t), one = sizeof out->monitors->at[0];
+  size_t count;
+  if (*at + head > length) {
+    return false;
+  }
+  memcpy(out, bytes + *at, sizeof *out);
+  memcpy(&count, bytes + *at + sizeof *out, sizeof count);
+  *at += head;
+  out->monitors = NULL;
+  if (count > (length - *at) / one) {
+    return false;
+  }
+  if (count > 0) {
+    out->monitors = dea_arena_alloc(memory, 1, sizeof *out->monitors + count * one);
+  }
+  if (out->monitors != NULL) {
+    out->monitors->count = count;
+    memcpy(out->monitors->at, bytes + *at, count * one);
+  }
+  *at += count * one;
+  return true;
+}
+
 /* The points of one line into the curve, as far as it has come. */
 static dea_status gather_line(struct dea_context *ctx, const struct dea_worker *line,
                               struct dea_curve *curve)
@@ -298,10 +336,14 @@ static dea_status gather_line(struct dea_context *ctx, const struct dea_worker *
   size_t length;
   struct dea_load_point point;
   dea_status status = dea_worker_take(ctx, line, &bytes, &length);
-  for (size_t at = 0; at + sizeof point <= length; at += sizeof point) {
-    memcpy(&point, bytes + at, sizeof point);
-    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &point));
+  struct dea_arena memory = {.ctx = ctx};
+  dea_status added = DEA_OK;
+  for (size_t at = 0; added == DEA_OK && next_point(bytes, length, &at, &memory, &point);) {
+    added = dea_curve_add_point(ctx, curve, &point);
   }
+  added = added == DEA_OK ? dea_arena_status(&memory) : added;
+  dea_arena_free(&memory);
+  DEA_TRY(ctx, added);
   return status;
 }
 
@@ -333,6 +375,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &curve));
+  DEA_TRY(ctx, dea_device_columns_add(ctx, result->device)); // before processes begin beside
   snprintf(what, sizeof what, "%s force", type->name);
   dea_status status = take_lines(ctx, &press, stops, what, &lines, curve);
   if (lines.begun > 0) {

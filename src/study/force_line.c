@@ -2,6 +2,7 @@
  * (docs/theory/loads.md, "Voltages between computed ones"). */
 #include "study/force_line.h"
 
+#include "study/observe.h"
 #include "study/sampled_line.h"
 #include "study/study.h"
 
@@ -12,6 +13,7 @@ enum { FIRST_GAPS = 8 }; // of a line, about: its first steps
 struct way {
   struct dea_context *ctx;
   const struct dea_force_line *asked;
+  struct dea_monitor_set seen;  // its memory is that of the points' values too
   struct dea_sampled_line line; // its first `count` points rise; it has room for all
   bool *wanted;                 // [asked->count]
   struct dea_state taut;        // at the last point where the film had tension everywhere
@@ -49,8 +51,17 @@ static dea_status solve(struct way *way, size_t k)
     return dea_fail(way->ctx, DEA_E_INTERRUPTED, "interrupted before %.6g kV",
                     1e-3 * asked->voltages_V[k]);
   }
+  struct dea_load_point *point = &way->line.points[k];
+  struct dea_monitor_values *own = point->monitors;
+  const dea_status status = asked->type->solve(way->ctx, asked->model, asked->voltages_V[k], point);
+  point->monitors = own;
+  DEA_TRY(way->ctx, status);
   DEA_TRY(way->ctx,
-          asked->type->solve(way->ctx, asked->model, asked->voltages_V[k], &way->line.points[k]));
+          dea_monitor_set_read(way->ctx, &way->seen, asked->type, asked->model, false, point));
+  point->monitors = own;
+  for (size_t i = 0; own != NULL && i < own->count; i++) {
+    own->at[i] = way->seen.values->at[i];
+  }
   way->line.computed[k] = true;
   return DEA_OK;
 }
@@ -194,9 +205,14 @@ static dea_status make_room(struct way *way)
   way->line.points = dea_alloc(ctx, n, sizeof *way->line.points);
   way->line.computed = dea_alloc(ctx, n, sizeof *way->line.computed);
   way->wanted = dea_alloc(ctx, n, sizeof *way->wanted);
-  return way->line.points != NULL && way->line.computed != NULL && way->wanted != NULL
-             ? DEA_OK
-             : DEA_E_MEMORY;
+  if (way->line.points == NULL || way->line.computed == NULL || way->wanted == NULL) {
+    return DEA_E_MEMORY;
+  }
+  DEA_TRY(ctx, dea_monitor_set_init(ctx, way->asked->type, way->asked->device, &way->seen));
+  for (size_t k = 0; k < n && way->seen.count > 0; k++) {
+    way->line.points[k].monitors = dea_monitor_values_copy(&way->seen.memory, way->seen.values);
+  }
+  return dea_arena_status(&way->seen.memory);
 }
 
 static dea_status add_points(const struct way *way, struct dea_curve *curve)
@@ -212,11 +228,11 @@ static dea_status add_points(const struct way *way, struct dea_curve *curve)
 dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_line *asked,
                                struct dea_curve *curve)
 {
-  struct way way = {.ctx = ctx, .asked = asked};
+  struct way way = {.ctx = ctx, .asked = asked, .seen = {.memory = {.ctx = ctx}}};
   way.line.voltages_V = asked->voltages_V;
   way.line.count = rising(asked->voltages_V, asked->count);
   if (asked->tolerance <= 0 || asked->pressed == NULL || way.line.count <= 2 * FIRST_GAPS) {
-    return dea_study_take_points(ctx, asked->type, asked->model, NULL, asked->voltages_V,
+    return dea_study_take_points(ctx, asked->type, asked->model, asked->device, asked->voltages_V,
                                  asked->count, curve);
   }
   dea_status status = make_room(&way);
@@ -226,6 +242,7 @@ dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_l
     status = status == DEA_OK ? added : status;
   }
   dea_state_free_values(ctx, &way.taut);
+  dea_monitor_set_free(&way.seen);
   dea_free(ctx, way.line.points);
   dea_free(ctx, way.line.computed);
   dea_free(ctx, way.wanted);

@@ -9,6 +9,7 @@
 struct dea_force_line {
   const struct dea_model_type *type;
   struct dea_model *model;         // pressed, at 0 V
+  const struct dea_device *device; // whose monitors are read; NULL: none
   const struct dea_state *pressed; // what it is there; NULL: it cannot go back to that
   const double *voltages_V;        // [count]
   size_t count;

@@ -153,6 +153,18 @@ static bool is_balanced(const struct dea_sampled_line *line, size_t a, size_t b,
   return !(fabs(D) > gap_error(line, C, a, b) * 2 * half * middle + energy_noise * changes[E]);
 }
 
+/* The largest error of what monitors show in a gap, over what it changes by. */
+static double error_of_monitors(const struct dea_sampled_line *line, size_t a, size_t b)
+{
+  const struct dea_monitor_values *monitors = line->points[a].monitors;
+  double most = 0;
+  for (size_t i = 0; monitors != NULL && i < monitors->count; i++) {
+    const double whole = change(line, monitors->at[i].column);
+    most = whole > 0 ? fmax(most, gap_error(line, monitors->at[i].column, a, b) / whole) : most;
+  }
+  return most;
+}
+
 /* Whether a gap may be interpolated. changes: R of each column. */
 static bool is_good(const struct dea_sampled_line *line, size_t a, size_t b, double tolerance,
                     const enum treatment treatment[DEA_LOAD_POINT_COLUMNS],
@@ -166,7 +178,8 @@ static bool is_good(const struct dea_sampled_line *line, size_t a, size_t b, dou
     bool there = treatment[c] == CUBIC && !isnan(dea_point_get(&p[a], c));
     good = !there || gap_error(line, c, a, b) <= most;
   }
-  return good && is_balanced(line, a, b, changes);
+  return good && error_of_monitors(line, a, b) <= of_others * tolerance &&
+         is_balanced(line, a, b, changes);
 }
 
 size_t dea_sampled_line_halve(const struct dea_sampled_line *line, double tolerance, bool *wanted)
@@ -199,7 +212,9 @@ static void interpolate(const struct dea_sampled_line *line, size_t a, size_t b,
 {
   struct dea_load_point *p = &line->points[k];
   const struct dea_load_point *left = &line->points[a], *right = &line->points[b];
+  struct dea_monitor_values *monitors = p->monitors;
   *p = dea_load_point_empty();
+  p->monitors = monitors;
   p->voltage_V = line->voltages_V[k];
   p->stable = left->stable;
   p->unstable_modes = left->unstable_modes;
@@ -211,6 +226,9 @@ static void interpolate(const struct dea_sampled_line *line, size_t a, size_t b,
       dea_point_set(p, c, cubic(line, c, k));
     }
   }
+  for (size_t i = 0; monitors != NULL && i < monitors->count; i++) {
+    monitors->at[i].value = cubic(line, monitors->at[i].column, k);
+  }
 }
 
 /* The estimated errors of all points of a gap: that of the force, and the largest of all others. */
@@ -218,7 +236,7 @@ static void say_errors(const struct dea_sampled_line *line, size_t a, size_t b,
                        const enum treatment treatment[DEA_LOAD_POINT_COLUMNS])
 {
   const int force = dea_point_column_find("force_N");
-  double others = 0;
+  double others = error_of_monitors(line, a, b);
   for (int c = 0; c < DEA_LOAD_POINT_COLUMNS; c++) {
     double whole = treatment[c] == CUBIC && c != force ? change(line, c) : 0;
     others = whole > 0 ? fmax(others, gap_error(line, c, a, b) / whole) : others;
