@@ -65,17 +65,31 @@ static inline double pulse(double time_s, double high, double ramp_s)
   return high * fmax(0.0, t < 1.0 ? fmin(1.0, t / ramp_s) : 1.0 - (t - 1.0) / ramp_s);
 }
 
+/* A hub beside it has half of that height. */
 static inline dea_status add_history(struct dea_context *ctx, struct dea_result *result)
 {
+  static const struct dea_column hub_z = {"hub_z_m", "m", "um", 1e6, "hub z", "of the hub"};
   struct dea_curve *curve;
+  struct dea_arena memory = {.ctx = ctx};
+  int column;
+  DEA_TRY(ctx, dea_column_add(ctx, &hub_z, &column));
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, "lumped", "transient", &curve));
+  struct dea_monitor_values *hub = dea_monitor_values_create(&memory, &column, 1);
+  DEA_TRY(ctx, dea_arena_status(&memory));
   for (int i = 0; i < 400; i++) {
     struct dea_load_point p = dea_load_point_empty();
     p.time_s = 0.01 * i;
     p.voltage_V = p.source_voltage_V = pulse(p.time_s, 6000.0, 0.02);
     p.centre_z_m = pulse(p.time_s, 600e-6, 0.1);
-    DEA_TRY(ctx, dea_curve_add_point(ctx, curve, &p));
+    p.monitors = hub;
+    dea_point_set(&p, column, 0.5 * p.centre_z_m);
+    const dea_status status = dea_curve_add_point(ctx, curve, &p);
+    if (status != DEA_OK) {
+      dea_arena_free(&memory);
+      return status;
+    }
   }
+  dea_arena_free(&memory);
   return DEA_OK;
 }
 

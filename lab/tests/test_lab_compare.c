@@ -109,6 +109,20 @@ TEST(test_history_on_one_clock)
   json_decref(root);
 }
 
+/* What a monitor shows in time, in any unit of a length. */
+TEST(test_history_of_a_monitor)
+{
+  command_folder_make("hub");
+  command_write("hub/measurement.csv", points);
+  command_write("hub/history.csv", "time (s),hub z (mm),other (V)\n0.5,0.299,1\n0.75,0.299,1\n");
+  assert_int_equal(command_run("compare run hub --model lumped --json"), 0);
+  json_t *root = printed();
+  const json_t *h = find(root, "histories", "lumped", "");
+  assert_string_equal(json_string_value(json_object_get(h, "quantity")), "hub_z_m");
+  assert_close(number(h, "bias"), 1e-6, 1e-9, 0);
+  json_decref(root);
+}
+
 /* Pulses of the heights given, 1 s long, 2 s apart, from `start` on, 100 samples a second. */
 static struct dea_voltage_track staircase(double start_s, const double *high, int count,
                                           double *time, double *voltage)

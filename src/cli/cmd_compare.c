@@ -338,11 +338,11 @@ static bool print_profiles(const struct dea_compare_set *set)
 
 static void print_histories(const struct dea_compare_set *set)
 {
-  for (int k = 0; k < DEA_MEASURED_COLUMNS; k++) {
+  for (size_t k = 0; k < DEA_CSV_COLUMNS_MAX; k++) {
     bool first = true;
     for (size_t i = 0; i < set->history_count; i++) {
       const struct dea_set_history *h = &set->histories[i];
-      if ((int)h->column != k) {
+      if (h->column != k) {
         continue;
       }
       if (first) {

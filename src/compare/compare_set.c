@@ -384,14 +384,14 @@ static dea_status add_histories(struct dea_context *ctx, struct dea_compare_set 
     return DEA_OK;
   }
   DEA_TRY(ctx, find_clock(ctx, set->measured, c, transient, &clock));
-  for (int k = DEA_MEASURED_CENTRE; k < DEA_MEASURED_COLUMNS; k++) {
-    int column = dea_measured_point_column((enum dea_measured_column)k);
+  for (size_t k = DEA_MEASURED_QUANTITIES; k < set->measured->history_count; k++) {
+    const int column = set->measured->history_column[k];
     if (history->values[k] == NULL || !is_wanted(column, columns, count)) {
       continue;
     }
     struct dea_set_history *h = &set->histories[set->history_count++];
     *h = (struct dea_set_history){.curve = curve, .transient = transient, .clock = clock};
-    h->column = (enum dea_measured_column)k;
+    h->column = k;
     DEA_TRY(ctx,
             dea_compare_history(ctx, transient, column, &clock, history->values[DEA_MEASURED_TIME],
                                 history->values[k], history->rows, &h->misfit));
@@ -412,7 +412,8 @@ static dea_status compute_histories(struct dea_context *ctx, struct dea_compare_
   if (set->measured->history.rows == 0) {
     return DEA_OK;
   }
-  set->histories = dea_alloc(ctx, set->curve_count, DEA_MEASURED_COLUMNS * sizeof *set->histories);
+  set->histories =
+      dea_alloc(ctx, set->curve_count, set->measured->history_count * sizeof *set->histories);
   if (set->histories == NULL) {
     return DEA_E_MEMORY;
   }

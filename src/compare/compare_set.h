@@ -32,9 +32,9 @@ struct dea_set_profile {
 struct dea_set_history {
   size_t curve;
   const struct dea_curve *transient; // lent
-  enum dea_measured_column column;
-  struct dea_clock_shift clock; // of the model's times; edges 0: clocks as they are
-  struct dea_misfit misfit;     // owned
+  size_t column;                     // of the measured history
+  struct dea_clock_shift clock;      // of the model's times; edges 0: clocks as they are
+  struct dea_misfit misfit;          // owned
 };
 
 struct dea_compare_set {

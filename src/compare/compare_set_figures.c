@@ -512,7 +512,8 @@ static dea_status add_computed(struct dea_set_figures *f, struct dea_panel *pane
   dea_status status = time != NULL && values != NULL ? DEA_OK : DEA_E_MEMORY;
   for (size_t i = 0; status == DEA_OK && i < n; i++) {
     time[i] = h->transient->points[i].time_s + h->clock.shift_s;
-    values[i] = dea_point_columns[column].factor * dea_point_get(&h->transient->points[i], column);
+    values[i] =
+        dea_column_at(ctx, column)->factor * dea_point_get(&h->transient->points[i], column);
   }
   look.style = h->curve % 2 > 0 ? DEA_DASHED : h->clock.edges > FEW ? DEA_THIN : DEA_LINE;
   if (status == DEA_OK) {
@@ -523,8 +524,8 @@ static dea_status add_computed(struct dea_set_figures *f, struct dea_panel *pane
   return status;
 }
 
-static dea_status add_recorded(struct dea_set_figures *f, struct dea_panel *panel,
-                               enum dea_measured_column column, const double span[2])
+static dea_status add_recorded(struct dea_set_figures *f, struct dea_panel *panel, size_t column,
+                               const double span[2])
 {
   const struct dea_csv_columns *history = &f->set->measured->history;
   struct dea_series look = {.style = DEA_LINE, .colour = DEA_BLACK, .title = "measured"};
@@ -535,9 +536,9 @@ static dea_status add_recorded(struct dea_set_figures *f, struct dea_panel *pane
   if (values == NULL) {
     return DEA_E_MEMORY;
   }
+  const int of_point = f->set->measured->history_column[column];
   for (size_t i = 0; i < history->rows; i++) {
-    values[i] =
-        dea_point_columns[dea_measured_point_column(column)].factor * history->values[column][i];
+    values[i] = dea_column_at(f->ctx, of_point)->factor * history->values[column][i];
   }
   dea_status status = add_track(f->ctx, panel, history->values[DEA_MEASURED_TIME], values,
                                 history->rows, span, &look);
@@ -546,8 +547,7 @@ static dea_status add_recorded(struct dea_set_figures *f, struct dea_panel *pane
 }
 
 /* Times that both have, and a little more. */
-static void find_span(const struct dea_compare_set *set, enum dea_measured_column column,
-                      double span[2])
+static void find_span(const struct dea_compare_set *set, size_t column, double span[2])
 {
   span[0] = INFINITY;
   span[1] = -INFINITY;
@@ -563,8 +563,8 @@ static void find_span(const struct dea_compare_set *set, enum dea_measured_colum
   span[1] += more;
 }
 
-static dea_status fill_history(struct dea_set_figures *f, enum dea_measured_column column,
-                               const double span[2], struct dea_plot *plot)
+static dea_status fill_history(struct dea_set_figures *f, size_t column, const double span[2],
+                               struct dea_plot *plot)
 {
   const struct dea_compare_set *set = f->set;
   bool has_voltage = set->measured->history.values[DEA_MEASURED_VOLTAGE] != NULL;
@@ -572,8 +572,8 @@ static dea_status fill_history(struct dea_set_figures *f, enum dea_measured_colu
   plot->second_height = 1.0;
   for (size_t p = 0; p < plot->panel_count; p++) {
     struct dea_panel *panel = &plot->panels[p];
-    enum dea_measured_column shown = p + 1 < plot->panel_count ? DEA_MEASURED_VOLTAGE : column;
-    int of_point = dea_measured_point_column(shown);
+    const size_t shown = p + 1 < plot->panel_count ? DEA_MEASURED_VOLTAGE : column;
+    const int of_point = set->measured->history_column[shown];
     DEA_TRY(f->ctx, add_recorded(f, panel, shown, span));
     for (size_t i = 0; i < set->history_count; i++) {
       if (set->histories[i].column == column) {
@@ -586,7 +586,7 @@ static dea_status fill_history(struct dea_set_figures *f, enum dea_measured_colu
     panel->x_min = span[0];
     panel->x_max = span[1];
     snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
-    dea_figure_label(&dea_point_columns[of_point], panel->y_label, sizeof panel->y_label);
+    dea_figure_label(dea_column_at(f->ctx, of_point), panel->y_label, sizeof panel->y_label);
     set_range(panel);
     dea_panel_even_tics(panel, 5);
     set_key_above(f, panel);
@@ -596,18 +596,17 @@ static dea_status fill_history(struct dea_set_figures *f, enum dea_measured_colu
 
 static dea_status draw_histories(struct dea_set_figures *f)
 {
-  for (int k = DEA_MEASURED_CENTRE; k < DEA_MEASURED_COLUMNS; k++) {
+  const struct dea_measured *m = f->set->measured;
+  for (size_t k = DEA_MEASURED_QUANTITIES; m != NULL && k < m->history_count; k++) {
     double span[2];
     struct dea_plot *plot;
     char name[DEA_SET_FIGURE_SIZE];
-    find_span(f->set, (enum dea_measured_column)k, span);
+    find_span(f->set, k, span);
     if (span[1] > span[0]) {
-      const struct dea_column *c =
-          &dea_point_columns[dea_measured_point_column((enum dea_measured_column)k)];
+      const struct dea_column *c = dea_column_at(f->ctx, m->history_column[k]);
       snprintf(name, sizeof name, "compare_history_%s", c->key);
       DEA_TRY(f->ctx, begin_figure(f, name, "history", &plot));
-      DEA_TRY(f->ctx,
-              finish_figure(f, plot, fill_history(f, (enum dea_measured_column)k, span, plot)));
+      DEA_TRY(f->ctx, finish_figure(f, plot, fill_history(f, k, span, plot)));
     }
   }
   return DEA_OK;
@@ -620,7 +619,7 @@ dea_status dea_compare_set_draw(struct dea_context *ctx, const struct dea_compar
 {
   struct dea_set_figures *f = dea_alloc(ctx, 1, sizeof *f);
   const size_t capacity =
-      (size_t)dea_column_count(ctx) * set->curve_count + DEA_MEASURED_COLUMNS + 1;
+      (size_t)dea_column_count(ctx) * set->curve_count + DEA_CSV_COLUMNS_MAX + 1;
   const char **names = dea_alloc(ctx, capacity, sizeof *names);
   char(*texts)[DEA_SET_FIGURE_SIZE] = dea_alloc(ctx, capacity, sizeof *texts);
   if (f == NULL || names == NULL || texts == NULL) {

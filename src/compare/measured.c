@@ -1,6 +1,8 @@
 #include "compare/measured.h"
 
+#include "base/csv_line.h"
 #include "base/write_file.h"
+#include "result/observation.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,25 +19,9 @@ static const struct dea_csv_wanted profile_columns[PROFILE_COLUMNS] = {
     [PROFILE_STD] = DEA_CSV_COLUMN("z std", "m", "1 um", .title = "z std (um)"),
 };
 
-static const struct dea_csv_wanted history_columns[DEA_MEASURED_COLUMNS] = {
-    [DEA_MEASURED_TIME] =
-        DEA_CSV_COLUMN("time", "s", "1 s", .title = "time (s)", .needed = true, .filled = true),
-    [DEA_MEASURED_VOLTAGE] = DEA_CSV_COLUMN("v", "V", "1 kV", .title = "V (kV)"),
-    [DEA_MEASURED_CENTRE] = DEA_CSV_COLUMN("z centre", "m", "1 um", .title = "z centre (um)"),
-    [DEA_MEASURED_TIP] = DEA_CSV_COLUMN("z fibre tip", "m", "1 um", .title = "z fibre tip (um)"),
-    [DEA_MEASURED_FORCE] = DEA_CSV_COLUMN("force", "N", "1 mN", .title = "force (mN)"),
-};
-
-int dea_measured_point_column(enum dea_measured_column column)
-{
-  static const char *const keys[DEA_MEASURED_COLUMNS] = {
-      [DEA_MEASURED_VOLTAGE] = "voltage_V",
-      [DEA_MEASURED_CENTRE] = "centre_z_m",
-      [DEA_MEASURED_TIP] = "fibre_tip_z_m",
-      [DEA_MEASURED_FORCE] = "force_N",
-  };
-  return keys[column] != NULL ? dea_point_column_find(keys[column]) : -1;
-}
+/* What a history may have of any device. */
+static const char *const history_keys[] = {"time_s", "voltage_V", "centre_z_m", "fibre_tip_z_m",
+                                           "force_N"};
 
 /* True when folder/name is there. */
 static bool holds(const char *folder, const char *name)
@@ -136,6 +122,49 @@ static dea_status read_rows(struct dea_context *ctx, const char *folder, const c
   return status;
 }
 
+/* A column of a history into the next one wanted, which lends from `memory`. */
+static dea_status want(struct dea_measured *m, int column, struct dea_arena *memory,
+                       struct dea_csv_wanted *wanted)
+{
+  enum { EXAMPLE = 32, SIZE = DEA_COLUMN_TITLE_SIZE + DEA_CSV_FIELD_MAX + EXAMPLE };
+  const struct dea_column *c = dea_column_at(memory->ctx, column);
+  const bool time = m->history_count == DEA_MEASURED_TIME;
+  char *title = dea_arena_alloc(memory, SIZE, 1);
+  if (title == NULL || m->history_count == DEA_CSV_COLUMNS_MAX) {
+    return dea_arena_status(memory);
+  }
+  char *name = title + DEA_COLUMN_TITLE_SIZE, *example = name + DEA_CSV_FIELD_MAX;
+  dea_column_title(c, title, DEA_COLUMN_TITLE_SIZE);
+  dea_csv_fold(c->header, name);
+  snprintf(example, EXAMPLE, "1 %.20s", c->display_unit);
+  wanted[m->history_count] = (struct dea_csv_wanted){.name = name,
+                                                     .title = title,
+                                                     .measure = {c->si_unit, example},
+                                                     .needed = time,
+                                                     .filled = time};
+  m->history_column[m->history_count++] = column;
+  return DEA_OK;
+}
+
+static dea_status read_history(struct dea_context *ctx, const char *path, struct dea_measured *m)
+{
+  struct dea_csv_wanted wanted[DEA_CSV_COLUMNS_MAX];
+  struct dea_arena memory = {.ctx = ctx};
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < sizeof history_keys / sizeof history_keys[0] && status == DEA_OK; i++) {
+    status = want(m, dea_point_column_find(history_keys[i]), &memory, wanted);
+  }
+  for (int c = DEA_LOAD_POINT_COLUMNS; c < dea_column_count(ctx) && status == DEA_OK; c++) {
+    status = dea_observed_is(dea_column_at(ctx, c), NULL) ? want(m, c, &memory, wanted) : DEA_OK;
+  }
+  if (status == DEA_OK) {
+    status = read_rows(ctx, path, "history.csv", wanted, m->history_count, &m->history);
+  }
+  dea_arena_free(&memory);
+  DEA_TRY(ctx, status);
+  return check_history(ctx, &m->history);
+}
+
 static dea_status read_folder(struct dea_context *ctx, const char *path, struct dea_measured *m)
 {
   char *points = dea_path_join(ctx, path, "measurement.csv");
@@ -145,9 +174,8 @@ static dea_status read_folder(struct dea_context *ctx, const char *path, struct 
   DEA_TRY(ctx,
           read_rows(ctx, path, "profiles.csv", profile_columns, PROFILE_COLUMNS, &m->profile_rows));
   DEA_TRY(ctx, part_profiles(ctx, m));
-  DEA_TRY(ctx,
-          read_rows(ctx, path, "history.csv", history_columns, DEA_MEASURED_COLUMNS, &m->history));
-  return check_history(ctx, &m->history);
+  DEA_TRY(ctx, read_history(ctx, path, m));
+  return DEA_OK;
 }
 
 dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct dea_measured **out)

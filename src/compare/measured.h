@@ -13,15 +13,8 @@ struct dea_measured_profile {
   const double *z_std_m; // from cycle to cycle; NULL or NAN: unknown
 };
 
-/* Columns of the history; x of dea_csv_columns.values. */
-enum dea_measured_column {
-  DEA_MEASURED_TIME,
-  DEA_MEASURED_VOLTAGE,
-  DEA_MEASURED_CENTRE,
-  DEA_MEASURED_TIP,
-  DEA_MEASURED_FORCE,
-  DEA_MEASURED_COLUMNS
-};
+/* The first columns of the history, in dea_csv_columns.values; quantities follow. */
+enum { DEA_MEASURED_TIME, DEA_MEASURED_VOLTAGE, DEA_MEASURED_QUANTITIES };
 
 struct dea_measured {
   const char *path;                      // interned
@@ -29,14 +22,17 @@ struct dea_measured {
   struct dea_csv_columns profile_rows;   // of all profiles
   struct dea_measured_profile *profiles; // owned, in the order of the file
   size_t profile_count;
-  struct dea_csv_columns history; // times never fall; rows 0: none
+  struct dea_csv_columns history;          // times never fall; rows 0: none
+  int history_column[DEA_CSV_COLUMNS_MAX]; // [history_count] columns of the context
+  size_t history_count;                    // of what a history may have
 };
 
 /* True for a folder that holds measurement.csv and no results of a run. */
 bool dea_measured_is_folder(const char *path);
 /* Reads a folder: measurement.csv (dea_measurement_read), and where they are there profiles.csv
  * ('V (kV)', 'x (mm)', 'z (um)', 'z std (um)') and history.csv ('time (s)' and any of 'V (kV)', 'z
- * centre (um)', 'z fibre tip (um)', 'force (mN)'). A path that is no folder is the first of these
+ * centre (um)', 'z fibre tip (um)', 'force (mN)' and of what monitors and channels that the context
+ * knows show, 'hub z (um)'). A path that is no folder is the first of these
  * files alone. All errors become findings with their place; DEA_E_IO then. out: owned by the
  * caller, NULL on failure. */
 dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct dea_measured **out);
@@ -47,5 +43,3 @@ dea_status dea_measurement_fold(struct dea_context *ctx, struct dea_measurement 
 /* The same with the profiles; the history stays. */
 dea_status dea_measured_fold(struct dea_context *ctx, struct dea_measured *measured);
 void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured);
-/* Column of dea_point_columns that a column of the history is; -1: none (the time). */
-int dea_measured_point_column(enum dea_measured_column column);

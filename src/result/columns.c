@@ -166,6 +166,7 @@ static struct registry *get_registry(struct dea_context *ctx)
     }
     registry->ctx = ctx;
     if (dea_context_keep(ctx, registry, release) != DEA_OK) {
+      dea_free(ctx, registry);
       return NULL;
     }
   }

@@ -3,7 +3,7 @@
 
 #include "base/units.h"
 
-enum { DEA_CSV_COLUMNS_MAX = 10 };
+enum { DEA_CSV_COLUMNS_MAX = 64 };
 
 /* A column that a file may have. */
 struct dea_csv_wanted {
