@@ -1,6 +1,5 @@
 /* What the files of the model "3d" share: its struct, and what one of them needs of another. */
-#ifndef DEA_MODEL_SOLID_ADAPTER_SOLID_MODEL_H
-#define DEA_MODEL_SOLID_ADAPTER_SOLID_MODEL_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 #include "model/solid/adapter/adapt.h"
@@ -137,5 +136,3 @@ dea_status dea_solid_model_advance(struct dea_context *ctx, struct dea_model *mo
 // solid_variant.c: slopes by changed devices under the solid
 dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *model,
                                     const struct dea_gradient_ask *ask, double *out);
-
-#endif
