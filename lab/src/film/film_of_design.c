@@ -20,12 +20,7 @@ struct film_model {
   const struct dea_design *design; // lent
   struct dea_device *device;       // owned
   const struct dea_model_type *type;
-  struct dea_model *model;      // owned; NULL of a device that is moved by a table
-  struct dea_film_table *table; // owned; NULL of a disc
-  struct dea_bench_circuit circuit;
-  double source_V, film_V; // of a table, as they are accepted
-  double trial_source_V, trial_film_V;
-  double largest_V;
+  struct dea_model *model; // owned
 };
 
 static void destroy(struct dea_context *ctx, struct dea_bench_film *film)
@@ -73,7 +68,6 @@ static void close_model(struct dea_context *ctx, struct dea_bench_model *model)
   if (m->model != NULL) {
     m->type->destroy(ctx, m->model);
   }
-  dea_film_table_destroy(ctx, m->table);
   dea_device_destroy(ctx, m->device);
   dea_free(ctx, m);
 }
@@ -103,8 +97,8 @@ static dea_status build_table(struct dea_context *ctx, const char *monitor, stru
   m->base.name = "3d";
   m->base.material = film != NULL ? film->name : "";
   m->base.frame_radius_m = m->base.fibre_tip_radius_m = reach_of(m->device);
-  m->type = dea_model_find("3d");
-  DEA_TRY(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->table));
+  m->type = &dea_film_table_type;
+  DEA_TRY(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
   return DEA_OK;
 }
 
@@ -184,7 +178,7 @@ static struct dea_bench_point complete_any(const struct film_model *m,
 static struct dea_bench_point complete(const struct film_model *m,
                                        const struct dea_load_point *point)
 {
-  if (m->table != NULL) {
+  if (!m->device->disc || isnan(point->electrode_stretch)) {
     return complete_any(m, point);
   }
   const struct dea_material *film = &m->device->film;
@@ -230,22 +224,25 @@ static dea_status pull_in(struct dea_context *ctx, struct dea_bench_model *model
       .max_points = PATH_POINTS_MAX,
   };
   *voltage_V = NAN;
-  if (m->table != NULL) { // `solve` says it
+  if (m->type->path == NULL) { // `solve` says it
     return DEA_OK;
   }
   return dea_model_path(ctx, m->type, m->model, &options, no_point, first_pull_in, voltage_V);
 }
 
+/* By a model of its own, of a table by what that is computed by. */
 static dea_status solve(struct dea_context *ctx, struct dea_bench_model *model, double voltage_V,
                         struct dea_bench_point *out)
 {
   const struct film_model *m = (struct film_model *)model;
-  struct dea_load_point point;
-  struct dea_model *fresh = NULL;
+  const bool table = m->type->create == NULL;
+  const struct dea_model_type *type = table ? dea_model_find(m->type->name) : m->type;
   const struct dea_model_settings settings = dea_model_settings_of(m->design);
-  DEA_TRY(ctx, m->type->create(ctx, m->device, m->table != NULL ? &settings : NULL, &fresh));
-  dea_status status = m->type->solve(ctx, fresh, voltage_V, &point);
-  m->type->destroy(ctx, fresh);
+  struct dea_model *fresh;
+  struct dea_load_point point;
+  DEA_TRY(ctx, type->create(ctx, m->device, table ? &settings : NULL, &fresh));
+  const dea_status status = type->solve(ctx, fresh, voltage_V, &point);
+  type->destroy(ctx, fresh);
   if (status == DEA_OK) {
     *out = complete(m, &point);
   }
@@ -263,40 +260,8 @@ static dea_status begin(struct dea_context *ctx, struct dea_bench_model *model,
       .circuit = {circuit->series_resistance_ohm, circuit->current_limit_A},
       .rho_inf = 0.8,
   };
-  m->circuit = *circuit;
-  if (m->table != NULL) {
-    DEA_TRY(ctx, dea_film_table_at(ctx, m->table, 0, &point));
-    *out = complete(m, &point);
-    return DEA_OK;
-  }
   DEA_TRY(ctx, m->type->solve(ctx, m->model, 0, &point));
   DEA_TRY(ctx, dea_model_begin(ctx, m->type, m->model, &options, &point));
-  *out = complete(m, &point);
-  return DEA_OK;
-}
-
-/* The film follows at once; its charge by one step and by two, whose difference is the error. */
-static dea_status advance_table(struct dea_context *ctx, struct film_model *m, double length_s,
-                                double source_V, struct dea_bench_point *out, double *error)
-{
-  struct dea_load_point point;
-  const double middle_V = 0.5 * (m->source_V + source_V);
-  struct dea_film_step step = {length_s, source_V, m->film_V, m->circuit.series_resistance_ohm,
-                               m->circuit.current_limit_A};
-  double whole_V, half_V;
-  DEA_TRY(ctx, dea_film_table_charge(ctx, m->table, &step, &whole_V));
-  step.length_s *= 0.5;
-  step.to_V = middle_V;
-  DEA_TRY(ctx, dea_film_table_charge(ctx, m->table, &step, &half_V));
-  step.to_V = source_V;
-  step.film_V = half_V;
-  DEA_TRY(ctx, dea_film_table_charge(ctx, m->table, &step, &m->trial_film_V));
-  DEA_TRY(ctx, dea_film_table_at(ctx, m->table, m->trial_film_V, &point));
-  m->trial_source_V = source_V;
-  m->largest_V = fmax(m->largest_V, fabs(source_V));
-  *error = fabs(m->trial_film_V - whole_V) / fmax(m->largest_V, 1);
-  point.current_A =
-      step.resistance_ohm > 0 ? (source_V - m->trial_film_V) / step.resistance_ohm : (double)NAN;
   *out = complete(m, &point);
   return DEA_OK;
 }
@@ -305,10 +270,6 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
                           double source_V, struct dea_bench_point *out, double *error)
 {
   struct film_model *m = (struct film_model *)model;
-  if (m->table != NULL) {
-    DEA_TRY(ctx, advance_table(ctx, m, length_s, source_V, out, error));
-    return DEA_OK;
-  }
   const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
   struct dea_load_point point;
   dea_status status = dea_model_advance(ctx, m->type, m->model, &step, &point, error);
@@ -321,11 +282,6 @@ static dea_status advance(struct dea_context *ctx, struct dea_bench_model *model
 static void accept(struct dea_bench_model *model)
 {
   struct film_model *m = (struct film_model *)model;
-  if (m->table != NULL) {
-    m->source_V = m->trial_source_V;
-    m->film_V = m->trial_film_V;
-    return;
-  }
   m->type->accept(m->model);
 }
 
@@ -334,9 +290,7 @@ static dea_status profile(struct dea_context *ctx, struct dea_bench_model *model
 {
   struct film_model *m = (struct film_model *)model;
   *out = (struct dea_profile){.count = 0};
-  return m->table == NULL && m->type->profile != NULL
-             ? dea_model_profile(ctx, m->type, m->model, out)
-             : DEA_OK;
+  return m->type->profile != NULL ? dea_model_profile(ctx, m->type, m->model, out) : DEA_OK;
 }
 
 const struct dea_bench_film_type dea_film_of_design = {

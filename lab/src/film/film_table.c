@@ -8,9 +8,9 @@
 
 enum { STEPS = 16, POINTS_MAX = 400 }; // up to the design's highest voltage; in all
 
-struct dea_film_table {
+struct dea_model {
   const struct dea_model_type *type;
-  struct dea_model *model; // owned, at the last point
+  struct dea_model *model; // owned, at the last point, of that type
   struct dea_monitor_set set;
   int column; // of the motion; -1: none
   double step_V;
@@ -18,6 +18,9 @@ struct dea_film_table {
   size_t count;
   dea_status end; // why there are no more
   char why[400];
+  struct dea_circuit circuit;
+  struct dea_circuit_state last, trial; // accepted, and of the last step
+  double largest_V;                     // of the source
 };
 
 /* The first monitor's z; -1: none. */
@@ -32,8 +35,7 @@ static int first_height(const struct dea_monitor_set *set)
   return -1;
 }
 
-static dea_status find_column(struct dea_context *ctx, const char *monitor,
-                              struct dea_film_table *table)
+static dea_status find_column(struct dea_context *ctx, const char *monitor, struct dea_model *table)
 {
   table->column = monitor != NULL ? dea_column_find(ctx, monitor) : first_height(&table->set);
   if (monitor == NULL ||
@@ -47,12 +49,23 @@ static dea_status find_column(struct dea_context *ctx, const char *monitor,
                   nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "");
 }
 
+static void destroy(struct dea_context *ctx, struct dea_model *table)
+{
+  if (table != NULL) {
+    if (table->model != NULL) {
+      table->type->destroy(ctx, table->model);
+    }
+    dea_monitor_set_free(&table->set);
+    dea_free(ctx, table);
+  }
+}
+
 dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_design *design,
                                  const struct dea_device *device, const char *monitor,
-                                 struct dea_film_table **out)
+                                 struct dea_model **out)
 {
   const double highest_V = dea_design_highest_V(design);
-  struct dea_film_table *table = dea_alloc(ctx, 1, sizeof *table);
+  struct dea_model *table = dea_alloc(ctx, 1, sizeof *table);
   *out = NULL;
   if (table == NULL) {
     return DEA_E_MEMORY;
@@ -67,26 +80,15 @@ dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_desig
     status = find_column(ctx, monitor, table);
   }
   if (status != DEA_OK) {
-    dea_film_table_destroy(ctx, table);
+    destroy(ctx, table);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
   *out = table;
   return DEA_OK;
 }
 
-void dea_film_table_destroy(struct dea_context *ctx, struct dea_film_table *table)
-{
-  if (table != NULL) {
-    if (table->model != NULL) {
-      table->type->destroy(ctx, table->model);
-    }
-    dea_monitor_set_free(&table->set);
-    dea_free(ctx, table);
-  }
-}
-
 /* The next voltage. */
-static dea_status extend(struct dea_context *ctx, struct dea_film_table *table)
+static dea_status extend(struct dea_context *ctx, struct dea_model *table)
 {
   struct dea_load_point *point = &table->points[table->count];
   if (table->count == POINTS_MAX) {
@@ -102,7 +104,7 @@ static dea_status extend(struct dea_context *ctx, struct dea_film_table *table)
   return DEA_OK;
 }
 
-static dea_status reach(struct dea_context *ctx, struct dea_film_table *table, size_t count)
+static dea_status reach(struct dea_context *ctx, struct dea_model *table, size_t count)
 {
   if (table->end != DEA_OK && table->count < count) {
     return dea_fail(ctx, table->end, "%s", table->why);
@@ -118,8 +120,9 @@ static dea_status reach(struct dea_context *ctx, struct dea_film_table *table, s
   return DEA_OK;
 }
 
-dea_status dea_film_table_at(struct dea_context *ctx, struct dea_film_table *table,
-                             double voltage_V, struct dea_load_point *out)
+/* A point at a voltage of either sign. Fails where a voltage on the way does, from then on too. */
+static dea_status solve(struct dea_context *ctx, struct dea_model *table, double voltage_V,
+                        struct dea_load_point *out)
 {
   const double at = fabs(voltage_V) / table->step_V;
   const size_t below = at < POINTS_MAX ? (size_t)at : POINTS_MAX;
@@ -136,36 +139,69 @@ dea_status dea_film_table_at(struct dea_context *ctx, struct dea_film_table *tab
   return DEA_OK;
 }
 
-static dea_status charge_at(struct dea_context *ctx, struct dea_film_table *table, double voltage_V,
-                            double *out)
+// In time ----------------------------------------------------------------------------------------
+
+static dea_status begin(struct dea_context *ctx, struct dea_model *table,
+                        const struct dea_time_options *time, struct dea_load_point *out)
 {
-  struct dea_load_point point;
-  DEA_TRY(ctx, dea_film_table_at(ctx, table, voltage_V, &point));
-  *out = point.charge_C;
+  DEA_TRY(ctx, solve(ctx, table, 0, out));
+  table->circuit = time->circuit;
+  table->last = (struct dea_circuit_state){.capacitance_F = out->capacitance_F};
+  table->largest_V = 0;
   return DEA_OK;
 }
 
-/* Implicit Euler: charge(V) = charge before + length clamp((to - V)/R, +-limit), which rises with V
- * on the left and falls on the right; by bisection between the film's voltage and the source's. */
-dea_status dea_film_table_charge(struct dea_context *ctx, struct dea_film_table *table,
-                                 const struct dea_film_step *step, double *film_V)
+/* The capacitance rises with |V| and the voltage that a charge makes falls with it: by bisection
+ * between the film's voltage and the source's. */
+static dea_status charge(struct dea_context *ctx, struct dea_model *table,
+                         const struct dea_circuit_state *last, double length_s, double source_V,
+                         struct dea_circuit_state *out)
 {
-  double low = step->film_V, high = step->to_V, before, now;
-  DEA_TRY(ctx, charge_at(ctx, table, step->film_V, &before));
-  DEA_TRY(ctx, charge_at(ctx, table, step->to_V, &now));
-  const double most = step->limit_A * step->length_s, up = high >= low ? 1 : -1;
-  const bool ideal = !(step->resistance_ohm > 0);
-  if (ideal && (isinf(step->limit_A) || fabs(now - before) <= most)) {
-    *film_V = step->to_V;
-    return DEA_OK;
+  const struct dea_time_step step = {.length_s = length_s, .source_voltage_V = source_V};
+  double ends[2] = {last->voltage_V, source_V}, middle_V = source_V, slope;
+  const double up = source_V >= last->voltage_V ? 1 : -1;
+  struct dea_load_point point;
+  for (int i = 0; i < 60 && !dea_circuit_is_ideal(&table->circuit); i++) {
+    middle_V = 0.5 * (ends[0] + ends[1]);
+    DEA_TRY(ctx, solve(ctx, table, middle_V, &point));
+    const struct dea_circuit_film film = {.capacitance_F = point.capacitance_F};
+    const double end_V = dea_circuit_voltage(&table->circuit, last, &step, &film, &slope);
+    ends[up * (end_V - middle_V) > 0 ? 0 : 1] = middle_V;
   }
-  for (int i = 0; i < 60; i++) {
-    const double middle = 0.5 * (low + high);
-    const double wanted =
-        ideal ? INFINITY : step->length_s * fabs(step->to_V - middle) / step->resistance_ohm;
-    DEA_TRY(ctx, charge_at(ctx, table, middle, &now));
-    *(up * (now - before) < fmin(wanted, most) ? &low : &high) = middle;
-  }
-  *film_V = 0.5 * (low + high);
+  DEA_TRY(ctx, solve(ctx, table, middle_V, &point));
+  const struct dea_circuit_film film = {.capacitance_F = point.capacitance_F};
+  dea_circuit_advance(&table->circuit, last, &step, &film, out);
   return DEA_OK;
 }
+
+/* The film follows at once; its charge by one step and by two, whose difference is the error. */
+static dea_status advance(struct dea_context *ctx, struct dea_model *table,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  const double to_V = step->source_voltage_V, half_s = 0.5 * step->length_s;
+  const double middle_V = 0.5 * (table->last.source_voltage_V + to_V);
+  struct dea_circuit_state whole, half;
+  DEA_TRY(ctx, charge(ctx, table, &table->last, step->length_s, to_V, &whole));
+  DEA_TRY(ctx, charge(ctx, table, &table->last, half_s, middle_V, &half));
+  DEA_TRY(ctx, charge(ctx, table, &half, half_s, to_V, &table->trial));
+  DEA_TRY(ctx, solve(ctx, table, table->trial.voltage_V, out));
+  table->largest_V = fmax(table->largest_V, fabs(to_V));
+  *error = fabs(table->trial.voltage_V - whole.voltage_V) / fmax(table->largest_V, 1);
+  out->current_A = table->circuit.series_resistance_ohm > 0 ? table->trial.current_A : (double)NAN;
+  return DEA_OK;
+}
+
+static void accept(struct dea_model *table)
+{
+  table->last = table->trial;
+}
+
+const struct dea_model_type dea_film_table_type = {.name = "3d",
+                                                   .long_name = "3D solid, at rest",
+                                                   .any_layout = true,
+                                                   .destroy = destroy,
+                                                   .solve = solve,
+                                                   .begin = begin,
+                                                   .advance = advance,
+                                                   .accept = accept};

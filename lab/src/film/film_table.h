@@ -4,24 +4,12 @@
 
 #include "model/model.h"
 
-struct dea_film_table;
+/* A model in time that is at rest at every moment: it has solve, begin, advance and accept. */
+extern const struct dea_model_type dea_film_table_type;
 
 /* monitor: quantity by which the film moves ("hub_z"), which points have as that of the centre and
- * the fibre tips; NULL: the first monitor's z. design, device: lent. */
+ * the fibre tips; NULL: the first monitor's z. design, device: lent. out: a model of this type,
+ * owned by the caller. */
 dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_design *design,
                                  const struct dea_device *device, const char *monitor,
-                                 struct dea_film_table **out);
-void dea_film_table_destroy(struct dea_context *ctx, struct dea_film_table *table);
-/* A point at a voltage of either sign. Fails as the model's `solve` where a voltage on the way
- * does, from then on too. */
-dea_status dea_film_table_at(struct dea_context *ctx, struct dea_film_table *table,
-                             double voltage_V, struct dea_load_point *out);
-/* The voltage on the film after a time at whose end its source stands at to_V, over a resistance
- * and with a current of at most limit_A: implicit Euler. */
-struct dea_film_step {
-  double length_s, to_V;
-  double film_V; // before
-  double resistance_ohm, limit_A;
-};
-dea_status dea_film_table_charge(struct dea_context *ctx, struct dea_film_table *table,
-                                 const struct dea_film_step *step, double *film_V);
+                                 struct dea_model **out);
