@@ -845,4 +845,39 @@ TEST(test_what_is_no_disc)
   }
 }
 
+/* A disc that lies anywhere brings its monitors too: there the model 3d has a free mesh. */
+TEST(test_disc_off_the_origin)
+{
+  static const char text[] =
+      "dea: 1\n"
+      "shapes:\n"
+      "  - {name: film, kind: circle, radius: 15 mm, x: 5 mm, y: 3 mm}\n"
+      "  - {name: active, kind: circle, radius: 5 mm, x: 5 mm, y: 3 mm}\n"
+      "plies:\n"
+      "  - {name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.1}\n"
+      "electrodes:\n"
+      "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
+      "  - {ply: film, side: top, shape: active, channel: drive}\n"
+      "supports: [{edge: film}]\n"
+      "compute: {models: [3d], voltage: {values: [2 kV]}}\n" FILM_MATERIAL;
+  static const char *const names[] = {"axisymmetric", "3d"};
+  struct dea_design *other;
+  struct dea_device *disc;
+  struct dea_load_point point[2];
+  assert_int_equal(read_and_build(ctx, text, NULL, 0, &other, &disc), DEA_OK);
+  for (int i = 0; i < 2; i++) {
+    const struct dea_model_type *type = dea_model_find(names[i]);
+    struct dea_model *model;
+    assert_int_equal(dea_model_create(ctx, type, other, disc, &model), DEA_OK);
+    assert_int_equal(type->solve(ctx, model, 2e3, &point[i]), DEA_OK);
+    type->destroy(ctx, model);
+  }
+  assert_close(point[1].electrode_edge_u_m, point[0].electrode_edge_u_m, 0.01, 0); // coarse mesh
+  assert_close(point[1].electrode_stretch, 1 + point[1].electrode_edge_u_m / 5e-3, 1e-12, 0);
+  assert_close(point[1].centre_z_m, 0, 0, 1e-12);
+  assert_true(isnan(point[1].fibre_tip_z_m)); // there are no fibres
+  dea_device_destroy(ctx, disc);
+  dea_design_destroy(ctx, other);
+}
+
 TESTS(context_set_up, context_tear_down)
