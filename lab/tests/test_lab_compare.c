@@ -215,7 +215,7 @@ TEST(test_opposite_signs_are_said)
   assert_int_equal(command_run("compare run below --json"), 0);
   assert_contains(command_err, "z centre of 3d and of below have opposite signs; nothing was "
                                "turned round: z is positive towards the fibres; was the sensor");
-  assert_contains(command_err, "and model lumped, an upper bound, does not support side");
+  assert_contains(command_err, "and model lumped, an upper bound, predicts no sign");
   json_t *root = printed();
   const json_t *z =
       json_array_get(json_object_get(find(root, "comparisons", "lumped", ""), "quantities"), 0);

@@ -436,7 +436,7 @@ TEST(test_errors)
   } wrong[] = {
       {HEAD IDEAL "waveform: " WAVE "\nsim: {model: lumpd}\n", "did you mean 'lumped'", 11},
       {HEAD IDEAL "waveform: " WAVE "\nsim: {model: axisymmetric}\n",
-       "model 'axisymmetric' does not support time", 11},
+       "model 'axisymmetric' does not support transients", 11},
       {HEAD IDEAL "waveform: " WAVE "\nsim: {voltage_nois: 3 V}\n", "did you mean 'voltage_noise'",
        11},
       {"dea-protocol: 1\n" IDEAL "waveform: " WAVE "\nsim: {kind: sim}\n", "needs a film", 4},

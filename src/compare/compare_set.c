@@ -208,7 +208,7 @@ static dea_status note_sign(struct dea_context *ctx, const struct dea_compare_se
                          "%s of %s and of %s have opposite signs; nothing was turned round: z is "
                          "positive towards the fibres%s",
                          m->quantity->header, curve->name, set->reference,
-                         lumped ? ", and model lumped, an upper bound, does not support side"
+                         lumped ? ", and model lumped, an upper bound, predicts no sign"
                                 : "; was the sensor on the other side?");
 }
 

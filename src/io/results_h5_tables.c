@@ -228,8 +228,8 @@ static void find_quantities(struct h5 *h, hid_t group, const struct dea_result_t
 
 /* A table of `count` rows without values. */
 static struct dea_result_table *add_table(struct h5 *h, hid_t group, const char *model,
-                                          struct dea_result_column *columns, size_t column_count,
-                                          struct dea_result *result)
+                                          const struct dea_result_column *columns,
+                                          size_t column_count, struct dea_result *result)
 {
   char quantity[DEA_NAME_SIZE];
   const struct dea_result_table_type type = {
@@ -286,19 +286,15 @@ void dea_results_h5_get_table(struct h5 *h, hid_t group, const char *model,
     h->status =
         dea_fail(h->ctx, DEA_E_IO, "%s is damaged: a table of %zu columns", h->path, column_count);
   }
-  struct dea_result_column *columns =
-      h->status == DEA_OK ? dea_alloc(h->ctx, column_count, sizeof *columns) : NULL;
-  if (columns == NULL) {
-    h->status = h->status == DEA_OK ? DEA_E_MEMORY : h->status;
-    return;
+  struct dea_result_column columns[DEA_RESULT_TABLE_COLUMNS_MAX] = {{0}};
+  if (h->status == DEA_OK) {
+    get_columns(h, group, columns, column_count);
   }
-  get_columns(h, group, columns, column_count);
-  struct dea_result_table *table = add_table(h, group, model, columns, column_count, result);
+  struct dea_result_table *table =
+      h->status == DEA_OK ? add_table(h, group, model, columns, column_count, result) : NULL;
   if (table == NULL) {
-    dea_free(h->ctx, columns);
     return;
   }
-  table->own_columns = columns;
   for (size_t c = 0; c < column_count; c++) {
     empty[c] = (struct dea_result_table_value){.number = NAN, .list = none};
   }

@@ -151,11 +151,12 @@ static dea_status check_times(struct work *w)
       continue;
     }
     if (lacks_waveform || w->model.type->advance == NULL) {
-      DEA_TRY(w->ctx, lacks_waveform
-                          ? dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                                            "the design plays nothing: it needs drive.waveform")
-                          : dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                                            "the model %s does not support time", w->fit->model));
+      DEA_TRY(w->ctx,
+              lacks_waveform
+                  ? dea_finding_add(w->ctx, DEA_ERROR, kind->location,
+                                    "the design plays nothing: it needs drive.waveform")
+                  : dea_finding_add(w->ctx, DEA_ERROR, kind->location,
+                                    "the model %s does not support transients", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
     return make_fine(w);
@@ -171,7 +172,7 @@ static dea_status check_tips(struct work *w)
     if (kind->value == DEA_DEVICE_FORCE) {
       DEA_TRY(w->ctx,
               dea_finding_add(w->ctx, DEA_ERROR, kind->location,
-                              "the model %s does not support tip that is held", w->fit->model));
+                              "the model %s does not support a tip that is held", w->fit->model));
       return dea_fail(w->ctx, DEA_E_DESIGN, "the model and the curves do not go together");
     }
   }

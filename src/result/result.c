@@ -131,6 +131,7 @@ dea_status dea_result_add_table(struct dea_context *ctx, struct dea_result *resu
   struct dea_result_table *tables =
       dea_resize(ctx, result->tables, result->table_count + 1, sizeof *tables);
   if (tables == NULL) {
+    dea_result_table_free(ctx, &table);
     return DEA_E_MEMORY;
   }
   result->tables = tables;
@@ -159,6 +160,7 @@ dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *res
   struct dea_result_table *to;
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &table->type, table->model, table->width, &to));
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): dea_result_add_table sets it or fails
+  dea_result_table_free(ctx, to);
   *to = *table;
   table->cells = NULL;
   table->own_columns = NULL;

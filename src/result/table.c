@@ -49,6 +49,12 @@ dea_status dea_result_table_init(struct dea_context *ctx, const struct dea_resul
                     "more than %d values",
                     type->name, DEA_RESULT_TABLE_COLUMNS_MAX, DEA_RESULT_TABLE_WIDTH_MAX);
   }
+  const size_t bytes = type->column_count * sizeof *type->columns;
+  out->own_columns = dea_alloc(ctx, 1, bytes);
+  if (out->own_columns == NULL) {
+    return DEA_E_MEMORY;
+  }
+  out->type.columns = memcpy(out->own_columns, type->columns, bytes);
   snprintf(out->model, sizeof out->model, "%s", model);
   out->stride = column_offset(out, type->column_count);
   return DEA_OK;

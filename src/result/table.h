@@ -53,7 +53,7 @@ struct dea_result_column {
   int hidden; // DEA_IN_*: those that leave the column out
 };
 
-/* What a table is; static in its study's file. */
+/* What a table is. */
 struct dea_result_table_type {
   const char *study; // in JSON an object of that key, in file names
   const char *name;  // within it; "": the study's own facts
@@ -82,7 +82,7 @@ struct dea_result_table {
   const struct dea_context *ctx; // whose columns its quantities are
   char model[DEA_NAME_SIZE];
   struct dea_result_table_type type;     // its names are static, or interned in the context
-  struct dea_result_column *own_columns; // owned: of a table that was read; else NULL
+  struct dea_result_column *own_columns; // those of the type, copied; owned
   int quantity;                          // of all rows, where no column says it; -1: none
   size_t width;                          // values in each list
   size_t row_count, capacity, stride;

@@ -81,6 +81,6 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
 const struct dea_study dea_study_load_line = {.name = study_name,
                                               .by_name_only = true,
                                               .own_models = true,
-                                              .ability = "load line of this actuator",
+                                              .ability = "a load line of this actuator",
                                               .able = able,
                                               .run = run};

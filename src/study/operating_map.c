@@ -251,26 +251,6 @@ static const struct dea_result_column limit_columns[] = {
                       .factor = 1e-3, .list = true, .hidden = DEA_IN_SCREEN,
                       .meaning = "voltages at which the levels are reached")};
 
-/* A table of columns of its own, [count], copied. */
-static dea_status add_table(struct dea_context *ctx, struct dea_result *result, const char *model,
-                            struct dea_result_table_type type, size_t width,
-                            struct dea_result_table **out)
-{
-  struct dea_result_column *columns = dea_alloc(ctx, type.column_count, sizeof *columns);
-  if (columns == NULL) {
-    return DEA_E_MEMORY;
-  }
-  memcpy(columns, type.columns, type.column_count * sizeof *columns);
-  type.columns = columns;
-  dea_status status = dea_result_add_table(ctx, result, &type, model, width, out);
-  if (status != DEA_OK) {
-    dea_free(ctx, columns);
-    return status;
-  }
-  (*out)->own_columns = columns;
-  return DEA_OK;
-}
-
 /* "film_thickness" of "film.thickness"; interned. NULL on failure. */
 static const char *name_axis(struct dea_context *ctx, const struct axis *axis)
 {
@@ -531,7 +511,7 @@ static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, siz
   if (type.name == NULL || type.title == NULL) {
     return DEA_E_MEMORY;
   }
-  DEA_TRY(ctx, add_table(ctx, result, map->type->name, type, LEVELS, &table));
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &type, map->type->name, LEVELS, &table));
   for (size_t i = 0; i < rows; i++) {
     double value = axis->low + (axis->high - axis->low) * (double)i / (double)(rows - 1);
     if (dea_interrupted_anywhere(ctx)) {
@@ -575,7 +555,7 @@ static dea_status add_scale(struct dea_context *ctx, const struct map *map,
                                              .one_row = true,
                                              .columns = columns,
                                              .column_count = OWN + map->plan.count};
-  DEA_TRY(ctx, add_table(ctx, result, map->type->name, type, 0, &scale));
+  DEA_TRY(ctx, dea_result_add_table(ctx, result, &type, map->type->name, 0, &scale));
   DEA_TRY(ctx, dea_result_table_add_row(ctx, scale, row));
   return DEA_OK;
 }
@@ -612,13 +592,12 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
   return type->path != NULL || dea_design_settings(result->design, &section)->written;
 }
 
-const struct dea_study dea_study_operating_map = {
-    .name = study_name,
-    .keys = &section,
-    .own_models = true,
-    .ability = "equilibrium path without compute.operating_map",
-    .able = able,
-    .refuse = refuse,
-    .run = run,
-    .figures = dea_operating_map_figures,
-    .figure_count = DEA_OPERATING_MAP_FIGURES};
+const struct dea_study dea_study_operating_map = {.name = study_name,
+                                                  .keys = &section,
+                                                  .own_models = true,
+                                                  .ability = "a path without compute.operating_map",
+                                                  .able = able,
+                                                  .refuse = refuse,
+                                                  .run = run,
+                                                  .figures = dea_operating_map_figures,
+                                                  .figure_count = DEA_OPERATING_MAP_FIGURES};

@@ -108,4 +108,4 @@ static bool able(const struct dea_model_type *type, const struct dea_result *res
 }
 
 const struct dea_study dea_study_path = {
-    .name = "path", .ability = "path without compute.solid.path", .able = able, .run = run};
+    .name = "path", .ability = "a path without compute.solid.path", .able = able, .run = run};

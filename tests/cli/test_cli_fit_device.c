@@ -73,7 +73,7 @@ TEST(test_curves)
          "electrode_edge_u_m: ");
   expect("lumped", free_one,
          "name: s, file: sweep.csv, quantities: [electrode_edge_u_m], kind: force", 3,
-         "mine.yaml:7:72: error: the model lumped does not support tip");
+         "mine.yaml:7:72: error: the model lumped does not support a tip");
   command_write("z.csv", "V (kV),z centre (um)\n1,1\n2,2\n");
   expect("axisymmetric", free_one, "name: s, file: z.csv", 3,
          "the model axisymmetric does not know centre_z_m");

@@ -410,12 +410,12 @@ TEST(test_models_that_cannot)
       {"plain-disc.yaml -m lumped --study modal", 2,
        "no study 'modal' of model lumped, which does not support vibrations; there is one of 3d"},
       {"plain-disc.yaml -m lumped -m axisymmetric --study sweep --study convergence", 2,
-       "no study 'convergence' of model lumped or axisymmetric, which do not support mesh to "
-       "refine"},
+       "no study 'convergence' of model lumped or axisymmetric, which do not support mesh "
+       "refinement"},
       {"plain-disc.yaml -m lumped --study load-line", 2,
-       "does not support load line of this actuator\n"},
+       "does not support a load line of this actuator\n"},
       {"plain-disc.yaml -m 3d --study path", 2,
-       "does not support path without compute.solid.path; there is"},
+       "does not support a path without compute.solid.path; there is"},
       {"devices/cone-mass.yaml -m lumped", 3, "this needs a disc in a round frame"},
   };
   char path[600];
@@ -433,7 +433,7 @@ TEST(test_models_that_cannot)
                  0, "model lumped does not support vibrations: no study 'modal'");
   command_expect("run @/examples/frdea-4.yaml -m axisymmetric -m lumped --study load-line "
                  "--no-figures -o able --force",
-                 0, "model axisymmetric does not support load line of this actuator");
+                 0, "model axisymmetric does not support a load line of this actuator");
 }
 
 /* A figure that a run has nothing for is an error, and a quantity that is none names those that

@@ -166,7 +166,7 @@ TEST(test_nothing_touched)
   assert_non_null(find_finding(ctx, DEA_WARNING, "at a depth of 3 mm the tip touches no film"));
   assert_int_equal(dea_study_run(ctx, &bare, &name, 1, result), DEA_OK);
   assert_non_null(find_finding(
-      ctx, DEA_NOTE, "model bare does not support tip that is pressed in: no study 'force'"));
+      ctx, DEA_NOTE, "model bare does not support indentation by a tip: no study 'force'"));
   assert_null(dea_result_find(result, "bare", "force"));
   end(design, device, result);
 }

@@ -188,7 +188,7 @@ TEST(test_by_name_only)
   end(&r);
   r = run("axisymmetric", line_only, 1, NULL, 0);
   assert_int_equal(r.result->table_count, 0);
-  assert_non_null(find_finding(ctx, DEA_NOTE, "model axisymmetric does not support load line"));
+  assert_non_null(find_finding(ctx, DEA_NOTE, "model axisymmetric does not support a load line"));
   end(&r);
 }
 

@@ -133,7 +133,7 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
   *out = NULL;
   if (type == NULL || type->advance == NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "the simulated bench cannot use model '%s': it %s",
-                    name, type == NULL ? "is not there" : "does not support time");
+                    name, type == NULL ? "is not there" : "does not support transients");
   }
   struct film_model *m = dea_alloc(ctx, 1, sizeof *m);
   if (m == NULL) {

@@ -138,9 +138,9 @@ static dea_status check(const struct dea_reader *reader, const void *data,
   const char *nearest = dea_nearest_name(raw->model.text, names, count);
   dea_status status = dea_finding_add(
       reader->ctx, DEA_ERROR, raw->model.location, "%s '%.60s'%s%s%s%s; models with time are: %s",
-      there ? "model" : "there is no model", raw->model.text, there ? " does not support time" : "",
-      nearest != NULL ? "; did you mean '" : "", nearest != NULL ? nearest : "",
-      nearest != NULL ? "'?" : "", dea_text_get(&list));
+      there ? "model" : "there is no model", raw->model.text,
+      there ? " does not support transients" : "", nearest != NULL ? "; did you mean '" : "",
+      nearest != NULL ? nearest : "", nearest != NULL ? "'?" : "", dea_text_get(&list));
   status = list.failed ? DEA_E_MEMORY : status;
   dea_text_free(&list);
   return status;

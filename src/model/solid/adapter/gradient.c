@@ -467,7 +467,7 @@ static dea_status begin_border(struct dea_context *ctx, struct work *w, struct d
   b->along_rate = dea_solid_dot(w->owner->solid, dea_adjoint_answer(w->adjoint, width), b->rate);
   return known ? DEA_OK
                : dea_fail(ctx, DEA_E_UNSUPPORTED,
-                          "model 3d does not support electrode's stretch here");
+                          "model 3d does not support the electrode's stretch here");
 }
 
 /* Quantities at the unknowns as they are and another voltage, out [dea_gradient_width], 0 before.
