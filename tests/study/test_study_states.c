@@ -282,7 +282,7 @@ TEST(test_nothing_found)
  * other. */
 TEST(test_finer_meshes)
 {
-  struct ran r = run("{voltage: [3 kV], push: [300 um], refinement: [2, 3, 4.9]}");
+  struct ran r = run("{voltage: [3 kV], perturbation: [300 um], refinement: [2, 3, 4.9]}");
   const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "meshes");
   assert_non_null(t);
   assert_int_equal(t->row_count, 8);
@@ -307,7 +307,7 @@ TEST(test_finer_meshes)
  */
 TEST(test_finer_tips)
 {
-  struct ran r = run("{voltage: [3 kV], push: [300 um], refinement: [2], refined: tips}");
+  struct ran r = run("{voltage: [3 kV], perturbation: [300 um], refinement: [2], refined: tips}");
   const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "meshes");
   assert_int_equal(t->row_count, 4);
   assert_true(refined_at_tips);
@@ -333,7 +333,7 @@ TEST(test_finer_tips)
  * state. Not where the design does not want it. */
 TEST(test_relaxed)
 {
-  struct ran r = run("{voltage: [2 kV, 3 kV], push: [300 um], refinement: [2]}");
+  struct ran r = run("{voltage: [2 kV, 3 kV], perturbation: [300 um], refinement: [2]}");
   const struct dea_result_table *t = dea_result_find_table(r.result, "wells", "states", "relaxed");
   assert_non_null(t);
   assert_int_equal(t->row_count, 4);
