@@ -23,26 +23,45 @@ static void add_number(struct dea_text *text, double value)
   }
 }
 
-/* Columns that are written: [count] of them hold a number at some point. */
-struct used {
-  struct dea_context *ctx;
-  int count;
-  bool *columns; // owned
+/* A file that is being written. */
+struct sheet {
+  struct dea_text text;
+  void *locale;  // that was before
+  int count;     // of columns
+  bool *columns; // [count] those that hold a number at some point; owned
+  bool any;      // a line, without which there is no file
 };
 
-static dea_status used_create(struct dea_context *ctx, struct used *out)
+static dea_status begin_sheet(struct dea_context *ctx, struct sheet *out)
 {
-  *out = (struct used){.ctx = ctx, .count = dea_column_count(ctx)};
+  *out = (struct sheet){.text = {.ctx = ctx}, .count = dea_column_count(ctx)};
   out->columns = dea_alloc(ctx, (size_t)out->count, sizeof *out->columns);
-  return out->columns != NULL ? DEA_OK : DEA_E_MEMORY;
+  DEA_TRY(ctx, out->columns != NULL ? DEA_OK : DEA_E_MEMORY);
+  out->locale = dea_c_locale_enter();
+  return DEA_OK;
+}
+
+/* Writes directory/MODEL_KIND.csv, or MODEL_KIND_WHAT.csv; kind, what: "" for none. */
+static dea_status end_sheet(struct sheet *s, const char *directory, const char *model,
+                            const char *kind, const char *what)
+{
+  char name[2 * DEA_NAME_SIZE + 16];
+  snprintf(name, sizeof name, "%s%s%s%s%s.csv", model, kind[0] != '\0' ? "_" : "", kind,
+           what[0] != '\0' ? "_" : "", what);
+  dea_c_locale_leave(s->locale);
+  dea_status status = s->any ? dea_text_write(s->text.ctx, &s->text, directory, name) : DEA_OK;
+  dea_free(s->text.ctx, s->columns);
+  dea_text_free(&s->text);
+  return status;
 }
 
 /* Adds to what is used already. */
-static void mark_used(const struct dea_load_point *points, size_t count, struct used *used)
+static void mark_used(const struct dea_load_point *points, size_t count, struct sheet *s)
 {
-  for (int c = 0; c < used->count; c++) {
-    used->columns[c] = used->columns[c] || dea_points_have(points, count, c);
+  for (int c = 0; c < s->count; c++) {
+    s->columns[c] = s->columns[c] || dea_points_have(points, count, c);
   }
+  s->any = s->any || count > 0;
 }
 
 /* Columns of standard uncertainties, behind all others: the titles (point SIZE_MAX) or a row. */
@@ -67,87 +86,68 @@ static void add_std(struct dea_text *text, const struct dea_curve *curve, size_t
 }
 
 /* Without the end of the line. */
-static void add_header(struct dea_text *text, const struct used *used)
+static void add_header(struct sheet *s)
 {
-  for (int c = 0; c < used->count; c++) {
-    if (used->columns[c]) {
+  for (int c = 0; c < s->count; c++) {
+    if (s->columns[c]) {
       char title[DEA_COLUMN_TITLE_SIZE];
-      dea_column_title(dea_column_at(used->ctx, c), title, sizeof title);
-      dea_csv_add_name(text, title);
-      dea_text_add(text, ",");
+      dea_column_title(dea_column_at(s->text.ctx, c), title, sizeof title);
+      dea_csv_add_name(&s->text, title);
+      dea_text_add(&s->text, ",");
     }
   }
-  dea_text_add(text, "stable,unstable_modes,trusted,flags");
+  dea_text_add(&s->text, "stable,unstable_modes,trusted,flags");
 }
 
 /* Without the end of the line. */
-static void add_point(struct dea_text *text, const struct used *used,
-                      const struct dea_load_point *point)
+static void add_point(struct sheet *s, const struct dea_load_point *point)
 {
-  for (int c = 0; c < used->count; c++) {
-    if (used->columns[c]) {
-      add_number(text, dea_point_get(point, c) * dea_column_at(used->ctx, c)->factor);
-      dea_text_add(text, ",");
+  for (int c = 0; c < s->count; c++) {
+    if (s->columns[c]) {
+      add_number(&s->text, dea_point_get(point, c) * dea_column_at(s->text.ctx, c)->factor);
+      dea_text_add(&s->text, ",");
     }
   }
   char words[DEA_FLAGS_SIZE];
-  dea_text_add(text, "%d,%d,%d,%s", point->stable, point->unstable_modes,
+  dea_text_add(&s->text, "%d,%d,%d,%s", point->stable, point->unstable_modes,
                dea_load_point_trusted(point), dea_flags_text(dea_load_point_flags(point), words));
 }
 
 dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *curve,
                                const char *directory)
 {
-  struct used used;
-  DEA_TRY(ctx, used_create(ctx, &used));
-  mark_used(curve->points, curve->count, &used);
-  void *before = dea_c_locale_enter();
-  struct dea_text text = {.ctx = ctx};
-  add_header(&text, &used);
-  add_std(&text, curve, SIZE_MAX);
-  dea_text_add(&text, "\n");
+  struct sheet s;
+  DEA_TRY(ctx, begin_sheet(ctx, &s));
+  mark_used(curve->points, curve->count, &s);
+  s.any = true; // also without points
+  add_header(&s);
+  add_std(&s.text, curve, SIZE_MAX);
+  dea_text_add(&s.text, "\n");
   for (size_t i = 0; i < curve->count; i++) {
-    add_point(&text, &used, &curve->points[i]);
-    add_std(&text, curve, i);
-    dea_text_add(&text, "\n");
+    add_point(&s, &curve->points[i]);
+    add_std(&s.text, curve, i);
+    dea_text_add(&s.text, "\n");
   }
-  dea_c_locale_leave(before);
-  char name[2 * DEA_NAME_SIZE + 8];
-  snprintf(name, sizeof name, "%s_%s.csv", curve->model, curve->kind);
-  dea_status status = dea_text_write(ctx, &text, directory, name);
-  dea_text_free(&text);
-  dea_free(ctx, used.columns);
-  return status;
+  return end_sheet(&s, directory, curve->model, curve->kind, "");
 }
 
 dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve *curve,
                                 const char *directory)
 {
-  if (curve->event_count == 0) {
-    return DEA_OK;
-  }
-  struct used used;
-  DEA_TRY(ctx, used_create(ctx, &used));
+  struct sheet s;
+  DEA_TRY(ctx, begin_sheet(ctx, &s));
   for (size_t i = 0; i < curve->event_count; i++) {
-    mark_used(&curve->events[i].point, 1, &used);
+    mark_used(&curve->events[i].point, 1, &s);
   }
-  void *before = dea_c_locale_enter();
-  struct dea_text text = {.ctx = ctx};
-  dea_text_add(&text, "event,");
-  add_header(&text, &used);
-  dea_text_add(&text, "\n");
+  dea_text_add(&s.text, "event,");
+  add_header(&s);
+  dea_text_add(&s.text, "\n");
   for (size_t i = 0; i < curve->event_count; i++) {
-    dea_text_add(&text, "%s,", dea_event_name(curve->events[i].kind));
-    add_point(&text, &used, &curve->events[i].point);
-    dea_text_add(&text, "\n");
+    dea_text_add(&s.text, "%s,", dea_event_name(curve->events[i].kind));
+    add_point(&s, &curve->events[i].point);
+    dea_text_add(&s.text, "\n");
   }
-  dea_c_locale_leave(before);
-  char name[2 * DEA_NAME_SIZE + 16];
-  snprintf(name, sizeof name, "%s_%s_events.csv", curve->model, curve->kind);
-  dea_status status = dea_text_write(ctx, &text, directory, name);
-  dea_text_free(&text);
-  dea_free(ctx, used.columns);
-  return status;
+  return end_sheet(&s, directory, curve->model, curve->kind, "events");
 }
 
 /* Header of a table of profiles; first: what stands before the voltage. */
@@ -181,103 +181,69 @@ static void add_profile(struct dea_text *text, const char *name,
 }
 
 dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
-                                  const char *model, const char *directory)
+                                  const char *model, const char *study, const char *directory)
 {
-  struct dea_text text = {.ctx = ctx};
-  bool any = false;
-  add_profile_header(&text, "");
-  void *before = dea_c_locale_enter();
-  for (size_t i = 0; i < result->profile_count; i++) {
+  const bool of_study = study[0] != '\0';
+  struct sheet s;
+  DEA_TRY(ctx, begin_sheet(ctx, &s));
+  add_profile_header(&s.text, of_study ? "name," : "");
+  for (size_t i = 0; i < result->profile_count && !of_study; i++) {
     if (strcmp(result->profiles[i].model, model) == 0) {
-      any = true;
-      add_profile(&text, "", &result->profiles[i]);
+      s.any = true;
+      add_profile(&s.text, "", &result->profiles[i]);
     }
   }
-  dea_c_locale_leave(before);
-  char name[DEA_NAME_SIZE + 16];
-  snprintf(name, sizeof name, "%s_profiles.csv", model);
-  dea_status status = any ? dea_text_write(ctx, &text, directory, name) : DEA_OK;
-  dea_text_free(&text);
-  return status;
+  for (size_t i = 0; i < result->variant_count && of_study; i++) {
+    const struct dea_variant *variant = &result->variants[i];
+    if (dea_variant_is(variant, model, study) && variant->profile.count > 0) {
+      s.any = true;
+      add_profile(&s.text, variant->name, &variant->profile);
+    }
+  }
+  return end_sheet(&s, directory, model, study, "profiles");
 }
 
 // Variants ---------------------------------------------------------------------------------------
 
-static void add_variant(struct dea_text *text, const struct used *used, bool meshes,
-                        const struct dea_variant *variant)
+static void add_variant(struct sheet *s, bool meshes, const struct dea_variant *variant)
 {
   for (size_t i = 0; i < variant->curve.count; i++) {
-    dea_csv_add_name(text, variant->name);
-    dea_text_add(text, ",");
+    dea_csv_add_name(&s->text, variant->name);
+    dea_text_add(&s->text, ",");
     if (meshes) {
-      add_number(text, variant->refinement);
-      dea_text_add(text, ",%zu,%zu,%zu,", variant->size.elements, variant->size.nodes,
+      add_number(&s->text, variant->refinement);
+      dea_text_add(&s->text, ",%zu,%zu,%zu,", variant->size.elements, variant->size.nodes,
                    variant->size.unknowns);
     }
-    add_number(text, variant->wall_s);
-    dea_text_add(text, ",");
-    add_point(text, used, &variant->curve.points[i]);
-    dea_text_add(text, "\n");
+    add_number(&s->text, variant->wall_s);
+    dea_text_add(&s->text, ",");
+    add_point(s, &variant->curve.points[i]);
+    dea_text_add(&s->text, "\n");
   }
 }
 
 dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
                                   const char *model, const char *study, const char *directory)
 {
-  struct used used;
-  bool any = false, meshes = false;
-  DEA_TRY(ctx, used_create(ctx, &used));
+  struct sheet s;
+  bool meshes = false;
+  DEA_TRY(ctx, begin_sheet(ctx, &s));
   for (size_t i = 0; i < result->variant_count; i++) {
     if (dea_variant_is(&result->variants[i], model, study)) {
-      any = true;
       meshes = meshes || result->variants[i].size.nodes > 0;
-      mark_used(result->variants[i].curve.points, result->variants[i].curve.count, &used);
+      mark_used(result->variants[i].curve.points, result->variants[i].curve.count, &s);
+      s.any = true; // also without points
     }
   }
-  if (!any) {
-    dea_free(ctx, used.columns);
-    return DEA_OK;
-  }
-  struct dea_text text = {.ctx = ctx};
-  void *before = dea_c_locale_enter();
-  dea_text_add(&text, "name,%stime (s),", meshes ? "refinement,elements,nodes,unknowns," : "");
-  add_header(&text, &used);
-  dea_text_add(&text, "\n");
+  dea_text_add(&s.text, "name,%stime (s),", meshes ? "refinement,elements,nodes,unknowns," : "");
+  add_header(&s);
+  dea_text_add(&s.text, "\n");
   for (size_t i = 0; i < result->variant_count; i++) {
     if (dea_variant_is(&result->variants[i], model, study)) {
-      add_variant(&text, &used, meshes, &result->variants[i]);
+      add_variant(&s, meshes, &result->variants[i]);
     }
   }
-  dea_c_locale_leave(before);
-  char name[2 * DEA_NAME_SIZE + 8];
-  snprintf(name, sizeof name, "%s_%s.csv", model, study);
-  dea_status status = dea_text_write(ctx, &text, directory, name);
-  dea_text_free(&text);
-  dea_free(ctx, used.columns);
-  return status;
-}
-
-dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct dea_result *result,
-                                          const char *model, const char *study,
-                                          const char *directory)
-{
-  struct dea_text text = {.ctx = ctx};
-  bool any = false;
-  void *before = dea_c_locale_enter();
-  add_profile_header(&text, "name,");
-  for (size_t i = 0; i < result->variant_count; i++) {
-    const struct dea_variant *variant = &result->variants[i];
-    if (dea_variant_is(variant, model, study) && variant->profile.count > 0) {
-      any = true;
-      add_profile(&text, variant->name, &variant->profile);
-    }
-  }
-  dea_c_locale_leave(before);
-  char name[2 * DEA_NAME_SIZE + 16];
-  snprintf(name, sizeof name, "%s_%s_profiles.csv", model, study);
-  dea_status status = any ? dea_text_write(ctx, &text, directory, name) : DEA_OK;
-  dea_text_free(&text);
-  return status;
+  return end_sheet(&s, directory, model, study, "");
 }
 
 // Tables of studies -------------------------------------------------------------------------------

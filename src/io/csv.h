@@ -16,19 +16,15 @@ dea_status dea_csv_write_curve(struct dea_context *ctx, const struct dea_curve *
 dea_status dea_csv_write_events(struct dea_context *ctx, const struct dea_curve *curve,
                                 const char *directory);
 /* Writes directory/MODEL_profiles.csv: all profiles of one model, one below the other, with the
- * voltage as first column. Nothing when the model has none. */
+ * voltage as first column. Of a study ("": none) MODEL_STUDY_profiles.csv, those of its variants
+ * with their names in front. Nothing when there is none. */
 dea_status dea_csv_write_profiles(struct dea_context *ctx, const struct dea_result *result,
-                                  const char *model, const char *directory);
+                                  const char *model, const char *study, const char *directory);
 
 /* Writes directory/MODEL_STUDY.csv: all points of all variants of a study, with name and mesh of
  * the variant in front. Nothing when the model has none. */
 dea_status dea_csv_write_variants(struct dea_context *ctx, const struct dea_result *result,
                                   const char *model, const char *study, const char *directory);
-/* Writes directory/MODEL_STUDY_profiles.csv: the profiles of all variants of a study, with name and
- * voltage in front. Nothing when none has one. */
-dea_status dea_csv_write_variant_profiles(struct dea_context *ctx, const struct dea_result *result,
-                                          const char *model, const char *study,
-                                          const char *directory);
 /* Writes directory/MODEL_STUDY_TABLE.csv of a table that is for CSV; else nothing. */
 dea_status dea_csv_write_table(struct dea_context *ctx, const struct dea_result_table *table,
                                const char *directory);

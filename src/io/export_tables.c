@@ -24,14 +24,13 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   }
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   for (size_t m = 0; m < count; m++) {
-    DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, models[m], directory));
+    DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, models[m], "", directory));
   }
   for (size_t i = 0; i < result->variant_count; i++) {
     if (first_of_study(result, i)) {
       const struct dea_curve *curve = &result->variants[i].curve;
       DEA_TRY(ctx, dea_csv_write_variants(ctx, result, curve->model, curve->kind, directory));
-      DEA_TRY(ctx,
-              dea_csv_write_variant_profiles(ctx, result, curve->model, curve->kind, directory));
+      DEA_TRY(ctx, dea_csv_write_profiles(ctx, result, curve->model, curve->kind, directory));
     }
   }
   for (size_t i = 0; i < result->table_count; i++) {
