@@ -13,6 +13,15 @@ dea_status dea_dense_solve(size_t n, double *A, double *b)
   return info == 0 ? DEA_OK : DEA_E_NOT_CONVERGED;
 }
 
+dea_status dea_dense_least_squares(size_t m, size_t n, double *A, double *b, double *singular)
+{
+  static const double smallest = 1e-13; // singular value that counts, over the largest
+  lapack_int rank, most = (lapack_int)(m < n ? n : m);
+  lapack_int info = LAPACKE_dgelsd(LAPACK_COL_MAJOR, (lapack_int)m, (lapack_int)n, 1, A,
+                                   (lapack_int)m, b, most, singular, smallest, &rank);
+  return info == 0 ? DEA_OK : info == LAPACK_WORK_MEMORY_ERROR ? DEA_E_MEMORY : DEA_E_NOT_CONVERGED;
+}
+
 dea_status dea_dense_negative(size_t n, double *A, int *negative)
 {
   lapack_int pivot[DEA_DENSE_MAX];

@@ -60,6 +60,7 @@ struct dea_command {
   X(cmd_compare)                                                                                   \
   X(cmd_report)                                                                                    \
   X(cmd_reduce)                                                                                    \
+  X(cmd_reduce_order)                                                                              \
   X(cmd_fit)                                                                                       \
   X(cmd_recording)                                                                                 \
   X(cmd_import)                                                                                    \

@@ -156,6 +156,11 @@ struct dea_design {
       } adapt;
       struct dea_choice path; // 1: study path follows it too
     } solid;
+    struct { // model reduced
+      struct dea_label file, monitor;
+      struct dea_choice motion; // 0: the largest displacement, else 1 + enum dea_observed
+      struct dea_quantity voltage_V, force, voltages, forces;
+    } reduced;
   } compute;
 
   struct { // report

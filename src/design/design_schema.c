@@ -93,6 +93,8 @@ static const struct dea_field compute_fields[] = {
     DEA_FIELD_ROW(RECORD, "voltage", 0, .record = &voltage_record, .doc = "voltages of the sweep"),
     DEA_FIELD_ROW(RECORD, "path", 0, .record = &path_record, .doc = "equilibrium path"),
     DEA_FIELD_ROW(RECORD, "solid", 0, .record = &dea_solid_record, .doc = "mesh of model 3d"),
+    DEA_FIELD_ROW(RECORD, "reduced", 0, .record = &dea_reduced_record,
+                  .doc = "range of model reduced, a fast model made by model 3d"),
     DEA_FIELD_ROW(
         RECORD, "compare", AT(compute.compare), .record = &dea_compare_record,
         .absent_text = "none",

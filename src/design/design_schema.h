@@ -24,8 +24,8 @@ struct dea_design_raw {
 };
 
 /* Parts of the table that have files of their own; base as below. */
-extern const struct dea_record dea_fibres_record, dea_solid_record, dea_fabrication_record,
-    dea_fabrication_general_record, dea_drive_record;
+extern const struct dea_record dea_fibres_record, dea_solid_record, dea_reduced_record,
+    dea_fabrication_record, dea_fabrication_general_record, dea_drive_record;
 /* base: a struct dea_design_variant. */
 extern const struct dea_record dea_compare_record;
 

@@ -1,4 +1,4 @@
-/* Keys of `compute.solid`. */
+/* Keys of `compute.solid` and `compute.reduced`. */
 #include "design/design_schema.h"
 
 #include <stddef.h>
@@ -82,3 +82,36 @@ static const struct dea_field fields[] = {
 
 const struct dea_record dea_solid_record = {"solid", "mesh of model 3d", fields,
                                             sizeof fields / sizeof fields[0]};
+
+#undef AT
+#define AT(member) offsetof(struct dea_design_raw, design.compute.reduced.member)
+
+static const char *const motions[] = {"largest", "x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
+
+static const struct dea_field reduced_fields[] = {
+    DEA_LABEL_ROW("file", AT(file), "cone.json",
+                  "model that dea reduce-order has written; without it a run makes its own",
+                  .absent_text = "none"),
+    DEA_LABEL_ROW("monitor", AT(monitor), "hub",
+                  "what moves as the coordinate: a point, a shape or a body",
+                  .absent_text = "the first, or of a disc its fibre tip or the electrode's edge"),
+    DEA_CHOICE_ROW("motion", AT(motion), motions, "z",
+                   "along or about which axis; the largest: of its displacements at the highest "
+                   "voltage",
+                   .default_text = "largest"),
+    DEA_NUMBER_ROW("voltage", AT(voltage_V), "V", "5 kV", "highest voltage of its range",
+                   .above_min = true, .max = 1e6, .absent_text = "the highest of the sweep"),
+    DEA_NUMBER_ROW("force", AT(force), "N", "50 mN",
+                   "force along the coordinate, to either side, of its range (of a turn 1 N stands "
+                   "for 1 N m)",
+                   .above_min = true,
+                   .absent_text = "what moves the coordinate as far as the voltage"),
+    DEA_INTEGER_ROW("voltages", AT(voltages), "17",
+                    "voltages that model 3d computes, 1 more than a multiple of 4", .min = 5,
+                    .max = 65, .default_text = "9"),
+    DEA_INTEGER_ROW("forces", AT(forces), "9", "forces at each, the same", .min = 5, .max = 17,
+                    .default_text = "5"),
+};
+
+const struct dea_record dea_reduced_record = {"reduced", "model reduced", reduced_fields,
+                                              sizeof reduced_fields / sizeof reduced_fields[0]};

@@ -32,6 +32,17 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
     settings.adapt.voltage_V = last_voltage_V(design);
     settings.adapt.passes = (int)design->compute.solid.adapt.passes.si;
   }
+  const struct dea_label *file = &design->compute.reduced.file,
+                         *monitor = &design->compute.reduced.monitor;
+  const double voltage_V = design->compute.reduced.voltage_V.si;
+  settings.reduced.design = design;
+  settings.reduced.file = file->text[0] != '\0' ? file->text : NULL;
+  settings.reduced.monitor = monitor->text[0] != '\0' ? monitor->text : NULL;
+  settings.reduced.motion = design->compute.reduced.motion.value - 1; // the first: the largest
+  settings.reduced.voltage_V = voltage_V > 0 ? voltage_V : dea_design_highest_V(design);
+  settings.reduced.force = fmax(design->compute.reduced.force.si, 0); // 0 of NAN
+  settings.reduced.voltages = (int)design->compute.reduced.voltages.si;
+  settings.reduced.forces = (int)design->compute.reduced.forces.si;
   return settings;
 }
 
@@ -206,6 +217,14 @@ dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *
 {
   return type->move != NULL ? type->move(ctx, model, control, value, out)
                             : lacks(ctx, type, "bodies or pressures that are moved");
+}
+
+dea_status dea_model_compliance(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_model *model, const struct dea_control *coordinate,
+                                bool with_mass, struct dea_compliance *out)
+{
+  return type->compliance != NULL ? type->compliance(ctx, model, coordinate, with_mass, out)
+                                  : lacks(ctx, type, "forces along a coordinate");
 }
 
 dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,

@@ -47,6 +47,15 @@ struct dea_model_settings {
     double tolerance, voltage_V; // relative; where it is looked at
     int passes;
   } adapt;
+  struct {                // model reduced
+    const char *file;     // lent: that of dea reduce-order; NULL: it makes its own
+    const char *monitor;  // lent; NULL: the first, or of a disc fibre tip or electrode's edge
+    int motion;           // enum dea_observed; -1: the largest displacement
+    double voltage_V;     // up to which
+    double force;         // to either side [N] or [N m]; 0: what moves it as far as the voltage
+    int voltages, forces; // of samples, odd; 0: 9 and 5
+    const struct dea_design *design; // lent: what the file's device is compared with; NULL: nothing
+  } reduced;
   /* A model of another device, whose mesh is moved to this one: so that answers change smoothly
    * with lengths. Lent, outlives the model; NULL: a mesh of its own. */
   const struct dea_model *mesh_from;
@@ -73,14 +82,32 @@ struct dea_probe {
 
 /* What a device of the general form is brought to beside its voltage. */
 enum dea_control_kind {
-  DEA_CONTROL_PLACE,    // a component of a body is held at a shift [m] or a turn [rad]
-  DEA_CONTROL_FORCE,    // dead force [N] or moment [N m] on it, in place of the layout's
-  DEA_CONTROL_PRESSURE, // all pressures of the layout times a factor
+  DEA_CONTROL_PLACE,     // a component of a body is held at a shift [m] or a turn [rad]
+  DEA_CONTROL_FORCE,     // dead force [N] or moment [N m] on it, in place of the layout's
+  DEA_CONTROL_PRESSURE,  // all pressures of the layout times a factor
+  DEA_CONTROL_CONJUGATE, // dead force [N] or moment [N m] conjugate to a coordinate, beside all
+                         // else
 };
 struct dea_control {
   enum dea_control_kind kind;
   size_t body;   // of the layout; like the component not asked for with pressures
   int component; // 0 to 2: along x, y, z; 3 to 5: about them
+  /* Conjugate: the coordinate is a motion of a monitor, body its number and component an enum
+   * dea_observed, that is linear in the displacements (of a point, a body or a region's mean); or
+   * where column is not 0 that displacement of a disc's load points. All copies of a sector move
+   * alike, and the force is the sum over them. */
+  int column;
+};
+
+/* How a coordinate q and the charge Q of the shared voltage V change with the force F conjugate to
+ * q and with V; q, F, Q are values. */
+struct dea_compliance {
+  double value, force;
+  double by_force, by_voltage;               // dq/dF at V, dq/dV at F
+  double charge_C;                           // Q
+  double charge_by_force, charge_by_voltage; // dQ/dF at V, which is dq/dV, and dQ/dV at F
+  double frequency_Hz;                       // of the mode with the largest part of dq/dF
+  double mode_share, voltage_share;          // its part of dq/dF and of dq/dV
 };
 
 /* Where a search for another state goes off: along a soft mode, or by folding what stands out of
@@ -220,6 +247,11 @@ struct dea_model_type {
    */
   dea_status (*move)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_control *control, double value, struct dea_load_point *out);
+  /* What a coordinate, as of a conjugate control, and the charge change by at the last point
+   * solved; with_mass: also the frequency, else NAN. NULL when the model does not know. */
+  dea_status (*compliance)(struct dea_context *ctx, struct dea_model *model,
+                           const struct dea_control *coordinate, bool with_mass,
+                           struct dea_compliance *out);
   /* The softest motions at the last point solved, ascending: their stiffness by volume [N/m^4],
    * below 0 for unstable ones. The model keeps their shapes for `push`, until the next call. */
   dea_status (*soften)(struct dea_context *ctx, struct dea_model *model, size_t count,
@@ -333,6 +365,9 @@ dea_status dea_model_indent(struct dea_context *ctx, const struct dea_model_type
 dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *type,
                           struct dea_model *model, const struct dea_control *control, double value,
                           struct dea_load_point *out);
+dea_status dea_model_compliance(struct dea_context *ctx, const struct dea_model_type *type,
+                                struct dea_model *model, const struct dea_control *coordinate,
+                                bool with_mass, struct dea_compliance *out);
 dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, size_t count, double *stiffness_N_per_m4);
 dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *type,

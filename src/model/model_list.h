@@ -3,4 +3,5 @@
 #define DEA_MODEL_LIST(X)                                                                          \
   X(dea_model_lumped)                                                                              \
   X(dea_model_axisymmetric)                                                                        \
-  X(dea_model_3d)
+  X(dea_model_3d)                                                                                  \
+  X(dea_model_reduced)

@@ -152,6 +152,15 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
+static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
+                             const struct dea_control *coordinate, bool with_mass,
+                             struct dea_compliance *out)
+{
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_compliance(ctx, model->type, model->inner, coordinate,
+                                                      with_mass, out)));
+  return DEA_OK;
+}
+
 static dea_status long_path(struct dea_context *ctx, struct dea_model *model,
                             const struct dea_path_options *options, dea_point_sink points,
                             dea_event_sink events, void *user)
@@ -304,6 +313,7 @@ const struct dea_model_type dea_model_3d = {
     .passes = passes,
     .indent = indent,
     .move = move,
+    .compliance = compliance,
     .long_path = long_path,
     .soften = soften,
     .push = push,

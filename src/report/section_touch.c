@@ -93,12 +93,14 @@ static void add_row(struct dea_text *out, const struct threshold *t, const struc
   dea_text_add(out, " kV</td><td class=\"n\">");
   dea_html_number(out, has / t->least, 3);
   bool enough = has >= t->least, broken = t->force ? r->force_broken : r->displacement_broken;
-  dea_text_add(out, "</td><td class=\"%s\">%s%s%s</td><td>%s%s%s</td></tr>",
+  dea_text_add(out, "</td><td class=\"%s\">%s%s</td><td>%s%s%s</td></tr>",
                !enough              ? "bad"
                : r->bound || broken ? ""
                                     : "good",
-               enough ? "above" : "below", enough && r->bound ? ", but an upper bound" : "",
-               enough && broken ? ", but beyond the breakdown field" : "", t->source,
+               !enough    ? "below"
+               : r->bound ? "not known: an upper bound, which model 3d replaces"
+                          : "above",
+               enough && !r->bound && broken ? ", but beyond the breakdown field" : "", t->source,
                t->force ? "; " : "", t->force ? r->how : "");
 }
 
@@ -247,6 +249,7 @@ static dea_status draw_lines(struct dea_report *report, const struct dea_result_
   return add_finger(report, &plot->panels[0], k, highest);
 }
 
+/* Not beside a model that predicts the height: the rods' lines are far above it. */
 static dea_status add_load_line(struct dea_report *report, const struct dea_report_run *run)
 {
   const struct dea_result_table *table =
@@ -342,7 +345,7 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
   const char *models[DEA_DESIGN_MODELS_MAX];
   size_t count = dea_result_models(result, models, DEA_DESIGN_MODELS_MAX);
   struct reach reaches[DEA_DESIGN_MODELS_MAX];
-  bool any = false;
+  bool any = false, predicted = false;
   for (size_t m = 0; m < count; m++) {
     const struct dea_curve *sweep = dea_result_find(result, models[m], "sweep");
     reaches[m] = (struct reach){.model = models[m],
@@ -356,7 +359,9 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
       find_displacement(sweep, &reaches[m]);
     }
     find_force(result, &reaches[m]);
-    any = any || isfinite(reaches[m].displacement_m) || isfinite(reaches[m].force_N);
+    const bool says = isfinite(reaches[m].displacement_m) || isfinite(reaches[m].force_N);
+    any = any || says;
+    predicted = predicted || (says && !reaches[m].bound);
   }
   if (!any) {
     return DEA_OK;
@@ -370,11 +375,13 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
                   "<th scope=\"col\">Verdict</th><th scope=\"col\">Source; how</th>");
   for (size_t t = 0; t < THRESHOLDS; t++) {
     for (size_t m = 0; m < count; m++) {
-      add_row(&report->text, &thresholds[t], &reaches[m]);
+      if (!predicted || !reaches[m].bound) {
+        add_row(&report->text, &thresholds[t], &reaches[m]);
+      }
     }
   }
   dea_table_end(report);
-  DEA_TRY(report->ctx, add_load_line(report, run));
+  DEA_TRY(report->ctx, predicted ? DEA_OK : add_load_line(report, run));
   dea_section_end(report);
   return DEA_OK;
 }

@@ -569,7 +569,8 @@ static void choose_control(struct loading *l)
   l->body = l->settings->body.text[0] != '\0' ? dea_layout_find_body(layout, l->settings->body.text)
                                               : DEA_LAYOUT_NONE;
   l->scale = l->range == PRESSURE ? 1 / largest_Pa(layout) : 1;
-  l->control = (struct dea_control){kinds[l->range], l->body, l->settings->direction.value};
+  l->control = (struct dea_control){
+      .kind = kinds[l->range], .body = l->body, .component = l->settings->direction.value};
 }
 
 dea_status dea_loading_end(struct dea_context *ctx, const struct dea_model_type *type,

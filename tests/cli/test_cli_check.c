@@ -198,7 +198,7 @@ TEST(test_errors_in_the_order_of_the_file)
   }
   assert_true(count >= 8);
   assert_contains(command_err, "wrong.yaml:5:33: error: there is no model 'lumpd'");
-  assert_contains(command_err, "3d; did you mean 'lumped'?");
+  assert_contains(command_err, "reduced; did you mean 'lumped'?");
 }
 
 /* What is given and what follows, of either kind of device, on about a page. */

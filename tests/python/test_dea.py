@@ -106,7 +106,7 @@ class Runs(unittest.TestCase):
         self.assertIn("<svg", result._repr_html_())
 
     def test_abilities(self):
-        self.assertEqual(set(dea.models()), {"lumped", "axisymmetric", "3d"})
+        self.assertEqual(set(dea.models()), {"lumped", "axisymmetric", "3d", "reduced"})
         self.assertNotIn("indent", dea.models()["axisymmetric"].abilities)
         actuator = dea.Actuator(dea.Design.parse(DISC), "axisymmetric")
         actuator.solve(1e3)

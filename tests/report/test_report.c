@@ -518,7 +518,7 @@ TEST(test_touch_at_its_frequency)
   assert_int_equal(command_run("report t.run"), 0);
   read_page("t.run/report.html");
   assert_contains(page, "says nothing of 5 to 10 Hz");
-  assert_contains(page, "above, but an upper bound, but beyond the breakdown field");
+  assert_contains(page, "not known: an upper bound, which model 3d replaces");
   assert_int_equal(dea_run_read(ctx, in_folder("t.run"), &run), DEA_OK);
   assert_int_equal(dea_result_add_curve(ctx, run->result, "lumped", "frequency", &curve), DEA_OK);
   for (int i = 0; i < 3; i++) {

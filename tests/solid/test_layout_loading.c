@@ -83,7 +83,7 @@ TEST(test_cone)
 static void look(struct dea_model *model, double shift_m, double voltage_V, double out[2])
 {
   const struct dea_model_type *type = dea_model_find("3d");
-  const struct dea_control hub = {DEA_CONTROL_PLACE, 0, 2};
+  const struct dea_control hub = {.kind = DEA_CONTROL_PLACE, .component = 2};
   struct dea_load_point at;
   struct dea_observation seen;
   assert_int_equal(type->solve(ctx, model, voltage_V, &at), DEA_OK);

@@ -264,7 +264,8 @@ TEST(test_loaded_cone)
   assert_close(a.channel[1].charge_C, b.channel[1].charge_C, 1e-3, 0);
   assert_close(a.channel[1].capacitance_F, b.channel[1].capacitance_F, 1e-3, 0);
   // a force that the hub is held by, and one that breaks the symmetry
-  const struct dea_control up = {DEA_CONTROL_PLACE, 0, 2}, aside = {DEA_CONTROL_PLACE, 0, 0};
+  const struct dea_control up = {.kind = DEA_CONTROL_PLACE, .component = 2},
+                           aside = {.kind = DEA_CONTROL_PLACE};
   const struct dea_model_type *type = dea_model_find("3d");
   assert_int_equal(type->move(ctx, sector, &up, 2e-3, &part), DEA_OK);
   assert_int_equal(type->move(ctx, whole, &up, 2e-3, &all), DEA_OK);

@@ -1,15 +1,20 @@
 /* Controls beside the voltage of the model "3d": bodies and pressures that are moved. */
+#include "model/solid/adapter/compliance.h"
 #include "model/solid/adapter/solid_model.h"
 #include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static dea_status check_control(struct dea_context *ctx, const struct dea_model *model,
                                 const struct dea_control *control, double value)
 {
   const struct dea_layout *l = model->layout;
   bool pressure = control->kind == DEA_CONTROL_PRESSURE;
+  if (control->kind == DEA_CONTROL_CONJUGATE) {
+    return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a force has to be a number");
+  }
   if (pressure
           ? l->pressure_count == 0
           : control->body >= l->body_count || control->component < 0 || control->component > 5) {
@@ -31,9 +36,61 @@ static double where_control_is(const struct dea_model *model, const struct dea_c
   if (control->kind == DEA_CONTROL_PRESSURE) {
     return model->pressure_factor;
   }
+  if (control->kind == DEA_CONTROL_CONJUGATE) {
+    return model->pull.force;
+  }
   dea_solid_body_place(model->solid, control->body, place, place + 3);
   return control->kind == DEA_CONTROL_PLACE ? place[control->component]
                                             : model->push[control->body][control->component];
+}
+
+/* The slope of a coordinate by the displacements, which does not depend on them. */
+static dea_status find_coordinate(struct dea_context *ctx, struct dea_model *model,
+                                  const struct dea_control *control)
+{
+  struct dea_model_pull *pull = &model->pull;
+  const struct dea_control *old = &pull->coordinate;
+  const size_t dofs = model->solid->problem.dofs;
+  if (pull->slope != NULL && old->column == control->column && old->body == control->body &&
+      old->component == control->component) {
+    return DEA_OK;
+  }
+  if (pull->slope == NULL) {
+    pull->slope = dea_arena_alloc(&model->memory, dofs, sizeof *pull->slope);
+    DEA_TRY(ctx, dea_arena_status(&model->memory));
+  }
+  memset(pull->slope, 0, dofs * sizeof *pull->slope);
+  pull->coordinate = *control;
+  const bool known =
+      control->column != 0
+          ? dea_observer_column_gradient(model->observer, model->solid, control->column,
+                                         pull->slope)
+          : control->body < model->layout->monitor_count &&
+                control->component <= DEA_OBSERVED_OUTWARDS &&
+                dea_observer_gradient(model->observer, model->solid, control->body,
+                                      (enum dea_observed)control->component, pull->slope);
+  return known ? DEA_OK
+               : dea_fail(ctx, DEA_E_UNSUPPORTED,
+                          "a coordinate has to be a displacement of a point, a body or a shape, or "
+                          "a turn of a body");
+}
+
+/* A force along one coordinate goes where another one is asked for. */
+static dea_status set_conjugate(struct dea_context *ctx, struct dea_model *model,
+                                const struct dea_control *control, double value)
+{
+  double *force = dea_solid_force(model->solid), *slope = model->pull.slope;
+  for (size_t i = 0; slope != NULL && i < model->solid->problem.dofs; i++) {
+    force[i] -= model->pull.force / model->copies * slope[i];
+  }
+  model->pull.force = 0;
+  DEA_TRY(ctx, find_coordinate(ctx, model, control));
+  slope = model->pull.slope;
+  for (size_t i = 0; i < model->solid->problem.dofs; i++) {
+    force[i] += value / model->copies * slope[i];
+  }
+  model->pull.force = value;
+  return DEA_OK;
 }
 
 /* What the next solve goes to. */
@@ -58,13 +115,17 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
     model->pressure_factor = value;
     dea_solid_pressures_set(model, value);
     break;
+  case DEA_CONTROL_CONJUGATE:
+    DEA_TRY(ctx, set_conjugate(ctx, model, control, value));
+    break;
   }
   return DEA_OK;
 }
 
 static bool is_same(const struct dea_control *a, const struct dea_control *b)
 {
-  return a->kind == b->kind && a->body == b->body && a->component == b->component;
+  return a->kind == b->kind && a->body == b->body && a->component == b->component &&
+         a->column == b->column;
 }
 
 /* After the way of a control that succeeded; from: the state before. */
@@ -73,7 +134,8 @@ static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
                                const struct dea_solid_saved_state *from)
 {
   struct dea_step_outcome *outcome = &model->at.outcome;
-  bool force = control->kind == DEA_CONTROL_FORCE, turns = control->component >= 3;
+  bool force = control->kind == DEA_CONTROL_FORCE || control->kind == DEA_CONTROL_CONJUGATE,
+       turns = control->component >= 3;
   double share;
   if (!is_same(control, &model->moved)) {
     outcome->rate[1] = 0;
@@ -163,6 +225,22 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
                                  1e-3 * model->at.voltage_V));
   }
   DEA_TRY(ctx, dea_solid_model_report(ctx, model, model->at.voltage_V, out));
+  return DEA_OK;
+}
+
+dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
+                                      const struct dea_control *coordinate, bool with_mass,
+                                      struct dea_compliance *out)
+{
+  DEA_TRY(ctx, find_coordinate(ctx, model, coordinate));
+  DEA_TRY(ctx, with_mass ? dea_solid_check_densities(ctx, model) : DEA_OK);
+  *out = (struct dea_compliance){.force = model->pull.force};
+  const double *u = dea_solid_displacement(model->solid);
+  for (size_t i = 0; i < model->solid->problem.dofs; i++) {
+    out->value += model->pull.slope[i] * u[i];
+  }
+  DEA_TRY(ctx, dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
+                                   model->pull.slope, with_mass, out));
   return DEA_OK;
 }
 

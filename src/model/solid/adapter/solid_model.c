@@ -557,6 +557,7 @@ const struct dea_model_type dea_solid_module = {
     .passes = passes,
     .indent = indent,
     .move = dea_solid_model_move,
+    .compliance = dea_solid_model_compliance,
     .long_path = long_path,
     .soften = dea_solver_state_soften,
     .push = push,

@@ -18,6 +18,13 @@ struct dea_model_marks {
   size_t count;
 };
 
+/* A dead force along the slope of a coordinate by the displacements. */
+struct dea_model_pull {
+  struct dea_control coordinate;
+  double *slope; // [dofs]; NULL: there was none yet
+  double force;
+};
+
 struct dea_model {
   struct dea_solver_state at; // first (solver_state.h)
   const struct dea_device *device;
@@ -49,6 +56,7 @@ struct dea_model {
   bool rest_is_one_of;      // several states there
   struct dea_control moved; // of the last move
   struct dea_model_moved *controls;  // [body_count] components that moves have set
+  struct dea_model_pull pull;        // the force conjugate to a coordinate
   struct dea_model_variant *variant; // a changed device is under the solid; NULL: its own
   double *answers;                   // of the last response, as in model/model.h
   double *answer;                    // [monitor_count][DEA_OBSERVED_MOTIONS] work of it
@@ -126,6 +134,9 @@ dea_status dea_solid_model_prepare(struct dea_context *ctx, const struct dea_dev
 void dea_solid_model_destroy(struct dea_context *ctx, struct dea_model *model);
 
 // solid_controls.c: as in struct dea_model_type
+dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
+                                      const struct dea_control *coordinate, bool with_mass,
+                                      struct dea_compliance *out);
 dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_control *control, double value,
                                 struct dea_load_point *out);

@@ -74,6 +74,9 @@ static void keep_controls(struct dea_model *model)
     }
     dea_solid_body_load(model, i, model->push[i]);
   }
+  for (size_t i = 0; i < to->problem.dofs && own->pull.slope != NULL; i++) {
+    dea_solid_force(to)[i] += own->pull.force / own->copies * own->pull.slope[i];
+  }
   dea_solid_pressures_set(model, own->pressure_factor);
   place_loads(&to->problem);
 }

@@ -1,0 +1,101 @@
+#include "cli/cli.h"
+
+#include "model/reduced/reduced.h"
+
+#include <math.h>
+
+struct request {
+  const char *design, *output, *c;
+  struct cli_overrides overrides;
+  bool json;
+};
+
+static void print_order(const struct request *request, const struct dea_reduced_order *o,
+                        const struct dea_device *device)
+{
+  const bool turns = o->coordinate.column == 0 && o->coordinate.component >= 3;
+  const double display = turns ? 180 / acos(-1) : 1e6;
+  struct dea_reduced_point at;
+  char name[120];
+  dea_reduced_order_name(o, device, name, sizeof name);
+  dea_reduced_at(&o->core, 0, 0, &at);
+  const double hertz = sqrt(1 / (at.by_force * o->core.mass[0])) / (2 * acos(-1));
+  printf("%-20s %s\n", "coordinate", name);
+  printf("%-20s %.4g to %.4g kV\n", "voltage", 1e-3 * o->voltage_V[0], 1e-3 * o->voltage_V[1]);
+  printf("%-20s %.4g to %.4g %s\n", turns ? "moment" : "force", 1e3 * o->force[0],
+         1e3 * o->force[1], turns ? "mN m" : "mN");
+  printf("%-20s %.5g %s\n", "stroke", display * o->stroke, turns ? "degrees" : "um");
+  printf("%-20s %.2g %% of the stroke, %.2g %% of the charge\n", "held-out error", 100 * o->error,
+         100 * o->charge_error);
+  printf("%-20s %.5g %s\n", "stiffness", turns ? 1 / at.by_force : 1e-3 / at.by_force,
+         turns ? "N m/rad" : "N/mm");
+  if (isfinite(hertz)) {
+    printf("%-20s %.5g Hz, %.3g %% of the compliance\n", "frequency", hertz, 100 * o->mode_share);
+  }
+  printf("%-20s %d\n", "branches", o->core.branch_count);
+  printf("%-20s %.3g s\n", "time", o->made_s);
+  if (request->output != NULL) {
+    printf("%-20s %s\n", "file", request->output);
+  }
+}
+
+static dea_status make(struct dea_cli *cli, const struct request *request,
+                       const struct dea_design *design, const struct dea_device *device)
+{
+  struct dea_model_settings settings = dea_model_settings_of(design);
+  struct dea_reduced_order *order;
+  dea_status status = dea_model_check(cli->ctx, dea_model_find("reduced"), design, device);
+  if (status != DEA_OK) {
+    return status;
+  }
+  status = settings.reduced.file != NULL && request->output == NULL
+               ? dea_reduced_order_read(cli->ctx, settings.reduced.file, device, &settings, &order)
+               : dea_reduced_order_make(cli->ctx, device, &settings, &order);
+  if (status == DEA_OK && request->output != NULL) {
+    status = dea_reduced_order_write(cli->ctx, order, device, request->output);
+  }
+  if (status == DEA_OK && request->c != NULL) {
+    status = dea_reduced_order_write_c(cli->ctx, order, device, request->c);
+  }
+  if (status == DEA_OK) {
+    print_order(request, order, device);
+  }
+  dea_reduced_order_destroy(cli->ctx, order);
+  return status;
+}
+
+static int run(struct dea_cli *cli, void *user)
+{
+  const struct request *request = user;
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
+  if (status == DEA_OK) {
+    status = make(cli, request, design, device);
+    fflush(stdout);
+  }
+  int code = cli_report(cli, status);
+  dea_device_destroy(cli->ctx, device);
+  dea_design_destroy(cli->ctx, design);
+  return code;
+}
+
+static const struct cli_option options[] = {
+    CLI_DESIGN_ROW,
+    CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE",
+                   "write the model as FILE (JSON), for compute.reduced.file"),
+    {"c", 0, CLI_NEW_FILE, "FILE", "write it as C99 source, with its test", CLI_AT(c)},
+    CLI_SET_ROW('s', CLI_KEY, "compute.reduced.monitor=hub"),
+    {0}};
+
+const struct dea_command cmd_reduce_order = {
+    .name = "reduce-order",
+    .summary = "Make a fast model of a device from 3D: one coordinate, its force and the charge",
+    .about = "Model 3d is solved at voltages and forces along one coordinate, a monitor of the "
+             "design. The result has one energy, so that force and charge are reciprocal, mass, "
+             "viscous branches, its range and its error at samples that were left out. "
+             "`dea run --model reduced` uses it: sweep, transient, frequency.",
+    .options = options,
+    .request_size = sizeof(struct request),
+    .run = run,
+};

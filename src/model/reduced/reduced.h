@@ -1,0 +1,60 @@
+/* A device in one coordinate, reduced from model 3d (docs/theory/reduced-model.md). */
+#pragma once
+
+#include "base/arena.h"
+#include "model/model.h"
+#include "model/reduced/reduced_core.h"
+
+/* A number of the device by force and voltage: a column of load points, or a motion of a monitor.
+ */
+struct dea_reduced_output {
+  int column; // 0: of a monitor
+  size_t monitor;
+  enum dea_observed motion;
+  struct dea_reduced_spline of; // in the variables of the energy
+};
+
+enum { DEA_REDUCED_VOLTAGES_MAX = 65, DEA_REDUCED_FORCES_MAX = 17 };
+
+struct dea_reduced_order {
+  struct dea_arena memory;
+  struct dea_reduced core; // its arrays live in memory
+  struct dea_control coordinate;
+  double voltage_V[2], force[2]; // range
+  double stroke;                 // change of the coordinate with the voltage, without a force
+  double error, charge_error;    // largest of samples that were left out of a fit of the others,
+                                 // over stroke and largest charge
+  double mode_share;             // smallest part of dq/dF that is of the mode with the mass; NAN
+  double voltage_share[3];       // its part of dq/dV, by q as the mass
+  struct dea_reduced_output *outputs;
+  size_t output_count;
+  char device[65]; // hash of the design that it is of
+  double made_s;   // time that it took
+};
+
+/* By model 3d of a device, as settings.reduced says. out: owned by the caller, NULL on failure. */
+dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_reduced_order **out);
+/* Sets the hash of the device. */
+dea_status dea_reduced_order_mark(struct dea_context *ctx, struct dea_reduced_order *order,
+                                  const struct dea_device *device,
+                                  const struct dea_model_settings *settings);
+/* As a file. read: DEA_E_DESIGN where it is of another device. */
+dea_status dea_reduced_order_write(struct dea_context *ctx, const struct dea_reduced_order *order,
+                                   const struct dea_device *device, const char *path);
+dea_status dea_reduced_order_read(struct dea_context *ctx, const char *path,
+                                  const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_reduced_order **out);
+/* The two files of reduced_core.[ch] and one with the device's numbers, in C99. */
+dea_status dea_reduced_order_write_c(struct dea_context *ctx, const struct dea_reduced_order *order,
+                                     const struct dea_device *device, const char *path);
+void dea_reduced_order_destroy(struct dea_context *ctx, struct dea_reduced_order *order);
+
+/* "hub z", with its unit. */
+void dea_reduced_order_name(const struct dea_reduced_order *order, const struct dea_device *device,
+                            char *out, size_t size);
+/* A message for an end other than DEA_REDUCED_OK. */
+dea_status dea_reduced_fail(struct dea_context *ctx, const struct dea_reduced_order *order, int end,
+                            double voltage_V);

@@ -1,0 +1,301 @@
+#include "model/reduced/reduced_core.h"
+
+#include <math.h>
+
+enum { TRIALS = 60 };
+static const double settled = 1e-13, beyond = 1e-9; // of the range
+
+static int cell_of(const struct dea_reduced_spline *s, int k, double x, double *at, double *width)
+{
+  int i = 0;
+  while (i + 1 < s->cells[k] && x >= s->breaks[k][i + 1]) {
+    i++;
+  }
+  *width = s->breaks[k][i + 1] - s->breaks[k][i];
+  *at = (x - s->breaks[k][i]) / *width;
+  return i;
+}
+
+/* Value, slope and second slope of a polynomial, c[i * stride]. */
+static void horner(const double *c, int stride, double x, double out[3])
+{
+  double f = 0, d = 0, dd = 0;
+  for (int i = DEA_REDUCED_TERMS - 1; i >= 0; i--) {
+    dd = dd * x + d;
+    d = d * x + f;
+    f = f * x + c[i * stride];
+  }
+  out[0] = f;
+  out[1] = d;
+  out[2] = 2 * dd;
+}
+
+void dea_reduced_spline_at(const struct dea_reduced_spline *spline, double x, double y,
+                           double out[6])
+{
+  double at[2], width[2], row[3 * DEA_REDUCED_TERMS], by[3];
+  const int i = cell_of(spline, 0, x, &at[0], &width[0]),
+            j = cell_of(spline, 1, y, &at[1], &width[1]);
+  const double *c = spline->c + (i * spline->cells[1] + j) * DEA_REDUCED_TERMS * DEA_REDUCED_TERMS;
+  for (int k = 0; k < DEA_REDUCED_TERMS; k++) {
+    horner(c + k * DEA_REDUCED_TERMS, 1, at[1], by);
+    for (int d = 0; d < 3; d++) {
+      row[d * DEA_REDUCED_TERMS + k] = by[d];
+    }
+  }
+  horner(row, 1, at[0], by);
+  out[0] = by[0];
+  out[1] = by[1] / width[0];
+  out[3] = by[2] / (width[0] * width[0]);
+  horner(row + DEA_REDUCED_TERMS, 1, at[0], by);
+  out[2] = by[0] / width[1];
+  out[4] = by[1] / (width[0] * width[1]);
+  horner(row + 2 * DEA_REDUCED_TERMS, 1, at[0], by);
+  out[5] = by[0] / (width[1] * width[1]);
+}
+
+static int is_outside(const struct dea_reduced_spline *s, int k, double x)
+{
+  const double low = s->breaks[k][0], high = s->breaks[k][s->cells[k]];
+  return !(x >= low - beyond * (high - low) && x <= high + beyond * (high - low));
+}
+
+int dea_reduced_at(const struct dea_reduced *model, double force, double voltage_V,
+                   struct dea_reduced_point *out)
+{
+  const double V = voltage_V, y = model->even ? V * V : V;
+  const double y_V = model->even ? 2 * V : 1, y_VV = model->even ? 2 : 0;
+  double f[6];
+  if (is_outside(&model->energy, 1, y)) {
+    return DEA_REDUCED_BEYOND_VOLTAGE;
+  }
+  if (is_outside(&model->energy, 0, force)) {
+    return DEA_REDUCED_BEYOND_FORCE;
+  }
+  dea_reduced_spline_at(&model->energy, force, y, f);
+  out->force = force;
+  out->voltage_V = V;
+  out->q = -f[1];
+  out->charge_C = -f[2] * y_V;
+  out->energy_J = f[0] - force * f[1];
+  out->by_force = -f[3];
+  out->by_voltage = -f[4] * y_V;
+  out->charge_by_voltage = -f[5] * y_V * y_V - f[2] * y_VV;
+  return DEA_REDUCED_OK;
+}
+
+/* The next force of Newton's method, which stays in the range; a second time at its end: 0. */
+static int correct(const struct dea_reduced *model, double step, double *force)
+{
+  const struct dea_reduced_spline *s = &model->energy;
+  const double low = s->breaks[0][0], high = s->breaks[0][s->cells[0]], was = *force;
+  *force = fmin(fmax(was - step, low), high);
+  return *force != was || was - step == was;
+}
+
+static int is_settled(const struct dea_reduced *model, double step)
+{
+  const struct dea_reduced_spline *s = &model->energy;
+  return fabs(step) <= settled * (s->breaks[0][s->cells[0]] - s->breaks[0][0]);
+}
+
+int dea_reduced_held(const struct dea_reduced *model, double q, double voltage_V,
+                     struct dea_reduced_point *out)
+{
+  double force = out->force;
+  for (int i = 0; i < TRIALS; i++) {
+    const int end = dea_reduced_at(model, force, voltage_V, out);
+    const double step = (out->q - q) / out->by_force;
+    if (end != DEA_REDUCED_OK) {
+      return end;
+    }
+    if (is_settled(model, step)) {
+      return DEA_REDUCED_OK;
+    }
+    if (!correct(model, step, &force)) {
+      return DEA_REDUCED_BEYOND_FORCE;
+    }
+  }
+  return DEA_REDUCED_NOT_CONVERGED;
+}
+
+static double polynomial(const double c[3], double x)
+{
+  return c[0] + x * (c[1] + x * c[2]);
+}
+
+static double strain(const struct dea_reduced *model, double q)
+{
+  const double *c = model->strain, x = q - model->middle;
+  return x * (c[0] + x * (c[1] / 2 + x * c[2] / 3));
+}
+
+/* What branches at p pull back with, and its slope by q where p = known + share e. */
+static double pull(const struct dea_reduced *model, const double *p, const double *share, double q,
+                   double *slope)
+{
+  const double x = q - model->middle, e = strain(model, q), d = polynomial(model->strain, x);
+  const double dd = model->strain[1] + 2 * model->strain[2] * x;
+  double sum = 0;
+  *slope = 0;
+  for (int i = 0; i < model->branch_count; i++) {
+    const double k = model->branch_N_per_m[i];
+    sum += k * (e - p[i]) * d;
+    *slope += k * ((1 - share[i]) * d * d + (e - p[i]) * dd);
+  }
+  return sum;
+}
+
+/* Inertia m a + m' v^2/2 and its slope by q, with a and v by q. */
+static double inertia_at(const struct dea_reduced *model, double q, double v, double a, double a_q,
+                         double v_q, double *slope)
+{
+  const double x = q - model->middle, m = polynomial(model->mass, x);
+  const double d = model->mass[1] + 2 * model->mass[2] * x;
+  *slope = m * a_q + d * a + d * v * v_q + model->mass[2] * v * v;
+  return m * a + d * v * v / 2;
+}
+
+int dea_reduced_begin(const struct dea_reduced *model, double voltage_V, double external,
+                      struct dea_reduced_state *out)
+{
+  *out = (struct dea_reduced_state){.external = external};
+  const int end = dea_reduced_at(model, external, voltage_V, &out->at);
+  for (int i = 0; i < model->branch_count; i++) {
+    out->p[i] = strain(model, out->at.q);
+  }
+  return end;
+}
+
+double dea_reduced_branch_J(const struct dea_reduced *model, const struct dea_reduced_state *at)
+{
+  double sum = 0;
+  for (int i = 0; i < model->branch_count; i++) {
+    const double r = strain(model, at->at.q) - at->p[i];
+    sum += model->branch_N_per_m[i] * r * r / 2;
+  }
+  return sum;
+}
+
+double dea_reduced_kinetic_J(const struct dea_reduced *model, const struct dea_reduced_state *at)
+{
+  return polynomial(model->mass, at->at.q - model->middle) * at->rate * at->rate / 2;
+}
+
+/* A step: p = known + share e at its end, and the state before. */
+struct step {
+  const struct dea_reduced *model;
+  const struct dea_reduced_state *from;
+  double h;
+  double known[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES];
+  double a_m, a_f, beta, gamma;
+  int inertia;
+};
+
+/* What the device does not balance of the force at a state, its branches at p. */
+static double imbalance(const struct step *s, const struct dea_reduced_state *at, double *slope)
+{
+  const double back = pull(s->model, at->p, s->share, at->at.q, slope);
+  return at->at.force + back + s->model->damping * at->rate - at->external;
+}
+
+/* The residual at to->at, of which the rest of `to` follows, and its slope by q. */
+static double residual(const struct step *s, struct dea_reduced_state *to, double *slope)
+{
+  const struct dea_reduced_state *n = s->from;
+  const double h = s->h, c = s->model->damping, q = to->at.q;
+  double unused, by_q;
+  for (int i = 0; i < s->model->branch_count; i++) {
+    to->p[i] = s->known[i] + s->share[i] * strain(s->model, q);
+  }
+  if (!s->inertia) {
+    to->rate = h > 0 ? (q - n->at.q) / h : 0;
+    const double r = imbalance(s, to, &by_q);
+    *slope = 1 / to->at.by_force + by_q + (h > 0 ? c / h : 0);
+    return r;
+  }
+  const double a_q = 1 / (s->beta * h * h), v_q = s->gamma / (s->beta * h);
+  to->acceleration = (q - n->at.q - h * n->rate) * a_q - (0.5 / s->beta - 1) * n->acceleration;
+  to->rate = n->rate + h * ((1 - s->gamma) * n->acceleration + s->gamma * to->acceleration);
+  const double was =
+      inertia_at(s->model, n->at.q, n->rate, n->acceleration, 0, 0, &unused) * s->a_m +
+      imbalance(s, n, &unused) * s->a_f;
+  const double now = inertia_at(s->model, q, to->rate, to->acceleration, a_q, v_q, &unused);
+  const double r = imbalance(s, to, &by_q);
+  *slope = (1 - s->a_m) * unused + (1 - s->a_f) * (1 / to->at.by_force + by_q + c * v_q);
+  return was + (1 - s->a_m) * now + (1 - s->a_f) * r;
+}
+
+static int solve(const struct step *s, double voltage_V, struct dea_reduced_state *to)
+{
+  double force = s->from->at.force, slope;
+  for (int i = 0; i < TRIALS; i++) {
+    const int end = dea_reduced_at(s->model, force, voltage_V, &to->at);
+    if (end != DEA_REDUCED_OK) {
+      return end;
+    }
+    const double step = residual(s, to, &slope) / (slope * to->at.by_force);
+    if (is_settled(s->model, step)) {
+      return DEA_REDUCED_OK;
+    }
+    if (!correct(s->model, step, &force)) {
+      return DEA_REDUCED_BEYOND_FORCE;
+    }
+  }
+  return DEA_REDUCED_NOT_CONVERGED;
+}
+
+/* The place stays, and the acceleration follows the forces. */
+static int jump(const struct step *s, double voltage_V, struct dea_reduced_state *to)
+{
+  double slope;
+  const int end = dea_reduced_held(s->model, s->from->at.q, voltage_V, &to->at);
+  const double x = to->at.q - s->model->middle, m = polynomial(s->model->mass, x);
+  const double d = s->model->mass[1] + 2 * s->model->mass[2] * x;
+  to->acceleration = -(imbalance(s, to, &slope) + d * to->rate * to->rate / 2) / m;
+  return end;
+}
+
+/* What branches lose while e goes straight: r = e - p is A + B exp(-t/tau). */
+static double loss(const struct step *s, const struct dea_reduced_state *to)
+{
+  const double h = s->h, e[2] = {strain(s->model, s->from->at.q), strain(s->model, to->at.q)};
+  const double v = 0.5 * (s->from->rate + to->rate);
+  double sum = s->model->damping * v * v * h;
+  for (int i = 0; i < s->model->branch_count; i++) {
+    const double tau = s->model->branch_s[i], x = exp(-h / tau), A = (e[1] - e[0]) / h * tau;
+    const double B = e[0] - s->from->p[i] - A;
+    sum += s->model->branch_N_per_m[i] *
+           (A * A * h / tau + 2 * A * B * (1 - x) + B * B * (1 - x * x) / 2);
+  }
+  return sum;
+}
+
+int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_state *from,
+                     double length_s, double voltage_V, double external, int inertia, double rho,
+                     struct dea_reduced_state *to)
+{
+  const double h = length_s;
+  const struct dea_reduced_state n = *from;
+  struct step s = {.model = model, .from = &n, .h = h, .inertia = inertia};
+  s.a_m = (2 * rho - 1) / (rho + 1);
+  s.a_f = rho / (rho + 1);
+  s.beta = (1 - s.a_m + s.a_f) * (1 - s.a_m + s.a_f) / 4;
+  s.gamma = 0.5 - s.a_m + s.a_f;
+  for (int i = 0; i < model->branch_count; i++) {
+    const double y = h / model->branch_s[i], x = exp(-y);
+    const double mean = y > 1e-8 ? (1 - x) / y : 1 - y / 2;
+    s.share[i] = 1 - mean;
+    s.known[i] = x * n.p[i] + (mean - x) * strain(model, n.at.q);
+  }
+  *to = n;
+  to->external = external;
+  const int end = inertia && !(h > 0) ? jump(&s, voltage_V, to) : solve(&s, voltage_V, to);
+  if (end != DEA_REDUCED_OK) {
+    return end;
+  }
+  to->time_s = n.time_s + h;
+  to->external_J = n.external_J + 0.5 * (n.external + external) * (to->at.q - n.at.q);
+  to->loss_J = n.loss_J + (h > 0 ? loss(&s, to) : 0);
+  return DEA_REDUCED_OK;
+}

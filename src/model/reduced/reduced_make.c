@@ -1,0 +1,482 @@
+/* Samples by model 3d and what is fitted to them. */
+#include "model/reduced/reduced.h"
+#include "model/reduced/reduced_fit.h"
+
+#include "base/clock.h"
+#include "result/columns.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+extern const struct dea_model_type dea_model_3d; // of model_list.h
+
+struct making {
+  struct dea_context *ctx;
+  const struct dea_model_type *type; // model 3d
+  struct dea_model *model;
+  const struct dea_device *device;
+  struct dea_model_settings settings; // of model 3d
+  struct dea_control coordinate;
+  struct dea_arena memory; // of the samples
+  struct dea_reduced_grid grid;
+  struct dea_reduced_sample *samples;       // the grid's
+  double (*monitors)[DEA_OBSERVED_MOTIONS]; // [forces][voltages][monitor_count]
+  double *fast;                             // [voltages] dq/dF without a force, branches held
+  double force, highest_V, stroke;
+  bool viscous, massive;
+};
+
+// Device ------------------------------------------------------------------------------------------
+
+static bool is_even(const struct dea_layout *l)
+{
+  bool even = true;
+  for (size_t k = 1; k < l->channel_count; k++) {
+    even = even && l->channels[k].own_V == 0;
+  }
+  return even;
+}
+
+static bool is_viscous(const struct dea_layout *l)
+{
+  bool viscous = false;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    viscous = viscous || l->plies[i].material.branch_count > 0;
+  }
+  return viscous;
+}
+
+// Coordinate --------------------------------------------------------------------------------------
+
+static dea_status find_monitor(struct making *m)
+{
+  const struct dea_layout *l = m->device->layout;
+  const char *name = m->settings.reduced.monitor;
+  m->coordinate = (struct dea_control){.kind = DEA_CONTROL_CONJUGATE, .component = -1};
+  if (name == NULL && l->monitor_count == 0 && m->device->disc) {
+    m->coordinate.column =
+        dea_point_column_find(m->device->fibre_count > 0 ? "fibre_tip_z_m" : "electrode_edge_u_m");
+    return DEA_OK;
+  }
+  while (name != NULL && m->coordinate.body < l->monitor_count &&
+         strcmp(l->monitors[m->coordinate.body].name, name) != 0) {
+    m->coordinate.body++;
+  }
+  m->coordinate.component = m->settings.reduced.motion;
+  return m->coordinate.body < l->monitor_count
+             ? DEA_OK
+             : dea_fail(m->ctx, DEA_E_DESIGN, "the device has no monitor%s%s%s", name ? " '" : "",
+                        name ? name : "", name ? "' (compute.reduced.monitor)" : "");
+}
+
+/* The coordinate at the last point. */
+static dea_status read_coordinate(struct making *m, const struct dea_load_point *point, double *out)
+{
+  struct dea_observation seen;
+  if (m->coordinate.column != 0) {
+    *out = dea_point_get(point, m->coordinate.column);
+    return DEA_OK;
+  }
+  DEA_TRY(m->ctx, dea_model_observe(m->ctx, m->type, m->model, &seen));
+  const double *values = seen.monitor[m->coordinate.body];
+  if (m->coordinate.component < 0) { // at the highest voltage
+    m->coordinate.component = (int)dea_observed_main(values);
+  }
+  *out = values[m->coordinate.component];
+  return DEA_OK;
+}
+
+// Range -------------------------------------------------------------------------------------------
+
+/* Whether a state is one of several, or its law or shape is in doubt. */
+static bool is_doubtful(const struct dea_load_point *point)
+{
+  return (dea_load_point_flags(point) & ~(1u << DEA_FLAG_PREVIEW | 1u << DEA_FLAG_BREAKDOWN)) != 0;
+}
+
+static bool ends(dea_status status)
+{
+  return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED;
+}
+
+static dea_status give_up(struct making *m, const char *what)
+{
+  char why[200];
+  snprintf(why, sizeof why, "%s", dea_context_message(m->ctx));
+  return dea_fail(m->ctx, DEA_E_DOMAIN, "no reduced-order model: %s%s%s", what,
+                  why[0] != '\0' ? ": " : "", why);
+}
+
+static dea_status restart(struct making *m)
+{
+  if (m->model != NULL) {
+    m->type->destroy(m->ctx, m->model);
+    m->model = NULL;
+  }
+  DEA_TRY(m->ctx, m->type->create(m->ctx, m->device, &m->settings, &m->model));
+  return DEA_OK;
+}
+
+/* Up to the highest voltage, or to where the state is in doubt, and the force that moves the
+ * coordinate as far as the voltage does. */
+static dea_status find_range(struct making *m)
+{
+  const size_t steps = m->grid.voltages - 1;
+  struct dea_load_point point;
+  struct dea_compliance at[2];
+  double end_V = 0;
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i <= steps && status == DEA_OK; i++) {
+    const double V = m->highest_V * (double)i / (double)steps;
+    status = m->type->solve(m->ctx, m->model, V, &point);
+    if (ends(status)) {
+      return dea_fail_chain(m->ctx, status, __func__, __FILE__, __LINE__);
+    }
+    if (status != DEA_OK || is_doubtful(&point)) {
+      break;
+    }
+    end_V = V;
+  }
+  dea_context_clear(m->ctx);
+  if (end_V == 0) {
+    return give_up(m, "model 3d has no state above 0 V that is sure");
+  }
+  if (end_V < m->highest_V) {
+    DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_NOTE, (struct dea_location){0},
+                                    "model reduced ends at %.4g kV: beyond it model 3d has no "
+                                    "state that is sure",
+                                    1e-3 * end_V));
+    m->highest_V = end_V;
+  }
+  double q[2];
+  DEA_TRY(m->ctx, restart(m));
+  DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, m->highest_V, &point));
+  DEA_TRY(m->ctx, read_coordinate(m, &point, &q[1]));
+  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, false, &at[1]));
+  DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, 0, &point));
+  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, false, &at[0]));
+  m->stroke = at[1].value - at[0].value;
+  if (!(m->force > 0)) {
+    m->force = 2 * fabs(m->stroke) / (at[0].by_force + at[1].by_force);
+  }
+  return DEA_OK;
+}
+
+// Samples -----------------------------------------------------------------------------------------
+
+/* dq/dF of what moves at once, with a small share of the largest force to either side. */
+static dea_status find_fast(struct making *m, double voltage_V, double *out)
+{
+  static const double share = 0.02;
+  const struct dea_time_options options = {.circuit = {0, INFINITY}, .rho_inf = 0.8};
+  struct dea_load_point point;
+  double q[2], unused;
+  DEA_TRY(m->ctx, m->type->begin(m->ctx, m->model, &options, &point));
+  for (int side = 0; side < 2; side++) {
+    const struct dea_time_step step = {.source_voltage_V = voltage_V,
+                                       .control = &m->coordinate,
+                                       .value = (2 * side - 1) * share * m->force};
+    DEA_TRY(m->ctx, m->type->advance(m->ctx, m->model, &step, &point, &unused));
+    m->type->accept(m->model);
+    DEA_TRY(m->ctx, read_coordinate(m, &point, &q[side]));
+  }
+  *out = (q[1] - q[0]) / (2 * share * m->force);
+  return DEA_OK;
+}
+
+static dea_status take_sample(struct making *m, size_t force, size_t voltage, double value)
+{
+  const size_t n = force * m->grid.voltages + voltage, middle = m->grid.forces / 2,
+               count = m->device->layout->monitor_count;
+  struct dea_reduced_sample *out = &m->samples[n];
+  struct dea_observation seen;
+  DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, value, &out->point));
+  if (is_doubtful(&out->point)) {
+    return dea_fail(m->ctx, DEA_E_NO_EQUILIBRIUM, "the state is one of several there");
+  }
+  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate,
+                                      m->massive && force == middle, &out->at));
+  DEA_TRY(m->ctx, dea_model_observe(m->ctx, m->type, m->model, &seen));
+  for (size_t i = 0; i < count; i++) {
+    memcpy(m->monitors[n * count + i], seen.monitor[i], sizeof *m->monitors);
+  }
+  return DEA_OK;
+}
+
+/* All forces at a voltage, from none outwards. */
+static dea_status take_voltage(struct making *m, size_t i)
+{
+  const size_t middle = m->grid.forces / 2;
+  const double step = m->force / (double)middle;
+  const double V = m->highest_V * (double)i / (double)(m->grid.voltages - 1);
+  struct dea_load_point point;
+  DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, V, &point));
+  for (int side = -1; side <= 1; side += 2) {
+    for (size_t k = 0; k <= middle; k++) {
+      const size_t j = side < 0 ? middle - k : middle + k;
+      DEA_TRY(m->ctx, take_sample(m, j, i, side * (double)k * step));
+      m->samples[j * m->grid.voltages + i].voltage_V = V;
+    }
+  }
+  DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, 0, &point));
+  if (m->viscous) {
+    DEA_TRY(m->ctx, find_fast(m, V, &m->fast[i]));
+    DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, 0, &point));
+  }
+  dea_progress(m->ctx, "reduced-order samples", i + 1, m->grid.voltages);
+  return DEA_OK;
+}
+
+/* With smaller forces where the device does not bear these, and then with smaller voltages: close
+ * to where it loses its stability it bears none. */
+static dea_status take_samples(struct making *m)
+{
+  enum { TRIALS = 6, OF_FORCE = 2 };
+  for (int trial = 0; trial < TRIALS; trial++) {
+    dea_status status = restart(m);
+    for (size_t i = 0; i < m->grid.voltages && status == DEA_OK; i++) {
+      status = take_voltage(m, i);
+    }
+    if (status == DEA_OK || ends(status) || m->settings.reduced.force > 0) {
+      return status == DEA_OK ? DEA_OK
+                              : dea_fail_chain(m->ctx, status, __func__, __FILE__, __LINE__);
+    }
+    if (trial + 1 < TRIALS) {
+      dea_context_clear(m->ctx);
+      m->force *= trial < OF_FORCE ? 0.5 : 1;
+      m->highest_V *= trial < OF_FORCE ? 1 : 0.95;
+    }
+  }
+  return give_up(m, "the device bears no force along the coordinate");
+}
+
+// Fits --------------------------------------------------------------------------------------------
+
+/* What a fit of every second sample is off at the others. */
+static dea_status hold_out(struct making *m, struct dea_reduced_order *out)
+{
+  struct dea_reduced trial = {.even = m->grid.even};
+  double charge = 0;
+  DEA_TRY(m->ctx, dea_reduced_fit_energy(&m->memory, &m->grid, 2, &trial.energy));
+  for (size_t n = 0; n < m->grid.forces * m->grid.voltages; n++) {
+    const struct dea_reduced_sample *s = &m->samples[n];
+    struct dea_reduced_point p;
+    dea_reduced_at(&trial, s->at.force, s->voltage_V, &p);
+    out->error = fmax(out->error, fabs((p.q - s->at.value) / m->stroke));
+    out->charge_error = fmax(out->charge_error, fabs(p.charge_C - s->at.charge_C));
+    charge = fmax(charge, fabs(s->at.charge_C));
+  }
+  out->charge_error /= charge;
+  return DEA_OK;
+}
+
+static const char *const output_keys[] = {
+    "electrode_stretch",    "centre_z_m",         "fibre_tip_z_m",      "highest_z_m",
+    "lowest_z_m",           "electrode_edge_u_m", "true_field_V_per_m", "breakdown_margin",
+    "min_tension_N_per_m",  "compression_ratio",  "locking_share",      "range_share",
+    "breakdown_probability"};
+enum { OUTPUT_KEYS = sizeof output_keys / sizeof output_keys[0] };
+
+/* Adds an output where all samples have it, values [samples]. */
+static dea_status add_output(struct making *m, struct dea_reduced_order *out,
+                             const struct dea_reduced_output *of, const double *values)
+{
+  for (size_t n = 0; n < m->grid.forces * m->grid.voltages; n++) {
+    if (!isfinite(values[n])) {
+      return DEA_OK;
+    }
+  }
+  struct dea_reduced_output *to = &out->outputs[out->output_count++];
+  *to = *of;
+  DEA_TRY(m->ctx, dea_reduced_fit_values(&out->memory, &m->grid, values, &to->of));
+  return DEA_OK;
+}
+
+static dea_status fit_outputs(struct making *m, struct dea_reduced_order *out)
+{
+  const size_t samples = m->grid.forces * m->grid.voltages,
+               monitors = m->device->layout->monitor_count;
+  const size_t all = OUTPUT_KEYS + monitors * DEA_OBSERVED_MOTIONS;
+  double *values = dea_arena_alloc(&m->memory, samples, sizeof *values);
+  out->outputs = dea_arena_alloc(&out->memory, all, sizeof *out->outputs);
+  DEA_TRY(m->ctx, dea_arena_status(&m->memory));
+  DEA_TRY(m->ctx, dea_arena_status(&out->memory));
+  for (size_t i = 0; i < all; i++) {
+    struct dea_reduced_output of = {.column = 0};
+    if (i < OUTPUT_KEYS) {
+      of.column = dea_point_column_find(output_keys[i]);
+    } else {
+      of.monitor = (i - OUTPUT_KEYS) / DEA_OBSERVED_MOTIONS;
+      of.motion = (enum dea_observed)((i - OUTPUT_KEYS) % DEA_OBSERVED_MOTIONS);
+    }
+    for (size_t n = 0; n < samples; n++) {
+      values[n] = of.column != 0 ? dea_point_get(&m->samples[n].point, of.column)
+                                 : m->monitors[n * monitors + of.monitor][of.motion];
+    }
+    DEA_TRY(m->ctx, add_output(m, out, &of, values));
+  }
+  return DEA_OK;
+}
+
+/* m = K/omega^2 of the states without a force. */
+static dea_status fit_mass(struct making *m, const struct dea_reduced_sample *free, const double *x,
+                           struct dea_reduced_order *out)
+{
+  double mass[DEA_REDUCED_VOLTAGES_MAX], share[DEA_REDUCED_VOLTAGES_MAX];
+  const size_t count = m->grid.voltages;
+  out->mode_share = NAN;
+  for (size_t i = 0; i < count && m->massive; i++) {
+    const double omega = 2 * acos(-1.0) * free[i].at.frequency_Hz;
+    mass[i] = 1 / (free[i].at.by_force * omega * omega);
+    share[i] = free[i].at.voltage_share;                            // without a limit at 0 V
+    out->mode_share = fmin(out->mode_share, free[i].at.mode_share); // fmin: not of NAN
+    if (!isfinite(mass[i])) {
+      return dea_fail(m->ctx, DEA_E_DOMAIN, "no mode of the device moves the coordinate");
+    }
+  }
+  if (m->massive) {
+    const size_t from = m->grid.even ? 1 : 0;
+    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x, mass, count, out->core.mass));
+    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x + from, share + from, count - from,
+                                               out->voltage_share));
+  }
+  return DEA_OK;
+}
+
+/* Times of the branches of all plies, with shares by modulus and thickness. */
+static double add_branches(const struct dea_layout *l, struct dea_reduced *core)
+{
+  double sum = 0;
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_material *material = &l->plies[i].material;
+    for (size_t k = 0; k < material->branch_count; k++) {
+      const double tau = material->branches[k].time_s;
+      int n = 0;
+      while (n < core->branch_count && core->branch_s[n] != tau) {
+        n++;
+      }
+      if (n < DEA_REDUCED_BRANCHES) {
+        const double weight = material->branches[k].modulus_Pa * l->plies[i].thickness_m;
+        core->branch_s[n] = tau;
+        core->branch_N_per_m[n] += weight;
+        core->branch_count = n == core->branch_count ? n + 1 : core->branch_count;
+        sum += weight;
+      }
+    }
+  }
+  return sum;
+}
+
+/* k = 1/(dq/dF) fast less slow; de/dq is the root of it over that at the middle. */
+static dea_status fit_branches(struct making *m, const struct dea_reduced_sample *free,
+                               const double *x, struct dea_reduced_order *out)
+{
+  double root[DEA_REDUCED_VOLTAGES_MAX];
+  out->core.strain[0] = 1;
+  if (!m->viscous) {
+    return DEA_OK;
+  }
+  for (size_t i = 0; i < m->grid.voltages; i++) {
+    root[i] = sqrt(1 / m->fast[i] - 1 / free[i].at.by_force);
+    if (!isfinite(root[i])) {
+      return dea_fail(m->ctx, DEA_E_DOMAIN, "branches do not stiffen the coordinate");
+    }
+  }
+  double *c = out->core.strain;
+  DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x, root, m->grid.voltages, c));
+  const double unit = c[0], sum = add_branches(m->device->layout, &out->core);
+  for (int k = 0; k < 3; k++) {
+    c[k] /= unit;
+  }
+  for (int k = 0; k < out->core.branch_count; k++) {
+    out->core.branch_N_per_m[k] *= unit * unit / sum;
+  }
+  return DEA_OK;
+}
+
+static dea_status fit(struct making *m, struct dea_reduced_order *out)
+{
+  const struct dea_reduced_sample *free = m->samples + m->grid.forces / 2 * m->grid.voltages;
+  double x[DEA_REDUCED_VOLTAGES_MAX];
+  DEA_TRY(m->ctx, hold_out(m, out));
+  DEA_TRY(m->ctx, dea_reduced_fit_energy(&out->memory, &m->grid, 1, &out->core.energy));
+  out->core.even = m->grid.even;
+  out->core.middle = 0.5 * (free[0].at.value + free[m->grid.voltages - 1].at.value);
+  for (size_t i = 0; i < m->grid.voltages; i++) {
+    x[i] = free[i].at.value - out->core.middle;
+  }
+  DEA_TRY(m->ctx, fit_mass(m, free, x, out));
+  DEA_TRY(m->ctx, fit_branches(m, free, x, out));
+  DEA_TRY(m->ctx, fit_outputs(m, out));
+  out->coordinate = m->coordinate;
+  out->voltage_V[1] = m->highest_V;
+  out->voltage_V[0] = m->grid.even ? -m->highest_V : 0;
+  out->force[1] = m->force;
+  out->force[0] = -m->force;
+  out->stroke = free[m->grid.voltages - 1].at.value - free[0].at.value;
+  return DEA_OK;
+}
+
+// All of it ---------------------------------------------------------------------------------------
+
+static dea_status make(struct making *m, struct dea_reduced_order *out)
+{
+  const size_t samples = m->grid.forces * m->grid.voltages;
+  DEA_TRY(m->ctx, find_monitor(m));
+  m->samples = dea_arena_alloc(&m->memory, samples, sizeof *m->samples);
+  m->monitors = dea_arena_alloc(&m->memory, samples * (m->device->layout->monitor_count + 1),
+                                sizeof *m->monitors);
+  m->fast = dea_arena_alloc(&m->memory, m->grid.voltages, sizeof *m->fast);
+  DEA_TRY(m->ctx, dea_arena_status(&m->memory));
+  m->grid.samples = m->samples;
+  DEA_TRY(m->ctx, restart(m));
+  DEA_TRY(m->ctx, find_range(m));
+  DEA_TRY(m->ctx, take_samples(m));
+  DEA_TRY(m->ctx, fit(m, out));
+  DEA_TRY(m->ctx, dea_reduced_order_mark(m->ctx, out, m->device, &m->settings));
+  return DEA_OK;
+}
+
+dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_device *device,
+                                  const struct dea_model_settings *settings,
+                                  struct dea_reduced_order **out)
+{
+  const double began_s = dea_clock_s();
+  struct making m = {
+      .ctx = ctx,
+      .type = &dea_model_3d,
+      .device = device,
+      .settings = *settings,
+      .memory = {.ctx = ctx},
+      .grid = {.forces = settings->reduced.forces > 0 ? (size_t)settings->reduced.forces : 5,
+               .voltages = settings->reduced.voltages > 0 ? (size_t)settings->reduced.voltages : 9,
+               .even = is_even(device->layout)},
+      .force = settings->reduced.force,
+      .highest_V = settings->reduced.voltage_V,
+      .viscous = is_viscous(device->layout)};
+  *out = dea_alloc(ctx, 1, sizeof **out);
+  if (*out == NULL) {
+    return DEA_E_MEMORY;
+  }
+  (*out)->memory.ctx = ctx;
+  size_t errors = dea_finding_trial_begin(ctx);
+  m.massive = dea_device_check_densities(ctx, device) == DEA_OK;
+  dea_finding_trial_end(ctx, errors);
+  dea_context_clear(ctx);
+  dea_status status = m.highest_V > 0 ? make(&m, *out)
+                                      : dea_fail(ctx, DEA_E_DESIGN,
+                                                 "a reduced-order model needs a voltage above 0 "
+                                                 "(compute.reduced.voltage, compute.voltage)");
+  if (m.model != NULL) {
+    m.type->destroy(ctx, m.model);
+  }
+  dea_arena_free(&m.memory);
+  (*out)->made_s = dea_clock_s() - began_s;
+  if (status != DEA_OK) {
+    dea_reduced_order_destroy(ctx, *out);
+    *out = NULL;
+    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  }
+  return DEA_OK;
+}

@@ -1,0 +1,427 @@
+/* Model "reduced" behind the common interface: a device in one coordinate. */
+#include "model/make.h"
+#include "model/reduced/reduced.h"
+#include "result/columns.h"
+
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A moment of a history: the film, and the circuit that it hangs on. */
+struct moment {
+  struct dea_reduced_state film;
+  struct dea_circuit_state circuit;
+};
+
+struct dea_model {
+  const struct dea_device *device;
+  struct dea_reduced_order *order;
+  struct dea_reduced_point at; // the last point
+  struct dea_time_options options;
+  struct moment now, trial;
+  bool moves; // a history has begun, and the last point is that of `trial`
+  double largest_q, largest_V, largest_J; // so far, for errors of steps
+  struct dea_arena memory;                // of what observations lend
+  double (*monitor)[DEA_OBSERVED_COUNT], (*body)[DEA_OBSERVED_COUNT];
+  struct dea_channel_values *channel;
+  double *answers;
+};
+
+static void destroy(struct dea_context *ctx, struct dea_model *model)
+{
+  if (model != NULL) {
+    dea_reduced_order_destroy(ctx, model->order);
+    dea_arena_free(&model->memory);
+    dea_free(ctx, model);
+  }
+}
+
+/* What the model is of and how far it goes. */
+static dea_status say(struct dea_context *ctx, const struct dea_model *model)
+{
+  const struct dea_reduced_order *o = model->order;
+  char name[120];
+  dea_reduced_order_name(o, model->device, name, sizeof name);
+  DEA_TRY(ctx, dea_finding_add(
+                   ctx, DEA_NOTE, (struct dea_location){0},
+                   "model reduced: %s up to %.4g kV, made from model 3d in %.3g s; off by %.2g %% "
+                   "of the stroke and %.2g %% of the charge at samples that were left out of the "
+                   "fit",
+                   name, 1e-3 * o->voltage_V[1], o->made_s, 100 * o->error, 100 * o->charge_error));
+  if (o->mode_share < 0.8) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                                 "model reduced: its one mode has %.2g %% of the compliance of %s: "
+                                 "fast motions have more modes (compute.reduced.monitor)",
+                                 100 * o->mode_share, name));
+  }
+  return DEA_OK;
+}
+
+static dea_status prepare(struct dea_context *ctx, const struct dea_device *device,
+                          const struct dea_model_settings *settings, struct dea_model *model)
+{
+  const struct dea_layout *l = device->layout;
+  model->device = device;
+  model->memory.ctx = ctx;
+  if (settings->reduced.file != NULL) {
+    DEA_TRY(ctx,
+            dea_reduced_order_read(ctx, settings->reduced.file, device, settings, &model->order));
+  } else {
+    DEA_TRY(ctx, dea_reduced_order_make(ctx, device, settings, &model->order));
+  }
+  model->monitor = dea_arena_alloc(&model->memory, l->monitor_count + 1, sizeof *model->monitor);
+  model->body = dea_arena_alloc(&model->memory, l->body_count + 1, sizeof *model->body);
+  model->channel = dea_arena_alloc(&model->memory, l->channel_count, sizeof *model->channel);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  DEA_TRY(ctx, say(ctx, model));
+  return DEA_OK;
+}
+
+static dea_status create(struct dea_context *ctx, const struct dea_device *device,
+                         const struct dea_model_settings *settings, struct dea_model **out)
+{
+  DEA_TRY(ctx, dea_model_make(ctx, sizeof **out, device, settings, prepare, destroy, out));
+  return DEA_OK;
+}
+
+// Points ------------------------------------------------------------------------------------------
+
+static double output_at(const struct dea_model *model, const struct dea_reduced_output *output,
+                        const struct dea_reduced_point *at)
+{
+  const double V = at->voltage_V;
+  double value[6];
+  dea_reduced_spline_at(&output->of, at->force, model->order->core.even ? V * V : V, value);
+  return value[0];
+}
+
+static void fill_point(const struct dea_model *model, const struct dea_reduced_point *at,
+                       struct dea_load_point *out)
+{
+  const struct dea_reduced_order *o = model->order;
+  *out = dea_load_point_empty();
+  out->voltage_V = at->voltage_V;
+  for (size_t i = 0; i < o->output_count; i++) {
+    if (o->outputs[i].column != 0) {
+      dea_point_set(out, o->outputs[i].column, output_at(model, &o->outputs[i], at));
+    }
+  }
+  if (o->coordinate.column != 0) {
+    dea_point_set(out, o->coordinate.column, at->q);
+  }
+  out->energy_J = at->energy_J - at->force * at->q;
+  out->capacitance_F = at->voltage_V != 0 ? at->charge_C / at->voltage_V : at->charge_by_voltage;
+}
+
+static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
+                        struct dea_load_point *out)
+{
+  const int end = dea_reduced_at(&model->order->core, 0, voltage_V, &model->at);
+  if (end != DEA_REDUCED_OK) {
+    return dea_reduced_fail(ctx, model->order, end, voltage_V);
+  }
+  model->moves = false;
+  fill_point(model, &model->at, out);
+  return DEA_OK;
+}
+
+static dea_status observe(struct dea_context *ctx, struct dea_model *model,
+                          struct dea_observation *out)
+{
+  const struct dea_layout *l = model->device->layout;
+  const struct dea_reduced_order *o = model->order;
+  const struct dea_reduced_point *at = model->moves ? &model->trial.film.at : &model->at;
+  (void)ctx;
+  for (size_t i = 0; i < (l->monitor_count + l->body_count) * DEA_OBSERVED_COUNT; i++) {
+    const size_t monitor = i / DEA_OBSERVED_COUNT, k = i % DEA_OBSERVED_COUNT;
+    double *of = monitor < l->monitor_count ? model->monitor[monitor]
+                                            : model->body[monitor - l->monitor_count];
+    of[k] = NAN;
+  }
+  for (size_t i = 0; i < o->output_count; i++) {
+    const struct dea_reduced_output *output = &o->outputs[i];
+    if (output->column == 0) {
+      model->monitor[output->monitor][output->motion] = output_at(model, output, at);
+    }
+  }
+  if (o->coordinate.column == 0) {
+    model->monitor[o->coordinate.body][o->coordinate.component] = at->q;
+  }
+  for (size_t k = 0; k < l->channel_count; k++) { // of several channels the sum alone is known
+    const bool one = l->channel_count == 2;
+    model->channel[k] = (struct dea_channel_values){
+        k == 0 ? 0 : l->channels[k].ratio * at->voltage_V + l->channels[k].own_V,
+        one && k == 1 ? at->charge_C / l->channels[1].ratio : NAN, NAN, NAN};
+  }
+  *out = (struct dea_observation){.monitor_count = l->monitor_count,
+                                  .body_count = l->body_count,
+                                  .channel_count = l->channel_count,
+                                  .monitor = (const double(*)[DEA_OBSERVED_COUNT])model->monitor,
+                                  .body = (const double(*)[DEA_OBSERVED_COUNT])model->body,
+                                  .channel = model->channel};
+  return DEA_OK;
+}
+
+/* Of the fit, for its coordinate. */
+static dea_status errors(struct dea_context *ctx, struct dea_model *model, double *error)
+{
+  const struct dea_reduced_order *o = model->order;
+  (void)ctx;
+  for (size_t i = 0; i < model->device->layout->monitor_count; i++) {
+    const bool is_it = o->coordinate.column == 0 && o->coordinate.body == i;
+    error[i] = is_it ? o->error * fabs(o->stroke) : NAN;
+  }
+  return DEA_OK;
+}
+
+static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
+                             const struct dea_control *coordinate, bool with_mass,
+                             struct dea_compliance *out)
+{
+  const struct dea_reduced_order *o = model->order;
+  const struct dea_reduced_point *at = &model->at;
+  const double x = at->q - o->core.middle, *m = o->core.mass;
+  if (coordinate->column != o->coordinate.column || coordinate->body != o->coordinate.body) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "the reduced-order model has another coordinate");
+  }
+  const double mass = m[0] + x * (m[1] + x * m[2]);
+  *out = (struct dea_compliance){.value = at->q,
+                                 .force = at->force,
+                                 .by_force = at->by_force,
+                                 .by_voltage = at->by_voltage,
+                                 .charge_C = at->charge_C,
+                                 .charge_by_force = at->by_voltage,
+                                 .charge_by_voltage = at->charge_by_voltage,
+                                 .frequency_Hz = NAN,
+                                 .mode_share = o->mode_share,
+                                 .voltage_share = NAN};
+  if (with_mass && mass > 0) {
+    out->frequency_Hz = sqrt(1 / (at->by_force * mass)) / (2 * acos(-1.0));
+  }
+  return DEA_OK;
+}
+
+// Small motions -----------------------------------------------------------------------------------
+
+/* dq/dV at a frequency: (dq/dV)_0 [s K/(k(w) + i w c - w^2 m) + (1 - s) K/k(w)] with the part s of
+ * the mode and k(w) = K + sum k d^2 i w tau/(1 + i w tau); other modes follow at once. */
+static double complex answer(const struct dea_model *model,
+                             const struct dea_ac_excitation *excitation, double omega)
+{
+  const struct dea_reduced *core = &model->order->core;
+  const double x = model->at.q - core->middle;
+  const double m = core->mass[0] + x * (core->mass[1] + x * core->mass[2]);
+  const double d = core->strain[0] + x * (core->strain[1] + x * core->strain[2]);
+  const double K = 1 / model->at.by_force;
+  const double c = core->damping + 2 * excitation->damping_ratio * sqrt(K * m) +
+                   excitation->damping_mass_per_s * m + excitation->damping_stiffness_s * K;
+  const double *part = model->order->voltage_share;
+  const double s = part[0] + x * (part[1] + x * part[2]);
+  double complex stiffness = K;
+  for (int i = 0; i < core->branch_count; i++) {
+    const double complex wt = I * omega * core->branch_s[i];
+    stiffness += core->branch_N_per_m[i] * d * d * wt / (1 + wt);
+  }
+  return model->at.by_voltage * K *
+         (s / (stiffness - omega * omega * m + I * omega * c) + (1 - s) / stiffness);
+}
+
+static dea_status respond(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_load_point *at,
+                          const struct dea_ac_excitation *excitation, const double *frequency_Hz,
+                          size_t count, struct dea_load_point *points)
+{
+  const struct dea_reduced_order *o = model->order;
+  const size_t width = model->device->layout->monitor_count * DEA_OBSERVED_MOTIONS;
+  const bool tip = o->coordinate.column == dea_point_column_find("fibre_tip_z_m");
+  model->answers = dea_arena_alloc(&model->memory, 2 * count * width + 1, sizeof *model->answers);
+  DEA_TRY(ctx, dea_arena_status(&model->memory));
+  if (!(o->core.mass[0] > 0)) {
+    return dea_fail(ctx, DEA_E_DESIGN, "small motions need the densities of all parts");
+  }
+  for (size_t i = 0; i < count; i++) {
+    const double complex q = answer(model, excitation, 2 * acos(-1.0) * frequency_Hz[i]);
+    points[i] = *at;
+    points[i].frequency_Hz = frequency_Hz[i];
+    points[i].ripple_V = excitation->amplitude_V;
+    if (tip) {
+      points[i].fibre_tip_amplitude_m = excitation->amplitude_V * cabs(q);
+      points[i].fibre_tip_phase_rad = carg(q);
+    }
+    for (size_t k = 0; k < 2 * width; k++) {
+      model->answers[2 * i * width + k] = NAN;
+    }
+    if (o->coordinate.column == 0) {
+      double *to = model->answers + 2 * (i * width + o->coordinate.body * DEA_OBSERVED_MOTIONS +
+                                         (size_t)o->coordinate.component);
+      to[0] = creal(q);
+      to[1] = cimag(q);
+    }
+  }
+  return DEA_OK;
+}
+
+static const double *answers(const struct dea_model *model)
+{
+  return model->answers;
+}
+
+// In time -----------------------------------------------------------------------------------------
+
+/* What is stored: in film, field and branches. */
+static double stored_J(const struct dea_model *model, const struct dea_reduced_state *s)
+{
+  return s->at.energy_J + s->at.charge_C * s->at.voltage_V +
+         dea_reduced_branch_J(&model->order->core, s);
+}
+
+static void fill_moment(const struct dea_model *model, const struct moment *m,
+                        struct dea_load_point *out)
+{
+  fill_point(model, &m->film.at, out);
+  out->time_s = m->film.time_s;
+  out->source_voltage_V = m->circuit.source_voltage_V;
+  out->charge_C = m->circuit.charge_C;
+  out->current_A = m->circuit.current_A;
+  out->stored_energy_J = stored_J(model, &m->film);
+  out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
+  if (model->options.inertia) {
+    out->kinetic_energy_J = dea_reduced_kinetic_J(&model->order->core, &m->film);
+  }
+  out->dissipated_J = m->film.loss_J + m->circuit.resistance_loss_J + m->circuit.leakage_loss_J;
+  out->supply_work_J = m->circuit.supply_work_J;
+}
+
+/* Film and circuit in a step: the voltage by the capacitance that the film then has, in turns. */
+static int step_once(const struct dea_model *model, const struct moment *from,
+                     const struct dea_time_step *step, struct moment *to)
+{
+  enum { TURNS = 60 };
+  static const double close = 1e-12;
+  const struct dea_circuit *circuit = &model->options.circuit;
+  const struct moment n = *from;
+  const double h = step->length_s, external = step->control != NULL ? step->value : n.film.external;
+  struct dea_circuit_film film = {.capacitance_F = n.circuit.capacitance_F};
+  double V = n.film.at.voltage_V, unused;
+  int end = DEA_REDUCED_NOT_CONVERGED;
+  bool settled = false;
+  *to = n;
+  for (int i = 0; i < TURNS && !settled; i++) {
+    const double was = V;
+    V = dea_circuit_voltage(circuit, &n.circuit, step, &film, &unused);
+    end = dea_reduced_step(&model->order->core, &n.film, h, V, external, model->options.inertia,
+                           model->options.rho_inf, &to->film);
+    if (end != DEA_REDUCED_OK) {
+      return end;
+    }
+    const struct dea_reduced_point *at = &to->film.at;
+    film.capacitance_F = V != 0 ? at->charge_C / V : at->charge_by_voltage;
+    settled = i > 0 && fabs(V - was) <= close * fabs(V);
+  }
+  dea_circuit_advance(circuit, &n.circuit, step, &film, &to->circuit);
+  if (h == 0 && dea_circuit_is_ideal(circuit)) {
+    to->circuit.supply_work_J +=
+        stored_J(model, &to->film) - stored_J(model, &n.film) + (to->film.loss_J - n.film.loss_J);
+  }
+  return DEA_REDUCED_OK;
+}
+
+static dea_status begin(struct dea_context *ctx, struct dea_model *model,
+                        const struct dea_time_options *options, struct dea_load_point *out)
+{
+  struct moment *m = &model->now;
+  const struct dea_reduced_order *o = model->order;
+  if (options->own_sources != NULL) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "model reduced has one source");
+  }
+  if (options->inertia && !(o->core.mass[0] > 0)) {
+    return dea_fail(ctx, DEA_E_DESIGN, "inertia needs the densities of all parts");
+  }
+  model->options = *options;
+  *m = (struct moment){.circuit = {.voltage_V = 0}};
+  const int end = dea_reduced_begin(&o->core, model->at.voltage_V, 0, &m->film);
+  if (end != DEA_REDUCED_OK) {
+    return dea_reduced_fail(ctx, o, end, model->at.voltage_V);
+  }
+  const struct dea_reduced_point *at = &m->film.at;
+  m->circuit.source_voltage_V = m->circuit.voltage_V = at->voltage_V;
+  m->circuit.charge_C = at->charge_C;
+  m->circuit.capacitance_F =
+      at->voltage_V != 0 ? at->charge_C / at->voltage_V : at->charge_by_voltage;
+  model->trial = *m;
+  model->moves = true;
+  model->largest_q = 1e-6 * fabs(o->stroke);
+  model->largest_V = 1e-4 * o->voltage_V[1];
+  model->largest_J = 1e-6 * m->circuit.capacitance_F * o->voltage_V[1] * o->voltage_V[1];
+  fill_moment(model, m, out);
+  return DEA_OK;
+}
+
+/* Once whole and once in two halves, of which the halves count; a third of the difference. */
+static int step_twice(struct dea_model *model, const struct dea_time_step *step, double *error)
+{
+  const struct moment *now = &model->now;
+  struct moment whole, half, *to = &model->trial;
+  const double V_s = now->circuit.source_voltage_V;
+  struct dea_time_step first = *step, second = *step;
+  first.length_s = second.length_s = 0.5 * step->length_s;
+  first.source_voltage_V = 0.5 * (V_s + step->source_voltage_V);
+  int end = step_once(model, now, step, &whole);
+  end = end == DEA_REDUCED_OK ? step_once(model, now, &first, &half) : end;
+  end = end == DEA_REDUCED_OK ? step_once(model, &half, &second, to) : end;
+  if (end == DEA_REDUCED_OK) {
+    to->film.time_s = now->film.time_s + step->length_s;
+    *error = fabs(whole.film.at.q - to->film.at.q) / model->largest_q;
+    *error = fmax(*error, fabs(whole.circuit.voltage_V - to->circuit.voltage_V) / model->largest_V);
+    *error = fmax(*error, fabs(whole.film.loss_J - to->film.loss_J) / model->largest_J) / 3;
+  }
+  return end;
+}
+
+static dea_status advance(struct dea_context *ctx, struct dea_model *model,
+                          const struct dea_time_step *step, struct dea_load_point *out,
+                          double *error)
+{
+  const struct moment *now = &model->now;
+  *error = 0;
+  model->largest_q =
+      fmax(model->largest_q, fabs(model->trial.film.at.q - model->order->core.middle));
+  model->largest_V = fmax(model->largest_V, fabs(model->trial.circuit.voltage_V));
+  model->largest_J = fmax(model->largest_J, fabs(model->trial.circuit.supply_work_J));
+  const double longest =
+      dea_circuit_longest_step(&model->options.circuit, &now->circuit, step, model->largest_V);
+  const bool whole = !(step->length_s > 0) || step->length_s > longest;
+  const int end =
+      whole ? step_once(model, now, step, &model->trial) : step_twice(model, step, error);
+  if (end != DEA_REDUCED_OK) {
+    return dea_reduced_fail(ctx, model->order, end, step->source_voltage_V);
+  }
+  if (step->length_s > longest) { // whatever the answer, it is not to be relied on
+    *error = step->length_s / longest;
+  }
+  fill_moment(model, &model->trial, out);
+  return DEA_OK;
+}
+
+static void accept(struct dea_model *model)
+{
+  model->now = model->trial;
+}
+
+const struct dea_model_type dea_model_reduced = {
+    .name = "reduced",
+    .long_name = "reduced from 3D",
+    .any_layout = true,
+    .create = create,
+    .destroy = destroy,
+    .solve = solve,
+    .observe = observe,
+    .errors = errors,
+    .compliance = compliance,
+    .respond = respond,
+    .answers = answers,
+    .begin = begin,
+    .advance = advance,
+    .accept = accept,
+};

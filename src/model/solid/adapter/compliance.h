@@ -1,0 +1,13 @@
+/* How a coordinate of a solid and its charge change with a force along the coordinate and with the
+ * voltage (docs/theory/reduced-model.md). */
+#pragma once
+
+#include "model/model.h"
+#include "model/solid/assembly/solid.h"
+
+/* At the solid's last equilibrium, at a voltage. slope: of the coordinate by the unknowns [dofs];
+ * copies: of the solid in the device. Fills all of out but value and force; the frequency of a
+ * solid without mass is NAN. */
+dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
+                               double voltage_V, const double *slope, bool with_mass,
+                               struct dea_compliance *out);
