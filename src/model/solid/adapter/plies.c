@@ -63,20 +63,17 @@ static void find_thinnest(const struct dea_layout_mesh *mesh, struct dea_plies *
 {
   const struct dea_layout *l = mesh->layout;
   double ratio = 1e-3;
-  out->thinnest_m = out->flat_m = INFINITY;
+  out->thinnest_m = INFINITY;
   for (size_t i = l->ply_count; i-- > 0;) {
     if (mesh->dielectric[i]) {
-      const double layers = (double)dea_ply_layers(&l->plies[i]);
       out->film = i;
       out->thinnest_m = fmin(out->thinnest_m, dea_ply_layer_m(&l->plies[i]));
-      out->flat_m = fmin(out->flat_m, l->plies[i].thickness_m / layers);
     }
   }
   for (size_t k = 1; k < l->channel_count; k++) {
     ratio = fmax(ratio, fabs(l->channels[k].ratio));
   }
   out->thinnest_m /= ratio;
-  out->flat_m /= ratio;
 }
 
 dea_status dea_plies_create(struct dea_context *ctx, const struct dea_layout_mesh *mesh,

@@ -12,7 +12,6 @@ struct dea_plies {
   double *leakage_per_s; // of films, see circuit_step.h
   size_t film;           // the first dielectric ply, or the first of all
   double thinnest_m;     // least unstretched thickness of dielectric layers over their voltage
-  double flat_m;         // the same as they are in the flat state
 };
 
 /* memory: of the arrays. DEA_E_DESIGN for a material that a ply cannot be of, DEA_E_DOMAIN where

@@ -122,32 +122,14 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
   return DEA_OK;
 }
 
-static bool is_same(const struct dea_control *a, const struct dea_control *b)
+/* That it has gone past a limit point of the control, where it has moved to what that was set to.
+ */
+static dea_status say_passed(struct dea_context *ctx, struct dea_model *model,
+                             const struct dea_control *control, double limit)
 {
-  return a->kind == b->kind && a->body == b->body && a->component == b->component &&
-         a->column == b->column;
-}
-
-/* After the way of a control that succeeded; from: the state before. */
-static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
-                               const struct dea_control *control, double from_value, double value,
-                               const struct dea_solid_saved_state *from)
-{
-  struct dea_step_outcome *outcome = &model->at.outcome;
   bool force = control->kind == DEA_CONTROL_FORCE || control->kind == DEA_CONTROL_CONJUGATE,
        turns = control->component >= 3;
-  double share;
-  if (!is_same(control, &model->moved)) {
-    outcome->rate[1] = 0;
-  }
-  model->moved = *control;
-  DEA_TRY(ctx, dea_step_outcome_watch(ctx, outcome, value - from_value, from, &share));
-  dea_solid_model_note_states(model, !isnan(share));
-  if (isnan(share)) {
-    return DEA_OK;
-  }
-  double limit = from_value + share * (value - from_value);
-  outcome->passed.point.force_N = force && !turns ? limit : NAN;
+  model->at.outcome.passed.point.force_N = force && !turns ? limit : NAN;
   return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
                          "model 3d: at %.4g kV it leaps past a limit point at %.6g %s to another "
                          "state",
@@ -155,22 +137,6 @@ static dea_status look_at_move(struct dea_context *ctx, struct dea_model *model,
                          !force  ? "of the control"
                          : turns ? "mN m"
                                  : "mN");
-}
-
-/* To what the control has been set to. */
-static dea_status follow_control(struct dea_context *ctx, struct dea_model *model,
-                                 const struct dea_control *control, double from_value, double value)
-{
-  struct dea_solid_saved_state from;
-  dea_status status = dea_solid_save_state(ctx, model->solid, &from);
-  if (status == DEA_OK) {
-    status = dea_solid_reach(ctx, model->solid, model->at.voltage_V, &model->at.report);
-  }
-  if (status == DEA_OK && !model->at.report.snapped) {
-    status = look_at_move(ctx, model, control, from_value, value, &from);
-  }
-  dea_solid_saved_state_free(&from);
-  return status;
 }
 
 /* A limit point of the control at a value. */
@@ -202,23 +168,27 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
                                 struct dea_load_point *out)
 {
   char why[200];
+  double share;
   DEA_TRY(ctx, check_control(ctx, model, control, value));
   dea_solver_state_end_history(ctx, &model->at);
   double from = where_control_is(model, control);
   DEA_TRY(ctx, set_control(ctx, model, control, value));
-  dea_status status = follow_control(ctx, model, control, from, value);
+  dea_status status = dea_step_outcome_move(ctx, &model->at.outcome, &model->at.report, &share);
+  const double limit = from + share * (value - from);
   if (status != DEA_OK) {
     double reached = from + model->at.report.way * (value - from);
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
     DEA_TRY(ctx, set_control(ctx, model, control, reached));
     if (status == DEA_E_NO_EQUILIBRIUM) {
-      return fail_at_limit(ctx, model, control, from + model->at.report.limit * (value - from));
+      return fail_at_limit(ctx, model, control, limit);
     }
     return dea_fail(ctx, status, "stopped %.3g of the way to the next value (%s)",
                     model->at.report.way, why);
   }
-  if (model->at.report.snapped) {
-    dea_solid_model_note_states(model, true);
+  dea_solid_model_note_states(model, model->at.report.snapped);
+  if (!isnan(share)) {
+    DEA_TRY(ctx, say_passed(ctx, model, control, limit));
+  } else if (model->at.report.snapped) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
                                  "model 3d: a state at %.4g kV is unstable (buckling or snapping) "
                                  "under this load; it goes on from the stable one below it",

@@ -402,7 +402,6 @@ static dea_status make(struct dea_context *ctx, const struct dea_device *device,
       .tension_scale_N_per_m =
           dea_part_material_modulus(&model->plies.part_materials[model->plies.film]) *
           film->thickness_m,
-      .flat_thickness_m = model->plies.flat_m,
       .refinement = model->settings.refinement,
       .membrane = model->mesh.membrane};
   return DEA_OK;

@@ -46,15 +46,14 @@ struct dea_model {
   struct dea_surface **surfaces;   // [pressure_count]
   struct dea_solid *solid;
   struct dea_observer *observer;
-  int *follows;             // [nodes] body that a node moves with, counted from 1; 0: none
-  int *on_side;             // [nodes of the mesh] components that the sides of a sector hold
-  double copies;            // of the sector in the device
-  bool *on;                 // [nodes of the plane mesh] for who marks them
-  size_t mesh_node_count;   // without those of bodies
-  double pressure_factor;   // on all pressures
-  double *rest;             // u [3 node_count] where it was released, and multipliers there
-  bool rest_is_one_of;      // several states there
-  struct dea_control moved; // of the last move
+  int *follows;           // [nodes] body that a node moves with, counted from 1; 0: none
+  int *on_side;           // [nodes of the mesh] components that the sides of a sector hold
+  double copies;          // of the sector in the device
+  bool *on;               // [nodes of the plane mesh] for who marks them
+  size_t mesh_node_count; // without those of bodies
+  double pressure_factor; // on all pressures
+  double *rest;           // u [3 node_count] where it was released, and multipliers there
+  bool rest_is_one_of;    // several states there
   struct dea_model_moved *controls;  // [body_count] components that moves have set
   struct dea_model_pull pull;        // the force conjugate to a coordinate
   struct dea_model_variant *variant; // a changed device is under the solid; NULL: its own

@@ -146,7 +146,7 @@ dea_status dea_solid_model_arrived(struct dea_context *ctx, void *self, double v
 {
   struct dea_model *model = self;
   model->at.voltage_V = voltage_V;
-  dea_solid_model_note_states(model, model->at.report.snapped || model->at.outcome.leapt);
+  dea_solid_model_note_states(model, model->at.report.snapped);
   DEA_TRY(ctx, take_side(ctx, model));
   return DEA_OK;
 }

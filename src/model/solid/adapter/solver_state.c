@@ -411,7 +411,6 @@ dea_status dea_solver_state_load(struct dea_context *ctx, struct dea_model *mode
     return dea_fail(ctx, DEA_E_ARGUMENT, "the state is not one of model 3d");
   }
   solver_state->as_made = false;
-  solver_state->outcome.rate[0] = 0; // there is no step before
   DEA_TRY(ctx, dea_solid_load(ctx, solver_state->outcome.owner.solid, state));
   solver_state->voltage_V = own[VOLTAGE];
   solver_state->left_a_state = own[LEFT_A_STATE] != 0;

@@ -11,14 +11,8 @@
 /* More area at once than this, and a limit point may have been passed: along a path that goes on
  * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
 static const double branch_jump = 1.5;
-/* Neither does what moves so many times as far by its way as in the step before. */
-static const double rush = 5;
-
-static double area_of(const struct dea_step_outcome *e, const struct dea_solid_extremes *film)
-{
-  double V = dea_solid_voltage(e->owner.solid);
-  return V > 0 ? film->true_field_V_per_m * e->owner.flat_thickness_m / V : 1;
-}
+static const double no_tension =
+    1e-6; // of the scale: a membrane that is slack has none to rounding
 
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
  * largest area stretch. */
@@ -30,7 +24,7 @@ static dea_status look_at_tension(struct dea_context *ctx, struct dea_step_outco
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated on the way");
   }
-  e->area = area_of(e, &film);
+  e->area = film.area;
   for (int i = 0; i < 2 && V != e->tension_V[2]; i++) {
     e->tension[i] = e->tension[i + 1];
     e->tension_V[i] = e->tension_V[i + 1];
@@ -40,11 +34,10 @@ static dea_status look_at_tension(struct dea_context *ctx, struct dea_step_outco
   return DEA_OK;
 }
 
-/* Whether the film carries tension all over where it was looked at last: a membrane that is slack
- * has none to rounding. */
+/* Whether the film carries tension all over where it was looked at last. */
 static bool is_taut(const struct dea_step_outcome *e)
 {
-  return e->tension[2] > 1e-6 * e->owner.tension_scale_N_per_m;
+  return e->tension[2] > no_tension * e->owner.tension_scale_N_per_m;
 }
 
 /* The point where the solid is, as the event at which a solve ends. */
@@ -98,8 +91,8 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   struct dea_step_outcome *e = user;
   double V = dea_solid_voltage(e->owner.solid);
   bool before = is_taut(e);
-  bool thins = before || e->leapt; // where it turns unstable: in one place
-  if (where == DEA_STOP_LIMIT && e->keeps) {
+  bool thins = before || e->grew; // where it turns unstable: in one place
+  if (where == DEA_STOP_LIMIT && !e->has_passed) {
     drop_limit(e);
     DEA_TRY(ctx, dea_solid_save_state(ctx, e->owner.solid, &e->at_limit));
   }
@@ -107,7 +100,7 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
     e->limited = false;
     return look_at_tension(ctx, e);
   }
-  if (where == DEA_STOP_NEAR && !e->leapt) {
+  if (where == DEA_STOP_NEAR && !e->grew) {
     bool slack;
     dea_status status = see_slack_beyond(ctx, e, &slack);
     if (status != DEA_OK || slack) { // it has no tension there
@@ -121,9 +114,9 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
     return DEA_OK;
   }
   DEA_TRY(ctx, look_at_tension(ctx, e));
-  if (before && !is_taut(e)) {
+  if (before && !is_taut(e) && !e->limited) {
     const double first_V = e->tension_V[1], last_V = e->tension_V[2];
-    const bool compressed = e->tension[2] < -1e-6 * e->owner.tension_scale_N_per_m;
+    const bool compressed = e->tension[2] < -no_tension * e->owner.tension_scale_N_per_m;
     const double at_V = slack_V(e, compressed ? 1 : 0); // a membrane has none from there on
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));
     e->limit.point.voltage_V = fmin(fmax(at_V, fmin(first_V, last_V)), fmax(first_V, last_V));
@@ -131,26 +124,23 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
   return DEA_OK;
 }
 
-static dea_status has_grown(struct dea_context *ctx, void *user, bool *grew)
+static dea_status see_change(struct dea_context *ctx, void *user, struct dea_solid_change *out)
 {
-  const struct dea_step_outcome *e = user;
+  struct dea_step_outcome *e = user;
   struct dea_solid_extremes film;
   dea_status status = dea_solid_extremes(e->owner.solid, e->owner.films, &film);
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated on the way");
   }
-  *grew = area_of(e, &film) > branch_jump * fmax(e->area, 1);
+  out->grew = film.area > branch_jump * fmax(e->area, 1);
+  e->grew |= out->grew;
+  out->taut = film.min_tension_N_per_m > no_tension * e->owner.tension_scale_N_per_m;
   return DEA_OK;
 }
 
 static bool was_taut(const void *user)
 {
   return is_taut(user);
-}
-
-static struct dea_solid_watch watch_of(struct dea_step_outcome *e)
-{
-  return (struct dea_solid_watch){see_point, has_grown, was_taut, e};
 }
 
 /* A film without tension that turned unstable, or that has lost it on the way that ended here. */
@@ -226,170 +216,57 @@ static dea_status stopped(struct dea_context *ctx, struct dea_step_outcome *e, d
                   1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
 }
 
-static dea_status say_branch_jump(struct dea_context *ctx, const struct dea_step_outcome *e,
-                                  double voltage_V, double before)
+/* To a voltage, and what else the solid is to come to. *passed: past a limit point, at e->limit. */
+static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, double voltage_V,
+                           struct dea_solid_report *report, struct dea_solid_stop *stop,
+                           bool *passed)
 {
-  if (e->has_passed) {
-    return dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->passed);
-  }
-  return dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
-                         "model 3d: from %.6g to %.6g kV the film's area grows at once, from %.3g "
-                         "to %.3g times that of the flat film: there may be pull-in between, and "
-                         "this be a state beyond it (smaller steps of compute.voltage tell)",
-                         1e-3 * e->from_V, 1e-3 * voltage_V, before, e->area);
-}
-
-/* Looks for a limit point between there and where the solid is. *share: of the way to it, NAN:
- * there is none, or a point on the way cannot be looked at, as where the law ends. *flat: the
- * solid, which was bent, is in the flat state now, which *report is of. */
-static dea_status detect_missed_limit_point(struct dea_context *ctx, struct dea_step_outcome *e,
-                                            const struct dea_solid_saved_state *from, bool leapt,
-                                            struct dea_solid_report *report, bool *flat,
-                                            double *share)
-{
-  struct dea_solid_stop stop;
-  const struct dea_solid_watch watch = watch_of(e);
-  const struct dea_step_outcome kept = *e; // what the points of the path change
-  e->limited = false;
-  e->leapt = leapt;
-  e->tension[2] = e->tension[1]; // as the path begins
-  e->tension_V[2] = e->tension_V[1];
-  dea_status status = dea_solid_detect_missed_limit_point(ctx, e->owner.solid, from, leapt, &watch,
-                                                          report, &stop, flat);
-  const bool looked = status == DEA_OK;
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  DEA_TRY(ctx, status);
-  struct dea_event found = e->limit;
-  const struct dea_solid_saved_state at_limit = e->at_limit;
-  bool passed =
-      looked && stop.kind != DEA_STOP_UNKNOWN && e->limited && found.kind != DEA_EVENT_SLACK;
-  *e = kept;
-  e->at_limit = at_limit;
-  *share = passed ? stop.way : NAN;
-  if (passed) {
-    e->passed = found;
-    e->has_passed = true;
-  }
-  return DEA_OK;
-}
-
-/* Whether the last step moved much farther by its way than the one before; keeps what it did. */
-static bool rushes(struct dea_step_outcome *e, double *rate, double way,
-                   const struct dea_solid_saved_state *from)
-{
-  double before = *rate;
-  *rate = way != 0 ? dea_solid_moved_m(e->owner.solid, from) / fabs(way) : 0;
-  return before > 0 && *rate > rush * before;
-}
-
-/* A membrane that thins at once has no tension in that place, where nothing but the end of its law
- * holds its natural width (docs/theory/membrane.md): that is no state of the film. */
-static dea_status refuse_branch_jump(struct dea_context *ctx, struct dea_step_outcome *e,
-                                     double voltage_V, const struct dea_solid_saved_state *from)
-{
-  char stretch[60] = ""; // of a disc
-  double area = e->area;
-  e->limit = e->passed;
-  e->limited = true;
-  e->has_passed = false;
-  e->rate[0] = 0;
-  dea_solid_restore_state(e->owner.solid, from);
+  const struct dea_solid_watch watch = {see_point, see_change, was_taut, e};
+  e->from_V = dea_solid_voltage(e->owner.solid);
+  e->limited = e->grew = *passed = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
-  if (!isnan(e->limit.point.electrode_stretch)) {
-    snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
-             e->limit.point.electrode_stretch);
+  const bool taut = is_taut(e);
+  dea_status status =
+      dea_solid_solve_incremental(ctx, e->owner.solid, voltage_V, taut, &watch, report, stop);
+  if (status != DEA_OK) {
+    return status;
   }
-  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
-                  "pull-in at %.6g kV%s: beyond it the film has no tension in one place and thins "
-                  "there to the end of its law (to 1/%.3g at %.6g kV)",
-                  1e-3 * e->limit.point.voltage_V, stretch, area, 1e-3 * voltage_V);
-}
-
-/* Where a load step has come to, from a film that was so taut and had that area. On its way it may
- * have followed its path past pull-in and gone down from there. */
-static dea_status look_at_step(struct dea_context *ctx, struct dea_step_outcome *e,
-                               double voltage_V, const struct dea_solid_saved_state *from,
-                               bool taut, double before, struct dea_solid_report *report)
-{
-  double share = NAN, from_V = e->from_V;
-  bool flat = false;
-  const bool seen = e->limited && e->limit.kind == DEA_EVENT_PULL_IN;
-  e->limited = false;
-  DEA_TRY(ctx, look_at_tension(ctx, e));
-  bool thins = from_V >= 0 && voltage_V > from_V && e->area > branch_jump * fmax(before, 1);
-  bool rushed = rushes(e, &e->rate[0], voltage_V * voltage_V - from_V * from_V, from);
-  bool bent = dea_solid_left_plane(e->owner.solid, from, e->owner.flat_thickness_m);
-  bool left_branch = voltage_V != from_V && dea_solid_left_branch(e->owner.solid, from);
-  if (seen && (thins || (taut && report->snapped))) {
+  *passed = e->limited && e->limit.kind != DEA_EVENT_SLACK && taut && report->snapped;
+  if (*passed && !e->has_passed) {
     e->passed = e->limit;
     e->has_passed = true;
-  } else if (thins ||
-             (taut && is_taut(e) && (bent || ((rushed || left_branch) && !report->snapped)))) {
-    DEA_TRY(ctx, detect_missed_limit_point(ctx, e, from, thins, report, &flat, &share));
   }
-  if (flat) { // it has gone past nothing
-    DEA_TRY(ctx, look_at_tension(ctx, e));
-    return DEA_OK;
+  if (!e->has_passed) {
+    drop_limit(e);
   }
-  report->snapped |= bent; // if also straight to a stable state
-  if (thins && e->has_passed && e->owner.membrane && !is_taut(e)) {
-    return refuse_branch_jump(ctx, e, voltage_V, from);
-  }
-  e->leapt = thins || !isnan(share);
-  return e->leapt ? say_branch_jump(ctx, e, voltage_V, before) : DEA_OK;
+  e->limited = false;
+  return look_at_tension(ctx, e);
 }
 
 /* One load step. */
-static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, double from_V,
-                       double voltage_V, struct dea_solid_report *report)
+static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, double voltage_V,
+                       struct dea_solid_report *report)
 {
-  struct dea_solid_saved_state from;
   struct dea_solid_stop stop;
-  const struct dea_solid_watch watch = watch_of(e);
-  e->from_V = from_V;
-  e->limited = e->leapt = false;
-  DEA_TRY(ctx, look_at_tension(ctx, e));
-  const bool taut = is_taut(e);
-  const double area = e->area; // points on the way have their own
-  dea_status status = dea_solid_save_state(ctx, e->owner.solid, &from);
-  if (status == DEA_OK) {
-    e->keeps = !e->has_passed;
-    status =
-        dea_solid_solve_incremental(ctx, e->owner.solid, voltage_V, taut, &watch, report, &stop);
-    e->keeps = true;
-    if (status != DEA_OK) {
-      e->rate[0] = 0;
-      status = dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM
-                   ? stopped(ctx, e, voltage_V, &stop, status)
-                   : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-    } else {
-      status = look_at_step(ctx, e, voltage_V, &from, taut, area, report);
-    }
-    e->keeps = false;
+  bool passed;
+  dea_status status = approach(ctx, e, voltage_V, report, &stop, &passed);
+  if (dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM) {
+    return stopped(ctx, e, voltage_V, &stop, status);
   }
-  if (status == DEA_OK && !e->has_passed) {
-    drop_limit(e);
-  }
-  dea_solid_saved_state_free(&from);
-  return status;
+  DEA_TRY(ctx, status);
+  return passed ? dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->limit) : DEA_OK;
 }
 
-dea_status dea_step_outcome_watch(struct dea_context *ctx, struct dea_step_outcome *e, double way,
-                                  const struct dea_solid_saved_state *from, double *share)
+dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcome *e,
+                                 struct dea_solid_report *report, double *share)
 {
-  *share = NAN;
+  struct dea_solid_stop stop = {.way = NAN};
+  bool passed;
   e->has_passed = false;
-  e->from_V = dea_solid_voltage(e->owner.solid);
-  DEA_TRY(ctx, look_at_tension(ctx, e));
-  if (rushes(e, &e->rate[1], way, from) && is_taut(e)) {
-    struct dea_solid_report report;
-    bool flat;
-    DEA_TRY(ctx, detect_missed_limit_point(ctx, e, from, false, &report, &flat, share));
-  }
-  return DEA_OK;
+  drop_limit(e);
+  dea_status status = approach(ctx, e, dea_solid_voltage(e->owner.solid), report, &stop, &passed);
+  *share = passed || status == DEA_E_NO_EQUILIBRIUM ? stop.way : NAN;
+  return status;
 }
 
 /* Where the way to a voltage has turned unstable and the solid has gone down from it. */
@@ -416,7 +293,7 @@ dea_status dea_step_outcome_go(struct dea_context *ctx, struct dea_step_outcome 
                       1e-3 * voltage_V);
     }
     double next_V = i == steps ? voltage_V : from_V + way * i / steps;
-    DEA_TRY(ctx, step(ctx, e, at_V, next_V, report));
+    DEA_TRY(ctx, step(ctx, e, next_V, report));
     at_V = next_V;
     DEA_TRY(ctx, report->snapped ? say_snap(ctx, at_V) : DEA_OK);
     DEA_TRY(ctx, e->owner.arrived(ctx, e->owner.model, at_V));

@@ -18,7 +18,6 @@ struct dea_step_outcome_owner {
   dea_status (*arrived)(struct dea_context *ctx, void *model, double voltage_V);
   double step_V;                // a longer way is gone in such load steps
   double tension_scale_N_per_m; // what is small against that is none
-  double flat_thickness_m;      // of the flat film where the field is largest
   double refinement;            // of the mesh
   bool membrane;
 };
@@ -30,13 +29,10 @@ struct dea_step_outcome {
   struct dea_event limit;  // where the last way came to its end
   bool limited;            // it is known
   struct dea_event passed; // a limit point that the last way has gone past to another state
-  bool keeps;              // the state at one of both that was located is wanted
   struct dea_solid_saved_state
-      at_limit;    // there, of `passed` where that is known; state NULL: none was
-  bool has_passed; // it is known
-  bool leapt;      // on the last step the film may have gone past one
-  double rate[2]; // motion of the last step over its way, of the voltage and of another control; 0:
-                  // none
+      at_limit;                    // there, of `passed` where that is known; state NULL: none was
+  bool has_passed;                 // it is known
+  bool grew;                       // the film has at once, on the last step
   double tension[3], tension_V[3]; // smallest of the film [N/m], at the last points looked at
   double area;                     // largest area stretch at the last of them
 };
@@ -53,8 +49,7 @@ const struct dea_event *dea_step_outcome_limit(const struct dea_step_outcome *ou
  */
 const struct dea_event *dea_step_outcome_passed(const struct dea_step_outcome *outcome);
 
-/* Before and after a step of another control than the voltage, of such a way: as a way to a voltage
- * it may leap past a limit point. *share: of the way to it, NAN where there was none. */
-dea_status dea_step_outcome_watch(struct dea_context *ctx, struct dea_step_outcome *outcome,
-                                  double way, const struct dea_solid_saved_state *from,
-                                  double *share);
+/* The same to the other controls that the solid is asked for, at its voltage. *share: of the way to
+ * the limit point that it has passed, or at which it ends (DEA_E_NO_EQUILIBRIUM); NAN: none. */
+dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcome *outcome,
+                                 struct dea_solid_report *report, double *share);

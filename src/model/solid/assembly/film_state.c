@@ -200,6 +200,7 @@ static dea_status field_of(const struct dea_solid *s, size_t e,
     double stretch = data->pre_stretch * sqrt(film.area[p]);
     double margin = 1 - field / dea_breakdown_field(data->material, stretch);
     out->true_field_V_per_m = fmax(out->true_field_V_per_m, field);
+    out->area = fmax(out->area, film.area[p]);
     out->breakdown_margin = fmin(out->breakdown_margin, margin);
     out->breakdown_probability = fmax(
         out->breakdown_probability, dea_breakdown_probability(&data->material->breakdown, margin));
@@ -382,6 +383,7 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
     return status;
   }
   out->true_field_V_per_m = dea_solid_largest(out->true_field_V_per_m);
+  out->area = dea_solid_largest(out->area);
   out->breakdown_margin = -dea_solid_largest(-out->breakdown_margin);
   out->breakdown_probability = largest_known(out->breakdown_probability);
   out->min_tension_N_per_m = -dea_solid_largest(-out->min_tension_N_per_m);

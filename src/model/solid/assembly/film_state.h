@@ -13,6 +13,7 @@ dea_status dea_solid_capacitance(struct dea_context *ctx, struct dea_solid *soli
  * counts. */
 struct dea_solid_extremes {
   double true_field_V_per_m;    // largest V over the current thickness
+  double area;                  // largest stretch of area between electrodes, of the flat film
   double breakdown_margin;      // smallest; NAN when unknown
   double breakdown_probability; // largest; NAN when unknown
   /* Smallest principal membrane force per current length: of a dielectric ply and electrodes of a

@@ -154,8 +154,7 @@ struct dea_solid_found {
   bool factor_fits;        // work.factor is of K at the last equilibrium, positive definite
   bool stiff_factor_fits;  // it is so of K with the raised kappa; until the next factor
   bool factor_before;      // either is of the state before the last step to this one
-  bool predicts_tangent, extrapolated; // work.foreseen is to be found; it is there
-  double extrapolated_V;               // where it leads
+  bool predicts_tangent, extrapolated; // work.extrapolated is to be found; it is there
 };
 
 struct dea_solid {

@@ -70,9 +70,7 @@
   X(double, left_branch, 1, "of what the tangent foresees",                                        \
     "off it, at most, up to a limit point")                                                        \
   X(double, limit_close, 0.1, "of the displacement", "to a state that lies beyond a limit point")  \
-  X(double, branch_jump_way, 1e-3, "of the way",                                                   \
-    "to a limit point that the path does not get around")                                          \
-  X(double, branch_jump_jump, 0.25, "of the whole", "motion that is left there, at least")         \
+  X(double, branch_jump_way, 1e-3, "of the way", "to which load steps close in on where they end") \
   X(int, descent_modes, 4, "1", "unstable modes that are left one after the other")                \
   X(double, descent_push, 0.05, "of the solid's length", "first push along a mode")                \
   X(double, descent_equal, 1e-6, "of the fall", "energies of two sides that count as equal")       \

@@ -77,7 +77,6 @@ struct dea_solid_report {
   double theta_max;            // largest projected J - 1 left
   double load_error;           // largest constraint violation of a load over the one it allows
   double way;                  // share of the way to what was asked for; 1 unless the solve failed
-  double limit;                // that of the limit point at which it ends, where that is the status
 };
 
 /* grid: lent, outlives the solid. out: owned by the caller, NULL on failure. */

@@ -340,6 +340,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
     status = descend_if_possible(ctx, s, report);
   }
   if (status != DEA_OK) {
+    s->found.predicts_tangent = false; // of the whole way only
     dea_solid_state_set(s, path->keep);
     dea_solid_controls_set(s, path->controls);
     return status;
@@ -451,25 +452,23 @@ dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid
                                        double voltage_V, double least,
                                        struct dea_solid_report *report)
 {
-  struct dea_load_steps *path = &s->work.load_steps;
+  const struct dea_load_steps *path = &s->work.load_steps;
   *report = (struct dea_solid_report){0};
-  DEA_TRY(ctx, dea_solid_check(ctx, s));
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  dea_solid_controls_get(s, path->controls);
   dea_solid_controls_goal(s, voltage_V, path->controls_goal);
-  memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
-  DEA_TRY(ctx, solve_in_steps(ctx, s, least, report));
-  return dea_solid_spread(ctx, s, report);
+  return dea_load_steps_solve_to(ctx, s, path->controls_goal, least, report);
 }
 
 dea_status dea_load_steps_solve_to(struct dea_context *ctx, struct dea_solid *s, const double *goal,
-                                   struct dea_solid_report *report)
+                                   double least, struct dea_solid_report *report)
 {
   struct dea_load_steps *path = &s->work.load_steps;
+  const size_t size = path->control_count * sizeof(double);
   *report = (struct dea_solid_report){0};
   DEA_TRY(ctx, dea_solid_check(ctx, s));
   dea_solid_controls_get(s, path->controls);
-  memcpy(path->controls_goal, goal, path->control_count * sizeof(double));
-  memcpy(path->controls_from, path->controls, path->control_count * sizeof(double));
-  return solve_in_steps(ctx, s, 1, report);
+  memmove(path->controls_goal, goal, size);
+  memcpy(path->controls_from, path->controls, size);
+  DEA_TRY(ctx, solve_in_steps(ctx, s, least, report));
+  return dea_solid_spread(ctx, s, report);
 }

@@ -16,10 +16,11 @@ dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid
                                        double voltage_V, double least,
                                        struct dea_solid_report *report);
 
-/* In one step to the controls `goal` [control_count], as dea_solid_controls_goal orders them; the
- * path is prepared. Where it fails the solid stays. */
+/* The same to the controls `goal` [control_count], as dea_solid_controls_goal orders them; memory
+ * for them is prepared. */
 dea_status dea_load_steps_solve_to(struct dea_context *ctx, struct dea_solid *solid,
-                                   const double *goal, struct dea_solid_report *report);
+                                   const double *goal, double least,
+                                   struct dea_solid_report *report);
 
 /* From an unstable equilibrium down along its most unstable mode v to a stable one, at the same
  * voltage and loads. side: 1 along v, -1 against it, 0 where the energy is lower (along v when that

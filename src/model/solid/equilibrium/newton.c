@@ -497,7 +497,6 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
   struct newton d = {.voltage_V = s->state.voltage_V, .report = report};
   double energy, there = 0;
   s->found.factor_fits = s->found.predicted_fits = false;
-  dea_solid_predict_tangent(s, NULL);
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   s->work.takes_increment = true;
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
@@ -514,6 +513,7 @@ dea_status dea_solid_prescribed_increment(struct dea_context *ctx, struct dea_so
       for (size_t i = 0; i < s->problem.dofs; i++) {
         s->work.step[i] = s->work.trial[i] - s->state.u[i];
       }
+      dea_solid_predict_tangent(s, length == 1 ? s->work.step : NULL);
       return take_step(ctx, s, &d, 1, true);
     }
   }

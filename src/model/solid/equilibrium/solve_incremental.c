@@ -10,25 +10,29 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One search for the cause, and where it starts. */
+/* To controls that are wanted. */
 struct search {
   struct dea_solid *s;
-  double *state, *from, *goal; // state and controls at its start, controls that are wanted
   const struct dea_solid_watch *watch;
   struct dea_solid_report *report;
   struct dea_solid_stop *stop;
-  struct dea_solid_saved_state start; // where the approach began
-  struct dea_solid_saved_state limit; // where the path turns back, once that is known
-  bool slack;                         // the film has no tension all over where it began
-  bool leapt;                         // a load step has gone past a limit point to another state
-  bool snapped;                       // the solid has, on the way, to one that is not close by
-  bool went_on;                       // the solid is at a stable equilibrium further on
-  bool looks;     // it is known where the solid goes, and only asked what is on the way
-  bool bent;      // it looks from a flat film to one that is no more
-  bool left;      // its path has led out of the plane of a flat film, so that load steps may
-  bool stuck;     // the path could not be followed to its end; where it looks the solid stays there
-  double reached; // share of the way of the last point of the path
+  double *begin, *goal;               // [control_count] of the first equilibrium; wanted
+  double *at, *bad, *next;            // [control_count] of a load step; where one failed; work
+  struct dea_solid_saved_state start; // the equilibrium that load steps or the path begin at
+  struct dea_solid_saved_state limit; // where the path turns back or turns unstable
+  bool taut;                          // the film has tension all over where it began
+  bool snapped;                       // the solid has, on the way, to a state that is not close by
+  bool leapt;                         // a load step has, past a limit point
+  bool went_on, arrived;              // the path leads to a stable equilibrium; that is the goal's
+  bool left;                          // it may lead out of the plane of a flat film
 };
+
+/* The equilibrium that the solid is at is where what follows begins. */
+static void start_here(struct search *a)
+{
+  dea_solid_state_get(a->s, a->start.state);
+  dea_solid_controls_get(a->s, a->start.controls);
+}
 
 /* The sink looks at where the solid is. */
 static dea_status see(struct dea_context *ctx, const struct search *a,
@@ -37,18 +41,14 @@ static dea_status see(struct dea_context *ctx, const struct search *a,
   return a->watch != NULL ? a->watch->points(ctx, a->watch->user, where) : DEA_OK;
 }
 
-/* Whether a film without tension has grown at once to where the solid is: nothing but the end of
- * its law holds it there, so that it is no state (docs/theory/membrane.md). steps: what brought it
- * there, which may have failed further on; returned if this look does not fail. */
-static dea_status see_growth(struct dea_context *ctx, const struct search *a, dea_status steps,
-                             bool *grew)
+/* How the film has changed from the last point that the sink has looked at to where the solid is. A
+ * slack one that has grown at once is in no state: nothing but the end of its law holds it there
+ * (docs/theory/membrane.md). A taut one may have gone past a limit point. */
+static dea_status see_change(struct dea_context *ctx, const struct search *a,
+                             struct dea_solid_change *out)
 {
-  *grew = false;
-  if (!a->slack || a->watch == NULL || (steps != DEA_OK && !dea_solid_may_shorten(steps))) {
-    return steps;
-  }
-  DEA_TRY(ctx, a->watch->grew(ctx, a->watch->user, grew));
-  return steps;
+  *out = (struct dea_solid_change){.taut = true};
+  return a->watch != NULL ? a->watch->change(ctx, a->watch->user, out) : DEA_OK;
 }
 
 // Flat films -------------------------------------------------------------------------------------
@@ -95,25 +95,39 @@ static bool is_deflected(struct dea_solid *s, double size_m)
   return deflection_m(s, s->state.u) > deflected * size_m;
 }
 
-bool dea_solid_left_plane(struct dea_solid *s, const struct dea_solid_saved_state *from,
-                          double size_m)
+/* Whether a film that was flat at the start, and that the voltage does not push across, is no more.
+ * It does not push where the film was flat under one, or where the first linear step from 0 V
+ * leaves it flat. */
+static bool left_plane(const struct search *a)
 {
+  struct dea_solid *s = a->s;
+  const double size_m = s->problem.length_m;
   const bool pushed =
-      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a stand that was kept has its controls
-      from->controls[0] == 0 &&
+      // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a state that was saved has its
+      // controls
+      a->start.controls[0] == 0 &&
       !(s->found.extrapolated && is_flat(s, s->work.extrapolated, size_m));
-  return !pushed && is_flat(s, from->state, size_m) && is_deflected(s, size_m);
+  return !pushed && is_flat(s, a->start.state, size_m) && is_deflected(s, size_m);
+}
+
+/* Keeps that the path has led there. */
+static void see_plane(struct search *a)
+{
+  if (left_plane(a)) {
+    a->left = a->snapped = true;
+  }
 }
 
 // The path ----------------------------------------------------------------------------------------
 
-/* Root of the mean square of the nodes' displacements there. */
-static double size_m(const struct dea_solid *s, const struct dea_solid_saved_state *at)
+/* Root of the mean square of the nodes' displacements from others; NULL: from 0. */
+static double moved_m(const struct dea_solid *s, const double *u, const double *from)
 {
   size_t count = 3 * s->problem.grid->node_count;
   double sum = 0;
   for (size_t i = 0; i < count; i++) {
-    sum += at->state[i] * at->state[i];
+    const double by = from != NULL ? u[i] - from[i] : u[i];
+    sum += by * by;
   }
   return sqrt(3 * sum / (double)count);
 }
@@ -122,18 +136,14 @@ static double size_m(const struct dea_solid *s, const struct dea_solid_saved_sta
  * displacements that are there tell, which go with the square of the voltage. */
 static double unit_of(const struct dea_solid *s, const double *from, const double *goal)
 {
-  double sum = 0, before = from[0] * from[0], way = fabs(goal[0] * goal[0] - before);
-  size_t count = 3 * s->problem.grid->node_count;
-  for (size_t i = 0; i < count; i++) {
-    sum += s->state.u[i] * s->state.u[i];
-  }
-  double grown = sqrt(sum / (double)count) * (way < before ? way / before : 1);
+  double before = from[0] * from[0], way = fabs(goal[0] * goal[0] - before);
+  double grown = moved_m(s, s->state.u, NULL) / sqrt(3) * (way < before ? way / before : 1);
   return s->settings.approach_unit * fmax(grown, s->settings.approach_unit * s->problem.length_m);
 }
 
 /* The limit point or bifurcation that the last step has passed, or where it cannot be closed in on
  * that step. */
-static dea_status take_stop(struct dea_context *ctx, const struct search *a,
+static dea_status take_stop(struct dea_context *ctx, struct search *a,
                             enum dea_solid_stop_kind kind, struct dea_solid_continuation *path,
                             struct dea_continuation_point *at)
 {
@@ -150,8 +160,7 @@ static dea_status take_stop(struct dea_context *ctx, const struct search *a,
   a->stop->way = at->load;
   dea_solid_state_get(a->s, a->limit.state);
   dea_solid_controls_get(a->s, a->limit.controls);
-  DEA_TRY(ctx, see(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind));
-  return DEA_OK;
+  return see(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind);
 }
 
 /* From a point beyond the goal to the equilibrium at it, from an unstable one down. */
@@ -164,11 +173,15 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
     dea_solid_controls_set(s, a->goal);
   }
   dea_solid_forget(s);
-  bool grew;
-  dea_status status = see_growth(ctx, a, dea_solid_descend_unstable(ctx, s, 0, &report), &grew);
-  if (status == DEA_OK && report.unstable_modes == 0 && !grew) {
+  struct dea_solid_change change = {.grew = false};
+  dea_status status = dea_solid_descend_unstable(ctx, s, 0, &report);
+  if (status == DEA_OK) {
+    status = see_change(ctx, a, &change);
+  }
+  if (status == DEA_OK && report.unstable_modes == 0 && !change.grew) {
     *a->report = report;
     a->went_on = true;
+    a->arrived = at->load >= 1;
     return DEA_OK;
   }
   return status == DEA_OK ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "it stays unstable") : status;
@@ -221,14 +234,12 @@ static dea_status look_at_modes(struct dea_context *ctx, const struct search *a,
 static dea_status stay_flat(struct dea_context *ctx, struct search *a,
                             struct dea_solid_continuation *path)
 {
-  struct dea_solid *s = a->s;
   struct dea_continuation_point at;
   DEA_TRY(ctx, dea_solid_continuation_at(ctx, path, 1, &at));
-  dea_solid_controls_set(s, a->goal); // what rounding leaves of it
-  a->went_on = !is_deflected(s, s->problem.length_m);
-  a->report->unstable_modes = at.unstable_modes;
-  a->report->energy_J = at.energy_J;
-  a->report->snapped = false;
+  dea_solid_controls_set(a->s, a->goal); // what rounding leaves of it
+  a->went_on = a->arrived = true;
+  *a->report =
+      (struct dea_solid_report){.unstable_modes = at.unstable_modes, .energy_J = at.energy_J};
   return DEA_OK;
 }
 
@@ -237,7 +248,7 @@ static dea_status return_to_goal(struct dea_context *ctx, struct search *a)
 {
   *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_solid_restore_state(a->s, &a->limit);
-  DEA_TRY(ctx, dea_load_steps_solve_to(ctx, a->s, a->goal, a->report));
+  DEA_TRY(ctx, dea_load_steps_solve_to(ctx, a->s, a->goal, 1, a->report));
   a->went_on = a->report->unstable_modes == 0;
   return see(ctx, a, DEA_STOP_PASSED);
 }
@@ -253,24 +264,20 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
   int of_mesh = 0; // unstable modes that are no modes of the film
   for (int i = 0; i < (at.slope < bent * first ? 2 : 1) * points; i++) {
     DEA_TRY(ctx, dea_solid_continuation_step(ctx, path, &at));
-    a->reached = at.load;
     first = i == 0 ? at.slope : first;
     if (at.passed == DEA_CONTINUATION_LIMIT) {
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
-      return a->looks || a->stop->way < 1 ? DEA_OK : return_to_goal(ctx, a);
+      return a->stop->way < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
-    bool grew;
-    DEA_TRY(ctx, see_growth(ctx, a, DEA_OK, &grew));
-    DEA_TRY(ctx, grew ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path thins at once") : DEA_OK);
+    struct dea_solid_change change;
+    DEA_TRY(ctx, see_change(ctx, a, &change));
+    DEA_TRY(ctx,
+            change.grew ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path thins at once") : DEA_OK);
     DEA_TRY(ctx, see(ctx, a, DEA_STOP_UNKNOWN));
     DEA_TRY(ctx, look_at_modes(ctx, a, at.unstable_modes, &of_mesh));
     const bool unstable = at.unstable_modes > of_mesh;
-    if (a->looks && unstable) {
-      DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at));
-      return DEA_OK;
-    }
-    if (a->looks && at.load >= 1) {
-      return a->bent ? stay_flat(ctx, a, path) : DEA_OK;
+    if (at.load >= 1 && !unstable && of_mesh > 0 && !is_deflected(a->s, a->s->problem.length_m)) {
+      return stay_flat(ctx, a, path);
     }
     if (at.load >= 1 || unstable) {
       dea_status status = leave_path(ctx, a, &at);
@@ -278,8 +285,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
         return status;
       }
       dea_context_clear(ctx);
-      DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at));
-      return DEA_OK;
+      return take_stop(ctx, a, DEA_STOP_UNSTABLE, path, &at);
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path is long");
@@ -292,22 +298,19 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   const struct dea_solid_settings *o = &a->s->settings;
   struct dea_continuation_options options = {o->approach_step, o->approach_step_most, 0, true};
   struct dea_solid_continuation *path = NULL;
-  dea_solid_state_get(a->s, a->state);
-  dea_solid_controls_get(a->s, a->from);
-  options.unit_m = unit_of(a->s, a->from, a->goal);
-  a->went_on = a->stuck = false;
-  a->reached = 0;
+  start_here(a);
+  options.unit_m = unit_of(a->s, a->start.controls, a->goal);
+  a->went_on = false;
   *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_status status = dea_continuation_create_to(ctx, a->s, a->goal, &options, &path);
   if (status == DEA_OK) {
     status = follow(ctx, a, path);
   }
   dea_solid_continuation_destroy(ctx, path);
-  a->stuck = dea_solid_may_shorten(status);
-  if (!a->went_on && !(a->looks && a->stuck)) {
-    dea_solid_state_set(a->s, a->state);
-    dea_solid_controls_set(a->s, a->from);
-    dea_solid_forget(a->s);
+  if (a->went_on) {
+    see_plane(a);
+  } else {
+    dea_solid_restore_state(a->s, &a->start);
   }
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
@@ -316,59 +319,7 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   return status;
 }
 
-/* The first linear step on the way to that voltage is kept, for dea_solid_left_branch. */
-static void predict_tangent(struct dea_solid *s, double voltage_V)
-{
-  s->found.predicts_tangent = true;
-  s->found.extrapolated = false;
-  s->found.extrapolated_V = voltage_V;
-}
-
-/* With a coupled field a taut film is solved in a few iterations, or leaps. */
-static void take_fewer_iterations(struct dea_solid_settings *o)
-{
-  o->iterations = o->coupled_iterations < o->iterations ? o->coupled_iterations : o->iterations;
-  o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
-}
-
-/* A slack film has a long way down. */
-static void take_more_iterations(struct dea_solid_settings *o)
-{
-  o->iterations = o->slack_iterations;
-  o->iterations_free = o->slack_iterations_free;
-}
-
-/* Load steps, few and long ones. */
-static dea_status try_steps(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
-{
-  struct dea_solid_settings *o = &a->s->settings;
-  const struct dea_solid_settings own = *o;
-  if (!taut) {
-    take_more_iterations(o);
-  } else if (a->s->problem.field != NULL) {
-    take_fewer_iterations(o);
-  }
-  dea_status status =
-      dea_load_steps_solve_within(ctx, a->s, voltage_V, o->approach_part, a->report);
-  *o = own;
-  return status;
-}
-
-static bool has_left(const struct search *a)
-{
-  return dea_solid_left_plane(a->s, &a->start, a->s->problem.length_m);
-}
-
-/* Load steps that have failed may have leapt on the way, or have left the plane of a flat film,
- * which its tension holds there as long as the path has any and stays in it. */
-static void step_back(struct search *a, bool taut, bool grew)
-{
-  const bool left_branch = grew || (!a->report->snapped && dea_solid_left_branch(a->s, &a->start));
-  if (grew || (taut && (left_branch || (!a->left && has_left(a))))) {
-    dea_solid_restore_state(a->s, &a->start);
-    a->leapt |= left_branch;
-  }
-}
+// Load steps --------------------------------------------------------------------------------------
 
 /* Controls a share of the way: the square of the voltage, and all others, in proportion. */
 static void set_between(const struct dea_solid *s, const double *from, const double *goal,
@@ -380,187 +331,7 @@ static void set_between(const struct dea_solid *s, const double *from, const dou
   out[0] = sqrt((1 - share) * from[0] * from[0] + share * goal[0] * goal[0]);
 }
 
-static dea_status end_at_limit(struct dea_context *ctx, const struct search *a)
-{
-  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV", 1e-3 * a->stop->voltage_V);
-}
-
-/* Down in energy from the limit point that was found to a stable state a little beyond it. *beyond:
- * there is one, to which the film has not grown at once, and the solid is there; otherwise it is
- * where the search began. One that is close by is where a spot of the mesh has turned over. */
-static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool taut, bool *beyond)
-{
-  struct dea_solid *s = a->s;
-  struct dea_solid_saved_state limit;
-  struct dea_solid_report report = {0};
-  bool grew = true, close = false;
-  dea_solid_restore_state(s, &a->limit);
-  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &limit));
-  set_between(s, a->from, a->goal, fmin(a->stop->way + s->settings.load_step_least, 1),
-              a->limit.controls);
-  const struct dea_solid_settings own = s->settings;
-  if (!taut) {
-    take_more_iterations(&s->settings);
-  }
-  dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
-  s->settings = own;
-  if (status == DEA_OK && report.unstable_modes == 0) {
-    grew = false;
-    status = a->watch != NULL ? a->watch->grew(ctx, a->watch->user, &grew) : DEA_OK;
-    close = dea_solid_moved_m(s, &limit) < s->settings.limit_close * size_m(s, &limit);
-  }
-  memcpy(a->limit.controls, limit.controls,
-         s->work.load_steps.control_count * sizeof *limit.controls);
-  dea_solid_saved_state_free(&limit);
-  *beyond = status == DEA_OK && !grew;
-  if (*beyond) {
-    a->snapped |= !close || !taut;
-    s->found.extrapolated = false;
-    *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
-    return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
-  }
-  dea_solid_state_set(s, a->state);
-  dea_solid_controls_set(s, a->from);
-  dea_solid_forget(s);
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    status = DEA_OK;
-  }
-  return status;
-}
-
-// Closing in on where load steps end, of a path that cannot be followed ---------------------------
-
-/* One load step to a share of the way from a->from; *there: it has found a stable state and leapt
- * past no other, and *last then is there too. */
-static dea_status step_near(struct dea_context *ctx, struct search *a, double share,
-                            struct dea_solid_saved_state *last, bool *there)
-{
-  struct dea_solid *s = a->s;
-  struct dea_solid_report report = {0};
-  set_between(s, a->from, a->goal, share, a->limit.controls);
-  predict_tangent(s, a->limit.controls[0]);
-  dea_status status = dea_load_steps_solve_to(ctx, s, a->limit.controls, &report);
-  bool branch_jumps =
-      status == DEA_OK && !a->slack && !report.snapped && dea_solid_left_branch(s, last);
-  if (status == DEA_OK && a->slack) {
-    status = see_growth(ctx, a, DEA_OK, &branch_jumps);
-  }
-  *there = status == DEA_OK && report.unstable_modes == 0 && !branch_jumps;
-  a->leapt |= branch_jumps;
-  if (!*there) {
-    dea_solid_restore_state(s, last);
-    if (dea_solid_may_shorten(status)) {
-      dea_context_clear(ctx);
-      status = DEA_OK;
-    }
-    return status;
-  }
-  report.snapped |= a->report->snapped;
-  *a->report = report;
-  dea_solid_state_get(s, last->state);
-  dea_solid_controls_get(s, last->controls);
-  return see(ctx, a, DEA_STOP_UNKNOWN);
-}
-
-/* From the last equilibrium that load steps have found on, in halves of what is left, until the
- * state on one side and the failure on the other are `leap_way` apart; then by the path, which
- * alone tells a limit point, or to the goal, where nothing has failed. *there: it is reached. */
-static dea_status close_in(struct dea_context *ctx, struct search *a,
-                           struct dea_solid_saved_state *last, bool *there)
-{
-  double low = 0, high = 1;
-  *there = false;
-  while (high - low > a->s->settings.branch_jump_way * (low > 0 ? high : 1)) {
-    bool found;
-    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
-    double next = 0.5 * (low + high);
-    DEA_TRY(ctx, step_near(ctx, a, next, last, &found));
-    low = found ? next : low;
-    high = found ? high : next;
-  }
-  if (high == 1) {
-    return step_near(ctx, a, 1, last, there);
-  }
-  if (a->leapt) { // beyond it is another state, and no way to there
-    *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), low, 0};
-    return see(ctx, a, DEA_STOP_NEAR);
-  }
-  return search_path(ctx, a);
-}
-
-/* All that load steps can, where the path says nothing. *on: the path goes on from where they have
- * closed in on what they do not get past. */
-static dea_status end_by_steps(struct dea_context *ctx, struct search *a, double voltage_V,
-                               bool taut, bool *on)
-{
-  struct dea_solid *s = a->s;
-  char why[160];
-  bool there = false;
-  bool grew;
-  dea_status status =
-      dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.approach_part_least, a->report);
-  if (status == DEA_E_DOMAIN) { // no path leads there: closer to where the law ends
-    dea_context_clear(ctx);
-    status = dea_load_steps_solve(ctx, s, voltage_V, a->report);
-  }
-  status = see_growth(ctx, a, status, &grew);
-  *on = false;
-  if (!grew && (status != DEA_E_NOT_CONVERGED || !taut)) {
-    return status;
-  }
-  snprintf(why, sizeof why, "%s", grew ? "it thins at once" : dea_context_message(ctx));
-  status = DEA_E_NOT_CONVERGED;
-  dea_context_clear(ctx);
-  step_back(a, taut, grew);
-  struct dea_solid_saved_state last;
-  dea_status closed = dea_solid_save_state(ctx, s, &last);
-  dea_solid_controls_get(s, a->from);
-  dea_solid_controls_goal(s, voltage_V, a->goal);
-  if (closed == DEA_OK) {
-    closed = close_in(ctx, a, &last, &there);
-  }
-  s->found.extrapolated = false; // each of its steps has been looked at
-  dea_solid_saved_state_free(&last);
-  DEA_TRY(ctx, closed);
-  *on = !there && (a->went_on || a->stop->kind == DEA_STOP_LIMIT);
-  return there || *on ? DEA_OK : dea_fail(ctx, status, "%s", why);
-}
-
-/* Long load steps and the path in turn; where the path says nothing, all that load steps can. */
-static dea_status go(struct dea_context *ctx, struct search *a, double voltage_V, bool taut)
-{
-  for (int i = 0; i < a->s->settings.approach_rounds; i++) {
-    bool on;
-    bool grew;
-    dea_status status = see_growth(ctx, a, try_steps(ctx, a, voltage_V, taut), &grew);
-    if (!grew && !dea_solid_may_shorten(status)) {
-      return status;
-    }
-    dea_context_clear(ctx);
-    step_back(a, taut, grew);
-    dea_solid_controls_goal(a->s, voltage_V, a->goal);
-    DEA_TRY(ctx, search_path(ctx, a));
-    a->left |= a->went_on && has_left(a);
-    a->s->found.extrapolated = a->s->found.extrapolated && !a->went_on; // it has been followed
-    if (!a->went_on && a->stop->kind != DEA_STOP_LIMIT) {
-      status = end_by_steps(ctx, a, voltage_V, taut, &on);
-      if (status != DEA_OK || !on) {
-        return status;
-      }
-    }
-    if (a->stop->kind == DEA_STOP_LIMIT) {
-      DEA_TRY(ctx, pass_limit(ctx, a, taut, &on));
-      DEA_TRY(ctx, on ? DEA_OK : end_at_limit(ctx, a));
-    }
-  }
-  bool on;
-  DEA_TRY(ctx, end_by_steps(ctx, a, voltage_V, taut, &on));
-  return on ? dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path to there has too many turns") : DEA_OK;
-}
-
-/* Share of the way from some controls to others that the controls `at` are at: all go in
- * proportion, of the voltage its square. */
+/* Share of the way from some controls to others that the controls `at` are at. */
 static double share_of(const struct dea_solid *s, const double *from, const double *goal,
                        const double *at)
 {
@@ -574,34 +345,257 @@ static double share_of(const struct dea_solid *s, const double *from, const doub
   return share;
 }
 
+/* Whether load steps from the start have come farther from where the tangent there leads than a
+ * path of equilibria does, up to its limit point (docs/theory/stops.md). */
+static bool left_branch(const struct search *a, double share)
+{
+  const struct dea_solid *s = a->s;
+  double off = 0, way = 0;
+  for (size_t i = 0; i < 3 * s->problem.grid->node_count && s->found.extrapolated; i++) {
+    double step = share * s->work.extrapolated[i],
+           beyond = s->state.u[i] - a->start.state[i] - step;
+    off += beyond * beyond;
+    way += step * step;
+  }
+  return off > way * s->settings.left_branch * s->settings.left_branch;
+}
+
+/* Whether load steps from the start have stayed on the path that they began on; otherwise the solid
+ * is back there. goal: of their first linear step. */
+static dea_status check_branch(struct dea_context *ctx, struct search *a, const double *goal,
+                               bool *stays)
+{
+  struct dea_solid *s = a->s;
+  struct dea_solid_change change;
+  dea_status status = see_change(ctx, a, &change);
+  dea_solid_controls_get(s, a->next);
+  bool left = change.grew || (a->taut && change.taut && !a->report->snapped &&
+                              left_branch(a, share_of(s, a->start.controls, goal, a->next)));
+  a->leapt |= left;
+  left |= a->taut && change.taut && !a->left && left_plane(a);
+  if (left || status != DEA_OK) { // or beyond what the law knows
+    dea_solid_restore_state(s, &a->start);
+  }
+  *stays = !left && status == DEA_OK;
+  return status;
+}
+
+/* Load steps to controls, the shortest one `least` of the way, with the limits of the film: with a
+ * coupled field a taut one is solved in a few iterations, or leaps; a slack one has a long way
+ * down.
+ */
+static dea_status solve_steps(struct dea_context *ctx, const struct search *a, const double *goal,
+                              double least, struct dea_solid_report *report)
+{
+  struct dea_solid_settings *o = &a->s->settings;
+  const struct dea_solid_settings own = *o;
+  if (!a->taut) {
+    o->iterations = o->slack_iterations;
+    o->iterations_free = o->slack_iterations_free;
+  } else if (a->s->problem.field != NULL) {
+    o->iterations = o->coupled_iterations < o->iterations ? o->coupled_iterations : o->iterations;
+    o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
+  }
+  dea_status status = dea_load_steps_solve_to(ctx, a->s, goal, least, report);
+  *o = own;
+  return status;
+}
+
+/* Such load steps, which are looked at: where they fail the solid is at their last equilibrium, or
+ * where they began if that is not on the path from there (false: *stays). */
+static dea_status take_steps(struct dea_context *ctx, struct search *a, const double *goal,
+                             double least, bool *stays)
+{
+  start_here(a);
+  a->s->found.predicts_tangent = true; // the first linear step is kept
+  a->s->found.extrapolated = false;
+  dea_status ended = solve_steps(ctx, a, goal, least, a->report);
+  dea_status status =
+      ended == DEA_OK || dea_solid_may_shorten(ended) ? check_branch(ctx, a, goal, stays) : DEA_OK;
+  return status == DEA_OK ? ended : status;
+}
+
+/* Down in energy from the limit point that was found to a stable state a little beyond it. *beyond:
+ * there is one, to which the film has not grown at once, and the solid is there; otherwise it is
+ * where the search began. One that is close by is where a spot of the mesh has turned over. */
+static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *beyond)
+{
+  struct dea_solid *s = a->s;
+  const struct dea_solid_settings *o = &s->settings;
+  struct dea_solid_change change = {.grew = true};
+  struct dea_solid_report report;
+  bool close = false;
+  dea_solid_restore_state(s, &a->limit);
+  set_between(s, a->start.controls, a->goal, fmin(a->stop->way + o->load_step_least, 1), a->next);
+  dea_status status = solve_steps(ctx, a, a->next, 1, &report);
+  if (status == DEA_OK && report.unstable_modes == 0) {
+    status = see_change(ctx, a, &change);
+    close = moved_m(s, s->state.u, a->limit.state) < o->limit_close * moved_m(s, a->limit.state, 0);
+  }
+  *beyond = status == DEA_OK && !change.grew;
+  if (*beyond) {
+    a->snapped |= !close || !a->taut;
+    a->stop->way = share_of(s, a->begin, a->goal, a->limit.controls);
+    a->stop->kind = DEA_STOP_UNKNOWN;
+    return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
+  }
+  dea_solid_restore_state(s, &a->start);
+  if (dea_solid_may_shorten(status)) {
+    dea_context_clear(ctx);
+    status = DEA_OK;
+  }
+  return status;
+}
+
+/* One load step to a->at. *there: it has found a stable state on its path; otherwise the solid is
+ * where it began, and *ended is why. */
+static dea_status step_near(struct dea_context *ctx, struct search *a, dea_status *ended,
+                            bool *there)
+{
+  const struct dea_solid_report before = *a->report;
+  bool stays = true;
+  *ended = take_steps(ctx, a, a->at, 1, &stays);
+  *there = *ended == DEA_OK && stays && a->report->unstable_modes == 0;
+  if (*there) {
+    a->report->snapped |= before.snapped;
+    start_here(a);
+    return see(ctx, a, DEA_STOP_UNKNOWN);
+  }
+  dea_solid_restore_state(a->s, &a->start);
+  *a->report = before;
+  return *ended == DEA_OK || dea_solid_may_shorten(*ended) ? DEA_OK : *ended;
+}
+
+/* Where the path says nothing - a membrane that goes slack has a corner, which arc length does not
+ * get around - load steps close in, in halves of what is left, on where they fail or leave their
+ * path. *last, why: of the last failure. */
+static dea_status halve_steps(struct dea_context *ctx, struct search *a, dea_status *last,
+                              char why[160])
+{
+  const struct dea_solid_settings *o = &a->s->settings;
+  const size_t size = a->s->work.load_steps.control_count * sizeof *a->bad;
+  const double least = a->taut ? o->branch_jump_way : o->approach_part_least;
+  bool failed = false, there = false;
+  memcpy(a->bad, a->goal, size);
+  for (double apart = 1; apart > 0.5 * least && (apart > least || !failed); apart /= 2) {
+    dea_status ended;
+    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    set_between(a->s, a->start.controls, a->bad, apart > least ? 0.5 : 1, a->at);
+    DEA_TRY(ctx, step_near(ctx, a, &ended, &there));
+    if (!there) {
+      failed = true;
+      memcpy(a->bad, a->at, size);
+    }
+    if (ended != DEA_OK) {
+      *last = ended;
+      snprintf(why, 160, "%s", dea_context_message(ctx));
+      dea_context_clear(ctx);
+    }
+  }
+  a->arrived = there && !failed;
+  return DEA_OK;
+}
+
+/* By such steps to the goal, or to where they end, and by the path from close by. Where that says
+ * nothing either, but load steps have left it, there is another state beyond and no way to there: a
+ * limit point, or what acts as one. */
+static dea_status close_in(struct dea_context *ctx, struct search *a)
+{
+  dea_status last = DEA_E_NOT_CONVERGED;
+  char why[160] = "load steps leave the path of equilibria";
+  DEA_TRY(ctx, halve_steps(ctx, a, &last, why));
+  if (a->arrived) {
+    return DEA_OK;
+  }
+  if (a->taut && last == DEA_E_NOT_CONVERGED) {
+    DEA_TRY(ctx, search_path(ctx, a));
+  }
+  if (a->went_on || a->stop->kind == DEA_STOP_LIMIT) {
+    return DEA_OK;
+  }
+  if (!a->leapt) {
+    return dea_fail(ctx, last, "%s", why);
+  }
+  *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), 0, 0};
+  dea_solid_state_get(a->s, a->limit.state);
+  dea_solid_controls_get(a->s, a->limit.controls);
+  return see(ctx, a, DEA_STOP_NEAR);
+}
+
+/* Long load steps and the path in turn. */
+static dea_status go(struct dea_context *ctx, struct search *a)
+{
+  const struct dea_solid_settings *o = &a->s->settings;
+  for (int i = 0; i < o->approach_rounds; i++) {
+    bool stays = false, on = true;
+    dea_status status = take_steps(ctx, a, a->goal, o->approach_part, &stays);
+    if (status == DEA_OK && stays) {
+      see_plane(a);
+      return DEA_OK;
+    }
+    DEA_TRY(ctx, status == DEA_OK || dea_solid_may_shorten(status) ? DEA_OK : status);
+    dea_context_clear(ctx);
+    DEA_TRY(ctx, search_path(ctx, a));
+    if (!a->went_on && a->stop->kind != DEA_STOP_LIMIT) {
+      a->left = true; // nothing tells that the film stays in its plane
+      DEA_TRY(ctx, close_in(ctx, a));
+    }
+    if (a->arrived) {
+      return DEA_OK;
+    }
+    if (a->stop->kind == DEA_STOP_LIMIT) {
+      DEA_TRY(ctx, pass_limit(ctx, a, &on));
+    }
+    DEA_TRY(ctx, on ? DEA_OK
+                    : dea_fail(ctx, DEA_E_NO_EQUILIBRIUM, "a limit point at %.6g kV",
+                               1e-3 * a->stop->voltage_V));
+  }
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the path to there has too many turns");
+}
+
+static dea_status search_create(struct dea_context *ctx, struct dea_arena *memory, struct search *a)
+{
+  struct dea_solid *s = a->s;
+  const size_t count = s->work.load_steps.control_count;
+  double **const controls[] = {&a->goal, &a->next, &a->bad, &a->at, &a->begin};
+  memory->ctx = ctx;
+  for (size_t i = 0; i < sizeof controls / sizeof *controls; i++) {
+    *controls[i] = dea_arena_alloc(memory, count, sizeof(double));
+  }
+  dea_status status = dea_solid_agree(ctx, dea_arena_status(memory));
+  if (status == DEA_OK) {
+    status = dea_solid_save_state(ctx, s, &a->limit);
+  }
+  if (status == DEA_OK) {
+    status = dea_solid_save_state(ctx, s, &a->start);
+  }
+  return status;
+}
+
 dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid *s,
                                        double voltage_V, bool taut,
                                        const struct dea_solid_watch *watch,
                                        struct dea_solid_report *report, struct dea_solid_stop *stop)
 {
-  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .slack = !taut};
-  struct dea_arena memory = {.ctx = ctx};
+  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .taut = taut};
+  struct dea_arena memory;
+  memset(&memory, 0, sizeof memory);
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
+  *report = (struct dea_solid_report){.way = 0};
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
-  a.state = dea_arena_alloc(&memory, s->work.load_steps.state_count, sizeof *a.state);
-  a.from = dea_arena_alloc(&memory, s->work.load_steps.control_count, sizeof *a.from);
-  a.goal = dea_arena_alloc(&memory, s->work.load_steps.control_count, sizeof *a.goal);
-  dea_status status = dea_solid_agree(ctx, memory.failed ? DEA_E_MEMORY : DEA_OK);
-  if (status == DEA_OK) {
-    status = dea_solid_save_state(ctx, s, &a.limit);
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_save_state(ctx, s, &a.start);
-  }
+  dea_status status = search_create(ctx, &memory, &a);
   if (status == DEA_OK) {
     const int lost = s->settings.lost;
     s->settings.lost = s->settings.approach_lost;
-    predict_tangent(s, voltage_V);
-    status = go(ctx, &a, voltage_V, taut);
+    dea_solid_controls_get(s, a.begin);
+    dea_solid_controls_goal(s, voltage_V, a.goal);
+    status = go(ctx, &a);
     report->snapped |= a.snapped;
     if (stop->kind == DEA_STOP_LIMIT) {
-      stop->way = share_of(s, a.start.controls, a.goal, a.limit.controls);
+      stop->way = share_of(s, a.begin, a.goal, a.limit.controls);
     }
+    dea_solid_controls_get(s, a.next);
+    report->way = status == DEA_OK ? 1 : share_of(s, a.begin, a.goal, a.next);
     s->settings.lost = lost;
   }
   dea_solid_saved_state_free(&a.limit);
@@ -610,35 +604,7 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
-                           struct dea_solid_report *report)
-{
-  struct dea_solid_saved_state from;
-  struct dea_solid_stop stop;
-  char why[160];
-  const dea_status failed = dea_load_steps_solve(ctx, s, voltage_V, report);
-  const double way = report->way;
-  if (!dea_solid_may_shorten(failed)) {
-    return failed;
-  }
-  snprintf(why, sizeof why, "%s", dea_context_message(ctx));
-  dea_context_clear(ctx);
-  DEA_TRY(ctx, dea_solid_save_state(ctx, s, &from));
-  dea_status status = dea_solid_solve_incremental(ctx, s, voltage_V, true, NULL, report, &stop);
-  report->way = status == DEA_OK ? 1 : way;
-  if (status == DEA_E_NO_EQUILIBRIUM) { // it is the limit point's
-    dea_solid_restore_state(s, &from);
-    report->limit = way + stop.way * (1 - way);
-  } else if (dea_solid_may_shorten(status)) {
-    dea_solid_restore_state(s, &from);
-    dea_context_clear(ctx);
-    status = dea_fail(ctx, failed, "%s", why);
-  }
-  dea_solid_saved_state_free(&from);
-  return status;
-}
-
-// What load steps have gone past ------------------------------------------------------------------
+// States ------------------------------------------------------------------------------------------
 
 dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *s,
                                 struct dea_solid_saved_state *out)
@@ -654,33 +620,9 @@ dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-void dea_solid_saved_state_free(struct dea_solid_saved_state *stand)
+void dea_solid_saved_state_free(struct dea_solid_saved_state *saved)
 {
-  dea_arena_free(&stand->memory);
-}
-
-double dea_solid_moved_m(const struct dea_solid *s, const struct dea_solid_saved_state *from)
-{
-  size_t count = 3 * s->problem.grid->node_count;
-  double sum = 0;
-  for (size_t i = 0; i < count; i++) {
-    double way = s->state.u[i] - from->state[i];
-    sum += way * way;
-  }
-  return sqrt(3 * sum / (double)count);
-}
-
-bool dea_solid_left_branch(const struct dea_solid *s, const struct dea_solid_saved_state *from)
-{
-  double V = dea_solid_voltage(s), from_V = from->controls[0], goal_V = s->found.extrapolated_V;
-  double share = (V * V - from_V * from_V) / (goal_V * goal_V - from_V * from_V);
-  double off = 0, way = 0;
-  for (size_t i = 0; i < 3 * s->problem.grid->node_count && s->found.extrapolated; i++) {
-    double step = share * s->work.extrapolated[i], beyond = s->state.u[i] - from->state[i] - step;
-    off += beyond * beyond;
-    way += step * step;
-  }
-  return off > way * s->settings.left_branch * s->settings.left_branch;
+  dea_arena_free(&saved->memory);
 }
 
 void dea_solid_restore_state(struct dea_solid *s, const struct dea_solid_saved_state *at)
@@ -688,146 +630,4 @@ void dea_solid_restore_state(struct dea_solid *s, const struct dea_solid_saved_s
   dea_solid_state_set(s, at->state);
   dea_solid_controls_set(s, at->controls);
   dea_solid_forget(s);
-}
-
-/* The solid on its side of a leap: near, which it leaps from, and far, where it leaps to. */
-struct branch_jump_ends {
-  struct dea_solid_saved_state near, far;
-  double at[2]; // shares of the way
-  double whole; // motion between them at first
-  bool apart;   // the far one has no state, or the film has grown at once to it
-};
-
-/* The state that a step has come to takes the place of the end that it belongs to. */
-static dea_status take_end(struct dea_context *ctx, const struct search *a, const double *controls,
-                           struct branch_jump_ends *ends, bool *stays)
-{
-  struct dea_solid *s = a->s;
-  bool grown = false;
-  DEA_TRY(ctx, a->watch->grew(ctx, a->watch->user, &grown));
-  *stays = !grown && dea_solid_moved_m(s, &ends->near) < dea_solid_moved_m(s, &ends->far);
-  struct dea_solid_saved_state *end = *stays ? &ends->near : &ends->far;
-  dea_solid_state_get(s, end->state);
-  memcpy(end->controls, controls, s->work.load_steps.control_count * sizeof *controls);
-  ends->apart = *stays ? ends->apart : grown;
-  return *stays ? see(ctx, a, DEA_STOP_UNKNOWN) : DEA_OK;
-}
-
-/* Between both ends a share of the way; the solid is then at the near one. */
-static dea_status halve_branch_jump(struct dea_context *ctx, const struct search *a,
-                                    const double *from, double share, struct branch_jump_ends *ends)
-{
-  struct dea_solid_report report;
-  bool stays = false;
-  set_between(a->s, from, a->goal, share, a->from);
-  dea_status status = dea_load_steps_solve_to(ctx, a->s, a->from, &report);
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    ends->apart = true;
-  } else {
-    DEA_TRY(ctx, status);
-    DEA_TRY(ctx, take_end(ctx, a, a->from, ends, &stays));
-  }
-  ends->at[stays ? 0 : 1] = share;
-  if (!stays) {
-    dea_solid_restore_state(a->s, &ends->near);
-  }
-  return DEA_OK;
-}
-
-/* Steps that grow from where the path ends, then halves. */
-static dea_status bracket_branch_jump(struct dea_context *ctx, const struct search *a,
-                                      const double *from, struct branch_jump_ends *ends)
-{
-  const double least = a->s->settings.branch_jump_way;
-  double first = ends->at[0], by = first > 0 ? least : 0.5;
-  while (ends->at[1] - ends->at[0] > 1.01 * least) {
-    double low = ends->at[0], high = ends->at[1], next = low + by;
-    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
-    DEA_TRY(ctx, halve_branch_jump(ctx, a, from, next < high ? next : 0.5 * (low + high), ends));
-    by = ends->at[1] < 1 ? 0.5 * (ends->at[1] - ends->at[0]) : 4 * by;
-  }
-  return DEA_OK;
-}
-
-/* Where the path says nothing of a leap - a membrane that goes slack has a corner, which arc length
- * does not get around, and a long step of it leaps itself - load steps do: the states on both sides
- * of a limit point stay apart however close their voltages come. The solid is then at the nearer
- * one. From the last point of the path; from, to: the ends of the way. */
-static dea_status find_branch_jump(struct dea_context *ctx, struct search *a, const double *from,
-                                   const struct dea_solid_saved_state *to)
-{
-  struct dea_solid *s = a->s;
-  struct branch_jump_ends ends = {.at = {a->stuck ? a->reached : 0, 1}};
-  dea_status status = dea_solid_save_state(ctx, s, &ends.near);
-  if (status == DEA_OK) {
-    dea_solid_restore_state(s, to);
-    status = dea_solid_save_state(ctx, s, &ends.far);
-    dea_solid_restore_state(s, &ends.near);
-  }
-  if (status == DEA_OK) {
-    ends.whole = dea_solid_moved_m(s, &ends.far);
-    status = see(ctx, a, DEA_STOP_UNKNOWN);
-  }
-  if (status == DEA_OK) {
-    status = bracket_branch_jump(ctx, a, from, &ends);
-  }
-  bool branch_jumps =
-      status == DEA_OK &&
-      (ends.apart || dea_solid_moved_m(s, &ends.far) > s->settings.branch_jump_jump * ends.whole);
-  if (branch_jumps) {
-    *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(s), ends.at[0], 0};
-    status = see(ctx, a, DEA_STOP_NEAR);
-  }
-  dea_solid_saved_state_free(&ends.near);
-  dea_solid_saved_state_free(&ends.far);
-  return status;
-}
-
-/* At `from` with room for a search. */
-static dea_status search_back(struct dea_context *ctx, struct search *a, bool leapt,
-                              const struct dea_solid_saved_state *from,
-                              const struct dea_solid_saved_state *now)
-{
-  struct dea_solid_saved_state capacity;
-  dea_status status = dea_solid_save_state(ctx, a->s, &capacity);
-  a->state = capacity.state;
-  a->from = capacity.controls;
-  a->goal = now->controls;
-  if (status == DEA_OK) {
-    status = dea_solid_save_state(ctx, a->s, &a->limit);
-  }
-  if (status == DEA_OK) {
-    dea_solid_restore_state(a->s, from);
-    status = search_path(ctx, a);
-  }
-  if (status == DEA_OK && a->stop->kind == DEA_STOP_UNKNOWN && !a->went_on && (a->stuck || leapt)) {
-    status = find_branch_jump(ctx, a, from->controls, now);
-  }
-  dea_solid_saved_state_free(&a->limit);
-  dea_solid_saved_state_free(&capacity);
-  return status;
-}
-
-dea_status dea_solid_detect_missed_limit_point(struct dea_context *ctx, struct dea_solid *s,
-                                               const struct dea_solid_saved_state *from, bool leapt,
-                                               const struct dea_solid_watch *watch,
-                                               struct dea_solid_report *report,
-                                               struct dea_solid_stop *stop, bool *flat)
-{
-  struct search a = {.s = s, .watch = watch, .report = report, .stop = stop, .looks = true};
-  struct dea_solid_saved_state now;
-  *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
-  dea_status status = dea_solid_save_state(ctx, s, &now);
-  *flat = false;
-  if (status == DEA_OK) {
-    a.bent = dea_solid_left_plane(s, from, s->problem.length_m);
-    status = search_back(ctx, &a, leapt, from, &now);
-    *flat = status == DEA_OK && a.went_on;
-    if (!*flat) {
-      dea_solid_restore_state(s, &now);
-    }
-  }
-  dea_solid_saved_state_free(&now);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

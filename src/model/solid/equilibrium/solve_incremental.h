@@ -25,34 +25,33 @@ struct dea_solid_stop {
 typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
                                           enum dea_solid_stop_kind where);
 
-/* Whether the film has grown at once from the last point that a sink has looked at to where the
- * solid is: a film may thin in one place without a displacement that tells. */
-typedef dea_status (*dea_solid_growth_test)(struct dea_context *ctx, void *user, bool *grew);
+/* What has become of the film from the last point that a sink has looked at to where the solid is:
+ * a film may thin in one place without a displacement that tells. */
+struct dea_solid_change {
+  bool grew; // its area has, at once
+  bool taut; // it has tension there
+};
 
 /* Who looks at the points of a path. */
 struct dea_solid_watch {
   dea_solid_path_sink points;
-  dea_solid_growth_test grew;
+  dea_status (*change)(struct dea_context *ctx, void *user, struct dea_solid_change *out);
   bool (*taut)(const void *user); // whether the film had tension where `points` has looked last
   void *user;
 };
 
-/* As dea_load_steps_solve; load steps that fail go on along the path by arc length, around a
- * bifurcation too, and then by load steps again. watch: sees each point of such a path; NULL:
- * nobody does. taut: the film has tension. A failure leaves the solid at the last equilibrium that
- * was found: DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step,
- * and *stop says what is known. */
+/* As dea_load_steps_solve. Load steps that fail or leave their path of equilibria - for another
+ * branch or past a limit point - are taken back, and the path is followed by arc length, around a
+ * bifurcation and, where that leads to a stable state, past a limit point too; then by load steps
+ * again. watch: sees each point of such a path; NULL: nobody does. taut: the film has tension. A
+ * failure leaves the solid at the last equilibrium that was found, report->way of the way:
+ * DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step. *stop says
+ * what is known; stop->way is that of the last limit point that was found or passed. */
 dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid *solid,
                                        double voltage_V, bool taut,
                                        const struct dea_solid_watch *watch,
                                        struct dea_solid_report *report,
                                        struct dea_solid_stop *stop);
-
-/* As dea_load_steps_solve, and where load steps fail by the path, whose limit points the solid may
- * pass to a stable state. DEA_E_NO_EQUILIBRIUM: one ends it at report->limit of the way; the solid
- * is at report->way of it then. */
-dea_status dea_solid_reach(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
-                           struct dea_solid_report *report);
 
 /* Where the solid has been. */
 struct dea_solid_saved_state {
@@ -62,31 +61,6 @@ struct dea_solid_saved_state {
 /* out: freed by the caller, also on failure. */
 dea_status dea_solid_save_state(struct dea_context *ctx, struct dea_solid *solid,
                                 struct dea_solid_saved_state *out);
-void dea_solid_saved_state_free(struct dea_solid_saved_state *stand);
+void dea_solid_saved_state_free(struct dea_solid_saved_state *saved);
 /* Brings the solid back to there. */
 void dea_solid_restore_state(struct dea_solid *solid, const struct dea_solid_saved_state *at);
-/* Root of the mean square of how far the nodes are from there. */
-double dea_solid_moved_m(const struct dea_solid *solid, const struct dea_solid_saved_state *from);
-
-/* Whether a film that was flat there, and that the voltage does not push across, is no more, to
- * 1e-6 and 1e-3 of a size. It does not push where the film was flat under one, or where the first
- * linear step from 0 V leaves it flat. */
-bool dea_solid_left_plane(struct dea_solid *solid, const struct dea_solid_saved_state *from,
-                          double size_m);
-
-/* Whether the last approach, which began there, has come farther from where the tangent there saw
- * it go than a path of equilibria leads, up to its limit point; false where that is not known. */
-bool dea_solid_left_branch(const struct dea_solid *solid, const struct dea_solid_saved_state *from);
-
-/* Whether load steps from there to where the solid is have gone past a limit point or a
- * bifurcation: follows the path from there towards the controls as they are. Where the path comes
- * to no end, and where it says nothing of what is known to have `leapt`, load steps close in on the
- * controls at which the states on both sides stay apart: a limit point, or a corner that acts as
- * one. The solid is then where it was, unless it has left the plane of a flat film that was taut
- * all along its path to there: it is then at that path's end, *flat, which *report is of. *stop:
- * where, which `watch` has seen last; DEA_STOP_UNKNOWN: there was none, or none was found. */
-dea_status dea_solid_detect_missed_limit_point(struct dea_context *ctx, struct dea_solid *solid,
-                                               const struct dea_solid_saved_state *from, bool leapt,
-                                               const struct dea_solid_watch *watch,
-                                               struct dea_solid_report *report,
-                                               struct dea_solid_stop *stop, bool *flat);
