@@ -62,8 +62,8 @@ static void basis(int order, const double at[2], double *value, double (*slope)[
   }
 }
 
-/* Local coordinates of a place in a quadrilateral of nodes [(order + 1)^2] by Newton's method;
- * false where it is not in it. */
+/* Local coordinates of a place in a quadrilateral of nodes [(order + 1)^2] by Newton's method, which
+ * goes far outside on its way in a narrow one along an arc; false where it is not in it. */
 static bool locate(const struct dea_grid *grid, const int *nodes, const double x_m[2], double at[2])
 {
   double value[PLANE_MAX], slope[PLANE_MAX][2];
@@ -84,14 +84,11 @@ static bool locate(const struct dea_grid *grid, const int *nodes, const double x
     double step[2] = {(J[3] * r[0] - J[1] * r[1]) / det, (J[0] * r[1] - J[2] * r[0]) / det};
     at[0] += step[0];
     at[1] += step[1];
-    if (!(fabs(at[0]) < 3 && fabs(at[1]) < 3)) {
-      return false;
-    }
     if (fmax(fabs(step[0]), fabs(step[1])) < 1e-12) {
       break;
     }
   }
-  return fmax(fabs(at[0]), fabs(at[1])) < 1 + 1e-6;
+  return fabs(at[0]) < 1 + 1e-6 && fabs(at[1]) < 1 + 1e-6;
 }
 
 static bool could_be_in(const struct dea_grid *grid, const int *nodes, const double x_m[2])
