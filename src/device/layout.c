@@ -100,6 +100,12 @@ const struct dea_layout_ply *dea_layout_film(const struct dea_layout *layout)
   return i < layout->ply_count ? &layout->plies[i] : NULL;
 }
 
+bool dea_support_pulls(const struct dea_layout_support *support)
+{
+  const double *force = support->force_N;
+  return force[0] != 0 || force[1] != 0 || force[2] != 0;
+}
+
 bool dea_support_is_frame(const struct dea_layout_support *support)
 {
   return support->edge && support->within == DEA_LAYOUT_NONE && support->components == 7;
@@ -158,7 +164,9 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
                 s[j].hinged == s[i].hinged &&
                 // written alike
                 // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
-                memcmp(s[j].move_m, s[i].move_m, sizeof s[i].move_m) == 0);
+                memcmp(s[j].move_m, s[i].move_m, sizeof s[i].move_m) == 0 &&
+                // a force is that of one support alone
+                (j == i || !dea_support_pulls(&s[i])));
   for (size_t i = 0; i < layout->support_count; i++) {
     if (s[i].within != DEA_LAYOUT_NONE) {
       add(out, layout, s[i].within, first + (int)i);

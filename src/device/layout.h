@@ -66,15 +66,16 @@ struct dea_layout_channel {
                         // part; static; NULL: none
 };
 
-/* Nodes of all plies that are held at a shift. */
+/* Nodes of all plies that are held at a shift, or bear a dead force. */
 struct dea_layout_support {
   size_t region;  // in it, its boundary counts
   bool edge;      // only on the region's boundary
   size_t within;  // only what is in this region too; DEA_LAYOUT_NONE: no such limit
-  int components; // bits 1, 2, 4: along x, y, z
+  int components; // that are held, bits 1, 2, 4: along x, y, z
   bool hinged;    // only the nodes at the bottom: the edge may turn
   size_t plies;   // only up to the top of the ply before this one in the list; 0: all plies
   double move_m[3];
+  double force_N[3]; // in all, spread evenly over the plies' sides along the edge, or their volume
   struct dea_location location;
 };
 
@@ -191,6 +192,8 @@ size_t dea_layout_find_body(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name);
 /* DEA_E_DESIGN where the material of a ply has no density, which weight and inertia need. */
 dea_status dea_layout_check_densities(struct dea_context *ctx, const struct dea_layout *layout);
+/* Whether it has a force. */
+bool dea_support_pulls(const struct dea_layout_support *support);
 /* Whether it holds a whole boundary in all directions, as a frame does. */
 bool dea_support_is_frame(const struct dea_layout_support *support);
 /* {x min, y min, x max, y max} of all plies. */

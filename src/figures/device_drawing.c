@@ -820,13 +820,15 @@ static void add_channels(struct view *v)
   }
 }
 
-/* "clamped", "hinged", or "held along x, z". */
+/* "clamped", "hinged", "held along x, z", or "pulled". */
 static const char *hold_of(const struct dea_layout_support *s)
 {
   static const char *const held[] = {"held nowhere",    "held along x", "held along y",
                                      "held along x, y", "held along z", "held along x, z",
                                      "held along y, z", "clamped"};
-  return s->components == 7 && s->hinged ? "hinged" : held[s->components & 7];
+  return s->components == 0 && dea_support_pulls(s) ? "pulled"
+         : s->components == 7 && s->hinged          ? "hinged"
+                                                    : held[s->components & 7];
 }
 
 static void add_supports(struct view *v)

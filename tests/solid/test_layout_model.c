@@ -98,6 +98,57 @@ TEST(test_pure_shear)
   dea_device_destroy(ctx, device);
 }
 
+/* A strip of neo-Hookean film that slides at its left edge, pulled by a dead force along its right
+ * one or spread over all of it: the stretch in its middle under the force there, by the closed form
+ * of uniaxial stress, F/(W H) = mu (l1 - l3^2/l1) - eps E^2/l1, mu (l2^2 - l3^2) = eps E^2,
+ * E = V/(l3 H). */
+static void check_dead_force(bool edge, double force_N, double tolerance)
+{
+  static const struct {
+    double kV, l1; // at 50 mN in the middle
+  } table[] = {{0, 1.1974293369}, {1, 1.2037741519}, {2, 1.2258917466}};
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  const double a = 40e-3, b = 10e-3;
+  add_rectangle(device, "film", 0, -0.5 * b, a, b);
+  const size_t left = add_rectangle(device, "left", -1e-3, -b, 1e-3, 2 * b);
+  const size_t right = add_rectangle(device, "right", a, -b, 1e-3, 2 * b);
+  add_film(device, 0, 1, 1);
+  l->plies[0].material.law = dea_law_find("neo-hookean");
+  l->plies[0].material.param[0] = 100e3;
+  l->plies[0].material.permittivity.at_rest = 3;
+  add_electrode(device, 0, false, 0, 0);
+  add_electrode(device, 0, true, 0, 1);
+  l->supports[l->support_count++] =
+      (struct dea_layout_support){.region = 0, .edge = true, .within = left, .components = 1 | 4};
+  l->supports[l->support_count++] =
+      (struct dea_layout_support){.region = 0,
+                                  .edge = edge,
+                                  .within = edge ? right : DEA_LAYOUT_NONE,
+                                  .force_N = {force_N, 0, 0}};
+  l->supports[l->support_count++] =
+      (struct dea_layout_support){.region = 0, .edge = true, .within = right, .components = 4};
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "line", .kind = DEA_MONITOR_LINE, .at_m = {{0.5 * a - 2e-3, 0}, {0.5 * a + 2e-3, 0}}};
+  assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
+  const struct dea_layout_sector sector = dea_layout_sector_of(l);
+  assert_int_equal(sector.fold, 1); // the force has the line along x only
+  struct dea_model *model = model_of(device, DEA_FILM_SOLID, 1);
+  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+    struct dea_load_point point;
+    const struct dea_observation seen = solve(model, 1e3 * table[i].kV, &point);
+    assert_close(seen.monitor[0][DEA_OBSERVED_STRETCH], table[i].l1, tolerance, 0);
+  }
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+TEST(test_dead_force)
+{
+  check_dead_force(true, 50e-3, 1e-6);
+  check_dead_force(false, 100e-3, 1e-3); // half of it pulls in the middle; it is no even stretch
+}
+
 /* The mesh ends where a support does: a held part of an edge is as long as it was drawn, on any
  * mesh. */
 TEST(test_end_of_a_support)

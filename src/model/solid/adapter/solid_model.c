@@ -6,6 +6,7 @@
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/adapt.h"
 #include "model/solid/adapter/buckling_branch.h"
+#include "model/solid/adapter/dead_force.h"
 #include "model/solid/adapter/gradient.h"
 #include "model/solid/adapter/indent.h"
 #include "model/solid/adapter/motions.h"
@@ -394,6 +395,20 @@ static dea_status set_weight(struct dea_context *ctx, const struct dea_model *mo
   return status;
 }
 
+/* Weight and forces of supports as the dead loads; those of bodies come to them. */
+static dea_status set_dead_loads(struct dea_context *ctx, const struct dea_model *model)
+{
+  DEA_TRY(ctx, set_weight(ctx, model));
+  for (size_t i = 0; i < model->layout->support_count; i++) {
+    const struct dea_layout_support *support = &model->layout->supports[i];
+    if (dea_support_pulls(support)) {
+      DEA_TRY(ctx, dea_dead_force_add(ctx, &model->mesh, support, model->on,
+                                      dea_solid_force(model->solid)));
+    }
+  }
+  return DEA_OK;
+}
+
 static dea_status add_loads(struct dea_context *ctx, struct dea_model *model)
 {
   const struct dea_layout *l = model->layout;
@@ -537,7 +552,7 @@ static dea_status go_to_loads(struct dea_context *ctx, struct dea_model *model)
     dea_solid_own_voltages(model->solid)[k] = model->layout->channels[k].own_V;
   }
   set_pressures(model, 1);
-  DEA_TRY(ctx, set_weight(ctx, model));
+  DEA_TRY(ctx, set_dead_loads(ctx, model));
   DEA_TRY(ctx, load_bodies(ctx, model));
   const bool twisted = is_twisted_slack(model->layout);
   dea_solid_accept_unstable(model->solid, twisted); // of its many wrinkles none is followed
@@ -1276,7 +1291,7 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
   find_band(model);
   DEA_TRY(ctx, make_solid(ctx, model));
-  DEA_TRY(ctx, set_weight(ctx, model));
+  DEA_TRY(ctx, set_dead_loads(ctx, model));
   DEA_TRY(ctx, hold_supports(ctx, model, true));
   DEA_TRY(ctx, load_bodies(ctx, model));
   keep_controls(model);
@@ -1622,6 +1637,7 @@ static void mark_layout(const struct dea_layout *l, struct marks *marks)
   }
   for (size_t i = 0; i < l->support_count; i++) {
     mark(marks, l->supports[i].move_m, 3);
+    mark(marks, l->supports[i].force_N, 3);
   }
   for (size_t i = 0; i < l->body_count; i++) {
     const struct dea_layout_body *b = &l->bodies[i];
