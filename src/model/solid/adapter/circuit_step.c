@@ -437,7 +437,7 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
     return DEA_OK;
   }
   dea_circuit_advance(&d->options.circuit, &d->circuit, step, film, &d->circuit_next);
-  if (d->step_s > 0) {
+  if (d->step_s > 0 && !step->disconnected) {
     refine_work(d);
   }
   d->charged_J = d->circuit_next.charge_C * d->circuit_next.voltage_V;
@@ -466,7 +466,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
     *error = find_error(d, error_m, unaccounted(d, &from, &to), report);
     return DEA_OK;
   }
-  if (dea_circuit_is_ideal(&d->options.circuit)) {
+  if (dea_circuit_is_ideal(&d->options.circuit) && !step->disconnected) {
     d->circuit_next.supply_work_J +=
         d->driven.copies * (to.stored + to.branches - from.stored - from.branches);
   }
