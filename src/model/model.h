@@ -76,10 +76,11 @@ enum dea_control_kind {
   DEA_CONTROL_PLACE,    // a component of a body is held at a shift [m] or a turn [rad]
   DEA_CONTROL_FORCE,    // dead force [N] or moment [N m] on it, in place of the layout's
   DEA_CONTROL_PRESSURE, // all pressures of the layout times a factor
+  DEA_CONTROL_CHARGE,   // charge [C] of the supply in place of its voltage (docs/theory/devices.md)
 };
 struct dea_control {
   enum dea_control_kind kind;
-  size_t body;   // of the layout; like the component not asked for with pressures
+  size_t body;   // of the layout; like the component of a body only
   int component; // 0 to 2: along x, y, z; 3 to 5: about them
 };
 

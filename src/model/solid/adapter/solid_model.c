@@ -15,6 +15,7 @@
 #include "model/solid/adapter/solid_observe.h"
 #include "model/solid/adapter/solver_state.h"
 #include "model/solid/assembly/assemble.h"
+#include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/problem.h"
@@ -947,12 +948,17 @@ static dea_status report(struct dea_context *ctx, void *self, double voltage_V,
   struct dea_model *model = self;
   struct dea_solid_extremes extremes;
   double capacitance_F;
+  const bool charged = dea_charge_is_held(model->solid);
   dea_status status = dea_solid_extremes(model->solid, model->plies.films, &extremes);
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
+  }
+  if (charged) {
+    voltage_V += dea_charge_now(model->solid).lift_V;
+    capacitance_F = dea_charge_now(model->solid).capacitance_F;
   }
   describe(model, voltage_V, out);
   out->true_field_V_per_m = extremes.true_field_V_per_m;
@@ -1037,6 +1043,9 @@ static dea_status check_control(struct dea_context *ctx, const struct dea_model 
 {
   const struct dea_layout *l = model->layout;
   bool pressure = control->kind == DEA_CONTROL_PRESSURE;
+  if (control->kind == DEA_CONTROL_CHARGE) {
+    return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a charge has to be a number");
+  }
   if (pressure
           ? l->pressure_count == 0
           : control->body >= l->body_count || control->component < 0 || control->component > 5) {
@@ -1057,6 +1066,10 @@ static double where_control_is(const struct dea_model *model, const struct dea_c
   double place[6];
   if (control->kind == DEA_CONTROL_PRESSURE) {
     return model->pressure_factor;
+  }
+  if (control->kind == DEA_CONTROL_CHARGE) { // at first of a film at 0 V
+    return dea_charge_is_held(model->solid) ? model->copies * dea_charge_now(model->solid).charge_C
+                                            : 0;
   }
   dea_solid_body_place(model->solid, control->body, place, place + 3);
   return control->kind == DEA_CONTROL_PLACE ? place[control->component]
@@ -1084,6 +1097,9 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
   case DEA_CONTROL_PRESSURE:
     model->pressure_factor = value;
     set_pressures(model, value);
+    break;
+  case DEA_CONTROL_CHARGE:
+    DEA_TRY(ctx, dea_charge_hold(ctx, model->solid, value / model->copies));
     break;
   }
   return DEA_OK;
@@ -1152,6 +1168,10 @@ static dea_status fail_at_limit(struct dea_context *ctx, const struct dea_model 
     scale = 1e-3 * largest;
     name = "pressure limit";
     unit = "kPa";
+  } else if (control->kind == DEA_CONTROL_CHARGE) {
+    scale = 1e6;
+    name = "charge limit";
+    unit = "uC";
   } else if (control->kind == DEA_CONTROL_PLACE) {
     scale = turns ? 1 : 1e3;
     name = "limit point";
@@ -1571,6 +1591,9 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
   struct dea_arena memory = {.ctx = ctx};
   const struct dea_solid_problem *p = &model->solid->problem;
   dea_solver_state_end_history(ctx, &model->at);
+  if (dea_charge_is_held(model->solid)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "gradients at a given charge are not supported");
+  }
   if (dea_gradient_asks_mode(ask)) {
     DEA_TRY(ctx, check_mass(ctx, model));
   }
