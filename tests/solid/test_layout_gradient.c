@@ -325,6 +325,18 @@ TEST(test_moved_pressure)
   check(&at);
 }
 
+/* Over a closed volume of liquid, which is a monitor too. */
+TEST(test_lens)
+{
+  static const char *const only[] = {"pressures[0].liquid", "plies.film.thickness",
+                                     "plies.film.pre_stretch", NULL};
+  struct at at = {.voltage_V = 3e3, .only = only};
+  assert_int_equal(
+      dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/lens.yaml", &skin, 1, &at.design),
+      DEA_OK);
+  check(&at);
+}
+
 TEST(test_two_plies_under_pressure)
 {
   static const char *const only[] = {"plies.skin.thickness", "plies.skin.pre_stretch",
@@ -917,4 +929,5 @@ TEST(test_buckling_of_a_slab)
   end(&at);
 }
 
+#include <stdio.h>
 TESTS(context_set_up, context_tear_down)

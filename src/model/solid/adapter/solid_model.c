@@ -1557,6 +1557,19 @@ static dea_status find_asked_motions(struct dea_context *ctx, struct dea_model *
   return DEA_OK;
 }
 
+/* Liquids are as good as rigid, or again as soft as iterations need them. */
+static void stiffen_liquids(const struct dea_model *model, bool stiff)
+{
+  static const double times = 1e3;
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    if (model->pressures[i] != NULL && model->layout->pressures[i].encloses == DEA_LIQUID) {
+      dea_pressure_stiffen(model->pressures[i], dea_solid_displacement(model->solid),
+                           stiff ? times : 1 / times);
+      dea_solid_forget(model->solid);
+    }
+  }
+}
+
 static dea_status find_gradient(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_gradient_ask *ask, double *out)
 {
@@ -1609,7 +1622,9 @@ static dea_status gradient(struct dea_context *ctx, struct dea_model *model,
     v->shift = values + 3 * p->dofs;
     v->own_V = own_V;
     v->motion = motion;
+    stiffen_liquids(model, true);
     status = find_gradient(ctx, model, ask, out);
+    stiffen_liquids(model, false);
   }
   model->variant = NULL;
   dea_arena_free(&memory);
@@ -1763,7 +1778,11 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
   motions.take = width > 0 ? take_answer : NULL;
   motions.user = model;
-  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points));
+  stiffen_liquids(model, true);
+  const dea_status status =
+      dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points);
+  stiffen_liquids(model, false);
+  DEA_TRY(ctx, status);
   for (size_t i = 0; i < 2 * count * width; i++) {
     model->answers[i] *= excitation->amplitude_V;
   }
@@ -1810,7 +1829,11 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
   struct dea_motions motions;
   *shapes = NULL;
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
-  DEA_TRY(ctx, dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes));
+  stiffen_liquids(model, true);
+  const dea_status status =
+      dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes);
+  stiffen_liquids(model, false);
+  DEA_TRY(ctx, status);
   DEA_TRY(ctx, make_whole(ctx, model, shapes));
   return DEA_OK;
 }
