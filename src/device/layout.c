@@ -214,8 +214,12 @@ dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *
     layout->symmetry_found = status == DEA_OK;
   }
   for (size_t i = 0; i < layout->ply_count && status == DEA_OK; i++) {
-    if (layout->plies[i].pre_stretch[0] != layout->plies[i].pre_stretch[1]) {
-      keep_axes(&layout->symmetry, layout->plies[i].angle_rad);
+    const struct dea_layout_ply *ply = &layout->plies[i];
+    if (ply->pre_stretch[0] != ply->pre_stretch[1]) {
+      keep_axes(&layout->symmetry, ply->angle_rad);
+    }
+    if (ply->material.law != NULL && ply->material.law->anisotropic && !layout->polar) {
+      keep_axes(&layout->symmetry, ply->angle_rad + ply->material.fibre_angle_rad);
     }
   }
   dea_arena_free(&arena);

@@ -157,7 +157,8 @@ struct dea_layout {
   struct dea_layout_monitor *monitors; // [monitor_count + disc_monitor_count]
   size_t region_count, ply_count, electrode_count, channel_count, support_count, body_count;
   size_t spring_count, pressure_count, monitor_count;
-  size_t disc_monitor_count;    // those that a disc brings: columns of load points, without others
+  size_t disc_monitor_count; // those that a disc brings: columns of load points, without others
+  bool polar; // directions of laws count from the radius, not from x: of the short form
   double gravity_m_per_s2[3];   // acceleration of free fall; 0: without weight
   struct dea_symmetry symmetry; // of all of it
   bool symmetry_found;          // it was looked for
