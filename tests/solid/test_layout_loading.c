@@ -467,8 +467,6 @@ static dea_status sink(void *user, const struct dea_load_point *point)
 
 static dea_status no_event(void *user, const struct dea_event *event)
 {
-  (void)user;
-  (void)event;
   return DEA_OK;
 }
 

@@ -1,6 +1,5 @@
 /* Dead force of a support (docs/theory/loads.md). */
-#ifndef DEA_MODEL_SOLID_ADAPTER_DEAD_FORCE_H
-#define DEA_MODEL_SOLID_ADAPTER_DEAD_FORCE_H
+#pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
 
@@ -9,5 +8,3 @@
  * [node_count of the plane mesh]; force: [nodes][3] [N]. */
 dea_status dea_dead_force_add(struct dea_context *ctx, const struct dea_layout_mesh *mesh,
                               const struct dea_layout_support *support, bool *room, double *force);
-
-#endif

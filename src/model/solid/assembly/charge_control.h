@@ -1,8 +1,7 @@
 /* A charge of the supply that is given in place of its voltage (docs/theory/devices.md, "Charge
  * control"): a load of the solid that lifts the voltages of channels, each by its share of one
  * voltage V, until the sum of their shares times their charges is what is given. */
-#ifndef DEA_MODEL_SOLID_ASSEMBLY_CHARGE_CONTROL_H
-#define DEA_MODEL_SOLID_ASSEMBLY_CHARGE_CONTROL_H
+#pragma once
 
 #include "model/solid/assembly/problem.h"
 
@@ -21,5 +20,3 @@ struct dea_charge_values {
 };
 struct dea_charge_values dea_charge_now(const struct dea_solid *solid);
 void dea_charge_destroy(struct dea_context *ctx, struct dea_charge *charge);
-
-#endif
