@@ -330,9 +330,10 @@ TEST(test_lens)
 {
   static const char *const only[] = {"pressures[0].liquid", "plies.film.thickness",
                                      "plies.film.pre_stretch", NULL};
+  static const struct dea_override surface = {"compute.solid", "{film: membrane}"};
   struct at at = {.voltage_V = 3e3, .only = only};
   assert_int_equal(
-      dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/lens.yaml", &skin, 1, &at.design),
+      dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/lens.yaml", &surface, 1, &at.design),
       DEA_OK);
   check(&at);
 }

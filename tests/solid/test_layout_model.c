@@ -288,10 +288,11 @@ static void check_turned(bool fibres)
   }
   double scale = hypot(u[0][0], u[0][1]);
   assert_true(scale > 20e-6);
-  assert_close(u[1][0], c * u[0][0] - s * u[0][1], 0, 1e-4 * scale);
-  assert_close(u[1][1], s * u[0][0] + c * u[0][1], 0, 1e-4 * scale);
-  assert_close(area[1], area[0], 1e-5, 0);
-  assert_close(charge[1], charge[0], 1e-5, 0);
+  const double same = fibres ? 1e-3 : 1e-4; // of meshes
+  assert_close(u[1][0], c * u[0][0] - s * u[0][1], 0, same * scale);
+  assert_close(u[1][1], s * u[0][0] + c * u[0][1], 0, same * scale);
+  assert_close(area[1], area[0], 0.1 * same, 0);
+  assert_close(charge[1], charge[0], 0.1 * same, 0);
   assert_close(tension[1], tension[0], fibres ? 2e-2 : 1e-3, 0);
 }
 
