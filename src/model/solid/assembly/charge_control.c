@@ -146,13 +146,11 @@ static dea_status refuse(struct dea_context *ctx, const struct dea_solid *s)
 dea_status dea_charge_create(struct dea_context *ctx, struct dea_solid *solid)
 {
   DEA_TRY(ctx, refuse(ctx, solid));
-  struct dea_charge *c = dea_solid_alloc(ctx, 1, sizeof *c);
-  if (c == NULL) {
-    return DEA_E_MEMORY;
-  }
-  solid->problem.charge = c;
+  struct dea_charge *c = dea_arena_alloc(&solid->memory, 1, sizeof *c);
+  double *room = dea_arena_alloc(&solid->memory, solid->problem.dofs, sizeof *room);
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&solid->memory)));
   c->solid = solid;
-  c->room = dea_solid_alloc(ctx, solid->problem.dofs, sizeof *c->room);
+  c->room = room;
   const struct dea_solid_load load = {.self = c,
                                       .piece_count = 1,
                                       .evaluate = evaluate,
@@ -162,20 +160,9 @@ dea_status dea_charge_create(struct dea_context *ctx, struct dea_solid *solid)
                                       .parameter_count = 1,
                                       .now = &c->now_C,
                                       .goal = &c->goal_C};
-  const dea_status status = c->room != NULL ? dea_solid_add_load(ctx, solid, &load) : DEA_E_MEMORY;
-  if (status != DEA_OK) {
-    dea_charge_destroy(ctx, c);
-    solid->problem.charge = NULL;
-  }
-  return status;
-}
-
-void dea_charge_destroy(struct dea_context *ctx, struct dea_charge *charge)
-{
-  if (charge != NULL) {
-    dea_free(ctx, charge->room);
-    dea_free(ctx, charge);
-  }
+  DEA_TRY(ctx, dea_solid_add_load(ctx, solid, &load));
+  solid->problem.charge = c;
+  return DEA_OK;
 }
 
 dea_status dea_charge_hold(struct dea_context *ctx, struct dea_solid *solid, double charge_C)

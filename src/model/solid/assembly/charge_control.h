@@ -19,4 +19,3 @@ struct dea_charge_values {
   double charge_C, lift_V, capacitance_F;
 };
 struct dea_charge_values dea_charge_now(const struct dea_solid *solid);
-void dea_charge_destroy(struct dea_context *ctx, struct dea_charge *charge);

@@ -55,7 +55,7 @@ struct dea_solid_problem {
   double *point_mass; // [nodes] masses beside those of elements [kg]; NULL: none
   struct dea_solid_load *loads; // [load_count] by dea_solid_add_load; owned
   size_t load_count;
-  struct dea_charge *charge; // one of them, by dea_charge_hold; NULL: none; owned
+  struct dea_charge *charge; // one of them, by dea_charge_hold; NULL: none
 
   double modulus_Pa;     // shear modulus of the softest element
   double length_m;       // smallest extent of the grid

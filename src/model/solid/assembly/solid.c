@@ -4,7 +4,6 @@
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/bodies.h"
 #include "model/solid/assembly/channels.h"
-#include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/controls.h"
 #include "model/solid/assembly/elements.h"
 #include "model/solid/assembly/mass.h"
@@ -151,7 +150,6 @@ void dea_solid_destroy(struct dea_context *ctx, struct dea_solid *s)
   dea_load_steps_release(&s->work.load_steps);
   dea_element_set_release(ctx, &s->problem.elements);
   dea_free(ctx, s->problem.loads);
-  dea_charge_destroy(ctx, s->problem.charge);
   dea_arena_free(&s->memory);
   dea_free(ctx, s);
 }
