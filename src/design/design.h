@@ -123,6 +123,7 @@ struct dea_design {
     struct dea_waveform *waveform;  // owned; NULL: none
     struct dea_quantity series_resistance_ohm;
     struct dea_quantity current_limit_A, slew_limit_V_per_s; // absent: none
+    struct dea_quantity disconnect_s;                        // absent: never
   } drive;
 
   struct dea_material_data *materials; // [material_count] inline ones of this file, owned

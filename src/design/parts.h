@@ -90,7 +90,7 @@ struct dea_parts_support {
   struct dea_label edge, shape, within; // of the first two one is absent
   struct dea_choice hold[DEA_HOLDS_MAX];
   size_t hold_count;
-  struct dea_quantity move_m[3]; // absent: 0
+  struct dea_quantity move_m[3], force_N[3]; // absent: 0
 };
 
 struct dea_parts_body {

@@ -17,6 +17,10 @@ static const struct dea_field drive_fields[] = {
     DEA_NUMBER_ROW("current_limit", AT(drive.current_limit_A), "A", "10 mA",
                    "largest current of the supply", .above_min = true, .max = 1e3,
                    .absent_text = "none"),
+    DEA_NUMBER_ROW("disconnect", AT(drive.disconnect_s), "s", "2 s",
+                   "time at which the supply is disconnected: from then on the film keeps its "
+                   "charge, less what leaks through it",
+                   .absent_text = "never"),
     DEA_NUMBER_ROW("slew_limit", AT(drive.slew_limit_V_per_s), "V/s", "700 V/us",
                    "fastest change of the supply's voltage", .above_min = true, .max = 1e15,
                    .absent_text = "none"),

@@ -116,8 +116,9 @@ static const struct dea_field support_fields[] = {
     NAME(dea_parts_support, within, "within", "only what lies in this shape too", "left",
          .absent_text = "everywhere"),
     CHOICE(dea_parts_support, hold, "hold", holds,
-           "clamped; hinged: only at the bottom, so that it may turn; or the directions held",
-           "[x, z]", .lone = true, .default_text = "[clamped]",
+           "clamped; hinged: only at the bottom, so that it may turn; or the directions held; left "
+           "out: clamped, or with a force nothing",
+           "[x, z]", .lone = true, .absent_text = "clamped, with a force nothing",
            LIST(dea_parts_support, dea_choice, hold_count, 1, DEA_HOLDS_MAX)),
     NUMBER(dea_parts_support, move_m[0], "move_x", "m", "how far it is moved along x", "1 mm",
            OPTIONAL),
@@ -125,6 +126,11 @@ static const struct dea_field support_fields[] = {
            OPTIONAL),
     NUMBER(dea_parts_support, move_m[2], "move_z", "m", "how far it is moved along z", "1 mm",
            OPTIONAL),
+    NUMBER(dea_parts_support, force_N[0], "force_x", "N",
+           "dead force along x on all of it, spread evenly along the edge or over the shape",
+           "10 mN", OPTIONAL),
+    NUMBER(dea_parts_support, force_N[1], "force_y", "N", "the same along y", "10 mN", OPTIONAL),
+    NUMBER(dea_parts_support, force_N[2], "force_z", "N", "the same along z", "10 mN", OPTIONAL),
 };
 
 static const char *const directions[] = {"x", "y", "z", "turn_x", "turn_y", "turn_z", NULL};
@@ -238,8 +244,8 @@ const struct dea_field dea_parts_fields[] = {
     ITEMS("channels", channel, channels, DEA_PARTS_CHANNELS_MAX,
           "channels whose voltage is not that of compute.voltage",
           .absent_text = "those of the electrodes, all with ratio 1"),
-    ITEMS("supports", support, supports, DEA_PARTS_SUPPORTS_MAX, "what is held, or moved",
-          NO_ITEMS),
+    ITEMS("supports", support, supports, DEA_PARTS_SUPPORTS_MAX,
+          "what is held, moved, or pulled by a dead force", NO_ITEMS),
     ITEMS("bodies", body, bodies, DEA_PARTS_BODIES_MAX, "rigid bodies", NO_ITEMS),
     ITEMS("springs", spring, springs, DEA_PARTS_SPRINGS_MAX,
           "springs between bodies and the outside", NO_ITEMS),

@@ -242,6 +242,7 @@ dea_status dea_disc_layout_own_monitors(struct dea_context *ctx, const struct de
 static dea_status fill(struct dea_context *ctx, const struct dea_device *d, bool membrane,
                        struct dea_layout *l)
 {
+  l->polar = true;
   static const char *const fibre_regions[REGIONS] = {
       [FIBRES] = "fibres", [FILLER] = "filler", [SEAT] = "seat"};
   l->regions = dea_arena_alloc(&l->memory, REGIONS, sizeof *l->regions);

@@ -254,6 +254,7 @@ static dea_status add_electrodes(struct maker *m)
 static dea_status take_hold(const struct maker *m, const struct dea_parts_support *from,
                             struct dea_layout_support *to)
 {
+  bool pulled = false;
   for (size_t k = 0; k < from->hold_count; k++) {
     int hold = from->hold[k].value;
     bool alone = hold == DEA_HOLD_CLAMPED || hold == DEA_HOLD_HINGED;
@@ -266,8 +267,17 @@ static dea_status take_hold(const struct maker *m, const struct dea_parts_suppor
     to->components |= alone ? 7 : hold >= DEA_HOLD_X ? 1 << (hold - DEA_HOLD_X) : 0;
   }
   for (int k = 0; k < 3; k++) {
-    const struct dea_quantity *move = &from->move_m[k];
+    to->force_N[k] = or_zero(&from->force_N[k]);
+    pulled = pulled || from->force_N[k].origin != DEA_ABSENT;
+  }
+  to->components = from->hold_count == 0 && !pulled ? 7 : to->components;
+  for (int k = 0; k < 3; k++) {
+    const struct dea_quantity *move = &from->move_m[k], *force = &from->force_N[k];
     to->move_m[k] = or_zero(move);
+    if (force->origin != DEA_ABSENT && (to->components & 1 << k) != 0) {
+      DEA_TRY(m->ctx, dea_finding_add(m->ctx, DEA_ERROR, force->location,
+                                      "force_%c: this support holds %c", "xyz"[k], "xyz"[k]));
+    }
     if (move->origin != DEA_ABSENT && (to->components & 1 << k) == 0) {
       DEA_TRY(m->ctx,
               dea_finding_add(m->ctx, DEA_ERROR, move->location,

@@ -100,6 +100,12 @@ const struct dea_layout_ply *dea_layout_film(const struct dea_layout *layout)
   return i < layout->ply_count ? &layout->plies[i] : NULL;
 }
 
+bool dea_support_pulls(const struct dea_layout_support *support)
+{
+  const double *force = support->force_N;
+  return force[0] != 0 || force[1] != 0 || force[2] != 0;
+}
+
 bool dea_support_is_frame(const struct dea_layout_support *support)
 {
   return support->edge && support->within == DEA_LAYOUT_NONE && support->components == 7;
@@ -158,7 +164,9 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
                 s[j].hinged == s[i].hinged &&
                 // written alike
                 // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison,cert-exp42-c,cert-flp37-c)
-                memcmp(s[j].move_m, s[i].move_m, sizeof s[i].move_m) == 0);
+                memcmp(s[j].move_m, s[i].move_m, sizeof s[i].move_m) == 0 &&
+                // a force is that of one support alone
+                (j == i || !dea_support_pulls(&s[i])));
   for (size_t i = 0; i < layout->support_count; i++) {
     if (s[i].within != DEA_LAYOUT_NONE) {
       add(out, layout, s[i].within, first + (int)i);
@@ -206,8 +214,12 @@ dea_status dea_layout_find_symmetry(struct dea_context *ctx, struct dea_layout *
     layout->symmetry_found = status == DEA_OK;
   }
   for (size_t i = 0; i < layout->ply_count && status == DEA_OK; i++) {
-    if (layout->plies[i].pre_stretch[0] != layout->plies[i].pre_stretch[1]) {
-      keep_axes(&layout->symmetry, layout->plies[i].angle_rad);
+    const struct dea_layout_ply *ply = &layout->plies[i];
+    if (ply->pre_stretch[0] != ply->pre_stretch[1]) {
+      keep_axes(&layout->symmetry, ply->angle_rad);
+    }
+    if (ply->material.law != NULL && ply->material.law->anisotropic && !layout->polar) {
+      keep_axes(&layout->symmetry, ply->angle_rad + ply->material.fibre_angle_rad);
     }
   }
   dea_arena_free(&arena);

@@ -66,15 +66,16 @@ struct dea_layout_channel {
                         // part; static; NULL: none
 };
 
-/* Nodes of all plies that are held at a shift. */
+/* Nodes of all plies that are held at a shift, or bear a dead force. */
 struct dea_layout_support {
   size_t region;  // in it, its boundary counts
   bool edge;      // only on the region's boundary
   size_t within;  // only what is in this region too; DEA_LAYOUT_NONE: no such limit
-  int components; // bits 1, 2, 4: along x, y, z
+  int components; // that are held, bits 1, 2, 4: along x, y, z
   bool hinged;    // only the nodes at the bottom: the edge may turn
   size_t plies;   // only up to the top of the ply before this one in the list; 0: all plies
   double move_m[3];
+  double force_N[3]; // in all, spread evenly over the plies' sides along the edge, or their volume
   struct dea_location location;
 };
 
@@ -156,7 +157,8 @@ struct dea_layout {
   struct dea_layout_monitor *monitors; // [monitor_count + disc_monitor_count]
   size_t region_count, ply_count, electrode_count, channel_count, support_count, body_count;
   size_t spring_count, pressure_count, monitor_count;
-  size_t disc_monitor_count;    // those that a disc brings: columns of load points, without others
+  size_t disc_monitor_count; // those that a disc brings: columns of load points, without others
+  bool polar; // directions of laws count from the radius, not from x: of the short form
   double gravity_m_per_s2[3];   // acceleration of free fall; 0: without weight
   struct dea_symmetry symmetry; // of all of it
   bool symmetry_found;          // it was looked for
@@ -191,6 +193,8 @@ size_t dea_layout_find_body(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name);
 /* DEA_E_DESIGN where the material of a ply has no density, which weight and inertia need. */
 dea_status dea_layout_check_densities(struct dea_context *ctx, const struct dea_layout *layout);
+/* Whether it has a force. */
+bool dea_support_pulls(const struct dea_layout_support *support);
 /* Whether it holds a whole boundary in all directions, as a frame does. */
 bool dea_support_is_frame(const struct dea_layout_support *support);
 /* {x min, y min, x max, y max} of all plies. */

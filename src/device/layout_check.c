@@ -471,7 +471,8 @@ static bool part_is_held(const struct dea_layout *l, const struct dea_region *pa
   bool held = false;
   for (size_t i = 0; i < l->support_count && !held; i++) {
     const struct dea_layout_support *s = &l->supports[i];
-    held = s->edge ? edge_meets(l, s, part) : region_meets(l, s->region, part);
+    held =
+        s->components != 0 && (s->edge ? edge_meets(l, s, part) : region_meets(l, s->region, part));
   }
   for (size_t i = 0; i < l->body_count && !held; i++) {
     held = region_meets(l, l->bodies[i].region, part);

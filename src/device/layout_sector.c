@@ -46,7 +46,8 @@ static bool has_turn(const struct line *line, const double w[3])
 static bool has_support(const struct line *line, const struct dea_layout_support *s)
 {
   int plane = s->components & 3;
-  return has_vector(line, s->move_m) && (plane == 0 || plane == 3 || along_axis(line));
+  return has_vector(line, s->move_m) && has_vector(line, s->force_N) &&
+         (plane == 0 || plane == 3 || along_axis(line));
 }
 
 static bool has_body(const struct line *line, const struct dea_layout_body *b)

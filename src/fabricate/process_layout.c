@@ -321,6 +321,9 @@ static void add_supports(const struct sheet *s)
     const struct dea_layout_support *p = &l->supports[i];
     bool within = p->within != DEA_LAYOUT_NONE;
     char held[NUMBER] = "";
+    if (p->components == 0) {
+      continue;
+    }
     for (int k = 0; k < 3; k++) {
       size_t n = strlen(held);
       if ((p->components & 1 << k) != 0) {

@@ -221,30 +221,60 @@ static void draw_supports(const struct view *v)
   }
 }
 
+/* Where on the page the cross of a monitor is. */
+static void monitor_place(const struct view *v, size_t i, double out[2])
+{
+  const struct dea_layout_monitor *m = &v->layout->monitors[i];
+  double at[2] = {m->at_m[0][0], m->at_m[0][1]};
+  if (m->kind != DEA_MONITOR_POINT && m->kind != DEA_MONITOR_LINE) {
+    size_t region = m->kind == DEA_MONITOR_BODY     ? v->layout->bodies[m->body].region
+                    : m->kind == DEA_MONITOR_VOLUME ? v->layout->pressures[m->pressure].region
+                                                    : m->region;
+    dea_region_centroid_m(&v->layout->regions[region].region, at);
+  }
+  out[0] = x_of(v, at[0]);
+  out[1] = y_of(v, at[1]);
+}
+
+/* Numbers of all monitors with a cross within the height of a digit of that of monitor i, with
+ * commas; none where one before it has named them. */
+static void monitor_numbers(const struct view *v, size_t i, char *out, size_t size)
+{
+  static const double digit_mm = 2.9;
+  double own[2], other[2];
+  monitor_place(v, i, own);
+  out[0] = '\0';
+  for (size_t k = 0; k < v->layout->monitor_count; k++) {
+    const size_t used = strlen(out);
+    monitor_place(v, k, other);
+    if (hypot(other[0] - own[0], other[1] - own[1]) < digit_mm) {
+      if (k < i) {
+        return;
+      }
+      snprintf(out + used, size - used, "%s%zu", used > 0 ? ", " : "", k + 1);
+    }
+  }
+}
+
 /* A cross at a point of a monitor, with its number. */
 static void draw_monitors(const struct view *v)
 {
   const struct dea_canvas_type *type = v->paper->type;
   for (size_t i = 0; i < v->layout->monitor_count; i++) {
     const struct dea_layout_monitor *m = &v->layout->monitors[i];
-    double at[2] = {m->at_m[0][0], m->at_m[0][1]};
+    double at[2];
+    char numbers[80];
+    monitor_place(v, i, at);
     if (m->kind == DEA_MONITOR_LINE) {
-      type->line(v->paper->canvas, x_of(v, at[0]), y_of(v, at[1]), x_of(v, m->at_m[1][0]),
-                 y_of(v, m->at_m[1][1]));
+      type->line(v->paper->canvas, at[0], at[1], x_of(v, m->at_m[1][0]), y_of(v, m->at_m[1][1]));
       type->stroke(v->paper->canvas, 0.25, MONITOR, 0);
-    } else if (m->kind != DEA_MONITOR_POINT) {
-      size_t region = m->kind == DEA_MONITOR_BODY     ? v->layout->bodies[m->body].region
-                      : m->kind == DEA_MONITOR_VOLUME ? v->layout->pressures[m->pressure].region
-                                                      : m->region;
-      dea_region_centroid_m(&v->layout->regions[region].region, at);
     }
-    double x = x_of(v, at[0]), y = y_of(v, at[1]);
-    char number[24];
-    type->line(v->paper->canvas, x - 1.2, y, x + 1.2, y);
-    type->line(v->paper->canvas, x, y - 1.2, x, y + 1.2);
+    type->line(v->paper->canvas, at[0] - 1.2, at[1], at[0] + 1.2, at[1]);
+    type->line(v->paper->canvas, at[0], at[1] - 1.2, at[0], at[1] + 1.2);
     type->stroke(v->paper->canvas, 0.4, MONITOR, 0);
-    snprintf(number, sizeof number, "%zu", i + 1);
-    say(v, x + 1.2, m->kind == DEA_MONITOR_REGION ? y - 3.4 : y + 1.2, 2.9, false, MONITOR, number);
+    monitor_numbers(v, i, numbers, sizeof numbers);
+    say(v, at[0] + 1.2, m->kind == DEA_MONITOR_REGION ? at[1] - 3.4 : at[1] + 1.2, 2.9, false,
+        MONITOR, numbers);
   }
 }
 
@@ -820,13 +850,15 @@ static void add_channels(struct view *v)
   }
 }
 
-/* "clamped", "hinged", or "held along x, z". */
+/* "clamped", "hinged", "held along x, z", or "pulled". */
 static const char *hold_of(const struct dea_layout_support *s)
 {
   static const char *const held[] = {"held nowhere",    "held along x", "held along y",
                                      "held along x, y", "held along z", "held along x, z",
                                      "held along y, z", "clamped"};
-  return s->components == 7 && s->hinged ? "hinged" : held[s->components & 7];
+  return s->components == 0 && dea_support_pulls(s) ? "pulled"
+         : s->components == 7 && s->hinged          ? "hinged"
+                                                    : held[s->components & 7];
 }
 
 static void add_supports(struct view *v)

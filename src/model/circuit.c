@@ -16,10 +16,11 @@ struct start {
 };
 
 static struct start start_of(const struct dea_circuit *circuit,
-                             const struct dea_circuit_state *last, double h)
+                             const struct dea_circuit_state *last, const struct dea_time_step *step)
 {
+  const double h = step->length_s;
   struct start start = {.h = h, .theta = 0.5, .rate_A = -last->conductance_S * last->voltage_V};
-  if (circuit->series_resistance_ohm > 0) {
+  if (circuit->series_resistance_ohm > 0 && !step->disconnected) {
     start.conductance_S = 1 / circuit->series_resistance_ohm;
     start.rate_A += last->current_A;
   }
@@ -28,6 +29,12 @@ static struct start start_of(const struct dea_circuit *circuit,
     start.theta = end_weight(h * rate / last->capacitance_F);
   }
   return start;
+}
+
+/* The largest current in a step; none once the supply is disconnected. */
+static double limit_of(const struct dea_circuit *circuit, const struct dea_time_step *step)
+{
+  return step->disconnected ? 0 : circuit->current_limit_A;
 }
 
 bool dea_circuit_is_ideal(const struct dea_circuit *circuit)
@@ -41,6 +48,9 @@ double dea_circuit_longest_step(const struct dea_circuit *circuit,
 {
   static const double small = 1e-3; // of the voltage: what is left may be passed over
   double R = circuit->series_resistance_ohm, limit = circuit->current_limit_A;
+  if (step->disconnected) {
+    return INFINITY; // the decay of a charge is exact
+  }
   double gap = last->source_voltage_V - last->voltage_V, decay_s = R * last->capacitance_F;
   double least = small * fmax(scale_V, fabs(last->source_voltage_V));
   double beyond = isinf(limit) ? 0 : fabs(gap) - R * limit; // what the limit holds back
@@ -64,8 +74,8 @@ double dea_circuit_voltage(const struct dea_circuit *circuit, const struct dea_c
                            const struct dea_time_step *step, const struct dea_circuit_film *film,
                            double *slope)
 {
-  struct start start = start_of(circuit, last, step->length_s);
-  double V_s = step->source_voltage_V, limit = circuit->current_limit_A;
+  struct start start = start_of(circuit, last, step);
+  double V_s = step->source_voltage_V, limit = limit_of(circuit, step);
   double end_h = start.h * start.theta; // what the end of the step counts, in seconds
   double known = last->charge_C + (start.h - end_h) * start.rate_A;
   double sum = film->capacitance_F + end_h * film->conductance_S;
@@ -96,8 +106,8 @@ void dea_circuit_advance(const struct dea_circuit *circuit, const struct dea_cir
                          const struct dea_time_step *step, const struct dea_circuit_film *film,
                          struct dea_circuit_state *out)
 {
-  struct start start = start_of(circuit, last, step->length_s);
-  double slope, R_s = circuit->series_resistance_ohm, limit = circuit->current_limit_A;
+  struct start start = start_of(circuit, last, step);
+  double slope, R_s = circuit->series_resistance_ohm, limit = limit_of(circuit, step);
   double V = dea_circuit_voltage(circuit, last, step, film, &slope);
   struct dea_circuit_state end = *last;
   end.source_voltage_V = step->source_voltage_V;

@@ -31,6 +31,7 @@ struct dea_control;
 struct dea_time_step {
   double length_s;         // >= 0; 0: the supply's voltage jumps
   double source_voltage_V; // of the supply at the end of the step
+  bool disconnected;       // from the film during it
   const double *own_V;     // of sources beside it, see dea_time_options; NULL: there are none
   const struct dea_control *control; // of a model that has them (model/model.h); NULL: none moves
   double value;                      // of that at the end of the step

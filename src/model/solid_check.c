@@ -17,12 +17,12 @@ dea_status dea_solid_check_ply(struct dea_context *ctx, const struct dea_layout 
   const struct dea_layout_ply *ply = &layout->plies[i];
   const struct dea_material *material = &ply->material;
   char why[400];
-  if (material->law != NULL && material->law->anisotropic) {
+  if (material->law != NULL && material->law->anisotropic && layout->polar) {
     snprintf(
         why, sizeof why,
-        "model 3d does not know films with a direction of their own yet: ply '%.60s' is of the "
-        "law '%s'",
-        ply->name, material->law->name);
+        "model 3d does not support a direction that turns with the radius: the film is of the law "
+        "'%s'; a ply of a design with `plies` has one along its `angle`",
+        material->law->name);
     return dea_refuse(ctx, ply->location, why);
   }
   if (dea_layout_is_dielectric(layout, i) &&

@@ -1,7 +1,7 @@
 /* Study "loading": a body of a device is moved along a way, pushed by a dead
- * force, or the pressures on the device change, at some voltages: curves of force against
- * displacement, and the blocked force. Each voltage starts from rest with a model of its own; a
- * line that stops leaves its points, and the next one has its turn. */
+ * force, or the pressures on the device change, at some voltages, or the supply gives a charge:
+ * curves of force against displacement, and the blocked force. Each voltage starts from rest with a
+ * model of its own; a line that stops leaves its points, and the next one has its turn. */
 #include "study/loading.h"
 #include "base/schema.h"
 #include "study/observe.h"
@@ -18,7 +18,7 @@ static const char study_name[] = "loading";
 // Keys -------------------------------------------------------------------------------------------
 
 /* What goes along its values. */
-enum range { SHIFT, TURN, FORCE, PRESSURE, RANGES };
+enum range { SHIFT, TURN, FORCE, PRESSURE, CHARGE, RANGES };
 
 /* Settings of compute.loading; without a range nothing is computed. */
 struct settings {
@@ -61,6 +61,10 @@ static const struct dea_field fields[] = {
          "dead force on the body, which stays free, in place of its own", "0 mN", "200 mN"),
     ENDS(PRESSURE, "pressure_from", "pressure_to", "Pa",
          "largest pressure on the device; all others go in proportion", "0 kPa", "2 kPa"),
+    ENDS(CHARGE, "charge_from", "charge_to", "C",
+         "charge of the supply on the channels, each times its ratio, in place of a voltage: it "
+         "passes the pull-in voltage",
+         "0 nC", "500 nC"),
     DEA_INTEGER_ROW("steps", AT(steps), "20", "equal steps from the first value to the last",
                     .min = 1, .max = 1000, .default_text = "10"),
     DEA_NUMBER_ROW("duration", AT(duration_s), "s", "10 s",
@@ -74,11 +78,11 @@ static const struct dea_field fields[] = {
                           "[0 kV, 3 kV, 5 kV]"),
 };
 
-static const struct dea_record record = {
-    study_name,
-    "study of force against displacement of a body, or of pressures, at voltages (3d, devices of "
-    "the general form)",
-    fields, COUNT(fields)};
+static const struct dea_record record = {study_name,
+                                         "study of force against displacement of a body, or of "
+                                         "pressures, at voltages, or of a charge (3d, devices of "
+                                         "the general form)",
+                                         fields, COUNT(fields)};
 
 /* The range that is asked for; RANGES: none. */
 static enum range range_of(const struct settings *settings)
@@ -106,14 +110,15 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
     return DEA_OK;
   }
   if (range == RANGES) {
-    return wrong(ctx, s, "from and to are missing (or turn_, force_, pressure_from and _to)");
+    return wrong(ctx, s,
+                 "from and to are missing (or turn_, force_, pressure_, charge_from and _to)");
   }
   if (isnan(s->from[range].si) || isnan(s->to[range].si)) {
     DEA_TRY(ctx, wrong(ctx, s, "a line needs both where it begins and where it ends"));
   }
   for (int k = (int)range + 1; k < RANGES; k++) {
     if (!isnan(s->from[k].si) || !isnan(s->to[k].si)) {
-      DEA_TRY(ctx, wrong(ctx, s, "shift, turn, force and pressure exclude each other"));
+      DEA_TRY(ctx, wrong(ctx, s, "shift, turn, force, pressure and charge exclude each other"));
     }
   }
   if (s->from[range].si == s->to[range].si) {
@@ -123,10 +128,13 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, s->duration_s.location,
                                  "loading: a duration goes with a shift or a turn"));
   }
-  if (range != PRESSURE && s->body.text[0] == '\0') {
+  if (range == CHARGE && s->voltage_count > 0) {
+    DEA_TRY(ctx, wrong(ctx, s, "a charge is given in place of voltages"));
+  }
+  if (range < PRESSURE && s->body.text[0] == '\0') {
     DEA_TRY(ctx, wrong(ctx, s, "which body? (body: NAME)"));
   }
-  if (range != PRESSURE && turns != (range == TURN)) {
+  if (range < PRESSURE && turns != (range == TURN)) {
     return dea_finding_add(ctx, DEA_ERROR, s->direction.location, "loading: %s",
                            turns ? "a turn goes from turn_from to turn_to"
                                  : "turn_from and turn_to need direction: turn_x, turn_y, turn_z");
@@ -212,7 +220,7 @@ static const char degree[] = "deg";
 static const double degrees = 57.29577951308232;
 
 /* What a point says beside its voltage; columns in this order. */
-enum value { AT_SHIFT, AT_TURN, OF_FORCE, OF_MOMENT, AT_PRESSURE, VALUES };
+enum value { AT_SHIFT, AT_TURN, OF_FORCE, OF_MOMENT, AT_PRESSURE, AT_CHARGE, VALUES };
 
 static const struct dea_result_column point_columns[] = {
     VOLTAGE,
@@ -223,6 +231,8 @@ static const struct dea_result_column point_columns[] = {
     DEA_NUMBER_COLUMN("force_N", "N", "mN", 1e3, "force", "of what holds or pushes the body"),
     DEA_NUMBER_COLUMN("moment_N_m", "N m", "uN m", 1e6, "moment", "of what holds the body"),
     DEA_NUMBER_COLUMN("pressure_Pa", "Pa", "kPa", 1e-3, "pressure", "the largest on the device"),
+    DEA_NUMBER_COLUMN("charge_C", "C", "nC", 1e9, "charge", "given by the supply"),
+    DEA_NUMBER_COLUMN("supply_voltage_V", "V", "kV", 1e-3, "supply", "voltage that it has then"),
     DEA_NUMBER_COLUMN("highest_z_m", "m", "mm", 1e3, "highest z",
                       "largest displacement out of the plane"),
     DEA_NUMBER_COLUMN("lowest_z_m", "m", "mm", 1e3, "lowest z",
@@ -319,8 +329,8 @@ static void look_at_body(const struct loading *l, const struct dea_observation *
   if (l->range == FORCE) {
     out[OF_FORCE] = value;
   }
-  if (l->range == PRESSURE) {
-    out[AT_PRESSURE] = value;
+  if (l->range >= PRESSURE) {
+    out[l->range == PRESSURE ? AT_PRESSURE : AT_CHARGE] = value;
   }
 }
 
@@ -439,6 +449,8 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
       {.number = v[OF_FORCE]},
       {.number = v[OF_MOMENT]},
       {.number = v[AT_PRESSURE]},
+      {.number = v[AT_CHARGE]},
+      {.number = l->range == CHARGE ? at.voltage_V : NAN},
       {.number = at.highest_z_m},
       {.number = at.lowest_z_m},
       {.number = at.energy_J},
@@ -479,7 +491,7 @@ static dea_status block(struct dea_context *ctx, struct loading *l)
 static dea_status begin(struct dea_context *ctx, struct loading *l)
 {
   struct dea_load_point at;
-  bool upright = l->control.kind == DEA_CONTROL_PRESSURE || l->control.component == 2;
+  bool upright = l->control.kind >= DEA_CONTROL_PRESSURE || l->control.component == 2;
   DEA_TRY(ctx, (upright ? dea_model_create : dea_model_create_whole)(
                    ctx, l->type, l->result->design, l->result->device, &l->model));
   if (l->control.kind == DEA_CONTROL_PLACE) {
@@ -564,7 +576,8 @@ static dea_status follow_all(struct dea_context *ctx, struct loading *l, const d
 static void choose_control(struct loading *l)
 {
   static const enum dea_control_kind kinds[RANGES] = {DEA_CONTROL_PLACE, DEA_CONTROL_PLACE,
-                                                      DEA_CONTROL_FORCE, DEA_CONTROL_PRESSURE};
+                                                      DEA_CONTROL_FORCE, DEA_CONTROL_PRESSURE,
+                                                      DEA_CONTROL_CHARGE};
   const struct dea_layout *layout = l->result->device->layout;
   l->body = l->settings->body.text[0] != '\0' ? dea_layout_find_body(layout, l->settings->body.text)
                                               : DEA_LAYOUT_NONE;
@@ -618,9 +631,10 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   const struct settings *settings = settings_of(result->design);
   struct loading l = {
       .type = type, .result = result, .settings = settings, .range = range_of(settings)};
-  double voltages_V[DEA_DESIGN_STOPS_MAX];
-  size_t count = dea_study_stops(result->design, settings->voltages_V, settings->voltage_count,
-                                 true, voltages_V);
+  double voltages_V[DEA_DESIGN_STOPS_MAX] = {0};
+  size_t count = l.range == CHARGE ? 1
+                                   : dea_study_stops(result->design, settings->voltages_V,
+                                                     settings->voltage_count, true, voltages_V);
   choose_control(&l);
   l.total = count * ((size_t)settings->steps.si * (settings->back.value == 1 ? 2 : 1) + 1);
   DEA_TRY(ctx, add_tables(ctx, &l));
@@ -675,6 +689,9 @@ static struct axes axes_of(const struct dea_result_table *table)
       out.y_label = "Height of the film (mm)";
     }
     return out;
+  }
+  if (has(table, "charge_C")) {
+    return (struct axes){"charge_C", "supply_voltage_V", "Charge (nC)", "Voltage (kV)", 1e9, 1e-3};
   }
   return turns ? (struct axes){"turn_rad", "moment_N_m", turn, "Moment ({/Symbol m}N m)",
                                degrees,    1e6}
@@ -794,8 +811,8 @@ static const struct dea_figure figures[] = {
     DEA_STUDY_FIGURE(
         "loading", study_name, build,
         "force that holds or pushes a body against its displacement, or displacement "
-        "against the pressure, for each voltage; dashed: the way back; grey: not to be "
-        "trusted"),
+        "against the pressure, for each voltage, or voltage against charge; dashed: the way "
+        "back; grey: not to be trusted"),
 };
 
 // The study --------------------------------------------------------------------------------------
@@ -810,7 +827,7 @@ const struct dea_study dea_study_loading = {
     .name = study_name,
     .keys = &section,
     .asked = dea_loading_asked,
-    .needs = "compute.loading.from and to, or turn_, force_, pressure_from and to",
+    .needs = "compute.loading.from and to, or turn_, force_, pressure_, charge_from and to",
     .own_models = true,
     .ability = "bodies and pressures",
     .able = able,

@@ -83,15 +83,20 @@ static dea_status check_sources(struct dea_context *ctx, const struct dea_design
   const struct dea_parts_channel *own = asked(design) ? own_channel(design) : NULL;
   const struct dea_quantity *R = &design->drive.series_resistance_ohm;
   const struct dea_quantity *limit = &design->drive.current_limit_A;
-  const struct dea_quantity *which = R->si > 0 ? R : limit;
-  if (own == NULL || (!(R->si > 0) && limit->origin == DEA_ABSENT)) {
+  const struct dea_quantity *open = &design->drive.disconnect_s;
+  const struct dea_quantity *which = R->si > 0 ? R : limit->origin != DEA_ABSENT ? limit : open;
+  if (own == NULL || (!(R->si > 0) && which->origin == DEA_ABSENT)) {
     return DEA_OK;
   }
-  return dea_finding_add(ctx, DEA_ERROR, which->location,
-                         "%s: in time the channel '%.60s' has a %s of its own, and sources of "
-                         "several channels are ideal: without resistance and limit of the current",
-                         R->si > 0 ? "series_resistance" : "current_limit", own->name.text,
-                         own->waveform != NULL ? "waveform" : "voltage");
+  return dea_finding_add(
+      ctx, DEA_ERROR, which->location,
+      "%s: in time the channel '%.60s' has a %s of its own, and sources of "
+      "several channels are ideal: without resistance and limit of the current, and "
+      "always connected",
+      which == R       ? "series_resistance"
+      : which == limit ? "current_limit"
+                       : "disconnect",
+      own->name.text, own->waveform != NULL ? "waveform" : "voltage");
 }
 
 static dea_status check(struct dea_context *ctx, const struct dea_design *design,
@@ -152,6 +157,7 @@ struct player {
   struct dea_monitor_set seen;
   struct dea_monitor_values *spare;
   double *seen_largest; // [seen.count]
+  double disconnect_s;  // INFINITY: never
   bool inertia;
   size_t told; // thousandths of the time that progress was told of
   char what[DEA_NAME_SIZE + 16];
@@ -304,7 +310,7 @@ static bool voltages_jump(const struct player *p)
 /* The next corner of any source. */
 static double find_corner(struct player *p)
 {
-  double first_s = INFINITY;
+  double first_s = p->time_s < p->disconnect_s ? p->disconnect_s : INFINITY;
   for (size_t k = 0; k < p->source_count; k++) {
     const struct dea_waveform *waveform = played(&p->sources[k]);
     p->corner_s[k] = waveform != NULL ? dea_waveform_corner(waveform, p->time_s) : INFINITY;
@@ -317,6 +323,7 @@ static struct dea_time_step step_of(const struct player *p, double length_s)
 {
   return (struct dea_time_step){.length_s = length_s,
                                 .source_voltage_V = p->next_V[0],
+                                .disconnected = p->time_s >= p->disconnect_s,
                                 .own_V = p->any_own ? p->next_V : NULL};
 }
 
@@ -479,6 +486,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_design *desi
   usual_s = fmin(usual_s, 0.02 * p->until_s);
   p->longest_s = longest->origin != DEA_ABSENT ? longest->si : usual_s;
   p->tolerance = settings_of(design)->tolerance.si;
+  const struct dea_quantity *disconnect = &design->drive.disconnect_s;
+  p->disconnect_s = disconnect->origin != DEA_ABSENT ? disconnect->si : INFINITY;
   const struct dea_quantity *interval = &settings_of(design)->interval_s;
   p->interval_s = interval->origin != DEA_ABSENT ? interval->si : 0;
   return DEA_OK;

@@ -39,6 +39,35 @@ TEST(test_charging)
   }
 }
 
+/* A supply that is disconnected leaves the charge, whatever was between; it leaks away exactly, at
+ * steps of any length, and is kept where the film changes. */
+TEST(test_disconnected)
+{
+  const struct dea_circuit circuits[] = {{0, INFINITY}, {1e9, INFINITY}, {1e9, 1e-9}};
+  const double G = 1e-11; // C/G = 20 s
+  for (size_t i = 0; i < 3; i++) {
+    const struct dea_circuit *circuit = &circuits[i];
+    struct dea_circuit_state now = charge(circuit, 0, 4000, 0.01, 10);
+    const double V = now.voltage_V, work = now.supply_work_J;
+    struct dea_circuit_film film = {.capacitance_F = C, .conductance_S = G};
+    struct dea_time_step step = {.length_s = 0, .source_voltage_V = 5000, .disconnected = true};
+    dea_circuit_advance(circuit, &now, &step, &film, &now);
+    assert_close(now.voltage_V, V, 1e-14, 0);
+    step.length_s = 7;
+    for (int k = 0; k < 3; k++) {
+      dea_circuit_advance(circuit, &now, &step, &film, &now);
+      assert_close(now.current_A, 0, 0, 1e-22);
+      assert_true(isinf(dea_circuit_longest_step(circuit, &now, &step, 5000)));
+    }
+    assert_close(now.voltage_V, V * exp(-21.0 / 20), 1e-12, 0);
+    assert_close(now.supply_work_J, work, 1e-12, 1e-15);
+    film = (struct dea_circuit_film){.capacitance_F = 2 * C};
+    now.conductance_S = 0;
+    dea_circuit_advance(circuit, &now, &step, &film, &now);
+    assert_close(now.voltage_V, 0.5 * V * exp(-21.0 / 20), 1e-12, 0);
+  }
+}
+
 TEST(test_leakage)
 {
   const double G = 1e-11; // C/G = 20 s

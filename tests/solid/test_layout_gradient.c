@@ -325,6 +325,20 @@ TEST(test_moved_pressure)
   check(&at);
 }
 
+/* Over a closed volume of liquid, which is a monitor too. */
+TEST(test_lens)
+{
+  static const char *const only[] = {"pressures[0].liquid", "plies.film.thickness",
+                                     "plies.film.pre_stretch", NULL};
+  static const struct dea_override surface = {"compute.solid", "{film: membrane}"};
+  // the volume is solved to 1e-9
+  struct at at = {.voltage_V = 3e3, .only = only, .leaves = 1e-9};
+  assert_int_equal(
+      dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/lens.yaml", &surface, 1, &at.design),
+      DEA_OK);
+  check(&at);
+}
+
 TEST(test_two_plies_under_pressure)
 {
   static const char *const only[] = {"plies.skin.thickness", "plies.skin.pre_stretch",
@@ -917,4 +931,5 @@ TEST(test_buckling_of_a_slab)
   end(&at);
 }
 
+#include <stdio.h>
 TESTS(context_set_up, context_tear_down)

@@ -2,6 +2,7 @@
  * by its energy. */
 // ctest: solid
 #include "design_text.h"
+#include "devices.h"
 #include "material/plane.h"
 #include "study/study.h"
 
@@ -395,6 +396,120 @@ TEST(test_pressure_limit)
   }
   assert_close(limit_kPa[0], limit_kPa[1], 1e-3, 0);
   assert_in_range((int)(1e3 * 1e3 * limit_kPa[0] * R / (mu * H)), 1850, 1950);
+}
+
+/* A neo-Hookean film that is free in its plane, at a given charge: l^6 - 1 = D^2/(eps mu), D = Q
+ * over the area at rest, V = D H/(eps l^4). By a quarter of it and by all. */
+TEST(test_free_charge)
+{
+  static const double stretches[] = {1.1, 1.2, 1.1, 1};
+  for (int whole = 0; whole < 2; whole++) {
+    struct dea_device *device = device_new();
+    struct dea_layout *l = device->layout;
+    const double a = 10e-3, mu = 60e3, H = 100e-6, eps = DEA_EPSILON_0 * 2.8;
+    const double Q_of = a * a * sqrt(eps * mu);
+    add_rectangle(device, "film", -a / 2, -a / 2, a, a);
+    add_film(device, 0, 1, 1);
+    l->plies[0].material.law = dea_law_find("neo-hookean");
+    l->plies[0].material.param[0] = mu;
+    add_electrode(device, 0, false, 0, 0);
+    add_electrode(device, 0, true, 0, 1);
+    const size_t low = add_rectangle(device, "low", -a, -1.5 * a, 2 * a, a);
+    const size_t left = add_rectangle(device, "left", -1.5 * a, -a, a, 2 * a);
+    const struct dea_layout_support held[] = {
+        {.region = 0, .within = DEA_LAYOUT_NONE, .components = 4, .hinged = true},
+        {.region = 0, .edge = true, .within = low, .components = 2},
+        {.region = 0, .edge = true, .within = left, .components = 1},
+    };
+    l->support_count = whole == 0 ? 1 : 3; // the sides of a sector hold it in the plane
+    memcpy(l->supports, held, sizeof held);
+    l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+        .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+    assert_int_equal(dea_layout_find_symmetry(ctx, l), DEA_OK);
+    const struct dea_model_settings settings = {.refinement = 1};
+    struct dea_model *model = layout_model(device, &settings);
+    const struct dea_model_type *type = dea_model_find("3d");
+    const struct dea_control charge = {.kind = DEA_CONTROL_CHARGE};
+    struct dea_load_point at;
+    assert_int_equal(type->solve(ctx, model, 0, &at), DEA_OK);
+    for (size_t i = 0; i < sizeof stretches / sizeof *stretches; i++) {
+      const double s = stretches[i], Q = Q_of * sqrt(pow(s, 6) - 1);
+      struct dea_observation seen;
+      assert_int_equal(type->move(ctx, model, &charge, Q, &at), DEA_OK);
+      assert_int_equal(type->observe(ctx, model, &seen), DEA_OK);
+      assert_int_equal(at.unstable_modes, 0);
+      assert_close(seen.monitor[0][DEA_OBSERVED_STRETCH_X], s, 0, 1e-5);
+      assert_close(at.voltage_V, Q * H / (a * a * eps * pow(s, 4)), 1e-5, 1e-3);
+      assert_close(seen.channel[1].charge_C, Q, 1e-7, 1e-15);
+      assert_close(seen.channel[1].voltage_V, at.voltage_V, 1e-9, 1e-9);
+      assert_close(at.capacitance_F, a * a * eps * pow(s, 4) / H, 2e-5, 0);
+    }
+    type->destroy(ctx, model);
+    dea_device_destroy(ctx, device);
+  }
+}
+
+/* Voltages and charges of a path. */
+struct sunk {
+  size_t count;
+  double voltage_V[400], charge_C[400];
+};
+
+static dea_status sink(void *user, const struct dea_load_point *point)
+{
+  struct sunk *s = user;
+  if (s->count < 400) {
+    s->voltage_V[s->count] = point->voltage_V;
+    s->charge_C[s->count++] = point->voltage_V * point->capacitance_F;
+  }
+  return DEA_OK;
+}
+
+static dea_status no_event(void *user, const struct dea_event *event)
+{
+  return DEA_OK;
+}
+
+/* A disc with a passive annulus up to its pull-in voltage: at equal charges the voltage of the
+ * axisymmetric model's path. */
+TEST(test_charge_up_to_pull_in)
+{
+  struct dea_material soft = test_material("arruda-boyce", 15.36e3, 5.99, 0);
+  soft.permittivity.at_rest = 4.8;
+  struct dea_device plain = test_disc(soft, 1.2, 2.6e-3, 2.6 / 15.5, 0);
+  plain.film_thickness_unstretched_m = 30e-6;
+  plain.film_thickness_m = 30e-6 / 1.44;
+  plain.frame_radius_m = 15.5e-3;
+  struct dea_device *device = disc_new(plain.frame_radius_m, 2.6e-3, 1.2);
+  struct dea_layout_ply *ply = &device->layout->plies[0];
+  ply->material = soft;
+  ply->thickness_m = plain.film_thickness_m;
+  ply->thickness_unstretched_m = plain.film_thickness_unstretched_m;
+  const struct dea_model_type *exact_type = dea_model_find("axisymmetric");
+  const struct dea_path_options options = {1.9, INFINITY, 400, false};
+  struct dea_model *exact;
+  struct sunk path = {0};
+  assert_int_equal(exact_type->create(ctx, &plain, NULL, &exact), DEA_OK);
+  assert_int_equal(exact_type->path(ctx, exact, &options, sink, no_event, &path), DEA_OK);
+  exact_type->destroy(ctx, exact);
+  assert_int_equal(dea_layout_find_symmetry(ctx, device->layout), DEA_OK);
+  const struct dea_model_settings settings = {.refinement = 1};
+  struct dea_model *model = layout_model(device, &settings);
+  const struct dea_model_type *type = dea_model_find("3d");
+  const struct dea_control charge = {.kind = DEA_CONTROL_CHARGE};
+  struct dea_load_point at;
+  assert_int_equal(type->solve(ctx, model, 0, &at), DEA_OK);
+  const size_t every = path.count / 12;
+  double last_V = 0;
+  for (size_t i = every; path.charge_C[i] < 56e-9; i += every) {
+    assert_int_equal(type->move(ctx, model, &charge, path.charge_C[i], &at), DEA_OK);
+    assert_int_equal(at.unstable_modes, 0);
+    assert_close(at.voltage_V, path.voltage_V[i], 1e-3, 0);
+    last_V = at.voltage_V;
+  }
+  assert_true(last_V > 325); // of 330.6 V
+  type->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
 }
 
 TESTS(context_set_up, context_tear_down)

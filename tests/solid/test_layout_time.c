@@ -29,14 +29,22 @@ static void begin(struct dea_model *model, double resistance_ohm, bool inertia, 
   type->accept(model);
 }
 
-static void step(struct dea_model *model, double step_s, double voltage_V,
-                 struct dea_load_point *point)
+/* disconnected: the supply is, at 0 V. */
+static void step_of(struct dea_model *model, double step_s, double voltage_V, bool disconnected,
+                    struct dea_load_point *point)
 {
   const struct dea_model_type *type = dea_model_find("3d");
-  const struct dea_time_step forward = {.length_s = step_s, .source_voltage_V = voltage_V};
+  const struct dea_time_step forward = {
+      .length_s = step_s, .source_voltage_V = voltage_V, .disconnected = disconnected};
   double error;
   assert_int_equal(type->advance(ctx, model, &forward, point, &error), DEA_OK);
   type->accept(model);
+}
+
+static void step(struct dea_model *model, double step_s, double voltage_V,
+                 struct dea_load_point *point)
+{
+  step_of(model, step_s, voltage_V, false, point);
 }
 
 static const double *first_monitor(struct dea_model *model)
@@ -65,9 +73,8 @@ static struct dea_device *square_new(void)
   return device;
 }
 
-/* Free to move in its plane, with one branch G beside mu: after a small step of the voltage the
- * strain eps E^2 / (6 mu) comes up as that of the standard linear solid. */
-TEST(test_creep)
+/* The same that is free to move in its plane; a monitor of all of it. */
+static struct dea_device *free_square_new(void)
 {
   struct dea_device *device = square_new();
   struct dea_layout *l = device->layout;
@@ -81,12 +88,20 @@ TEST(test_creep)
   for (size_t i = 0; i < sizeof held / sizeof held[0]; i++) {
     l->supports[l->support_count++] = held[i];
   }
-  struct dea_material *film = &l->plies[0].material;
+  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
+      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
+  return device;
+}
+
+/* With one branch G beside mu: after a small step of the voltage the strain eps E^2 / (6 mu) comes
+ * up as that of the standard linear solid. */
+TEST(test_creep)
+{
+  struct dea_device *device = free_square_new();
+  struct dea_material *film = &device->layout->plies[0].material;
   double mu = 2 * film->param[0], G = 0.5 * mu, time_s = 0.2;
   film->branches[0] = (struct dea_branch){.modulus_Pa = G, .time_s = time_s};
   film->branch_count = 1;
-  l->monitors[l->monitor_count++] = (struct dea_layout_monitor){
-      .name = "film", .kind = DEA_MONITOR_REGION, .ply = 0, .region = 0};
   struct dea_model *model = model_of(device, DEA_FILM_SOLID);
   struct dea_load_point start, point;
   double voltage_V = 400, field = voltage_V / 100e-6;
@@ -105,6 +120,36 @@ TEST(test_creep)
   }
   assert_true(point.dissipated_J > 0);
   assert_close(unaccounted(&start, &point), 0, 0, 1e-6);
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* A neo-Hookean film with a branch whose supply is disconnected after the jump: it creeps at that
+ * charge Q to l^6 - 1 = D^2/(eps mu), D = Q over the area at rest; nothing is given or taken. */
+TEST(test_disconnected)
+{
+  struct dea_device *device = free_square_new();
+  struct dea_material *film = &device->layout->plies[0].material;
+  const double mu = 60e3, eps = DEA_EPSILON_0 * 2.8, voltage_V = 4.6e3;
+  film->law = dea_law_find("neo-hookean");
+  film->param[0] = mu;
+  film->branches[0] = (struct dea_branch){.modulus_Pa = 2 * mu, .time_s = 0.1};
+  film->branch_count = 1;
+  struct dea_model *model = model_of(device, DEA_FILM_SOLID);
+  struct dea_load_point start, point;
+  begin(model, 0, false, 0, &start);
+  begin(model, 0, false, voltage_V, &start);
+  const double charge_C = start.charge_C, stored_J = start.stored_energy_J;
+  for (int i = 0; i < 24; i++) {
+    step_of(model, i < 14 ? 0.02 : 0.5, 0, true, &point);
+    assert_close(point.charge_C, charge_C, 1e-7, 0);
+    assert_close(point.supply_work_J, start.supply_work_J, 1e-9, 0);
+  }
+  const double D = charge_C / 1e-4, l = pow(1 + D * D / (eps * mu), 1.0 / 6);
+  assert_true(l > 1.15);
+  assert_close(first_monitor(model)[DEA_OBSERVED_STRETCH_X], l, 1e-5, 0);
+  assert_close(point.voltage_V, D * 100e-6 / (eps * pow(l, 4)), 1e-5, 0);
+  assert_close(point.dissipated_J, stored_J - point.stored_energy_J, 0.05, 0);
   dea_model_find("3d")->destroy(ctx, model);
   dea_device_destroy(ctx, device);
 }
@@ -138,6 +183,9 @@ TEST(test_charging)
     assert_close(point.charge_C, farad * point.voltage_V, 1e-7, 0);
   }
   assert_close(unaccounted(&start, &point), 0, 0, 0.02); // the loss in long steps
+  const double last_V = point.voltage_V;
+  step_of(model, 2 * time_s, 0, true, &point);
+  assert_close(point.voltage_V, last_V * exp(-2 * time_s * siemens / farad), 1e-7, 0);
   dea_model_find("3d")->destroy(ctx, model);
   dea_device_destroy(ctx, device);
 }

@@ -156,7 +156,7 @@ static void fill_moment(const struct dea_lumped_motion *motion, const struct dea
   // The electric part of the energy is -Q V/2; what the field holds is +Q V/2.
   to->stored_energy_J = motion->volume_m3 * (at->energy_Pa + W[0] + passive * W[1]) +
                         to->circuit.charge_C * to->circuit.voltage_V;
-  if (h == 0 && dea_circuit_is_ideal(&motion->options.circuit)) {
+  if (h == 0 && dea_circuit_is_ideal(&motion->options.circuit) && !step->disconnected) {
     to->circuit.supply_work_J += to->stored_energy_J - from->stored_energy_J;
   }
   to->imbalance_Pa = at->imbalance_Pa; // that of A: it differs from B by a pressure
@@ -281,10 +281,13 @@ dea_status dea_lumped_advance(struct dea_lumped_motion *motion, const struct dea
     return step_once(motion, now, step, end);
   }
   double V_s = now->circuit.source_voltage_V;
-  const struct dea_time_step first = {
-      .length_s = 0.5 * h, .source_voltage_V = V_s + 0.5 * (step->source_voltage_V - V_s)};
+  const struct dea_time_step first = {.length_s = 0.5 * h,
+                                      .source_voltage_V =
+                                          V_s + 0.5 * (step->source_voltage_V - V_s),
+                                      .disconnected = step->disconnected};
   const struct dea_time_step second = {.length_s = 0.5 * h,
-                                       .source_voltage_V = step->source_voltage_V};
+                                       .source_voltage_V = step->source_voltage_V,
+                                       .disconnected = step->disconnected};
   dea_status status = step_once(motion, now, step, &whole);
   status = status == DEA_OK ? step_once(motion, now, &first, &half) : status;
   status = status == DEA_OK ? step_once(motion, &half, &second, end) : status;

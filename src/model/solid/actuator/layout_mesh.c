@@ -129,7 +129,7 @@ static bool is_rigid(const struct dea_layout *l, size_t region)
   bool rigid = false;
   for (size_t i = 0; i < l->support_count; i++) {
     rigid = rigid || (l->supports[i].region == region && !l->supports[i].edge &&
-                      l->supports[i].within == DEA_LAYOUT_NONE);
+                      l->supports[i].components != 0 && l->supports[i].within == DEA_LAYOUT_NONE);
   }
   for (size_t i = 0; i < l->body_count; i++) {
     rigid = rigid || l->bodies[i].region == region;

@@ -17,9 +17,11 @@ struct dea_part_material dea_part_material_stretched(enum dea_part part,
   bool across = along && fmod(whole, 2) != 0;
   double l1 = pre_stretch[across ? 1 : 0], l2 = pre_stretch[across ? 0 : 1];
   double middle = 0.5 * (l1 + l2), half = 0.5 * (l1 - l2);
+  const double direction_rad = angle_rad + material->fibre_angle_rad; // G leaves its own axes
   struct dea_part_material out = {
       .part = part,
       .pre_stretch = {l1, l2, 1 / (l1 * l2)},
+      .direction = {cos(direction_rad), sin(direction_rad)},
       .kappa_Pa = kappa_share * material->law->shear_modulus(material->param),
   };
   if (!along) { // G = R diag(l1, l2) R^T by the double angle

@@ -2,6 +2,7 @@
 
 #include "base/arena.h"
 #include "model/solid/assembly/channels.h"
+#include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/film_state.h"
 #include "model/solid/assembly/problem.h"
 #include "model/solid/equilibrium/newton.h"
@@ -36,6 +37,7 @@ struct dea_circuit_step {
   struct dea_driven_solid driven;
   struct dea_solid_time *time;
   struct dea_time_options options;
+  bool no_charge;       // of films whose charge cannot be held: its voltage is looked for
   bool leaks_evenly;    // all films have the next
   double leakage_per_s; // conductance over capacitance
   double time_s, time_next_s;
@@ -313,8 +315,25 @@ static dea_status try_step(struct dea_context *ctx, struct dea_circuit_step *d, 
   return DEA_OK;
 }
 
+/* Once the supply is disconnected. */
+static dea_status prepare_charge(struct dea_context *ctx, struct dea_circuit_step *d)
+{
+  if (d->no_charge || d->driven.solid->problem.charge != NULL) {
+    return DEA_OK;
+  }
+  dea_solid_time_reject(d->time); // it is of a solid with a load less
+  const dea_status status = dea_charge_create(ctx, d->driven.solid);
+  d->no_charge = status == DEA_E_UNSUPPORTED;
+  if (d->no_charge) {
+    dea_context_clear(ctx);
+    return DEA_OK;
+  }
+  return status;
+}
+
 /* The step at the voltage that the circuit has with the film as it then is: fixed points and, from
- * the second on, secants of the difference. */
+ * the second on, secants of the difference. Of a supply that is disconnected the film has what
+ * voltage its charge takes, which is no limit to it. */
 static dea_status find_step(struct dea_context *ctx, struct dea_circuit_step *d,
                             const struct dea_time_step *step, struct dea_circuit_film *film,
                             struct dea_solid_report *report)
@@ -325,8 +344,14 @@ static dea_status find_step(struct dea_context *ctx, struct dea_circuit_step *d,
                                     .conductance_S = d->circuit.conductance_S};
   double V = dea_circuit_voltage(circuit, &d->circuit, step, film, &slope);
   for (int i = 0; i < VOLTAGES_MAX; i++) {
-    DEA_TRY(ctx, i > 0 ? dea_solid_time_again(ctx, d->time, V, report)
-                       : try_step(ctx, d, V, step->length_s, report));
+    if (step->disconnected && !d->no_charge) {
+      DEA_TRY(ctx,
+              dea_charge_hold(ctx, d->driven.solid, film->capacitance_F * V / d->driven.copies));
+    }
+    const dea_status status = i > 0 ? dea_solid_time_again(ctx, d->time, V, report)
+                                    : try_step(ctx, d, V, step->length_s, report);
+    dea_charge_release(d->driven.solid);
+    DEA_TRY(ctx, status);
     DEA_TRY(ctx, find_film(ctx, d, film));
     double off = dea_circuit_voltage(circuit, &d->circuit, step, film, &slope) - V;
     if (fabs(off) <= voltage_close * fmax(d->largest_V, fabs(V))) {
@@ -437,7 +462,7 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
     return DEA_OK;
   }
   dea_circuit_advance(&d->options.circuit, &d->circuit, step, film, &d->circuit_next);
-  if (d->step_s > 0) {
+  if (d->step_s > 0 && !step->disconnected) {
     refine_work(d);
   }
   d->charged_J = d->circuit_next.charge_C * d->circuit_next.voltage_V;
@@ -454,6 +479,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
   if (any_of(d->own_source, d->own ? channel_count(d) : 0) && step->own_V == NULL) {
     return dea_fail(ctx, DEA_E_ARGUMENT, "a step has to say the voltages of all sources");
   }
+  DEA_TRY(ctx, step->disconnected ? prepare_charge(ctx, d) : DEA_OK);
   drive_channels(d, step);
   DEA_TRY(ctx, d->own ? try_step(ctx, d, step->source_voltage_V, step->length_s, report)
                       : find_step(ctx, d, step, &film, report));
@@ -466,7 +492,7 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
     *error = find_error(d, error_m, unaccounted(d, &from, &to), report);
     return DEA_OK;
   }
-  if (dea_circuit_is_ideal(&d->options.circuit)) {
+  if (dea_circuit_is_ideal(&d->options.circuit) && !step->disconnected) {
     d->circuit_next.supply_work_J +=
         d->driven.copies * (to.stored + to.branches - from.stored - from.branches);
   }

@@ -1,6 +1,7 @@
 /* Controls beside the voltage of the model "3d": bodies and pressures that are moved. */
 #include "model/solid/adapter/compliance.h"
 #include "model/solid/adapter/solid_model.h"
+#include "model/solid/assembly/charge_control.h"
 #include "model/solid/equilibrium/load_steps.h"
 
 #include <math.h>
@@ -12,8 +13,10 @@ static dea_status check_control(struct dea_context *ctx, const struct dea_model 
 {
   const struct dea_layout *l = model->layout;
   bool pressure = control->kind == DEA_CONTROL_PRESSURE;
-  if (control->kind == DEA_CONTROL_CONJUGATE) {
-    return isfinite(value) ? DEA_OK : dea_fail(ctx, DEA_E_ARGUMENT, "a force has to be a number");
+  if (control->kind == DEA_CONTROL_CONJUGATE || control->kind == DEA_CONTROL_CHARGE) {
+    return isfinite(value) ? DEA_OK
+                           : dea_fail(ctx, DEA_E_ARGUMENT, "a %s has to be a number",
+                                      control->kind == DEA_CONTROL_CHARGE ? "charge" : "force");
   }
   if (pressure
           ? l->pressure_count == 0
@@ -35,6 +38,10 @@ static double where_control_is(const struct dea_model *model, const struct dea_c
   double place[6];
   if (control->kind == DEA_CONTROL_PRESSURE) {
     return model->pressure_factor;
+  }
+  if (control->kind == DEA_CONTROL_CHARGE) { // at first of a film at 0 V
+    return dea_charge_is_held(model->solid) ? model->copies * dea_charge_now(model->solid).charge_C
+                                            : 0;
   }
   if (control->kind == DEA_CONTROL_CONJUGATE) {
     return model->pull.force;
@@ -115,6 +122,9 @@ static dea_status set_control(struct dea_context *ctx, struct dea_model *model,
     model->pressure_factor = value;
     dea_solid_pressures_set(model, value);
     break;
+  case DEA_CONTROL_CHARGE:
+    DEA_TRY(ctx, dea_charge_hold(ctx, model->solid, value / model->copies));
+    break;
   case DEA_CONTROL_CONJUGATE:
     DEA_TRY(ctx, set_conjugate(ctx, model, control, value));
     break;
@@ -153,6 +163,10 @@ static dea_status fail_at_limit(struct dea_context *ctx, const struct dea_model 
     scale = 1e-3 * largest;
     name = "pressure limit";
     unit = "kPa";
+  } else if (control->kind == DEA_CONTROL_CHARGE) {
+    scale = 1e6;
+    name = "charge limit";
+    unit = "uC";
   } else if (control->kind == DEA_CONTROL_PLACE) {
     scale = turns ? 1 : 1e3;
     name = "limit point";

@@ -1,4 +1,5 @@
 /* Weight, bodies, supports and loads of the model "3d", and its way from the flat state to rest. */
+#include "model/solid/adapter/dead_force.h"
 #include "model/solid/adapter/solid_model.h"
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/equilibrium/modes.h"
@@ -285,7 +286,7 @@ dea_status dea_solid_bodies_load(struct dea_context *ctx, struct dea_model *mode
 }
 
 /* The weight of plies and bodies as the dead loads, none without it. */
-dea_status dea_solid_weight_set(struct dea_context *ctx, const struct dea_model *model)
+static dea_status set_weight(struct dea_context *ctx, const struct dea_model *model)
 {
   size_t count = 3 * model->mesh.grid->node_count;
   double *force = dea_solid_force(model->solid);
@@ -304,6 +305,31 @@ dea_status dea_solid_weight_set(struct dea_context *ctx, const struct dea_model 
   dea_status status = dea_solid_mass_apply(ctx, model->solid, fall, force);
   dea_free(ctx, fall);
   return status;
+}
+
+dea_status dea_solid_dead_loads_set(struct dea_context *ctx, const struct dea_model *model)
+{
+  DEA_TRY(ctx, set_weight(ctx, model));
+  for (size_t i = 0; i < model->layout->support_count; i++) {
+    const struct dea_layout_support *support = &model->layout->supports[i];
+    if (dea_support_pulls(support)) {
+      DEA_TRY(ctx, dea_dead_force_add(ctx, &model->mesh, support, model->on,
+                                      dea_solid_force(model->solid)));
+    }
+  }
+  return DEA_OK;
+}
+
+void dea_solid_liquids_stiffen(const struct dea_model *model, bool stiff)
+{
+  static const double times = 1e3;
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    if (model->pressures[i] != NULL && model->layout->pressures[i].encloses == DEA_LIQUID) {
+      dea_pressure_stiffen(model->pressures[i], dea_solid_displacement(model->solid),
+                           stiff ? times : 1 / times);
+      dea_solid_forget(model->solid);
+    }
+  }
 }
 
 dea_status dea_solid_loads_add(struct dea_context *ctx, struct dea_model *model)
@@ -449,7 +475,7 @@ static dea_status go_to_loads(struct dea_context *ctx, struct dea_model *model)
     dea_solid_own_voltages(model->solid)[k] = model->layout->channels[k].own_V;
   }
   dea_solid_pressures_set(model, 1);
-  DEA_TRY(ctx, dea_solid_weight_set(ctx, model));
+  DEA_TRY(ctx, dea_solid_dead_loads_set(ctx, model));
   DEA_TRY(ctx, dea_solid_bodies_load(ctx, model));
   const bool twisted = is_twisted_slack(model->layout);
   dea_solid_accept_unstable(model->solid, twisted); // of its many wrinkles none is followed

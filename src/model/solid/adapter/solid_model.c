@@ -59,6 +59,7 @@ static void mark_layout(const struct dea_layout *l, struct dea_model_marks *mark
   }
   for (size_t i = 0; i < l->support_count; i++) {
     mark(marks, l->supports[i].move_m, 3);
+    mark(marks, l->supports[i].force_N, 3);
   }
   for (size_t i = 0; i < l->body_count; i++) {
     const struct dea_layout_body *b = &l->bodies[i];
@@ -161,7 +162,11 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
   motions.take = width > 0 ? take_answer : NULL;
   motions.user = model;
-  DEA_TRY(ctx, dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points));
+  dea_solid_liquids_stiffen(model, true);
+  const dea_status status =
+      dea_motions_respond(ctx, &motions, at, excitation, frequency_Hz, count, points);
+  dea_solid_liquids_stiffen(model, false);
+  DEA_TRY(ctx, status);
   for (size_t i = 0; i < 2 * count * width; i++) {
     model->answers[i] *= excitation->amplitude_V;
   }
@@ -208,7 +213,11 @@ static dea_status modes(struct dea_context *ctx, struct dea_model *model,
   struct dea_motions motions;
   *shapes = NULL;
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
-  DEA_TRY(ctx, dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes));
+  dea_solid_liquids_stiffen(model, true);
+  const dea_status status =
+      dea_motions_modes(ctx, &motions, (int)model->plies.film, at, count, points, shapes);
+  dea_solid_liquids_stiffen(model, false);
+  DEA_TRY(ctx, status);
   DEA_TRY(ctx, make_whole(ctx, model, shapes));
   return DEA_OK;
 }

@@ -104,7 +104,10 @@ void dea_solid_pressures_set(const struct dea_model *model, double factor);
 /* The force and moment on a body, or the sector's part of them. */
 void dea_solid_body_load(const struct dea_model *model, size_t body, const double push[6]);
 dea_status dea_solid_bodies_load(struct dea_context *ctx, struct dea_model *model);
-dea_status dea_solid_weight_set(struct dea_context *ctx, const struct dea_model *model);
+/* Weight and forces of supports as the dead loads; those of bodies come to them. */
+dea_status dea_solid_dead_loads_set(struct dea_context *ctx, const struct dea_model *model);
+/* Liquids are as good as rigid, or again as soft as iterations need them. */
+void dea_solid_liquids_stiffen(const struct dea_model *model, bool stiff);
 /* Supports only; moved: with their own shifts. */
 dea_status dea_solid_supports_hold(struct dea_context *ctx, struct dea_model *model, bool moved);
 

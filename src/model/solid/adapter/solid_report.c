@@ -1,5 +1,6 @@
 /* Points of the model "3d", and what it notes and does where it has arrived at one. */
 #include "model/solid/adapter/solid_model.h"
+#include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/film_state.h"
 #include "result/columns.h"
 
@@ -67,12 +68,17 @@ dea_status dea_solid_model_report(struct dea_context *ctx, void *self, double vo
   struct dea_model *model = self;
   struct dea_solid_extremes extremes;
   double capacitance_F;
+  const bool charged = dea_charge_is_held(model->solid);
   dea_status status = dea_solid_extremes(model->solid, model->plies.films, &extremes);
   if (status == DEA_OK) {
     status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
   }
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
+  }
+  if (charged) {
+    voltage_V += dea_charge_now(model->solid).lift_V;
+    capacitance_F = dea_charge_now(model->solid).capacitance_F;
   }
   dea_solid_model_describe(model, voltage_V, out);
   out->true_field_V_per_m = extremes.true_field_V_per_m;

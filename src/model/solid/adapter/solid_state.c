@@ -31,8 +31,10 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
         l->pre_stretch[0], l->pre_stretch[1],       l->p0_Pa,       l->kappa_s_Pa,
         l->kappa_Pa,       l->permittivity_F_per_m, l->thickness_m, l->permittivity_slope_F_per_m};
     size_t params = l->law->param_count, more = 0;
-    const double rare[] = {l->pre_shear, l->layers > 1 ? l->layers : 0};
-    for (int k = 0; k < 2; k++) {
+    const double rare[] = {l->pre_shear, l->layers > 1 ? l->layers : 0,
+                           l->law->anisotropic ? l->direction[0] : 0,
+                           l->law->anisotropic ? l->direction[1] : 0};
+    for (int k = 0; k < 4; k++) {
       more += rare[k] != 0;
     }
     if (count + PART_MATERIAL_NUMBERS + params + more > capacity) {
@@ -41,7 +43,7 @@ static dea_status mark_materials(struct dea_context *ctx, const struct dea_solid
     memcpy(to + count, own, sizeof own);
     memcpy(to + count + PART_MATERIAL_NUMBERS, l->param, params * sizeof *to);
     count += PART_MATERIAL_NUMBERS + params;
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 4; k++) {
       if (rare[k] != 0) {
         to[count++] = rare[k];
       }

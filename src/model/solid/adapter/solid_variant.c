@@ -1,6 +1,7 @@
 /* Slopes of the model "3d" by changed devices (docs/theory/gradients.md). */
 #include "model/solid/actuator/disc_mesh.h"
 #include "model/solid/adapter/solid_model.h"
+#include "model/solid/assembly/charge_control.h"
 #include "model/solid/assembly/matrix.h"
 #include "result/columns.h"
 
@@ -94,7 +95,7 @@ static dea_status make_variant(struct dea_context *ctx, struct dea_model *model)
   DEA_TRY(ctx, dea_plies_create(ctx, &model->mesh, &model->memory, &model->plies));
   dea_solid_model_find_band(model);
   DEA_TRY(ctx, dea_solid_model_assemble(ctx, model));
-  DEA_TRY(ctx, dea_solid_weight_set(ctx, model));
+  DEA_TRY(ctx, dea_solid_dead_loads_set(ctx, model));
   DEA_TRY(ctx, dea_solid_supports_hold(ctx, model, true));
   DEA_TRY(ctx, dea_solid_bodies_load(ctx, model));
   keep_controls(model);
@@ -375,6 +376,9 @@ dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *m
   struct dea_arena memory = {.ctx = ctx};
   const struct dea_solid_problem *p = &model->solid->problem;
   dea_solver_state_end_history(ctx, &model->at);
+  if (dea_charge_is_held(model->solid)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED, "gradients at a given charge are not supported");
+  }
   if (dea_gradient_asks_mode(ask)) {
     DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
   }
@@ -390,7 +394,9 @@ dea_status dea_solid_model_gradient(struct dea_context *ctx, struct dea_model *m
     v->shift = values + 3 * p->dofs;
     v->own_V = own_V;
     v->motion = motion;
+    dea_solid_liquids_stiffen(model, true);
     status = find_gradient(ctx, model, ask, out);
+    dea_solid_liquids_stiffen(model, false);
   }
   model->variant = NULL;
   dea_arena_free(&memory);

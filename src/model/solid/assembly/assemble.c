@@ -152,6 +152,7 @@ void dea_solid_loads_prepare(const struct dea_solid *s, const double *u)
 /* Energy of this rank's elements and pieces of loads. */
 static dea_status own_energy(struct dea_solid *s, const double *u, double voltage_V, double *energy)
 {
+  dea_solid_loads_prepare(s, u);
   for (size_t k = 0; k < s->problem.own_count; k++) {
     dea_status status = evaluate_element(s, s->problem.own[k], u, voltage_V, DEA_ENERGY, NULL);
     if (status != DEA_OK) {
@@ -159,7 +160,6 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
     }
     *energy += s->work.element->energy_J;
   }
-  dea_solid_loads_prepare(s, u);
   for (size_t i = 0; i < s->problem.load_count; i++) {
     size_t from, to;
     dea_solid_share(s->problem.loads[i].piece_count, &from, &to);
@@ -313,7 +313,6 @@ static dea_status add_loads(struct dea_context *ctx, struct dea_solid *s, enum d
                             double *energy)
 {
   struct dea_load_piece *piece = s->work.piece;
-  dea_solid_loads_prepare(s, s->state.u);
   for (size_t i = 0; i < s->problem.load_count; i++) {
     size_t from, to;
     dea_solid_share(s->problem.loads[i].piece_count, &from, &to);
@@ -405,12 +404,15 @@ static dea_status take_rank_ones(struct dea_context *ctx, struct dea_solid *s)
       continue;
     }
     if (r->count == DEA_RANK_ONE_MAX) {
-      return dea_fail(ctx, DEA_E_UNSUPPORTED, "there can be %d enclosed volumes at most",
-                      DEA_RANK_ONE_MAX);
+      return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                      "there can be %d enclosed volumes and charges at most", DEA_RANK_ONE_MAX);
     }
     double *slope = s->work.trial;
     memset(slope, 0, s->problem.dofs * sizeof *slope);
     r->stiffness[r->count] = load->whole(load->self, s->state.u, slope);
+    if (r->stiffness[r->count] == 0) {
+      continue;
+    }
     dea_solid_bodies_collect(s, slope);
     dea_solid_release_held(s, slope);
     if (r->slope[r->count] == NULL) {
@@ -434,6 +436,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   if (level >= DEA_TANGENT) {
     DEA_PETSC(ctx, MatZeroEntries(s->work.K));
   }
+  dea_solid_loads_prepare(s, s->state.u);
   dea_status status = add_elements(ctx, s, voltage_V, level, energy);
   if (status == DEA_OK) {
     status = add_loads(ctx, s, level, energy);

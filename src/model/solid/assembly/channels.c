@@ -27,6 +27,7 @@ dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *
   p->active = dea_arena_alloc(&s->memory, elements, sizeof *p->active);
   p->share = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof *p->share);
   s->state.own_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
+  s->state.lift_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
   s->state.own_goal_V = dea_arena_alloc(&s->memory, p->channel_count + 1, sizeof(double));
   DEA_TRY(ctx, dea_arena_status(&s->memory));
   for (size_t k = 1; k <= p->channel_count; k++) {
@@ -64,20 +65,21 @@ double *dea_solid_own_voltages(struct dea_solid *solid)
 void dea_solid_channel_voltages(const struct dea_solid *s, double *voltage_V)
 {
   for (size_t k = 0; k <= s->problem.channel_count; k++) {
-    voltage_V[k] = s->problem.share[k] * s->state.voltage_V + s->state.own_V[k];
+    voltage_V[k] =
+        s->problem.share[k] * s->state.voltage_V + s->state.own_V[k] + s->state.lift_V[k];
   }
 }
 
 /* ---- charge ---- */
 
-/* Charge over voltage of an element between electrodes: twice the derivative of its energy by the
- * square of the voltage, at displacements that are held. */
-static dea_status capacitance_of(struct dea_solid *s, size_t e, double *capacitance_F)
+/* Twice the derivative of the energy by the square of the voltage. */
+dea_status dea_solid_element_capacitance(struct dea_solid *s, size_t e, const double *u,
+                                         double *capacitance_F)
 {
   const struct dea_element *element = dea_solid_element(s, e);
   struct dea_solid_element_place place;
   struct dea_element_input in;
-  dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
+  dea_solid_element_input(s, e, u, s->state.voltage_V, &place, &in);
   double step = field_step_V_per_m * in.part_material->thickness_m, square = in.voltage_V;
   square *= square;
   const double squares[2] = {fmax(square - step * step, 0), square + step * step};
@@ -150,7 +152,7 @@ static dea_status add_own(struct dea_solid *s, const struct sums *sums)
     if (!p->active[e]) {
       continue;
     }
-    dea_status status = capacitance_of(s, e, &C);
+    dea_status status = dea_solid_element_capacitance(s, e, s->state.u, &C);
     if (status != DEA_OK) {
       return status;
     }

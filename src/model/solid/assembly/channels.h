@@ -13,6 +13,9 @@ dea_status dea_solid_channels_create(struct dea_context *ctx, struct dea_solid *
 /* Voltages of the channels at the last equilibrium, [channel_count + 1]. */
 void dea_solid_channel_voltages(const struct dea_solid *solid, double *voltage_V);
 
+/* Charge over voltage of an element between electrodes at displacements u that are held. */
+dea_status dea_solid_element_capacitance(struct dea_solid *solid, size_t e, const double *u,
+                                         double *capacitance_F);
 /* Charges at the last equilibrium, [channel_count + 1]; their sum is 0. DEA_E_UNSUPPORTED for a
  * coupled field. */
 dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, double *charge_C);

@@ -327,6 +327,10 @@ static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
   const struct dea_solid_problem *p = &s->problem;
   double energy[2] = {0, 0}, squares[2], step = squares_about(s, of_slopes, squares);
   dea_status status = DEA_OK;
+  if (dea_solid_has_own_voltages(s)) {
+    *capacitance_F = NAN;
+    return DEA_OK;
+  }
   memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
     status = potential(ctx, s, sqrt(squares[i]), s->work.trial);
@@ -334,9 +338,8 @@ static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
       status = dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i]);
     }
   }
-  *capacitance_F = status == DEA_OK && step > 0 && !dea_solid_has_own_voltages(s)
-                       ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0])
-                       : NAN;
+  *capacitance_F =
+      status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
   return status;
 }
 

@@ -11,6 +11,7 @@
 
 #include <string.h>
 
+struct dea_charge;
 struct dea_solid_field;
 struct dea_internal_variables;
 struct dea_solid_inertia;
@@ -54,6 +55,7 @@ struct dea_solid_problem {
   double *point_mass; // [nodes] masses beside those of elements [kg]; NULL: none
   struct dea_solid_load *loads; // [load_count] by dea_solid_add_load; owned
   size_t load_count;
+  struct dea_charge *charge; // one of them, by dea_charge_hold; NULL: none
 
   double modulus_Pa;     // shear modulus of the softest element
   double length_m;       // smallest extent of the grid
@@ -70,7 +72,8 @@ struct dea_solid_state {
   double voltage_V;   // by dea_solid_controls_set
   double *own_V;      // [channel_count + 1] voltage of a channel beside its share, by the same
   double *own_goal_V; // [channel_count + 1] those that the next solve goes to, by the caller
-  double *u;          // [dofs] displacements [m], then psi, by the solvers
+  double *lift_V; // [channel_count + 1] voltage that a given charge takes beside (charge_control.h)
+  double *u;      // [dofs] displacements [m], then psi, by the solvers
   double *multiplier; // [elements][elements.pressures] pressures [Pa], by the solvers
   double *theta;      // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
                       // dea_solid_predict writes over it
@@ -203,12 +206,12 @@ static inline double dea_solid_bulk_modulus(const struct dea_solid *s, size_t e)
   return s->state.bulk_factor * dea_solid_part_material(s, e)->kappa_Pa;
 }
 
-/* Whether a channel has a voltage beside its share. */
+/* Whether a channel has a voltage beside its share of the whole's. */
 static inline bool dea_solid_has_own_voltages(const struct dea_solid *s)
 {
   bool any = false;
   for (size_t k = 1; k <= s->problem.channel_count; k++) {
-    any = any || s->state.own_V[k] != 0;
+    any = any || s->state.own_V[k] != 0 || s->state.lift_V[k] != 0;
   }
   return any;
 }
@@ -219,7 +222,7 @@ static inline double dea_solid_voltage_across(const struct dea_solid *s, size_t 
   const struct dea_solid_problem *p = &s->problem;
   int top = p->between[e][0], bottom = p->between[e][1];
   return (p->share[top] - p->share[bottom]) * voltage_V + s->state.own_V[top] -
-         s->state.own_V[bottom];
+         s->state.own_V[bottom] + s->state.lift_V[top] - s->state.lift_V[bottom];
 }
 
 /* Nodes of an element; *nodes: [count] them. */

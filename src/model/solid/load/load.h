@@ -36,9 +36,9 @@ struct dea_solid_load {
                          struct dea_load_piece *out);
 
   /* Of a load that a number of the whole, such as a volume, determines; NULL: of none. prepare: at
-   * u, before pieces there are evaluated. whole: what comes to the tangent beside the pieces is its
-   * answer, above 0, times s s^T; adds s, by the displacements [node_count][3], where slope is not
-   * NULL. along: s . v; needed with whole. */
+   * u, before elements and pieces there are evaluated. whole: what comes to the tangent beside them
+   * is its answer, above 0 unless there is nothing, times s s^T; adds s, by the displacements
+   * [node_count][3], where slope is not NULL. along: s . v; needed with whole. */
   void (*prepare)(void *self, const double *u);
   double (*whole)(const void *self, const double *u, double *slope);
   double (*along)(const void *self, const double *u, const double *v);

@@ -209,6 +209,16 @@ void dea_pressure_volume_slope(const struct dea_pressure *p, const double *u, do
 void dea_pressure_hold(struct dea_pressure *pressure, const struct dea_pressure *other)
 {
   pressure->lambda = other->lambda;
+  pressure->own.stiffness_Pa_per_m3 = other->own.stiffness_Pa_per_m3;
+}
+
+void dea_pressure_stiffen(struct dea_pressure *p, const double *u, double times)
+{
+  if (p->enclosed != NULL && p->own.liquid) {
+    prepare(p, u);
+    p->own.stiffness_Pa_per_m3 *= times;
+    p->lambda = p->pressure + p->own.stiffness_Pa_per_m3 * (p->v - p->now);
+  }
 }
 
 static double whole(const void *self, const double *u, double *slope)

@@ -84,8 +84,11 @@ double dea_pressure_volume_m3(const struct dea_pressure *pressure, const double 
 double dea_pressure_at_Pa(struct dea_pressure *pressure, const double *u);
 /* Adds the slopes of that volume by u [node_count][3]. */
 void dea_pressure_volume_slope(const struct dea_pressure *pressure, const double *u, double *slope);
-/* Of the same face moved: a liquid has the pressure that the other one has come to. For slopes at
- * one state. */
+/* A liquid gives way so many times less, with the pressure that it has at u: for slopes and modes,
+ * where the stiffness stands for what is rigid. */
+void dea_pressure_stiffen(struct dea_pressure *pressure, const double *u, double times);
+/* Of the same face moved: a liquid has the pressure that the other one has come to, and gives way
+ * as it does. For slopes at one state. */
 void dea_pressure_hold(struct dea_pressure *pressure, const struct dea_pressure *other);
 /* Pressure that the next solve goes to, positive into the body. */
 void dea_pressure_set(struct dea_pressure *pressure, double pressure_Pa);

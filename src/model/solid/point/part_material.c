@@ -133,7 +133,7 @@ static void pull_back_point(const struct dea_part_material *part_material, bool 
 static dea_status elastic(const struct dea_part_material *part_material, const double F[9],
                           bool tangent, struct dea_point *out)
 {
-  static const double fibre[3] = {1, 0, 0};
+  const double fibre[3] = {part_material->direction[0], part_material->direction[1], 0};
   double FG[9];
   memcpy(FG, F, sizeof FG);
   for (int i = 0; i < 3; i++) {

@@ -26,6 +26,7 @@ struct dea_part_material {
   double param[DEA_LAW_PARAM_MAX]; // of the law, SI
   double pre_stretch[3];           // diagonal of G, det G = 1
   double pre_shear;                // G_12 = G_21: pre-stretches at an angle to the axes
+  double direction[2];             // a0 of a law with one, in the plane of the unstretched film
   double p0_Pa, kappa_s_Pa;        // dea_part_material_relax sets them
   double kappa_Pa;                 // bulk modulus of the projected part, of the element
   double permittivity_F_per_m;     // eps of the flat part material, 0: no electric energy
