@@ -172,7 +172,7 @@ TEST(test_two_names_of_one_line)
   shvps_protocol_of(link, triangle, PATIENT);
   static const char *const second[] = {"drive", "p.yaml", "--arm", "-o", "second.h5", NULL};
   int code = supply_run_dea(second, 30);
-  snprintf(in_use, sizeof in_use, "is in use by process %d (dea): end that first", (int)child);
+  snprintf(in_use, sizeof in_use, "is in use by process %d (dea-lab): end that first", (int)child);
   assert_int_equal(code, 6);
   assert_contains(command_err, in_use);
   assert_true(line_supply_reaches(&s, 1500, 10) && s.hurried == 0); // and the first one plays on

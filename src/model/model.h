@@ -87,7 +87,7 @@ enum dea_control_kind {
   DEA_CONTROL_PRESSURE,  // all pressures of the layout times a factor
   DEA_CONTROL_CONJUGATE, // dead force [N] or moment [N m] conjugate to a coordinate, beside all
                          // else
-  DEA_CONTROL_CHARGE,    // charge [C] of the supply in place of its voltage (docs/theory/devices.md)
+  DEA_CONTROL_CHARGE, // charge [C] of the supply in place of its voltage (docs/theory/devices.md)
 };
 struct dea_control {
   enum dea_control_kind kind;

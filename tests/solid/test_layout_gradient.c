@@ -66,6 +66,7 @@ struct at {
   const char *const *only;            // those that are, ended by NULL; NULL: all
   bool again;                         // solved for once more, for what the first solution leaves
   double leaves;                      // what solutions leave of a quantity, over its size
+  bool liquid;                        // its slopes are less exact, and its energy has none
   struct dea_model_settings settings; // of a critical voltage
   const struct dea_control *control;  // that is moved at the voltage; NULL: none
   double control_to;
@@ -139,8 +140,8 @@ static void check_fall(const struct at *at, const char *what, const char *number
   for (int n = 1; n < CHANGES; n++) {
     const double wanted = left[n - 1] * pow(decades[n] / decades[n - 1], 2);
     const double part = n == 1 ? 1 : 0.1; // of a large change the third power is seen
-    if (!(fabs(left[n] - wanted) <=
-          part * fabs(wanted) + slope_accuracy * decades[n] + at->leaves)) {
+    const double accuracy = at->liquid ? 1e-5 : slope_accuracy; // 3e5 times as stiff as the film
+    if (!(fabs(left[n] - wanted) <= part * fabs(wanted) + accuracy * decades[n] + at->leaves)) {
       fail_msg("%s by %s at %.0e: %.3e, not %.3e", what, number, decades[n], left[n], wanted);
     }
   }
@@ -174,6 +175,10 @@ static void check_number(struct at *at, const struct dea_design_number *number, 
     }
     double left[CHANGES];
     const double own = slope[k < KEYS ? k : k - KEYS + key_count(at)];
+    if (at->liquid && k < KEYS && strcmp(keys[k], "energy_J") == 0) {
+      assert_true(isnan(own));
+      continue;
+    }
     assert_true(!isnan(own));
     for (int n = 0; n < CHANGES; n++) {
       left[n] = (moved[n][k] - base[k] - own * reach * decades[n]) / size;
@@ -332,7 +337,7 @@ TEST(test_lens)
                                      "plies.film.pre_stretch", NULL};
   static const struct dea_override surface = {"compute.solid", "{film: membrane}"};
   // the volume is solved to 1e-9
-  struct at at = {.voltage_V = 3e3, .only = only, .leaves = 1e-9};
+  struct at at = {.voltage_V = 3e3, .only = only, .leaves = 1e-9, .liquid = true};
   assert_int_equal(
       dea_design_read(ctx, DEA_SOURCE_DIR "/examples/devices/lens.yaml", &surface, 1, &at.design),
       DEA_OK);

@@ -62,8 +62,8 @@ static void basis(int order, const double at[2], double *value, double (*slope)[
   }
 }
 
-/* Local coordinates of a place in a quadrilateral of nodes [(order + 1)^2] by Newton's method, which
- * goes far outside on its way in a narrow one along an arc; false where it is not in it. */
+/* Local coordinates of a place in a quadrilateral of nodes [(order + 1)^2] by Newton's method,
+ * which goes far outside on its way in a narrow one along an arc; false where it is not in it. */
 static bool locate(const struct dea_grid *grid, const int *nodes, const double x_m[2], double at[2])
 {
   double value[PLANE_MAX], slope[PLANE_MAX][2];

@@ -318,6 +318,11 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
                                &model->at.rest_energy_J);
   model->solid->problem.load_count = loads;
   load_as_at_rest(model, false);
+  for (size_t i = 0; i < model->layout->pressure_count; i++) {
+    if (model->layout->pressures[i].encloses == DEA_LIQUID) { // its pressure at rest is not kept
+      model->at.rest_energy_J = NAN;
+    }
+  }
   dea_solid_model_describe(model, voltage_V, out);
   if (status == DEA_OK) {
     status = dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out);

@@ -216,6 +216,28 @@ static dea_status stopped(struct dea_context *ctx, struct dea_step_outcome *e, d
                   1e-3 * dea_solid_voltage(e->owner.solid), 1e-3 * voltage_V, why);
 }
 
+/* A membrane that thins at once has no tension in that place, where nothing but the end of its law
+ * holds its natural width (docs/theory/membrane.md): that is no state of the film. */
+static dea_status refuse_thin(struct dea_context *ctx, struct dea_step_outcome *e, double voltage_V,
+                              const struct dea_solid_saved_state *from)
+{
+  char stretch[60] = ""; // of a disc
+  const double area = e->area;
+  e->limit = e->passed;
+  e->limited = true;
+  e->has_passed = false;
+  dea_solid_restore_state(e->owner.solid, from);
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  if (!isnan(e->limit.point.electrode_stretch)) {
+    snprintf(stretch, sizeof stretch, " and an electrode stretch of %.5g",
+             e->limit.point.electrode_stretch);
+  }
+  return dea_fail(ctx, DEA_E_NO_EQUILIBRIUM,
+                  "pull-in at %.6g kV%s: beyond it the film has no tension in one place and thins "
+                  "there to the end of its law (to 1/%.3g at %.6g kV)",
+                  1e-3 * e->limit.point.voltage_V, stretch, area, 1e-3 * voltage_V);
+}
+
 /* To a voltage, and what else the solid is to come to. *passed: past a limit point, at e->limit. */
 static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, double voltage_V,
                            struct dea_solid_report *report, struct dea_solid_stop *stop,
@@ -248,13 +270,21 @@ static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, doub
                        struct dea_solid_report *report)
 {
   struct dea_solid_stop stop;
-  bool passed;
-  dea_status status = approach(ctx, e, voltage_V, report, &stop, &passed);
+  struct dea_solid_saved_state from;
+  bool passed = false;
+  DEA_TRY(ctx, look_at_tension(ctx, e));
+  const double area = e->area;
+  dea_status status = dea_solid_save_state(ctx, e->owner.solid, &from);
+  status = status == DEA_OK ? approach(ctx, e, voltage_V, report, &stop, &passed) : status;
   if (dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM) {
-    return stopped(ctx, e, voltage_V, &stop, status);
+    status = stopped(ctx, e, voltage_V, &stop, status);
+  } else if (status == DEA_OK && passed) {
+    const bool thin = e->owner.membrane && !is_taut(e) && e->area > branch_jump * fmax(area, 1);
+    status = thin ? refuse_thin(ctx, e, voltage_V, &from)
+                  : dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->limit);
   }
-  DEA_TRY(ctx, status);
-  return passed ? dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->limit) : DEA_OK;
+  dea_solid_saved_state_free(&from);
+  return status;
 }
 
 dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcome *e,

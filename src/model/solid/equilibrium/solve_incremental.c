@@ -169,12 +169,18 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
 {
   struct dea_solid *s = a->s;
   struct dea_solid_report report = {0};
+  dea_status status = DEA_OK;
+  dea_solid_forget(s);
   if (at->load >= 1) {
     dea_solid_controls_set(s, a->goal);
+    if (dea_solid_controls_increment(s, a->goal)) {
+      status = dea_solid_prescribed_increment(ctx, s, &report);
+    }
   }
-  dea_solid_forget(s);
   struct dea_solid_change change = {.grew = false};
-  dea_status status = dea_solid_descend_unstable(ctx, s, 0, &report);
+  if (status == DEA_OK) {
+    status = dea_solid_descend_unstable(ctx, s, 0, &report);
+  }
   if (status == DEA_OK) {
     status = see_change(ctx, a, &change);
   }
