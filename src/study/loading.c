@@ -62,8 +62,7 @@ static const struct dea_field fields[] = {
     ENDS(PRESSURE, "pressure_from", "pressure_to", "Pa",
          "largest pressure on the device; all others go in proportion", "0 kPa", "2 kPa"),
     ENDS(CHARGE, "charge_from", "charge_to", "C",
-         "charge of the supply on the channels, each times its ratio, in place of a voltage: it "
-         "passes the pull-in voltage",
+         "charge of the supply on the channels, each times its ratio, in place of a voltage",
          "0 nC", "500 nC"),
     DEA_INTEGER_ROW("steps", AT(steps), "20", "equal steps from the first value to the last",
                     .min = 1, .max = 1000, .default_text = "10"),
