@@ -472,15 +472,24 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, dea_statu
   return *ended == DEA_OK || dea_solid_may_shorten(*ended) ? DEA_OK : *ended;
 }
 
+/* How close load steps come to where they end: of a slack film they take long, but not where its
+ * law ends. */
+static double closest(const struct search *a, dea_status last)
+{
+  const struct dea_solid_settings *o = &a->s->settings;
+  return a->taut                ? o->branch_jump_way
+         : last == DEA_E_DOMAIN ? o->load_step_least
+                                : o->approach_part_least;
+}
+
 /* Where the path says nothing - a membrane that goes slack has a corner, which arc length does not
  * get around - load steps close in, in halves of what is left, on where they fail or leave their
  * path. *last, why: of the last failure. */
 static dea_status halve_steps(struct dea_context *ctx, struct search *a, dea_status *last,
                               char why[160])
 {
-  const struct dea_solid_settings *o = &a->s->settings;
   const size_t size = a->s->work.load_steps.control_count * sizeof *a->bad;
-  const double least = a->taut ? o->branch_jump_way : o->approach_part_least;
+  double least = closest(a, *last);
   bool failed = false, there = false;
   memcpy(a->bad, a->goal, size);
   for (double apart = 1; apart > 0.5 * least && (apart > least || !failed); apart /= 2) {
@@ -497,6 +506,7 @@ static dea_status halve_steps(struct dea_context *ctx, struct search *a, dea_sta
       snprintf(why, 160, "%s", dea_context_message(ctx));
       dea_context_clear(ctx);
     }
+    least = closest(a, *last);
   }
   a->arrived = there && !failed;
   return DEA_OK;
