@@ -76,10 +76,13 @@ static dea_status find_coordinate(struct dea_context *ctx, struct dea_model *mod
                 control->component <= DEA_OBSERVED_OUTWARDS &&
                 dea_observer_gradient(model->observer, model->solid, control->body,
                                       (enum dea_observed)control->component, pull->slope);
-  return known ? DEA_OK
-               : dea_fail(ctx, DEA_E_UNSUPPORTED,
-                          "a coordinate has to be a displacement of a point, a body or a shape, or "
-                          "a turn of a body");
+  if (!known) {
+    pull->coordinate.component = -1; // asked for again it is no better
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "a coordinate has to be a displacement of a point, a body or a shape, or a "
+                    "turn of a body");
+  }
+  return DEA_OK;
 }
 
 /* A force along one coordinate goes where another one is asked for. */
