@@ -246,7 +246,7 @@ static void print_row(const struct dea_context *ctx, const struct dea_load_point
   char words[DEA_FLAGS_SIZE];
   dea_flags_text(dea_load_point_flags(p) & ~(1u << DEA_FLAG_BOUND | 1u << DEA_FLAG_PLAIN), words);
   printf("%s%s%s\n", words[0] != '\0' ? "  " : "",
-         dea_load_point_trusted(p) ? "" : "not trusted: ", words);
+         dea_load_point_valid(p) ? "" : "not trusted: ", words);
 }
 
 /* Points from row to row of a table of at most TABLE_ROWS rows: 1, 2 or 5 times a power of ten, so

@@ -64,7 +64,7 @@ static void add_cards(struct dea_report *report, const struct dea_curve *sweep,
 {
   struct dea_text *out = &report->text;
   bool bound = dea_load_point_bounds(p);
-  int digits = dea_load_point_trusted(p) ? DIGITS_FIRM : DIGITS_DOUBTED;
+  int digits = dea_load_point_valid(p) ? DIGITS_FIRM : DIGITS_DOUBTED;
   dea_section_heading(report, heading);
   dea_text_add(out, "<dl class=\"cards\">");
   add_headlines(report, sweep, p, digits);

@@ -38,7 +38,7 @@ static void find_displacement(const struct dea_curve *sweep, struct reach *out)
 {
   for (size_t i = 0; i < sweep->count; i++) {
     const struct dea_load_point *p = &sweep->points[i];
-    if (dea_load_point_trusted(p) && isfinite(p->centre_z_m) &&
+    if (dea_load_point_valid(p) && isfinite(p->centre_z_m) &&
         !(fabs(p->centre_z_m - sweep->points[0].centre_z_m) <= out->displacement_m)) {
       out->displacement_m = fabs(p->centre_z_m - sweep->points[0].centre_z_m);
       out->displacement_V = p->voltage_V;
@@ -56,7 +56,7 @@ static void find_force(const struct dea_result *result, struct reach *out)
     for (size_t k = 0; k < i; k++) {
       const struct dea_load_point *a = &held->points[k], *b = &held->points[i];
       double change = fabs(b->force_N - a->force_N);
-      if (a->voltage_V == 0 && dea_load_point_trusted(b) &&
+      if (a->voltage_V == 0 && dea_load_point_valid(b) &&
           fabs(a->tip_depth_m - b->tip_depth_m) < 1e-9 && !(change <= out->force_N)) {
         out->force_N = change;
         out->force_V = b->voltage_V;
@@ -66,7 +66,7 @@ static void find_force(const struct dea_result *result, struct reach *out)
     }
   }
   for (size_t i = 0; held == NULL && sweep != NULL && i < sweep->count; i++) {
-    if (dea_load_point_trusted(&sweep->points[i]) && !(sweep->points[i].force_N <= out->force_N) &&
+    if (dea_load_point_valid(&sweep->points[i]) && !(sweep->points[i].force_N <= out->force_N) &&
         isfinite(sweep->points[i].force_N)) {
       out->force_N = sweep->points[i].force_N;
       out->force_V = sweep->points[i].voltage_V;

@@ -78,8 +78,8 @@ static dea_status add_part(struct dea_context *ctx, struct dea_panel *panel,
   const struct dea_load_point *p = curve->points;
   bool before = true;
   for (size_t i = 0; i < curve->count; i++) {
-    bool here = dea_load_point_trusted(&p[i]);
-    bool after = i + 1 == curve->count || dea_load_point_trusted(&p[i + 1]);
+    bool here = dea_load_point_valid(&p[i]);
+    bool after = i + 1 == curve->count || dea_load_point_valid(&p[i + 1]);
     series->values[i] = 1e-3 * p[i].voltage_V;
     if (trusted ? here : !(before && here && after)) {
       series->values[curve->count + i] = factor * (dea_point_get(&p[i], column) + shift);
@@ -177,7 +177,7 @@ static const char *dashed_words(const struct dea_curve *curve, const char *befor
   static const char unstable[] = "unstable", doubtful[] = "not to be trusted";
   const char *words = before;
   for (size_t i = 0; i < curve->count; i++) {
-    if (!dea_load_point_trusted(&curve->points[i])) {
+    if (!dea_load_point_valid(&curve->points[i])) {
       words = curve->points[i].stable || words == doubtful ? doubtful : unstable;
     }
   }
@@ -205,7 +205,7 @@ dea_status dea_figure_add(struct dea_context *ctx, struct dea_panel *panel,
   DEA_TRY(ctx, add_part(ctx, panel, curve, column, factor, shift, &shown, true));
   size_t doubtful = 0;
   for (size_t i = 0; i < curve->count; i++) {
-    doubtful += dea_load_point_trusted(&curve->points[i]) ? 0 : 1;
+    doubtful += dea_load_point_valid(&curve->points[i]) ? 0 : 1;
   }
   if (doubtful == 0) {
     return DEA_OK;

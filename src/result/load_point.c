@@ -51,9 +51,14 @@ bool dea_flags_have(unsigned flags, enum dea_flag_kind kind)
   return false;
 }
 
-bool dea_load_point_trusted(const struct dea_load_point *point)
+bool dea_load_point_valid(const struct dea_load_point *point)
 {
   return !dea_flags_have(dea_load_point_flags(point), DEA_FLAG_DOUBT);
+}
+
+bool dea_load_point_trusted(const struct dea_load_point *point)
+{
+  return dea_load_point_valid(point) && !dea_load_point_bounds(point);
 }
 
 bool dea_load_point_safe(const struct dea_load_point *point)

@@ -133,9 +133,11 @@ unsigned dea_load_point_flags(const struct dea_load_point *point);
 /* Whether one of some flags is of that kind. */
 bool dea_flags_have(unsigned flags, enum dea_flag_kind kind);
 /* Without a flag of that kind. */
-bool dea_load_point_trusted(const struct dea_load_point *point);
+bool dea_load_point_valid(const struct dea_load_point *point);
 bool dea_load_point_safe(const struct dea_load_point *point);
 bool dea_load_point_bounds(const struct dea_load_point *point);
+/* All its numbers are predictions: valid, and none is a bound. */
+bool dea_load_point_trusted(const struct dea_load_point *point);
 bool dea_load_point_interpolated(const struct dea_load_point *point);
 
 /* "slack unstable ...", each with a blank after it. */

@@ -297,7 +297,7 @@ static dea_status add_shown(struct dea_context *ctx, struct dea_panel *panel,
 /* Whether the last point of a curve, where the profile is taken, is to be trusted. */
 static bool ends_trusted(const struct dea_curve *curve)
 {
-  return curve->count == 0 || dea_load_point_trusted(&curve->points[curve->count - 1]);
+  return curve->count == 0 || dea_load_point_valid(&curve->points[curve->count - 1]);
 }
 
 /* Keys of so many entries, in two columns from the fourth on where their titles are short. */

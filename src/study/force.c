@@ -476,7 +476,7 @@ static dea_status add_computed(struct dea_context *ctx, struct dea_panel *panel,
   DEA_TRY(ctx, dea_panel_add_as(ctx, panel, curve->count, &marks, &series));
   for (size_t i = 0; i < curve->count; i++) {
     const struct dea_load_point *p = &curve->points[i];
-    if (!dea_load_point_interpolated(p) && dea_load_point_trusted(p)) {
+    if (!dea_load_point_interpolated(p) && dea_load_point_valid(p)) {
       series->values[i] = 1e-3 * p->voltage_V;
       series->values[curve->count + i] = 1e3 * p->force_N;
     }
@@ -527,7 +527,7 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
         points[at].voltage_V == points[k].voltage_V) { // else it was interrupted
       series->values[i] = 1e3 * points[at].tip_depth_m;
       series->values[stops->count + i] = 1e3 * points[at].force_N;
-      trusted = trusted && dea_load_point_trusted(&points[at]);
+      trusted = trusted && dea_load_point_valid(&points[at]);
       computed = computed && !dea_load_point_interpolated(&points[at]);
     }
   }

@@ -1070,7 +1070,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 static void name_look(struct dea_series *look, const struct dea_variant *variant, bool profile)
 {
   const struct dea_curve *curve = &variant->curve;
-  bool trusted = curve->count > 0 && dea_load_point_trusted(&curve->points[curve->count - 1]);
+  bool trusted = curve->count > 0 && dea_load_point_valid(&curve->points[curve->count - 1]);
   char at[32] = "";
   if (profile) {
     snprintf(at, sizeof at, ", %.4g kV", 1e-3 * variant->profile.voltage_V);

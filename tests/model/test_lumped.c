@@ -77,6 +77,7 @@ TEST(test_without_fibres_there_is_no_lift)
   struct dea_model *model = make(&device);
   struct dea_load_point p = solve(model, 5e3);
   assert_true(isnan(p.centre_z_m) && isnan(p.fibre_tip_z_m) && isnan(p.force_N));
+  assert_true(dea_load_point_trusted(&p));
   dea_model_find("lumped")->destroy(ctx, model);
 }
 
@@ -209,6 +210,7 @@ TEST(test_load_line)
   }
   assert_close(force, 0, 0, 1e-10);
   assert_true(p.force_N > 0);
+  assert_true(dea_load_point_valid(&p) && !dea_load_point_trusted(&p)); // z is a bound
   assert_close(p.force_N, largest, 1e-5, 0);
   dea_model_find("lumped")->destroy(ctx, model);
 }
