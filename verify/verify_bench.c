@@ -164,31 +164,33 @@ static struct dea_compare_set *compare(struct dea_context *ctx, const struct tru
 
 static void print_comparison(const struct measurement *m, const struct dea_compare_set *set)
 {
-  const struct dea_comparison *c = set->curves[0].comparison;
-  verify_absolute("comparisons with the sweep", c != NULL ? (double)c->misfit_count : 0, 3, 0);
-  verify_absolute("histories", (double)set->history_count, 3, 0);
+  size_t histories = 0;
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    histories += set->misfits[i].kind == DEA_SET_HISTORY ? 1U : 0U;
+  }
+  verify_absolute("comparisons with the sweep", (double)(set->misfit_count - histories), 3, 0);
+  verify_absolute("histories", (double)histories, 3, 0);
   printf(
       "\nThe tables of the reduction, written, read back and set beside the model as `dea compare` "
       "does. The force cell drifts, which\nstays in its history.\n");
   printf("\n| compared with the model | points | root mean square | chi2/point "
          "|\n|---|---|---|---|\n");
-  for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
-    const struct dea_misfit *misfit = &c->misfits[i];
-    const struct dea_column *column = &dea_point_columns[misfit->column];
-    printf("| %s against voltage | %zu | %.3f %s | %.3f |\n", column->header, misfit->count,
-           column->factor * misfit->rms, column->display_unit, misfit->chi_square);
-    verify_absolute("chi2/point", misfit->chi_square, 0.5, 0.5); // of the scatter of one cycle
-  }
-  for (size_t i = 0; i < set->history_count; i++) {
-    const struct dea_set_history *h = &set->histories[i];
-    const struct dea_column *column = &dea_point_columns[h->misfit.column];
-    printf("| %s in time | %zu | %.3f %s | |\n", column->header, h->misfit.count,
-           column->factor * h->misfit.rms, column->display_unit);
-    verify_absolute("shift of the clocks [s]", h->clock.shift_s, 0, 0);
-    // of the frame's own height nothing drifts; of the force cell it does, and stays in a history
-    double length_s = (double)(m->level_count * m->cycles) / m->frequency_Hz;
-    verify_absolute("history's root mean square", column->factor * h->misfit.rms, 0,
-                    strcmp(column->display_unit, "um") == 0 ? 3 : 0.5 + 0.02 * length_s);
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    const struct dea_misfit *misfit = &set->misfits[i].misfit;
+    const struct dea_column *column = misfit->quantity;
+    if (set->misfits[i].kind == DEA_SET_VOLTAGE) {
+      printf("| %s against voltage | %zu | %.3f %s | %.3f |\n", column->header, misfit->count,
+             column->factor * misfit->rms, column->display_unit, misfit->chi_square);
+      verify_absolute("chi2/point", misfit->chi_square, 0.5, 0.5); // of the scatter of one cycle
+    } else if (set->misfits[i].kind == DEA_SET_HISTORY) {
+      printf("| %s in time | %zu | %.3f %s | |\n", column->header, misfit->count,
+             column->factor * misfit->rms, column->display_unit);
+      verify_absolute("shift of the clocks [s]", set->misfits[i].clock.shift_s, 0, 0);
+      // of the frame's own height nothing drifts; of the force cell it does, and stays in a history
+      double length_s = (double)(m->level_count * m->cycles) / m->frequency_Hz;
+      verify_absolute("history's root mean square", column->factor * misfit->rms, 0,
+                      strcmp(column->display_unit, "um") == 0 ? 3 : 0.5 + 0.02 * length_s);
+    }
   }
 }
 

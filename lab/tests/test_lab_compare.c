@@ -124,8 +124,8 @@ TEST(test_history_of_a_monitor)
 }
 
 /* Pulses of the heights given, 1 s long, 2 s apart, from `start` on, 100 samples a second. */
-static struct dea_voltage_track staircase(double start_s, const double *high, int count,
-                                          double *time, double *voltage)
+static struct dea_samples staircase(double start_s, const double *high, int count, double *time,
+                                    double *voltage)
 {
   size_t n = 0;
   for (int i = 0; i < 200 * count + 100; i++, n++) {
@@ -134,7 +134,7 @@ static struct dea_voltage_track staircase(double start_s, const double *high, in
     time[n] = start_s + t;
     voltage[n] = own >= 0 && k < count ? pulse(own - 2.0 * k, high[k], 0.02) : 0.0;
   }
-  return (struct dea_voltage_track){time, voltage, n};
+  return (struct dea_samples){n, time, voltage, NULL};
 }
 
 TEST(test_clock_looks_for_pulses_of_its_height)
@@ -145,8 +145,8 @@ TEST(test_clock_looks_for_pulses_of_its_height)
   static const double some[] = {4000, 4000};
   struct dea_clock_shift shift;
   // Computed at 4 kV alone, on a clock of its own: measured there from 1000 + 0.5 + 8 s on.
-  struct dea_voltage_track a = staircase(0.0, some, 2, time[0], voltage[0]);
-  struct dea_voltage_track b = staircase(1000.0, all, 8, time[1], voltage[1]);
+  struct dea_samples a = staircase(0.0, some, 2, time[0], voltage[0]);
+  struct dea_samples b = staircase(1000.0, all, 8, time[1], voltage[1]);
   dea_clock_shift_find(&a, &b, &shift);
   assert_int_equal(shift.edges, 2);
   assert_close(shift.shift_s, 1008.0, 0, 1e-9);

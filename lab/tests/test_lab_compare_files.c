@@ -162,8 +162,7 @@ static void compare_monitors_once(struct dea_context *ctx)
   status = status == DEA_OK ? dea_compare_set_add(ctx, set, "3d", result, "3d", "") : status;
   status = status == DEA_OK ? dea_compare_set_compute(ctx, set, NULL, 0) : status;
   if (status == DEA_OK) {
-    const struct dea_comparison *c = set->curves[0].comparison;
-    assert_string_equal(c->misfits[c->misfit_count - 1].quantity->key, "hub_z_m");
+    assert_string_equal(set->misfits[set->misfit_count - 1].misfit.quantity->key, "hub_z_m");
   }
   failing_check(ctx, status);
   dea_compare_set_destroy(ctx, set);

@@ -286,21 +286,15 @@ static void print_row(const char *name, const struct dea_misfit *m, double at_fa
          !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
 }
 
-/* Prints the misfits of a quantity; true when some has uncertainties. */
-static bool print_quantity(const struct dea_context *ctx, const struct dea_compare_set *set,
+/* Prints the misfits of a quantity against the voltage. */
+static void print_quantity(const struct dea_context *ctx, const struct dea_compare_set *set,
                            int column, double tolerance)
 {
-  const struct dea_misfit *rows[DEA_SET_CURVES_MAX] = {NULL};
   bool any = false, std = false;
   for (size_t i = 0; i < set->curve_count; i++) {
-    const struct dea_comparison *c = set->curves[i].comparison;
-    for (size_t k = 0; c != NULL && k < c->misfit_count; k++) {
-      if (c->misfits[k].column == column) {
-        rows[i] = &c->misfits[k];
-        any = true;
-        std = std || rows[i]->std_count > 0;
-      }
-    }
+    const struct dea_misfit *m = dea_compare_set_find(set, i, column);
+    any = any || m != NULL;
+    std = std || (m != NULL && m->std_count > 0);
   }
   if (any) {
     char title[DEA_COLUMN_TITLE_SIZE];
@@ -308,41 +302,46 @@ static bool print_quantity(const struct dea_context *ctx, const struct dea_compa
     print_head(title, "at kV", std);
   }
   for (size_t i = 0; i < set->curve_count; i++) {
-    if (rows[i] != NULL) {
-      print_row(set->curves[i].name, rows[i], 1e-3, tolerance);
+    const struct dea_misfit *m = dea_compare_set_find(set, i, column);
+    if (m != NULL) {
+      print_row(set->curves[i].name, m, 1e-3, tolerance);
     }
   }
-  return std;
 }
 
-static bool print_profiles(const struct dea_compare_set *set)
+/* Whether some misfit of a kind has uncertainties. */
+static bool knows_std(const struct dea_compare_set *set, enum dea_set_kind kind)
 {
-  bool std = false;
-  for (size_t i = 0; i < set->profile_count; i++) {
-    std = std || set->profiles[i].misfit.std_count > 0;
-  }
-  for (size_t i = 0; i < set->profile_count; i++) {
-    const struct dea_set_profile *p = &set->profiles[i];
-    char text[2 * DEA_LABEL_SIZE];
-    if (i == 0 || p->measured != set->profiles[i - 1].measured) {
-      snprintf(text, sizeof text, "z over film at %.4g kV (um)",
-               1e-3 * set->measured->profiles[p->measured].voltage_V);
-      print_head(text, "at mm", std);
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    if (set->misfits[i].kind == kind && set->misfits[i].misfit.std_count > 0) {
+      return true;
     }
-    snprintf(text, sizeof text, "%s%s%s", set->curves[p->curve].name, p->line.directed ? ", " : "",
-             p->line.directed ? dea_half_names[p->half] : "");
-    print_row(text, &p->misfit, 1e3, NAN);
   }
-  return std;
+  return false;
 }
 
+static void print_profile(const struct dea_compare_set *set, size_t i)
+{
+  const struct dea_set_misfit *p = &set->misfits[i];
+  char text[2 * DEA_LABEL_SIZE];
+  if (i == 0 || p[-1].kind != DEA_SET_PROFILE || p->measured != p[-1].measured) {
+    snprintf(text, sizeof text, "z over film at %.4g kV (um)",
+             1e-3 * set->measured->profiles[p->measured].voltage_V);
+    print_head(text, "at mm", knows_std(set, DEA_SET_PROFILE));
+  }
+  snprintf(text, sizeof text, "%s%s%s", set->curves[p->curve].name, p->line.directed ? ", " : "",
+           p->line.directed ? dea_half_names[p->half] : "");
+  print_row(text, &p->misfit, 1e3, NAN);
+}
+
+/* Misfits in time, by quantity. */
 static void print_histories(const struct dea_compare_set *set)
 {
-  for (size_t k = 0; k < DEA_CSV_COLUMNS_MAX; k++) {
+  for (size_t k = 0; set->measured != NULL && k < set->measured->history_count; k++) {
     bool first = true;
-    for (size_t i = 0; i < set->history_count; i++) {
-      const struct dea_set_history *h = &set->histories[i];
-      if (h->column != k) {
+    for (size_t i = 0; i < set->misfit_count; i++) {
+      const struct dea_set_misfit *h = &set->misfits[i];
+      if (h->kind != DEA_SET_HISTORY || h->measured != k) {
         continue;
       }
       if (first) {
@@ -358,33 +357,36 @@ static void print_histories(const struct dea_compare_set *set)
 }
 
 /* A pair: a row for each quantity. */
-static bool print_pair(const struct dea_compare_set *set, size_t curve, double tolerance)
+static void print_pair(const struct dea_compare_set *set, size_t curve, double tolerance)
 {
-  const struct dea_comparison *c = set->curves[curve].comparison;
   char beside[DEA_LABEL_SIZE], title[DEA_COLUMN_TITLE_SIZE];
   bool std = false;
   dea_compare_set_beside(set, curve, beside);
-  for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
-    std = std || c->misfits[i].std_count > 0;
-  }
   printf("a: %s\nb: %s", set->curves[curve].name, beside);
-  print_head("a - b", "at kV", std);
-  for (size_t i = 0; c != NULL && i < c->misfit_count; i++) {
-    dea_column_title(c->misfits[i].quantity, title, sizeof title);
-    print_row(title, &c->misfits[i], 1e-3, tolerance);
+  for (int pass = 0; pass < 2; pass++) { // whether there are uncertainties, and then the rows
+    for (size_t i = 0; i < set->misfit_count; i++) {
+      const struct dea_set_misfit *m = &set->misfits[i];
+      if (m->kind != DEA_SET_VOLTAGE || m->curve != curve) {
+        continue;
+      }
+      std = std || m->misfit.std_count > 0;
+      if (pass == 1) {
+        dea_column_title(m->misfit.quantity, title, sizeof title);
+        print_row(title, &m->misfit, 1e-3, tolerance);
+      }
+    }
+    if (pass == 0) {
+      print_head("a - b", "at kV", std);
+    }
   }
-  return std;
 }
 
 /* Whether some model has a band of its own. */
 static bool has_model_std(const struct dea_compare_set *set)
 {
-  for (size_t i = 0; i < set->curve_count; i++) {
-    const struct dea_comparison *c = set->curves[i].comparison;
-    for (size_t k = 0; c != NULL && k < c->misfit_count; k++) {
-      if (!isnan(dea_misfit_a_std_rms(&c->misfits[k]))) {
-        return true;
-      }
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    if (!isnan(dea_misfit_a_std_rms(&set->misfits[i].misfit))) {
+      return true;
     }
   }
   return false;
@@ -393,20 +395,23 @@ static bool has_model_std(const struct dea_compare_set *set)
 static void print_tables(const struct dea_context *ctx, const struct dea_compare_set *set,
                          double tolerance)
 {
-  bool std = false;
   for (size_t i = 0; set->pairs && i < set->curve_count; i++) {
-    std = print_pair(set, i, tolerance) || std;
+    print_pair(set, i, tolerance);
   }
   if (!set->pairs) {
     printf("Each curve minus %s%s\n", set->reference,
            set->measured != NULL ? ", as measured" : " (a run)");
   }
   for (int c = 0; !set->pairs && c < dea_column_count(ctx); c++) {
-    std = print_quantity(ctx, set, c, tolerance) || std;
+    print_quantity(ctx, set, c, tolerance);
   }
-  std = print_profiles(set) || std;
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    if (set->misfits[i].kind == DEA_SET_PROFILE) {
+      print_profile(set, i);
+    }
+  }
   print_histories(set);
-  if (std) {
+  if (knows_std(set, DEA_SET_VOLTAGE) || knows_std(set, DEA_SET_PROFILE)) {
     printf(
         "\nchi2/point is the mean of (difference/std)^2: 1 where differences are of the size of "
         "the scatter.\nOf a normal scatter 68 %% lie within 1 std and 95 %% within 2. The std is "
@@ -423,9 +428,8 @@ static void print_tables(const struct dea_context *ctx, const struct dea_compare
 static dea_status judge(struct dea_context *ctx, const struct dea_compare_set *set,
                         double tolerance)
 {
-  size_t curve = 0;
-  const struct dea_misfit *worst = dea_compare_set_worst(set, &curve);
-  if (isnan(tolerance) || (worst != NULL && worst->relative_largest <= tolerance)) {
+  const struct dea_set_misfit *worst = dea_compare_set_worst(set);
+  if (isnan(tolerance) || (worst != NULL && worst->misfit.relative_largest <= tolerance)) {
     return DEA_OK;
   }
   return worst == NULL
@@ -434,8 +438,8 @@ static dea_status judge(struct dea_context *ctx, const struct dea_compare_set *s
                         "tolerance")
              : dea_fail(ctx, DEA_E_DIFFERS,
                         "%s of %s differs by %.3g %% of its range, more than %.3g %%",
-                        worst->quantity->key, set->curves[curve].name,
-                        100.0 * worst->relative_largest, 100.0 * tolerance);
+                        worst->misfit.quantity->key, set->curves[worst->curve].name,
+                        100.0 * worst->misfit.relative_largest, 100.0 * tolerance);
 }
 
 static dea_status compare(struct dea_context *ctx, const struct request *request,

@@ -25,27 +25,16 @@ dea_status dea_compare_set_create(struct dea_context *ctx, const char *reference
   snprintf((*out)->reference, sizeof(*out)->reference, "%s", reference);
   (*out)->measured = measured;
   (*out)->reference_result = reference_result;
+  (*out)->memory.ctx = ctx;
   return DEA_OK;
 }
 
 void dea_compare_set_destroy(struct dea_context *ctx, struct dea_compare_set *set)
 {
-  if (set == NULL) {
-    return;
+  if (set != NULL) {
+    dea_arena_free(&set->memory);
+    dea_free(ctx, set);
   }
-  for (size_t i = 0; i < set->curve_count; i++) {
-    dea_comparison_destroy(ctx, set->curves[i].comparison);
-  }
-  for (size_t i = 0; i < set->profile_count; i++) {
-    dea_film_line_free(ctx, &set->profiles[i].line);
-    dea_misfit_free(&set->profiles[i].misfit);
-  }
-  for (size_t i = 0; i < set->history_count; i++) {
-    dea_misfit_free(&set->histories[i].misfit);
-  }
-  dea_free(ctx, set->profiles);
-  dea_free(ctx, set->histories);
-  dea_free(ctx, set);
 }
 
 /* Curve of the reference run: of the model asked for, of the same, or its first. */
@@ -126,21 +115,13 @@ void dea_compare_set_beside(const struct dea_compare_set *set, size_t curve,
 
 // Quantities against the voltage ------------------------------------------------------------------
 
-static bool is_wanted(int column, const int *columns, size_t count)
+const struct dea_misfit *dea_compare_set_find(const struct dea_compare_set *set, size_t curve,
+                                              int column)
 {
-  for (size_t q = 0; q < count; q++) {
-    if (columns[q] == column) {
-      return true;
-    }
-  }
-  return count == 0;
-}
-
-static const struct dea_misfit *find_misfit(const struct dea_set_curve *curve, int column)
-{
-  for (size_t i = 0; curve->comparison != NULL && i < curve->comparison->misfit_count; i++) {
-    if (curve->comparison->misfits[i].column == column) {
-      return &curve->comparison->misfits[i];
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    const struct dea_set_misfit *m = &set->misfits[i];
+    if (m->kind == DEA_SET_VOLTAGE && m->curve == curve && m->misfit.column == column) {
+      return &m->misfit;
     }
   }
   return NULL;
@@ -148,13 +129,13 @@ static const struct dea_misfit *find_misfit(const struct dea_set_curve *curve, i
 
 /* Says once of which measured quantities a curve has nothing to set beside. */
 static dea_status note_missing(struct dea_context *ctx, const struct dea_compare_set *set,
-                               const struct dea_set_curve *curve, const int *columns, size_t count)
+                               size_t curve, const int *columns, size_t count)
 {
   struct dea_text list = {.ctx = ctx};
-  const struct dea_curve *r = curve->reference;
+  const struct dea_curve *r = set->curves[curve].reference;
   for (int c = 1; c < dea_column_count(ctx); c++) {
-    if (is_wanted(c, columns, count) && dea_points_have(r->points, r->count, c) &&
-        find_misfit(curve, c) == NULL) {
+    if (dea_column_is_wanted(c, columns, count) && dea_points_have(r->points, r->count, c) &&
+        dea_compare_set_find(set, curve, c) == NULL) {
       dea_text_add(&list, "%s'%s'", list.length > 0 ? ", " : "", dea_column_at(ctx, c)->header);
     }
   }
@@ -164,7 +145,7 @@ static dea_status note_missing(struct dea_context *ctx, const struct dea_compare
   } else if (list.length > 0) {
     status = dea_finding_add(ctx, DEA_NOTE, nowhere,
                              "%s has no %s at the voltages of %s and is left out there",
-                             curve->name, dea_text_get(&list), set->reference);
+                             set->curves[curve].name, dea_text_get(&list), set->reference);
   }
   dea_text_free(&list);
   return status;
@@ -212,36 +193,39 @@ static dea_status note_sign(struct dea_context *ctx, const struct dea_compare_se
                                 : "; was the sensor on the other side?");
 }
 
-static dea_status compute_curve(struct dea_context *ctx, const struct dea_compare_set *set,
-                                struct dea_set_curve *curve, const int *columns, size_t count)
+static dea_status compute_curve(struct dea_context *ctx, struct dea_compare_set *set, size_t number,
+                                const int *columns, size_t count)
 {
+  const struct dea_set_curve *curve = &set->curves[number];
   const struct dea_load_point *std = set->measured != NULL ? set->measured->points->std : NULL;
-  if (curve->curve != NULL) {
-    dea_status status = dea_compare_curves(ctx, curve->curve, curve->reference, std,
-                                           count == 1 ? columns[0] : -1, &curve->comparison);
-    if (status == DEA_E_ARGUMENT && !set->pairs) {
-      dea_context_clear(ctx); // nothing in common: said below
-    } else {
-      DEA_TRY(ctx, status);
-      dea_comparison_keep(curve->comparison, columns, count);
-      if (curve->comparison->part_only) {
-        DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
-                                     "the voltages of %s go up and down: only its first part was "
-                                     "compared",
-                                     curve->name));
-      }
-    }
+  struct dea_comparison found = {0};
+  if (curve->curve == NULL) {
+    return DEA_OK; // a history only
   }
-  if (curve->curve == NULL || (set->measured == NULL && count == 0)) {
-    return DEA_OK; // a history only; two runs that need not know the same of everything
+  dea_status status =
+      dea_compare_curves(&set->memory, curve->curve, curve->reference, std, columns, count, &found);
+  if (status == DEA_E_ARGUMENT && !set->pairs) {
+    dea_context_clear(ctx); // nothing in common: said below
+  } else {
+    DEA_TRY(ctx, status);
   }
-  DEA_TRY(ctx, note_missing(ctx, set, curve, columns, count));
-  for (size_t i = 0; curve->comparison != NULL && i < curve->comparison->misfit_count; i++) {
-    const struct dea_misfit *m = &curve->comparison->misfits[i];
-    if (set->measured != NULL) {
-      DEA_TRY(ctx, note_few(ctx, curve, m));
-    }
-    DEA_TRY(ctx, note_sign(ctx, set, curve, m));
+  if (found.misfit_count > 0 && found.part_only) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
+                                 "the voltages of %s go up and down: only its first part was "
+                                 "compared",
+                                 curve->name));
+  }
+  for (size_t i = 0; i < found.misfit_count; i++) {
+    set->misfits[set->misfit_count++] =
+        (struct dea_set_misfit){.curve = number, .misfit = found.misfits[i]};
+  }
+  if (set->measured == NULL && count == 0) {
+    return DEA_OK; // two runs that need not know the same of everything
+  }
+  DEA_TRY(ctx, note_missing(ctx, set, number, columns, count));
+  for (size_t i = 0; i < found.misfit_count; i++) {
+    DEA_TRY(ctx, set->measured != NULL ? note_few(ctx, curve, &found.misfits[i]) : DEA_OK);
+    DEA_TRY(ctx, note_sign(ctx, set, curve, &found.misfits[i]));
   }
   return DEA_OK;
 }
@@ -252,11 +236,9 @@ static dea_status check_asked(struct dea_context *ctx, const struct dea_compare_
 {
   for (size_t q = 0; q < count; q++) {
     bool found = false;
-    for (size_t i = 0; i < set->curve_count && !found; i++) {
-      found = find_misfit(&set->curves[i], columns[q]) != NULL;
-    }
-    for (size_t h = 0; h < set->history_count && !found; h++) {
-      found = set->histories[h].misfit.column == columns[q];
+    for (size_t i = 0; i < set->misfit_count; i++) {
+      const struct dea_set_misfit *m = &set->misfits[i];
+      found = found || (m->kind != DEA_SET_PROFILE && m->misfit.column == columns[q]);
     }
     if (!found) {
       return dea_fail(ctx, DEA_E_ARGUMENT, "no curve has %s in common with %s",
@@ -273,46 +255,31 @@ static dea_status add_profile(struct dea_context *ctx, struct dea_compare_set *s
                               size_t measured, enum dea_half half)
 {
   const struct dea_measured_profile *m = &set->measured->profiles[measured];
-  struct dea_set_profile *p = &set->profiles[set->profile_count];
-  *p = (struct dea_set_profile){.curve = curve, .measured = measured, .half = half};
-  DEA_TRY(ctx, dea_film_line_make(ctx, set->curves[curve].result, set->curves[curve].model,
+  struct dea_set_misfit *p = &set->misfits[set->misfit_count];
+  *p = (struct dea_set_misfit){
+      .kind = DEA_SET_PROFILE, .curve = curve, .measured = measured, .half = half};
+  DEA_TRY(ctx, dea_film_line_make(&set->memory, set->curves[curve].result, set->curves[curve].model,
                                   m->voltage_V, half, &p->line));
-  set->profile_count++; // from here on it is freed with the set
-  if (p->line.count > 0) {
-    DEA_TRY(ctx,
-            dea_film_line_compare(ctx, &p->line, m->x_m, m->z_m, m->z_std_m, m->count, &p->misfit));
-  }
-  if (p->misfit.count == 0) {
-    dea_film_line_free(ctx, &p->line);
-    dea_misfit_free(&p->misfit);
-    set->profile_count--;
-  } else if (p->line.between_records) {
-    return dea_finding_add(ctx, DEA_NOTE, nowhere,
-                           "the profile of %s at %.4g kV is formed of those at the voltages before "
-                           "and behind, linear between them",
-                           set->curves[curve].name, 1e-3 * m->voltage_V);
-  }
-  return DEA_OK;
+  DEA_TRY(ctx, dea_film_line_compare(&set->memory, &p->line, &m->z, &p->misfit));
+  set->misfit_count += p->misfit.count > 0 ? 1U : 0U;
+  return p->misfit.count == 0 || !p->line.between_records
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_NOTE, nowhere,
+                               "the profile of %s at %.4g kV is formed of those at the voltages "
+                               "before and behind, linear between them",
+                               set->curves[curve].name, 1e-3 * m->voltage_V);
 }
 
 static dea_status compute_profiles(struct dea_context *ctx, struct dea_compare_set *set)
 {
-  size_t count = set->measured->profile_count;
-  if (count == 0) {
-    return DEA_OK;
-  }
-  set->profiles = dea_alloc(ctx, count, DEA_HALVES * set->curve_count * sizeof *set->profiles);
-  if (set->profiles == NULL) {
-    return DEA_E_MEMORY;
-  }
   struct dea_text alone = {.ctx = ctx}; // voltages without a computed profile
   dea_status status = DEA_OK;
-  for (size_t m = 0; m < count && status == DEA_OK; m++) {
-    size_t before = set->profile_count;
+  for (size_t m = 0; m < set->measured->profile_count && status == DEA_OK; m++) {
+    size_t before = set->misfit_count;
     for (size_t i = 0; i < DEA_HALVES * set->curve_count && status == DEA_OK; i++) {
       status = add_profile(ctx, set, i / DEA_HALVES, m, (enum dea_half)(i % DEA_HALVES));
     }
-    if (set->profile_count == before && set->measured->profiles[m].voltage_V != 0.0) {
+    if (set->misfit_count == before && set->measured->profiles[m].voltage_V != 0.0) {
       dea_text_add(&alone, "%s%.4g", alone.length > 0 ? ", " : "",
                    1e-3 * set->measured->profiles[m].voltage_V);
     }
@@ -331,94 +298,87 @@ static dea_status compute_profiles(struct dea_context *ctx, struct dea_compare_s
 
 // Histories ---------------------------------------------------------------------------------------
 
+struct dea_samples dea_measured_history(const struct dea_measured *measured, size_t column)
+{
+  const struct dea_csv_columns *h = &measured->history;
+  return (struct dea_samples){h->rows, h->values[DEA_MEASURED_TIME], h->values[column], NULL};
+}
+
 /* Shift of a curve's clock to the measured one. */
-static dea_status find_clock(struct dea_context *ctx, const struct dea_measured *measured,
+static dea_status find_clock(struct dea_context *ctx, struct dea_compare_set *set,
                              const struct dea_set_curve *curve, const struct dea_curve *transient,
                              struct dea_clock_shift *out)
 {
-  const double *volts = measured->history.values[DEA_MEASURED_VOLTAGE];
-  size_t n = transient->count;
+  const struct dea_samples measured = dea_measured_history(set->measured, DEA_MEASURED_VOLTAGE);
+  const int source = dea_point_column_find("source_voltage_V");
+  const int column = dea_points_have(transient->points, transient->count, source)
+                         ? source
+                         : dea_point_column_find("voltage_V");
+  struct dea_samples computed;
   *out = (struct dea_clock_shift){0};
-  double *time = dea_alloc(ctx, n, sizeof *time), *voltage = dea_alloc(ctx, n, sizeof *voltage);
-  bool good = time != NULL && voltage != NULL;
-  for (size_t i = 0; good && i < n; i++) {
-    const struct dea_load_point *p = &transient->points[i];
-    time[i] = p->time_s;
-    voltage[i] = isnan(p->source_voltage_V) ? p->voltage_V : p->source_voltage_V;
-  }
-  if (good && volts != NULL) {
-    dea_clock_shift_find(&(struct dea_voltage_track){time, voltage, n},
-                         &(struct dea_voltage_track){measured->history.values[DEA_MEASURED_TIME],
-                                                     volts, measured->history.rows},
-                         out);
-  }
-  dea_free(ctx, time);
-  dea_free(ctx, voltage);
-  if (!good) {
-    return DEA_E_MEMORY;
+  DEA_TRY(ctx, dea_samples_of_curve(&set->memory, transient, NULL, column, DEA_BY_TIME, &computed));
+  if (measured.value != NULL) {
+    dea_clock_shift_find(&computed, &measured, out);
   }
   if (out->edges == 0) {
-    return dea_finding_add(ctx, DEA_NOTE, nowhere,
-                           "the clocks of %s and of the history measured are taken as they are: %s",
-                           curve->name,
-                           volts == NULL ? "no voltage was recorded"
-                                         : "no pulse of the one is as high as one of the other");
+    return dea_finding_add(
+        ctx, DEA_NOTE, nowhere,
+        "the clocks of %s and of the history measured are taken as they are: %s", curve->name,
+        measured.value == NULL ? "no voltage was recorded"
+                               : "no pulse of the one is as high as one of the other");
   }
-  if (out->shift_s == 0) {
-    return DEA_OK;
+  return out->shift_s == 0
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_NOTE, nowhere,
+                               "the times of %s are moved by %.6g s, which lays %zu of its pulses "
+                               "on measured ones",
+                               curve->name, out->shift_s, out->edges);
+}
+
+dea_status dea_compare_set_transient(const struct dea_set_misfit *history, int column,
+                                     struct dea_arena *memory, struct dea_samples *out)
+{
+  DEA_TRY(memory->ctx,
+          dea_samples_of_curve(memory, history->transient, NULL, column, DEA_BY_TIME, out));
+  for (size_t i = 0; i < out->count; i++) {
+    out->at[i] += history->clock.shift_s;
   }
-  return dea_finding_add(ctx, DEA_NOTE, nowhere,
-                         "the times of %s are moved by %.6g s, which lays %zu of its pulses on "
-                         "measured ones",
-                         curve->name, out->shift_s, out->edges);
+  return DEA_OK;
 }
 
 static dea_status add_histories(struct dea_context *ctx, struct dea_compare_set *set, size_t curve,
                                 const int *columns, size_t count)
 {
-  const struct dea_csv_columns *history = &set->measured->history;
   const struct dea_set_curve *c = &set->curves[curve];
-  const struct dea_curve *transient = dea_result_find(c->result, c->model, "transient");
+  const struct dea_curve *transient =
+      set->measured->history.rows > 0 ? dea_result_find(c->result, c->model, "transient") : NULL;
   struct dea_clock_shift clock;
   if (transient == NULL || transient->count < 2) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, find_clock(ctx, set->measured, c, transient, &clock));
+  DEA_TRY(ctx, find_clock(ctx, set, c, transient, &clock));
   for (size_t k = DEA_MEASURED_QUANTITIES; k < set->measured->history_count; k++) {
     const int column = set->measured->history_column[k];
-    if (history->values[k] == NULL || !is_wanted(column, columns, count)) {
+    const struct dea_samples measured = dea_measured_history(set->measured, k);
+    if (measured.value == NULL || !dea_column_is_wanted(column, columns, count)) {
       continue;
     }
-    struct dea_set_history *h = &set->histories[set->history_count++];
-    *h = (struct dea_set_history){.curve = curve, .transient = transient, .clock = clock};
-    h->column = k;
-    DEA_TRY(ctx,
-            dea_compare_history(ctx, transient, column, &clock, history->values[DEA_MEASURED_TIME],
-                                history->values[k], history->rows, &h->misfit));
-    if (h->misfit.count == 0) {
-      dea_misfit_free(&h->misfit);
-      set->history_count--;
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, nowhere,
-                                   "the history of %s has no '%s' at the times measured", c->name,
-                                   dea_column_at(ctx, column)->header));
-    }
-  }
-  return DEA_OK;
-}
-
-static dea_status compute_histories(struct dea_context *ctx, struct dea_compare_set *set,
-                                    const int *columns, size_t count)
-{
-  if (set->measured->history.rows == 0) {
-    return DEA_OK;
-  }
-  set->histories =
-      dea_alloc(ctx, set->curve_count, set->measured->history_count * sizeof *set->histories);
-  if (set->histories == NULL) {
-    return DEA_E_MEMORY;
-  }
-  for (size_t i = 0; i < set->curve_count; i++) {
-    DEA_TRY(ctx, add_histories(ctx, set, i, columns, count));
+    struct dea_set_misfit *h = &set->misfits[set->misfit_count];
+    struct dea_samples computed;
+    *h = (struct dea_set_misfit){.kind = DEA_SET_HISTORY,
+                                 .curve = curve,
+                                 .measured = k,
+                                 .transient = transient,
+                                 .clock = clock};
+    DEA_TRY(ctx, dea_compare_set_transient(h, column, &set->memory, &computed));
+    DEA_TRY(ctx, dea_misfit_compute(&set->memory, column, &computed, &measured,
+                                    &(struct dea_reading){.jump = clock.resolution_s}, &h->misfit));
+    set->misfit_count += h->misfit.count > 0 ? 1U : 0U;
+    DEA_TRY(ctx, h->misfit.count > 0
+                     ? DEA_OK
+                     : dea_finding_add(ctx, DEA_NOTE, nowhere,
+                                       "the history of %s has no '%s' at the times measured",
+                                       c->name, dea_column_at(ctx, column)->header));
   }
   return DEA_OK;
 }
@@ -426,34 +386,34 @@ static dea_status compute_histories(struct dea_context *ctx, struct dea_compare_
 dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
                                    const int *columns, size_t count)
 {
-  size_t found = 0;
+  const struct dea_measured *m = set->measured;
+  const size_t others = m != NULL ? DEA_HALVES * m->profile_count + m->history_count : 0;
+  set->misfits = dea_arena_alloc(&set->memory, (size_t)dea_column_count(ctx) + others + 1,
+                                 set->curve_count * sizeof *set->misfits);
+  DEA_TRY(ctx, dea_arena_status(&set->memory));
   for (size_t i = 0; i < set->curve_count; i++) {
-    DEA_TRY(ctx, compute_curve(ctx, set, &set->curves[i], columns, count));
-    found += set->curves[i].comparison != NULL ? set->curves[i].comparison->misfit_count : 0;
+    DEA_TRY(ctx, compute_curve(ctx, set, i, columns, count));
   }
-  if (set->measured != NULL) {
-    DEA_TRY(ctx, is_wanted(dea_point_column_find("centre_z_m"), columns, count)
-                     ? compute_profiles(ctx, set)
-                     : DEA_OK);
-    DEA_TRY(ctx, compute_histories(ctx, set, columns, count));
+  if (m != NULL && dea_column_is_wanted(dea_point_column_find("centre_z_m"), columns, count)) {
+    DEA_TRY(ctx, compute_profiles(ctx, set));
+  }
+  for (size_t i = 0; m != NULL && i < set->curve_count; i++) {
+    DEA_TRY(ctx, add_histories(ctx, set, i, columns, count));
   }
   DEA_TRY(ctx, check_asked(ctx, set, columns, count));
-  return found + set->profile_count + set->history_count > 0
+  return set->misfit_count > 0
              ? DEA_OK
              : dea_fail(ctx, DEA_E_ARGUMENT, "the runs have nothing in common with %s",
                         set->reference);
 }
 
-const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set, size_t *curve)
+const struct dea_set_misfit *dea_compare_set_worst(const struct dea_compare_set *set)
 {
-  const struct dea_misfit *worst = NULL;
-  for (size_t i = 0; i < set->curve_count; i++) {
-    const struct dea_comparison *c = set->curves[i].comparison;
-    for (size_t k = 0; c != NULL && k < c->misfit_count; k++) {
-      if (worst == NULL || c->misfits[k].relative_largest > worst->relative_largest) {
-        worst = &c->misfits[k];
-        *curve = i;
-      }
+  const struct dea_set_misfit *worst = NULL;
+  for (size_t i = 0; i < set->misfit_count && set->misfits[i].kind == DEA_SET_VOLTAGE; i++) {
+    const struct dea_set_misfit *m = &set->misfits[i];
+    if (worst == NULL || m->misfit.relative_largest > worst->misfit.relative_largest) {
+      worst = m;
     }
   }
   return worst;
@@ -461,18 +421,19 @@ const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set
 
 // JSON --------------------------------------------------------------------------------------------
 
-static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, double tolerance)
+/* tolerance: NAN for none. */
+static json_t *misfit_json(const struct dea_compare_set *set, const struct dea_set_misfit *of,
+                           double tolerance)
 {
-  const struct dea_column *column = m->quantity;
-  char at[32];
+  static const char *const places[] = {"largest_at_V", "largest_at_m", "largest_at_s"};
+  const struct dea_misfit *m = &of->misfit;
   json_t *object = json_object();
-  snprintf(at, sizeof at, "largest_at_%s", at_unit);
-  dea_json_put_text(object, "quantity", column->key);
-  dea_json_put_text(object, "unit", column->si_unit);
+  dea_json_put_text(object, "quantity", of->kind == DEA_SET_PROFILE ? "z_m" : m->quantity->key);
+  dea_json_put_text(object, "unit", m->quantity->si_unit);
   dea_json_put_count(object, "points", m->count);
   dea_json_put(object, "rms", m->rms);
   dea_json_put(object, "largest", m->largest);
-  dea_json_put(object, at, m->largest_at);
+  dea_json_put(object, places[of->kind], m->largest_at);
   dea_json_put(object, "bias", m->bias);
   dea_json_put(object, "range", m->range);
   dea_json_put(object, "relative_rms", m->relative_rms);
@@ -484,65 +445,51 @@ static json_t *misfit_json(const struct dea_misfit *m, const char *at_unit, doub
     dea_json_put(object, "within_1_std", m->within_1_std);
     dea_json_put(object, "within_2_std", m->within_2_std);
   }
-  if (!isnan(tolerance)) {
-    json_object_set_new(object, "within", json_boolean(m->relative_largest <= tolerance));
+  if (of->kind == DEA_SET_VOLTAGE) {
+    if (!isnan(tolerance)) {
+      json_object_set_new(object, "within", json_boolean(m->relative_largest <= tolerance));
+    }
+    return object;
   }
-  return object;
-}
-
-static json_t *curve_json(const struct dea_compare_set *set, size_t curve, double tolerance)
-{
-  const struct dea_comparison *comparison = set->curves[curve].comparison;
-  json_t *object = json_object(), *quantities = json_array();
-  char beside[DEA_LABEL_SIZE];
-  dea_compare_set_beside(set, curve, beside);
-  dea_json_put_text(object, "a", set->curves[curve].name);
-  dea_json_put_text(object, "b", beside);
-  for (size_t i = 0; comparison != NULL && i < comparison->misfit_count; i++) {
-    json_array_append_new(quantities, misfit_json(&comparison->misfits[i], "V", tolerance));
+  dea_json_put_text(object, "a", set->curves[of->curve].name);
+  if (of->kind == DEA_SET_HISTORY) {
+    dea_json_put(object, "shift_s", of->clock.shift_s);
+    dea_json_put_count(object, "edges", of->clock.edges);
+    return object;
   }
-  json_object_set_new(object, "quantities", quantities);
+  if (of->line.directed) {
+    dea_json_put_text(object, "half", dea_half_names[of->half]);
+  }
+  dea_json_put(object, "voltage_V", set->measured->profiles[of->measured].voltage_V);
   return object;
 }
 
 json_t *dea_compare_set_json(const struct dea_compare_set *set, double tolerance)
 {
-  json_t *root = json_object(), *curves = json_array(), *profiles = json_array();
-  json_t *histories = json_array();
+  json_t *root = json_object(), *curves = json_array(), *quantities = NULL;
+  json_t *others[] = {[DEA_SET_PROFILE] = json_array(), [DEA_SET_HISTORY] = json_array()};
   json_object_set_new(root, "schema", json_integer(1));
   if (!isnan(tolerance)) {
     dea_json_put(root, "tolerance", tolerance);
   }
   dea_json_put_text(root, "reference", set->reference);
-  for (size_t i = 0; i < set->curve_count; i++) {
-    json_t *curve = curve_json(set, i, tolerance);
-    if (json_array_size(json_object_get(curve, "quantities")) > 0) {
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    const struct dea_set_misfit *m = &set->misfits[i];
+    if (m->kind == DEA_SET_VOLTAGE && (i == 0 || m->curve != set->misfits[i - 1].curve)) {
+      char beside[DEA_LABEL_SIZE];
+      json_t *curve = json_object();
+      dea_compare_set_beside(set, m->curve, beside);
+      dea_json_put_text(curve, "a", set->curves[m->curve].name);
+      dea_json_put_text(curve, "b", beside);
+      quantities = json_array();
+      json_object_set_new(curve, "quantities", quantities);
       json_array_append_new(curves, curve);
-    } else {
-      json_decref(curve); // nothing in common
     }
-  }
-  for (size_t i = 0; i < set->profile_count; i++) {
-    const struct dea_set_profile *p = &set->profiles[i];
-    json_t *one = misfit_json(&p->misfit, "m", NAN);
-    dea_json_put_text(one, "quantity", "z_m"); // of all of the film
-    dea_json_put_text(one, "a", set->curves[p->curve].name);
-    if (p->line.directed) {
-      dea_json_put_text(one, "half", dea_half_names[p->half]);
-    }
-    dea_json_put(one, "voltage_V", set->measured->profiles[p->measured].voltage_V);
-    json_array_append_new(profiles, one);
-  }
-  for (size_t i = 0; i < set->history_count; i++) {
-    const struct dea_set_history *h = &set->histories[i];
-    json_t *one = misfit_json(&h->misfit, "s", NAN);
-    dea_json_put_text(one, "a", set->curves[h->curve].name);
-    dea_json_put(one, "shift_s", h->clock.shift_s);
-    dea_json_put_count(one, "edges", h->clock.edges);
-    json_array_append_new(histories, one);
+    json_array_append_new(m->kind == DEA_SET_VOLTAGE ? quantities : others[m->kind],
+                          misfit_json(set, m, tolerance));
   }
   json_object_set_new(root, "comparisons", curves);
-  json_object_set_new(root, "profiles", profiles);
-  json_object_set_new(root, "histories", histories);
+  json_object_set_new(root, "profiles", others[DEA_SET_PROFILE]);
+  json_object_set_new(root, "histories", others[DEA_SET_HISTORY]);
   return root;
 }

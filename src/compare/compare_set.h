@@ -17,24 +17,21 @@ struct dea_set_curve {
   const char *model;                 // lent; "" of a table
   const struct dea_curve *curve;     // against the voltage; lent, NULL: none
   const struct dea_curve *reference; // that it is set against; lent
-  struct dea_comparison *comparison; // owned; NULL: nothing in common
 };
 
-/* A model's line across the film beside a measured profile. */
-struct dea_set_profile {
-  size_t curve, measured; // of the set's curves, of the measured profiles
+enum dea_set_kind { DEA_SET_VOLTAGE, DEA_SET_PROFILE, DEA_SET_HISTORY };
+
+/* One quantity of a curve beside the reference: against the voltage, across the film, or in time.
+ */
+struct dea_set_misfit {
+  enum dea_set_kind kind;
+  size_t curve;    // of the set's curves
+  size_t measured; // profile, or column of the history, of what was measured
   enum dea_half half;
-  struct dea_film_line line; // owned
-  struct dea_misfit misfit;  // owned
-};
-
-/* A quantity of a model's history beside the measured one. */
-struct dea_set_history {
-  size_t curve;
-  const struct dea_curve *transient; // lent
-  size_t column;                     // of the measured history
-  struct dea_clock_shift clock;      // of the model's times; edges 0: clocks as they are
-  struct dea_misfit misfit;          // owned
+  struct dea_film_line line;         // of a profile
+  const struct dea_curve *transient; // of a history; lent
+  struct dea_clock_shift clock;      // of the transient's times; edges 0: clocks as they are
+  struct dea_misfit misfit;
 };
 
 struct dea_compare_set {
@@ -44,10 +41,9 @@ struct dea_compare_set {
   const struct dea_result *reference_result; // lent; NULL: the reference is a measurement
   struct dea_set_curve curves[DEA_SET_CURVES_MAX];
   size_t curve_count;
-  struct dea_set_profile *profiles; // owned
-  size_t profile_count;
-  struct dea_set_history *histories; // owned
-  size_t history_count;
+  struct dea_set_misfit *misfits; // by kind, then by curve or profile
+  size_t misfit_count;
+  struct dea_arena memory;
 };
 
 /* One of measured and reference_result is not NULL. out: owned by the caller, NULL on failure. */
@@ -71,9 +67,17 @@ dea_status dea_compare_set_add_table(struct dea_context *ctx, struct dea_compare
  * asked for. */
 dea_status dea_compare_set_compute(struct dea_context *ctx, struct dea_compare_set *set,
                                    const int *columns, size_t count);
-/* Misfit of a quantity against the voltage with the largest relative difference, and its
- * curve; NULL when there is none. Lent. */
-const struct dea_misfit *dea_compare_set_worst(const struct dea_compare_set *set, size_t *curve);
+/* Misfit of a column against the voltage, of a curve; NULL when there is none. Lent. */
+const struct dea_misfit *dea_compare_set_find(const struct dea_compare_set *set, size_t curve,
+                                              int column);
+/* The one against the voltage with the largest relative difference, likewise. */
+const struct dea_set_misfit *dea_compare_set_worst(const struct dea_compare_set *set);
+
+/* What was measured of a column in time; value NULL: nothing. */
+struct dea_samples dea_measured_history(const struct dea_measured *measured, size_t column);
+/* A column of a history's transient on the measured clock. */
+dea_status dea_compare_set_transient(const struct dea_set_misfit *history, int column,
+                                     struct dea_arena *memory, struct dea_samples *out);
 
 /* DEA_E_ARGUMENT that says which models a result has. name: of the result. */
 dea_status dea_compare_no_model(struct dea_context *ctx, const char *name,

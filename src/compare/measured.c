@@ -82,16 +82,14 @@ static dea_status part_profiles(struct dea_context *ctx, struct dea_measured *m)
   }
   for (size_t i = 0; i < rows->rows; i++) {
     if (begins(rows, start, i)) {
-      const double *std = rows->values[PROFILE_STD];
+      double *std = rows->values[PROFILE_STD];
       start = i;
-      m->profiles[m->profile_count++] = (struct dea_measured_profile){
-          .voltage_V = rows->values[PROFILE_V][i],
-          .x_m = rows->values[PROFILE_X] + i,
-          .z_m = rows->values[PROFILE_Z] + i,
-          .z_std_m = std != NULL ? std + i : NULL,
-      };
+      m->profiles[m->profile_count++] =
+          (struct dea_measured_profile){rows->values[PROFILE_V][i],
+                                        {0, rows->values[PROFILE_X] + i,
+                                         rows->values[PROFILE_Z] + i, std != NULL ? std + i : std}};
     }
-    m->profiles[m->profile_count - 1].count++;
+    m->profiles[m->profile_count - 1].z.count++;
   }
   return DEA_OK;
 }

@@ -2,15 +2,14 @@
 #pragma once
 
 #include "io/csv.h"
+#include "result/compare.h"
 #include "table/csv_columns.h"
 
-/* Mean profile of a voltage against rest; arrays [count] lent from the table. */
+/* Mean profile of a voltage against rest, lent from the table: z, positive to the fibres, with its
+ * scatter from cycle to cycle, over x from the film's centre, rising. */
 struct dea_measured_profile {
   double voltage_V;
-  size_t count;
-  const double *x_m;     // from the film's centre, rising
-  const double *z_m;     // positive to the fibres; NAN: no valid point
-  const double *z_std_m; // from cycle to cycle; NULL or NAN: unknown
+  struct dea_samples z;
 };
 
 /* The first columns of the history, in dea_csv_columns.values; quantities follow. */

@@ -5,6 +5,7 @@
 #include "base/program.h"
 #include "base/write_file.h"
 #include "plot/finish.h"
+#include "plot/plot.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -162,6 +163,47 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
     }
   }
   dea_free(ctx, drawing);
+  return status;
+}
+
+dea_status dea_plot_folder_name(struct dea_plot_folder *folder, const char *name)
+{
+  char(*names)[sizeof *folder->names] =
+      dea_resize(folder->ctx, folder->names, folder->count + 1, sizeof *names);
+  if (names == NULL) {
+    return DEA_E_MEMORY;
+  }
+  folder->names = names;
+  snprintf(names[folder->count++], sizeof *names, "%s", name);
+  return DEA_OK;
+}
+
+dea_status dea_plot_folder_add(struct dea_plot_folder *folder, struct dea_plot *plot,
+                               dea_status status)
+{
+  if (status == DEA_OK && dea_plot_shows(plot)) {
+    status = dea_plot_write(folder->ctx, plot, folder->format, folder->path);
+    status = status == DEA_OK ? dea_plot_folder_name(folder, plot->name) : status;
+  }
+  dea_plot_destroy(folder->ctx, plot);
+  return status;
+}
+
+dea_status dea_plot_folder_draw(struct dea_plot_folder *folder, dea_status status)
+{
+  const struct dea_plot_format *format = folder->format;
+  if (status == DEA_OK && folder->count > 0 && (format->svg || format->pdf || format->png)) {
+    const char **names = dea_alloc(folder->ctx, folder->count, sizeof *names);
+    for (size_t i = 0; names != NULL && i < folder->count; i++) {
+      names[i] = folder->names[i];
+    }
+    status = names != NULL ? dea_gnuplot_draw(folder->ctx, folder->path, names, folder->count)
+                           : DEA_E_MEMORY;
+    dea_free(folder->ctx, names);
+  }
+  dea_free(folder->ctx, folder->names);
+  folder->names = NULL;
+  folder->count = 0;
   return status;
 }
 

@@ -53,7 +53,8 @@ static bool crosses(const struct dea_series *series, const struct range *x, cons
 void dea_panel_key_above(struct dea_panel *panel, size_t rows)
 {
 #define KEY(rows) "above horizontal maxrows " rows " samplen 1 width key_width"
-  static const char *const keys[] = {KEY("1"), KEY("2"), KEY("3"), KEY("4"), KEY("5"), KEY("6")};
+  static const char *const keys[] = {KEY("1"), KEY("2"), KEY("3"), KEY("4"), KEY("5"),
+                                     KEY("6"), KEY("7"), KEY("8"), KEY("9")};
 #undef KEY
   size_t most = sizeof keys / sizeof keys[0];
   panel->key = keys[rows < 1 ? 0 : rows > most ? most - 1 : rows - 1];

@@ -112,7 +112,7 @@ void dea_panel_even_tics(struct dea_panel *panel, int most);
 /* Puts the key into a corner that the panel's series leave free, or makes room above them; to be
  * called when all series are there. */
 void dea_panel_place_key(struct dea_panel *panel);
-/* Puts the key above the panel, in so many rows (1 to 6). */
+/* Puts the key above the panel, in so many rows (1 to 9). */
 void dea_panel_key_above(struct dea_panel *panel, size_t rows);
 /* True when a series, or some series of a plot, has a point to show. */
 bool dea_series_shows(const struct dea_series *series);
@@ -128,3 +128,20 @@ struct dea_plot_format {
 /* The plot as gnuplot draws it (plot/gnuplot.h): writes NAME.gp and NAME.dat into directory. */
 dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
                           const struct dea_plot_format *format, const char *directory);
+
+/* Figures of one folder, drawn together. Zero-initialise with what is lent. */
+struct dea_plot_folder {
+  struct dea_context *ctx;
+  const struct dea_plot_format *format;
+  const char *path;
+  char (*names)[64]; // owned
+  size_t count;
+};
+/* Writes script and data of a plot, where it shows something and status is good; destroys it. */
+dea_status dea_plot_folder_add(struct dea_plot_folder *folder, struct dea_plot *plot,
+                               dea_status status);
+/* Has a figure drawn whose script and data are there. */
+dea_status dea_plot_folder_name(struct dea_plot_folder *folder, const char *name);
+/* Draws all in the formats asked for, if any, where status is good, as dea_gnuplot_draw; leaves the
+ * folder empty. Returns that status, or its own. */
+dea_status dea_plot_folder_draw(struct dea_plot_folder *folder, dea_status status);

@@ -94,6 +94,8 @@ double dea_interpolate_linear(const double *x, const double *y, size_t count, do
   return (1.0 - t) * y[low] + t * y[low + 1];
 }
 
+// Series ------------------------------------------------------------------------------------------
+
 /* Points of a curve up to where it turns back in voltage. */
 static size_t first_leg(const struct dea_curve *curve)
 {
@@ -108,54 +110,68 @@ static size_t first_leg(const struct dea_curve *curve)
   return curve->count;
 }
 
-/* Table of one quantity along the first leg, voltages rising, without gaps; [leg] each. */
-static size_t tabulate(const struct dea_curve *curve, size_t leg, int column, double *x, double *y)
+dea_status dea_samples_of_curve(struct dea_arena *memory, const struct dea_curve *curve,
+                                const struct dea_load_point *std, int column, enum dea_abscissa by,
+                                struct dea_samples *out)
 {
+  const size_t count = by == DEA_BY_RISING_VOLTAGE ? first_leg(curve) : curve->count;
+  const bool falls = by == DEA_BY_RISING_VOLTAGE && count > 1 &&
+                     curve->points[count - 1].voltage_V < curve->points[0].voltage_V;
+  double *at = dea_arena_alloc(memory, count, sizeof *at);
+  double *value = dea_arena_alloc(memory, count, sizeof *value);
+  double *own = dea_arena_alloc(memory, count, sizeof *own);
   size_t n = 0;
-  bool falls = leg > 1 && curve->points[leg - 1].voltage_V < curve->points[0].voltage_V;
-  for (size_t k = 0; k < leg; k++) {
-    const struct dea_load_point *p = &curve->points[falls ? leg - 1 - k : k];
-    double value = dea_point_get(p, column);
-    if (!isnan(value) && !isnan(p->voltage_V) && (n == 0 || p->voltage_V > x[n - 1])) {
-      x[n] = p->voltage_V;
-      y[n++] = value;
+  for (size_t k = 0; own != NULL && k < count; k++) {
+    const size_t i = falls ? count - 1 - k : k;
+    const struct dea_load_point *p = &curve->points[i];
+    const double x = by == DEA_BY_TIME ? p->time_s : p->voltage_V, y = dea_point_get(p, column);
+    const bool follows =
+        by == DEA_BY_VOLTAGE || n == 0 || x > at[n - 1] || (by == DEA_BY_TIME && x == at[n - 1]);
+    if (!isnan(x) && !isnan(y) && follows) {
+      at[n] = x;
+      value[n] = y;
+      own[n++] = std != NULL ? dea_point_get(&std[i], column) : NAN;
     }
   }
-  return n;
+  *out = (struct dea_samples){n, at, value, own};
+  return dea_arena_status(memory);
 }
 
-static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
+bool dea_samples_have_std(const struct dea_samples *samples)
 {
-  for (size_t i = 0; i < a->count && i < b->count; i++) {
-    if (a->points[i].voltage_V != b->points[i].voltage_V) {
-      return false;
+  for (size_t i = 0; samples->std != NULL && i < samples->count; i++) {
+    if (!isnan(samples->std[i])) {
+      return true;
     }
   }
-  return a->count == b->count;
+  return false;
 }
 
-dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t capacity,
-                           struct dea_misfit *out)
+// Misfits -----------------------------------------------------------------------------------------
+
+/* A misfit with room for that many points, all in memory. */
+static dea_status make_misfit(struct dea_arena *memory, int column, size_t capacity,
+                              struct dea_misfit *out)
 {
-  *out = (struct dea_misfit){
-      .column = column, .quantity = dea_column_at(ctx, column), .memory = {.ctx = ctx}};
-  out->at = dea_arena_alloc(&out->memory, capacity, sizeof *out->at);
-  out->a = dea_arena_alloc(&out->memory, capacity, sizeof *out->a);
-  out->b = dea_arena_alloc(&out->memory, capacity, sizeof *out->b);
-  out->a_std = dea_arena_alloc(&out->memory, capacity, sizeof *out->a_std);
-  out->b_std = dea_arena_alloc(&out->memory, capacity, sizeof *out->b_std);
-  return dea_arena_status(&out->memory);
+  *out = (struct dea_misfit){.column = column, .quantity = dea_column_at(memory->ctx, column)};
+  double **arrays[] = {&out->at, &out->a, &out->b, &out->a_std, &out->b_std};
+  for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++) {
+    *arrays[k] = dea_arena_alloc(memory, capacity, sizeof(double));
+  }
+  return dea_arena_status(memory);
 }
 
-void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std)
+/* Adds a point, but not one where a or b is NAN. */
+static void add_point(struct dea_misfit *misfit, double at, double a, double a_std, double b,
+                      double b_std)
 {
   if (!isnan(a) && !isnan(b)) {
     size_t n = misfit->count++;
     misfit->at[n] = at;
     misfit->a[n] = a;
     misfit->b[n] = b;
-    misfit->a_std[n] = NAN;
-    misfit->b_std[n] = std;
+    misfit->a_std[n] = a_std;
+    misfit->b_std[n] = b_std;
   }
 }
 
@@ -180,7 +196,8 @@ static void summarise_std(struct dea_misfit *m)
   m->within_2_std = (double)two / n;
 }
 
-void dea_misfit_summarise(struct dea_misfit *m)
+/* Fills what follows from the points, where there are any. */
+static void summarise(struct dea_misfit *m)
 {
   double squares = 0.0, sum = 0.0, low = INFINITY, high = -INFINITY, magnitude = 0.0;
   for (size_t i = 0; i < m->count; i++) {
@@ -203,6 +220,51 @@ void dea_misfit_summarise(struct dea_misfit *m)
   summarise_std(m);
 }
 
+/* Whether two samples of one place lie within `near` of a place. */
+static bool is_near_jump(const struct dea_samples *s, double at, double near)
+{
+  size_t low = 0, high = s->count;
+  while (low < high) { // first sample that is not too early
+    size_t middle = low + (high - low) / 2;
+    if (s->at[middle] < at - near) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  for (size_t i = low; i + 1 < s->count && s->at[i + 1] <= at + near; i++) {
+    if (s->at[i] == s->at[i + 1]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/* A place beyond the ends by no more than a margin is at the end. */
+static double within(double at, const struct dea_samples *s, double margin)
+{
+  const double low = s->count > 0 ? s->at[0] : at, high = s->count > 0 ? s->at[s->count - 1] : at;
+  return at < low && at >= low - margin ? low : at > high && at <= high + margin ? high : at;
+}
+
+dea_status dea_misfit_compute(struct dea_arena *memory, int column, const struct dea_samples *a,
+                              const struct dea_samples *b, const struct dea_reading *reading,
+                              struct dea_misfit *out)
+{
+  DEA_TRY(memory->ctx, make_misfit(memory, column, b->count, out));
+  for (size_t i = 0; i < b->count; i++) {
+    const double at = within(b->at[i], a, reading->margin);
+    if (!is_near_jump(a, b->at[i], reading->jump)) {
+      const double value = reading->smooth ? dea_interpolate(a->at, a->value, a->count, at)
+                                           : dea_interpolate_linear(a->at, a->value, a->count, at);
+      const double std = a->std != NULL ? dea_interpolate_linear(a->at, a->std, a->count, at) : NAN;
+      add_point(out, b->at[i], value, std, b->value[i], b->std != NULL ? b->std[i] : NAN);
+    }
+  }
+  summarise(out);
+  return DEA_OK;
+}
+
 double dea_misfit_a_std_rms(const struct dea_misfit *misfit)
 {
   double squares = 0;
@@ -216,99 +278,69 @@ double dea_misfit_a_std_rms(const struct dea_misfit *misfit)
   return count > 0 ? sqrt(squares / (double)count) : NAN;
 }
 
-void dea_misfit_free(struct dea_misfit *misfit)
-{
-  dea_arena_free(&misfit->memory);
-  misfit->at = misfit->a = misfit->b = misfit->a_std = misfit->b_std = NULL;
-}
+// Curves against the voltage ----------------------------------------------------------------------
 
-/* How two curves are brought to common voltages. */
-struct pairing {
-  const struct dea_curve *a, *b;
-  const struct dea_load_point *b_std;
-  bool point_by_point;
-  bool at_b; // a is interpolated at the voltages of b, else b at those of a
-  size_t leg;
-};
-
-static struct pairing pair(const struct dea_curve *a, const struct dea_curve *b,
-                           const struct dea_load_point *b_std)
+static bool same_voltages(const struct dea_curve *a, const struct dea_curve *b)
 {
-  struct pairing p = {.a = a, .b = b, .b_std = b_std, .point_by_point = same_voltages(a, b)};
-  p.at_b = b_std != NULL || b->count <= a->count;
-  p.leg = first_leg(p.at_b ? a : b);
-  return p;
-}
-
-/* A measured voltage that is beyond the table's ends by the noise of its meter only is at the end.
- */
-static double within(double v, const double *x, size_t n)
-{
-  static const double noise = 0.005; // of the table's range
-  double margin = n > 1 ? noise * fabs(x[n - 1] - x[0]) : 0.0;
-  double low = n > 0 ? fmin(x[0], x[n - 1]) : v, high = n > 0 ? fmax(x[0], x[n - 1]) : v;
-  return v < low && v >= low - margin ? low : v > high && v <= high + margin ? high : v;
-}
-
-/* Standard uncertainty of a at the i-th of the points, at voltage v: between two points of a's
- * table the straight piece. */
-static double std_of_a(const struct pairing *p, int column, double v, size_t i)
-{
-  const struct dea_curve *a = p->a;
-  if (a->std == NULL) {
-    return NAN;
-  }
-  if (p->point_by_point || !p->at_b) {
-    return dea_point_get(&a->std[i], column);
-  }
-  for (size_t k = 1; k < p->leg; k++) {
-    double from = a->points[k - 1].voltage_V, to = a->points[k].voltage_V;
-    if (fmin(from, to) <= v && v <= fmax(from, to) && from != to) {
-      double t = (v - from) / (to - from);
-      return (1 - t) * dea_point_get(&a->std[k - 1], column) +
-             t * dea_point_get(&a->std[k], column);
+  for (size_t i = 0; i < a->count && i < b->count; i++) {
+    if (a->points[i].voltage_V != b->points[i].voltage_V) {
+      return false;
     }
   }
-  return NAN;
+  return a->count == b->count;
 }
 
-static void fill(const struct pairing *p, double *x, double *y, struct dea_misfit *m)
+/* Two curves of the same voltages. */
+static dea_status compare_points(struct dea_arena *memory, const struct dea_curve *a,
+                                 const struct dea_curve *b, const struct dea_load_point *b_std,
+                                 int column, struct dea_misfit *out)
 {
-  const struct dea_curve *table = p->at_b ? p->a : p->b, *points = p->at_b ? p->b : p->a;
-  size_t n = p->point_by_point ? 0 : tabulate(table, p->leg, m->column, x, y);
-  for (size_t i = 0; i < points->count; i++) {
-    double v = points->points[i].voltage_V, own = dea_point_get(&points->points[i], m->column);
-    double other = p->point_by_point
-                       ? dea_point_get(&table->points[i], m->column)
-                       : dea_interpolate(x, y, n, p->b_std != NULL ? within(v, x, n) : v);
-    double std = p->b_std != NULL && p->at_b ? dea_point_get(&p->b_std[i], m->column) : NAN;
-    size_t before = m->count;
-    dea_misfit_add(m, v, p->at_b ? other : own, p->at_b ? own : other, std);
-    if (m->count > before) {
-      m->a_std[before] = std_of_a(p, m->column, v, i);
-    }
+  DEA_TRY(memory->ctx, make_misfit(memory, column, a->count, out));
+  for (size_t i = 0; i < a->count; i++) {
+    add_point(out, a->points[i].voltage_V, dea_point_get(&a->points[i], column),
+              a->std != NULL ? dea_point_get(&a->std[i], column) : NAN,
+              dea_point_get(&b->points[i], column),
+              b_std != NULL ? dea_point_get(&b_std[i], column) : NAN);
   }
+  summarise(out);
+  return DEA_OK;
 }
 
-static dea_status compare_column(struct dea_context *ctx, const struct pairing *p, int column,
-                                 struct dea_comparison *comparison)
+/* a at the voltages of b. A voltage that is beyond the ends by the noise of its meter is there. */
+static dea_status compare_interpolated(struct dea_arena *memory, const struct dea_curve *a,
+                                       const struct dea_load_point *a_std,
+                                       const struct dea_curve *b,
+                                       const struct dea_load_point *b_std, bool measured,
+                                       int column, struct dea_misfit *out)
 {
-  struct dea_misfit *m = &comparison->misfits[comparison->misfit_count];
-  size_t points = p->at_b ? p->b->count : p->a->count;
-  dea_status status = dea_misfit_make(ctx, column, points, m);
-  double *xy = status == DEA_OK ? dea_alloc(ctx, p->leg, 2 * sizeof *xy) : NULL;
-  if (xy != NULL) {
-    fill(p, xy, xy + p->leg, m);
+  static const double noise = 0.005; // of the range of a
+  struct dea_samples table, points;
+  DEA_TRY(memory->ctx,
+          dea_samples_of_curve(memory, a, a_std, column, DEA_BY_RISING_VOLTAGE, &table));
+  DEA_TRY(memory->ctx, dea_samples_of_curve(memory, b, b_std, column, DEA_BY_VOLTAGE, &points));
+  const double range = table.count > 1 ? table.at[table.count - 1] - table.at[0] : 0.0;
+  const struct dea_reading reading = {.smooth = true, .margin = measured ? noise * range : 0.0};
+  return dea_misfit_compute(memory, column, &table, &points, &reading, out);
+}
+
+static dea_status compare_column(struct dea_arena *memory, const struct dea_curve *a,
+                                 const struct dea_curve *b, const struct dea_load_point *b_std,
+                                 int column, struct dea_misfit *out)
+{
+  if (same_voltages(a, b)) {
+    return compare_points(memory, a, b, b_std, column, out);
   }
-  if (xy != NULL && m->count > 0) {
-    dea_misfit_summarise(m);
-    comparison->misfit_count++;
-  } else {
-    dea_misfit_free(m);
+  if (b_std != NULL || b->count <= a->count) {
+    return compare_interpolated(memory, a, a->std, b, b_std, b_std != NULL, column, out);
   }
-  status = xy != NULL ? DEA_OK : DEA_E_MEMORY;
-  dea_free(ctx, xy);
-  return status;
+  DEA_TRY(memory->ctx, compare_interpolated(memory, b, NULL, a, a->std, false, column, out));
+  double *swapped[] = {out->a, out->a_std};
+  out->a = out->b;
+  out->a_std = out->b_std;
+  out->b = swapped[0];
+  out->b_std = swapped[1];
+  summarise(out);
+  return DEA_OK;
 }
 
 static dea_status nothing_common(struct dea_context *ctx, const struct dea_curve *a,
@@ -363,63 +395,38 @@ static bool says_nothing(const struct dea_context *ctx, const struct dea_curve *
          (strcmp(of->si_unit, "1") != 0 && largest_of(a, b, column) <= fmax(least_si, share * all));
 }
 
-dea_status dea_compare_curves(struct dea_context *ctx, const struct dea_curve *a,
+bool dea_column_is_wanted(int column, const int *columns, size_t count)
+{
+  for (size_t q = 0; q < count; q++) {
+    if (columns[q] == column) {
+      return true;
+    }
+  }
+  return count == 0;
+}
+
+dea_status dea_compare_curves(struct dea_arena *memory, const struct dea_curve *a,
                               const struct dea_curve *b, const struct dea_load_point *b_std,
-                              int column, struct dea_comparison **out)
+                              const int *columns, size_t count, struct dea_comparison *out)
 {
-  const int count = dea_column_count(ctx);
-  *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
-  (*out)->misfits = dea_alloc(ctx, (size_t)count, sizeof *(*out)->misfits);
-  struct pairing p = pair(a, b, b_std);
-  (*out)->part_only = !p.point_by_point && p.leg < (p.at_b ? a : b)->count;
-  dea_status status = (*out)->misfits != NULL ? DEA_OK : DEA_E_MEMORY;
-  int voltage = dea_point_column_find("voltage_V");
-  for (int c = 0; c < count && status == DEA_OK; c++) {
-    if (c != voltage && (column < 0 ? !says_nothing(ctx, a, b, c) : column == c)) {
-      status = compare_column(ctx, &p, c, *out);
+  struct dea_context *ctx = memory->ctx;
+  const bool a_table = b_std != NULL || b->count <= a->count;
+  const struct dea_curve *table = a_table ? a : b;
+  const int voltage = dea_point_column_find("voltage_V");
+  *out = (struct dea_comparison){
+      .misfits = dea_arena_alloc(memory, (size_t)dea_column_count(ctx), sizeof *out->misfits),
+      .part_only = !same_voltages(a, b) && first_leg(table) < table->count};
+  DEA_TRY(ctx, dea_arena_status(memory));
+  for (int c = 0; c < dea_column_count(ctx); c++) {
+    if (c == voltage || !dea_column_is_wanted(c, columns, count) ||
+        (count == 0 && says_nothing(ctx, a, b, c))) {
+      continue;
     }
+    struct dea_misfit *misfit = &out->misfits[out->misfit_count];
+    DEA_TRY(ctx, compare_column(memory, a, b, b_std, c, misfit));
+    out->misfit_count += misfit->count > 0 ? 1U : 0U;
   }
-  if (status == DEA_OK && (*out)->misfit_count == 0) {
-    status = nothing_common(ctx, a, b, column);
-  }
-  if (status != DEA_OK) {
-    dea_comparison_destroy(ctx, *out);
-    *out = NULL;
-  }
-  return status;
-}
-
-void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comparison)
-{
-  if (comparison == NULL) {
-    return;
-  }
-  for (size_t i = 0; i < comparison->misfit_count; i++) {
-    dea_misfit_free(&comparison->misfits[i]);
-  }
-  dea_free(ctx, comparison->misfits);
-  dea_free(ctx, comparison);
-}
-
-size_t dea_comparison_keep(struct dea_comparison *comparison, const int *columns, size_t count)
-{
-  size_t found = 0;
-  for (size_t i = 0; i < comparison->misfit_count; i++) {
-    bool wanted = count == 0;
-    for (size_t q = 0; q < count; q++) {
-      wanted = wanted || comparison->misfits[i].column == columns[q];
-    }
-    if (wanted) {
-      struct dea_misfit kept = comparison->misfits[i]; // swapped, so that all are still freed
-      comparison->misfits[i] = comparison->misfits[found];
-      comparison->misfits[found++] = kept;
-    }
-  }
-  while (comparison->misfit_count > found) {
-    dea_misfit_free(&comparison->misfits[--comparison->misfit_count]);
-  }
-  return found;
+  return out->misfit_count > 0 || count > 1
+             ? DEA_OK
+             : nothing_common(ctx, a, b, count == 1 ? columns[0] : -1);
 }

@@ -1,12 +1,39 @@
-/* Misfit of two curves, quantity by quantity. */
+/* Series of computed and measured numbers, and the misfit of one from another. */
 #pragma once
 
 #include "base/arena.h"
 #include "result/columns.h"
 #include "result/result.h"
 
+/* One quantity over an abscissa, all in SI: voltage [V], time [s], or place across the film [m].
+ * Arrays [count], lent or of an arena. */
+struct dea_samples {
+  size_t count;
+  double *at, *value; // value: NAN where there is none
+  double *std;        // standard uncertainties, NAN where unknown; NULL: none is known
+};
+
+/* Over the voltage in the order of the points; over the rising voltage, of the part before the
+ * curve turns back; or over the time, which does not fall. */
+enum dea_abscissa { DEA_BY_VOLTAGE, DEA_BY_RISING_VOLTAGE, DEA_BY_TIME };
+
+/* The points of a curve that have a number in a column, with its uncertainties where std [count of
+ * the curve] is not NULL. */
+dea_status dea_samples_of_curve(struct dea_arena *memory, const struct dea_curve *curve,
+                                const struct dea_load_point *std, int column, enum dea_abscissa by,
+                                struct dea_samples *out);
+/* Whether some sample has an uncertainty. */
+bool dea_samples_have_std(const struct dea_samples *samples);
+
+/* How a series is read between its samples. */
+struct dea_reading {
+  bool smooth;   // by the cubic of dea_interpolate; else linear
+  double margin; // a place beyond the ends by no more than that is at the end
+  double jump;   // places within that of two samples of one place are left out
+};
+
 /* One quantity. difference = a - b, all in SI. range: largest minus smallest b at these places (the
- * largest |b| when all are equal); relative values are over it. Arrays [count] in its memory. */
+ * largest |b| when all are equal); relative values are over it. Arrays [count] of an arena. */
 struct dea_misfit {
   int column;                        // of the context
   const struct dea_column *quantity; // that; lent
@@ -14,7 +41,6 @@ struct dea_misfit {
   double *at; // voltage [V]; time [s] of a history, place [m] of a profile
   double *a, *b;
   double *a_std, *b_std; // standard uncertainties, NAN where unknown
-  struct dea_arena memory;
   double rms, largest, largest_at, bias, range;
   double relative_rms, relative_largest;
   // Of the points whose b_std is known and not 0, against sqrt(a_std^2 + b_std^2), or b_std where
@@ -24,39 +50,33 @@ struct dea_misfit {
   double within_1_std, within_2_std; // shares of them that differ by no more than that
 };
 
+/* a minus b at the places of b; a->at does not fall. Nothing is extrapolated; what the one or the
+ * other does not have is left out. count 0: no place in common, and no number follows. */
+dea_status dea_misfit_compute(struct dea_arena *memory, int column, const struct dea_samples *a,
+                              const struct dea_samples *b, const struct dea_reading *reading,
+                              struct dea_misfit *out);
+/* Root mean square of a_std where it is known; NAN where it is known nowhere. */
+double dea_misfit_a_std_rms(const struct dea_misfit *misfit);
+
 struct dea_comparison {
-  struct dea_misfit *misfits; // owned
+  struct dea_misfit *misfits; // of an arena
   size_t misfit_count;
   bool
       part_only; // the interpolated curve turns back in voltage: only its part before that was used
 };
 
+/* Whether a column is one of these; of none asked for, count 0, each is. */
+bool dea_column_is_wanted(int column, const int *columns, size_t count);
+
 /* Compares curve a with curve b at common voltages. Equal lists of voltages are compared point by
  * point (loops too). Otherwise one curve is interpolated by a piecewise cubic that adds no extremes
  * (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984), nothing is extrapolated: a at the
  * voltages of b if b was measured, else the one with more points at those of the other.
- * b_std: [b->count] uncertainties of a measured b, else NULL. column: only that quantity, -1 for
- * all. DEA_E_ARGUMENT when there is nothing to compare. out: owned by the caller, NULL on failure.
- */
-dea_status dea_compare_curves(struct dea_context *ctx, const struct dea_curve *a,
+ * b_std: [b->count] uncertainties of a measured b, else NULL. columns [count]: only those, 0: all
+ * that say something. DEA_E_ARGUMENT when there is nothing to compare, of several columns none. */
+dea_status dea_compare_curves(struct dea_arena *memory, const struct dea_curve *a,
                               const struct dea_curve *b, const struct dea_load_point *b_std,
-                              int column, struct dea_comparison **out);
-void dea_comparison_destroy(struct dea_context *ctx, struct dea_comparison *comparison);
-/* Keeps the misfits of these columns; returns how many there are. count 0: all stay. */
-size_t dea_comparison_keep(struct dea_comparison *comparison, const int *columns, size_t count);
-
-/* A misfit of a column with room for that many points, by hand: add, then summarise. Freed by the
- * caller, also after a failure. */
-dea_status dea_misfit_make(struct dea_context *ctx, int column, size_t capacity,
-                           struct dea_misfit *out);
-/* Adds a point, at most room; not one where a or b is NAN. std: of b, NAN for unknown; of a there
- * is none until it is set. */
-void dea_misfit_add(struct dea_misfit *misfit, double at, double a, double b, double std);
-/* Fills what follows from the points, of which there is at least one. */
-void dea_misfit_summarise(struct dea_misfit *misfit);
-void dea_misfit_free(struct dea_misfit *misfit);
-/* Root mean square of a_std where it is known; NAN where it is known nowhere. */
-double dea_misfit_a_std_rms(const struct dea_misfit *misfit);
+                              const int *columns, size_t count, struct dea_comparison *out);
 
 /* Value at x of the monotone cubic through (x[i], y[i]), x strictly rising, count >= 1; NAN outside
  * [x[0], x[count-1]]. */

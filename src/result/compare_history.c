@@ -18,10 +18,10 @@ struct edges {
 };
 
 /* Where |V| first reaches half of the height of the pulse of the samples [from, to). */
-static double half_way(const struct dea_voltage_track *track, size_t from, size_t to,
-                       double height_V, double *width_s)
+static double half_way(const struct dea_samples *track, size_t from, size_t to, double height_V,
+                       double *width_s)
 {
-  const double *v = track->voltage_V, *t = track->time_s;
+  const double *v = track->value, *t = track->at;
   size_t i = from;
   while (i < to && !(fabs(v[i]) >= 0.5 * height_V)) {
     i++;
@@ -35,8 +35,8 @@ static double half_way(const struct dea_voltage_track *track, size_t from, size_
   return t[i - 1] + fmin(fmax(share, 0.0), 1.0) * (t[i] - t[i - 1]);
 }
 
-static void add_pulse(const struct dea_voltage_track *track, size_t from, size_t to,
-                      double height_V, struct edges *out)
+static void add_pulse(const struct dea_samples *track, size_t from, size_t to, double height_V,
+                      struct edges *out)
 {
   if (out->count < DEA_CLOCK_EDGES_MAX) {
     struct edge *edge = &out->edge[out->count++];
@@ -45,17 +45,17 @@ static void add_pulse(const struct dea_voltage_track *track, size_t from, size_t
   }
 }
 
-static void find_edges(const struct dea_voltage_track *track, struct edges *out)
+static void find_edges(const struct dea_samples *track, struct edges *out)
 {
   double largest = 0.0, height = 0.0;
   size_t from = 0;
   bool inside = false;
   out->count = 0;
   for (size_t i = 0; i < track->count; i++) {
-    largest = fmax(largest, fabs(track->voltage_V[i]));
+    largest = fmax(largest, fabs(track->value[i]));
   }
   for (size_t i = 0; i < track->count && largest > 0.0; i++) {
-    double v = fabs(track->voltage_V[i]);
+    double v = fabs(track->value[i]);
     if (!inside && v > pulse_begins * largest) {
       inside = true;
       from = i;
@@ -115,7 +115,7 @@ static struct dea_clock_shift match(const struct edges *a, const struct edges *b
   return out;
 }
 
-void dea_clock_shift_find(const struct dea_voltage_track *a, const struct dea_voltage_track *b,
+void dea_clock_shift_find(const struct dea_samples *a, const struct dea_samples *b,
                           struct dea_clock_shift *out)
 {
   struct edges of_a, of_b;
@@ -138,53 +138,4 @@ void dea_clock_shift_find(const struct dea_voltage_track *a, const struct dea_vo
   if (fabs(out->shift_s) <= out->resolution_s) { // one clock, as far as is seen
     out->shift_s = 0;
   }
-}
-
-/* Whether two points of one time lie within near_s of a time; x: [count], rising. */
-static bool is_near_jump(const double *x, size_t count, double time_s, double near_s)
-{
-  size_t low = 0, high = count;
-  while (low < high) { // first point that is not too early
-    size_t middle = low + (high - low) / 2;
-    if (x[middle] < time_s - near_s) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  for (size_t i = low; i + 1 < count && x[i + 1] <= time_s + near_s; i++) {
-    if (x[i] == x[i + 1]) {
-      return true;
-    }
-  }
-  return false;
-}
-
-dea_status dea_compare_history(struct dea_context *ctx, const struct dea_curve *curve, int column,
-                               const struct dea_clock_shift *clock, const double *time_s,
-                               const double *values, size_t count, struct dea_misfit *out)
-{
-  DEA_TRY(ctx, dea_misfit_make(ctx, column, count, out));
-  double *x = dea_alloc(ctx, curve->count, sizeof *x), *y = dea_alloc(ctx, curve->count, sizeof *y);
-  bool good = x != NULL && y != NULL;
-  size_t n = 0;
-  for (size_t i = 0; good && i < curve->count; i++) {
-    double t = curve->points[i].time_s + clock->shift_s,
-           value = dea_point_get(&curve->points[i], column);
-    if (isfinite(t) && isfinite(value) && (n == 0 || t >= x[n - 1])) {
-      x[n] = t;
-      y[n++] = value;
-    }
-  }
-  for (size_t i = 0; good && i < count; i++) {
-    if (!is_near_jump(x, n, time_s[i], clock->resolution_s)) {
-      dea_misfit_add(out, time_s[i], dea_interpolate_linear(x, y, n, time_s[i]), values[i], NAN);
-    }
-  }
-  if (out->count > 0) {
-    dea_misfit_summarise(out);
-  }
-  dea_free(ctx, x);
-  dea_free(ctx, y);
-  return good ? DEA_OK : DEA_E_MEMORY;
 }

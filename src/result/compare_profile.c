@@ -54,30 +54,28 @@ static double blend_get(const struct blend *b, size_t column, size_t i)
   return (1.0 - b->share) * b->first->columns[at] + b->share * b->second->columns[at];
 }
 
-/* Adds the places of a half, from the centre outwards. */
-static void fill_line(const struct blend *b, enum dea_half half, struct dea_film_line *line)
+/* Puts the places of a half, from the centre outwards, into x and z, and returns how many. */
+static size_t fill_half(const struct blend *b, enum dea_half half, double *x, double *z)
 {
-  size_t n = b->first->count;
+  const size_t n = b->first->count;
   double largest = 0.0;
+  size_t count = 0;
   for (size_t k = 0; k < n; k++) {
-    size_t i = half == DEA_HALF_FIBRE ? k : n - 1 - k;
-    double radius = b->first->columns[RADIUS * n + i], z = blend_get(b, HEIGHT, i);
-    bool outwards = half == DEA_HALF_FIBRE ? radius >= 0.0 : radius <= 0.0;
-    double x = fabs(radius) + blend_get(b, DISPLACEMENT, i);
-    x = fabs(radius) > 0.0 ? x : 0.0; // the centre has no direction to move in
-    if (outwards && isfinite(x) && isfinite(z) &&
-        (line->count == 0 || x > line->x_m[line->count - 1])) {
-      line->x_m[line->count] = x;
-      line->z_m[line->count++] = z;
-      largest = fmax(largest, fabs(z));
+    const size_t i = half == DEA_HALF_FIBRE ? k : n - 1 - k;
+    const double radius = b->first->columns[RADIUS * n + i], height = blend_get(b, HEIGHT, i);
+    const bool outwards = half == DEA_HALF_FIBRE ? radius >= 0.0 : radius <= 0.0;
+    // the centre has no direction to move in
+    const double at = fabs(radius) > 0.0 ? fabs(radius) + blend_get(b, DISPLACEMENT, i) : 0.0;
+    if (outwards && isfinite(at) && isfinite(height) && (count == 0 || at > x[count - 1])) {
+      x[count] = at;
+      z[count++] = height;
+      largest = fmax(largest, fabs(height));
     }
   }
-  if (largest == 0.0 || line->count < 2) {
-    line->count = 0;
-  }
+  return largest > 0.0 && count > 1 ? count : 0;
 }
 
-dea_status dea_film_line_make(struct dea_context *ctx, const struct dea_result *result,
+dea_status dea_film_line_make(struct dea_arena *memory, const struct dea_result *result,
                               const char *model, double voltage_V, enum dea_half half,
                               struct dea_film_line *out)
 {
@@ -86,39 +84,29 @@ dea_status dea_film_line_make(struct dea_context *ctx, const struct dea_result *
   if (!find_blend(result, model, voltage_V, &b)) {
     return DEA_OK;
   }
-  out->x_m = dea_alloc(ctx, b.first->count, sizeof *out->x_m);
-  out->z_m = dea_alloc(ctx, b.first->count, sizeof *out->z_m);
-  if (out->x_m == NULL || out->z_m == NULL) {
-    dea_film_line_free(ctx, out);
-    return DEA_E_MEMORY;
+  const size_t room = b.first->count;
+  double *x = dea_arena_alloc(memory, 2 * room, sizeof *x);
+  double *z = dea_arena_alloc(memory, 2 * room, sizeof *z);
+  DEA_TRY(memory->ctx, dea_arena_status(memory));
+  const size_t count = fill_half(&b, half, x + room, z + room);
+  size_t first = room;
+  for (size_t k = 0; k < count; k++) { // the other side, without a centre of its own
+    if (x[room + k] > 0.0) {
+      x[--first] = -x[room + k];
+      z[first] = z[room + k];
+    }
   }
+  out->samples = (struct dea_samples){room + count - first, x + first, z + first, NULL};
   out->directed = b.first->columns[0] < 0.0; // radii rise from there
   out->between_records = b.first != b.second;
-  fill_line(&b, half, out);
   return DEA_OK;
 }
 
-void dea_film_line_free(struct dea_context *ctx, struct dea_film_line *line)
+dea_status dea_film_line_compare(struct dea_arena *memory, const struct dea_film_line *line,
+                                 const struct dea_samples *measured, struct dea_misfit *out)
 {
-  dea_free(ctx, line->x_m);
-  dea_free(ctx, line->z_m);
-  *line = (struct dea_film_line){0};
-}
-
-dea_status dea_film_line_compare(struct dea_context *ctx, const struct dea_film_line *line,
-                                 const double *x_m, const double *z_m, const double *z_std_m,
-                                 size_t count, struct dea_misfit *out)
-{
-  DEA_TRY(ctx, dea_misfit_make(ctx, dea_point_column_find("centre_z_m"), count, out));
-  double edge_m = line->count > 0 ? line->x_m[line->count - 1] : 0.0;
-  for (size_t i = 0; i < count; i++) {
-    double at_m = fabs(x_m[i]);
-    at_m = at_m <= (1.0 + rounding) * edge_m ? fmin(at_m, edge_m) : at_m;
-    double z = dea_interpolate_linear(line->x_m, line->z_m, line->count, at_m);
-    dea_misfit_add(out, x_m[i], z, z_m[i], z_std_m != NULL ? z_std_m[i] : NAN);
-  }
-  if (out->count > 0) {
-    dea_misfit_summarise(out);
-  }
-  return DEA_OK;
+  const size_t n = line->samples.count;
+  const struct dea_reading reading = {.margin = n > 0 ? rounding * line->samples.at[n - 1] : 0.0};
+  return dea_misfit_compute(memory, dea_point_column_find("centre_z_m"), &line->samples, measured,
+                            &reading, out);
 }

@@ -73,7 +73,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   }
   size_t rows = 0;
   for (size_t i = 0; status == DEA_OK && i < measured->profile_count; i++) {
-    rows += measured->profiles[i].count;
+    rows += measured->profiles[i].z.count;
   }
   if (status == DEA_OK && rows != measured->profile_rows.rows) {
     __builtin_trap(); // a row in no profile, or in two

@@ -218,13 +218,14 @@ static void parabola(const char *model, size_t count, double v_max, double shift
 
 TEST(test_compare_finds_a_known_offset)
 {
-  struct dea_comparison *c;
+  struct dea_comparison c;
+  struct dea_arena memory = {.ctx = ctx};
   parabola("a", 11, 5000.0, 0.01);
   parabola("b", 11, 5000.0, 0.0);
   const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
-  assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_OK);
-  assert_int_equal(c->misfit_count, 2);
-  const struct dea_misfit *m = &c->misfits[0];
+  assert_int_equal(dea_compare_curves(&memory, a, b, NULL, NULL, 0, &c), DEA_OK);
+  assert_int_equal(c.misfit_count, 2);
+  const struct dea_misfit *m = &c.misfits[0];
   assert_int_equal(m->column, dea_point_column_find("electrode_stretch"));
   assert_int_equal(m->count, 11);
   assert_close(m->bias, 0.01, 1e-12, 0);
@@ -232,46 +233,49 @@ TEST(test_compare_finds_a_known_offset)
   assert_close(m->largest, 0.01, 1e-12, 0);
   assert_close(m->range, 0.25, 1e-12, 0);
   assert_close(m->relative_largest, 0.04, 1e-12, 0);
-  assert_close(c->misfits[1].largest, 0.0, 0, 0); // z is the same
-  dea_comparison_destroy(ctx, c);
+  assert_close(c.misfits[1].largest, 0.0, 0, 0); // z is the same
+  dea_arena_free(&memory);
 }
 
 TEST(test_compare_interpolates_between_voltages)
 {
-  struct dea_comparison *c;
+  struct dea_comparison c;
+  struct dea_arena memory = {.ctx = ctx};
   parabola("a", 101, 5000.0, 0.0);
   parabola("b", 8, 7000.0, 0.0); // 0, 1, ..., 7 kV: six in common
   const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
-  assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_OK);
-  assert_int_equal(c->misfits[0].count, 6);
-  assert_close(c->misfits[0].relative_largest, 0.0, 0, 1e-12);
-  dea_comparison_destroy(ctx, c);
+  assert_int_equal(dea_compare_curves(&memory, a, b, NULL, NULL, 0, &c), DEA_OK);
+  assert_int_equal(c.misfits[0].count, 6);
+  assert_close(c.misfits[0].relative_largest, 0.0, 0, 1e-12);
+  dea_arena_free(&memory);
   // The other way round the same six voltages are used, with the sign turned.
-  assert_int_equal(dea_compare_curves(ctx, b, a, NULL, -1, &c), DEA_OK);
-  assert_int_equal(c->misfits[0].count, 6);
-  dea_comparison_destroy(ctx, c);
+  assert_int_equal(dea_compare_curves(&memory, b, a, NULL, NULL, 0, &c), DEA_OK);
+  assert_int_equal(c.misfits[0].count, 6);
+  dea_arena_free(&memory);
 }
 
 TEST(test_compare_reports_nothing_in_common)
 {
-  struct dea_comparison *c;
+  struct dea_comparison c;
+  struct dea_arena memory = {.ctx = ctx};
   parabola("a", 11, 5000.0, 0.0);
   parabola("b", 11, 5000.0, 0.0);
   for (size_t i = 0; i < 11; i++) {
     result->curves[1].points[i].voltage_V += 6000.0;
   }
   const struct dea_curve *a = &result->curves[0], *b = &result->curves[1];
-  assert_int_equal(dea_compare_curves(ctx, a, b, NULL, -1, &c), DEA_E_ARGUMENT);
-  assert_null(c);
+  assert_int_equal(dea_compare_curves(&memory, a, b, NULL, NULL, 0, &c), DEA_E_ARGUMENT);
   assert_non_null(strstr(dea_context_message(ctx), "nothing to compare"));
   int force = dea_point_column_find("force_N");
-  assert_int_equal(dea_compare_curves(ctx, a, a, NULL, force, &c), DEA_E_ARGUMENT);
+  assert_int_equal(dea_compare_curves(&memory, a, a, NULL, &force, 1, &c), DEA_E_ARGUMENT);
   assert_string_equal(dea_context_message(ctx), "neither of the two has force_N");
+  dea_arena_free(&memory);
 }
 
 TEST(test_compare_up_and_down)
 {
-  struct dea_comparison *c;
+  struct dea_comparison c;
+  struct dea_arena memory = {.ctx = ctx};
   parabola("a", 11, 5000.0, 0.0);
   parabola("b", 6, 5000.0, 0.0);
   struct dea_curve *a = &result->curves[0];
@@ -280,14 +284,14 @@ TEST(test_compare_up_and_down)
     p.electrode_stretch += 0.1;
     assert_int_equal(dea_curve_add_point(ctx, a, &p), DEA_OK);
   }
-  assert_int_equal(dea_compare_curves(ctx, a, &result->curves[1], NULL, -1, &c), DEA_OK);
-  assert_true(c->part_only);
-  assert_close(c->misfits[0].largest, 0.0, 0, 1e-12);
-  dea_comparison_destroy(ctx, c);
-  assert_int_equal(dea_compare_curves(ctx, a, a, NULL, -1, &c), DEA_OK); // point by point
-  assert_false(c->part_only);
-  assert_int_equal(c->misfits[0].count, 21);
-  dea_comparison_destroy(ctx, c);
+  assert_int_equal(dea_compare_curves(&memory, a, &result->curves[1], NULL, NULL, 0, &c), DEA_OK);
+  assert_true(c.part_only);
+  assert_close(c.misfits[0].largest, 0.0, 0, 1e-12);
+  dea_arena_free(&memory);
+  assert_int_equal(dea_compare_curves(&memory, a, a, NULL, NULL, 0, &c), DEA_OK); // point by point
+  assert_false(c.part_only);
+  assert_int_equal(c.misfits[0].count, 21);
+  dea_arena_free(&memory);
 }
 
 TEST(test_interpolation_adds_no_extremes)
@@ -319,11 +323,10 @@ static void compare_once(struct dea_context *context)
   }
   struct dea_curve a = {.model = "a", .points = points, .count = 3}, b = a;
   b.count = 2;
-  struct dea_comparison *c;
-  dea_status status = dea_compare_curves(context, &a, &b, NULL, -1, &c);
-  failing_check(context, status);
-  assert_true((status == DEA_OK) == (c != NULL));
-  dea_comparison_destroy(context, c);
+  struct dea_comparison c;
+  struct dea_arena memory = {.ctx = context};
+  failing_check(context, dea_compare_curves(&memory, &a, &b, NULL, NULL, 0, &c));
+  dea_arena_free(&memory);
 }
 
 TEST(test_compare_with_failing_allocations)

@@ -225,13 +225,15 @@ TEST(test_is_kept)
   assert_int_equal(dea_summary_text(ctx, result, &text), DEA_OK);
   assert_non_null(strstr(text, "\"std\""));
   dea_free(ctx, text);
-  struct dea_comparison *beside; // with itself: the misfit knows both
-  assert_int_equal(dea_compare_curves(ctx, again, &measured->curve, measured->std,
-                                      dea_point_column_find("capacitance_F"), &beside),
-                   DEA_OK);
-  assert_close(beside->misfits[0].a_std[1], sweep->std[1].capacitance_F, 1e-11, 0);
-  assert_close(beside->misfits[0].b_std[1], sweep->std[1].capacitance_F, 1e-11, 0);
-  dea_comparison_destroy(ctx, beside);
+  struct dea_comparison beside; // with itself: the misfit knows both
+  struct dea_arena memory = {.ctx = ctx};
+  const int column = dea_point_column_find("capacitance_F");
+  assert_int_equal(
+      dea_compare_curves(&memory, again, &measured->curve, measured->std, &column, 1, &beside),
+      DEA_OK);
+  assert_close(beside.misfits[0].a_std[1], sweep->std[1].capacitance_F, 1e-11, 0);
+  assert_close(beside.misfits[0].b_std[1], sweep->std[1].capacitance_F, 1e-11, 0);
+  dea_arena_free(&memory);
   dea_measurement_destroy(ctx, measured);
   dea_run_destroy(ctx, run);
   tear_down_result();
