@@ -1,7 +1,6 @@
 /* The figures of several curves beside one reference (see compare_set.h). */
 #include "base/write_file.h"
 #include "compare/compare_set.h"
-#include "plot/gnuplot.h"
 #include "result/figure.h"
 
 #include <math.h>

@@ -408,16 +408,12 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
   return DEA_OK;
 }
 
-static dea_status draw(struct work *w, const char *name, const char *caption, int of_x, int of_y)
+static dea_status draw(struct work *w, struct dea_plot_folder *folder, const char *name,
+                       const char *caption, int of_x, int of_y)
 {
   struct dea_plot *plot;
   DEA_TRY(w->ctx, dea_plot_create(w->ctx, name, caption, &plot));
-  dea_status status = fill_plot(w, &plot->panels[0], of_x, of_y);
-  if (status == DEA_OK) {
-    status = dea_plot_write(w->ctx, plot, &w->options->format, w->options->folder);
-  }
-  dea_plot_destroy(w->ctx, plot);
-  return status;
+  return dea_plot_folder_add(folder, plot, fill_plot(w, &plot->panels[0], of_x, of_y));
 }
 
 /* Whether any design has all values. */
@@ -428,16 +424,18 @@ static bool has_values(const struct work *w)
 
 static dea_status draw_all(struct work *w)
 {
-  static const char *const names[] = {"progress", front_figure};
-  const bool front = w->case_key->file->objective_count > 1;
+  struct dea_plot_folder folder = {
+      .ctx = w->ctx, .format = &w->options->format, .path = w->options->folder};
   if (!has_values(w)) {
     return DEA_OK;
   }
-  DEA_TRY(w->ctx, draw(w, names[0], "designs in the order of their evaluation", -1, 0));
-  if (front) {
-    DEA_TRY(w->ctx, draw(w, names[1], "all designs, and the front of the two objectives", 0, 1));
+  dea_status status =
+      draw(w, &folder, "progress", "designs in the order of their evaluation", -1, 0);
+  if (status == DEA_OK && w->case_key->file->objective_count > 1) {
+    status =
+        draw(w, &folder, front_figure, "all designs, and the front of the two objectives", 0, 1);
   }
-  return dea_gnuplot_draw(w->ctx, w->options->folder, names, front ? 2 : 1);
+  return dea_plot_folder_draw(&folder, status);
 }
 
 // Why there is none -------------------------------------------------------------------------------

@@ -1,7 +1,6 @@
 /* Figures of a sweep: of samples at several voltages the band of each quantity's curve. */
 #include "explore/explore_sweep.h"
 #include "explore/sample_statistics.h"
-#include "plot/gnuplot.h"
 #include "plot/plot.h"
 #include "result/columns.h"
 #include "result/figure.h"
@@ -117,24 +116,19 @@ dea_status dea_sweep_draw(const struct dea_case_key *case_key, const struct dea_
                           size_t samples, const size_t *doubted,
                           const struct dea_plot_format *format, const char *folder)
 {
-  char names[DEA_EXPLORE_QUANTITIES_MAX][64];
-  const char *list[DEA_EXPLORE_QUANTITIES_MAX];
-  for (size_t i = 0; i < case_key->quantity_count; i++) {
+  struct dea_plot_folder list = {.ctx = case_key->ctx, .format = format, .path = folder};
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < case_key->quantity_count && status == DEA_OK; i++) {
     struct dea_plot *plot;
+    char name[64];
     const struct shown shown = {case_key, spreads + i, &case_key->quantities[i].shown, samples,
                                 doubted};
-    snprintf(names[i], sizeof names[i], "band_%.50s", case_key->quantities[i].key);
-    list[i] = names[i];
-    DEA_TRY(case_key->ctx, dea_plot_create(case_key->ctx, names[i],
-                                           "median of the samples, and where 68 and 95 % of them "
-                                           "lie",
-                                           &plot));
-    dea_status status = fill_panel(&shown, &plot->panels[0]);
+    snprintf(name, sizeof name, "band_%.50s", case_key->quantities[i].key);
+    status = dea_plot_create(case_key->ctx, name,
+                             "median of the samples, and where 68 and 95 % of them lie", &plot);
     if (status == DEA_OK) {
-      status = dea_plot_write(case_key->ctx, plot, format, folder);
+      status = dea_plot_folder_add(&list, plot, fill_panel(&shown, &plot->panels[0]));
     }
-    dea_plot_destroy(case_key->ctx, plot);
-    DEA_TRY(case_key->ctx, status);
   }
-  return dea_gnuplot_draw(case_key->ctx, folder, list, case_key->quantity_count);
+  return dea_plot_folder_draw(&list, status);
 }

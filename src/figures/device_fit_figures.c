@@ -1,6 +1,5 @@
 /* Figures of a fit of a device: measurements with the model and its band, residuals below. */
 #include "figures/fit_figures.h"
-#include "plot/gnuplot.h"
 #include "result/figure.h"
 
 #include <math.h>
@@ -127,14 +126,16 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
   return status;
 }
 
-static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit, int column,
-                       bool in_time, const struct dea_plot_format *format, const char *directory,
-                       char name[64], bool *drawn)
+static dea_status draw(struct dea_plot_folder *folder, const struct dea_device_fit *fit, int column,
+                       bool in_time)
 {
   enum { SHOWN_MAX = 7 }; // of the 48 series that a panel holds
+  struct dea_context *ctx = folder->ctx;
   struct dea_plot *plot;
   size_t number = 0;
-  snprintf(name, 64, "fit_%s%.50s", in_time ? "time_" : "", dea_column_at(ctx, column)->key);
+  char name[64];
+  snprintf(name, sizeof name, "fit_%s%.50s", in_time ? "time_" : "",
+           dea_column_at(ctx, column)->key);
   DEA_TRY(ctx, dea_plot_create(ctx, name,
                                "measurements with the fitted device, its band of two standard "
                                "uncertainties and the design; model less measurement",
@@ -147,8 +148,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
       status = add_curve(ctx, plot, &fit->curves[c], number++);
     }
   }
-  *drawn = number > 0;
-  if (status == DEA_OK && *drawn) {
+  if (status == DEA_OK && number > 0) {
     dea_figure_label(dea_column_at(ctx, column), plot->panels[0].y_label,
                      sizeof plot->panels[0].y_label);
     const char *unit = strrchr(plot->panels[0].y_label, '(');
@@ -168,25 +168,17 @@ static dea_status draw(struct dea_context *ctx, const struct dea_device_fit *fit
     dea_panel_begin_at_zero(&plot->panels[0]);
     dea_panel_mark(&plot->panels[1], false, 0, "");
     dea_panel_place_key(&plot->panels[0]);
-    status = dea_plot_write(ctx, plot, format, directory);
   }
-  dea_plot_destroy(ctx, plot);
-  return status;
+  return dea_plot_folder_add(folder, plot, status);
 }
 
 dea_status dea_device_fit_draw(struct dea_context *ctx, const struct dea_device_fit *fit,
                                const struct dea_plot_format *format, const char *directory)
 {
-  char names[DEA_DEVICE_CURVES_MAX + 1][64]; // a curve or more each
-  const char *list[DEA_DEVICE_CURVES_MAX + 1];
-  size_t count = 0;
-  for (int k = 0; k < 2 * dea_column_count(ctx); k++) {
-    bool drawn = false;
-    DEA_TRY(ctx, draw(ctx, fit, k / 2, k % 2 == 1, format, directory, names[count], &drawn));
-    list[count] = names[count];
-    count += drawn ? 1U : 0U;
+  struct dea_plot_folder folder = {.ctx = ctx, .format = format, .path = directory};
+  dea_status status = DEA_OK;
+  for (int k = 0; k < 2 * dea_column_count(ctx) && status == DEA_OK; k++) {
+    status = draw(&folder, fit, k / 2, k % 2 == 1);
   }
-  return count > 0 && (format->svg || format->pdf || format->png)
-             ? dea_gnuplot_draw(ctx, directory, list, count)
-             : DEA_OK;
+  return dea_plot_folder_draw(&folder, status);
 }

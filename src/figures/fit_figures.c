@@ -1,6 +1,5 @@
 /* Figures of a fit: measurements with the law and its band, residuals below. */
 #include "figures/fit_figures.h"
-#include "plot/gnuplot.h"
 #include "result/figure.h"
 
 #include <math.h>
@@ -112,10 +111,10 @@ static dea_status add_lines(struct dea_context *ctx, const struct dea_fit *fit, 
   return DEA_OK;
 }
 
-static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool time,
-                       const char *name, const struct dea_plot_format *format,
-                       const char *directory, bool *drawn)
+static dea_status draw(struct dea_plot_folder *folder, const struct dea_fit *fit, bool time,
+                       const char *name)
 {
+  struct dea_context *ctx = folder->ctx;
   struct dea_plot *plot;
   size_t number = 0;
   DEA_TRY(ctx, dea_plot_create(ctx, name,
@@ -132,7 +131,6 @@ static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool 
       status = add_test(ctx, plot, curve, time, number++);
     }
   }
-  *drawn = number > 0;
   for (size_t p = 0; p < 2; p++) {
     struct dea_panel *panel = &plot->panels[p];
     panel->logarithmic_x = time;
@@ -152,27 +150,14 @@ static dea_status draw(struct dea_context *ctx, const struct dea_fit *fit, bool 
   } else if (status == DEA_OK) {
     status = add_lines(ctx, fit, time, plot);
   }
-  if (status == DEA_OK && *drawn) {
-    status = dea_plot_write(ctx, plot, format, directory);
-  }
-  dea_plot_destroy(ctx, plot);
-  return status;
+  return dea_plot_folder_add(folder, plot, status);
 }
 
 dea_status dea_fit_draw(struct dea_context *ctx, const struct dea_fit *fit,
                         const struct dea_plot_format *format, const char *directory)
 {
-  static const char *const all[] = {"fit", "fit_time"};
-  const char *names[2];
-  size_t count = 0;
-  for (size_t k = 0; k < 2; k++) {
-    bool drawn = false;
-    DEA_TRY(ctx, draw(ctx, fit, k == 1, all[k], format, directory, &drawn));
-    if (drawn) {
-      names[count++] = all[k];
-    }
-  }
-  return count > 0 && (format->svg || format->pdf || format->png)
-             ? dea_gnuplot_draw(ctx, directory, names, count)
-             : DEA_OK;
+  struct dea_plot_folder folder = {.ctx = ctx, .format = format, .path = directory};
+  dea_status status = draw(&folder, fit, false, "fit");
+  status = status == DEA_OK ? draw(&folder, fit, true, "fit_time") : status;
+  return dea_plot_folder_draw(&folder, status);
 }

@@ -2,7 +2,6 @@
 
 #include "base/write_file.h"
 #include "figures/figure_list.h"
-#include "plot/gnuplot.h"
 #include "study/figures.h"
 
 #include <string.h>
@@ -72,63 +71,46 @@ static bool is_wanted(const struct dea_figure_options *options, const struct dea
   return options->names == NULL && !figure->on_request;
 }
 
-static dea_status write_plot(struct dea_context *ctx, const struct dea_result *result,
-                             const char *directory, const struct dea_figure_options *options,
-                             const struct dea_figure *figure, bool *drawn)
+/* Writes script and data of one figure, if it has something to show. */
+static dea_status write_one(struct dea_plot_folder *folder, const struct dea_result *result,
+                            const struct dea_figure_options *options,
+                            const struct dea_figure *figure)
 {
-  struct dea_plot *plot;
-  DEA_TRY(ctx, dea_plot_create(ctx, figure->name, figure->caption, &plot));
-  dea_status status = figure->build(ctx, result, plot);
-  *drawn = status == DEA_OK && dea_plot_shows(plot);
-  if (*drawn) {
-    status = dea_plot_write(ctx, plot, &options->format, directory);
+  struct dea_context *ctx = folder->ctx;
+  const size_t before = folder->count;
+  if (figure->write != NULL) {
+    bool drawn = false;
+    DEA_TRY(ctx, figure->write(ctx, result, options, folder->path, &drawn));
+    DEA_TRY(ctx, drawn ? dea_plot_folder_name(folder, figure->name) : DEA_OK);
+  } else {
+    struct dea_plot *plot;
+    DEA_TRY(ctx, dea_plot_create(ctx, figure->name, figure->caption, &plot));
+    DEA_TRY(ctx, dea_plot_folder_add(folder, plot, figure->build(ctx, result, plot)));
   }
-  dea_plot_destroy(ctx, plot);
-  return status;
-}
-
-/* Writes script and data of one figure; *drawn tells whether there was something to show. */
-static dea_status write_one(struct dea_context *ctx, const struct dea_result *result,
-                            const char *directory, const struct dea_figure_options *options,
-                            const struct dea_figure *figure, bool *drawn)
-{
-  dea_status status = figure->write != NULL
-                          ? figure->write(ctx, result, options, directory, drawn)
-                          : write_plot(ctx, result, directory, options, figure, drawn);
-  if (status == DEA_OK && !*drawn && options->names != NULL) {
-    status = dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
-                             "the result has nothing to show in figure '%s'", figure->name);
-  }
-  return status;
+  return folder->count > before || options->names == NULL
+             ? DEA_OK
+             : dea_finding_add(ctx, DEA_NOTE, (struct dea_location){"", 0, 0},
+                               "the result has nothing to show in figure '%s'", figure->name);
 }
 
 dea_status dea_figures_write(struct dea_context *ctx, const struct dea_result *result,
                              const char *directory, const struct dea_figure_options *options,
                              size_t *drawn)
 {
-  const char *names[DEA_FIGURES_MAX];
-  size_t count = 0;
+  struct dea_plot_folder folder = {.ctx = ctx, .format = &options->format, .path = directory};
   DEA_TRY(ctx, check_names(ctx, options));
   const bool was_there = dea_path_exists(directory);
   DEA_TRY(ctx, dea_folder_make(ctx, directory));
   const struct dea_figure *figure;
-  for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && count < DEA_FIGURES_MAX; f++) {
-    bool shows = false;
-    if (is_wanted(options, figure)) {
-      DEA_TRY(ctx, write_one(ctx, result, directory, options, figure, &shows));
-    }
-    if (shows) {
-      names[count++] = figure->name;
-    }
+  dea_status status = DEA_OK;
+  for (size_t f = 0; (figure = dea_figure_get(f)) != NULL && status == DEA_OK; f++) {
+    status = is_wanted(options, figure) ? write_one(&folder, result, options, figure) : DEA_OK;
   }
   if (drawn != NULL) {
-    *drawn = count;
+    *drawn = folder.count;
   }
-  if (count == 0 && !was_there) {
+  if (folder.count == 0 && !was_there && status == DEA_OK) {
     rmdir(directory); // one with something in it stays
   }
-  if (count > 0 && (options->format.svg || options->format.pdf || options->format.png)) {
-    DEA_TRY(ctx, dea_gnuplot_draw(ctx, directory, names, count));
-  }
-  return DEA_OK;
+  return dea_plot_folder_draw(&folder, status);
 }

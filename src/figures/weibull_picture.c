@@ -1,7 +1,5 @@
 #include "figures/weibull_picture.h"
 
-#include "plot/gnuplot.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -117,9 +115,9 @@ static void logarithmic_axis(const struct dea_weibull_picture *picture, struct d
 dea_status dea_weibull_draw(struct dea_context *ctx, const struct dea_weibull_picture *picture,
                             const struct dea_plot_format *format, const char *directory)
 {
-  static const char *const name = "fit";
+  struct dea_plot_folder folder = {.ctx = ctx, .format = format, .path = directory};
   struct dea_plot *plot;
-  DEA_TRY(ctx, dea_plot_create(ctx, name, picture->caption, &plot));
+  DEA_TRY(ctx, dea_plot_create(ctx, "fit", picture->caption, &plot));
   struct dea_panel *panel = &plot->panels[0];
   plot->panel_count = 1;
   dea_status status = add_law(ctx, picture, panel);
@@ -131,9 +129,5 @@ dea_status dea_weibull_draw(struct dea_context *ctx, const struct dea_weibull_pi
   }
   panel->key = "top left";
   dea_panel_even_tics(panel, 7);
-  status = status == DEA_OK ? dea_plot_write(ctx, plot, format, directory) : status;
-  dea_plot_destroy(ctx, plot);
-  DEA_TRY(ctx, status);
-  return format->svg || format->pdf || format->png ? dea_gnuplot_draw(ctx, directory, &name, 1)
-                                                   : DEA_OK;
+  return dea_plot_folder_draw(&folder, dea_plot_folder_add(&folder, plot, status));
 }

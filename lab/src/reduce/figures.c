@@ -1,11 +1,9 @@
 /* The figures of a reduction (dea_reduction_draw). */
 #include "reduce/output.h"
 
-#include "plot/gnuplot.h"
-
 #include <stdio.h>
 
-enum { SHOWN_MAX = 8, SERIES_POINTS = 4000, FIGURES_MAX = 8 };
+enum { SHOWN_MAX = 8, SERIES_POINTS = 4000 };
 
 static const enum dea_colour colours[SHOWN_MAX] = {DEA_GREY, DEA_BLACK, DEA_PURPLE, DEA_BLUE,
                                                    DEA_SKY,  DEA_GREEN, DEA_ORANGE, DEA_VERMILLION};
@@ -14,10 +12,7 @@ struct drawing {
   struct dea_context *ctx;
   const struct dea_recording *recording;
   const struct dea_reduction *reduction;
-  const struct dea_plot_format *format;
-  const char *directory;
-  const char *names[FIGURES_MAX];
-  size_t count;
+  struct dea_plot_folder folder;
 };
 
 /* Rows (one a voltage) that are shown: the highest, of either sign, and evenly of the others; where
@@ -292,13 +287,7 @@ static dea_status draw_one(struct drawing *d, const char *name, const char *capt
 {
   struct dea_plot *plot;
   DEA_TRY(d->ctx, dea_plot_create(d->ctx, name, caption, &plot));
-  dea_status status = build(d, plot);
-  if (status == DEA_OK && dea_plot_shows(plot)) {
-    status = dea_plot_write(d->ctx, plot, d->format, d->directory);
-    d->names[d->count++] = name;
-  }
-  dea_plot_destroy(d->ctx, plot);
-  return status;
+  return dea_plot_folder_add(&d->folder, plot, build(d, plot));
 }
 
 dea_status dea_reduction_draw(struct dea_context *ctx, const struct dea_recording *recording,
@@ -308,17 +297,21 @@ dea_status dea_reduction_draw(struct dea_context *ctx, const struct dea_recordin
   struct drawing d = {.ctx = ctx,
                       .recording = recording,
                       .reduction = reduction,
-                      .format = format,
-                      .directory = directory};
-  DEA_TRY(ctx, draw_one(&d, "profiles", "mean profiles of the film against rest", build_profiles));
-  DEA_TRY(ctx, draw_one(&d, "history", "voltage and displacement in time", build_time_series));
-  DEA_TRY(ctx, draw_one(&d, "history_force", "voltage and force in time", build_time_series_force));
-  DEA_TRY(ctx, draw_one(&d, "amplitude",
-                        "amplitudes against voltage, with the standard deviation of one cycle",
-                        build_amplitude));
-  DEA_TRY(ctx, draw_one(&d, "cycles", "amplitude of each cycle", build_cycles));
-  if (d.count > 0 && (format->svg || format->pdf || format->png)) {
-    return dea_gnuplot_draw(ctx, directory, d.names, d.count);
+                      .folder = {.ctx = ctx, .format = format, .path = directory}};
+  static const struct {
+    const char *name, *caption;
+    dea_status (*build)(const struct drawing *, struct dea_plot *);
+  } figures[] = {
+      {"profiles", "mean profiles of the film against rest", build_profiles},
+      {"history", "voltage and displacement in time", build_time_series},
+      {"history_force", "voltage and force in time", build_time_series_force},
+      {"amplitude", "amplitudes against voltage, with the standard deviation of one cycle",
+       build_amplitude},
+      {"cycles", "amplitude of each cycle", build_cycles},
+  };
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < sizeof figures / sizeof figures[0] && status == DEA_OK; i++) {
+    status = draw_one(&d, figures[i].name, figures[i].caption, figures[i].build);
   }
-  return DEA_OK;
+  return dea_plot_folder_draw(&d.folder, status);
 }
