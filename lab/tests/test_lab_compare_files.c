@@ -75,7 +75,8 @@ TEST(test_bad_files_with_their_places)
   command_folder_make("bad");
   is_bad("measurement.csv", "V (kV),z centre (um)\n1,x\n",
          "measurement.csv:2:3: error: 'x' is not");
-  is_bad("measurement.csv", "z centre (um)\n1\n", "measurement.csv:1:1: error: no column of volt");
+  is_bad("measurement.csv", "z centre (um)\n1\n",
+         "measurement.csv:1:1: error: no column such as 'V (kV)'");
   is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,0,1\n2,1,abc\n",
          "profiles.csv:3:5: error: 'abc' is not a number");
   is_bad("profiles.csv", "V (kV),x (mm),z (um)\n2,0,1\n2,2,1\n2,1,1\n",

@@ -8,15 +8,15 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_STD, PROFILE_COLUMNS };
+enum { PROFILE_V, PROFILE_X, PROFILE_Z, PROFILE_COLUMNS };
 
 static const struct dea_csv_wanted profile_columns[PROFILE_COLUMNS] = {
     [PROFILE_V] =
         DEA_CSV_COLUMN("v", "V", "1 kV", .title = "V (kV)", .needed = true, .filled = true),
     [PROFILE_X] =
         DEA_CSV_COLUMN("x", "m", "1 mm", .title = "x (mm)", .needed = true, .filled = true),
-    [PROFILE_Z] = DEA_CSV_COLUMN("z", "m", "1 um", .title = "z (um)", .needed = true),
-    [PROFILE_STD] = DEA_CSV_COLUMN("z std", "m", "1 um", .title = "z std (um)"),
+    [PROFILE_Z] =
+        DEA_CSV_COLUMN("z", "m", "1 um", .title = "z (um)", .needed = true, .uncertain = true),
 };
 
 /* What a history may have of any device. */
@@ -82,7 +82,7 @@ static dea_status part_profiles(struct dea_context *ctx, struct dea_measured *m)
   }
   for (size_t i = 0; i < rows->rows; i++) {
     if (begins(rows, start, i)) {
-      double *std = rows->values[PROFILE_STD];
+      double *std = rows->std[PROFILE_Z];
       start = i;
       m->profiles[m->profile_count++] =
           (struct dea_measured_profile){rows->values[PROFILE_V][i],
@@ -96,8 +96,8 @@ static dea_status part_profiles(struct dea_context *ctx, struct dea_measured *m)
 
 static dea_status check_history(struct dea_context *ctx, const struct dea_csv_columns *history)
 {
-  const double *time = history->values[DEA_MEASURED_TIME];
   for (size_t i = 1; i < history->rows; i++) {
+    const double *time = history->values[DEA_MEASURED_TIME];
     if (!(time[i] >= time[i - 1])) {
       return out_of_order(ctx, history, i, "the time falls");
     }
@@ -115,45 +115,29 @@ static dea_status read_rows(struct dea_context *ctx, const char *folder, const c
   }
   char *path = dea_path_join(ctx, folder, name);
   dea_status status =
-      path != NULL ? dea_csv_columns_read(ctx, path, wanted, count, out) : DEA_E_MEMORY;
+      path != NULL ? dea_csv_columns_read(ctx, path, wanted, count, NULL, out) : DEA_E_MEMORY;
   dea_free(ctx, path);
   return status;
 }
 
-/* A column of a history into the next one wanted, which lends from `memory`. */
-static dea_status want(struct dea_measured *m, int column, struct dea_arena *memory,
-                       struct dea_csv_wanted *wanted)
-{
-  enum { EXAMPLE = 32, SIZE = DEA_COLUMN_TITLE_SIZE + DEA_CSV_FIELD_MAX + EXAMPLE };
-  const struct dea_column *c = dea_column_at(memory->ctx, column);
-  const bool time = m->history_count == DEA_MEASURED_TIME;
-  char *title = dea_arena_alloc(memory, SIZE, 1);
-  if (title == NULL || m->history_count == DEA_CSV_COLUMNS_MAX) {
-    return dea_arena_status(memory);
-  }
-  char *name = title + DEA_COLUMN_TITLE_SIZE, *example = name + DEA_CSV_FIELD_MAX;
-  dea_column_title(c, title, DEA_COLUMN_TITLE_SIZE);
-  dea_csv_fold(c->header, name);
-  snprintf(example, EXAMPLE, "1 %.20s", c->display_unit);
-  wanted[m->history_count] = (struct dea_csv_wanted){.name = name,
-                                                     .title = title,
-                                                     .measure = {c->si_unit, example},
-                                                     .needed = time,
-                                                     .filled = time};
-  m->history_column[m->history_count++] = column;
-  return DEA_OK;
-}
-
 static dea_status read_history(struct dea_context *ctx, const char *path, struct dea_measured *m)
 {
-  struct dea_csv_wanted wanted[DEA_CSV_COLUMNS_MAX];
+  const size_t keys = sizeof history_keys / sizeof history_keys[0];
+  const size_t capacity = keys + (size_t)dea_column_count(ctx);
   struct dea_arena memory = {.ctx = ctx};
-  dea_status status = DEA_OK;
-  for (size_t i = 0; i < sizeof history_keys / sizeof history_keys[0] && status == DEA_OK; i++) {
-    status = want(m, dea_point_column_find(history_keys[i]), &memory, wanted);
-  }
-  for (int c = DEA_LOAD_POINT_COLUMNS; c < dea_column_count(ctx) && status == DEA_OK; c++) {
-    status = dea_observed_is(dea_column_at(ctx, c), NULL) ? want(m, c, &memory, wanted) : DEA_OK;
+  struct dea_csv_wanted *wanted = dea_arena_alloc(&memory, capacity, sizeof *wanted);
+  m->history_column = dea_alloc(ctx, capacity, sizeof *m->history_column);
+  dea_status status = wanted != NULL && m->history_column != NULL ? DEA_OK : DEA_E_MEMORY;
+  for (size_t i = 0; i < capacity && status == DEA_OK; i++) {
+    const int column = i < keys ? dea_point_column_find(history_keys[i]) : (int)(i - keys);
+    if (i < keys ||
+        (column >= DEA_LOAD_POINT_COLUMNS && dea_observed_is(dea_column_at(ctx, column), NULL))) {
+      struct dea_csv_wanted *one = &wanted[m->history_count];
+      status = dea_csv_want_column(&memory, dea_column_at(ctx, column), one);
+      one->needed = one->filled = m->history_count == DEA_MEASURED_TIME;
+      one->uncertain = false;
+      m->history_column[m->history_count++] = column;
+    }
   }
   if (status == DEA_OK) {
     status = read_rows(ctx, path, "history.csv", wanted, m->history_count, &m->history);
@@ -246,6 +230,7 @@ void dea_measured_destroy(struct dea_context *ctx, struct dea_measured *measured
     dea_csv_columns_free(ctx, &measured->profile_rows);
     dea_csv_columns_free(ctx, &measured->history);
     dea_free(ctx, measured->profiles);
+    dea_free(ctx, measured->history_column);
     dea_free(ctx, measured);
   }
 }

@@ -21,9 +21,9 @@ struct dea_measured {
   struct dea_csv_columns profile_rows;   // of all profiles
   struct dea_measured_profile *profiles; // owned, in the order of the file
   size_t profile_count;
-  struct dea_csv_columns history;          // times never fall; rows 0: none
-  int history_column[DEA_CSV_COLUMNS_MAX]; // [history_count] columns of the context
-  size_t history_count;                    // of what a history may have
+  struct dea_csv_columns history; // times never fall; rows 0: none
+  int *history_column;            // [history_count] columns of the context; owned
+  size_t history_count;           // of what a history may have
 };
 
 /* True for a folder that holds measurement.csv and no results of a run. */

@@ -107,7 +107,7 @@ static dea_status read_films(struct dea_breakdown_fit *fit, const char *path)
   DEA_TRY(ctx, dea_file_read(ctx, path, FILE_MAX, &bytes, &length));
   dea_sha256_hex(bytes, length, fit->sha256);
   dea_free(ctx, bytes);
-  DEA_TRY(ctx, dea_csv_columns_read(ctx, path, wanted, COLUMNS, &table));
+  DEA_TRY(ctx, dea_csv_columns_read(ctx, path, wanted, COLUMNS, NULL, &table));
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_status status = check_table(ctx, fit->file, &table);
   if (status == DEA_OK && dea_finding_count(ctx, DEA_ERROR) > errors) {

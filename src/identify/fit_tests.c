@@ -72,7 +72,8 @@ static dea_status read_path(struct dea_arena *arena, const struct dea_fit_test *
   struct dea_fit_raw raw = {0};
   want(test, names, wanted);
   DEA_TRY(arena->ctx, hash_file(arena->ctx, path, raw.sha256));
-  DEA_TRY(arena->ctx, dea_csv_columns_read(arena->ctx, path, wanted, DEA_FIT_COLUMNS, &columns));
+  DEA_TRY(arena->ctx,
+          dea_csv_columns_read(arena->ctx, path, wanted, DEA_FIT_COLUMNS, NULL, &columns));
   raw.file = columns.file;
   raw.rows = columns.rows;
   raw.line = columns.line;

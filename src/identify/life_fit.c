@@ -53,7 +53,7 @@ static dea_status read_part(struct dea_context *ctx, const struct dea_life_file 
   char *beside = dea_path_beside(ctx, file->head.file, folder);
   char *path = beside != NULL ? dea_path_join(ctx, beside, "life.csv") : NULL;
   dea_status status =
-      path != NULL ? dea_csv_columns_read(ctx, path, wanted, COLUMNS, out) : DEA_E_MEMORY;
+      path != NULL ? dea_csv_columns_read(ctx, path, wanted, COLUMNS, NULL, out) : DEA_E_MEMORY;
   dea_free(ctx, path);
   dea_free(ctx, beside);
   return status;

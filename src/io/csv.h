@@ -3,6 +3,7 @@
 
 #include "base/csv_line.h"
 #include "result/result.h"
+#include "table/csv_columns.h"
 
 /* "V (kV)": the header of a column, without unit when that is 1. */
 enum { DEA_COLUMN_TITLE_SIZE = 224 };
@@ -50,3 +51,8 @@ struct dea_measurement {
 dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
                                 struct dea_measurement **out);
 void dea_measurement_destroy(struct dea_context *ctx, struct dea_measurement *measurement);
+
+/* A quantity as a column of a file, named by its header or key, with an uncertainty; its texts are
+ * of the arena. */
+dea_status dea_csv_want_column(struct dea_arena *memory, const struct dea_column *column,
+                               struct dea_csv_wanted *out);

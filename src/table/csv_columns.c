@@ -10,26 +10,25 @@
 
 enum { FINDINGS_MAX = 20 };
 
+/* What a column of the file is. */
+struct meaning {
+  double *values; // of that wanted, or its std; NULL: not used
+  size_t wanted;
+  bool std, strain;
+  double factor;
+  struct dea_text_marks marks;
+};
+
 struct reader {
   struct dea_context *ctx;
   const struct dea_csv_wanted *wanted;
   size_t wanted_count;
+  const char *known;
   struct dea_csv_columns *out;
   struct dea_fields fields;
+  struct meaning *meanings; // [fields.count]
   size_t errors;
-  size_t at[DEA_CSV_COLUMNS_MAX]; // field of each wanted one, from 1; 0: not there
-  bool strain[DEA_CSV_COLUMNS_MAX];
-  double factor[DEA_CSV_COLUMNS_MAX];
-  struct dea_text_marks marks[DEA_CSV_COLUMNS_MAX];
 };
-
-bool dea_csv_unit(struct dea_context *ctx, const char *unit, struct dea_measure due, double *factor,
-                  char why[DEA_WHY_SIZE])
-{
-  char one[DEA_CSV_FIELD_MAX + 2];
-  snprintf(one, sizeof one, "1 %s", unit);
-  return dea_units_read(ctx, one, due, factor, why);
-}
 
 /* Where an error is; false when there are too many to be told. */
 static bool one_more(struct reader *r, struct dea_slice piece, struct dea_location *location)
@@ -39,21 +38,22 @@ static bool one_more(struct reader *r, struct dea_slice piece, struct dea_locati
 }
 
 /* Factor of a unit: as people write it, or an error. */
-static dea_status read_unit(struct reader *r, size_t w, struct dea_slice title, const char *unit)
+static dea_status read_unit(struct reader *r, const struct dea_csv_wanted *w,
+                            struct dea_slice title, const char *unit, double *factor)
 {
   static const char *const ones[] = {"-", "1", "mm/mm", "m/m", "in/in"};
-  const struct dea_measure due = r->wanted[w].measure;
-  const bool one = strcmp(due.unit, "1") == 0;
-  char why[DEA_WHY_SIZE] = "";
+  const bool one = strcmp(w->measure.unit, "1") == 0;
+  char why[DEA_WHY_SIZE] = "", text[DEA_CSV_FIELD_MAX + 2];
   struct dea_location location;
-  r->factor[w] = one && strcmp(unit, "%") == 0 ? 0.01 : 1;
+  *factor = one && strcmp(unit, "%") == 0 ? 0.01 : 1;
   bool good = one && (unit[0] == '\0' || strcmp(unit, "%") == 0);
   for (size_t i = 0; one && i < sizeof ones / sizeof ones[0]; i++) {
     good = good || strcmp(unit, ones[i]) == 0;
   }
-  const char *si = good || unit[0] == '\0' ? NULL : dea_title_unit(r->ctx, unit, &r->factor[w]);
-  if (good || (si != NULL && !one && strcmp(si, due.unit) == 0) ||
-      (unit[0] != '\0' && dea_csv_unit(r->ctx, unit, due, &r->factor[w], why))) {
+  const char *si = good || unit[0] == '\0' ? NULL : dea_title_unit(r->ctx, unit, factor);
+  snprintf(text, sizeof text, "1 %s", unit);
+  if (good || (si != NULL && !one && strcmp(si, w->measure.unit) == 0) ||
+      (unit[0] != '\0' && dea_units_read(r->ctx, text, w->measure, factor, why))) {
     return DEA_OK;
   }
   if (unit[0] != '\0' && why[0] == '\0') {
@@ -66,7 +66,7 @@ static dea_status read_unit(struct reader *r, size_t w, struct dea_slice title, 
   return unit[0] == '\0'
              ? dea_finding_add(r->ctx, DEA_ERROR, location,
                                "'%.*s' needs a unit in parentheses, for example '%s'", length,
-                               title.text, r->wanted[w].title)
+                               title.text, w->title)
              : dea_finding_add(r->ctx, DEA_ERROR, location, "the unit in '%.*s' does not fit: %s",
                                length, title.text, why);
 }
@@ -85,44 +85,138 @@ static bool is_strain(const char *name)
   return false;
 }
 
-static bool has_name(const struct dea_csv_wanted *wanted, const char *name)
+static bool is_name(const char *name, const char *of)
 {
-  bool has = strcmp(name, wanted->name) == 0;
-  for (size_t i = 0; i < 2; i++) {
-    has = has || (wanted->other[i] != NULL && strcmp(name, wanted->other[i]) == 0);
+  return of != NULL && strcmp(name, of) == 0;
+}
+
+/* Number of the column wanted that a name means; count: none. */
+static size_t find_wanted(const struct reader *r, const char *name)
+{
+  for (size_t w = 0; w < r->wanted_count; w++) {
+    const struct dea_csv_wanted *one = &r->wanted[w];
+    bool has = is_name(name, one->name) || is_name(name, one->key);
+    for (size_t i = 0; i < sizeof one->other / sizeof one->other[0]; i++) {
+      has = has || is_name(name, one->other[i]);
+    }
+    if (has) {
+      return w;
+    }
   }
-  return has;
+  for (size_t w = 0; w < r->wanted_count; w++) {
+    if (r->wanted[w].strain && !r->wanted[w].needed && is_strain(name) &&
+        r->out->values[w] == NULL) {
+      return w;
+    }
+  }
+  return r->wanted_count;
+}
+
+/* Cuts the word for an uncertainty from the end of a name; whether there was one. */
+static bool cut_std(char *name)
+{
+  static const char *const words[] = {"std", "err", "error", "uncertainty"};
+  size_t length = strlen(name);
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    size_t n = strlen(words[i]);
+    bool alone = strcmp(name, words[i]) == 0;
+    if (alone ||
+        (length > n && name[length - n - 1] == ' ' && strcmp(name + length - n, words[i]) == 0)) {
+      name[alone ? 0 : length - n - 1] = '\0';
+      return true;
+    }
+  }
+  return false;
+}
+
+/* The title nearest to a name that is none; NULL where none is near. */
+static dea_status find_nearest(struct reader *r, const char *name, const char **title)
+{
+  enum { NAMES = 2 + sizeof r->wanted->other / sizeof r->wanted->other[0] };
+  struct dea_arena memory = {.ctx = r->ctx};
+  const char **names = dea_arena_alloc(&memory, NAMES * r->wanted_count, sizeof *names);
+  size_t count = 0;
+  *title = NULL;
+  for (size_t w = 0; names != NULL && w < r->wanted_count; w++) {
+    for (size_t k = 0; k < NAMES; k++) {
+      const char *one = k == 0   ? r->wanted[w].name
+                        : k == 1 ? r->wanted[w].key
+                                 : r->wanted[w].other[k - 2];
+      if (one != NULL) {
+        names[count++] = one;
+      }
+    }
+  }
+  const char *nearest = names != NULL ? dea_nearest_name(name, names, count) : NULL;
+  if (nearest != NULL) {
+    *title = r->wanted[find_wanted(r, nearest)].title;
+  }
+  const dea_status status = dea_arena_status(&memory);
+  dea_arena_free(&memory);
+  return status;
+}
+
+static dea_status unknown_title(struct reader *r, struct dea_slice title, const char *name)
+{
+  const int length = (int)(title.length < 60 ? title.length : 60);
+  struct dea_location location = dea_fields_place(&r->fields, title);
+  const char *nearest;
+  if (length == 0) {
+    return DEA_OK;
+  }
+  if (r->known == NULL) {
+    return dea_finding_add(r->ctx, DEA_NOTE, location, "column '%.*s' is not used", length,
+                           title.text);
+  }
+  if (!one_more(r, title, &location)) {
+    return DEA_OK;
+  }
+  DEA_TRY(r->ctx, find_nearest(r, name, &nearest));
+  return dea_finding_add(r->ctx, DEA_ERROR, location, "'%.*s' is not a known quantity; %s%s%s",
+                         length, title.text,
+                         nearest != NULL ? "did you mean '" : "known are, for example, ",
+                         nearest != NULL ? nearest : r->known, nearest != NULL ? "'?" : "");
 }
 
 static dea_status read_title(struct reader *r, size_t column)
 {
   char name[DEA_CSV_FIELD_MAX], unit[DEA_CSV_FIELD_MAX];
+  struct meaning *m = &r->meanings[column];
+  const struct meaning *before = column > 0 ? m - 1 : NULL;
   const struct dea_slice title = r->fields.titles[column];
   const int length = (int)(title.length < 60 ? title.length : 60);
-  const struct dea_location location = dea_fields_place(&r->fields, title);
   dea_fields_title(r->ctx, &r->fields, column, name, unit);
-  size_t w = 0;
-  while (w < r->wanted_count && !has_name(&r->wanted[w], name)) {
-    w++;
+  m->wanted = find_wanted(r, name);
+  if (m->wanted == r->wanted_count && cut_std(name)) {
+    m->std = true;
+    m->wanted = name[0] != '\0'  ? find_wanted(r, name)
+                : before != NULL ? before->wanted
+                                 : m->wanted;
+    if (m->wanted < r->wanted_count && !r->wanted[m->wanted].uncertain) {
+      m->wanted = r->wanted_count;
+    }
   }
-  for (size_t k = 0; w == r->wanted_count && k < r->wanted_count; k++) {
-    w = r->wanted[k].strain && !r->wanted[k].needed && is_strain(name) && r->at[k] == 0 ? k : w;
+  if (m->wanted == r->wanted_count) {
+    return unknown_title(r, title, name);
   }
-  if (w == r->wanted_count && length == 0) {
-    return DEA_OK;
-  }
-  if (w == r->wanted_count) {
-    return dea_finding_add(r->ctx, DEA_NOTE, location, "column '%.*s' is not used", length,
-                           title.text);
-  }
-  if (r->at[w] > 0) {
+  const struct dea_csv_wanted *w = &r->wanted[m->wanted];
+  double **values = m->std ? &r->out->std[m->wanted] : &r->out->values[m->wanted];
+  struct dea_location location = dea_fields_place(&r->fields, title);
+  if (*values != NULL) {
     r->errors++;
     return dea_finding_add(r->ctx, DEA_ERROR, location, "'%.*s' is there twice", length,
                            title.text);
   }
-  r->at[w] = column + 1;
-  r->strain[w] = r->wanted[w].strain && is_strain(name);
-  return read_unit(r, w, title, unit);
+  *values = m->values = dea_arena_alloc(&r->out->memory, r->fields.rows, sizeof(double));
+  DEA_TRY(r->ctx, dea_arena_status(&r->out->memory));
+  if (w->guess != NULL && strcmp(name, w->guess) == 0) {
+    DEA_TRY(r->ctx,
+            dea_finding_add(r->ctx, DEA_NOTE, location, "'%.*s' %s", length, title.text, w->note));
+  }
+  m->strain = w->strain && is_strain(name);
+  m->factor = m->std && name[0] == '\0' ? before->factor : 1;
+  const bool said = (m->std && name[0] == '\0') || is_name(name, w->key) || w->parse != NULL;
+  return unit[0] == '\0' && said ? DEA_OK : read_unit(r, w, title, unit, &m->factor);
 }
 
 static dea_status read_titles(struct reader *r)
@@ -132,7 +226,8 @@ static dea_status read_titles(struct reader *r)
     DEA_TRY(r->ctx, read_title(r, f));
   }
   for (size_t w = 0; w < r->wanted_count; w++) {
-    if (r->wanted[w].needed && r->at[w] == 0 && one_more(r, r->fields.titles[0], &location)) {
+    if (r->wanted[w].needed && r->out->values[w] == NULL &&
+        one_more(r, r->fields.titles[0], &location)) {
       DEA_TRY(r->ctx, dea_finding_add(r->ctx, DEA_ERROR, location, "no column such as '%s'",
                                       r->wanted[w].title));
     }
@@ -140,42 +235,45 @@ static dea_status read_titles(struct reader *r)
   return DEA_OK;
 }
 
-/* The field of a row for wanted column w. */
-static dea_status read_field(struct reader *r, size_t row, size_t w, struct dea_slice field)
+/* The field of a row, of a column that is used. */
+static dea_status read_field(struct reader *r, size_t row, struct meaning *m,
+                             struct dea_slice field)
 {
+  const struct dea_csv_wanted *wanted = &r->wanted[m->wanted];
   struct dea_location location;
   double value;
-  if (!dea_fields_number(r->ctx, &r->fields, row, field, &r->marks[w], &value)) {
+  if (wanted->parse != NULL) {
+    char words[DEA_CSV_FIELD_MAX];
+    snprintf(words, sizeof words, "%.*s", (int)(field.length < sizeof words ? field.length : 0),
+             field.text);
+    m->values[row] = wanted->parse(words);
+    return DEA_OK;
+  }
+  if (!dea_fields_number(r->ctx, &r->fields, row, field, &m->marks, &value)) {
     r->errors++;
     return dea_context_status(r->ctx) == DEA_E_MEMORY ? DEA_E_MEMORY : DEA_OK;
   }
-  r->out->values[w][row] = value * r->factor[w] + (r->strain[w] ? 1 : 0);
-  return isnan(value) && r->wanted[w].filled && one_more(r, field, &location)
-             ? dea_finding_add(r->ctx, DEA_ERROR, location, "a row without '%s'",
-                               r->wanted[w].title)
+  m->values[row] = value * m->factor + (m->strain ? 1 : 0);
+  return isnan(value) && wanted->filled && !m->std && one_more(r, field, &location)
+             ? dea_finding_add(r->ctx, DEA_ERROR, location, "a row without '%s'", wanted->title)
              : DEA_OK;
 }
 
 static dea_status read_rows(struct reader *r)
 {
-  for (size_t w = 0; w < r->wanted_count; w++) {
-    if (r->at[w] > 0) {
-      r->out->values[w] = dea_alloc(r->ctx, r->fields.rows, sizeof(double));
-      DEA_TRY(r->ctx, r->out->values[w] != NULL ? DEA_OK : DEA_E_MEMORY);
-    }
-  }
   for (size_t row = 0; row < r->fields.rows && r->errors < FINDINGS_MAX; row++) {
     struct dea_slice rest = r->fields.lines[row], field;
-    for (size_t f = 0; dea_slice_field(&rest, r->fields.separator, &field); f++) {
-      for (size_t w = 0; w < r->wanted_count; w++) {
-        DEA_TRY(r->ctx, r->at[w] == f + 1 ? read_field(r, row, w, field) : DEA_OK);
-      }
+    for (size_t f = 0; f < r->fields.count && dea_slice_field(&rest, r->fields.separator, &field);
+         f++) {
+      DEA_TRY(r->ctx,
+              r->meanings[f].values != NULL ? read_field(r, row, &r->meanings[f], field) : DEA_OK);
     }
   }
-  for (size_t w = 0; w < r->wanted_count && r->errors == 0; w++) {
-    r->errors += r->at[w] > 0 &&
-                 dea_text_marks_refuse(r->ctx, &r->marks[w], r->fields.separator, r->fields.decimal,
-                                       r->fields.file, r->wanted[w].title);
+  for (size_t f = 0; f < r->fields.count && r->errors == 0; f++) {
+    struct meaning *m = &r->meanings[f];
+    r->errors += m->values != NULL &&
+                 dea_text_marks_refuse(r->ctx, &m->marks, r->fields.separator, r->fields.decimal,
+                                       r->fields.file, r->wanted[m->wanted].title);
   }
   return DEA_OK;
 }
@@ -183,6 +281,11 @@ static dea_status read_rows(struct reader *r)
 static dea_status read_fields(struct reader *r)
 {
   const char *file = r->out->file;
+  struct dea_arena *memory = &r->out->memory;
+  r->meanings = dea_arena_alloc(memory, r->fields.count, sizeof *r->meanings);
+  r->out->values = dea_arena_alloc(memory, r->wanted_count, sizeof *r->out->values);
+  r->out->std = dea_arena_alloc(memory, r->wanted_count, sizeof *r->out->std);
+  DEA_TRY(r->ctx, dea_arena_status(memory));
   DEA_TRY(r->ctx, read_titles(r));
   if (r->errors == 0) { // without titles the rows say nothing
     DEA_TRY(r->ctx, read_rows(r));
@@ -197,10 +300,11 @@ static dea_status read_fields(struct reader *r)
 
 dea_status dea_csv_columns_read(struct dea_context *ctx, const char *file,
                                 const struct dea_csv_wanted *wanted, size_t count,
-                                struct dea_csv_columns *out)
+                                const char *known, struct dea_csv_columns *out)
 {
-  struct reader r = {.ctx = ctx, .wanted = wanted, .wanted_count = count, .out = out};
-  *out = (struct dea_csv_columns){0};
+  struct reader r = {
+      .ctx = ctx, .wanted = wanted, .wanted_count = count, .known = known, .out = out};
+  *out = (struct dea_csv_columns){.memory = {.ctx = ctx}};
   DEA_TRY(ctx, dea_fields_read(ctx, file, &r.fields));
   out->file = r.fields.file;
   const dea_status status = read_fields(&r);
@@ -215,8 +319,6 @@ dea_status dea_csv_columns_read(struct dea_context *ctx, const char *file,
 void dea_csv_columns_free(struct dea_context *ctx, struct dea_csv_columns *columns)
 {
   dea_free(ctx, columns->line);
-  for (int c = 0; c < DEA_CSV_COLUMNS_MAX; c++) {
-    dea_free(ctx, columns->values[c]);
-  }
+  dea_arena_free(&columns->memory);
   *columns = (struct dea_csv_columns){0};
 }

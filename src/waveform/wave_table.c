@@ -65,7 +65,7 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   char *path = dea_path_beside(ctx, beside, raw->file.text);
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_status status =
-      path != NULL ? dea_csv_columns_read(ctx, path, columns, 2, &table) : DEA_E_MEMORY;
+      path != NULL ? dea_csv_columns_read(ctx, path, columns, 2, NULL, &table) : DEA_E_MEMORY;
   dea_free(ctx, path);
   if (status == DEA_E_IO) { // what is wrong in the file is a finding already
     return dea_finding_count(ctx, DEA_ERROR) > errors

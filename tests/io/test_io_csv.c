@@ -142,8 +142,8 @@ TEST(test_errors_have_places)
   assert_error("# c\nV (kV),force (mN)\n1,2\n2,x1\n", 4, 3, "'x1' is not a number");
   assert_error("V (kV),force (mN)\n1,2,3\n", 2, 5, "more fields");
   assert_error("V (kV),force (mN)\n1\n", 2, 1, "fewer fields");
-  assert_error("V (kV),force (mN)\n,3\n", 2, 1, "without a voltage");
-  assert_error("force (mN)\n3\n", 1, 1, "no column of voltages");
+  assert_error("V (kV),force (mN)\n,3\n", 2, 1, "a row without 'V (kV)'");
+  assert_error("force (mN)\n3\n", 1, 1, "no column such as 'V (kV)'");
   assert_error("V (kV),voltage (V)\n1,2\n", 1, 8, "there twice");
   assert_error("V (kV),force (mN)\n", 1, 1, "no rows");
   assert_error("V (kV),force (mN)\n1,inf\n", 2, 3, "not a number");
