@@ -32,10 +32,11 @@ int main(int argc, char **argv)
   bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", sets, 3, &design), ctx);
   bench_need(dea_device_build(ctx, design, &device), ctx);
   bench_need(dea_result_create(ctx, design, device, &result), ctx);
-  result->processes = argc > 4 ? strtoul(argv[4], NULL, 10) : 1;
+  const struct dea_study_services services = {.processes =
+                                                  argc > 4 ? strtoul(argv[4], NULL, 10) : 1};
   bench_count_factorisations(ctx);
   double start = bench_processor_s(), by_clock = bench_now_s();
-  bench_need(dea_study_run(ctx, type, &name, 1, result), ctx);
+  bench_need(dea_study_run_with(ctx, type, &name, 1, &services, result), ctx);
   double time = bench_processor_s() - start, count = bench_factorisations();
   by_clock = bench_now_s() - by_clock;
   const struct dea_curve *curve = dea_result_find(result, "3d", name);

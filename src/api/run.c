@@ -71,7 +71,6 @@ static dea_status compute(dea_context *ctx, struct dea_job *job, struct dea_resu
   dea_status status = dea_job_run(ctx->inner, job, result, began);
   snprintf(message, sizeof message, "%s", dea_context_message(ctx->inner));
   dea_status written = *began ? dea_job_write(ctx->inner, job, result) : DEA_OK;
-  result->checkpoint = NULL;
   dea_job_end(ctx->inner, job);
   if (status != DEA_OK && *began) {
     dea_fail(ctx->inner, status, "%s", message); // not what the writer said

@@ -13,8 +13,8 @@ struct dea_keep;
 dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
                                  struct dea_keep **out);
 void dea_checkpoint_destroy(struct dea_context *ctx, struct dea_keep *keep);
-/* For result->checkpoint; lent. Models that are quick (without fields or a state) leave nothing on
- * the way; a model whose curve has points starts from its state in the folder. */
+/* For the services of a run; lent. Models that are quick (without fields or a state) leave nothing
+ * on the way; a model whose curve has points starts from its state in the folder. */
 const struct dea_checkpoint_sink *dea_checkpoint_get_sink(const struct dea_keep *keep);
 
 /* Whether a model could not go on from its state: the folder is another run's then and has to stay

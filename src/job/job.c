@@ -68,7 +68,6 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
     dea_run_folder_clear(ctx, working_folder(job));
   }
   DEA_TRY(ctx, dea_checkpoint_create(ctx, working_folder(job), &job->keep));
-  result->checkpoint = dea_checkpoint_get_sink(job->keep);
   return DEA_OK;
 }
 
@@ -204,13 +203,15 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   DEA_TRY(ctx, dea_job_check(ctx, job, false, result));
   DEA_TRY(ctx, job->status = open_folder(ctx, job, result));
   *began = true;
-  result->rerun = &dea_rerun_designs;
-  result->processes = job->processes;
+  const struct dea_study_services services = {job->keep != NULL ? dea_checkpoint_get_sink(job->keep)
+                                                                : NULL,
+                                              &dea_rerun_designs, job->processes};
   clock_gettime(CLOCK_MONOTONIC, &start);
   for (size_t i = 0;
        i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);
        i++) {
-    dea_status status = dea_study_run(ctx, job->models[i], job->studies, job->study_count, result);
+    dea_status status =
+        dea_study_run_with(ctx, job->models[i], job->studies, job->study_count, &services, result);
     if (status != DEA_OK && first == DEA_OK) {
       first = status;
       snprintf(message, sizeof message, "%s: %s", job->models[i]->name, dea_context_message(ctx));

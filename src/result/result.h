@@ -67,9 +67,6 @@ struct dea_provenance {
   char *command;         // command line; owned, may be NULL
 };
 
-struct dea_checkpoint_sink; // result/checkpoint_sink.h
-struct dea_rerun;           // study/rerun.h
-
 struct dea_result {
   const struct dea_design *design; // lent
   const struct dea_device *device; // lent
@@ -85,9 +82,6 @@ struct dea_result {
   struct dea_result_table *tables; // [table_count] that studies made of what is above
   size_t table_count;
   double convergence_tolerance; // relative error that the study asks for; NAN: it did not run
-  const struct dea_checkpoint_sink *checkpoint; // lent, NULL for none
-  const struct dea_rerun *rerun;                // lent, NULL for none: no bands
-  size_t processes; // that a study may take at the same time; 0 or 1: this one
   struct dea_provenance provenance;
 };
 

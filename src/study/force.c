@@ -366,11 +366,12 @@ static dea_status gather(struct dea_context *ctx, struct lines *lines, size_t st
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+                      struct dea_model *model, const struct dea_study_services *services,
+                      struct dea_result *result)
 {
   (void)model; // none: it has no tip
   struct press press = {.type = type, .result = result};
-  struct lines lines = {.most = result->processes};
+  struct lines lines = {.most = services->processes};
   size_t stops = dea_force_stops(result->design);
   char what[DEA_NAME_SIZE + 8];
   struct dea_curve *curve;
@@ -655,7 +656,7 @@ const struct dea_study dea_study_force = {
     .own_models = true,
     .ability = "indentation by a tip",
     .able = able,
-    .run = run,
+    .run_with = run,
     .tables = tables,
     .figures = figures,
     .figure_count = sizeof figures / sizeof figures[0],

@@ -1,6 +1,6 @@
 /* What study "uncertainty" asks of who runs it: numbers of the design by their keys, and studies of
- * the same design with other numbers. It is handed over by a result, as a study that read designs
- * itself would tie the reader of designs, which knows all studies, to itself. */
+ * the same design with other numbers. It is handed over by who runs it, as a study that read
+ * designs itself would tie the reader of designs, which knows all studies, to itself. */
 #pragma once
 
 #include "study/device_param.h"
@@ -25,5 +25,5 @@ struct dea_rerun {
                     struct dea_result **out);
 };
 
-/* For the member `rerun` of a result. */
+/* For the services of a run. */
 extern const struct dea_rerun dea_rerun_designs;

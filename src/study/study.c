@@ -260,6 +260,14 @@ static dea_status make_model(struct dea_context *ctx, const struct dea_model_typ
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          const char *const names[], size_t name_count, struct dea_result *result)
 {
+  return dea_study_run_with(ctx, type, names, name_count, NULL, result);
+}
+
+dea_status dea_study_run_with(struct dea_context *ctx, const struct dea_model_type *type,
+                              const char *const names[], size_t name_count,
+                              const struct dea_study_services *services, struct dea_result *result)
+{
+  static const struct dea_study_services none = {0};
   struct dea_model *model = NULL; // made for the first study that wants it
   DEA_TRY(ctx, dea_study_check(ctx, names, name_count, result->design));
   struct outcome first = {.status = DEA_OK};
@@ -275,7 +283,11 @@ dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *t
       const bool sweeps = is_wanted(&dea_study_sweep, names, name_count, result->design);
       DEA_TRY(ctx, make_model(ctx, type, sweeps, result, &model));
     }
-    dea_status status = studies[i]->run(ctx, type, studies[i]->own_models ? NULL : model, result);
+    struct dea_model *lent = studies[i]->own_models ? NULL : model;
+    dea_status status =
+        studies[i]->run != NULL
+            ? studies[i]->run(ctx, type, lent, result)
+            : studies[i]->run_with(ctx, type, lent, services != NULL ? services : &none, result);
     take(ctx, status, &first);
     if (status == DEA_E_MEMORY) {
       break;

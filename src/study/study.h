@@ -7,6 +7,16 @@
 #include "result/figure.h"
 #include "result/result.h"
 
+struct dea_checkpoint_sink; // result/checkpoint_sink.h
+struct dea_rerun;           // study/rerun.h
+
+/* What a run lends to its studies. */
+struct dea_study_services {
+  const struct dea_checkpoint_sink *checkpoint; // who keeps a sweep as it goes; NULL: nobody
+  const struct dea_rerun *rerun;                // NULL for none: no bands
+  size_t processes; // that a study may take at the same time; 0 or 1: this one
+};
+
 struct dea_study {
   const char *name;
   const struct dea_design_section *keys; // compute.NAME: its keys and settings; NULL: none
@@ -27,6 +37,9 @@ struct dea_study {
    * result when it fails; the curve then says why it stopped. */
   dea_status (*run)(struct dea_context *ctx, const struct dea_model_type *type,
                     struct dea_model *model, struct dea_result *result);
+  dea_status (*run_with)(struct dea_context *ctx, const struct dea_model_type *type,
+                         struct dea_model *model, const struct dea_study_services *services,
+                         struct dea_result *result); // in its place where it takes them
   /* Makes tables (result/table.h) of what the result has of that model; NULL: none. */
   dea_status (*tables)(struct dea_context *ctx, const char *model, struct dea_result *result);
   const struct dea_figure *figures; // [figure_count] of what a result has of it
@@ -39,6 +52,10 @@ struct dea_study {
  * keys the design lacks. */
 dea_status dea_study_run(struct dea_context *ctx, const struct dea_model_type *type,
                          const char *const names[], size_t name_count, struct dea_result *result);
+/* The same with services; NULL for none. */
+dea_status dea_study_run_with(struct dea_context *ctx, const struct dea_model_type *type,
+                              const char *const names[], size_t name_count,
+                              const struct dea_study_services *services, struct dea_result *result);
 /* Whether these names can be run for a design, as above; NULL: what it asks for, which can. */
 dea_status dea_study_check(struct dea_context *ctx, const char *const names[], size_t name_count,
                            const struct dea_design *design);

@@ -81,10 +81,9 @@ static dea_status mark_design(struct dea_context *ctx, const struct dea_result *
 
 /* Gives fields and state of the last point to who keeps them. */
 static dea_status keep_point(struct dea_context *ctx, const struct dea_model_type *type,
-                             struct dea_model *model, const struct dea_result *result,
-                             const struct dea_curve *curve)
+                             struct dea_model *model, const struct dea_checkpoint_sink *sink,
+                             const struct dea_result *result, const struct dea_curve *curve)
 {
-  const struct dea_checkpoint_sink *sink = result->checkpoint;
   struct dea_field_mesh *fields = NULL;
   struct dea_state state = {0};
   struct dea_text identity = {.ctx = ctx};
@@ -108,9 +107,9 @@ static dea_status keep_point(struct dea_context *ctx, const struct dea_model_typ
 
 /* Brings a model to the state that was kept at the last point of a curve. */
 static dea_status restore(struct dea_context *ctx, const struct dea_model_type *type,
-                          struct dea_model *model, const struct dea_result *result)
+                          struct dea_model *model, const struct dea_checkpoint_sink *sink,
+                          const struct dea_result *result)
 {
-  const struct dea_checkpoint_sink *sink = result->checkpoint;
   struct dea_state wanted = {0}, state = {0};
   struct dea_text identity = {.ctx = ctx};
   dea_status status = dea_model_save(ctx, type, model, &wanted);
@@ -141,7 +140,8 @@ static dea_status add_passed(struct dea_context *ctx, const struct dea_model_typ
 
 /* Solves one voltage and adds its point, profile and surface. */
 static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_type *type,
-                              struct dea_model *model, double voltage_V, struct dea_result *result,
+                              struct dea_model *model, double voltage_V,
+                              const struct dea_checkpoint_sink *sink, struct dea_result *result,
                               struct dea_curve *curve)
 {
   struct dea_load_point point;
@@ -156,7 +156,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
   DEA_TRY(ctx, dea_study_add_point(ctx, type, model, result->device, &point, curve));
   DEA_TRY(ctx, add_profile(ctx, type, model, voltage_V, result));
   DEA_TRY(ctx, add_surface(ctx, type, model, curve, result));
-  return result->checkpoint != NULL ? keep_point(ctx, type, model, result, curve) : DEA_OK;
+  return sink != NULL ? keep_point(ctx, type, model, sink, result, curve) : DEA_OK;
 }
 
 /* What a curve says of itself until its sweep has come to an end: it is kept on the way. */
@@ -208,8 +208,10 @@ static dea_status say_trust(struct dea_context *ctx, const struct dea_model_type
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+                      struct dea_model *model, const struct dea_study_services *services,
+                      struct dea_result *result)
 {
+  const struct dea_checkpoint_sink *sink = services->checkpoint;
   const struct dea_design *design = result->design;
   size_t total = design->compute.voltage_count;
   char what[DEA_NAME_SIZE + 8];
@@ -219,11 +221,11 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   open_curve(curve);
   DEA_TRY(ctx, dea_study_observe_passes(ctx, type, model, result));
   dea_status status = DEA_OK;
-  if (result->checkpoint != NULL && type->load != NULL && curve->count > 0) {
-    status = restore(ctx, type, model, result);
+  if (sink != NULL && type->load != NULL && curve->count > 0) {
+    status = restore(ctx, type, model, sink, result);
   }
   for (size_t i = curve->count; i < total && status == DEA_OK; i++) {
-    status = sweep_point(ctx, type, model, design->compute.voltages_V[i], result, curve);
+    status = sweep_point(ctx, type, model, design->compute.voltages_V[i], sink, result, curve);
     if (status == DEA_OK) {
       dea_progress(ctx, what, i + 1, total);
     }
@@ -239,6 +241,6 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
 }
 
 const struct dea_study dea_study_sweep = {.name = "sweep",
-                                          .run = run,
+                                          .run_with = run,
                                           .figures = dea_observe_figures,
                                           .figure_count = DEA_OBSERVE_FIGURES};

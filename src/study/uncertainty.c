@@ -107,6 +107,7 @@ static const struct dea_design_section section = {
 struct work {
   struct dea_context *ctx;
   const struct dea_model_type *type;
+  const struct dea_rerun *rerun;
   struct dea_result *result;
   struct dea_design_bytes file; // the design as it was read, with what --set changed
   struct dea_text text;         // behind it
@@ -126,7 +127,7 @@ static dea_status add_given(struct work *w, const struct given *given, bool *goo
                                                  .device = w->result->device};
   struct dea_device_param *param = &w->params[w->count];
   double std;
-  DEA_TRY(w->ctx, w->result->rerun->find(w->ctx, &source, &given->name, param, good));
+  DEA_TRY(w->ctx, w->rerun->find(w->ctx, &source, &given->name, param, good));
   if (!*good) {
     return DEA_OK;
   }
@@ -135,7 +136,7 @@ static dea_status add_given(struct work *w, const struct given *given, bool *goo
     return dea_finding_add(w->ctx, DEA_ERROR, given->name.location,
                            "the design has no single value of %.60s", given->name.text);
   }
-  DEA_TRY(w->ctx, w->result->rerun->read_std(w->ctx, param, &given->std, &std, good));
+  DEA_TRY(w->ctx, w->rerun->read_std(w->ctx, param, &given->std, &std, good));
   if (!*good) {
     return DEA_OK;
   }
@@ -273,8 +274,7 @@ static dea_status take(struct work *w, const double *p, struct dea_result **out)
       names[count++] = kinds[k];
     }
   }
-  return w->result->rerun->run(w->ctx, w->type, &w->file, w->params, w->count, p, names, count,
-                               out);
+  return w->rerun->run(w->ctx, w->type, &w->file, w->params, w->count, p, names, count, out);
 }
 
 static dea_status vary(struct work *w)
@@ -437,7 +437,7 @@ static dea_status tell_sides(struct work *w)
       if (isnan(at_V)) {
         continue;
       }
-      w->result->rerun->show(&w->params[j], w->value[j] + side * w->step[j], text);
+      w->rerun->show(&w->params[j], w->value[j] + side * w->step[j], text);
       DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_WARNING, (struct dea_location){0},
                                       "model %s: from %.6g kV on a film with %s %s has no such "
                                       "state; bands there are those of the other side",
@@ -530,7 +530,7 @@ static dea_status add_table(struct work *w)
 static dea_status find_all(struct work *w, const struct dea_settings *given)
 {
   struct dea_context *ctx = w->ctx;
-  if (w->result->rerun == NULL) { // of who runs single studies by hand
+  if (w->rerun == NULL) { // of who runs single studies by hand
     return DEA_OK;
   }
   DEA_TRY(ctx, find_params(w, given->values));
@@ -569,8 +569,8 @@ dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_desig
   if (w == NULL) {
     return DEA_E_MEMORY;
   }
-  struct dea_result nothing = {.design = design, .device = device, .rerun = rerun};
-  *w = (struct work){.ctx = ctx, .result = &nothing};
+  struct dea_result nothing = {.design = design, .device = device};
+  *w = (struct work){.ctx = ctx, .rerun = rerun, .result = &nothing};
   dea_status status = find_params(w, given->values);
   dea_free(ctx, w);
   DEA_TRY(ctx, status);
@@ -578,14 +578,16 @@ dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_desig
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
-                      struct dea_model *model, struct dea_result *result)
+                      struct dea_model *model, const struct dea_study_services *services,
+                      struct dea_result *result)
 {
   (void)model; // none: each device has its own
   struct work *w = dea_alloc(ctx, 1, sizeof *w);
   if (w == NULL) {
     return DEA_E_MEMORY;
   }
-  *w = (struct work){.ctx = ctx, .type = type, .result = result, .text = {.ctx = ctx}};
+  *w = (struct work){
+      .ctx = ctx, .type = type, .rerun = services->rerun, .result = result, .text = {.ctx = ctx}};
   dea_status status = find_all(w, dea_design_settings(result->design, &section));
   for (size_t j = 0; j < w->count; j++) {
     dea_result_destroy(ctx, w->plus[j]);
@@ -611,4 +613,4 @@ static bool asked(const struct dea_design *design)
 }
 
 const struct dea_study dea_study_uncertainty = {
-    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run = run};
+    .name = study_name, .keys = &section, .asked = asked, .own_models = true, .run_with = run};

@@ -148,8 +148,8 @@ static dea_status run(struct dea_context *c, const char *name, size_t count, boo
     status = dea_checkpoint_create(c, directory, &keep);
   }
   if (status == DEA_OK) {
-    result->checkpoint = dea_checkpoint_get_sink(keep);
-    status = dea_study_run(c, &fake_type, NULL, 0, result);
+    const struct dea_study_services services = {.checkpoint = dea_checkpoint_get_sink(keep)};
+    status = dea_study_run_with(c, &fake_type, NULL, 0, &services, result);
     const struct dea_curve *sweep = dea_result_find(result, "fake", "sweep");
     *z = sweep != NULL && sweep->count > 0 ? sweep->points[sweep->count - 1].centre_z_m : NAN;
     if (status == DEA_OK) {

@@ -84,8 +84,9 @@ TEST(test_beside)
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   for (size_t i = 0; i < 2; i++) {
     assert_int_equal(dea_result_create(ctx, design, device, &results[i]), DEA_OK);
-    results[i]->processes = i + 1;
-    assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), &name, 1, results[i]), DEA_OK);
+    const struct dea_study_services services = {.processes = i + 1};
+    assert_int_equal(dea_study_run_with(ctx, dea_model_find("3d"), &name, 1, &services, results[i]),
+                     DEA_OK);
     curves[i] = dea_result_find(results[i], "3d", name);
     assert_int_equal(curves[i]->count, 6);
   }

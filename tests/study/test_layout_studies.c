@@ -52,8 +52,10 @@ static struct run run_studies(const struct dea_override *overrides, size_t count
   }
   assert_int_equal(status, DEA_OK);
   assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
-  run.result->rerun = &dea_rerun_designs;
-  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, name_count, run.result), DEA_OK);
+  const struct dea_study_services services = {.rerun = &dea_rerun_designs};
+  assert_int_equal(
+      dea_study_run_with(ctx, dea_model_find("3d"), names, name_count, &services, run.result),
+      DEA_OK);
   return run;
 }
 
@@ -208,8 +210,9 @@ TEST(test_uncertain_laws)
   const struct dea_override written = {"compute.uncertainty", "{}"};
   assert_int_equal(read_and_build(ctx, text, &written, 1, &run.design, &run.device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
-  run.result->rerun = &dea_rerun_designs;
-  assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), names, 2, run.result), DEA_OK);
+  const struct dea_study_services services = {.rerun = &dea_rerun_designs};
+  assert_int_equal(dea_study_run_with(ctx, dea_model_find("3d"), names, 2, &services, run.result),
+                   DEA_OK);
   const struct dea_result_table *table =
       dea_result_find_table(run.result, "3d", "uncertainty", "effects");
   assert_non_null(table);

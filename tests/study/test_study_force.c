@@ -285,8 +285,8 @@ static dea_status run_film(const char *const settings[3], struct dea_design **de
   film.solves = 0;
   jumped = false;
   make(sets, settings[2] != NULL ? 3 : 2, design, device, result);
-  (*result)->processes = film.processes;
-  return dea_study_run(ctx, &type, &name, 1, *result);
+  const struct dea_study_services services = {.processes = film.processes};
+  return dea_study_run_with(ctx, &type, &name, 1, &services, *result);
 }
 
 #define TO_8_KV "{from: 0 kV, to: 8 kV, step: 0.1 kV}"

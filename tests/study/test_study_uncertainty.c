@@ -21,15 +21,11 @@
            "    correlations: [0.5]\n"
 
 static const char *const both[] = {"sweep", "uncertainty"};
-static void set_up_bands(const char *text)
-{
-  set_up_result(text, NULL, 0);
-  result->rerun = &dea_rerun_designs;
-}
-
+static const struct dea_study_services services = {.rerun = &dea_rerun_designs};
 static const struct dea_curve *run_sweep(const char *model)
 {
-  assert_int_equal(dea_study_run(ctx, dea_model_find(model), both, 2, result), DEA_OK);
+  assert_int_equal(dea_study_run_with(ctx, dea_model_find(model), both, 2, &services, result),
+                   DEA_OK);
   const struct dea_curve *sweep = dea_result_find(result, model, "sweep");
   assert_non_null(sweep);
   return sweep;
@@ -39,7 +35,7 @@ static const struct dea_curve *run_sweep(const char *model)
  * opposite sign. */
 TEST(test_capacitance_at_rest)
 {
-  set_up_bands(GOOD_DESIGN GIVEN);
+  set_up_result(GOOD_DESIGN GIVEN, NULL, 0);
   const struct dea_curve *sweep = run_sweep("lumped");
   assert_non_null(sweep->std);
   const double of_h = -0.02, of_l = 4 * 0.01 / 1.5;
@@ -70,7 +66,7 @@ TEST(test_law_goes_as_voltage)
 {
   static const char *const models[] = {"lumped", "axisymmetric"};
   for (int m = 0; m < 2; m++) {
-    set_up_bands(law_design("[-1, 1, -1]")); // c2 is negative
+    set_up_result(law_design("[-1, 1, -1]"), NULL, 0); // c2 is negative
     const double r = 0.02;
     const struct dea_curve *sweep = run_sweep(models[m]);
     assert_non_null(sweep->std);
@@ -94,7 +90,7 @@ TEST(test_law_goes_as_voltage)
 /* Independent parameters: less than those that go together, and c1 the largest of them. */
 TEST(test_correlations_count)
 {
-  set_up_bands(law_design("[-1, 1, -1]"));
+  set_up_result(law_design("[-1, 1, -1]"), NULL, 0);
   const double together = run_sweep("lumped")->std[2].electrode_stretch;
   const struct dea_result_table *table =
       dea_result_find_table(result, "lumped", "uncertainty", "effects");
@@ -112,7 +108,7 @@ TEST(test_correlations_count)
     squares += pow(dea_result_table_number(table, j, "change", 0), 2);
   }
   tear_down_result();
-  set_up_bands(law_design("[0, 0, 0]"));
+  set_up_result(law_design("[0, 0, 0]"), NULL, 0);
   assert_close(run_sweep("lumped")->std[2].electrode_stretch, sqrt(squares), 1e-9, 0);
   tear_down_result();
 }
@@ -128,12 +124,12 @@ TEST(test_other_side_alone)
   snprintf(text, sizeof text, "%s%s%s", GOOD_DESIGN, steps, given);
   snprintf(thick, sizeof thick, "%s%s", GOOD_DESIGN, steps);
   memcpy(strstr(thick, "thickness: 100 um"), "thickness: 103 um", 17);
-  set_up_bands(thick);
+  set_up_result(thick, NULL, 0);
   assert_int_equal(dea_study_run(ctx, type, both, 1, result), DEA_OK);
   struct dea_result *other = result;
   struct dea_design *its = design;
   struct dea_device *their = device;
-  set_up_bands(text);
+  set_up_result(text, NULL, 0);
   const struct dea_curve *sweep = run_sweep("axisymmetric");
   const struct dea_curve *thicker = dea_result_find(other, "axisymmetric", "sweep");
   const unsigned slack = 1u << DEA_FLAG_SLACK;
@@ -171,14 +167,15 @@ TEST(test_nothing_and_errors)
       {"{parameters: [{name: film.thickness, std: 0 um}]}", "more than 0"},
       {"{parameters: [{name: film.law.mu, std: 1 kPa}]}", "no parameter of the law"},
   };
-  set_up_bands(GOOD_DESIGN VOLTAGES);
+  set_up_result(GOOD_DESIGN VOLTAGES, NULL, 0);
   assert_null(run_sweep("lumped")->std);
   tear_down_result();
   for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
     char text[4000];
     snprintf(text, sizeof text, "%s  uncertainty: %s\n", GOOD_DESIGN VOLTAGES, bad[k].section);
-    set_up_bands(text);
-    assert_int_equal(dea_study_run(ctx, dea_model_find("lumped"), both, 2, result), DEA_E_DESIGN);
+    set_up_result(text, NULL, 0);
+    assert_int_equal(dea_study_run_with(ctx, dea_model_find("lumped"), both, 2, &services, result),
+                     DEA_E_DESIGN);
     assert_non_null(find_error(ctx, bad[k].part));
     dea_context_clear(ctx);
     dea_finding_clear(ctx);
@@ -211,7 +208,7 @@ TEST(test_is_kept)
   struct dea_run *run;
   struct dea_measurement *measured;
   char *text;
-  set_up_bands(GOOD_DESIGN GIVEN);
+  set_up_result(GOOD_DESIGN GIVEN, NULL, 0);
   const struct dea_curve *sweep = run_sweep("lumped");
   assert_int_equal(dea_results_h5_write(ctx, result, in_folder("r.h5")), DEA_OK);
   assert_int_equal(dea_run_read(ctx, in_folder("r.h5"), &run), DEA_OK);
@@ -253,8 +250,7 @@ static void run_once(struct dea_context *failing)
     status = dea_result_create(failing, mine, its, &found);
   }
   if (status == DEA_OK) {
-    found->rerun = &dea_rerun_designs;
-    status = dea_study_run(failing, dea_model_find("lumped"), both, 2, found);
+    status = dea_study_run_with(failing, dea_model_find("lumped"), both, 2, &services, found);
   }
   if (status == DEA_OK) {
     assert_non_null(dea_result_find(found, "lumped", "sweep")->std);
