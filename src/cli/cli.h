@@ -224,10 +224,13 @@ int cli_report(struct dea_cli *cli, dea_status status);
 /* Prints "dea COMMAND: text" and a hint to --help; returns the exit code of a usage error. */
 int cli_usage_error(struct dea_cli *cli, const struct dea_command *command, const char *format, ...)
     DEA_PRINTF(3, 4);
-/* Reads the design and builds its device; both owned by the caller, also after a failure. */
-dea_status cli_build_device(struct dea_cli *cli, const char *file,
-                            const struct cli_overrides *overrides, struct dea_design **design,
-                            struct dea_device **device);
+/* Reads a design, builds its device, hands both to `work` with a request, and reports; returns the
+ * exit code. */
+typedef dea_status cli_device_work(struct dea_cli *cli, const void *request,
+                                   const struct dea_design *design,
+                                   const struct dea_device *device);
+int cli_with_device(struct dea_cli *cli, const char *file, const struct cli_overrides *overrides,
+                    cli_device_work *work, const void *request);
 /* Where the results of a file go: `given`, or where that is NULL the file's name without ending,
  * plus ".ENDING", in the current folder, which `made` holds. NULL: no memory. */
 const char *cli_output_name(const char *given, const char *file, const char *outcome,

@@ -82,7 +82,6 @@ static dea_status write_files(struct dea_cli *cli, const struct request *request
   }
   if (status == DEA_OK && request->json) {
     print_json(workshop, request, &options, directory);
-    fflush(stdout);
   } else if (status == DEA_OK && !cli->quiet) {
     fprintf(stderr, "files for the workshop are in %s\n", directory);
   }
@@ -90,24 +89,20 @@ static dea_status write_files(struct dea_cli *cli, const struct request *request
   return status;
 }
 
+static dea_status make(struct dea_cli *cli, const void *request, const struct dea_design *design,
+                       const struct dea_device *device)
+{
+  struct dea_workshop *workshop;
+  DEA_TRY(cli->ctx, dea_workshop_create(cli->ctx, design, device, &workshop));
+  const dea_status status = write_files(cli, request, workshop);
+  dea_workshop_destroy(cli->ctx, workshop);
+  return status;
+}
+
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  struct dea_design *design = NULL;
-  struct dea_device *device = NULL;
-  struct dea_workshop *workshop = NULL;
-  dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
-  if (status == DEA_OK) {
-    status = dea_workshop_create(cli->ctx, design, device, &workshop);
-  }
-  if (status == DEA_OK) {
-    status = write_files(cli, request, workshop);
-  }
-  int code = cli_report(cli, status);
-  dea_workshop_destroy(cli->ctx, workshop);
-  dea_device_destroy(cli->ctx, device);
-  dea_design_destroy(cli->ctx, design);
-  return code;
+  return cli_with_device(cli, request->design, &request->overrides, make, request);
 }
 
 static const struct cli_option options[] = {

@@ -92,12 +92,13 @@ static void print_mesh(const struct request *request, const struct dea_layout_me
   print_quality(request, grid);
 }
 
-static dea_status make_mesh(struct dea_cli *cli, const struct request *request,
-                            const struct dea_device *device,
-                            const struct dea_model_settings *settings)
+static dea_status make_mesh(struct dea_cli *cli, const void *user, const struct dea_design *design,
+                            const struct dea_device *device)
 {
+  const struct request *request = user;
+  const struct dea_model_settings settings = dea_model_settings_of(design);
   struct dea_layout_mesh mesh;
-  dea_status status = dea_device_mesh_create(cli->ctx, device, settings, &mesh);
+  dea_status status = dea_device_mesh_create(cli->ctx, device, &settings, &mesh);
   if (status == DEA_OK && request->output != NULL) {
     status = dea_layout_mesh_write(cli->ctx, &mesh, request->output);
   }
@@ -127,21 +128,10 @@ static dea_status refuse_output(struct dea_cli *cli, const struct request *reque
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  struct dea_design *design = NULL;
-  struct dea_device *device = NULL;
-  dea_status status = refuse_output(cli, request);
-  if (status == DEA_OK) {
-    status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
-  }
-  if (status == DEA_OK) {
-    const struct dea_model_settings settings = dea_model_settings_of(design);
-    status = make_mesh(cli, request, device, &settings);
-    fflush(stdout);
-  }
-  int code = cli_report(cli, status);
-  dea_device_destroy(cli->ctx, device);
-  dea_design_destroy(cli->ctx, design);
-  return code;
+  const dea_status status = refuse_output(cli, request);
+  return status == DEA_OK
+             ? cli_with_device(cli, request->design, &request->overrides, make_mesh, request)
+             : cli_report(cli, status);
 }
 
 static const struct cli_option options[] = {

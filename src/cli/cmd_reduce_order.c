@@ -39,9 +39,10 @@ static void print_order(const struct request *request, const struct dea_reduced_
   }
 }
 
-static dea_status make(struct dea_cli *cli, const struct request *request,
-                       const struct dea_design *design, const struct dea_device *device)
+static dea_status make(struct dea_cli *cli, const void *user, const struct dea_design *design,
+                       const struct dea_device *device)
 {
+  const struct request *request = user;
   struct dea_model_settings settings = dea_model_settings_of(design);
   struct dea_reduced_order *order;
   dea_status status = dea_model_check(cli->ctx, dea_model_find("reduced"), design, device);
@@ -67,17 +68,7 @@ static dea_status make(struct dea_cli *cli, const struct request *request,
 static int run(struct dea_cli *cli, void *user)
 {
   const struct request *request = user;
-  struct dea_design *design = NULL;
-  struct dea_device *device = NULL;
-  dea_status status = cli_build_device(cli, request->design, &request->overrides, &design, &device);
-  if (status == DEA_OK) {
-    status = make(cli, request, design, device);
-    fflush(stdout);
-  }
-  int code = cli_report(cli, status);
-  dea_device_destroy(cli->ctx, device);
-  dea_design_destroy(cli->ctx, design);
-  return code;
+  return cli_with_device(cli, request->design, &request->overrides, make, request);
 }
 
 static const struct cli_option options[] = {

@@ -306,13 +306,19 @@ const char *cli_output_name(const char *given, const char *file, const char *out
   return made->failed ? NULL : dea_text_get(made);
 }
 
-dea_status cli_build_device(struct dea_cli *cli, const char *file,
-                            const struct cli_overrides *overrides, struct dea_design **design,
-                            struct dea_device **device)
+int cli_with_device(struct dea_cli *cli, const char *file, const struct cli_overrides *overrides,
+                    cli_device_work *work, const void *request)
 {
-  *device = NULL;
-  DEA_TRY(cli->ctx, dea_design_read(cli->ctx, file, overrides->at, overrides->count, design));
-  return dea_device_build(cli->ctx, *design, device);
+  struct dea_design *design = NULL;
+  struct dea_device *device = NULL;
+  dea_status status = dea_design_read(cli->ctx, file, overrides->at, overrides->count, &design);
+  status = status == DEA_OK ? dea_device_build(cli->ctx, design, &device) : status;
+  status = status == DEA_OK ? work(cli, request, design, device) : status;
+  fflush(stdout);
+  const int code = cli_report(cli, status);
+  dea_device_destroy(cli->ctx, device);
+  dea_design_destroy(cli->ctx, design);
+  return code;
 }
 
 int cli_take_processes(struct dea_cli *cli, const struct dea_command *command,
