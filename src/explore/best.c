@@ -350,17 +350,6 @@ static bool is_within(const struct dea_search *search, const double *looked)
   return true;
 }
 
-static dea_status add_series(struct work *w, struct dea_panel *panel, size_t count,
-                             const char *title, enum dea_series_style style, enum dea_colour colour,
-                             struct dea_series **out)
-{
-  DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, count, out));
-  snprintf((*out)->title, sizeof(*out)->title, "%s", title);
-  (*out)->style = style;
-  (*out)->colour = colour;
-  return DEA_OK;
-}
-
 /* Where designs lie: x and y of each case, in series of those within and beyond the limits. of_x:
  * an objective, or -1: the number of the evaluation, and the best so far as a line. */
 static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, int of_y)
@@ -371,10 +360,12 @@ static dea_status fill_plot(struct work *w, struct dea_panel *panel, int of_x, i
   struct dea_series *beyond, *within, *line;
   const size_t points = of_x < 0 ? count : w->report->count;
   double best = INFINITY;
-  DEA_TRY(w->ctx, add_series(w, panel, count, "beyond a limit", DEA_MARKERS, DEA_GREY, &beyond));
-  DEA_TRY(w->ctx, add_series(w, panel, count, "within the limits", DEA_MARKERS, DEA_SKY, &within));
-  DEA_TRY(w->ctx, add_series(w, panel, points, of_x < 0 ? "best so far" : "front",
-                             of_x < 0 ? DEA_LINE : DEA_LINE_MARKED, DEA_VERMILLION, &line));
+  DEA_TRY(w->ctx,
+          dea_panel_add(w->ctx, panel, count, DEA_MARKERS, DEA_GREY, "beyond a limit", &beyond));
+  DEA_TRY(w->ctx,
+          dea_panel_add(w->ctx, panel, count, DEA_MARKERS, DEA_SKY, "within the limits", &within));
+  DEA_TRY(w->ctx, dea_panel_add(w->ctx, panel, points, of_x < 0 ? DEA_LINE : DEA_LINE_MARKED,
+                                DEA_VERMILLION, of_x < 0 ? "best so far" : "front", &line));
   dea_figure_label(y, panel->y_label, sizeof panel->y_label);
   snprintf(panel->x_label, sizeof panel->x_label, "Evaluations");
   const struct dea_column *x =

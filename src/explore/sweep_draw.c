@@ -7,16 +7,6 @@
 
 #include <stdio.h>
 
-static dea_status add_series(struct dea_context *ctx, struct dea_panel *panel, size_t count,
-                             enum dea_series_style style, enum dea_colour colour,
-                             struct dea_series **out)
-{
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
-  (*out)->style = style;
-  (*out)->colour = colour;
-  return DEA_OK;
-}
-
 /* Spreads of a quantity at all voltages and how it is shown. */
 struct shown {
   const struct dea_case_key *case_key;
@@ -44,8 +34,7 @@ static dea_status add_bands(const struct shown *shown, struct dea_panel *panel)
   for (size_t k = 0; k < 2; k++) { // from the outer pair inwards
     struct dea_series *band;
     DEA_TRY(shown->case_key->ctx,
-            add_series(shown->case_key->ctx, panel, n, DEA_BAND, colours[k], &band));
-    snprintf(band->title, sizeof band->title, "%s", titles[k]);
+            dea_panel_add(shown->case_key->ctx, panel, n, DEA_BAND, colours[k], titles[k], &band));
     for (size_t v = 0; v < n; v++) {
       put(shown, v, k, band);
     }
@@ -66,9 +55,9 @@ static dea_status add_line(const struct shown *shown, struct dea_panel *panel, b
 {
   const size_t n = shown->case_key->voltage_count;
   struct dea_series *line;
-  DEA_TRY(shown->case_key->ctx, add_series(shown->case_key->ctx, panel, n,
-                                           dashed ? DEA_DASHED : DEA_LINE_MARKED, DEA_BLUE, &line));
-  snprintf(line->title, sizeof line->title, "%s", title);
+  DEA_TRY(shown->case_key->ctx,
+          dea_panel_add(shown->case_key->ctx, panel, n, dashed ? DEA_DASHED : DEA_LINE_MARKED,
+                        DEA_BLUE, title, &line));
   for (size_t v = 0; v < n; v++) {
     const bool beside = (v > 0 && is_doubted(shown, v - 1)) || is_doubted(shown, v + 1);
     if (dashed ? is_doubted(shown, v) || beside : !is_doubted(shown, v)) {

@@ -41,15 +41,6 @@ static int rising(const void *a, const void *b)
   return (x->at > y->at) - (x->at < y->at);
 }
 
-static dea_status add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
-                      enum dea_series_style style, enum dea_colour colour, struct dea_series **out)
-{
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
-  (*out)->style = style;
-  (*out)->colour = colour;
-  return DEA_OK;
-}
-
 /* What is drawn of one curve. */
 struct look {
   struct dea_series *band, *designed, *model, *data, *left_out, *residual;
@@ -61,22 +52,18 @@ static dea_status add_series(struct dea_context *ctx, struct dea_plot *plot,
   const enum dea_colour colour = colours[number % COLOURS];
   struct dea_panel *top = &plot->panels[0], *below = &plot->panels[1];
   const size_t n = curve->rows;
-  DEA_TRY(ctx, add(ctx, top, n, DEA_BAND, DEA_GREY, &out->band));
-  DEA_TRY(ctx, add(ctx, top, n, DEA_DASHED, DEA_BLACK, &out->designed));
-  DEA_TRY(ctx, add(ctx, top, n, DEA_LINE, colour, &out->model));
-  DEA_TRY(ctx, add(ctx, top, n, DEA_ERROR_BARS, colour, &out->data));
-  DEA_TRY(ctx, add(ctx, top, n, DEA_MARKERS, DEA_GREY, &out->left_out));
-  DEA_TRY(ctx, add(ctx, below, n, DEA_ERROR_BARS, colour, &out->residual));
+  DEA_TRY(ctx, dea_panel_add(ctx, top, n, DEA_BAND, DEA_GREY, "", &out->band));
+  DEA_TRY(ctx, dea_panel_add(ctx, top, n, DEA_DASHED, DEA_BLACK, number == 0 ? "as designed" : "",
+                             &out->designed));
+  DEA_TRY(ctx, dea_panel_add(ctx, top, n, DEA_LINE, colour, number == 0 ? "as fitted" : "",
+                             &out->model));
+  DEA_TRY(ctx, dea_panel_add(ctx, top, n, DEA_ERROR_BARS, colour, "", &out->data));
+  DEA_TRY(ctx, dea_panel_add(ctx, top, n, DEA_MARKERS, DEA_GREY,
+                             curve->slack > 0 ? "slack, left out" : "", &out->left_out));
+  DEA_TRY(ctx, dea_panel_add(ctx, below, n, DEA_ERROR_BARS, colour, "", &out->residual));
   out->data->marker = out->residual->marker = (int)number;
   out->left_out->marker = (int)number;
   dea_label_escape(curve->text->name.text, out->data->title, sizeof out->data->title);
-  if (number == 0) {
-    snprintf(out->designed->title, sizeof out->designed->title, "as designed");
-    snprintf(out->model->title, sizeof out->model->title, "as fitted");
-  }
-  if (curve->slack > 0) {
-    snprintf(out->left_out->title, sizeof out->left_out->title, "slack, left out");
-  }
   return DEA_OK;
 }
 

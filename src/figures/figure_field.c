@@ -26,14 +26,10 @@ static dea_status add_breakdown(struct dea_context *ctx, struct dea_panel *panel
                                 const struct dea_curve *curve, double top)
 {
   struct dea_series *band, *line;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, &band));
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, &line));
-  band->style = DEA_BAND;
-  band->colour = DEA_VERMILLION;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, curve->count, DEA_BAND, DEA_VERMILLION, "", &band));
+  DEA_TRY(ctx,
+          dea_panel_add(ctx, panel, curve->count, DEA_DOTTED, DEA_BLACK, "breakdown field", &line));
   band->to_top = true;
-  line->style = DEA_DOTTED;
-  line->colour = DEA_BLACK;
-  snprintf(line->title, sizeof line->title, "breakdown field");
   for (size_t i = 0; i < curve->count; i++) {
     double at = breakdown_field(&curve->points[i]);
     if (!isfinite(at) && i + 1 < curve->count) {

@@ -14,11 +14,8 @@ static dea_status add(struct dea_context *ctx, struct dea_panel *panel,
 {
   struct dea_series *series;
   size_t n = record->count;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &series));
-  series->style = style;
-  series->colour = colour;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, style, colour, title, &series));
   series->width = width;
-  snprintf(series->title, sizeof series->title, "%s", title);
   for (size_t i = 0; i < n; i++) {
     series->values[i] = dea_profile_columns[0].factor * record->columns[i];
     series->values[n + i] =

@@ -16,7 +16,8 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
   size_t count;
   struct dea_series *series;
   DEA_TRY(ctx, dea_surface_lattice_section(ctx, drawing, angle, &found, &count));
-  dea_status status = dea_panel_add(ctx, panel, count, &series);
+  dea_status status =
+      dea_panel_add(ctx, panel, count, look->style, look->colour, look->title, &series);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     series->values[i] = 1e3 * found[i];
     panel->x_max = fmax(panel->x_max, fabs(series->values[i]));
@@ -25,10 +26,7 @@ static dea_status add_diameter(struct dea_context *ctx, struct dea_panel *panel,
   }
   dea_free(ctx, found);
   DEA_TRY(ctx, status);
-  series->style = look->style;
-  series->colour = look->colour;
   series->aside = look->aside;
-  snprintf(series->title, sizeof series->title, "%s", look->title);
   return DEA_OK;
 }
 

@@ -17,9 +17,7 @@ static double x_of(const struct dea_fit_series *series, size_t i, bool time)
 static dea_status add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
                       enum dea_series_style style, size_t number, struct dea_series **out)
 {
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
-  (*out)->style = style;
-  (*out)->colour = colours[number % COLOURS];
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, style, colours[number % COLOURS], "", out));
   (*out)->marker = (int)number;
   return DEA_OK;
 }

@@ -20,7 +20,7 @@ static dea_status add_points(struct dea_context *ctx, const struct dea_weibull_p
 {
   const size_t n = picture->rows, broken = picture->fit->broken;
   struct dea_series *series, *kept;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, broken, &series));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, broken, DEA_MARKERS, DEA_BLACK, picture->points, &series));
   double left = 1;
   size_t at = 0;
   for (size_t i = 0; i < n; i++) {
@@ -31,13 +31,11 @@ static dea_status add_points(struct dea_context *ctx, const struct dea_weibull_p
       left = after;
     }
   }
-  series->style = DEA_MARKERS;
-  series->colour = DEA_BLACK;
-  snprintf(series->title, sizeof series->title, "%s", picture->points);
   if (broken == n) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, n - broken, &kept));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n - broken, DEA_MARKERS, DEA_GREEN, "survived until there",
+                             &kept));
   at = 0;
   for (size_t i = 0; i < n; i++) {
     if (rows[i].survived) {
@@ -45,10 +43,7 @@ static dea_status add_points(struct dea_context *ctx, const struct dea_weibull_p
       kept->values[kept->count + at++] = 0;
     }
   }
-  kept->style = DEA_MARKERS;
-  kept->colour = DEA_GREEN;
   kept->marker = 1;
-  snprintf(kept->title, sizeof kept->title, "survived until there");
   return DEA_OK;
 }
 
@@ -60,15 +55,10 @@ static dea_status add_law(struct dea_context *ctx, const struct dea_weibull_pict
   double std;
   const double from = dea_weibull_quantile(picture->fit, 0.001, &std);
   const double to = dea_weibull_quantile(picture->fit, 0.999, &std);
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, POINTS, &band));
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, POINTS, &law));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, POINTS, DEA_BAND, DEA_GREY, "\302\261 2 std of the law",
+                             &band));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, POINTS, DEA_LINE, DEA_BLUE, "Weibull's law", &law));
   band = &panel->series[panel->series_count - 2];
-  band->style = DEA_BAND;
-  band->colour = DEA_GREY;
-  law->style = DEA_LINE;
-  law->colour = DEA_BLUE;
-  snprintf(band->title, sizeof band->title, "\302\261 2 std of the law");
-  snprintf(law->title, sizeof law->title, "Weibull's law");
   for (size_t i = 0; i < POINTS; i++) {
     const double share = (double)i / (POINTS - 1);
     const double value =

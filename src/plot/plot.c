@@ -46,6 +46,7 @@ void dea_panel_clear(struct dea_context *ctx, struct dea_panel *panel)
 }
 
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                         enum dea_series_style style, enum dea_colour colour, const char *title,
                          struct dea_series **out)
 {
   *out = NULL;
@@ -61,14 +62,15 @@ dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_
     values[i] = NAN;
   }
   *out = &panel->series[panel->series_count++];
-  **out = (struct dea_series){.count = count, .values = values};
+  **out = (struct dea_series){.style = style, .colour = colour, .count = count, .values = values};
+  snprintf((*out)->title, sizeof(*out)->title, "%s", title);
   return DEA_OK;
 }
 
 dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,
                             const struct dea_series *look, struct dea_series **out)
 {
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, out));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, look->style, look->colour, "", out));
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): dea_panel_add sets it or fails
   double *values = (*out)->values;
   **out = *look;

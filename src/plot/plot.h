@@ -86,8 +86,9 @@ dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char
                            struct dea_plot **out);
 void dea_plot_destroy(struct dea_context *ctx, struct dea_plot *plot);
 /* Adds a series with room for count points, values NAN; *out lent until the plot dies, so that the
- * caller fills title, style, values. DEA_E_UNSUPPORTED when the panel is full. */
+ * caller fills the values. DEA_E_UNSUPPORTED when the panel is full. */
 dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_t count,
+                         enum dea_series_style style, enum dea_colour colour, const char *title,
                          struct dea_series **out);
 /* The same with title, style, colour, marker and right of another series. */
 dea_status dea_panel_add_as(struct dea_context *ctx, struct dea_panel *panel, size_t count,

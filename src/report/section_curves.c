@@ -47,11 +47,9 @@ static dea_status add_measured(struct dea_report *report, const struct compared 
   }
   struct dea_series *series;
   size_t n = m->curve.count;
-  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, n, &series));
-  series->style = DEA_ERROR_BARS;
-  series->colour = DEA_BLACK;
+  DEA_TRY(report->ctx,
+          dea_panel_add(report->ctx, panel, n, DEA_ERROR_BARS, DEA_BLACK, "measured", &series));
   series->marker = 5;
-  snprintf(series->title, sizeof series->title, "measured");
   for (size_t i = 0; i < n; i++) {
     series->values[i] = 1e-3 * m->curve.points[i].voltage_V;
     series->values[n + i] =

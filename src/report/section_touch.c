@@ -203,8 +203,7 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel, siz
 {
   size_t count = (line->end - line->first + DRAWN - 1) / DRAWN;
   struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
-  series->colour = (enum dea_colour)number;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_LINE, (enum dea_colour)number, "", &series));
   snprintf(series->title, sizeof series->title, "%.3g kV", 1e-3 * line->voltage_V);
   for (size_t i = 0; i < count; i++) {
     series->values[i] = 1e6 * height_m(line, line->first + DRAWN * i);
@@ -223,9 +222,7 @@ static dea_status add_finger(struct dea_report *report, struct dea_panel *panel,
       top = fmax(top, panel->series[s].values[panel->series[s].count + i]);
     }
   }
-  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, 2, &finger));
-  finger->style = DEA_DASHED;
-  finger->colour = DEA_BLACK;
+  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, 2, DEA_DASHED, DEA_BLACK, "", &finger));
   snprintf(finger->title, sizeof finger->title, "fingertip, %.3g N/mm", 1e-3 * k);
   finger->values[0] = finger->values[2] = 0;
   finger->values[1] = 1e6 * fmin(highest, 1e-3 * top / k);

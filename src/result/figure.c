@@ -53,10 +53,7 @@ dea_status dea_figure_add_entry(struct dea_context *ctx, struct dea_panel *panel
                                 enum dea_series_style style, const char *title, double x, double y)
 {
   struct dea_series *entry;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &entry));
-  entry->style = style;
-  entry->colour = DEA_GREY;
-  snprintf(entry->title, sizeof entry->title, "%s", title);
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, style, DEA_GREY, title, &entry));
   entry->values[0] = x;
   entry->values[1] = y;
   return DEA_OK;
@@ -118,9 +115,7 @@ static dea_status add_error(struct dea_context *ctx, struct dea_panel *panel,
   if (error < 0 || !dea_points_have(curve->points, n, error)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &band));
-  band->style = DEA_BAND;
-  band->colour = DEA_GREY;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, DEA_BAND, DEA_GREY, "", &band));
   band->right = right;
   band->aside = true;
   for (size_t i = 0; i < n; i++) {
@@ -146,11 +141,9 @@ static dea_status add_std(struct dea_context *ctx, struct dea_panel *panel,
   if (curve->std == NULL || !dea_points_have(curve->std, n, column)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &band));
-  band->style = DEA_BAND;
-  band->colour = look->colour;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, DEA_BAND, look->colour, "\302\261 1 std of the model",
+                             &band));
   band->right = look->right;
-  snprintf(band->title, sizeof band->title, "\302\261 1 std of the model");
   for (size_t s = 0; s + 1 < panel->series_count; s++) { // once for all
     if (strcmp(panel->series[s].title, band->title) == 0) {
       band->title[0] = '\0';
@@ -302,9 +295,7 @@ static dea_status add_events_of(struct dea_context *ctx, struct dea_panel *panel
     count += result->curves[i].event_count + 1;
   }
   struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
-  series->style = DEA_MARKERS;
-  series->colour = DEA_BLACK;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_MARKERS, DEA_BLACK, "", &series));
   series->aside = true; // they lie on curves
   series->marker = 5 + (int)kind;
   snprintf(series->title, sizeof series->title, "%s", words[kind]);

@@ -282,11 +282,9 @@ static dea_status add_errors(struct dea_context *ctx, struct dea_panel *panel,
 {
   struct dea_series *series;
   size_t n = c->mesh_count;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, &series));
-  series->style = DEA_LINE_MARKED;
-  series->colour = colours[(panel->series_count - 1) % COLOURS];
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, n, DEA_LINE_MARKED,
+                             colours[(panel->series_count - 1) % COLOURS], title, &series));
   series->marker = (int)panel->series_count - 1;
-  snprintf(series->title, sizeof series->title, "%s", title);
   for (size_t m = 0; m < n; m++) {
     series->values[m] = 1e-3 * (double)c->meshes[m]->size.unknowns;
     series->values[n + m] = errors[m] > 0 ? 100 * errors[m] : NAN;

@@ -733,9 +733,7 @@ static dea_status add_unsound(struct dea_context *ctx, struct dea_panel *panel,
                               size_t first, size_t count)
 {
   struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
-  series->style = DEA_DASHED;
-  series->colour = DEA_GREY;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_DASHED, DEA_GREY, "", &series));
   for (size_t i = 0; i < count; i++) {
     bool shown = !is_sound(table, first + i) || (i > 0 && !is_sound(table, first + i - 1)) ||
                  (i + 1 < count && !is_sound(table, first + i + 1));
@@ -758,9 +756,8 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
   struct dea_series *series;
   first -= back && first > 0;
   size_t count = end - first;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
-  series->style = back ? DEA_DASHED : DEA_LINE_MARKED;
-  series->colour = order[number % COLOURS];
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, back ? DEA_DASHED : DEA_LINE_MARKED,
+                             order[number % COLOURS], "", &series));
   series->marker = (int)(number % COLOURS);
   if (!back) {
     snprintf(series->title, sizeof series->title, "%.4g kV",

@@ -139,9 +139,8 @@ static dea_status add_mode(struct dea_context *ctx, struct dea_panel *panel,
   if (count == 0) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
-  series->style = DEA_LINE_MARKED;
-  series->colour = (enum dea_colour)((k - 1) % COLOURS);
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_LINE_MARKED,
+                             (enum dea_colour)((k - 1) % COLOURS), "", &series));
   series->marker = (k - 1) % MARKERS;
   snprintf(series->title, sizeof series->title, "%d", k);
   for (size_t i = 0, n = 0; i < curve->count; i++) {

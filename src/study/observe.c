@@ -218,7 +218,8 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
   if (panel->series_count >= DEA_PANEL_SERIES_MAX) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, &series));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_LINE,
+                             colours[number % (sizeof colours / sizeof colours[0])], "", &series));
   char title[DEA_LABEL_SIZE];
   snprintf(title, sizeof title, "%.*s%s", (int)(name < 60 ? name : 60), shown->header,
            lines->suffix);
@@ -226,7 +227,6 @@ static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel,
   // told apart in grey by markers
   series->style = lines->style == DEA_LINE && several ? DEA_LINE_MARKED : lines->style;
   series->marker = (int)number;
-  series->colour = colours[number % (sizeof colours / sizeof colours[0])];
   for (size_t i = 0; i < count; i++) {
     const struct dea_load_point *p = &curve->points[i];
     const double value = shown->factor * dea_point_get(p, column);

@@ -37,12 +37,10 @@ static dea_status add_region(struct dea_context *ctx, struct dea_panel *panel,
 {
   struct dea_series *band, *line;
   size_t rows = map->table->row_count;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &band));
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &line));
-  band->style = DEA_BAND;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, DEA_BAND, DEA_BLUE, "", &band));
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, DEA_LINE, DEA_BLUE, title, &line));
   band->to_top = true;
   band->colour = line->colour = colour;
-  snprintf(line->title, sizeof line->title, "%s", title);
   for (size_t i = 0; i < rows; i++) {
     double at_V = dea_result_table_number(map->table, i, key, 0);
     band->values[i] = line->values[i] = value(map, i);
@@ -82,9 +80,8 @@ static dea_status add_levels(struct dea_context *ctx, struct dea_panel *panel,
   static const enum dea_colour order[] = {DEA_GREEN, DEA_BLUE, DEA_ORANGE, DEA_BLACK};
   for (size_t k = 0; k < map->table->width && !isnan(map->step); k++) {
     struct dea_series *series;
-    DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, &series));
-    series->style = k < 4 ? DEA_LINE : DEA_DASHED;
-    series->colour = order[k % 4];
+    DEA_TRY(ctx, dea_panel_add(ctx, panel, rows, k < 4 ? DEA_LINE : DEA_DASHED, order[k % 4], "",
+                               &series));
     name_level(map, k, series->title);
     for (size_t i = 0; i < rows; i++) {
       series->values[i] = value(map, i);
@@ -114,11 +111,8 @@ static dea_status draw(struct dea_context *ctx, const struct map *map, double ow
   DEA_TRY(ctx, add_region(ctx, panel, map, "slack_V", "slack above", DEA_SKY));
   DEA_TRY(ctx, add_region(ctx, panel, map, "pull_in_V", "pull-in", DEA_PURPLE));
   DEA_TRY(ctx, add_levels(ctx, panel, map));
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, &here));
-  here->style = DEA_MARKERS;
-  here->colour = DEA_BLACK;
+  DEA_TRY(ctx, dea_panel_add(ctx, panel, 1, DEA_MARKERS, DEA_BLACK, "this design", &here));
   here->marker = 5;
-  snprintf(here->title, sizeof here->title, "this design");
   here->values[0] = map->number->factor * own;
   here->values[1] = 1e-3 * map->highest_V;
   label_axis(map, panel->x_label);

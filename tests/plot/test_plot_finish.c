@@ -63,7 +63,7 @@ TEST(test_png)
 static void add(struct dea_panel *panel, double from, double to, bool aside)
 {
   struct dea_series *series;
-  assert_int_equal(dea_panel_add(ctx, panel, 2, &series), DEA_OK);
+  assert_int_equal(dea_panel_add(ctx, panel, 2, DEA_LINE, DEA_BLUE, "", &series), DEA_OK);
   memcpy(series->values, (const double[4]){0, 8, from, to}, 4 * sizeof(double));
   series->aside = aside;
 }

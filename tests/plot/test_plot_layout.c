@@ -14,7 +14,8 @@ static double left_mm(double from, double to)
   char line[400];
   double share = NAN;
   assert_int_equal(dea_plot_create(ctx, "curve", "a curve", &plot), DEA_OK);
-  assert_int_equal(dea_panel_add(ctx, &plot->panels[0], 2, &series), DEA_OK);
+  assert_int_equal(dea_panel_add(ctx, &plot->panels[0], 2, DEA_LINE, DEA_BLUE, "", &series),
+                   DEA_OK);
   memcpy(series->values, (const double[4]){0, 1, from, to}, 4 * sizeof(double));
   assert_int_equal(dea_plot_write(ctx, plot, &format, folder), DEA_OK);
   dea_plot_destroy(ctx, plot);

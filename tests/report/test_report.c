@@ -261,8 +261,7 @@ TEST(test_bands)
   struct dea_plot *plot;
   struct dea_series *band;
   assert_int_equal(dea_plot_create(ctx, "bands", "bands", &plot), DEA_OK);
-  assert_int_equal(dea_panel_add(ctx, &plot->panels[0], 3, &band), DEA_OK);
-  band->style = DEA_BAND;
+  assert_int_equal(dea_panel_add(ctx, &plot->panels[0], 3, DEA_BAND, DEA_BLUE, "", &band), DEA_OK);
   for (size_t i = 0; i < 3; i++) {
     band->values[i] = (double)i;
     band->values[3 + i] = y[i] - error[i];

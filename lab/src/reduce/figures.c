@@ -49,17 +49,6 @@ static enum dea_colour colour_of(size_t n, size_t of)
   return colours[of > 1 ? SHOWN_MAX - of + n : SHOWN_MAX - 1];
 }
 
-static dea_status add_series(const struct drawing *d, struct dea_panel *panel, size_t count,
-                             const char *title, enum dea_series_style style, enum dea_colour colour,
-                             struct dea_series **out)
-{
-  DEA_TRY(d->ctx, dea_panel_add(d->ctx, panel, count, out));
-  (*out)->style = style;
-  (*out)->colour = colour;
-  snprintf((*out)->title, sizeof(*out)->title, "%s", title);
-  return DEA_OK;
-}
-
 /* A few volts are the noise and offset of a monitor of kilovolts: that level is 0. */
 static void title_of(double voltage_V, char out[32])
 {
@@ -76,7 +65,8 @@ static dea_status build_profiles(const struct drawing *d, struct dea_plot *plot)
     struct dea_series *series;
     char title[32];
     title_of(level->voltage_V, title);
-    DEA_TRY(d->ctx, add_series(d, panel, r->points, title, DEA_LINE, colour_of(k, count), &series));
+    DEA_TRY(d->ctx,
+            dea_panel_add(d->ctx, panel, r->points, DEA_LINE, colour_of(k, count), title, &series));
     for (size_t i = 0; i < r->points; i++) {
       series->values[i] = 1e3 * r->radius_m[i];
       series->values[r->points + i] = 1e6 * level->z_m[i];
@@ -102,7 +92,8 @@ static dea_status add_time_series(const struct drawing *d, struct dea_panel *pan
   for (size_t i = 0; i < table->rows; i++) { // without gaps where another channel has its sample
     n += isnan(values[i]) ? 0U : 1U;
   }
-  DEA_TRY(d->ctx, add_series(d, panel, n, title, n > 800 ? DEA_THIN : DEA_LINE, colour, &series));
+  DEA_TRY(d->ctx,
+          dea_panel_add(d->ctx, panel, n, n > 800 ? DEA_THIN : DEA_LINE, colour, title, &series));
   for (size_t i = 0, k = 0; i < table->rows; i++) {
     if (!isnan(values[i])) {
       series->values[k] = table->time_s[i];
@@ -189,7 +180,8 @@ static dea_status add_amplitudes(const struct drawing *d, struct dea_panel *pane
   if (!dea_reduced_has(r, kind)) {
     return DEA_OK;
   }
-  DEA_TRY(d->ctx, add_series(d, panel, r->level_count, title, DEA_ERROR_BARS, colour, &series));
+  DEA_TRY(d->ctx,
+          dea_panel_add(d->ctx, panel, r->level_count, DEA_ERROR_BARS, colour, title, &series));
   series->marker = marker;
   for (size_t l = 0, n = 0; l < r->level_count; n++) {
     struct dea_reduced_row row = dea_reduced_row_at(r, l);
@@ -239,7 +231,8 @@ static dea_status add_cycles(const struct drawing *d, struct dea_panel *panel, s
   char title[32];
   size_t n = 0;
   title_of(row.voltage_V, title);
-  DEA_TRY(d->ctx, add_series(d, panel, row.cycles, title, DEA_LINE_MARKED, colour, &series));
+  DEA_TRY(d->ctx,
+          dea_panel_add(d->ctx, panel, row.cycles, DEA_LINE_MARKED, colour, title, &series));
   for (size_t k = 0; k < r->cycle_count && n < row.cycles; k++) {
     if (r->cycles[k].level >= first && r->cycles[k].level < first + row.levels) {
       series->values[n] = (double)(n + 1);
