@@ -53,8 +53,8 @@ static double voltage_floor(enum dea_event_kind kind)
 static void check_critical(const struct state *at, const struct dea_model_settings *settings,
                            enum dea_event_kind kind, const int *numbers, int count)
 {
-  enum { SHARES = 3 };
-  static const double shares[SHARES] = {1e-2, 1e-3, 1e-6};
+  enum { SHARES = 2 };
+  static const double shares[SHARES] = {1e-2, 1e-6};
   double slopes[OF_DEVICE], left[SHARES];
   struct dea_model_settings own = *settings;
   const double base_V = find_critical_slopes(at, settings, kind, slopes);

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SHARES_MAX = 3, ROUNDS = 3 };
+enum { SHARES_MAX = 2, ROUNDS = 1 };
 
 /* ---- quantities ---- */
 
@@ -234,39 +234,39 @@ static struct state heavy_star(void)
   return at;
 }
 
-/* Four decades of the change, eight of the remainder: of linear elements by all numbers, of those
+/* Three decades of the change, six of the remainder: of linear elements by all numbers, of those
  * that are usual by some; of the membrane that of the lowest frequency too. */
-TEST(test_four_decades)
+TEST(test_three_decades)
 {
-  static const double shares[] = {1e-2, 1e-4, 1e-6}, wide[] = {1e-1, 1e-2, 1e-5};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, ELECTRODE};
   static const struct dea_model_settings usual = {0};
   struct state at = star();
-  check(&at, &linear, shares, 3, 0);
-  check_some(&at, &usual, numbers, 3, wide, 3, 1);
+  check(&at, &linear, shares, 2, 0);
+  check_some(&at, &usual, numbers, 3, shares, 2, 0);
 }
 
-TEST(test_four_decades_of_a_membrane)
+TEST(test_three_decades_of_a_membrane)
 {
   only_nightly();
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, ELECTRODE};
   static const struct dea_model_settings usual = {.film = DEA_FILM_MEMBRANE};
   const struct state at = heavy_star();
-  check(&at, &linear_membrane, shares, 3, 0);
-  check_some(&at, &usual, numbers, 3, shares, 3, 0);
+  check(&at, &linear_membrane, shares, 2, 0);
+  check_some(&at, &usual, numbers, 3, shares, 2, 0);
 }
 
 /* Electrodes of a thickness, whose tension counts with the film's. */
 TEST(test_electrodes_of_a_thickness)
 {
-  static const double shares[] = {1e-2, 1e-3, 1e-5};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, PRE_STRETCH};
   struct state at = star();
   at.device.electrode = test_material("neo-hookean", 400e3, 0, 0);
   at.device.electrode_thickness_m = 3e-6;
-  check_some(&at, &linear_membrane, numbers, 3, shares, 3, 0);
-  check_some(&at, &linear, numbers, 3, shares, 3, 0);
+  check_some(&at, &linear_membrane, numbers, 3, shares, 2, 0);
+  check_some(&at, &linear, numbers, 3, shares, 2, 0);
 }
 
 /* What a device may have beside: a permittivity that goes with the stretch, fibres that end before
@@ -274,7 +274,7 @@ TEST(test_electrodes_of_a_thickness)
 TEST(test_more_numbers)
 {
   only_nightly();
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {PERMITTIVITY_SLOPE,  POISSON_RATIO,     OUTER_GAP,
                                 ELECTRODE_THICKNESS, ELECTRODE_MODULUS, FILM_DENSITY,
                                 FIBRE_DENSITY};
@@ -284,18 +284,18 @@ TEST(test_more_numbers)
   at.device.fibre_outer_gap_m = 2e-3;
   at.device.electrode = test_material("neo-hookean", 400e3, 0, 0);
   at.device.electrode_thickness_m = 3e-6;
-  check_some(&at, &linear, numbers, 7, shares, 3, 0);
-  check_some(&at, &linear_membrane, numbers, 7, shares, 3, 0);
+  check_some(&at, &linear, numbers, 7, shares, 2, 0);
+  check_some(&at, &linear_membrane, numbers, 7, shares, 2, 0);
 }
 
 /* Its weight is a dead load that changes with the device, and so does its lowest frequency. */
 TEST(test_membrane_with_weight)
 {
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {THICKNESS, PRE_STRETCH, FRAME, TIP, FIBRE_THICKNESS};
   struct state at = heavy_star();
   at.device.gravity = DEA_GRAVITY_FIBRES_UP;
-  check_some(&at, &linear_membrane, numbers, 5, shares, 3, 0);
+  check_some(&at, &linear_membrane, numbers, 5, shares, 2, 0);
 }
 
 /* With all lengths and the voltage s times as large a device vibrates at 1/s of its frequency. */
@@ -342,7 +342,7 @@ static void find_frequencies(const struct state *at, struct dea_model *near,
 TEST(test_higher_modes)
 {
   enum { COUNT = 3 };
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[COUNT] = {VOLTAGE, THICKNESS, FIBRE_DENSITY};
   static const size_t modes[MODES] = {1, 2, 0};
   const int column = dea_point_column_find("frequency_Hz");
@@ -351,7 +351,7 @@ TEST(test_higher_modes)
   struct state sides[2 * COUNT];
   struct dea_design_change changes[COUNT];
   struct dea_model *model;
-  double base[MODES], moved[3][MODES], slopes[COUNT * MODES], left[3];
+  double base[MODES], moved[2][MODES], slopes[COUNT * MODES], left[2];
   make_changes(&at, numbers, COUNT, sides, changes);
   for (int i = 0; i < 2 * COUNT; i++) {
     changes[i / 2].voltage_V[i % 2] = sides[i].voltage_V;
@@ -365,13 +365,13 @@ TEST(test_higher_modes)
   assert_int_equal(solid->gradient(ctx, model, &ask, slopes), DEA_OK);
   step_aside(&at, model);
   for (int a = 0; a < COUNT; a++) {
-    for (int n = 0; n < 3; n++) {
+    for (int n = 0; n < 2; n++) {
       const struct state there = changed(&at, numbers[a], shares[n]);
       find_frequencies(&there, model, NULL, moved[n]);
     }
     for (int k = 0; k < MODES; k++) {
       const double from = base[modes[k]];
-      for (int n = 0; n < 3; n++) {
+      for (int n = 0; n < 2; n++) {
         left[n] = (moved[n][modes[k]] - from - slopes[a * MODES + k] * shares[n]) / from;
         const double wanted = left[0] * pow(shares[n] / shares[0], 2);
         if (!(fabs(left[n] - wanted) <= 0.2 * fabs(wanted) + slope_accuracy * shares[n] + 2e-10)) {
@@ -416,9 +416,9 @@ static const struct dea_model_settings coupled[] = { // one element through the 
 TEST(test_coupled_field)
 {
   only_nightly();
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   const struct state at = heavy_star();
-  check(&at, &coupled[0], shares, 3, 0);
+  check(&at, &coupled[0], shares, 2, 0);
 }
 
 /* Sum of the slopes of a quantity by some numbers, over the quantity. */
@@ -496,13 +496,13 @@ static struct state pressed_star(enum dea_probe_shape shape)
   return at;
 }
 
-/* Numbers of every kind, four decades of the change. */
+/* Numbers of every kind, two decades of the change. */
 TEST(test_force_of_a_tip)
 {
-  static const double shares[] = {1e-1, 1e-3, 1e-5};
+  static const double shares[] = {1e-3, 1e-5};
   static const int numbers[] = {VOLTAGE, THICKNESS, PRE_STRETCH, FIBRE_THICKNESS, DEPTH};
   const struct state at = pressed_star(DEA_PROBE_SPHERE);
-  check_some(&at, &linear_membrane, numbers, sizeof numbers / sizeof numbers[0], shares, 3, 1);
+  check_some(&at, &linear_membrane, numbers, sizeof numbers / sizeof numbers[0], shares, 2, 0);
 }
 
 /* All numbers; the size of the tip and the place of the fibre tips over changes that leave the
@@ -510,28 +510,28 @@ TEST(test_force_of_a_tip)
 TEST(test_force_of_a_flat_tip)
 {
   only_nightly();
-  static const double shares[] = {1e-2, 1e-4, 1e-6}, smaller[] = {1e-3, 1e-5, 1e-7};
+  static const double shares[] = {1e-2, 1e-5}, smaller[] = {1e-3, 1e-6};
   static const int numbers[] = {VOLTAGE,         THICKNESS,     MODULUS, STIFFENING,   PERMITTIVITY,
                                 PRE_STRETCH,     ELECTRODE,     FRAME,   WIDTH,        TIP_WIDTH,
                                 FIBRE_THICKNESS, FIBRE_MODULUS, GLUE,    GLUE_MODULUS, DEPTH},
                    of_touch[] = {TIP, TIP_SIZE};
   struct state at = pressed_star(DEA_PROBE_FLAT);
   at.pressed.depth_m = 0.2e-3;
-  check_some(&at, &linear_membrane, numbers, sizeof numbers / sizeof numbers[0], shares, 3, 0);
-  check_some(&at, &linear_membrane, of_touch, 2, smaller, 3, 0);
+  check_some(&at, &linear_membrane, numbers, sizeof numbers / sizeof numbers[0], shares, 2, 0);
+  check_some(&at, &linear_membrane, of_touch, 2, smaller, 2, 0);
 }
 
 /* The frequency of what vibrates on the tip, which it stays on. */
 TEST(test_frequency_on_a_tip)
 {
   only_nightly();
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {DEPTH, TIP_SIZE, VOLTAGE, THICKNESS};
   struct state at = heavy_star();
   at.voltage_V = 2.5e3;
   at.pressed = (struct dea_pressed){{DEA_PROBE_SPHERE, 1.5e-3, 0.2e-3, true}, 0.5e-3};
-  check_some(&at, &linear_membrane, numbers, 4, shares, 3, 0);
-  check_some(&at, &linear, numbers, 2, shares, 3, 0);
+  check_some(&at, &linear_membrane, numbers, 4, shares, 2, 0);
+  check_some(&at, &linear, numbers, 2, shares, 2, 0);
 }
 
 /* Of a solid film, laws that slopes obey: with all lengths and the voltage s times as large the
@@ -555,13 +555,13 @@ static void check_laws_of_the_force(const struct state *at,
 TEST(test_laws_of_the_force)
 {
   only_nightly();
-  static const double shares[] = {1e-2, 1e-4, 1e-6};
+  static const double shares[] = {1e-2, 1e-5};
   static const int numbers[] = {ELECTRODE, DEPTH, TIP_SIZE};
   const struct state at = pressed_star(DEA_PROBE_SPHERE);
   const struct dea_model_settings settings = {0};
   check_laws_of_the_force(&at, &settings);
   check_laws_of_the_force(&at, &coupled[0]);
-  check_some(&at, &linear, numbers, 3, shares, 3, 0);
+  check_some(&at, &linear, numbers, 3, shares, 2, 0);
 }
 
 TESTS(context_set_up, context_tear_down)
