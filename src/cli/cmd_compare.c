@@ -286,99 +286,77 @@ static void print_row(const char *name, const struct dea_misfit *m, double at_fa
          !isnan(tolerance) && !(m->relative_largest <= tolerance) ? "  out of tolerance" : "");
 }
 
-/* Prints the misfits of a quantity against the voltage. */
-static void print_quantity(const struct dea_context *ctx, const struct dea_compare_set *set,
-                           int column, double tolerance)
+/* What a table of misfits is of: a pair, a quantity, a profile, or a column of a history. */
+static size_t group_of(const struct dea_compare_set *set, const struct dea_set_misfit *m)
 {
-  bool any = false, std = false;
-  for (size_t i = 0; i < set->curve_count; i++) {
-    const struct dea_misfit *m = dea_compare_set_find(set, i, column);
-    any = any || m != NULL;
-    std = std || (m != NULL && m->std_count > 0);
-  }
-  if (any) {
-    char title[DEA_COLUMN_TITLE_SIZE];
-    dea_column_title(dea_column_at(ctx, column), title, sizeof title);
-    print_head(title, "at kV", std);
-  }
-  for (size_t i = 0; i < set->curve_count; i++) {
-    const struct dea_misfit *m = dea_compare_set_find(set, i, column);
-    if (m != NULL) {
-      print_row(set->curves[i].name, m, 1e-3, tolerance);
-    }
-  }
+  return m->kind != DEA_SET_VOLTAGE ? m->measured
+         : set->pairs               ? m->curve
+                                    : (size_t)m->misfit.column;
 }
 
-/* Whether some misfit of a kind has uncertainties. */
-static bool knows_std(const struct dea_compare_set *set, enum dea_set_kind kind)
+static void print_group_head(const struct dea_compare_set *set, const struct dea_set_misfit *m,
+                             bool std)
 {
-  for (size_t i = 0; i < set->misfit_count; i++) {
-    if (set->misfits[i].kind == kind && set->misfits[i].misfit.std_count > 0) {
-      return true;
-    }
-  }
-  return false;
-}
-
-static void print_profile(const struct dea_compare_set *set, size_t i)
-{
-  const struct dea_set_misfit *p = &set->misfits[i];
-  char text[2 * DEA_LABEL_SIZE];
-  if (i == 0 || p[-1].kind != DEA_SET_PROFILE || p->measured != p[-1].measured) {
+  static const char *const places[] = {"at kV", "at mm", "at s"};
+  char title[DEA_COLUMN_TITLE_SIZE], text[DEA_COLUMN_TITLE_SIZE + 16], beside[DEA_LABEL_SIZE];
+  dea_column_title(m->misfit.quantity, title, sizeof title);
+  snprintf(text, sizeof text, "%s%s", title, m->kind == DEA_SET_HISTORY ? " in time" : "");
+  if (m->kind == DEA_SET_PROFILE) {
     snprintf(text, sizeof text, "z over film at %.4g kV (um)",
-             1e-3 * set->measured->profiles[p->measured].voltage_V);
-    print_head(text, "at mm", knows_std(set, DEA_SET_PROFILE));
+             1e-3 * set->measured->profiles[m->measured].voltage_V);
+  } else if (m->kind == DEA_SET_VOLTAGE && set->pairs) {
+    dea_compare_set_beside(set, m->curve, beside);
+    printf("a: %s\nb: %s", set->curves[m->curve].name, beside);
+    snprintf(text, sizeof text, "a - b");
   }
-  snprintf(text, sizeof text, "%s%s%s", set->curves[p->curve].name, p->line.directed ? ", " : "",
-           p->line.directed ? dea_half_names[p->half] : "");
-  print_row(text, &p->misfit, 1e3, NAN);
+  print_head(text, places[m->kind], std);
 }
 
-/* Misfits in time, by quantity. */
-static void print_histories(const struct dea_compare_set *set)
+static void print_group_row(const struct dea_compare_set *set, const struct dea_set_misfit *m,
+                            double tolerance)
 {
-  for (size_t k = 0; set->measured != NULL && k < set->measured->history_count; k++) {
-    bool first = true;
-    for (size_t i = 0; i < set->misfit_count; i++) {
-      const struct dea_set_misfit *h = &set->misfits[i];
-      if (h->kind != DEA_SET_HISTORY || h->measured != k) {
-        continue;
-      }
-      if (first) {
-        char title[DEA_COLUMN_TITLE_SIZE], text[DEA_COLUMN_TITLE_SIZE + 16];
-        dea_column_title(h->misfit.quantity, title, sizeof title);
-        snprintf(text, sizeof text, "%s in time", title);
-        print_head(text, "at s", false);
-        first = false;
-      }
-      print_row(set->curves[h->curve].name, &h->misfit, 1.0, NAN);
-    }
+  static const double factors[] = {1e-3, 1e3, 1};
+  char text[DEA_COLUMN_TITLE_SIZE + DEA_LABEL_SIZE];
+  if (m->kind == DEA_SET_VOLTAGE && set->pairs) {
+    dea_column_title(m->misfit.quantity, text, sizeof text);
+  } else {
+    snprintf(text, sizeof text, "%s%s%s", set->curves[m->curve].name, m->line.directed ? ", " : "",
+             m->line.directed ? dea_half_names[m->half] : "");
   }
+  print_row(text, &m->misfit, factors[m->kind], tolerance);
 }
 
-/* A pair: a row for each quantity. */
-static void print_pair(const struct dea_compare_set *set, size_t curve, double tolerance)
+/* The tables of a kind; true when some misfit has uncertainties. */
+static bool print_kind(const struct dea_compare_set *set, enum dea_set_kind kind, double tolerance)
 {
-  char beside[DEA_LABEL_SIZE], title[DEA_COLUMN_TITLE_SIZE];
-  bool std = false;
-  dea_compare_set_beside(set, curve, beside);
-  printf("a: %s\nb: %s", set->curves[curve].name, beside);
-  for (int pass = 0; pass < 2; pass++) { // whether there are uncertainties, and then the rows
-    for (size_t i = 0; i < set->misfit_count; i++) {
-      const struct dea_set_misfit *m = &set->misfits[i];
-      if (m->kind != DEA_SET_VOLTAGE || m->curve != curve) {
-        continue;
-      }
-      std = std || m->misfit.std_count > 0;
-      if (pass == 1) {
-        dea_column_title(m->misfit.quantity, title, sizeof title);
-        print_row(title, &m->misfit, 1e-3, tolerance);
-      }
-    }
-    if (pass == 0) {
-      print_head("a - b", "at kV", std);
-    }
+  size_t groups = 0;
+  bool any = false;
+  for (size_t i = 0; i < set->misfit_count; i++) {
+    const size_t group = group_of(set, &set->misfits[i]);
+    groups = set->misfits[i].kind == kind && group >= groups ? group + 1 : groups;
   }
+  for (size_t group = 0; group < groups; group++) {
+    const struct dea_set_misfit *first = NULL;
+    bool std = false;
+    for (int pass = 0; pass < 2; pass++) { // the first one says what the table is of
+      for (size_t i = 0; i < set->misfit_count; i++) {
+        const struct dea_set_misfit *m = &set->misfits[i];
+        if (m->kind != kind || group_of(set, m) != group) {
+          continue;
+        }
+        first = first != NULL ? first : m;
+        std = std || m->misfit.std_count > 0;
+        if (pass == 1) {
+          print_group_row(set, m, tolerance);
+        }
+      }
+      if (pass == 0 && first != NULL) {
+        print_group_head(set, first, std);
+      }
+    }
+    any = any || std;
+  }
+  return any;
 }
 
 /* Whether some model has a band of its own. */
@@ -392,26 +370,16 @@ static bool has_model_std(const struct dea_compare_set *set)
   return false;
 }
 
-static void print_tables(const struct dea_context *ctx, const struct dea_compare_set *set,
-                         double tolerance)
+static void print_tables(const struct dea_compare_set *set, double tolerance)
 {
-  for (size_t i = 0; set->pairs && i < set->curve_count; i++) {
-    print_pair(set, i, tolerance);
-  }
   if (!set->pairs) {
     printf("Each curve minus %s%s\n", set->reference,
            set->measured != NULL ? ", as measured" : " (a run)");
   }
-  for (int c = 0; !set->pairs && c < dea_column_count(ctx); c++) {
-    print_quantity(ctx, set, c, tolerance);
-  }
-  for (size_t i = 0; i < set->misfit_count; i++) {
-    if (set->misfits[i].kind == DEA_SET_PROFILE) {
-      print_profile(set, i);
-    }
-  }
-  print_histories(set);
-  if (knows_std(set, DEA_SET_VOLTAGE) || knows_std(set, DEA_SET_PROFILE)) {
+  bool std = print_kind(set, DEA_SET_VOLTAGE, tolerance);
+  std = print_kind(set, DEA_SET_PROFILE, NAN) || std;
+  print_kind(set, DEA_SET_HISTORY, NAN);
+  if (std) {
     printf(
         "\nchi2/point is the mean of (difference/std)^2: 1 where differences are of the size of "
         "the scatter.\nOf a normal scatter 68 %% lie within 1 std and 95 %% within 2. The std is "
@@ -456,7 +424,7 @@ static dea_status compare(struct dea_context *ctx, const struct request *request
     fputs(text, stdout);
     dea_free(ctx, text);
   } else {
-    print_tables(ctx, set, request->tolerance);
+    print_tables(set, request->tolerance);
   }
   if (request->output != NULL) {
     DEA_TRY(ctx, dea_compare_set_draw(ctx, set, &request->format, request->output));
