@@ -80,14 +80,25 @@ static inline int command_run(const char *arguments)
     }                                                                                              \
   } while (0)
 
-/* An exit code and a part of what is said on stderr are wanted. */
-static inline void command_expect(const char *arguments, int code, const char *message)
+/* An exit code and a part of what is printed are wanted: on stderr, or on stdout. */
+static inline void command_says(const char *arguments, int code, const char *stream,
+                                const char *message)
 {
   int found = command_run(arguments);
-  if (found != code || strstr(command_err, message) == NULL) {
+  if (found != code || strstr(stream, message) == NULL) {
     fail_msg("dea %s: exit code %d, wanted %d with '%s':\n%s", arguments, found, code, message,
-             command_err);
+             stream);
   }
+}
+
+static inline void command_expect(const char *arguments, int code, const char *message)
+{
+  command_says(arguments, code, command_err, message);
+}
+
+static inline void command_prints(const char *arguments, int code, const char *message)
+{
+  command_says(arguments, code, command_out, message);
 }
 
 /* Writes a file into command_folder. */

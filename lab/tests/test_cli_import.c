@@ -7,8 +7,7 @@
 TEST(test_list)
 {
   command_write("a.csv", "Time (s),HV (kV),x\n0,0,1\n0.5,1,1\n1,2,1\n");
-  assert_int_equal(command_run("import --list a.csv"), 0);
-  assert_contains(command_out, "csv, 3 columns");
+  command_prints("import --list a.csv", 0, "csv, 3 columns");
   assert_contains(command_out, "voltage (by its name and unit)");
   assert_int_equal(command_run("import --list --json a.csv"), 0);
   json_t *json = json_loads(command_out, 0, NULL);
@@ -21,8 +20,7 @@ TEST(test_list)
   json_decref(json);
   assert_int_equal(command_run("recording a.h5"), 5); // nothing was written
   command_write("holes.csv", "Time (s),HV (kV)\n0,0\n0.5,\n1,nan\n1.5,2\n");
-  assert_int_equal(command_run("import --list holes.csv"), 0);
-  assert_contains(command_out, "voltage (by its name and unit); 2 missing");
+  command_prints("import --list holes.csv", 0, "voltage (by its name and unit); 2 missing");
 }
 
 TEST(test_recording)
@@ -53,12 +51,9 @@ TEST(test_recording)
   assert_close(dea_recording_kind(recording, DEA_CHANNEL_VOLTAGE)->values[2], 2000, 1e-14, 0);
   dea_recording_destroy(ctx, recording);
   dea_context_destroy(ctx);
-  assert_int_equal(command_run("import a.csv -o both.h5"), 5);
-  assert_contains(command_err, "--force replaces it");
-  assert_int_equal(command_run("import a.csv -o both.h5 --force"), 0);
-  assert_contains(command_err, "'HV' in kV is taken as voltage");
-  assert_int_equal(command_run("import b.csv"), 0);
-  assert_contains(command_out, "b.h5");
+  command_expect("import a.csv -o both.h5", 5, "--force replaces it");
+  command_expect("import a.csv -o both.h5 --force", 0, "'HV' in kV is taken as voltage");
+  command_prints("import b.csv", 0, "b.h5");
 }
 
 TEST(test_errors)
@@ -90,8 +85,7 @@ TEST(test_errors)
     assert_int_equal(command_run(cases[i].arguments), cases[i].code);
     assert_contains(command_err, cases[i].part);
   }
-  assert_int_equal(command_run("schema --mapping"), 0);
-  assert_contains(command_out, "per_unit");
+  command_prints("schema --mapping", 0, "per_unit");
 }
 
 /* What is written replaces neither what is read nor a pipe, with --force too, under a given name or
@@ -127,8 +121,7 @@ TEST(test_what_is_not_replaced)
            command_folder, DEA_SOURCE_DIR);
   assert_int_equal(system(text), 0);
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    assert_int_equal(command_run(cases[i].arguments), 5);
-    assert_contains(command_err, cases[i].part);
+    command_expect(cases[i].arguments, 5, cases[i].part);
   }
   snprintf(before, sizeof before, "cat in.csv map.yaml protocol.yaml design.yaml | cksum");
   snprintf(text, sizeof text,

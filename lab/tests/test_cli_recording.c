@@ -38,8 +38,7 @@ static void record(const char *name, bool killed)
 TEST(test_what_is_in_it)
 {
   record("whole.h5", false);
-  assert_int_equal(command_run("recording whole.h5"), 0);
-  assert_contains(command_out, "complete       yes");
+  command_prints("recording whole.h5", 0, "complete       yes");
   assert_contains(command_out, "10000 Hz");
   assert_contains(command_out, "2100 values");
   assert_contains(command_out, "3 completed in 1 step");
@@ -78,9 +77,8 @@ TEST(test_names_are_no_lines)
   assert_int_equal(dea_recorder_create(own, file, &options, &recorder), DEA_OK);
   assert_int_equal(dea_recorder_finish(recorder, NULL), DEA_OK);
   dea_context_destroy(own);
-  assert_int_equal(command_run("recording odd.h5"), 0);
-  assert_contains(command_out,
-                  "title          x output         at 0 V (2 V read back) [31m   \xc2\xb5m\n");
+  command_prints("recording odd.h5", 0,
+                 "title          x output         at 0 V (2 V read back) [31m   \xc2\xb5m\n");
   assert_contains(command_out, "\n  v [31m w ");
   assert_null(strchr(command_out, '\x1b'));
 }
@@ -98,20 +96,17 @@ TEST(test_title_of_lines)
                               "per_volt: 1 kV}]\n");
   assert_int_equal(command_run("drive lines.yaml --sim -o lines.h5"), 0);
   assert_null(strstr(command_out, "\noutput         at 0 V (2 V read back)\n"));
-  assert_int_equal(command_run("recording lines.h5"), 0);
-  assert_contains(command_out, "title          x output         at 0 V (2 V read back)\n");
+  command_prints("recording lines.h5", 0,
+                 "title          x output         at 0 V (2 V read back)\n");
 }
 
 TEST(test_killed_one_is_rescued)
 {
   record("killed.h5", true);
-  assert_int_equal(command_run("recording killed.h5 -o copy.h5 --csv tables"), 0);
-  assert_contains(command_out, "no: its program was killed");
-  assert_int_equal(command_run("recording copy.h5"), 0);
-  assert_contains(command_out, "no: its program was killed");
+  command_prints("recording killed.h5 -o copy.h5 --csv tables", 0, "no: its program was killed");
+  command_prints("recording copy.h5", 0, "no: its program was killed");
   assert_contains(command_out, "3 completed");
-  assert_int_equal(command_run("recording killed.h5 -o copy.h5"), 5);
-  assert_contains(command_err, "exists");
+  command_expect("recording killed.h5 -o copy.h5", 5, "exists");
 }
 
 TEST(test_tables)
@@ -173,8 +168,7 @@ TEST(test_two_become_one)
                  "what 'v.h5' has is in 'v.h5' already");
   command_expect("recording v.h5 --with z.h5 --after -5s", 0, "-o FILE writes it");
   assert_int_equal(command_run("recording v.h5 --with z.h5 --after -5s -o both.h5"), 0);
-  assert_int_equal(command_run("recording both.h5"), 0);
-  assert_contains(command_out, "channels       2");
+  command_prints("recording both.h5", 0, "channels       2");
   assert_contains(command_out, "joined         z.h5, whose 0 is at -5 s");
   assert_contains(command_out, "0 to 100 um");
   assert_int_equal(command_run("recording both.h5 --json"), 0);
@@ -187,10 +181,8 @@ TEST(test_two_become_one)
 TEST(test_what_is_no_recording)
 {
   command_write("text.h5", "no recording at all");
-  assert_int_equal(command_run("recording text.h5"), 5);
-  assert_contains(command_err, "text.h5 is no recording; dea import makes one");
-  assert_int_equal(command_run("recording nowhere.h5"), 5);
-  assert_contains(command_err, "does not exist");
+  command_expect("recording text.h5", 5, "text.h5 is no recording; dea import makes one");
+  command_expect("recording nowhere.h5", 5, "does not exist");
   assert_int_equal(command_run("recording /dev/null"), 5);
   assert_int_equal(command_run("recording"), 2);
   assert_int_equal(command_run("recording a b"), 2);

@@ -74,8 +74,7 @@ static void read_measurement(const char *folder, struct dea_measurement **out)
 
 TEST(test_tables)
 {
-  assert_int_equal(command_run("reduce bench.h5 " RADII "-o tables --format svg"), 0);
-  assert_contains(command_out, "6.000      4");
+  command_prints("reduce bench.h5 " RADII "-o tables --format svg", 0, "6.000      4");
   assert_contains(command_out, "1 discharge: spikes above");
   struct dea_measurement *m;
   read_measurement("tables", &m);
@@ -134,13 +133,10 @@ TEST(test_json)
 /* An embedded or named design gives the radii; a reduction is not replaced by chance. */
 TEST(test_design_and_folder)
 {
-  assert_int_equal(command_run("reduce bench.h5 --design @/examples/frdea-4.yaml"), 0);
-  assert_contains(command_out, "fibre tips at");
+  command_prints("reduce bench.h5 --design @/examples/frdea-4.yaml", 0, "fibre tips at");
   assert_contains(command_out, "bench.reduced");
-  assert_int_equal(command_run("reduce bench.h5"), 5);
-  assert_contains(command_err, "--force");
-  assert_int_equal(command_run("reduce bench.h5 --force --settle 10%"), 0);
-  assert_contains(command_err, "--tip-radius");
+  command_expect("reduce bench.h5", 5, "--force");
+  command_expect("reduce bench.h5 --force --settle 10%", 0, "--tip-radius");
 }
 
 TEST(test_errors)

@@ -101,8 +101,8 @@ TEST(test_history_on_one_clock)
   command_folder_make("clockless");
   command_write("clockless/measurement.csv", points);
   write_history("clockless/history.csv", false);
-  assert_int_equal(command_run("compare run clockless --model lumped --json"), 0);
-  assert_contains(command_err, "are taken as they are: no voltage was recorded");
+  command_expect("compare run clockless --model lumped --json", 0,
+                 "are taken as they are: no voltage was recorded");
   root = printed();
   assert_close(number(find(root, "histories", "lumped", ""), "shift_s"), 0, 0, 0);
   assert_int_equal(json_array_size(json_object_get(root, "profiles")), 0);
@@ -175,8 +175,7 @@ TEST(test_clock_looks_for_pulses_of_its_height)
 
 TEST(test_a_run_as_the_reference_of_several)
 {
-  assert_int_equal(command_run("compare run run2 run --tolerance 0%"), 0);
-  assert_contains(command_out, "run2, axisymmetric");
+  command_prints("compare run run2 run --tolerance 0%", 0, "run2, axisymmetric");
   assert_int_equal(command_run("compare run run2 --model 3d:lumped --model lumped --json "
                                "--quantity centre_z_m"),
                    0);
@@ -186,25 +185,23 @@ TEST(test_a_run_as_the_reference_of_several)
   // 10 k^2 - 100 k for k = 0 ... 6: sum 910 - 2100
   assert_close(number(z, "bias"), -1190e-6 / 7.0, 1e-9, 0);
   json_decref(root);
-  assert_int_equal(command_run("compare run run2 run --model alpha"), 2);
-  assert_contains(command_err, "run has no model of those asked for");
-  assert_int_equal(command_run("compare run run2 run --model lumped:alpha"), 2);
-  assert_contains(command_err, "run has no curve of model 'alpha'");
+  command_expect("compare run run2 run --model alpha", 2, "run has no model of those asked for");
+  command_expect("compare run run2 run --model lumped:alpha", 2,
+                 "run has no curve of model 'alpha'");
 }
 
 TEST(test_tolerance_and_quantity)
 {
   assert_int_equal(command_run("compare run red --model lumped --tolerance 8%"), 0); // 30 of 380
-  assert_int_equal(command_run("compare run red --model lumped --tolerance 7%"), 1);
-  assert_contains(command_err, "centre_z_m of lumped differs by 7.89 % of its range");
+  command_expect("compare run red --model lumped --tolerance 7%", 1,
+                 "centre_z_m of lumped differs by 7.89 % of its range");
   assert_contains(command_out, "out of tolerance");
   assert_int_equal(command_run("compare run red --tolerance 7% --quantity force_N"), 0);
   assert_null(strstr(command_out, "z centre"));
   assert_null(strstr(command_out, "over film"));
-  assert_int_equal(command_run("compare run red --quantity fibre_tip_z_m"), 2);
-  assert_contains(command_err, "no curve has fibre_tip_z_m in common with red");
-  assert_int_equal(command_run("compare red run"), 2);
-  assert_contains(command_err, "red is a measurement: name it last");
+  command_expect("compare run red --quantity fibre_tip_z_m", 2,
+                 "no curve has fibre_tip_z_m in common with red");
+  command_expect("compare red run", 2, "red is a measurement: name it last");
   assert_int_equal(command_run("compare run"), 2);
 }
 
@@ -212,9 +209,9 @@ TEST(test_opposite_signs_are_said)
 {
   command_folder_make("below");
   command_write("below/measurement.csv", "V (kV),z centre (um)\n2,-190\n4,-420\n");
-  assert_int_equal(command_run("compare run below --json"), 0);
-  assert_contains(command_err, "z centre of 3d and of below have opposite signs; nothing was "
-                               "turned round: z is positive towards the fibres; was the sensor");
+  command_expect("compare run below --json", 0,
+                 "z centre of 3d and of below have opposite signs; nothing was "
+                 "turned round: z is positive towards the fibres; was the sensor");
   assert_contains(command_err, "and model lumped, an upper bound, predicts no sign");
   json_t *root = printed();
   const json_t *z =

@@ -17,8 +17,7 @@ static char log_text[LOG_MAX];
 
 static void make_files(void)
 {
-  assert_int_equal(command_run(EXPORT), 0);
-  assert_contains(command_out, "Next:  read ex/README.txt");
+  command_prints(EXPORT, 0, "Next:  read ex/README.txt");
 }
 
 /* Runs a program within the folder; its log of the stand-in is in log_text. */
@@ -90,18 +89,15 @@ TEST(test_waveform)
     assert_true(voltage_kV == due && control_V == due);
   }
   assert_string_equal(strchr(at, '\n'), "\n");
-  assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --export ex" SETS), 5);
-  assert_contains(command_err, "--force replaces it");
-  assert_int_equal(command_run("drive @/lab/examples/cyclic.yaml --export no --set channels=null"),
-                   2);
-  assert_contains(command_err, "nothing to be recorded");
+  command_expect("drive @/lab/examples/cyclic.yaml --export ex" SETS, 5, "--force replaces it");
+  command_expect("drive @/lab/examples/cyclic.yaml --export no --set channels=null", 2,
+                 "nothing to be recorded");
 }
 
 static void check_reading_back(void)
 {
   assert_int_equal(command_run("import ex/recording.csv --force -o r.h5"), 0);
-  assert_int_equal(command_run("recording r.h5"), 0);
-  assert_contains(command_out, "channels       4");
+  command_prints("recording r.h5", 0, "channels       4");
   assert_contains(command_out, "command                command ");
   assert_contains(command_out, "amplifier voltage      voltage       1000 Hz");
   assert_contains(command_out, "0 to 4 kV");
@@ -217,8 +213,7 @@ TEST(test_matlab)
     return;
   }
   assert_int_equal(code, 0);
-  assert_int_equal(command_run("recording r.h5"), 0);
-  assert_contains(command_out, "amplifier_voltage_V    voltage       1000 Hz");
+  command_prints("recording r.h5", 0, "amplifier_voltage_V    voltage       1000 Hz");
   assert_contains(command_out, "0 to 4 kV");
   assert_contains(command_out, "10 to 10 uA");
   assert_contains(command_out, "0 to 800 um");

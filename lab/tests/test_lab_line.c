@@ -57,8 +57,7 @@ TEST(test_zero_between_pulses)
   assert_int_equal(supply_wait(child, 40), 130);
   sleep_s(9);
   assert_true(line_supply_highest(&s) <= supply_zero_V && s.hurried == 0);
-  assert_int_equal(command_run("recording pulses.h5"), 0);
-  assert_contains(command_out, "another program (dea drive --zero) asked for 0 V");
+  command_prints("recording pulses.h5", 0, "another program (dea drive --zero) asked for 0 V");
   line_supply_stop(&s);
 }
 

@@ -39,8 +39,7 @@ TEST(test_plays)
     double highest_V = line_supply_highest(&s);
     assert_true(highest_V > 1900 && highest_V <= 2000);
     assert_true(s.commands > 40 && s.overflows == 0 && s.hurried == 0);
-    assert_int_equal(command_run("recording good.h5 --csv csv --force"), 0);
-    assert_contains(command_out, "supply");
+    command_prints("recording good.h5 --csv csv --force", 0, "supply");
     assert_contains(command_out, "at 0 V (0 V read back)");
     line_supply_stop(&s);
   }

@@ -161,8 +161,8 @@ TEST(test_empty_value)
 TEST(test_ranks_are_for_run_alone)
 {
   command_before = "OMPI_COMM_WORLD_SIZE=2 OMPI_COMM_WORLD_RANK=0";
-  assert_int_equal(command_run("sweep @/examples/explore/grid.yaml"), 2);
-  assert_contains(command_err, "dea sweep runs in one process, and mpirun has started 2");
+  command_expect("sweep @/examples/explore/grid.yaml", 2,
+                 "dea sweep runs in one process, and mpirun has started 2");
   command_before = "OMPI_COMM_WORLD_SIZE=1 OMPI_COMM_WORLD_RANK=0";
   assert_int_equal(command_run("check @/examples/frdea-4.yaml"), 0);
   command_before = "";
@@ -170,10 +170,8 @@ TEST(test_ranks_are_for_run_alone)
 
 TEST(test_check_lists_values_and_what_follows)
 {
-  assert_int_equal(command_run("check @/examples/frdea-4.yaml --all --set film.thickness=200um"),
-                   0);
-  assert_contains(command_out,
-                  "film.thickness                     200um                     --set");
+  command_prints("check @/examples/frdea-4.yaml --all --set film.thickness=200um", 0,
+                 "film.thickness                     200um                     --set");
   assert_contains(command_out,
                   "electrodes.thickness               0 um                      default");
   assert_contains(command_out, "fibre length                      11.25 mm");
@@ -223,21 +221,19 @@ TEST(test_check_is_brief)
     assert_null(strstr(command_out, "fabrication"));
     assert_null(strstr(command_out, "  default\n"));
   }
-  assert_int_equal(command_run("check @/examples/frdea-4.yaml --set pre_stretch=2"), 0);
-  assert_contains(command_out, "\n  pre_stretch     2 (--set)\n");
+  command_prints("check @/examples/frdea-4.yaml --set pre_stretch=2", 0,
+                 "\n  pre_stretch     2 (--set)\n");
   assert_contains(command_out, "\n  film            material elastosil-2030, law yeoh-178, perm");
   assert_contains(command_out,
                   "\n  compute         models lumped, axisymmetric, voltage.from 0 kV,");
-  assert_int_equal(command_run("check @/examples/devices/array-3x3.yaml"), 0);
-  assert_contains(command_out, "\n  shapes[3]       grid, difference, of film, holes\n");
+  command_prints("check @/examples/devices/array-3x3.yaml", 0,
+                 "\n  shapes[3]       grid, difference, of film, holes\n");
   assert_contains(command_out, "\n  channels        middle 1 x voltage, others 0 x voltage\n");
 }
 
 TEST(test_quiet_keeps_the_result)
 {
-  assert_int_equal(command_run("run @/examples/frdea-4.yaml -m lumped --no-figures -o q --quiet"),
-                   0);
-  assert_contains(command_out, "stretch");
+  command_prints("run @/examples/frdea-4.yaml -m lumped --no-figures -o q --quiet", 0, "stretch");
   assert_null(strstr(command_out, "results:"));
   assert_null(strstr(command_err, "note:"));
   assert_null(strstr(command_err, "lumped sweep"));
@@ -245,8 +241,8 @@ TEST(test_quiet_keeps_the_result)
 
 TEST(test_check_shows_the_band_of_the_breakdown_field)
 {
-  assert_int_equal(command_run("check @/examples/frdea-4.yaml"), 0);
-  assert_contains(command_out, "E_b 80 V/um (80 to 100\n                  by source)");
+  command_prints("check @/examples/frdea-4.yaml", 0,
+                 "E_b 80 V/um (80 to 100\n                  by source)");
 }
 
 static json_t *run_json(const char *arguments, int code)
@@ -278,10 +274,8 @@ TEST(test_check_as_json)
 
 TEST(test_schema)
 {
-  assert_int_equal(command_run("schema"), 0);
-  assert_contains(command_out, "film.thickness\n      thickness of the unstretched film");
-  assert_int_equal(command_run("schema --material"), 0);
-  assert_contains(command_out, "laws[].parameters");
+  command_prints("schema", 0, "film.thickness\n      thickness of the unstretched film");
+  command_prints("schema --material", 0, "laws[].parameters");
   json_t *json = run_json("schema --json", 0);
   json_t *disc = json_object_get(json, "else"), *general = json_object_get(json, "then");
   assert_non_null(json_object_get(json_object_get(general, "properties"), "plies"));
@@ -313,8 +307,8 @@ TEST(test_layout)
   assert_int_equal(command_run("check @/examples/frdea-4.yaml --svg disc.svg"), 0);
   command_read("disc.svg", svg);
   assert_contains(svg, ">4 of 11.25 \303\227 2 mm<");
-  assert_int_equal(command_run("run @/examples/devices/two-electrodes.yaml -o x -m lumped"), 3);
-  assert_contains(command_err, "this needs a disc in a round frame");
+  command_expect("run @/examples/devices/two-electrodes.yaml -o x -m lumped", 3,
+                 "this needs a disc in a round frame");
 }
 
 /* A design with a material of its own. */
@@ -425,10 +419,8 @@ TEST(test_doctor_without_modules)
 
 TEST(test_materials)
 {
-  assert_int_equal(command_run("materials"), 0);
-  assert_contains(command_out, "elastosil-2030");
-  assert_int_equal(command_run("materials elastosil-2030"), 0);
-  assert_contains(command_out, "c1             178.4 kPa");
+  command_prints("materials", 0, "elastosil-2030");
+  command_prints("materials elastosil-2030", 0, "c1             178.4 kPa");
   json_t *json = run_json("materials --json", 0);
   assert_true(json_array_size(json) >= 5);
   json_decref(json);
@@ -438,8 +430,7 @@ TEST(test_materials)
 TEST(test_names_do_not_reach_the_terminal)
 {
   command_write("odd\x1b[31m.yaml", "hello\n");
-  assert_int_equal(command_run("check 'odd\x1b[31m.yaml'"), 3);
-  assert_contains(command_err, "odd [31m.yaml:1:1: error: ");
+  command_expect("check 'odd\x1b[31m.yaml'", 3, "odd [31m.yaml:1:1: error: ");
   assert_null(strchr(command_err, '\x1b'));
 }
 

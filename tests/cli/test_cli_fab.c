@@ -18,8 +18,7 @@ static void read_into(const char *name, char **out)
 
 TEST(test_files)
 {
-  assert_int_equal(command_run("fab @/examples/frdea-4.yaml"), 0);
-  assert_contains(command_err, "files for the workshop are in frdea-4.fab");
+  command_expect("fab @/examples/frdea-4.yaml", 0, "files for the workshop are in frdea-4.fab");
   assert_true(strstr(command_err, "elements") == NULL); // of models that were only asked
   assert_string_equal(command_out, "");
   char *text;
@@ -29,8 +28,7 @@ TEST(test_files)
   read_into("frdea-4.fab/fibres.svg", &text);
   assert_contains(text, "width=\"210.000000mm\" height=\"297.000000mm\"");
   // what is there stays, unless it is to be replaced
-  assert_int_equal(command_run("fab @/examples/frdea-4.yaml"), 5);
-  assert_contains(command_err, "--force");
+  command_expect("fab @/examples/frdea-4.yaml", 5, "--force");
   assert_int_equal(command_run("--quiet fab " STILL "--force"), 0);
   assert_true(strstr(command_err, "are in") == NULL);
 }
@@ -177,12 +175,12 @@ TEST(test_what_goes_wrong)
   assert_int_equal(command_run("fab a b"), 2);
   assert_int_equal(command_run("fab " STILL "--laser"), 2);
   assert_int_equal(command_run("fab no-such-file.yaml"), 5);
-  assert_int_equal(command_run("fab " STILL "-o bad --set fabrication.kerf=1mm"), 3);
-  assert_contains(command_err, "--set fabrication.kerf: error: kerf: a cut of 1 mm width");
-  assert_int_equal(command_run("fab " STILL "-o bad --set fabrication.sheet.width=30mm"), 3);
-  assert_contains(command_err, "too small for the part");
-  assert_int_equal(command_run("fab " STILL "-o bad --set fabrication.holder.anchor=12mm"), 3);
-  assert_contains(command_err, "a fibre is longer than the frame");
+  command_expect("fab " STILL "-o bad --set fabrication.kerf=1mm", 3,
+                 "--set fabrication.kerf: error: kerf: a cut of 1 mm width");
+  command_expect("fab " STILL "-o bad --set fabrication.sheet.width=30mm", 3,
+                 "too small for the part");
+  command_expect("fab " STILL "-o bad --set fabrication.holder.anchor=12mm", 3,
+                 "a fibre is longer than the frame");
   char path[700];
   snprintf(path, sizeof path, "%s/bad", command_folder);
   assert_int_not_equal(access(path, F_OK), 0); // nothing was begun

@@ -55,8 +55,7 @@ TEST(test_errors)
   for (size_t i = 0; i < sizeof shards / sizeof shards[0]; i++) {
     char line[64];
     snprintf(line, sizeof line, "sweep mine.yaml --shard %s", shards[i]);
-    assert_int_equal(command_run(line), 2);
-    assert_contains(command_err, "is no part of parts such as 2/8");
+    command_expect(line, 2, "is no part of parts such as 2/8");
   }
   assert_int_equal(command_run("sweep mine.yaml -j 0"), 2);
   // would throw away what the others compute, or what is to be merged
@@ -231,8 +230,8 @@ TEST(test_flags)
                              "variables: [{name: pre_stretch, values: [1.8]},\n"
                              "            {name: film.thickness, values: [60 um, 120 um]}]\n");
   for (int again = 0; again < 2; again++) { // then from what is kept
-    assert_int_equal(command_run("sweep two.yaml -o two"), 0);
-    assert_contains(command_out, again == 0 ? "2 of them computed now" : "0 of them computed now");
+    command_prints("sweep two.yaml -o two", 0,
+                   again == 0 ? "2 of them computed now" : "0 of them computed now");
     assert_contains(command_out, "\n1 of them from 2.2 kV on: not trusted, slack: so much of");
     assert_contains(command_out, "\n1 of them from 2.2 kV on: breakdown: the true field");
     command_read("two/cases.csv", text);
@@ -244,8 +243,7 @@ TEST(test_flags)
                               "plan: sobol\nsamples: 8\n"
                               "variables: [{name: pre_stretch, low: 1.7, high: 1.8},\n"
                               "            {name: film.thickness, low: 60 um, high: 120 um}]\n");
-  assert_int_equal(command_run("sweep many.yaml -o many"), 0);
-  assert_contains(command_out, slack);
+  command_prints("sweep many.yaml -o many", 0, slack);
   command_read("many/statistics.csv", text);
   assert_contains(text, ",97.5 %,doubted\n");
   const char *row = strstr(text, "electrode_edge_u_m,m,2.2,8,");
@@ -264,8 +262,7 @@ TEST(test_flags)
                               "starts: 1\n"
                               "variables: [{name: pre_stretch, values: [1.8]},\n"
                               "            {name: film.thickness, low: 60 um, high: 120 um}]\n");
-  assert_int_equal(command_run("optimise most.yaml -o most"), 0);
-  assert_contains(command_out, slack);
+  command_prints("optimise most.yaml -o most", 0, slack);
   command_read("most/best.yaml", text);
   assert_contains(text, slack);
 }
@@ -277,8 +274,7 @@ TEST(test_grid)
              "{name: fibres.count, low: 3, high: 4}, "
              "{name: electrodes.diameter, values: [5 mm unstretched, 40 mm unstretched]}",
              "");
-  assert_int_equal(command_run("sweep mine.yaml -j 2"), 0);
-  assert_contains(command_out, "designs: 12 of 12 are there, 12 of them computed now");
+  command_prints("sweep mine.yaml -j 2", 0, "designs: 12 of 12 are there, 12 of them computed now");
   assert_contains(command_out, "without all values: 6 (for example: the electrode");
   assert_int_equal(lines_with("mine.sweep/cases.csv", "\n"), 13);
   // the value of a run of its own
@@ -291,16 +287,13 @@ TEST(test_grid)
   snprintf(wanted, sizeof wanted, ",%.8g", strtod(at + 22, NULL));
   assert_int_equal(lines_with("mine.sweep/cases.csv", wanted), 2); // three and four fibres
   // a part after the other, and the tables of both, twice, are those of the whole
-  assert_int_equal(command_run("sweep mine.yaml --shard 1/2 -o parts"), 0);
-  assert_contains(command_out, "designs: 6 of 12 are there");
+  command_prints("sweep mine.yaml --shard 1/2 -o parts", 0, "designs: 6 of 12 are there");
   assert_int_equal(command_run("sweep mine.yaml --shard 2/2 -o parts"), 0);
   for (int k = 0; k < 2; k++) {
-    assert_int_equal(command_run("sweep mine.yaml --merge -o parts"), 0);
-    assert_contains(command_out, "designs: 12 of 12 are there\n");
+    command_prints("sweep mine.yaml --merge -o parts", 0, "designs: 12 of 12 are there\n");
   }
   command_read("parts/cases.csv", first);
-  assert_int_equal(command_run("sweep mine.yaml -o parts"), 0);
-  assert_contains(command_out, "0 of them computed now");
+  command_prints("sweep mine.yaml -o parts", 0, "0 of them computed now");
   command_read("parts/cases.csv", again);
   assert_string_equal(first, again); // to the byte, of the same parts
   command_read("mine.sweep/cases.csv", first);
@@ -326,8 +319,7 @@ TEST(test_killed)
   for (int k = 0; k < 8; k++) {
     assert_int_not_equal(system(text), -1);
   }
-  assert_int_equal(command_run("sweep mine.yaml -j 2 -o cut"), 0);
-  assert_contains(command_out, "designs: 400 of 400 are there");
+  command_prints("sweep mine.yaml -j 2 -o cut", 0, "designs: 400 of 400 are there");
   assert_int_equal(lines_with("cut/part-1-of-1.csv", "\n"),
                    401 + lines_with("cut/part-1-of-1.csv", "\n\n"));
   assert_int_equal(lines_with("cut/cases.csv", "\n"), 401);
@@ -441,14 +433,11 @@ TEST(test_optimise)
              "objectives: [{quantity: breakdown_margin}]\n"
              "limits: [{quantity: breakdown_margin, above: 0.99}]\nevaluations: 20\nstarts: 1");
   command_expect("optimise mine.yaml", 4, "is within all limits");
-  assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
-  assert_contains(command_out, best);
-  assert_int_equal(command_run("check best/best.yaml"), 0);
-  assert_contains(command_out, "pre_stretch");
+  command_prints("optimise @/examples/explore/best.yaml -o best", 0, best);
+  command_prints("check best/best.yaml", 0, "pre_stretch");
   command_write("best/best-3.yaml", "# Written by dea 0.5.0 optimise, a front that was longer\n");
   command_write("best/best-4.yaml", "# written by hand\n");
-  assert_int_equal(command_run("optimise @/examples/explore/best.yaml -o best"), 0);
-  assert_contains(command_out, best);
+  command_prints("optimise @/examples/explore/best.yaml -o best", 0, best);
   const char *at = strstr(command_out, "designs: ");
   assert_non_null(at);
   int all = 0, before = -1;
@@ -514,11 +503,9 @@ TEST(test_values_without_the_start)
   write_file("{name: fibres.count, values: [10, 6, 8], start: 8}, {name: pre_stretch, "
              "values: [1.3, 1.4], start: 1.4}",
              more);
-  assert_int_equal(command_run("optimise mine.yaml -o given"), 0);
-  assert_contains(command_out, "designs: 6, 0 of them");
+  command_prints("optimise mine.yaml -o given", 0, "designs: 6, 0 of them");
   write_file("{name: fibres.count, values: [10, 6, 8]}", more);
-  assert_int_equal(command_run("optimise mine.yaml -o near"), 0);
-  assert_contains(command_out, "designs: 3, 0 of them");
+  command_prints("optimise mine.yaml -o near", 0, "designs: 3, 0 of them");
 }
 
 /* The most capacitance of a film that lives to 4 kV: that voltage goes with the thickness, and the
@@ -563,8 +550,8 @@ TEST(test_tied_variable_ends_at_a_bound)
   char file[1000];
   snprintf(file, sizeof file, head, "fibres.thickness, fibres.bond.thickness");
   command_write("tied.yaml", file);
-  assert_int_equal(command_run("optimise tied.yaml -o tied"), 0);
-  assert_contains(command_out, "film.thickness               80 um, at its lower bound\n");
+  command_prints("optimise tied.yaml -o tied", 0,
+                 "film.thickness               80 um, at its lower bound\n");
   assert_contains(command_out, "fibres.thickness             80 um\n");
   command_read("tied/best.yaml", text);
   assert_contains(text, "#   film.thickness is at its lower bound\n");
