@@ -123,13 +123,9 @@ static const struct dea_result_column monitor_columns[] = {
     DEA_RESULT_COLUMN(QUANTITY, "quantity", "quantity", .meaning = "that a monitor shows most"),
     DEA_RESULT_COLUMN(VALUE, "value", "value", .meaning = "at the design's last voltage"),
 };
-static const struct dea_result_table_type monitor_table = {.study = study_name,
-                                                           .name = "monitors",
-                                                           .title =
-                                                               "monitors at their last voltage",
-                                                           .where = DEA_IN_SCREEN, // else of points
-                                                           .columns = monitor_columns,
-                                                           .column_count = COUNT(monitor_columns)};
+static const struct dea_result_table_type monitor_table = DEA_RESULT_TABLE(
+    study_name, "monitors", monitor_columns, .title = "monitors at their last voltage",
+    .where = DEA_IN_SCREEN); // else of points
 enum { HEADLINES_MAX = 16 };
 
 /* What is only noise is 0. */

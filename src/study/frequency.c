@@ -483,13 +483,10 @@ static const struct dea_result_column peak_columns[] = {
                       "amplitude over that at the lowest frequency"),
     DEA_TEXT_COLUMN("flags", "flags", "why the state at the bias is not to be trusted"),
 };
-static const struct dea_result_table_type peak_table = {
-    .study = study_name,
-    .name = "peaks",
-    .title = "amplitudes and their peaks, among the computed frequencies",
-    .where = DEA_IN_SCREEN, // CSV and JSON have its points
-    .columns = peak_columns,
-    .column_count = sizeof peak_columns / sizeof peak_columns[0]};
+static const struct dea_result_table_type peak_table =
+    DEA_RESULT_TABLE(study_name, "peaks", peak_columns,
+                     .title = "amplitudes and their peaks, among the computed frequencies",
+                     .where = DEA_IN_SCREEN); // CSV and JSON have its points
 
 static const double least_peak = 1e-3; // of the line's largest amplitude: less is not listed
 

@@ -95,13 +95,9 @@ static const struct dea_result_column mode_columns[] = {
                       "displacement of the centre out of the plane over its largest one"),
     DEA_TEXT_COLUMN("flags", "flags", "why the state that it vibrates about is not to be trusted"),
 };
-static const struct dea_result_table_type mode_table = {
-    .study = study_name,
-    .name = "modes",
-    .title = "modes in vacuo",
-    .where = DEA_IN_SCREEN, // CSV and JSON have its points
-    .columns = mode_columns,
-    .column_count = sizeof mode_columns / sizeof mode_columns[0]};
+static const struct dea_result_table_type mode_table =
+    DEA_RESULT_TABLE(study_name, "modes", mode_columns, .title = "modes in vacuo",
+                     .where = DEA_IN_SCREEN); // CSV and JSON have its points
 
 static dea_status tables(struct dea_context *ctx, const char *model, struct dea_result *result)
 {

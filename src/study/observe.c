@@ -27,21 +27,13 @@ enum {
   PASS_COLUMNS = sizeof pass_columns / sizeof pass_columns[0]
 };
 
-static const struct dea_result_table_type of_passes = {.study = "sweep",
-                                                       .name = "adaptation",
-                                                       .key = "adaptation",
-                                                       .title = "Adaptive refinement",
-                                                       .where =
-                                                           DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN,
-                                                       .columns = pass_columns,
-                                                       .column_count = PASS_COLUMNS};
+static const struct dea_result_table_type of_passes = DEA_RESULT_TABLE(
+    "sweep", "adaptation", pass_columns, .key = "adaptation", .title = "Adaptive refinement",
+    .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN);
 
-static const struct dea_result_table_type of_sources = {.study = "transient",
-                                                        .name = "sources",
-                                                        .title = "channels",
-                                                        .where = DEA_IN_JSON | DEA_IN_SCREEN,
-                                                        .columns = source_columns,
-                                                        .column_count = SOURCE_COLUMNS};
+static const struct dea_result_table_type of_sources =
+    DEA_RESULT_TABLE("transient", "sources", source_columns, .title = "channels",
+                     .where = DEA_IN_JSON | DEA_IN_SCREEN);
 
 // What is observed at a point --------------------------------------------------------------------
 

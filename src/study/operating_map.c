@@ -501,13 +501,9 @@ static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, siz
   memcpy(columns, limit_columns, sizeof columns);
   DEA_TRY(ctx, fill_column(ctx, axis, false, &columns[0]));
   snprintf(title, sizeof title, "limits against %s", columns[0].title);
-  const struct dea_result_table_type type = {.study = study_name,
-                                             .name = name_axis(ctx, axis),
-                                             .title = dea_intern(ctx, title),
-                                             .where = IN_ALL, // the report draws it
-                                             .every = rows > 9 ? 4 : 0,
-                                             .columns = columns,
-                                             .column_count = COUNT(columns)};
+  const struct dea_result_table_type type =
+      DEA_RESULT_TABLE(study_name, name_axis(ctx, axis), columns, .title = dea_intern(ctx, title),
+                       .where = IN_ALL, .every = rows > 9 ? 4 : 0); // the report draws it
   if (type.name == NULL || type.title == NULL) {
     return DEA_E_MEMORY;
   }
