@@ -15,6 +15,7 @@ struct request {
   double processes; // 0: not given
   double slurm;     // parts of an array of jobs; 0: none
   struct dea_sweep_options options;
+  struct cli_overrides at;
   struct dea_plot_format format; // of the figures
 };
 
@@ -46,6 +47,11 @@ static int take_shard(struct dea_cli *cli, const struct dea_command *command,
 
 static void print_report(const struct dea_sweep_report *report, const struct request *request)
 {
+  if (report->at != NULL) { // a table by itself
+    fputs(report->at, stdout);
+    fflush(stdout);
+    return;
+  }
   printf("designs: %zu of %zu are there", report->there, report->planned);
   if (!request->options.merge) {
     printf(", %zu of them computed now", report->now);
@@ -104,6 +110,7 @@ static dea_status sweep(struct dea_cli *cli, const struct request *request)
   if (report.planned > 0) {
     print_report(&report, request);
   }
+  dea_free(cli->ctx, report.at);
   dea_case_key_destroy(case_key);
   return status;
 }
@@ -122,6 +129,8 @@ static int run(struct dea_cli *cli, void *user)
                                                   : "--shard");
   }
   request->options.format = request->format;
+  request->options.at = request->at.at;
+  request->options.at_count = request->at.count;
   request->options.processes = cli_processes(request->processes);
   request->options.folder =
       cli_output_name(request->options.folder, request->file, "sweep", &folder);
@@ -147,6 +156,10 @@ static const struct cli_option options[] = {
      "that writes the tables after them; what else sbatch should know says SBATCH_PARTITION and "
      "the like",
      CLI_AT(slurm), cli_take_processes},
+    {"at", 0, CLI_KEY, "KEY=VALUE",
+     "of the plan sparse-grid: print quantities and their errors at this value of a variable, the "
+     "design's value of the others, as CSV",
+     CLI_AT(at), cli_take_override, .most = CLI_OVERRIDES_MAX},
     {"merge", 0, CLI_FLAG, NULL, "only write the tables of all parts that are there",
      CLI_AT(options.merge)},
     {"force", 'f', CLI_FLAG, NULL, "throw away the cases that are there", CLI_AT(options.force)},

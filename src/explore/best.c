@@ -224,7 +224,8 @@ static dea_status check(const struct work *w)
 static dea_status write_cases(const struct work *w)
 {
   const size_t n = w->case_key->variable_count, count = dea_store_count(w->store);
-  struct dea_plan plan = {dea_alloc(w->ctx, n * count, sizeof(double)), count, count};
+  struct dea_plan plan = {
+      .p = dea_alloc(w->ctx, n * count, sizeof(double)), .count = count, .samples = count};
   if (plan.p == NULL) {
     return DEA_E_MEMORY;
   }
@@ -233,7 +234,7 @@ static dea_status write_cases(const struct work *w)
   }
   dea_status status =
       dea_sweep_write(w->case_key, &plan, w->store, &w->options->format, w->options->folder);
-  dea_free(w->ctx, plan.p);
+  dea_plan_free(w->ctx, &plan);
   return status;
 }
 

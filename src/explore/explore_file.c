@@ -1,6 +1,7 @@
 #include "explore/explore_file.h"
 
 #include "base/correlations.h"
+#include "io/sparse_grid.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define AT(member) offsetof(struct dea_explore_file, member)
@@ -9,7 +10,8 @@
 
 static const char *const distributions[] = {"uniform", "normal", "lognormal", NULL};
 static const char *const begins[] = {"nearest", "rest", NULL};
-static const char *const plans[] = {"grid", "latin-hypercube", "sobol", "random", "indices", NULL};
+static const char *const plans[] = {"grid",    "sparse-grid", "latin-hypercube", "sobol", "random",
+                                    "indices", NULL};
 
 static const struct dea_field variable_fields[] = {
     DEA_LABEL_ROW("name", VARIABLE_AT(text.name), "film.thickness", DEA_DEVICE_PARAM_DOC,
@@ -134,11 +136,17 @@ static const struct dea_field file_fields[] = {
         DEA_LIST(1, DEA_EXPLORE_PAIRS_MAX, struct dea_quantity, AT(correlation_count)),
         .absent_text = "none"),
     DEA_CHOICE_ROW("plan", AT(plan), plans, "sobol",
-                   "grid: every combination; samples of the distributions; indices: samples for "
+                   "grid: every combination; sparse-grid: few designs between which dea sweep --at "
+                   "and the explorer of dea report interpolate; samples of the distributions; "
+                   "indices: samples for "
                    "Sobol indices, (variables + 2) times their number",
                    .default_text = "grid"),
     DEA_INTEGER_ROW("samples", AT(samples), "1000", "number of samples", .min = 1,
                     .max = DEA_EXPLORE_CASES_MAX, .default_text = "100"),
+    DEA_INTEGER_ROW("level", AT(level), "3",
+                    "of a sparse grid: of one variable 3, 5, 9 or 17 designs, of two 5, 13, 29 or "
+                    "65, of three 7, 25, 69 or 177",
+                    .min = 1, .max = DEA_EMULATOR_LEVEL_MAX, .default_text = "2"),
     DEA_INTEGER_ROW("seed", AT(seed), "7", "of the samples: another one gives others",
                     .max = 1000000000, .default_text = "1"),
     DEA_CHOICE_ROW("begin", AT(begin), begins, "rest",

@@ -20,6 +20,7 @@ enum {
 enum dea_distribution { DEA_UNIFORM, DEA_NORMAL, DEA_LOGNORMAL };
 enum dea_plan_kind {
   DEA_PLAN_GRID,
+  DEA_PLAN_SPARSE,
   DEA_PLAN_LATIN,
   DEA_PLAN_SOBOL,
   DEA_PLAN_RANDOM,
@@ -71,7 +72,7 @@ struct dea_explore_file {
   struct dea_quantity correlations[DEA_EXPLORE_PAIRS_MAX]; // 2 with 1, 3 with 1, 3 with 2, ...
   size_t correlation_count;                                // 0: none correlate
   struct dea_choice plan;                                  // enum dea_plan_kind
-  struct dea_quantity samples, seed;
+  struct dea_quantity samples, seed, level;
   struct dea_choice begin; // enum dea_begin
   struct dea_explore_limit limits[DEA_EXPLORE_LIMITS_MAX];
   size_t limit_count;

@@ -204,6 +204,9 @@ static dea_status run(struct work *w)
     DEA_TRY(ctx,
             dea_sweep_write(w->case_key, w->plan, w->store, &options->format, options->folder));
     w->report->written = true;
+    DEA_TRY(ctx, w->plan->nodes == NULL && options->at_count == 0
+                     ? DEA_OK
+                     : dea_sweep_emulate(w->case_key, w->plan, w->store, options, &w->report->at));
   }
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
@@ -217,6 +220,6 @@ dea_status dea_sweep_run(const struct dea_case_key *case_key,
   struct work w = {.case_key = case_key, .options = options, .report = report, .plan = &plan};
   dea_status status = run(&w);
   dea_store_close(w.store);
-  dea_free(case_key->ctx, plan.p);
+  dea_plan_free(case_key->ctx, &plan);
   return status;
 }

@@ -13,6 +13,9 @@ struct dea_sweep_options {
   bool force;             // throw away what is there
   bool merge;             // only write the tables of what is there
   struct dea_plot_format format;
+  /* Values of variables at which the sparse grid is evaluated; without any it is not. */
+  const struct dea_override *at; // [at_count]
+  size_t at_count;
 };
 
 /* What a sweep comes to. */
@@ -25,6 +28,7 @@ struct dea_sweep_report {
   /* Cases with each flag at some voltage, and the lowest such voltage. */
   size_t flagged[DEA_FLAG_COUNT];
   double flagged_from_V[DEA_FLAG_COUNT];
+  char *at; // CSV of options.at; owned by the caller, NULL: none
 };
 
 /* Evaluates what of the plan is not in the folder yet and writes the tables of all that is there:
@@ -38,6 +42,10 @@ struct dea_spread;
 dea_status dea_sweep_draw(const struct dea_case_key *case_key, const struct dea_spread *spreads,
                           size_t samples, const size_t *doubted,
                           const struct dea_plot_format *format, const char *folder);
+/* Of a sparse grid that is done: emulator.json into a folder, and the CSV of options.at. */
+dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
+                             const struct dea_store *store, const struct dea_sweep_options *options,
+                             char **at);
 /* The tables of a plan's cases as far as they are done, and figures of the format, into a folder.
  */
 dea_status dea_sweep_write(const struct dea_case_key *case_key, const struct dea_plan *plan,

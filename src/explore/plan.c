@@ -1,6 +1,7 @@
 #include "explore/plan.h"
 
 #include "base/correlations.h"
+#include "io/sparse_grid.h"
 
 #include <math.h>
 
@@ -195,6 +196,34 @@ static dea_status too_many(const struct dea_case_key *case_key, double count)
   return cannot_be_made(case_key->ctx);
 }
 
+/* A sparse grid is of few numbers that change evenly from low to high, at rising voltages. */
+static dea_status check_sparse(const struct dea_case_key *case_key)
+{
+  const struct dea_explore_file *file = case_key->file;
+  for (size_t j = 0; j < case_key->variable_count; j++) {
+    const struct dea_variable *variable = &case_key->variables[j];
+    const struct dea_label *name = &variable->text->text.name;
+    if (variable->value_count > 0 || variable->param.whole ||
+        variable->text->distribution.value != DEA_UNIFORM) {
+      DEA_TRY(case_key->ctx,
+              dea_finding_add(case_key->ctx, DEA_ERROR, name->location,
+                              "%s: a sparse grid needs low and high, of no whole number",
+                              name->text));
+    }
+  }
+  if (case_key->variable_count > DEA_EMULATOR_KEYS_MAX) {
+    DEA_TRY(case_key->ctx,
+            dea_finding_add(case_key->ctx, DEA_ERROR, file->plan.location,
+                            "a sparse grid has at most %d variables", DEA_EMULATOR_KEYS_MAX));
+  }
+  if (case_key->voltage_count < 2) {
+    DEA_TRY(case_key->ctx, dea_finding_add(case_key->ctx, DEA_ERROR, file->plan.location,
+                                           "a sparse grid needs voltages between which it can "
+                                           "interpolate, such as voltages: [0 kV, 1 kV, 2 kV]"));
+  }
+  return DEA_OK;
+}
+
 dea_status dea_plan_check(const struct dea_case_key *case_key)
 {
   const struct dea_explore_file *file = case_key->file;
@@ -209,12 +238,17 @@ dea_status dea_plan_check(const struct dea_case_key *case_key)
                               "%s: a grid needs values, or steps from low to high", name->text));
     }
   }
-  if (file->correlation_count > 0 && (grid || file->plan.value == DEA_PLAN_INDICES)) {
+  if (file->plan.value == DEA_PLAN_SPARSE) {
+    DEA_TRY(ctx, check_sparse(case_key));
+  }
+  if (file->correlation_count > 0 &&
+      (grid || file->plan.value == DEA_PLAN_SPARSE || file->plan.value == DEA_PLAN_INDICES)) {
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, file->correlations[0].location,
                                  "correlations are of samples: plan: %s",
-                                 grid ? "sobol, not grid"
-                                      : "sobol; indices are of variables that are independent of "
-                                        "each other"));
+                                 file->plan.value != DEA_PLAN_INDICES
+                                     ? "sobol, not a grid"
+                                     : "sobol; indices are of variables that are independent of "
+                                       "each other"));
   }
   return dea_finding_count(ctx, DEA_ERROR) == errors ? DEA_OK : cannot_be_made(ctx);
 }
@@ -241,6 +275,23 @@ static dea_status make_grid(const struct dea_case_key *case_key, struct dea_plan
       out->p[c * n + j] = variable->values[rest % variable->value_count];
       rest /= variable->value_count;
     }
+  }
+  return DEA_OK;
+}
+
+static dea_status make_sparse(const struct dea_case_key *case_key, struct dea_plan *out)
+{
+  const size_t n = case_key->variable_count;
+  const int level = (int)case_key->file->level.si;
+  out->samples = out->count = dea_sparse_grid(n, level, NULL);
+  out->p = dea_alloc(case_key->ctx, out->count * n, sizeof *out->p);
+  out->nodes = dea_alloc(case_key->ctx, out->count * n, 1);
+  if (out->p == NULL || out->nodes == NULL) {
+    return DEA_E_MEMORY;
+  }
+  dea_sparse_grid(n, level, out->nodes);
+  for (size_t i = 0; i < out->count * n; i++) {
+    out->p[i] = value_at(&case_key->variables[i % n], dea_sparse_grid_share(level, out->nodes[i]));
   }
   return DEA_OK;
 }
@@ -301,11 +352,19 @@ dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *o
 {
   *out = (struct dea_plan){0};
   DEA_TRY(case_key->ctx, dea_plan_check(case_key));
-  dea_status status = case_key->file->plan.value == DEA_PLAN_GRID ? make_grid(case_key, out)
-                                                                  : make_samples(case_key, out);
+  const int kind = case_key->file->plan.value;
+  dea_status status = kind == DEA_PLAN_GRID     ? make_grid(case_key, out)
+                      : kind == DEA_PLAN_SPARSE ? make_sparse(case_key, out)
+                                                : make_samples(case_key, out);
   if (status != DEA_OK) {
-    dea_free(case_key->ctx, out->p);
-    *out = (struct dea_plan){0};
+    dea_plan_free(case_key->ctx, out);
   }
   return status;
+}
+
+void dea_plan_free(struct dea_context *ctx, struct dea_plan *plan)
+{
+  dea_free(ctx, plan->p);
+  dea_free(ctx, plan->nodes);
+  *plan = (struct dea_plan){0};
 }

@@ -21,14 +21,16 @@ double dea_normal_quantile(double u);
  * numbers behind them; without any they stay. */
 void dea_sample_correlate(const struct dea_explore_file *file, size_t count, double *u);
 
-/* Cases [count][params], owned (dea_free). Of indices: A, B, then for each variable A with the
+/* Cases [count][params], owned (dea_plan_free). Of indices: A, B, then for each variable A with the
  * variable of B, of `samples` each. */
 struct dea_plan {
   double *p;
   size_t count, samples;
+  unsigned char *nodes; // of a sparse grid (io/sparse_grid.h)
 };
 /* Whether a plan can be made of the variables as they are given, which a search does not ask.
  * Errors are findings; DEA_E_DESIGN then. */
 dea_status dea_plan_check(const struct dea_case_key *case_key);
 /* Errors (too many cases, what has no range) are findings; DEA_E_DESIGN then. */
 dea_status dea_plan_make(const struct dea_case_key *case_key, struct dea_plan *out);
+void dea_plan_free(struct dea_context *ctx, struct dea_plan *plan);

@@ -296,7 +296,7 @@ static dea_status write_all(const struct work *w)
 {
   DEA_TRY(w->ctx, write_cases(w));
   DEA_TRY(w->ctx, write_h5(w));
-  if (w->case_key->file->plan.value == DEA_PLAN_GRID || w->case_key->file->objective_count > 0) {
+  if (w->case_key->file->plan.value <= DEA_PLAN_SPARSE || w->case_key->file->objective_count > 0) {
     return DEA_OK;
   }
   size_t doubted[DEA_EXPLORE_VOLTAGES_MAX] = {0};

@@ -2,6 +2,8 @@
 // ctest: slow, heavy
 #include "command.h"
 
+#include <jansson.h>
+
 /* A file with these variables and more keys. */
 static void write_file(const char *variables, const char *more)
 {
@@ -36,6 +38,8 @@ TEST(test_errors)
          "this distribution needs mean and std");
   expect("{name: film.thickness, mean: 1 um, std: 1 um, low: 1 um, high: 2 um}", "plan: sobol",
          "are of a normal or lognormal");
+  expect(good, "plan: sparse-grid", "pre_stretch: a sparse grid needs low and high");
+  expect("{name: fibres.count, low: 3, high: 8}", "plan: sparse-grid", "of no whole number");
   expect(good, "limits: [{quantity: force_N, above: 1 N}]", "is none of the quantities");
   expect(good, "limits: [{quantity: breakdown_margin, above: 1 m}]", "breakdown_margin: '1 m':");
   expect(good, "limits: [{quantity: breakdown_margin}]", "a limit needs above or below");
@@ -308,6 +312,46 @@ TEST(test_grid)
 }
 
 /* Killed again and again: in the end every case is there, and once. */
+/* A sparse grid between whose designs numbers are within the error that they state; one of a higher
+ * level takes over what is there. */
+TEST(test_sparse_grid)
+{
+  double z, error, margin;
+  write_file("{name: pre_stretch, low: 1.3, high: 1.7}, "
+             "{name: film.thickness, low: 80 um, high: 120 um}",
+             "plan: sparse-grid");
+  assert_int_equal(command_run("sweep mine.yaml -o sparse"), 0);
+  assert_contains(command_out, "designs: 13 of 13 are there, 13 of them");
+  assert_int_equal(command_run("sweep mine.yaml -o sparse --at film.thickness='93 um' "
+                               "--at pre_stretch=1.43"),
+                   0);
+  const char *row = strstr(command_out, "\n5000,");
+  assert_true(row != NULL && sscanf(row, "\n5000,%lf,%lf,%lf", &z, &error, &margin) == 3);
+  assert_int_equal(command_run("run @/examples/frdea-4.yaml --json --model lumped --study sweep "
+                               "--set film.thickness=93um --set pre_stretch=1.43 --set "
+                               "'compute.voltage={from: 0 kV, to: 5 kV, step: 5 kV}'"),
+                   0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  const json_t *point = json_array_get(json_object_get(run, "points"), 1);
+  const double wanted = json_number_value(json_object_get(point, "electrode_edge_u_m"));
+  assert_true(fabs(z - wanted) <= error && error < 0.1 * wanted);
+  json_decref(run);
+  static const char *const wrong[][2] = {
+      {"pre_stretch=1.8", "pre_stretch: 1.8 is outside the range that was computed, 1.3 to 1.7"},
+      {"pre_strech=1.4", "'pre_strech' is no variable; did you mean 'pre_stretch'?"},
+      {"pre_stretch='1 m'", "--at: error: pre_stretch: '1 m':"}};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    char line[100];
+    snprintf(line, sizeof line, "sweep mine.yaml -o sparse --at %s", wrong[i][0]);
+    command_expect(line, 3, wrong[i][1]);
+  }
+  write_file("{name: pre_stretch, low: 1.3, high: 1.7}, "
+             "{name: film.thickness, low: 80 um, high: 120 um}",
+             "plan: sparse-grid\nlevel: 3");
+  assert_int_equal(command_run("sweep mine.yaml -o sparse"), 0);
+  assert_contains(command_out, "designs: 29 of 29 are there, 16 of them");
+}
+
 TEST(test_killed)
 {
   char text[700];

@@ -6,6 +6,7 @@
 #include "explore/pool.h"
 #include "explore/sample_statistics.h"
 #include "explore/store.h"
+#include "io/sparse_grid.h"
 
 #include <math.h>
 #include <signal.h>
@@ -374,6 +375,139 @@ TEST(test_store)
   assert_int_equal(dea_store_open(ctx, name, "q1", &evaluator, NULL, &store), DEA_OK);
   assert_int_equal(dea_store_count(store), 0);
   dea_store_close(store);
+}
+
+// Emulator ----------------------------------------------------------------------------------------
+
+enum { CASES = 177, VOLTS = 9 };
+
+/* An emulator of a function of shares and voltage with `keys` keys. */
+struct emulated {
+  struct dea_emulator e;
+  unsigned char nodes[CASES * DEA_EMULATOR_KEYS_MAX];
+  double volts[VOLTS], values[CASES * VOLTS];
+  unsigned flags[CASES * VOLTS];
+  const struct dea_column *column;
+};
+
+static void emulate(size_t keys, int level, double (*f)(const double *share, double V),
+                    struct emulated *out)
+{
+  out->e =
+      (struct dea_emulator){.model = "",
+                            .device = "",
+                            .key_count = keys,
+                            .case_count = keys > 0 ? dea_sparse_grid(keys, level, out->nodes) : 1,
+                            .voltage_count = VOLTS,
+                            .quantity_count = 1,
+                            .level = level,
+                            .nodes = out->nodes,
+                            .voltages_V = out->volts,
+                            .quantities = &out->column,
+                            .values = out->values,
+                            .flags = out->flags};
+  out->column = &dea_point_columns[0];
+  for (size_t k = 0; k < VOLTS; k++) {
+    out->volts[k] = 500.0 * (double)k;
+  }
+  for (size_t c = 0; c < out->e.case_count; c++) {
+    double share[DEA_EMULATOR_KEYS_MAX];
+    for (size_t j = 0; j < keys; j++) {
+      share[j] = dea_sparse_grid_share(level, out->nodes[c * keys + j]);
+    }
+    for (size_t k = 0; k < VOLTS; k++) {
+      out->values[c * VOLTS + k] = f(share, out->volts[k]);
+      out->flags[c * VOLTS + k] = 0;
+    }
+  }
+  assert_int_equal(dea_emulator_make(ctx, &out->e), DEA_OK);
+}
+
+/* Of degree 4 in each and of total degree within the grid of level 2, times degree 4 in V. */
+static double polynomial(const double *share, double V)
+{
+  const double x = share[0], y = share[1], v = V / 4000;
+  return (1 + x * x * x * x - 2 * y * y * y + x * x * y - x * y * y + 3 * x * y) *
+         (v - v * v * v * v);
+}
+
+static double smooth(const double *share, double V)
+{
+  return (exp(1.5 * share[0]) * sin(2 + share[1]) + cosh(share[2])) * pow(V / 4000, 2) *
+         exp(V / 9000);
+}
+
+TEST(test_sparse_grid)
+{
+  static const size_t counts[3][4] = {{3, 5, 9, 17}, {5, 13, 29, 65}, {7, 25, 69, 177}};
+  static struct emulated of;
+  double value, error, worst = 0;
+  unsigned flags;
+  for (size_t keys = 1; keys <= 3; keys++) {
+    for (int level = 1; level <= 4; level++) {
+      assert_int_equal(dea_sparse_grid(keys, level, NULL), counts[keys - 1][level - 1]);
+    }
+  }
+  emulate(2, 2, polynomial, &of);
+  for (int i = 0; i < 50; i++) {
+    const double share[2] = {i / 49.0, 0.5 + 0.5 * sin(i)}, V = 80 * i;
+    assert_int_equal(dea_emulator_at(ctx, &of.e, share, V, &value, &error, &flags), DEA_OK);
+    assert_close(value, polynomial(share, V), 0, 1e-12);
+  }
+  dea_emulator_free(ctx, &of.e);
+  emulate(3, 3, smooth, &of); // the error that is stored bounds the true one
+  for (int i = 0; i < 500; i++) {
+    const double share[3] = {i % 7 / 6.0, i % 11 / 10.0, i % 13 / 12.0}, V = 7.9 * i;
+    assert_int_equal(dea_emulator_at(ctx, &of.e, share, V, &value, &error, &flags), DEA_OK);
+    const double off = fabs(value - smooth(share, V));
+    assert_true(off <= error);
+    worst = fmax(worst, off);
+  }
+  assert_true(worst > 1e-9 && worst < 1e-3);
+  dea_emulator_free(ctx, &of.e);
+}
+
+static double smooth_of_voltage(const double *share, double V)
+{
+  (void)share;
+  return sin(V / 1500);
+}
+
+static double ends(const double *share, double V)
+{
+  return V > 2600 + 1000 * share[0] ? NAN : share[0] + V; // as a film that is pulled in
+}
+
+/* Beyond what all designs have, and beyond the ranges, there is no value; flags are of designs and
+ * voltages beside. */
+TEST(test_emulator_refuses)
+{
+  static struct emulated of;
+  double value, error;
+  unsigned flags;
+  emulate(1, 2, ends, &of);
+  for (size_t c = 0; c < of.e.case_count; c++) {
+    of.flags[c * VOLTS + 4] = of.nodes[c] == 0; // the lowest share, at 2 kV
+  }
+  static const struct {
+    double share, V;
+    bool there;
+    unsigned flags;
+  } cases[] = {{0.3, 2500, true, 0},  {0.3, 2501, false, 0},     {-1e-3, 1000, false, 0},
+               {1.001, 0, false, 0},  {0.01, 2000, true, 1},     {0.01, 1400, true, 0},
+               {0.01, 1600, true, 1}, {0.1464466, 2000, true, 0}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    assert_int_equal(
+        dea_emulator_at(ctx, &of.e, &cases[i].share, cases[i].V, &value, &error, &flags), DEA_OK);
+    assert_int_equal(isfinite(value), cases[i].there);
+    assert_int_equal(isfinite(error), cases[i].there);
+    assert_int_equal(flags, cases[i].flags);
+  }
+  dea_emulator_free(ctx, &of.e);
+  emulate(0, 1, smooth_of_voltage, &of); // points of one design
+  assert_int_equal(dea_emulator_at(ctx, &of.e, NULL, 1234, &value, &error, &flags), DEA_OK);
+  assert_true(fabs(value - smooth_of_voltage(NULL, 1234)) <= error && error < 1e-2);
+  dea_emulator_free(ctx, &of.e);
 }
 
 TESTS(set_up, tear_down)

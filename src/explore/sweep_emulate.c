@@ -1,0 +1,172 @@
+/* The emulator of a sparse grid: its file, and its values at designs between. */
+#include "base/write_file.h"
+#include "explore/explore_sweep.h"
+#include "io/sparse_grid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* An emulator and what it lends. */
+struct work {
+  const struct dea_case_key *case_key;
+  struct dea_arena memory;
+  struct dea_emulator emulator;
+  char device[65];
+};
+
+/* Whether all cases of the plan are done; they are then in *w. */
+static dea_status gather(struct work *w, const struct dea_plan *plan, const struct dea_store *store,
+                         bool *whole)
+{
+  const struct dea_case_key *key = w->case_key;
+  const size_t keys = key->variable_count, volts = key->voltage_count,
+               each = key->evaluator.value_count;
+  struct dea_emulator_key *of = dea_arena_alloc(&w->memory, keys, sizeof *of);
+  const struct dea_column **columns =
+      dea_arena_alloc(&w->memory, key->quantity_count, sizeof *columns);
+  double *values = dea_arena_alloc(&w->memory, plan->count * each, sizeof *values);
+  unsigned *flags = dea_arena_alloc(&w->memory, plan->count * volts, sizeof *flags);
+  DEA_TRY(key->ctx, dea_arena_status(&w->memory));
+  DEA_TRY(key->ctx, dea_emulator_device(key->ctx, key->design, key->device, w->device));
+  for (size_t j = 0; j < keys; j++) {
+    const struct dea_device_param *param = &key->params[j];
+    of[j] = (struct dea_emulator_key){param->param.name, param->param.unit, key->variables[j].low,
+                                      key->variables[j].high, param->designed};
+  }
+  for (size_t q = 0; q < key->quantity_count; q++) {
+    columns[q] = &key->quantities[q].shown;
+  }
+  *whole = true;
+  for (size_t c = 0; c < plan->count && *whole; c++) {
+    const struct dea_case *done = dea_store_find(store, plan->p + c * keys);
+    *whole = done != NULL;
+    if (done != NULL) {
+      memcpy(values + c * each, done->q, each * sizeof *values);
+      memcpy(flags + c * volts, done->marks, volts * sizeof *flags);
+    }
+  }
+  w->emulator = (struct dea_emulator){.model = key->model.type->name,
+                                      .device = w->device,
+                                      .keys = of,
+                                      .key_count = keys,
+                                      .case_count = plan->count,
+                                      .voltage_count = volts,
+                                      .quantity_count = key->quantity_count,
+                                      .level = (int)key->file->level.si,
+                                      .nodes = plan->nodes,
+                                      .voltages_V = key->voltages_V,
+                                      .quantities = columns,
+                                      .values = values,
+                                      .flags = flags};
+  return DEA_OK;
+}
+
+/* Shares of the ranges: the design's values, or those that are given. What is wrong with these
+ * becomes findings. */
+static dea_status find_shares(const struct work *w, const struct dea_sweep_options *options,
+                              double *share)
+{
+  const struct dea_case_key *key = w->case_key;
+  struct dea_context *ctx = key->ctx;
+  const char *names[DEA_CASE_PARAMS_MAX];
+  for (size_t j = 0; j < key->variable_count; j++) {
+    share[j] = key->params[j].designed;
+    names[j] = key->params[j].param.name;
+  }
+  for (size_t i = 0; i < options->at_count; i++) {
+    struct dea_label label = {.location = {"--at", 0, 0}};
+    size_t j = 0;
+    while (j < key->variable_count && strcmp(names[j], options->at[i].key) != 0) {
+      j++;
+    }
+    snprintf(label.text, sizeof label.text, "%s",
+             j < key->variable_count ? options->at[i].value : options->at[i].key);
+    DEA_TRY(ctx, j < key->variable_count
+                     ? dea_device_param_number(ctx, &key->params[j], &label, &share[j])
+                     : dea_explore_unknown(ctx, &label, "variable", names, key->variable_count));
+  }
+  if (dea_finding_count(ctx, DEA_ERROR) > 0) {
+    return dea_fail(ctx, DEA_E_DESIGN, "--at has errors");
+  }
+  for (size_t j = 0; j < key->variable_count; j++) {
+    const struct dea_variable *of = &key->variables[j];
+    char text[3][80];
+    if (!(share[j] >= of->low && share[j] <= of->high)) {
+      dea_device_param_show(&key->params[j], share[j], text[0]);
+      dea_device_param_show(&key->params[j], of->low, text[1]);
+      dea_device_param_show(&key->params[j], of->high, text[2]);
+      return dea_fail(ctx, DEA_E_DESIGN, "%s: %s is outside the range that was computed, %s to %s",
+                      names[j], text[0], text[1], text[2]);
+    }
+    share[j] = (share[j] - of->low) / (of->high - of->low);
+  }
+  return DEA_OK;
+}
+
+static dea_status add_rows(const struct work *w, const double *share, struct dea_text *out)
+{
+  const struct dea_emulator *e = &w->emulator;
+  double values[DEA_EXPLORE_QUANTITIES_MAX], errors[DEA_EXPLORE_QUANTITIES_MAX];
+  char words[DEA_FLAGS_SIZE];
+  dea_text_add(out, "voltage_V (V)");
+  for (size_t q = 0; q < e->quantity_count; q++) {
+    const struct dea_column *of = e->quantities[q];
+    dea_text_add(out, ",%s (%s),error (%s)", of->key, of->si_unit, of->si_unit);
+  }
+  dea_text_add(out, ",flags\n");
+  for (size_t k = 0; k < e->voltage_count; k++) {
+    unsigned flags;
+    DEA_TRY(w->case_key->ctx,
+            dea_emulator_at(w->case_key->ctx, e, share, e->voltages_V[k], values, errors, &flags));
+    dea_text_add(out, "%.12g", e->voltages_V[k]);
+    for (size_t q = 0; q < e->quantity_count; q++) {
+      dea_text_add(out, isnan(values[q]) ? ",," : ",%.15g,%.3g", values[q], errors[q]);
+    }
+    dea_text_add(out, ",%s\n", dea_flags_text(flags, words));
+  }
+  return DEA_OK;
+}
+
+static dea_status emulate(struct work *w, const struct dea_sweep_options *options, char **at)
+{
+  struct dea_context *ctx = w->case_key->ctx;
+  struct dea_text out = {.ctx = ctx};
+  double share[DEA_CASE_PARAMS_MAX];
+  char *json;
+  DEA_TRY(ctx, dea_json_text(ctx, dea_emulator_json(&w->emulator), &json));
+  char *path = dea_path_join(ctx, options->folder, "emulator.json");
+  dea_status status = path != NULL ? dea_file_write(ctx, path, json, strlen(json)) : DEA_E_MEMORY;
+  dea_free(ctx, path);
+  dea_free(ctx, json);
+  if (status == DEA_OK && options->at_count > 0) {
+    status = find_shares(w, options, share);
+    status = status == DEA_OK ? add_rows(w, share, &out) : status;
+    status = status == DEA_OK && out.failed ? DEA_E_MEMORY : status;
+    *at = status == DEA_OK ? dea_copy_text(ctx, dea_text_get(&out), out.length) : NULL;
+    dea_text_free(&out);
+  }
+  return status;
+}
+
+dea_status dea_sweep_emulate(const struct dea_case_key *case_key, const struct dea_plan *plan,
+                             const struct dea_store *store, const struct dea_sweep_options *options,
+                             char **at)
+{
+  struct dea_context *ctx = case_key->ctx;
+  struct work w = {.case_key = case_key, .memory = {.ctx = ctx}};
+  bool whole = false;
+  if (plan->nodes == NULL) {
+    return dea_fail(ctx, DEA_E_DESIGN, "--at is of the plan sparse-grid");
+  }
+  void *before = dea_c_locale_enter();
+  dea_status status = gather(&w, plan, store, &whole);
+  if (status == DEA_OK && whole) {
+    status = dea_emulator_make(ctx, &w.emulator);
+    status = status == DEA_OK ? emulate(&w, options, at) : status;
+    dea_emulator_free(ctx, &w.emulator);
+  }
+  dea_arena_free(&w.memory);
+  dea_c_locale_leave(before);
+  return status;
+}
