@@ -10,6 +10,7 @@
 #include "job/job.h"
 #include "job/run_folder.h"
 #include "material/plane.h"
+#include "result/figure.h"
 #include "result/observation.h"
 #include "result/provenance.h"
 #include "study/design_file.h"
@@ -193,13 +194,13 @@ static void print_event(const struct dea_event *event, const struct dea_breakdow
   }
 }
 
-/* z of the fibre tip, "<" before what is an upper bound. */
-static void print_tip(const struct dea_load_point *p)
+/* z of the fibre tip, "<" before what is an upper bound; left out beside a prediction. */
+static void print_tip(const struct dea_load_point *p, bool left_out)
 {
   char text[40];
   bool bound = dea_point_is_bound(p, dea_point_column_find("fibre_tip_z_m"));
-  if (isnan(p->fibre_tip_z_m) || !bound) {
-    print_cell(p->fibre_tip_z_m, 1e6, 12, 1);
+  if (isnan(p->fibre_tip_z_m) || !bound || left_out) {
+    print_cell(left_out ? NAN : p->fibre_tip_z_m, 1e6, 12, 1);
     return;
   }
   snprintf(text, sizeof text, "<%.1f", 1e6 * p->fibre_tip_z_m);
@@ -226,7 +227,7 @@ static struct shown find_shown(const struct dea_context *ctx, const struct dea_c
 
 /* shown: of a device of any layout; NULL: of a disc. */
 static void print_row(const struct dea_context *ctx, const struct dea_load_point *p,
-                      const struct shown *shown)
+                      const struct shown *shown, bool left_out)
 {
   print_cell(p->voltage_V, 1e-3, 9, 3);
   if (shown != NULL) {
@@ -238,7 +239,7 @@ static void print_row(const struct dea_context *ctx, const struct dea_load_point
   } else {
     print_cell(p->electrode_stretch, 1, 10, 5);
     print_cell(p->electrode_edge_u_m, 1e6, 12, 2);
-    print_tip(p);
+    print_tip(p, left_out);
   }
   print_cell(p->true_field_V_per_m, 1e-6, 12, 2);
   print_cell(p->breakdown_margin, 100, 10, 1);
@@ -280,9 +281,11 @@ static void print_shown(const struct dea_context *ctx, const struct shown *shown
 }
 
 /* A few rows of the sweep, the last one among them. */
-static void print_sweep(const struct dea_context *ctx, const struct dea_curve *sweep,
-                        bool any_layout)
+static void print_sweep(const struct dea_context *ctx, const struct dea_result *result,
+                        const struct dea_curve *sweep, bool any_layout)
 {
+  const bool left_out =
+      dea_figure_leaves_out(result, sweep, dea_point_column_find("fibre_tip_z_m"));
   const struct shown shown = find_shown(ctx, sweep);
   if (any_layout) {
     print_shown(ctx, &shown);
@@ -293,9 +296,9 @@ static void print_sweep(const struct dea_context *ctx, const struct dea_curve *s
   }
   size_t step = row_step(sweep->count);
   for (size_t i = 0; i + 1 < sweep->count; i += step) {
-    print_row(ctx, &sweep->points[i], any_layout ? &shown : NULL);
+    print_row(ctx, &sweep->points[i], any_layout ? &shown : NULL, left_out);
   }
-  print_row(ctx, &sweep->points[sweep->count - 1], any_layout ? &shown : NULL);
+  print_row(ctx, &sweep->points[sweep->count - 1], any_layout ? &shown : NULL, left_out);
 }
 
 /* The sweep, or how long the path is where that was asked for alone, and the path's events. */
@@ -312,7 +315,7 @@ static void print_model(const struct dea_context *ctx, const struct dea_result *
   const struct dea_layout_ply *film = dea_layout_film(result->device->layout);
   printf("\n%s\n", model);
   if (sweep != NULL && sweep->count > 0) {
-    print_sweep(ctx, sweep, any_layout);
+    print_sweep(ctx, result, sweep, any_layout);
   } else if (sweep == NULL && path->count > 0) {
     double highest_V = 0;
     for (size_t i = 0; i < path->count; i++) {

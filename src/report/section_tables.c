@@ -59,21 +59,23 @@ static void add_headlines(struct dea_report *report, const struct dea_curve *swe
 }
 
 /* Cards of one point of a sweep. heading: what it is. */
-static void add_cards(struct dea_report *report, const struct dea_curve *sweep,
-                      const struct dea_load_point *p, const char *heading)
+static void add_cards(struct dea_report *report, const struct dea_result *result,
+                      const struct dea_curve *sweep, const struct dea_load_point *p,
+                      const char *heading)
 {
   struct dea_text *out = &report->text;
-  bool bound = dea_load_point_bounds(p);
+  const bool bound = dea_load_point_bounds(p);
+  const bool z = !dea_figure_leaves_out(result, sweep, dea_point_column_find("fibre_tip_z_m"));
   int digits = dea_load_point_valid(p) ? DIGITS_FIRM : DIGITS_DOUBTED;
   dea_section_heading(report, heading);
   dea_text_add(out, "<dl class=\"cards\">");
   add_headlines(report, sweep, p, digits);
   add_card(out, "electrode strain", 100 * (p->electrode_stretch - 1), "%", digits);
-  add_card_with(out, bound ? "centre, at most" : "centre", 1e6 * p->centre_z_m,
+  add_card_with(out, bound ? "centre, at most" : "centre", z ? 1e6 * p->centre_z_m : NAN,
                 1e6 * p->centre_z_error_m, "\302\265m", digits);
-  add_card_with(out, bound ? "fibre tip, at most" : "fibre tip", 1e6 * p->fibre_tip_z_m,
+  add_card_with(out, bound ? "fibre tip, at most" : "fibre tip", z ? 1e6 * p->fibre_tip_z_m : NAN,
                 1e6 * p->fibre_tip_z_error_m, "\302\265m", digits);
-  add_card(out, bound ? "force, at most" : "force", 1e3 * p->force_N, "mN", digits);
+  add_card(out, bound ? "force, at most" : "force", z ? 1e3 * p->force_N : NAN, "mN", digits);
   add_card(out, "true field", 1e-6 * p->true_field_V_per_m, "V/\302\265m", digits);
   add_card(out, "breakdown margin", 100 * p->breakdown_margin, "%", DIGITS_DOUBTED);
   add_card(out, "breakdown probability, at most", 100 * p->breakdown_probability, "%",
@@ -82,8 +84,9 @@ static void add_cards(struct dea_report *report, const struct dea_curve *sweep,
 }
 
 /* Cards of a sweep at one of its voltages, NAN for none. what: it is, before words of flags. */
-static void add_cards_at(struct dea_report *report, const struct dea_curve *sweep, double voltage_V,
-                         const char *what, unsigned flags)
+static void add_cards_at(struct dea_report *report, const struct dea_result *result,
+                         const struct dea_curve *sweep, double voltage_V, const char *what,
+                         unsigned flags)
 {
   const struct dea_load_point *p = NULL;
   for (size_t i = 0; i < sweep->count; i++) {
@@ -93,7 +96,7 @@ static void add_cards_at(struct dea_report *report, const struct dea_curve *swee
     char heading[3 * DEA_NAME_SIZE], words[DEA_FLAGS_SIZE];
     snprintf(heading, sizeof heading, "Model %s at %.4g kV%s%s", sweep->model, 1e-3 * p->voltage_V,
              what, dea_flags_text(flags, words));
-    add_cards(report, sweep, p, heading);
+    add_cards(report, result, sweep, p, heading);
   }
 }
 
@@ -115,14 +118,14 @@ static void add_glance(struct dea_report *report, const struct dea_result *resul
   dea_text_add(out, ".</p>");
   out->failed = out->failed || text.failed;
   dea_text_free(&text);
-  add_cards_at(report, sweep, trust.good_V,
+  add_cards_at(report, result, sweep, trust.good_V,
                ", the largest voltage that is valid and below breakdown", 0);
   if (trust.trusted_V > trust.good_V || isnan(trust.good_V)) {
-    add_cards_at(report, sweep, trust.trusted_V, ", the largest voltage to be trusted, but ",
-                 trust.dangers);
+    add_cards_at(report, result, sweep, trust.trusted_V,
+                 ", the largest voltage to be trusted, but ", trust.dangers);
   }
   if (!(last_V <= trust.trusted_V)) {
-    add_cards_at(report, sweep, last_V,
+    add_cards_at(report, result, sweep, last_V,
                  ", not to be trusted: ", dea_result_doubts(result, sweep->model, last_V));
   }
   dea_text_add(out, "<dl class=\"cards\">");
@@ -136,8 +139,12 @@ dea_status dea_section_glance(struct dea_report *report, const struct dea_report
 {
   const struct dea_result *result = run->run->result;
   dea_section_begin(report, "glance", run->number, "At a glance");
-  for (size_t i = 0; i < result->curve_count; i++) {
-    const struct dea_curve *curve = &result->curves[i];
+  for (size_t i = 0; i < 2 * result->curve_count; i++) { // bounds after predictions
+    const struct dea_curve *curve = &result->curves[i % result->curve_count];
+    const bool bounds = curve->count > 0 && dea_load_point_bounds(&curve->points[0]);
+    if (bounds != (i >= result->curve_count)) {
+      continue;
+    }
     if (strcmp(curve->kind, "sweep") == 0 && curve->count > 0) {
       add_glance(report, result, curve);
     }
@@ -338,14 +345,15 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
 
 /* Columns of a table of all points, with their titles in `header`: those that have a number.
  * Owned by the caller, NULL on failure. */
-static bool *find_shown(struct dea_report *report, const struct dea_curve *curve,
-                        struct dea_text *header)
+static bool *find_shown(struct dea_report *report, const struct dea_result *result,
+                        const struct dea_curve *curve, struct dea_text *header)
 {
   const int count = dea_column_count(report->ctx);
   bool *shown = dea_alloc(report->ctx, (size_t)count, sizeof *shown);
   for (int c = 0; shown != NULL && c < count; c++) {
     char title[DEA_COLUMN_TITLE_SIZE];
-    shown[c] = dea_points_have(curve->points, curve->count, c);
+    shown[c] =
+        dea_points_have(curve->points, curve->count, c) && !dea_figure_leaves_out(result, curve, c);
     dea_column_title(dea_column_at(report->ctx, c), title, sizeof title);
     if (shown[c]) {
       dea_html_element(header, "th scope=\"col\" class=\"n\"", title);
@@ -354,11 +362,12 @@ static bool *find_shown(struct dea_report *report, const struct dea_curve *curve
   return shown;
 }
 
-static dea_status add_curve_points(struct dea_report *report, const struct dea_curve *curve)
+static dea_status add_curve_points(struct dea_report *report, const struct dea_result *result,
+                                   const struct dea_curve *curve)
 {
   struct dea_text *out = &report->text, header = {.ctx = report->ctx};
   char caption[3 * DEA_NAME_SIZE];
-  bool *shown = find_shown(report, curve, &header);
+  bool *shown = find_shown(report, result, curve, &header);
   if (shown == NULL) {
     dea_text_free(&header);
     return DEA_E_MEMORY;
@@ -407,7 +416,7 @@ dea_status dea_section_points(struct dea_report *report, const struct dea_report
       dea_section_begin(report, "points", run->number, "Points");
       any = true;
     }
-    DEA_TRY(report->ctx, add_curve_points(report, curve));
+    DEA_TRY(report->ctx, add_curve_points(report, result, curve));
   }
   if (any) {
     dea_section_end(report);
