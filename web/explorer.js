@@ -1,193 +1,257 @@
-// The explorer: the models lumped and axisymmetric of the C core, computed in the page.
+// The explorer: numbers between those that were computed, each with its error. src/io/sparse_grid.c and
+// src/model/reduced/reduced_core.c are the same in C.
 (() => {
-  const stored = document.getElementById('core');
-  if (stored === null) {
-    dea.ready = Promise.all(dea.waits);
-    return;
-  }
-
-  const start = async () => {
-    const bytes = Uint8Array.from(atob(stored.textContent), (c) => c.charCodeAt(0));
-    // the core calls nothing of the system but, in vain, a message on standard error
-    const wasi = new Proxy({}, { get: () => () => 0 });
-    const { instance } = await WebAssembly.instantiate(bytes, { wasi_snapshot_preview1: wasi });
-    const core = instance.exports;
-    core._initialize();
-    const memory = () => core.memory.buffer;
-    const text = (at) => {
-      const all = new Uint8Array(memory());
-      let end = at;
-      while (all[end] !== 0) {
-        end++;
-      }
-      return new TextDecoder().decode(all.subarray(at, end));
-    };
-    const [inputs, columns] = text(core.explorer_names()).split('\n').map((line) => line.trim().split(' '));
-    const params = inputs.indexOf('film_param');
-    const events = ['pull-in', 'snap-back', 'loss of tension', 'breakdown'];
-    const row = (at, offset) => {
-      const values = new Float64Array(memory(), at + 8 * offset, columns.length);
-      const point = {};
-      columns.forEach((name, i) => { point[name] = values[i]; });
-      point.stable = point.stable === 1;
-      return point;
-    };
-    const law = (ofElectrode, name) => {
-      const at = new Uint8Array(memory(), core.explorer_law(ofElectrode), 64);
-      at.fill(0);
-      at.set(new TextEncoder().encode(name).subarray(0, 63));
-    };
-    return {
-      // device: inputs by name, film and electrode: { law, param }; null or what went wrong
-      make(axisymmetric, device, film, electrode) {
-        const values = new Float64Array(memory(), core.explorer_inputs(), params + 16);
-        values.fill(0);
-        for (const [name, value] of Object.entries(device)) {
-          values[inputs.indexOf(name)] = value;
+  // Barycentric basis of Floater and Hormann on points x; of degree x.length - 1 Lagrange's.
+  const basis = (x, most) => {
+    const d = Math.min(most, x.length - 1);
+    const weights = x.map((at, k) => {
+      let sum = 0;
+      for (let i = Math.max(0, k - d); i <= k && i + d < x.length; i++) {
+        let product = i % 2 === 0 ? 1 : -1;
+        for (let j = i; j <= i + d; j++) {
+          product /= j === k ? 1 : at - x[j];
         }
-        values.set(film.param, params);
-        values.set(electrode?.param ?? [], params + 8);
-        law(0, film.law);
-        law(1, electrode?.law ?? '');
-        return core.explorer_make(axisymmetric ? 1 : 0) === 0 ? null : text(core.explorer_message());
-      },
-      path(voltage, stretch) {
-        const count = core.explorer_path(voltage, stretch);
-        const at = core.explorer_points();
-        const from = core.explorer_events();
-        return {
-          points: Array.from({ length: count }, (_, i) => row(at, i * columns.length)),
-          events: Array.from({ length: core.explorer_event_count() }, (_, i) => ({
-            kind: events[new Float64Array(memory(), from + 8 * i * (columns.length + 1), 1)[0]],
-            point: row(from, i * (columns.length + 1) + 1),
-          })),
-        };
-      },
-      solve(voltage) {
-        return core.explorer_solve(voltage) === 0 ? row(core.explorer_points(), 0) : null;
-      },
+        sum += product;
+      }
+      return sum;
+    });
+    return (at) => {
+      if (x.includes(at)) {
+        return x.map((one) => (one === at ? 1 : 0));
+      }
+      const parts = weights.map((w, k) => w / (at - x[k]));
+      const sum = parts.reduce((a, b) => a + b);
+      return parts.map((part) => part / sum);
     };
   };
 
-  // Numbers of the device for a choice of the sliders: lengths given in the unstretched film move with it.
-  const deviceOf = (base, chosen) => {
-    const stretched = (length, m) => (length.unstretched ? chosen.pre_stretch : 1) * m;
-    const electrode = stretched(base.electrode_radius, chosen.electrode_radius_m);
-    const tip = base.fibres === 0 ? 0 : stretched(base.tip, base.tip.m);
-    const ratio = electrode / chosen.frame_radius_m;
-    const film = base.materials[chosen.material];
+  // Smolyak's weights of the cases of a sparse grid, for shares of the ranges of its keys.
+  const sparseGrid = ({ keys, nodes, level }) => {
+    const d = keys.length;
+    const fine = 2 ** level;
+    const share = (k) => (1 - Math.cos((Math.PI * k) / fine)) / 2;
+    const levelOf = (k) => {
+      let first = level;
+      for (let rest = k; first > 1 && rest % 2 === 0; rest /= 2) {
+        first--;
+      }
+      return 2 * k === fine ? 0 : first;
+    };
+    const grids = Array.from({ length: level + 1 }, (_, l) => {
+      const at = l === 0 ? [fine / 2] : Array.from({ length: 2 ** l + 1 }, (_, i) => i * (fine >> l));
+      return { at, basis: basis(at.map(share), fine) };
+    });
+    const binomial = (n, k) => (k === 0 ? 1 : (binomial(n, k - 1) * (n - k + 1)) / k);
+    // grids of each case: [factor, level by key]
+    const combine = (from, sum, levels) => {
+      if (levels.length < d) {
+        const lists = [];
+        for (let l = levelOf(from[levels.length]); sum + l <= level; l++) {
+          lists.push(...combine(from, sum + l, [...levels, l]));
+        }
+        return lists;
+      }
+      return sum > level - d ? [[(-1) ** (level - sum) * binomial(d - 1, level - sum), levels]] : [];
+    };
+    const cases = Array.from({ length: nodes.length / d }, (_, c) => {
+      const node = nodes.slice(c * d, (c + 1) * d);
+      return { node, lists: combine(node, 0, []) };
+    });
+    return (shares) => {
+      const tables = shares.map((s) => grids.map((grid) => {
+        const table = [];
+        grid.basis(s).forEach((value, i) => { table[grid.at[i]] = value; });
+        return table;
+      }));
+      return cases.map(({ node, lists }) => lists.reduce((sum, [factor, levels]) =>
+        sum + levels.reduce((product, l, j) => product * tables[j][l][node[j]], factor), 0));
+    };
+  };
+
+  const axis = (key, unit, low, high, value) => {
+    const most = Math.max(Math.abs(low), Math.abs(high));
+    const [factor, prefix] = ['1', 'kg'].includes(unit) ? [1, ''] : [[1e-6, 'M'], [1e-3, 'k'], [1, ''], [1e3, 'm'], [1e6, 'µ']].find(([f]) => f * most >= 1) ?? [1e9, 'n'];
+    const name = key === 'voltage_V' ? 'Voltage' : key === 'force' ? 'Force' : key;
+    return { key, name, low, high, value: Math.min(high, Math.max(low, value)), factor, unit: unit === '1' ? '' : prefix + unit };
+  };
+
+  // What was computed at voltages, of one design or of those of a sparse grid.
+  const emulator = (data, voltage_V) => {
+    const { keys, voltages_V: volts, quantities } = data;
+    const [n, Q] = [volts.length, quantities.length];
+    const grid = keys.length > 0 ? sparseGrid(data) : () => [1];
+    const bases = new Map();
+    quantities.forEach(({ first, end }) => bases.set(`${first} ${end}`, end > first ? basis(volts.slice(first, end), 4) : null));
+    let kept = { of: null };
+    const lineAt = (values) => { // of the design, at all voltages
+      const of = keys.map((key) => values[key.name]).join(' ');
+      if (kept.of !== of) {
+        const shares = keys.map((key) => (values[key.name] - key.low) / (key.high - key.low));
+        const weights = grid(shares);
+        const [line, error] = [new Float64Array(n * Q), new Float64Array(n * Q)];
+        weights.forEach((w, c) => {
+          for (let i = 0; i < n * Q; i++) {
+            line[i] += w * (data.values[c * n * Q + i] ?? NaN);
+            error[i] += Math.abs(w) * data.error[c * n * Q + i];
+          }
+        });
+        const away = Array.from(weights, (_, c) => Math.hypot(...shares.map((s, j) => s - (1 - Math.cos((Math.PI * data.nodes[c * keys.length + j]) / 2 ** data.level)) / 2)));
+        const reach = 2 * Math.min(...away) + 1e-12;
+        const near = [...away.keys()].filter((c) => away[c] <= reach);
+        kept = { of, near, line, error, inside: shares.every((s) => s >= -1e-12 && s <= 1 + 1e-12) };
+      }
+      return kept;
+    };
+    const wordsAt = ({ near }, low, high) => { // those of designs and voltages beside
+      const all = near.reduce((sum, c) => sum | data.flags[c * n + low] | data.flags[c * n + high], 0);
+      return data.flag_words.filter((_, f) => (all >> f) & 1);
+    };
     return {
-      film_thickness_unstretched_m: chosen.thickness_m,
-      pre_stretch: chosen.pre_stretch,
-      frame_radius_m: chosen.frame_radius_m,
-      electrode_radius_m: electrode,
-      coverage: { value: base.coverage, area: ratio * ratio, radius: ratio }[base.coverage_by],
-      fibre_count: base.fibres,
-      fibre_tip_radius_m: { length: chosen.frame_radius_m - tip, radius: tip, overlap: electrode - tip }[base.tip_by] ?? 0,
-      electrode_thickness_m: base.electrode_thickness_m,
-      permittivity: film.permittivity,
-      permittivity_slope: film.permittivity_slope,
-      breakdown_V_per_m: film.breakdown_V_per_m,
-      breakdown_exponent: film.breakdown_exponent,
-      breakdown_thickness_exponent: film.breakdown_thickness_exponent,
-      breakdown_thickness_m: film.breakdown_thickness_m,
-      breakdown_shape: film.breakdown_shape,
-      breakdown_area_m2: film.breakdown_area_m2,
-      fibre_angle_rad: film.fibre_angle_rad,
+      title: keys.length > 0 ? `${data.model}, over ${keys.map((key) => key.name).join(', ')}` : `${data.model}, this design`,
+      note: keys.length > 0 ? `Interpolated between ${data.nodes.length / keys.length} designs of model ${data.model}. Errors: differences to designs and voltages that were left out. The film in 3D is the run’s.` :
+        `Interpolated between the run’s points of model ${data.model}. Errors: differences to points that were left out.`,
+      axes: [axis('voltage_V', 'V', volts[0], volts[n - 1], voltage_V), ...keys.map((key) => axis(key.name, key.unit, key.low, key.high, key.value ?? (key.low + key.high) / 2))],
+      quantities,
+      at(values) {
+        const V = values.voltage_V;
+        const line = lineAt(values);
+        const high = Math.max(0, volts.findIndex((v) => v >= V));
+        const low = volts[high] > V && high > 0 ? high - 1 : high;
+        const parts = new Map([...bases].map(([range, of]) => [range, of?.(V)]));
+        const out = {};
+        quantities.forEach(({ key, first, end }, q) => {
+          const there = line.inside && end > first && V >= volts[first] && V <= volts[end - 1];
+          let sum = there ? 0 : NaN;
+          parts.get(`${first} ${end}`)?.forEach((b, k) => { sum += b === 0 ? 0 : b * line.line[(first + k) * Q + q]; });
+          out[key] = [sum, there ? Math.max(line.error[low * Q + q], line.error[high * Q + q]) : NaN];
+        });
+        return { values: out, flags: wordsAt(line, low, high) };
+      },
     };
   };
-  const models = [{ name: 'lumped', c: 0 }, { name: 'axisymmetric', c: 1 }];
 
-  // A stable and an unstable series, in that order along the path; where they meet both have the point.
-  const split = (points, x, y, model) => [true, false].map((stable) => ({
-    title: stable ? model.name : '', c: model.c, dashed: !stable,
-    points: points.map((p, i) => [x(p), p.stable === stable || points[i - 1]?.stable === stable ? y(p) : NaN]),
-  }));
-
-  const dress = (section, number, core) => {
-    const base = JSON.parse(section.querySelector('script.device').textContent);
-    const host = section.querySelector('.explorer');
-    const initial = {
-      voltage_V: base.voltage_V, pre_stretch: base.pre_stretch, thickness_m: base.thickness_m,
-      electrode_radius_m: base.electrode_radius.m, frame_radius_m: base.frame_radius_m, material: 0,
+  // A spline of reduced_core.c at x, y: value, slopes by x and y, second slope by x.
+  const splineAt = (s, x, y) => {
+    const cell = (breaks, at) => {
+      const i = Math.max(0, breaks.findLastIndex((b, k) => k < breaks.length - 1 && (k === 0 || at >= b)));
+      return [i, (at - breaks[i]) / (breaks[i + 1] - breaks[i]), breaks[i + 1] - breaks[i]];
     };
+    const horner = (c, t) => c.reduceRight(([f, d, dd], one) => [f * t + one, d * t + f, dd * t + d], [0, 0, 0]);
+    const [i, u, width] = cell(s.force, x);
+    const [j, v, height] = cell(s.voltage, y);
+    const from = 36 * (i * (s.voltage.length - 1) + j);
+    const rows = [0, 1, 2, 3, 4, 5].map((k) => horner(s.coefficients.slice(from + 6 * k, from + 6 * k + 6), v));
+    const [f, d, dd] = horner(rows.map((row) => row[0]), u);
+    return [f, d / width, horner(rows.map((row) => row[1]), u)[0] / height, (2 * dd) / width ** 2];
+  };
+
+  // The model that `dea reduce-order` has made: a voltage and a force along its coordinate.
+  const reduced = (data, voltage_V) => {
+    const [coordinate, ...outputs] = data.quantities;
+    const y = (V) => (data.even ? V * V : V);
+    const charge = (V, f) => -f[2] * (data.even ? 2 * V : 1);
+    const [low, high] = [data.even ? 0 : data.range_voltage_V[0], data.range_voltage_V[1]];
+    const full = Math.abs(charge(high, splineAt(data.energy, 0, y(high))));
+    const inside = (x, [from, to]) => x >= from && x <= to;
+    return {
+      title: 'reduced, with a force',
+      note: 'Model reduced, made from model 3d by dea reduce-order. Errors: largest differences to samples that were left out of its fit.',
+      axes: [axis('voltage_V', 'V', low, high, voltage_V), axis('force', coordinate.unit === 'deg' ? 'N m' : 'N', ...data.range_force, 0)],
+      quantities: [coordinate, { key: 'stiffness', title: 'stiffness', unit: coordinate.unit === 'deg' ? 'N m/rad' : 'N/mm', factor: coordinate.unit === 'deg' ? 1 : 1e-3 },
+        { key: 'charge_C', title: 'charge', unit: 'nC', factor: 1e9 }, ...outputs.filter(({ key, factor }, i) => key !== coordinate.key && data.outputs[i].coefficients.some((c) => Math.abs(factor * c) > 1e-9))],
+      line: { key: coordinate.key, axis: 'force', stiffness: data.finger_N_per_m },
+      at({ voltage_V: V, force }) {
+        if (!inside(V, data.range_voltage_V) || !inside(force, data.range_force)) {
+          return { values: {}, flags: [] };
+        }
+        const f = splineAt(data.energy, force, y(V));
+        const out = {};
+        outputs.forEach(({ key }, i) => { out[key] = [splineAt(data.outputs[i], force, y(V))[0], NaN]; });
+        Object.assign(out, { [coordinate.key]: [-f[1], data.error * Math.abs(data.stroke)], stiffness: [-1 / f[3], NaN], charge_C: [charge(V, f), data.charge_error * full] });
+        return { values: out, flags: [] };
+      },
+    };
+  };
+
+  const unitOf = ({ unit }) => (unit === '1' ? '' : ` (${unit.replace(/u(?=m|[VANC])/, 'µ')})`);
+
+  // Sliders, plots, table and map of one source.
+  const dress = (host, source, share) => {
+    const { axes, quantities } = source;
+    const voltage = axes[0];
+    const initial = Object.fromEntries(axes.map((a) => [a.key, a.value]));
     const chosen = { ...initial };
-    section.querySelector('.still').hidden = true;
-    host.hidden = false;
-    const plots = ['strain', 'z', 'field'].map((name) => dea.element('div', { id: `explorer-${number}-${name}`, class: 'plot' }));
-    const table = dea.element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Values at this voltage', 'aria-live': 'polite' });
+    const shown = quantities.filter(({ key }) => Number.isFinite(source.at(initial).values[key]?.[0])).slice(0, source.line ? 3 : 4);
+    const plots = [...shown, ...(source.line ? [source.line] : [])].map(({ key }, i) => dea.element('div', { id: `${host.id}-${i}-${key}`, class: 'plot' }));
+    const table = dea.element('div', { class: 'scroll', tabindex: '0', role: 'region', 'aria-label': 'Values at the sliders', 'aria-live': 'polite' });
     const problem = dea.element('p', { class: 'warning', hidden: '' });
+    const map = dea.element('div', { id: `${host.id}-map`, class: 'map' });
     let pending = false;
     let operating = null;
-    let first = null; // paths of the run's own design, for comparison
+    let own = null; // curves of the run's design
 
-    const film = () => base.materials[chosen.material];
-    const make = (i) => core.make(i === 1, deviceOf(base, chosen), film(), base.electrode_material);
-    // Voltages to show: the run's range and some more, or to beyond breakdown where that is earlier known.
-    const most = () => 1.25 * Math.max(base.voltage_V, chosen.voltage_V);
-    const compute = () => models.map((model, i) => {
-      const wrong = make(i);
-      if (wrong !== null) {
-        return { ...model, wrong };
-      }
-      const path = core.path(most(), 4 * chosen.pre_stretch);
-      return { ...model, ...path, at: core.solve(chosen.voltage_V) };
+    const curve = (values, along = voltage) => Array.from({ length: 81 }, (_, i) => {
+      const x = i === 80 ? along.high : along.low + ((along.high - along.low) * i) / 80;
+      return { x, ...source.at({ ...values, [along.key]: x }) };
     });
+    const doubted = (p) => p.flags.some((flag) => flag.doubt);
+    const changed = () => axes.some(({ key }) => key !== 'voltage_V' && chosen[key] !== initial[key]);
+    const drawQuantity = (host, quantity, points, own, now) => {
+      const { key, title, factor } = quantity;
+      const y = (p, sign = 0) => factor * ((p.values[key]?.[0] ?? NaN) + sign * (p.values[key]?.[1] || 0));
+      const series = [false, true].map((doubt) => ({
+        title: doubt ? (points.some(doubted) ? 'in doubt' : '') : source.title, c: 0, dashed: doubt,
+        points: points.map((p, i) => [voltage.factor * p.x, doubted(p) === doubt || (points[i - 1] && doubted(points[i - 1]) === doubt) ? y(p) : NaN]),
+      }));
+      if (own !== null) {
+        series.unshift({ title: 'the run’s design', c: 7, points: own.map((p) => [voltage.factor * p.x, y(p)]) });
+      }
+      dea.plot(host, {
+        label: `${title} against the voltage`, xl: `Voltage V (${voltage.unit})`, yl: title + unitOf(quantity), series, height: 260,
+        xRange: [voltage.factor * voltage.low, voltage.factor * voltage.high], cursor: voltage.factor * chosen.voltage_V,
+        band: [...points.map((p) => [voltage.factor * p.x, y(p, 1)]), ...[...points].reverse().map((p) => [voltage.factor * p.x, y(p, -1)])],
+        at: [{ y: y(now), c: 0 }].filter((p) => Number.isFinite(p.y)),
+      });
+    };
+    // Force against the coordinate at this voltage, and a fingertip that is pushed from where it lies at 0 V.
+    const drawLine = (host) => {
+      const along = axes.find((a) => a.key === source.line.axis);
+      const of = quantities.find((q) => q.key === source.line.key);
+      const q = (p) => p.values[of.key][0];
+      const points = curve(chosen, along);
+      const rest = q(source.at({ voltage_V: Math.max(0, voltage.low), force: 0 }));
+      const series = [{ title: 'device', c: 0, points: points.map((p) => [of.factor * q(p), -along.factor * p.x]) }];
+      if (source.line.stiffness > 0 && of.unit !== 'deg') {
+        series.push({ title: 'fingertip', c: 6, dashed: true, points: points.map((p) => [of.factor * q(p), along.factor * source.line.stiffness * (q(p) - rest)]) });
+      }
+      const forces = series[0].points.map((p) => p[1]);
+      dea.plot(host, { label: 'Load line', xl: of.title + unitOf(of), yl: `Force on what it pushes (${along.unit})`, series, height: 260, yRange: [Math.min(...forces), Math.max(...forces)] });
+    };
+    const fill = (now) => {
+      const rows = quantities.filter(({ key }) => now.values[key] !== undefined).map((quantity) => {
+        const [value, error] = now.values[quantity.key];
+        return dea.element('tr', {}, dea.element('th', { scope: 'row' }, quantity.title + unitOf(quantity)),
+          dea.element('td', { class: 'n' }, dea.number(quantity.factor * value, 5)),
+          dea.element('td', { class: 'n' }, Number.isFinite(error) ? `± ${dea.number(quantity.factor * error, 2)}` : ''));
+      });
+      const head = ['', `At ${dea.number(voltage.factor * chosen.voltage_V, 3)} ${voltage.unit}`, 'Error'].map((text) => dea.element('th', { scope: 'col', class: 'n' }, text));
+      table.replaceChildren(dea.element('table', {}, dea.element('thead', {}, dea.element('tr', {}, ...head)), dea.element('tbody', {}, ...rows)));
+      const missing = rows.length === 0 || quantities.some(({ key }) => Number.isNaN(now.values[key]?.[0]));
+      const words = now.flags.map((flag) => flag.word).join(', ');
+      problem.hidden = !missing && words === '';
+      problem.textContent = [words && `${now.flags.some((flag) => flag.doubt) ? 'Not to be trusted' : 'Note'}: ${words}.`, missing && 'A dash: beyond what was computed.'].filter(Boolean).join(' ');
+    };
     const draw = () => {
       pending = false;
-      const now = compute();
-      first ??= now;
-      const good = now.filter((m) => m.wrong === undefined);
-      problem.hidden = good.length === now.length;
-      problem.textContent = now.filter((m) => m.wrong !== undefined).map((m) => `${m.name}: ${m.wrong}`).join('; ');
-      const V = (p) => p.voltage_V / 1e3;
-      const kV = chosen.voltage_V / 1e3;
-      const changed = Object.keys(initial).some((key) => key !== 'voltage_V' && chosen[key] !== initial[key]);
-      const spec = (index, label, yl, y, only) => {
-        const models = good.filter((m) => only === undefined || m.name === only);
-        const series = models.flatMap((m) => split(m.points, V, y, m));
-        if (changed) {
-          first.filter((m) => m.points !== undefined && (only === undefined || m.name === only)).forEach((m, i) => series.unshift({
-            title: i === 0 ? 'the run’s design' : '', c: 7, dashed: false, points: m.points.filter((p) => p.stable).map((p) => [V(p), y(p)]),
-          }));
-        }
-        dea.plot(plots[index], {
-          label, xl: 'Voltage V (kV)', yl, series, xRange: [0, most() / 1e3], cursor: kV, height: 260,
-          at: models.filter((m) => m.at !== null && Number.isFinite(y(m.at))).map((m) => ({ y: y(m.at), c: m.c })),
-        });
-      };
-      spec(0, 'Electrode strain against the voltage', 'Radial strain of the electrode (%)', (p) => 100 * (p.electrode_stretch - 1));
-      if (base.fibres > 0) {
-        spec(1, 'Displacement of the fibre tip against the voltage, an upper bound', 'z of the fibre tip, lumped (mm)', (p) => 1e3 * p.fibre_tip_z_m, 'lumped');
-      } else {
-        spec(1, 'Smallest tension against the voltage', 'Smallest tension (N/m)', (p) => p.min_tension_N_per_m);
+      const points = curve(chosen);
+      const now = source.at(chosen);
+      own ??= curve(initial);
+      shown.forEach((quantity, i) => drawQuantity(plots[i], quantity, points, changed() ? own : null, now));
+      if (source.line) {
+        drawLine(plots[shown.length]);
       }
-      spec(2, 'True field against the voltage', 'True field (V/µm)', (p) => 1e-6 * p.true_field_V_per_m);
-      fill(good, kV);
+      fill(now);
       operating?.follow();
-    };
-    const event = (m, kind) => m.events.find((e) => e.kind === kind)?.point.voltage_V / 1e3;
-    const fill = (good, kV) => {
-      const rows = [
-        ['electrode strain (%)', (m) => 100 * (m.at?.electrode_stretch - 1)],
-        ['fibre tip z (µm)', (m) => 1e6 * m.at?.fibre_tip_z_m],
-        ['force, largest of the load line (mN)', (m) => 1e3 * m.at?.force_N],
-        ['true field (V/µm)', (m) => 1e-6 * m.at?.true_field_V_per_m],
-        ['breakdown margin (%)', (m) => 100 * m.at?.breakdown_margin],
-        ['smallest tension (N/m)', (m) => m.at?.min_tension_N_per_m],
-        ['capacitance (pF)', (m) => 1e12 * m.at?.capacitance_F],
-        ['loss of tension at (kV)', (m) => event(m, 'loss of tension')],
-        ['breakdown at (kV)', (m) => event(m, 'breakdown')],
-        ['pull-in at (kV)', (m) => event(m, 'pull-in')],
-      ];
-      const head = dea.element('tr', {}, dea.element('th', { scope: 'col' }, `At ${dea.number(kV, 3)} kV`), ...good.map((m) => dea.element('th', { scope: 'col', class: 'n' }, m.name)));
-      const body = rows.filter(([, value]) => good.some((m) => Number.isFinite(value(m)))).map(([label, value]) => dea.element('tr', {},
-        dea.element('th', { scope: 'row' }, label), ...good.map((m) => dea.element('td', { class: 'n' }, dea.number(value(m), 5)))));
-      const lost = good.filter((m) => m.at === null).map((m) => m.name);
-      table.replaceChildren(dea.element('table', {}, dea.element('thead', {}, head), dea.element('tbody', {}, ...body)));
-      if (lost.length > 0) {
-        table.append(dea.element('p', { class: 'warning' }, `No stable equilibrium at this voltage: ${lost.join(', ')}.`));
-      }
     };
     const later = () => {
       if (!pending) {
@@ -196,76 +260,55 @@
       }
     };
     const sliders = {};
-    const axes = [];
-    const add = (key, label, low, high, factor, unit) => {
-      axes.push({ key, label: unit === '' ? label : `${label} (${unit})`, low, high, factor });
-      const step = (high - low) / 400;
-      sliders[key] = dea.slider(label, factor * low, factor * high, 'any', factor * chosen[key], () => `${dea.number(factor * chosen[key], 4)} ${unit}`, (value) => {
-        const near = Math.abs(value / factor - initial[key]) < step ? initial[key] : value / factor; // the run's value attracts
-        chosen[key] = near === initial[key] ? near : Number(near.toPrecision(4));
+    for (const { key, name, low, high, factor, unit } of axes) {
+      sliders[key] = dea.slider(name, factor * low, factor * high, 'any', factor * chosen[key], () => `${dea.number(factor * chosen[key], 4)} ${unit}`, (value) => {
+        const near = Math.abs(value / factor - initial[key]) < (high - low) / 400 ? initial[key] : value / factor; // the run's value attracts
+        chosen[key] = Math.min(high, Math.max(low, near));
         later();
         if (key === 'voltage_V') {
-          dea.setVoltage(chosen.voltage_V / 1e3, host);
+          dea.setVoltage(chosen.voltage_V / 1e3, share);
         }
       });
-      return sliders[key].node;
-    };
-    const film_state = base.electrode_radius.unstretched ? 'unstretched' : 'stretched';
-    const material = dea.choice('Film', base.materials.map((m) => m.label), (i) => {
-      chosen.material = i;
-      later();
-    });
+    }
     const reset = dea.element('button', { type: 'button' }, 'Back to the run’s design');
     reset.addEventListener('click', () => {
       Object.assign(chosen, initial);
-      for (const { key, factor } of axes) {
-        sliders[key].set(factor * chosen[key]);
-      }
-      material.select.value = chosen.material;
+      axes.forEach(({ key, factor }) => sliders[key].set(factor * chosen[key]));
       later();
     });
-    host.append(
-      dea.element('div', { class: 'controls' },
-        add('voltage_V', 'Voltage', 0, 1.5 * base.voltage_V, 1e-3, 'kV'),
-        add('pre_stretch', 'Pre-stretch', 1, Math.max(3, 1.5 * base.pre_stretch), 1, ''),
-        add('thickness_m', 'Thickness, unstretched', 0.25 * base.thickness_m, 4 * base.thickness_m, 1e6, 'µm'),
-        add('electrode_radius_m', `Electrode radius, ${film_state}`, 0.2 * base.electrode_radius.m, Math.min(3 * base.electrode_radius.m, base.frame_radius_m), 1e3, 'mm'),
-        add('frame_radius_m', 'Frame radius', 0.4 * base.frame_radius_m, 2 * base.frame_radius_m, 1e3, 'mm'),
-        material.node, dea.element('div', { class: 'buttons' }, reset)),
-      problem, dea.element('div', { class: 'plots' }, ...plots, table));
-    const more = dea.element('details', {}, dea.element('summary', {}, 'Operating map of any two of these'));
-    const map = dea.element('div', { id: `explorer-${number}-map`, class: 'map' });
-    // A point of a model for other values than those of the sliders; null: there is none.
-    const solve = (values, model = 0) => {
-      const kept = { ...chosen };
-      Object.assign(chosen, values);
-      const point = make(model) === null ? core.solve(chosen.voltage_V) : null;
-      Object.assign(chosen, kept);
-      return point;
-    };
-    more.append(map);
-    host.append(more);
-    operating = dea.map(map, { axes, solve, now: () => chosen, lift: base.fibres > 0 });
-    more.addEventListener('toggle', () => more.open && operating.compute());
+    const more = dea.element('details', {}, dea.element('summary', {}, 'Operating map of any two of these'), map);
+    host.replaceChildren(
+      dea.element('div', { class: 'controls' }, ...axes.map(({ key }) => sliders[key].node), dea.element('div', { class: 'buttons' }, reset)),
+      problem, dea.element('div', { class: 'plots' }, ...plots), table, dea.element('p', { class: 'still' }, source.note), ...(axes.length > 1 ? [more] : []));
+    if (axes.length > 1) {
+      operating = dea.map(map, { source, axes: axes.map((a) => ({ ...a, label: a.unit === '' ? a.name : `${a.name} (${a.unit})` })), quantities: shown, unitOf, now: () => chosen });
+      more.addEventListener('toggle', () => more.open && operating.compute());
+    }
     draw();
-    dea.onVoltage(host, (kV) => {
-      chosen.voltage_V = 1e3 * kV;
-      sliders.voltage_V.set(kV);
-      later();
-    });
-    dea.explorers = [...(dea.explorers ?? []), {
-      map: operating.compute,
-      // A point of a model for other values than the run's, in SI: for tests and the console.
-      solve: (model, values) => solve({ ...initial, ...values }, model === 'axisymmetric' ? 1 : 0),
-    }];
+    return {
+      map: operating?.compute,
+      voltage: (kV) => {
+        chosen.voltage_V = Math.min(voltage.high, Math.max(voltage.low, 1e3 * kV));
+        sliders.voltage_V.set(voltage.factor * chosen.voltage_V);
+        later();
+      },
+    };
   };
 
-  dea.waits.push(start().then((core) => {
-    document.querySelectorAll('section:has(script.device)').forEach((section, i) => dress(section, i + 1, core));
-  }).catch((error) => {
-    document.querySelectorAll('section:has(script.device) .still').forEach((still) => {
-      still.textContent = `The explorer does not work in this browser: ${error.message}`;
-    });
-  }));
+  dea.explorers = [...document.querySelectorAll('section:has(script.sources)')].map((section, number) => {
+    const given = JSON.parse(section.querySelector('script.sources').textContent);
+    const sources = given.map((data) => (data.dea_emulator ? emulator : reduced)(data, data.voltage_V));
+    const host = section.querySelector('.explorer');
+    const body = dea.element('div', { id: `explorer-body-${number + 1}` });
+    let shown = null;
+    const show = (i) => { shown = dress(body, sources[i], host); };
+    section.querySelector('p.still').hidden = true;
+    host.hidden = false;
+    host.append(...(sources.length > 1 ? [dea.choice('Numbers of', sources.map((s) => s.title), show).node] : []), body);
+    show(0);
+    dea.onVoltage(host, (kV) => shown.voltage(kV));
+    // Quantities of a source for other values than the run's, in SI: for tests and the console.
+    return { sources, map: () => shown.map(), at: (i, values) => sources[i].at({ ...Object.fromEntries(sources[i].axes.map((a) => [a.key, a.value])), ...values }) };
+  });
   dea.ready = Promise.all(dea.waits);
 })();

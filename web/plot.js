@@ -9,7 +9,7 @@ dea.axis = (low, high, most) => {
   const step = power * ([1, 2, 5, 10].find((n) => n * power >= 0.999 * least) ?? 10);
   return { low: step * Math.floor(low / step + 1e-9), high: step * Math.ceil(high / step - 1e-9), step };
 };
-// spec: { cells, spot, exact, label, xl, yl, series: [{ title, c, dashed, points: [[x, y], ...] }], cursor, yRange, xRange, height }
+// spec: { cells, spot, band, exact, label, xl, yl, series: [{ title, c, dashed, points: [[x, y], ...] }], cursor, yRange, xRange, height }
 dea.plot = (host, spec) => {
   const [W, H, L, R, T, B] = [640, spec.height ?? 330, 66, 18, 12, 46];
   const all = spec.series.flatMap((s) => s.points).filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
@@ -39,6 +39,10 @@ dea.plot = (host, spec) => {
   const lineGroup = dea.svg('g', { class: 'grid' }, dea.svg('path', { d: grid }));
   for (const c of spec.cells ?? []) {
     lines.append(dea.svg('rect', { x: px(c.x0), y: py(c.y1), width: px(c.x1) - px(c.x0), height: py(c.y0) - py(c.y1), 'shape-rendering': 'crispEdges', fill: c.fill, opacity: c.opacity }));
+  }
+  const band = (spec.band ?? []).filter(([vx, vy]) => Number.isFinite(vx) && Number.isFinite(vy));
+  if (band.length > 0) {
+    lines.append(dea.svg('path', { class: 'b0', d: `M${band.map(([vx, vy]) => `${px(vx).toFixed(2)} ${py(vy).toFixed(2)}`).join('L')}Z` }));
   }
   for (const s of spec.series) {
     let d = '';

@@ -8,7 +8,5 @@ extern const char dea_asset_style[]; // report.css
 extern const size_t dea_asset_style_length;
 extern const char dea_asset_script[]; // the scripts, one after the other
 extern const size_t dea_asset_script_length;
-extern const char dea_asset_core[]; // web/explorer.c as WebAssembly; length 0: not built
-extern const size_t dea_asset_core_length;
 extern const char dea_asset_reduced[]; // reduced_core.h and reduced_core.c of model/reduced
 extern const size_t dea_asset_reduced_length;

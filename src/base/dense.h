@@ -1,5 +1,4 @@
-/* Small dense systems, of at most DEA_DENSE_MAX unknowns. Here LAPACK does it (dense.c); a page's
- * explorer has web/dense_wasm.c in its place. */
+/* Small dense systems, of at most DEA_DENSE_MAX unknowns, by LAPACK. */
 #pragma once
 
 #include "base/status.h"

@@ -49,11 +49,6 @@ void dea_html_text(struct dea_text *out, const char *text)
   add_safe(out, text, false);
 }
 
-void dea_html_json_text(struct dea_text *out, const char *text)
-{
-  add_safe(out, text, true);
-}
-
 void dea_html_element(struct dea_text *out, const char *tag, const char *text)
 {
   dea_text_add(out, "<%s>", tag);

@@ -19,8 +19,6 @@ void dea_html_cell(struct dea_text *out, double value, int digits);
  * italics, sub- and superscripts, as text without markup, or as the inside of a JSON string. */
 enum dea_label_form { DEA_LABEL_SVG, DEA_LABEL_PLAIN, DEA_LABEL_JSON };
 void dea_html_label(struct dea_text *out, const char *label, enum dea_label_form form);
-/* Text as the inside of a JSON string within a script element; the quotes are the caller's. */
-void dea_html_json_text(struct dea_text *out, const char *text);
 /* A finite number with so many digits, else null. */
 void dea_html_json_number(struct dea_text *out, double value, int digits);
 /* Bytes as base64. */

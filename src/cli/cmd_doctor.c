@@ -1,5 +1,4 @@
 #define _GNU_SOURCE // popen, access
-#include "base/assets.h"
 #include "base/text.h"
 #include "base/version.h"
 #include "cli/bench.h"
@@ -202,14 +201,6 @@ static void check_matio(struct report *report)
              "files are exchanged as CSV");
 }
 
-static void check_explorer(struct report *report)
-{
-  bool ok = dea_asset_core_length > 0;
-  say(report, WISHED, ok, "explorer of reports", ok ? "WebAssembly" : "not built",
-      "install clang-14, lld-14, wasi-libc and libclang-rt-14-dev-wasm32, and build again; without "
-      "it reports compute nothing");
-}
-
 static void check_gnuplot(struct report *report)
 {
   char output[OUTPUT_SIZE];
@@ -253,7 +244,6 @@ static int run(struct dea_cli *cli, void *request)
   check_geos(&report);
   check_nlopt(&report);
   check_matio(&report);
-  check_explorer(&report);
   check_folder(&report);
   if (status == DEA_OK && !report.usable) {
     status = dea_fail(cli->ctx, DEA_E_TOOL, "something that is needed is missing");

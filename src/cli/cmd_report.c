@@ -13,8 +13,8 @@
 
 struct request {
   struct cli_words runs;
-  const char *output, *measurement, *fit; // NULL: not given
-  double finger;                          // N/m
+  const char *output, *measurement, *fit, *explorer; // NULL: not given
+  double finger;                                     // N/m
 };
 
 /* A page may be written again; anything else of that name is not ours to replace. */
@@ -48,7 +48,8 @@ static int run(struct dea_cli *cli, void *user)
   const struct dea_report_options chosen = {.command = cli->command_line,
                                             .finger_N_per_m = request->finger,
                                             .measurement = request->measurement,
-                                            .fit = request->fit};
+                                            .fit = request->fit,
+                                            .explorer = request->explorer};
   dea_status status = path == NULL ? DEA_E_MEMORY : check_place(cli->ctx, path);
   if (status == DEA_OK) {
     status = dea_job_report(cli->ctx, request->runs.at, request->runs.count, &chosen, path);
@@ -70,6 +71,9 @@ static const struct cli_option options[] = {
      CLI_AT(measurement)},
     {"fit", 0, CLI_FOLDER, "DIR",
      "folder that dea fit wrote: a section with parameters, figures, advice", CLI_AT(fit)},
+    {"explorer", 0, CLI_FOLDER, "DIR",
+     "folder of a dea sweep of the run's design with plan: sparse-grid: sliders for its variables",
+     CLI_AT(explorer)},
     {"finger", 0, CLI_TEXT, "STIFFNESS",
      "stiffness of a fingertip that is pushed, '0.5 N/mm' if not given; '0 N/mm' for none",
      CLI_AT(finger), cli_take_quantity, .measure = {"N/m", "0.5 N/mm"}},

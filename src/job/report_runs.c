@@ -2,10 +2,11 @@
 
 #include "base/file.h"
 #include "base/write_file.h"
+#include "io/sparse_grid.h"
 #include "job/design_of_run.h"
+#include "job/report_reduced.h"
 #include "study/study.h"
 
-#include <jansson.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -128,6 +129,7 @@ static void close_run(struct dea_context *ctx, struct dea_report_run *run)
     dea_free(ctx, run->notes[i]);
   }
   dea_free(ctx, run->notes);
+  dea_free(ctx, run->reduced);
   dea_free(ctx, run->missing);
   dea_run_destroy(ctx, run->run);
   dea_device_destroy(ctx, run->device);
@@ -136,28 +138,58 @@ static void close_run(struct dea_context *ctx, struct dea_report_run *run)
 
 // What the page shows beyond what the run has -----------------------------------------------------
 
-/* Studies of model lumped that a run may have and the page always shows. */
-static dea_status complete(struct dea_context *ctx, const struct dea_report_options *options,
-                           struct dea_result *result)
+/* Study operating-map of model lumped, which the page shows of a disc that it is true for: not of
+ * fibres beside a model that predicts how far they move. */
+static dea_status complete(struct dea_context *ctx, struct dea_result *result)
 {
-  static const char model[] = "lumped", map[] = "operating-map", line[] = "load-line";
-  const char *names[2];
-  size_t count = 0;
-  if (result->device == NULL || !result->device->disc) { // these are of a disc
+  static const char model[] = "lumped", *const names[] = {"operating-map"};
+  bool predicted = false;
+  for (size_t i = 0; i < result->curve_count; i++) {
+    predicted = predicted || strcmp(result->curves[i].model, "3d") == 0 ||
+                strcmp(result->curves[i].model, "reduced") == 0;
+  }
+  if (result->device == NULL || !result->device->disc ||
+      (predicted && result->device->fibre_count > 0) ||
+      dea_result_find_table(result, model, names[0], "") != NULL) {
     return DEA_OK;
   }
-  if (dea_result_find_table(result, model, map, "") == NULL) {
-    names[count++] = map;
-  }
-  if (options->finger_N_per_m > 0 && dea_result_find(result, model, "sweep") != NULL &&
-      dea_result_find_table(result, model, line, "forces") == NULL) {
-    names[count++] = line;
-  }
-  if (count > 0) {
-    DEA_TRY(ctx, dea_study_run(ctx, dea_model_find(model), names, count, result));
-  }
+  DEA_TRY(ctx, dea_study_run(ctx, dea_model_find(model), names, 1, result));
   dea_finding_clear(ctx); // what the model says of itself, the page says too
   return DEA_OK;
+}
+
+/* Gives an emulator to the runs of its design. bytes: owned by the caller, NULL on failure. */
+static dea_status add_emulator(struct dea_context *ctx, const char *folder,
+                               struct dea_report_run *runs, size_t count, char **bytes)
+{
+  char *path = dea_path_join(ctx, folder, "emulator.json"), hash[65];
+  size_t length, found = 0;
+  dea_status status =
+      path != NULL ? dea_file_read(ctx, path, SUMMARY_MAX, bytes, &length) : DEA_E_MEMORY;
+  dea_free(ctx, path);
+  if (status != DEA_OK) {
+    return status == DEA_E_MEMORY
+               ? status
+               : dea_fail(ctx, DEA_E_IO,
+                          "%s has no emulator.json: --explorer takes the folder of a dea sweep "
+                          "with plan: sparse-grid that is done",
+                          folder);
+  }
+  json_t *root = json_loadb(*bytes, length, 0, NULL);
+  const char *of = json_string_value(json_object_get(root, "device"));
+  for (size_t i = 0; i < count && status == DEA_OK && of != NULL; i++) {
+    if (runs[i].device != NULL) {
+      status = dea_emulator_device(ctx, runs[i].design, runs[i].device, hash);
+      runs[i].emulator = status == DEA_OK && strcmp(hash, of) == 0 ? *bytes : NULL;
+      found += runs[i].emulator != NULL ? 1U : 0U;
+    }
+  }
+  json_decref(root);
+  if (status == DEA_OK && found == 0) {
+    status = dea_fail(ctx, DEA_E_DESIGN, "%s is a sweep of another design than that of the run%s",
+                      folder, count > 1 ? "s" : "");
+  }
+  return status;
 }
 
 dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], size_t count,
@@ -172,12 +204,18 @@ dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], siz
   dea_status status = DEA_OK;
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
     status = open_run(ctx, runs[i], (int)i + 1, &opened[i]);
-    status = status == DEA_OK ? complete(ctx, options, opened[i].run->result) : status;
+    status = status == DEA_OK ? dea_report_reduced(ctx, &opened[i]) : status;
+    status = status == DEA_OK ? complete(ctx, opened[i].run->result) : status;
   }
   dea_c_locale_leave(before);
+  char *emulator = NULL;
+  if (status == DEA_OK && options->explorer != NULL) {
+    status = add_emulator(ctx, options->explorer, opened, count, &emulator);
+  }
   if (status == DEA_OK) {
     status = dea_report_write(ctx, opened, count, options, path);
   }
+  dea_free(ctx, emulator);
   for (size_t i = 0; i < count; i++) {
     close_run(ctx, &opened[i]);
   }

@@ -33,7 +33,7 @@ static void add_head(struct dea_report *report)
   add_hash(out, dea_asset_style, dea_asset_style_length);
   dea_text_add(out, "; script-src ");
   add_hash(out, dea_asset_script, dea_asset_script_length);
-  dea_text_add(out, " 'wasm-unsafe-eval'\">\n<meta name=\"viewport\" content=\"width=device-width, "
+  dea_text_add(out, "\">\n<meta name=\"viewport\" content=\"width=device-width, "
                     "initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n"
                     "<meta name=\"generator\" content=\"dea " DEA_VERSION "\">\n");
   dea_html_element(out, "title", report->runs[0].title);
@@ -101,7 +101,6 @@ static void add_end(struct dea_report *report)
     dea_text_add(out, "</span>");
   }
   dea_text_add(out, "</p></footer>\n");
-  dea_explorer_add_core(report);
   dea_text_add(out, "<script>%s</script>\n</body>\n</html>\n", dea_asset_script);
 }
 

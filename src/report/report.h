@@ -10,6 +10,7 @@ struct dea_report_options {
   double finger_N_per_m;   // stiffness of a fingertip against which a load line is set; 0: none
   const char *measurement; // set beside the runs: CSV or folder (compare/measured.h); NULL: none
   const char *fit;         // folder of dea fit, a section of its own; NULL: none
+  const char *explorer;    // folder of a dea sweep of the plan sparse-grid; NULL: none
 };
 
 /* One of the runs; all lent to the report. design, device: NULL when the file cannot be read any
@@ -21,8 +22,11 @@ struct dea_report_run {
   struct dea_run *run;
   struct dea_design *design;
   struct dea_device *device;
-  char *missing; // why there is no device; NULL
-  char **notes;  // [note_count] what the run has said of itself
+  char *missing;               // why there is no device; NULL
+  const char *emulator;        // emulator.json of the sweep of its design; NULL: none
+  char *reduced;               // file of its model reduced, with `quantities`; NULL: none
+  double blocked_N, blocked_V; // largest force of that which holds it where it is at 0 V; NAN
+  char **notes;                // [note_count] what the run has said of itself
   size_t note_count;
 };
 

@@ -45,8 +45,6 @@ dea_status dea_section_limits(struct dea_report *report, const struct dea_report
 dea_status dea_section_studies(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_points(struct dea_report *report, const struct dea_report_run *run);
 dea_status dea_section_provenance(struct dea_report *report, const struct dea_report_run *run);
-/* The C core that the explorers of a page share. */
-void dea_explorer_add_core(struct dea_report *report);
 /* Of the folder of a fit, where the options name one. */
 dea_status dea_section_fit(struct dea_report *report);
 /* Of all runs: curves in one figure, last points in one table. */

@@ -1,171 +1,145 @@
-/* The explorer's numbers: the device as it was built, what may be chosen, and the C core as
- * WebAssembly (web/explorer.c). */
-#include "base/assets.h"
+/* The explorer's numbers (web/explorer.js): of designs between those of a sparse grid, of model
+ * reduced, and between the points of the run's sweeps. */
+#include "io/sparse_grid.h"
 #include "report/section.h"
+#include "result/figure.h"
+#include "result/observation.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-static void add_number(struct dea_text *out, const char *key, double value)
-{
-  dea_text_add(out, "\"%s\":", key);
-  dea_html_json_number(out, value, 17);
-  dea_text_add(out, ",");
-}
+enum { POINTS_MAX = 65, QUANTITIES_MAX = 12, HEADLINES_MAX = 4 };
 
-static void add_word(struct dea_text *out, const char *key, const char *text)
-{
-  dea_text_add(out, "\"%s\":\"", key);
-  dea_html_json_text(out, text);
-  dea_text_add(out, "\",");
-}
+// A sweep of the run ------------------------------------------------------------------------------
 
-/* A material as the core takes it. */
-static void add_material(struct dea_text *out, const struct dea_material *m, const char *label)
+/* Columns of a curve that are shown, and their number. */
+static size_t find_columns(struct dea_report *report, const struct dea_result *result,
+                           const struct dea_curve *sweep, int columns[QUANTITIES_MAX])
 {
-  dea_text_add(out, "{");
-  add_word(out, "label", label);
-  add_word(out, "law", m->law->name);
-  add_number(out, "permittivity", m->permittivity.at_rest);
-  add_number(out, "permittivity_slope", m->permittivity.slope);
-  const struct dea_breakdown_law *law = &m->breakdown.law;
-  bool known = m->breakdown.known;
-  add_number(out, "breakdown_V_per_m", known ? law->electrode_factor * law->at_rest_V_per_m : 0);
-  add_number(out, "breakdown_exponent", law->exponent);
-  add_number(out, "breakdown_thickness_exponent", law->thickness_exponent);
-  add_number(out, "breakdown_thickness_m", law->thickness_m);
-  add_number(out, "breakdown_shape", law->shape);
-  add_number(out, "breakdown_area_m2", law->area_m2);
-  add_number(out, "fibre_angle_rad", m->fibre_angle_rad);
-  dea_text_add(out, "\"param\":[");
-  for (int i = 0; i < DEA_LAW_PARAM_MAX; i++) {
-    dea_text_add(out, "%s", i > 0 ? "," : "");
-    dea_html_json_number(out, m->param[i], 17);
-  }
-  dea_text_add(out, "]}");
-}
-
-static void add_parameter_set(struct dea_context *ctx, struct dea_text *out,
-                              const struct dea_material_data *data, const char *law)
-{
-  const struct dea_material_choice choice = {.law = law};
-  struct dea_material material;
-  char label[2 * DEA_TITLE_SIZE + 8];
-  if (dea_material_select(ctx, data, &choice, &material) != DEA_OK) {
-    dea_context_clear(ctx); // what cannot be used is not offered
-    return;
-  }
-  if (material.law == NULL || !(material.permittivity.at_rest > 0) || material.law->anisotropic) {
-    return;
-  }
-  snprintf(label, sizeof label, "%s%s%s", material.name, law[0] != '\0' ? ", " : "", law);
-  dea_text_add(out, ",");
-  add_material(out, &material, label);
-}
-
-/* The run's film, then every elastomer of the catalogue with each of its laws. */
-static dea_status add_materials(struct dea_context *ctx, struct dea_text *out,
-                                const struct dea_device *device)
-{
-  const char **names;
-  size_t count;
-  char label[2 * DEA_NAME_SIZE + 24];
-  snprintf(label, sizeof label, "%s, %s (this run)", device->film.name, device->film.law->name);
-  dea_text_add(out, "\"materials\":[");
-  add_material(out, &device->film, label);
-  DEA_TRY(ctx, dea_catalogue_names(ctx, &names, &count));
-  for (size_t i = 0; i < count; i++) {
-    struct dea_catalogue_entry *entry;
-    if (dea_catalogue_read(ctx, names[i], (struct dea_location){0}, &entry) != DEA_OK) {
-      dea_context_clear(ctx);
-      continue;
+  static const char *const keys[] = {
+      "centre_z_m",       "fibre_tip_z_m", "electrode_edge_u_m",  "true_field_V_per_m",
+      "breakdown_margin", "force_N",       "min_tension_N_per_m", "capacitance_F"};
+  size_t count = dea_curve_headlines(report->ctx, sweep, columns, HEADLINES_MAX);
+  for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+    const int column = dea_point_column_find(keys[i]);
+    if (!dea_figure_leaves_out(result, sweep, column) &&
+        dea_points_have(sweep->points, sweep->count, column)) {
+      columns[count++] = column;
     }
-    for (size_t k = 0; k < entry->data.law_count; k++) {
-      add_parameter_set(ctx, out, &entry->data, entry->data.laws[k].id.text);
-    }
-    dea_catalogue_destroy(ctx, entry);
   }
-  dea_free(ctx, names);
-  dea_finding_clear(ctx);
-  dea_text_add(out, "],");
+  return count;
+}
+
+/* Stable points of rising voltage, of many every few. */
+static size_t find_points(const struct dea_curve *sweep, const struct dea_load_point **out)
+{
+  const size_t stride = 1 + (sweep->count - 1) / POINTS_MAX;
+  size_t count = 0;
+  for (size_t i = 0; i < sweep->count; i += stride) {
+    const struct dea_load_point *p = &sweep->points[i];
+    if (p->stable && (count == 0 || p->voltage_V > out[count - 1]->voltage_V)) {
+      out[count++] = p;
+    }
+  }
+  return count;
+}
+
+static dea_status add_sweep(struct dea_report *report, const struct dea_result *result,
+                            const struct dea_curve *sweep, json_t *sources)
+{
+  const struct dea_load_point *points[POINTS_MAX];
+  const struct dea_column *quantities[QUANTITIES_MAX];
+  double voltages_V[POINTS_MAX], values[POINTS_MAX * QUANTITIES_MAX];
+  unsigned flags[POINTS_MAX];
+  int columns[QUANTITIES_MAX];
+  struct dea_emulator e = {.model = sweep->model,
+                           .case_count = 1,
+                           .voltage_count = find_points(sweep, points),
+                           .quantity_count = find_columns(report, result, sweep, columns),
+                           .level = 1,
+                           .voltages_V = voltages_V,
+                           .quantities = quantities,
+                           .values = values,
+                           .flags = flags};
+  if (e.voltage_count < 3 || e.quantity_count == 0) {
+    return DEA_OK;
+  }
+  for (size_t q = 0; q < e.quantity_count; q++) {
+    quantities[q] = dea_column_at(report->ctx, columns[q]);
+  }
+  for (size_t k = 0; k < e.voltage_count; k++) {
+    voltages_V[k] = points[k]->voltage_V;
+    flags[k] = dea_load_point_flags(points[k]);
+    for (size_t q = 0; q < e.quantity_count; q++) {
+      values[k * e.quantity_count + q] = dea_point_get(points[k], columns[q]);
+    }
+  }
+  DEA_TRY(report->ctx, dea_emulator_make(report->ctx, &e));
+  json_array_append_new(sources, dea_emulator_json(&e));
+  dea_emulator_free(report->ctx, &e);
   return DEA_OK;
 }
 
-/* A length with the film state that it is given in: it moves with the pre-stretch or not. */
-static void add_length(struct dea_text *out, const char *key,
-                       const struct dea_inplane_length *length)
+// The section -------------------------------------------------------------------------------------
+
+static dea_status find_sources(struct dea_report *report, const struct dea_report_run *run,
+                               json_t *sources)
 {
-  dea_text_add(out, "\"%s\":{\"unstretched\":%s,\"m\":", key,
-               length->state == DEA_UNSTRETCHED ? "true" : "false");
-  dea_html_json_number(out, length->length.si, 17);
-  dea_text_add(out, "},");
+  const struct dea_result *result = run->run->result;
+  if (run->emulator != NULL) {
+    json_array_append_new(sources, json_loads(run->emulator, 0, NULL));
+  }
+  if (run->reduced != NULL) {
+    json_array_append_new(sources, json_loads(run->reduced, 0, NULL));
+  }
+  for (size_t i = result->curve_count; i-- > 0;) { // 3d is the last that is computed
+    if (strcmp(result->curves[i].kind, "sweep") == 0 && result->curves[i].count > 0) {
+      DEA_TRY(report->ctx, add_sweep(report, result, &result->curves[i], sources));
+    }
+  }
+  return DEA_OK;
 }
 
-static void add_device(struct dea_text *out, const struct dea_design *design,
-                       const struct dea_device *device)
+/* JSON within a script element. */
+static void add_json(struct dea_text *out, const json_t *json)
 {
-  add_number(out, "thickness_m", device->film_thickness_unstretched_m);
-  add_number(out, "pre_stretch", device->pre_stretch);
-  add_number(out, "frame_radius_m", device->frame_radius_m);
-  add_length(out, "electrode_radius", &design->electrodes.radius);
-  add_number(out, "electrode_thickness_m", device->electrode_thickness_m);
-  add_number(out, "fibres", device->fibre_count);
-  if (device->fibre_count > 0) {
-    bool by_length = design->fibres.length.length.origin != DEA_ABSENT;
-    bool by_radius = !by_length && design->fibres.tip_radius.length.origin != DEA_ABSENT;
-    add_word(out, "tip_by", by_length ? "length" : by_radius ? "radius" : "overlap");
-    add_length(out, "tip",
-               by_length   ? &design->fibres.length
-               : by_radius ? &design->fibres.tip_radius
-                           : &design->fibres.overlap);
+  char *text = json_dumps(json, JSON_COMPACT | JSON_REAL_PRECISION(17));
+  out->failed = out->failed || text == NULL;
+  for (const char *at = text; at != NULL && *at != '\0';) {
+    const size_t length = strcspn(at, "<");
+    dea_text_add(out, "%.*s%s", (int)length, at, at[length] != '\0' ? "\\u003c" : "");
+    at += length + (at[length] != '\0');
   }
-  bool given = design->compute.coverage.origin != DEA_ABSENT;
-  add_word(out, "coverage_by",
-           given                                                    ? "value"
-           : design->compute.coverage_by.value == DEA_COVERAGE_AREA ? "area"
-                                                                    : "radius");
-  add_number(out, "coverage", device->coverage);
-  if (device->electrode.law != NULL) {
-    dea_text_add(out, "\"electrode_material\":");
-    add_material(out, &device->electrode, device->electrode.name);
-    dea_text_add(out, ",");
-  }
+  free(text);
 }
 
 dea_status dea_section_explorer(struct dea_report *report, const struct dea_report_run *run)
 {
   struct dea_text *out = &report->text;
-  if (run->device == NULL || run->device->film.law == NULL ||
-      !(run->device->film.permittivity.at_rest > 0)) {
-    return DEA_OK;
+  json_t *sources = json_array(), *source;
+  dea_status status = find_sources(report, run, sources);
+  const struct dea_design *design = run->design;
+  size_t i;
+  json_array_foreach(sources, i, source)
+  {
+    dea_json_put(source, "finger_N_per_m", report->options->finger_N_per_m);
+    dea_json_put(source, "voltage_V", design != NULL ? dea_design_highest_V(design) : 0);
   }
-  dea_section_begin(report, "explorer", run->number, "Explorer");
-  if (dea_asset_core_length == 0) {
-    dea_text_add(out, "<p class=\"note\">This program was built without a compiler for "
-                      "WebAssembly, so that nothing can be computed in the page.</p>");
+  if (status == DEA_OK && json_array_size(sources) > 0) {
+    dea_section_begin(report, "explorer", run->number, "Explorer");
+    if (run->emulator == NULL) {
+      dea_text_add(out, "<p>Sliders for numbers of the design come from <span class=\"code\">dea "
+                        "sweep</span> with <span class=\"code\">plan: sparse-grid</span>: <span "
+                        "class=\"code\">dea report RUN --explorer FOLDER</span>.</p>");
+    }
+    dea_text_add(out, "<p class=\"still\">With scripts, numbers between those that were computed "
+                      "are shown here.</p><div class=\"explorer interactive\" hidden></div>"
+                      "<script type=\"application/json\" class=\"sources\">");
+    add_json(out, sources);
+    dea_text_add(out, "</script>");
     dea_section_end(report);
-    return DEA_OK;
   }
-  double last_V = 1;
-  for (size_t i = 0; i < run->design->compute.voltage_count; i++) {
-    last_V = fmax(last_V, run->design->compute.voltages_V[i]);
-  }
-  dea_text_add(out, "<p class=\"still\">With scripts, the models lumped and axisymmetric are "
-                    "computed here for other designs.</p><div class=\"explorer interactive\" "
-                    "hidden></div><script type=\"application/json\" class=\"device\">{");
-  dea_status status = add_materials(report->ctx, out, run->device);
-  add_device(out, run->design, run->device);
-  dea_text_add(out, "\"voltage_V\":%.17g}</script>", last_V);
-  dea_section_end(report);
+  json_decref(sources);
   return status;
-}
-
-void dea_explorer_add_core(struct dea_report *report)
-{
-  if (dea_asset_core_length > 0) {
-    dea_text_add(&report->text, "<script type=\"text/plain\" id=\"core\">");
-    dea_html_base64(&report->text, dea_asset_core, dea_asset_core_length);
-    dea_text_add(&report->text, "</script>\n");
-  }
 }

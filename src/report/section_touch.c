@@ -1,15 +1,11 @@
-/* Is it fit for the finger: displacement and force against thresholds of touch (paper section 5.2),
- * and the load line of model lumped, as study load-line found it, against a fingertip.
+/* Is it fit for the finger: displacement and force against thresholds of touch (paper section 5.2).
  *
  * Reaches are quasi-static; study "frequency" says what is left of a motion at 5 to 10 Hz. */
-#include "plot/plot_svg.h"
 #include "report/section.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { LINES = 4, DRAWN = 5 }; // load lines; one of so many points of each
 
 static const struct threshold {
   const char *what, *source;
@@ -104,172 +100,6 @@ static void add_row(struct dea_text *out, const struct threshold *t, const struc
                t->force ? "; " : "", t->force ? r->how : "");
 }
 
-// Load line ---------------------------------------------------------------------------------------
-
-/* A line: rows [first, end) of the study's table, of one voltage, rising in height. */
-struct load_line {
-  const struct dea_result_table *table;
-  size_t first, end;
-  double voltage_V;
-};
-
-static double height_m(const struct load_line *line, size_t row)
-{
-  return dea_result_table_number(line->table, row, "height_m", 0);
-}
-
-static double force_N(const struct load_line *line, size_t row)
-{
-  return dea_result_table_number(line->table, row, "force_N", 0);
-}
-
-/* The line that begins at a row. */
-static struct load_line line_from(const struct dea_result_table *table, size_t first)
-{
-  struct load_line line = {table, first, first + 1,
-                           dea_result_table_number(table, first, "voltage_V", 0)};
-  while (line.end < table->row_count &&
-         dea_result_table_number(table, line.end, "voltage_V", 0) == line.voltage_V) {
-    line.end++;
-  }
-  return line;
-}
-
-/* Force between the points of a line: the cubic through the two on each side (Lagrange). */
-static double force_between(const struct load_line *line, size_t above, double z)
-{
-  enum { NEAR = 4 };
-  size_t from = above > line->first + 2 ? above - 2 : line->first;
-  double force = 0;
-  from = from + NEAR > line->end ? line->end - NEAR : from;
-  for (size_t i = from; i < from + NEAR; i++) {
-    double weight = 1;
-    for (size_t k = from; k < from + NEAR; k++) {
-      weight *= k != i ? (z - height_m(line, k)) / (height_m(line, i) - height_m(line, k)) : 1;
-    }
-    force += weight * force_N(line, i);
-  }
-  return force;
-}
-
-/* Height at which the actuator's force is that of a spring that it pushes; 0 when the spring is
- * stiffer than all of the line, whose largest F/z goes to *stiffest. */
-static double meet(const struct load_line *line, double k, double *stiffest)
-{
-  size_t above = line->first; // the first point beyond which the spring is always the stronger
-  *stiffest = 0;
-  for (size_t row = line->first + 1; row < line->end; row++) {
-    double z = height_m(line, row), force = force_N(line, row);
-    *stiffest = fmax(*stiffest, force / z);
-    above = force > k * z ? row + 1 : above;
-  }
-  if (above == line->first || above >= line->end || line->end - line->first < 4) {
-    return 0;
-  }
-  double low = height_m(line, above - 1), high = height_m(line, above);
-  for (int i = 0; i < 60; i++) {
-    double middle = 0.5 * (low + high);
-    *(force_between(line, above, middle) > k * middle ? &low : &high) = middle;
-  }
-  return low;
-}
-
-static void add_meeting(struct dea_text *out, const struct load_line *line, double k)
-{
-  double stiffest, z = meet(line, k, &stiffest);
-  dea_text_add(out, "<p>A fingertip taken as a spring of ");
-  dea_html_number(out, 1e-3 * k, 3);
-  dea_text_add(out, " N/mm (an assumption: real ones stiffen as they are pressed) that touches the "
-                    "flat film is ");
-  if (z > 0) {
-    dea_text_add(out, "moved by ");
-    dea_html_number(out, 1e6 * z, 3);
-    dea_text_add(out, " \302\265m with ");
-    dea_html_number(out, 1e3 * k * z, 3);
-    dea_text_add(out, " mN");
-  } else {
-    dea_text_add(out, "not moved");
-  }
-  dea_text_add(out, " at ");
-  dea_html_number(out, 1e-3 * line->voltage_V, 3);
-  dea_text_add(out, " kV. Rods that lie flat begin without force, so that what is stiffer than ");
-  dea_html_number(out, 1e-3 * stiffest, 2);
-  dea_text_add(out, " N/mm stays where it is; all this by model lumped, whose force is an upper "
-                    "bound.</p>");
-}
-
-static dea_status add_line(struct dea_context *ctx, struct dea_panel *panel, size_t number,
-                           const struct load_line *line)
-{
-  size_t count = (line->end - line->first + DRAWN - 1) / DRAWN;
-  struct dea_series *series;
-  DEA_TRY(ctx, dea_panel_add(ctx, panel, count, DEA_LINE, (enum dea_colour)number, "", &series));
-  snprintf(series->title, sizeof series->title, "%.3g kV", 1e-3 * line->voltage_V);
-  for (size_t i = 0; i < count; i++) {
-    series->values[i] = 1e6 * height_m(line, line->first + DRAWN * i);
-    series->values[count + i] = 1e3 * force_N(line, line->first + DRAWN * i);
-  }
-  return DEA_OK;
-}
-
-static dea_status add_finger(struct dea_report *report, struct dea_panel *panel, double k,
-                             double highest)
-{
-  struct dea_series *finger;
-  double top = 0;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    for (size_t i = 0; i < panel->series[s].count; i++) {
-      top = fmax(top, panel->series[s].values[panel->series[s].count + i]);
-    }
-  }
-  DEA_TRY(report->ctx, dea_panel_add(report->ctx, panel, 2, DEA_DASHED, DEA_BLACK, "", &finger));
-  snprintf(finger->title, sizeof finger->title, "fingertip, %.3g N/mm", 1e-3 * k);
-  finger->values[0] = finger->values[2] = 0;
-  finger->values[1] = 1e6 * fmin(highest, 1e-3 * top / k);
-  finger->values[3] = k * finger->values[1] * 1e-3;
-  snprintf(panel->x_label, sizeof panel->x_label, "Height {/:Italic z} (\302\265m)");
-  snprintf(panel->y_label, sizeof panel->y_label, "Force (mN)");
-  return DEA_OK;
-}
-
-/* The lines in a plot; *last: that of the highest voltage. */
-static dea_status draw_lines(struct dea_report *report, const struct dea_result_table *table,
-                             struct dea_plot *plot, struct load_line *last)
-{
-  double k = report->options->finger_N_per_m, highest = 0;
-  size_t number = 0;
-  for (size_t row = 0; row < table->row_count && number < LINES; row = last->end) {
-    *last = line_from(table, row);
-    highest = fmax(highest, height_m(last, last->end - 1));
-    DEA_TRY(report->ctx, add_line(report->ctx, &plot->panels[0], number++, last));
-  }
-  return add_finger(report, &plot->panels[0], k, highest);
-}
-
-/* Not beside a model that predicts the height: the rods' lines are far above it. */
-static dea_status add_load_line(struct dea_report *report, const struct dea_report_run *run)
-{
-  const struct dea_result_table *table =
-      dea_result_find_table(run->run->result, "lumped", "load-line", "forces");
-  double k = report->options->finger_N_per_m;
-  if (table == NULL || table->row_count == 0 || !(k > 0)) {
-    return DEA_OK;
-  }
-  struct load_line last = line_from(table, 0);
-  struct dea_plot *plot;
-  DEA_TRY(report->ctx, dea_plot_create(report->ctx, "touch",
-                                       "load line of model lumped against a fingertip", &plot));
-  dea_status status = draw_lines(report, table, plot, &last);
-  if (status == DEA_OK) {
-    dea_text_add(&report->text, "<div class=\"plots\">");
-    dea_plot_add_svg(&report->text, plot, ++report->figures);
-    add_meeting(&report->text, &last, k);
-    dea_text_add(&report->text, "</div>");
-  }
-  dea_plot_destroy(report->ctx, plot);
-  return status;
-}
-
 // Frequency ---------------------------------------------------------------------------------------
 
 static const double touch_Hz = 10; // the faster end of what the thresholds speak of
@@ -356,6 +186,11 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
       find_displacement(sweep, &reaches[m]);
     }
     find_force(result, &reaches[m]);
+    if (strcmp(models[m], "reduced") == 0 && run->reduced != NULL && isfinite(run->blocked_N)) {
+      reaches[m].force_N = run->blocked_N;
+      reaches[m].force_V = run->blocked_V;
+      reaches[m].how = "blocked force, held where it is at 0 V";
+    }
     const bool says = isfinite(reaches[m].displacement_m) || isfinite(reaches[m].force_N);
     any = any || says;
     predicted = predicted || (says && !reaches[m].bound);
@@ -378,7 +213,6 @@ dea_status dea_section_touch(struct dea_report *report, const struct dea_report_
     }
   }
   dea_table_end(report);
-  DEA_TRY(report->ctx, predicted ? DEA_OK : add_load_line(report, run));
   dea_section_end(report);
   return DEA_OK;
 }

@@ -15,8 +15,7 @@ dea --version
 dea doctor >doctor.txt || { cat doctor.txt; fail "dea doctor"; }
 cat doctor.txt
 for what in 'materials .* in /usr/share/dea' 'examples .* in /usr/share/dea' '3D engine */usr/lib' \
-  'drawings of dea fab */usr/lib' 'booleans of regions */usr/lib' '.mat files */usr/lib' \
-  'explorer of reports *WebAssembly'; do
+  'drawings of dea fab */usr/lib' 'booleans of regions */usr/lib' '.mat files */usr/lib'; do
   grep -q "^ok *$what" doctor.txt || fail "dea doctor does not say ok to: $what"
 done
 dea examples frdea-4 >my.yaml
@@ -27,7 +26,7 @@ for file in displacement.svg displacement.png; do
   [ -s "my.run/figures/$file" ] || fail "no figure $file"
 done
 dea report my.run --quiet
-grep -q 'id="core"' my.run/report.html || fail "no explorer in the report"
+grep -q 'class="sources"' my.run/report.html || fail "no explorer in the report"
 dea fab my.yaml -o fab >/dev/null
 [ "$(find fab -name '*.dxf' | wc -l)" -gt 0 ] || fail "no files for the workshop"
 dea examples --copy designs >examples.txt 2>&1

@@ -266,133 +266,154 @@ TEST(test_map_and_touch)
 
 // The explorer ------------------------------------------------------------------------------------
 
-/* What the command says of a model at a voltage, with values of the design changed. */
-static json_t *command_point(const char *model, const char *sets, double voltage_V)
+static const char pre[] = "dea_explore: 1\nname: pre\ndesign: a.yaml\nmodel: 3d\n"
+                          "voltages: [0 kV, 1 kV, 2 kV, 3 kV, 4 kV]\n"
+                          "quantities: [fibre_tip_z_m, true_field_V_per_m, breakdown_margin]\n"
+                          "variables: [{name: pre_stretch, low: 1.1, high: 1.5}]\n"
+                          "plan: sparse-grid\n";
+
+/* The page of a run with model 3d and a sweep over its pre-stretch. */
+static void open_swept(void)
 {
-  char arguments[1000];
-  snprintf(arguments, sizeof arguments,
-           "run @/examples/frdea-4.yaml --json --study sweep --model %s %s --set "
-           "'compute.voltage={from: 0 V, to: %.17g V, step: %.17g V}'",
-           model, sets, voltage_V, voltage_V / 4);
-  if (command_run(arguments) != 0) {
-    fail_msg("%s", command_err);
+  static bool made;
+  if (!made) {
+    assert_int_equal(command_run("examples frdea-4"), 0);
+    command_write("a.yaml", command_out);
+    command_write("pre.yaml", pre);
+    assert_int_equal(command_run("sweep pre.yaml"), 0);
+    assert_int_equal(command_run("run a.yaml --model lumped --model 3d --no-figures -o s.run --set "
+                                 "'compute.voltage={from: 0 kV, to: 4 kV, step: 1 kV}'"),
+                     0);
+    assert_int_equal(command_run("report s.run --explorer pre.sweep -o s.html"), 0);
+    made = true;
   }
-  json_t *run = json_loads(command_out, 0, NULL);
-  json_t *points = json_object_get(run, "points");
-  assert_int_equal(json_array_size(points), 5);
-  json_t *point = json_incref(json_array_get(points, 4));
-  json_decref(run);
-  return point;
+  open_page("s.html");
 }
 
-TEST(test_explorer_computes_what_the_command_computes)
+/* z of the fibre tip at 3 kV, and its error, by the page. */
+static double page_z(double pre_stretch, int k)
 {
-  static const struct {
-    const char *model, *sets, *values;
-    double voltage_V;
-  } cases[] = {
-      {"lumped", "", "", 6000},
-      {"axisymmetric", "", "", 7300},
-      {"lumped", "--set pre_stretch=2.1", "pre_stretch: 2.1", 4100},
-      {"axisymmetric", "--set film.thickness=63um --set frame.inner_diameter=44mm",
-       "thickness_m: 63e-6, frame_radius_m: 22e-3", 2900},
-      {"lumped", "--set 'electrodes.diameter=7 mm unstretched' --set pre_stretch=1.2",
-       "electrode_radius_m: 3.5e-3, pre_stretch: 1.2", 5000},
-  };
-  open_example();
-  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
-    skip(); // built without the compiler for it
+  char expression[200];
+  snprintf(expression, sizeof expression,
+           "dea.explorers[0].at(0, {voltage_V: 3000, pre_stretch: %.17g}).values.fibre_tip_z_m[%d]",
+           pre_stretch, k);
+  return browser_number(&browser, expression);
+}
+
+/* The same by model 3d of a design of its own. */
+static double solved_z(double pre_stretch)
+{
+  char arguments[300];
+  snprintf(arguments, sizeof arguments,
+           "run a.yaml --json --study sweep --model 3d --set pre_stretch=%.17g --set "
+           "'compute.voltage={from: 0 kV, to: 3 kV, step: 1 kV}'",
+           pre_stretch);
+  assert_int_equal(command_run(arguments), 0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  double z = json_number_value(
+      json_object_get(json_array_get(json_object_get(run, "points"), 3), "fibre_tip_z_m"));
+  json_decref(run);
+  return z;
+}
+
+/* The explorer moves with model 3d: sign, trend, and values within the error that it states; its
+ * numbers are those of the command. */
+TEST(test_explorer_moves_with_3d)
+{
+  static const double stretches[] = {1.1, 1.17, 1.23, 1.4, 1.5};
+  open_swept();
+  assert_true(page_z(1.1, 0) < page_z(1.5, 0) && page_z(1.5, 0) < -5e-6);
+  for (size_t i = 0; i < sizeof stretches / sizeof stretches[0]; i++) {
+    const double z = page_z(stretches[i], 0), error = page_z(stretches[i], 1);
+    double volts, told, told_error;
+    char arguments[80];
+    assert_true(error < 0.15 * fabs(z));
+    assert_true(fabs(z - solved_z(stretches[i])) <= error + 1e-6 * fabs(z));
+    snprintf(arguments, sizeof arguments, "sweep pre.yaml --at pre_stretch=%.17g", stretches[i]);
+    assert_int_equal(command_run(arguments), 0);
+    const char *row = strstr(command_out, "\n3000,");
+    assert_non_null(row);
+    assert_int_equal(sscanf(row, "%lf,%lf,%lf", &volts, &told, &told_error), 3);
+    assert_close(z, told, 0, 1e-9 * fabs(told));
+    assert_close(error, told_error, 0, 1e-2 * error); // three digits
   }
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    char expression[400];
-    snprintf(expression, sizeof expression, "dea.explorers[0].solve('%s', {voltage_V: %.17g%s%s})",
-             cases[i].model, cases[i].voltage_V, cases[i].values[0] != '\0' ? ", " : "",
-             cases[i].values);
-    json_t *page = browser_value(&browser, expression);
-    json_t *wanted = command_point(cases[i].model, cases[i].sets, cases[i].voltage_V);
-    const char *key;
-    json_t *value;
-    size_t compared = 0;
-    json_object_foreach(wanted, key, value)
-    {
-      if (json_is_real(value) && strcmp(key, "pull_in_distance_V") != 0) {
-        double there = json_number_value(json_object_get(page, key));
-        double here = json_number_value(value);
-        if (!(fabs(there - here) <= 1e-9 * fabs(here))) {
-          fail_msg("case %zu, %s: %.15g in the page, %.15g by the command", i, key, there, here);
-        }
-        compared++;
-      }
-    }
-    assert_true(compared >= 9);
-    json_decref(page);
-    json_decref(wanted);
-  }
+  assert_true(isnan(page_z(1.09, 0)) && isnan(page_z(1.51, 0))); // beyond the range
+  // z of model lumped, a bound 300 times off, is nowhere beside it
+  assert_holds("!dea.explorers[0].sources.find((s) => s.title.startsWith('lumped'))"
+               ".quantities.some((q) => q.key === 'fibre_tip_z_m') && "
+               "!document.body.textContent.includes('fibre tip, at most')");
   assert_quiet();
 }
 
 TEST(test_explorer_follows_its_sliders)
 {
-  open_example();
-  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
-    skip();
-  }
-  static const char move[] =
-      "(async () => { const host = document.querySelector('.explorer'); "
-      "const cell = () => host.querySelector('tbody td').textContent; const before = cell(); "
-      "const input = host.querySelectorAll('input')[1]; input.value = 2; "
-      "input.dispatchEvent(new Event('input')); "
-      "await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))); "
-      "return before !== cell() && host.querySelectorAll('.plot svg').length >= 3; })()";
-  assert_holds(move);
-  // every material of the list can be computed; each has the browser's time for itself
-  int count =
-      (int)browser_number(&browser, "document.querySelector('.explorer select').options.length");
-  assert_true(count > 2);
-  for (int k = 0; k < count; k++) {
-    char choose[500];
-    snprintf(choose, sizeof choose,
-             "(async () => { const host = document.querySelector('.explorer'); "
-             "const select = host.querySelector('select'); select.value = %d; "
-             "select.dispatchEvent(new Event('change')); "
-             "await new Promise((done) => requestAnimationFrame(() => "
-             "requestAnimationFrame(done))); "
-             "return host.querySelector('.warning').hidden; })()",
-             k);
-    assert_holds(choose);
-  }
+  open_swept();
+  assert_holds("(async () => { const host = document.querySelector('.explorer'); "
+               "const cell = () => host.querySelector('tbody td').textContent; "
+               "const frames = () => new Promise((done) => requestAnimationFrame(() => "
+               "requestAnimationFrame(done))); const before = cell(); "
+               "const [volts, stretch] = host.querySelectorAll('input'); stretch.value = 1.2; "
+               "stretch.dispatchEvent(new Event('input')); await frames(); const after = cell(); "
+               "host.querySelector('button').click(); await frames(); "
+               "return before !== after && before === cell() && volts.max === '4' && "
+               "host.querySelectorAll('svg.chart').length === 3; })()");
+  // each source can be chosen, and shows numbers
+  assert_holds(
+      "(() => { const select = document.querySelector('.explorer select'); "
+      "return dea.explorers[0].sources.every((_, i) => { select.value = i; "
+      "select.dispatchEvent(new Event('change')); const cells = "
+      "[...document.querySelectorAll('.explorer tbody td:nth-child(2)')]; "
+      "return cells.length > 2 && cells.every((c) => c.textContent !== '\u2013'); }); })()");
   assert_quiet();
 }
 
 TEST(test_map_of_two_parameters)
 {
-  open_example();
-  if (browser_number(&browser, "document.getElementById('core') === null") == 1) {
-    skip();
-  }
-  assert_holds("(async () => { document.querySelector('.explorer details').open = true; "
-               "await dea.explorers[0].map(); const map = document.querySelector('.map'); "
+  open_swept();
+  assert_holds("(() => { document.querySelector('.explorer details').open = true; "
+               "dea.explorers[0].map(); const map = document.querySelector('.map'); "
                "const before = map.querySelector('.plot').innerHTML; "
-               "const [across, up] = map.querySelectorAll('select'); across.value = 2; "
-               "across.dispatchEvent(new Event('change')); "
-               "for (let i = 0; i < 300 && !map.querySelector('.readout').textContent"
-               ".startsWith('Colours'); i++) { await new Promise((d) => setTimeout(d, 20)); } "
+               "const what = map.querySelectorAll('select')[2]; what.value = 1; "
+               "what.dispatchEvent(new Event('change')); "
                "return map.querySelectorAll('rect').length > 1000 && "
                "map.querySelector('.plot').innerHTML !== before && "
                "map.textContent.includes('breakdown'); })()");
-  // a slider of no axis: the map waits for it; one of an axis moves the ring alone
-  assert_holds("(async () => { const host = document.querySelector('.explorer'); const map = "
-               "host.querySelector('.map'); const cells = () => map.querySelector('.plot')"
-               ".innerHTML; const wait = async (done) => { for (let i = 0; i < 400 && !done(); i++)"
-               " { await new Promise((d) => setTimeout(d, 20)); } return done(); }; "
-               "const move = (k, share) => { const input = host.querySelectorAll('input')[k]; "
-               "input.value = Number(input.min) + share * (input.max - input.min); "
-               "input.dispatchEvent(new Event('input')); }; "
-               "const before = cells(); move(4, 0.9); "
-               "if (!await wait(() => map.classList.contains('stale'))) { return 'not stale'; } "
-               "if (!await wait(() => !map.classList.contains('stale') && cells() !== before)) { "
-               "return 'not computed again'; } const after = cells(); move(0, 0.3); "
-               "return wait(() => cells() !== after && !map.classList.contains('stale')); })()");
+  assert_quiet();
+}
+
+/* Model reduced in the page is that of the command, between the samples of its fit. */
+TEST(test_explorer_has_the_reduced_model)
+{
+  static const double volts[] = {0, 1300, 2600, 3900};
+  assert_int_equal(command_run("reduce-order @/examples/devices/cone-mass.yaml -o cone.json --set "
+                               "compute.reduced.voltages=5"),
+                   0);
+  assert_int_equal(
+      command_run("run @/examples/devices/cone-mass.yaml --model reduced --study sweep "
+                  "--no-figures -o cone.run --set compute.reduced.file=cone.json --set "
+                  "'compute.voltage={from: 0 V, to: 3.9 kV, step: 1.3 kV}' --json"),
+      0);
+  json_t *run = json_loads(command_out, 0, NULL);
+  assert_int_equal(command_run("report cone.run -o cone.html"), 0);
+  open_page("cone.html");
+  for (size_t k = 0; k < sizeof volts / sizeof volts[0]; k++) {
+    const json_t *point = json_array_get(json_object_get(run, "points"), k);
+    static const char *const keys[] = {"hub_z_m", "true_field_V_per_m", "highest_z_m"};
+    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
+      char expression[160];
+      const double told = json_number_value(json_object_get(point, keys[i]));
+      snprintf(expression, sizeof expression,
+               "dea.explorers[0].at(0, {voltage_V: %.17g}).values.%s[0]", volts[k], keys[i]);
+      assert_close(browser_number(&browser, expression), told, 1e-15, 1e-9);
+    }
+  }
+  // q falls with the force by 1 / stiffness; a load line is drawn; beyond its range it says nothing
+  assert_holds("(() => { const at = (force) => dea.explorers[0].at(0, { voltage_V: 2000, force })"
+               ".values; const f = 1e-4; const slope = (at(f).hub_z_m[0] - at(-f).hub_z_m[0]) / "
+               "(2 * f); return Math.abs(slope * at(0).stiffness[0] - 1) < 1e-4 && "
+               "at(1).hub_z_m === undefined && "
+               "document.querySelector('.explorer svg[aria-label=\"Load line\"]') !== null; })()");
+  json_decref(run);
   assert_quiet();
 }
 
