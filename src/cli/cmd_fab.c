@@ -23,11 +23,6 @@ static json_t *amounts_json(const struct dea_workshop *w)
 {
   struct dea_amounts a;
   json_t *json = json_object();
-  if (w->plan.design->parts != NULL) {
-    dea_json_put(json, "ink_area_m2", dea_ink_area_m2(w));
-    dea_json_put(json, "mass_kg", dea_plies_mass_kg(w->plan.device->layout));
-    return json;
-  }
   dea_amounts_find(w, &a);
   dea_json_put(json, "film_area_m2", a.film_area_m2);
   dea_json_put(json, "ink_area_m2", a.ink_area_m2);
@@ -35,6 +30,7 @@ static json_t *amounts_json(const struct dea_workshop *w)
   dea_json_put(json, "transfer_glue_area_m2", a.transfer_glue_area_m2);
   dea_json_put(json, "bond_area_m2", a.bond_area_m2);
   dea_json_put(json, "bond_volume_m3", a.bond_volume_m3);
+  dea_json_put(json, "mass_kg", a.mass_kg);
   return json;
 }
 

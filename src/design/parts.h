@@ -73,7 +73,8 @@ enum dea_parts_side { DEA_SIDE_BOTTOM, DEA_SIDE_TOP };
 
 struct dea_parts_electrode {
   struct dea_label name, ply, shape, channel;
-  struct dea_choice side; // enum dea_parts_side
+  struct dea_choice side;       // enum dea_parts_side
+  struct dea_quantity lead_rad; // absent: no lead
 };
 
 struct dea_parts_channel {

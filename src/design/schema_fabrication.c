@@ -41,6 +41,10 @@ static const struct dea_field frame_fields[] = {
         "gap", AT(frame_gap_m), "m", "5 mm",
         "distance of a frame from the parts, where it holds the film only until that is cut",
         .max = 1, .default_text = "5 mm"),
+    DEA_NUMBER_ROW("contact_window", AT(ring.contact_window_m), "m", "3 mm",
+                   "diameter of the hole in the frame through which the pad of an electrode below "
+                   "is reached; 0: none",
+                   .max = 1, .default_text = "3 mm"),
 };
 static const struct dea_record frame_record = {
     "frame", "the plate that holds a stretched film, or an edge that is a support", frame_fields,
@@ -60,6 +64,8 @@ static const struct dea_field leads_fields[] = {
 };
 static const struct dea_record leads_record = {
     "leads", "leads of the electrodes, with a pad on the ring", leads_fields, COUNT(leads_fields)};
+static const struct dea_record general_leads_record = {
+    "leads", "leads of the electrodes that have one, with a pad on the frame", leads_fields, 2};
 
 static const struct dea_field ring_fields[] = {
     DEA_NUMBER_ROW("width", AT(ring.width_m), "m", "10 mm",
@@ -188,9 +194,8 @@ static const struct dea_field general_fields[] = {
                 "the plate that holds a stretched film, or an edge that is a support"),
     MARKS_ROW,
     CURE_ROW,
-    {.key = "leads",
-     .elsewhere = "a lead is part of the shape of its electrode here, such as a union of it with a "
-                  "strip"},
+    SECTION_ROW("leads", general_leads_record,
+                "leads of the electrodes that have one (`lead`), with a pad on the frame"),
     {.key = "ring", .elsewhere = "the frame's width is 'frame: {width: ...}' here"},
     {.key = "holder", .elsewhere = "parts lie on a carrier here, which needs no holder"},
     SECTION_ROW("tolerance", general_tolerance_record, "tolerances of the check list"),

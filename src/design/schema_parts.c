@@ -88,6 +88,10 @@ static const struct dea_field electrode_fields[] = {
     NAME(dea_parts_electrode, shape, "shape", "shape that it covers", "active", REQUIRED),
     NAME(dea_parts_electrode, channel, "channel", "what it is connected to; ground: 0 V", "drive",
          REQUIRED),
+    NUMBER(dea_parts_electrode, lead_rad, "lead", "radian",
+           "direction of a lead from its middle to a pad on the frame, counter-clockwise from x, "
+           "which `dea fab` makes and no model sees",
+           "45 degree", .min = -7, .max = 7, .absent_text = "none"),
 };
 
 static const struct dea_field channel_fields[] = {

@@ -106,6 +106,7 @@ static void add_electrode(const struct dea_device *d, struct dea_layout *l, cons
   ply->thickness_unstretched_m = thickness_m;
   ply->pre_stretch[0] = ply->pre_stretch[1] = d->pre_stretch;
   ply->kind = DEA_PLY_ELECTRODE;
+  ply->part = "";
   if (!(ply->material.density_kg_per_m3 > 0)) {
     ply->material.density_kg_per_m3 = d->film.density_kg_per_m3;
   }
@@ -117,6 +118,7 @@ static void add_film(const struct dea_device *d, struct dea_layout *l)
   ply->thickness_unstretched_m = d->film_thickness_unstretched_m;
   ply->pre_stretch[0] = ply->pre_stretch[1] = d->pre_stretch;
   ply->elements = 0;
+  ply->part = "film";
 }
 
 /* A bond of no mass: all of that is in the surface. */
@@ -134,6 +136,7 @@ static void add_glue(const struct dea_device *d, struct dea_layout *l, const cha
 {
   struct dea_layout_ply *ply = add_ply(l, name, region, thickness_m, NULL);
   ply->kind = DEA_PLY_GLUE;
+  ply->part = "";
   ply->material.young_modulus_Pa = d->bond_modulus_Pa;
   ply->material.poisson_ratio = 0.5;
   ply->material.density_kg_per_m3 = d->film.density_kg_per_m3;
@@ -146,6 +149,8 @@ static void add_fibre_ply(const struct dea_device *d, struct dea_layout *l, cons
   struct dea_layout_ply *ply = add_ply(l, name, region, thickness_m, &d->fibre);
   ply->material.law = NULL;
   ply->material.branch_count = 0;
+  ply->on_tabs = region == FIBRES;
+  ply->part = ply->on_tabs ? name : "";
 }
 
 /* From the film or its electrodes up. */

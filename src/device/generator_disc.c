@@ -3,6 +3,8 @@
 #include "device/generator.h"
 #include "device/geometry.h"
 
+#include <math.h>
+
 static dea_status build_film(struct dea_context *ctx, const struct dea_design *design,
                              struct dea_device *device)
 {
@@ -75,6 +77,39 @@ static dea_status build_fibre(struct dea_context *ctx, const struct dea_design *
   return DEA_OK;
 }
 
+/* Leads run halfway between two fibres, that of the bottom electrode as far from the other one as
+ * that allows. One fibre alone has them at right angles. */
+static void add_leads(const struct dea_design *design, const struct dea_device *device)
+{
+  static const double pi = 3.14159265358979323846;
+  const struct dea_quantity *given = &design->fabrication.leads.angle_rad;
+  struct dea_layout_electrode *electrodes = device->layout->electrodes;
+  const int N = device->fibre_count, fibres = N == 1 ? 2 : N;
+  const double half = fibres > 0 ? pi / fibres : 0, step = 2 * half;
+  for (size_t i = 0; i < device->layout->electrode_count; i++) {
+    double angle = given->origin != DEA_ABSENT ? given->si : half;
+    if (!electrodes[i].top) {
+      const double opposite = angle + pi;
+      angle = fibres > 0 ? half + step * floor((opposite - half) / step + 0.5 - 1e-9) : opposite;
+    }
+    electrodes[i].lead = true;
+    electrodes[i].lead_rad = angle;
+  }
+}
+
+/* Values of the design that regions are made of. */
+static void add_locations(const struct dea_design *design, struct dea_layout *layout)
+{
+  const struct dea_location of[] = {design->frame.radius_m.location,
+                                    design->electrodes.radius.length.location};
+  for (size_t i = 0; i < layout->region_count; i++) {
+    struct dea_region *region = &layout->regions[i].region;
+    for (size_t k = 0; k < region->vertex_count; k++) {
+      region->vertex[k].location = i < 2 ? of[i] : design->fibres.width_m.location;
+    }
+  }
+}
+
 static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
                        struct dea_device *device)
 {
@@ -99,6 +134,8 @@ static dea_status fill(struct dea_context *ctx, const struct dea_design *design,
   const struct dea_label *law = &design->film.law;
   const bool given = law->origin != DEA_ABSENT && law->origin != DEA_DEFAULT;
   film->location = given ? law->location : design->film.material.location;
+  add_leads(design, device);
+  add_locations(design, device->layout);
   return dea_layout_find_symmetry(ctx, device->layout);
 }
 

@@ -231,6 +231,8 @@ static dea_status add_electrodes(struct maker *m)
     to->name = keep(m, from->name.origin == DEA_ABSENT ? from->channel.text : from->name.text);
     to->top = from->side.value == DEA_SIDE_TOP;
     to->location = from->shape.location;
+    to->lead = from->lead_rad.origin != DEA_ABSENT;
+    to->lead_rad = to->lead ? from->lead_rad.si : 0;
     DEA_TRY(m->ctx, find_shape(m, &from->shape, &to->region));
     DEA_TRY(m->ctx, find_ply(m, &from->ply, &to->ply));
     DEA_TRY(m->ctx, take_channel(m, &from->channel, &to->channel));

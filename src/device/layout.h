@@ -45,6 +45,10 @@ struct dea_layout_ply {
   size_t layers; // equally thick, with electrodes of the two channels by turns between; 0: 1
   enum dea_ply_kind kind;
   size_t joins; // of a bond: the ply that is a surface
+  /* In the workshop: "" of one that is not cut, such as ink or glue that a template adds; else name
+   * of its files where that does not follow from the ply's; NULL: it does. */
+  const char *part;
+  bool on_tabs; // its pieces are cut in one with a holder at the frame, until they are bonded
   struct dea_location location;
 };
 
@@ -52,8 +56,10 @@ struct dea_layout_ply {
 struct dea_layout_electrode {
   const char *name;
   size_t region, ply;
-  bool top;       // the face
-  size_t channel; // 0: ground
+  bool top;        // the face
+  size_t channel;  // 0: ground
+  bool lead;       // it has a lead to a pad on the frame, which no model sees
+  double lead_rad; // direction of that from the electrode's centroid
   struct dea_location location;
 };
 

@@ -45,13 +45,8 @@ static const struct drawing drawings[] = {
 };
 enum { DRAWINGS = sizeof drawings / sizeof drawings[0] };
 
-// of a device that is no disc: its shapes
+// its shapes
 #define LAYOUT_DXF "layout.dxf"
-
-static bool is_general(const struct dea_workshop *workshop)
-{
-  return workshop->plan.design->parts != NULL;
-}
 
 dea_status dea_workshop_files(const struct dea_workshop *workshop,
                               const struct dea_workshop_options *options, dea_file_sink sink,
@@ -65,7 +60,7 @@ dea_status dea_workshop_files(const struct dea_workshop *workshop,
       status = sink(user, name);
     }
   }
-  if (status == DEA_OK && is_general(workshop) && !options->drawing_only) {
+  if (status == DEA_OK && !options->drawing_only) {
     status = sink(user, LAYOUT_DXF);
   }
   for (size_t i = 0; i < DRAWINGS && status == DEA_OK; i++) {
@@ -95,8 +90,7 @@ static dea_status refuse_existing(void *user, const char *name)
  * ending. */
 static bool is_sheet(const struct dea_workshop *workshop, const char *name, size_t stem)
 {
-  bool found = is_general(workshop) && stem == strlen(LAYOUT_DXF) - 4 &&
-               strncmp(name, LAYOUT_DXF, stem) == 0;
+  bool found = stem == strlen(LAYOUT_DXF) - 4 && strncmp(name, LAYOUT_DXF, stem) == 0;
   for (size_t i = 0; i < workshop->count; i++) {
     const char *own = workshop->part[i].name;
     found = found || (strlen(own) == stem && strncmp(own, name, stem) == 0);
@@ -291,7 +285,7 @@ static dea_status write_layout(struct dea_context *ctx, const struct dea_worksho
 {
   struct dea_text dxf = {.ctx = ctx};
   void *locale = dea_c_locale_enter();
-  dea_status status = dea_dxf_write_layout(workshop->plan.device->layout, &dxf);
+  dea_status status = dea_dxf_write_layout(workshop->plan.layout, &dxf);
   dea_c_locale_leave(locale);
   if (status == DEA_OK) {
     status = dea_text_write(ctx, &dxf, directory, LAYOUT_DXF);
@@ -308,7 +302,7 @@ dea_status dea_workshop_write(struct dea_context *ctx, const struct dea_workshop
       DEA_TRY(ctx, write_sheet(ctx, workshop, directory, i, f));
     }
   }
-  if (is_general(workshop) && !options->drawing_only) {
+  if (!options->drawing_only) {
     DEA_TRY(ctx, write_layout(ctx, workshop, directory));
   }
   return write_drawings(ctx, workshop, directory, options);

@@ -1,6 +1,5 @@
 #include "fabricate/layout_parts.h"
 
-#include "device/layout_check.h"
 #include "geometry/boolean.h"
 
 #include <math.h>
@@ -45,14 +44,24 @@ static void write_slug(const char *name, char out[32])
     }                                                                                              \
   } while (0)
 
+static void write_ply_name(const struct dea_layout *layout, const char *kind, size_t ply, char *out)
+{
+  const char *part = layout->plies[ply].part;
+  if (part != NULL) {
+    snprintf(out, DEA_PART_NAME, "%.50s", part);
+  } else {
+    WRITE_NAME(kind, layout->plies, layout->ply_count, ply, out);
+  }
+}
+
 void dea_blank_name(const struct dea_layout *layout, size_t ply, char *out)
 {
-  WRITE_NAME("blank", layout->plies, layout->ply_count, ply, out);
+  write_ply_name(layout, "blank", ply, out);
 }
 
 void dea_outline_name(const struct dea_layout *layout, size_t ply, char *out)
 {
-  WRITE_NAME("ply", layout->plies, layout->ply_count, ply, out);
+  write_ply_name(layout, "ply", ply, out);
 }
 
 void dea_body_name(const struct dea_layout *layout, size_t body, char *out)
@@ -62,7 +71,10 @@ void dea_body_name(const struct dea_layout *layout, size_t body, char *out)
 
 void dea_stencil_name(const struct dea_layout *layout, size_t ply, bool top, char *out)
 {
-  WRITE_NAME("stencil", layout->plies, layout->ply_count, ply, out);
+  snprintf(out, DEA_PART_NAME, "stencil");
+  if (layout->plies[ply].part == NULL) {
+    WRITE_NAME("stencil", layout->plies, layout->ply_count, ply, out);
+  }
   size_t n = strlen(out);
   snprintf(out + n, DEA_PART_NAME - n, "%s", top ? "-top" : "-bottom");
 }
@@ -83,7 +95,7 @@ struct sheet {
   struct dea_workshop *w;
   const struct dea_layout *layout;
   struct dea_part *part;
-  double map[2][2]; // of a distance from the room's centre, in the flat film
+  double map[2][2]; // of a distance from the plan's origin, in the flat film
 };
 
 static const char *keep(struct dea_workshop *w, const char *format, ...) DEA_PRINTF(2, 3);
@@ -107,14 +119,14 @@ static const char *keep(struct dea_workshop *w, const char *format, ...)
 static struct sheet start(struct dea_workshop *w, const char *name, const char *title,
                           const struct dea_layout_ply *unstretched, bool below)
 {
-  struct sheet s = {.w = w, .layout = w->plan.device->layout, .map = {{1, 0}, {0, 1}}};
+  struct sheet s = {.w = w, .layout = w->plan.layout, .map = {{1, 0}, {0, 1}}};
   s.part = &w->part[w->count++];
   *s.part = (struct dea_part){.ctx = w->memory.ctx,
                               .name = name,
                               .title = title,
                               .seen = below ? "seen from below" : "seen from above",
                               .state = DEA_STRETCHED,
-                              .flat = !w->capacity.stretched,
+                              .flat = !w->plan.stretched,
                               .quantity = 1,
                               .mirrored = below};
   if (unstretched != NULL && dea_ply_is_stretched(unstretched)) {
@@ -139,7 +151,7 @@ static struct sheet start(struct dea_workshop *w, const char *name, const char *
 
 static void place(const struct sheet *s, const double x_m[2], double out[2])
 {
-  double x = x_m[0] - s->w->capacity.centre_m[0], y = x_m[1] - s->w->capacity.centre_m[1];
+  double x = x_m[0] - s->w->plan.centre_m[0], y = x_m[1] - s->w->plan.centre_m[1];
   out[0] = s->map[0][0] * x + s->map[0][1] * y;
   out[1] = s->map[1][0] * x + s->map[1][1] * y;
 }
@@ -151,14 +163,17 @@ static bool keeps_circles(const struct sheet *s)
   return fabs(shear) < 1e-15 && s->map[0][1] == 0;
 }
 
-/* A piece of a contour into vertices of another one, without its end. Arcs that do not stay arcs
- * become short ones through points of the true curve, less than 0.1 um from it. */
+/* A piece of a contour into vertices of another one, without its end: arcs but those of a circle
+ * into quarters, which files of few digits keep. Arcs that do not stay arcs become short ones
+ * through points of the true curve, less than 0.1 um from it. */
 static void add_piece(const struct sheet *s, const struct dea_piece *piece,
-                      const struct dea_vertex *from, struct dea_vertex *out, size_t *count)
+                      const struct dea_vertex *from, bool circle, struct dea_vertex *out,
+                      size_t *count)
 {
-  static const double step = 5 * 3.14159265358979323846 / 180;
-  bool turned = s->map[0][0] * s->map[1][1] < s->map[0][1] * s->map[1][0];
-  int parts = piece->arc && !keeps_circles(s) ? (int)ceil(fabs(piece->sweep) / step) : 1;
+  static const double degree = 3.14159265358979323846 / 180;
+  const bool turned = s->map[0][0] * s->map[1][1] < s->map[0][1] * s->map[1][0];
+  const double step = (keeps_circles(s) ? circle ? 180 : 90 : 5) * degree;
+  const int parts = piece->arc ? (int)fmax(1, ceil(fabs(piece->sweep) / step - 1e-9)) : 1;
   for (int i = 0; i < parts; i++) {
     double at[3][2]; // start, middle, end of it
     for (int k = 0; k < 3; k++) {
@@ -192,7 +207,7 @@ static void add_contour(const struct sheet *s, const struct dea_contour *contour
   size_t count = 0;
   for (size_t i = 0; v != NULL && i < contour->count; i++) {
     const struct dea_piece piece = dea_contour_piece(contour, i);
-    add_piece(s, &piece, &contour->vertex[i], v, &count);
+    add_piece(s, &piece, &contour->vertex[i], contour->count == 2, v, &count);
   }
   if (v != NULL) {
     const struct dea_contour made = {v, count, true};
@@ -219,11 +234,11 @@ static void add_region(const struct sheet *s, const struct dea_region *region,
   }
 }
 
-/* A rectangle about the room's centre, of half sides in the flat film. */
+/* A rectangle about the plan's origin, of half sides in the flat film. */
 static void add_box(const struct sheet *s, enum dea_layer layer, const double half_m[2],
                     struct dea_location location)
 {
-  const double *c = s->w->capacity.centre_m;
+  const double *c = s->w->plan.centre_m;
   struct dea_vertex v[4] = {{0}};
   for (int k = 0; k < 4; k++) {
     v[k].x_m = c[0] + (k == 0 || k == 3 ? half_m[0] : -half_m[0]);
@@ -234,38 +249,60 @@ static void add_box(const struct sheet *s, enum dea_layer layer, const double ha
   add_contour(s, &box, layer);
 }
 
+static void add_circle(const struct sheet *s, enum dea_layer layer, const double at_m[2],
+                       double radius_m, struct dea_location location)
+{
+  const double *c = s->w->plan.centre_m, x = c[0] + at_m[0], y = c[1] + at_m[1];
+  const struct dea_vertex v[2] = {{x + radius_m, y, 1, location}, {x - radius_m, y, 1, location}};
+  const struct dea_contour circle = {v, 2, true};
+  add_contour(s, &circle, layer);
+}
+
+/* An edge of the frame, or of the film as it is cut: round as the opening, or a rectangle. */
+static void add_edge(const struct sheet *s, enum dea_layer layer, const double half_m[2],
+                     struct dea_location location)
+{
+  const double centre[2] = {0, 0};
+  if (s->w->plan.round) {
+    add_circle(s, layer, centre, half_m[0], location);
+  } else {
+    add_box(s, layer, half_m, location);
+  }
+}
+
 static void add_marks(const struct sheet *s, enum dea_layer layer)
 {
-  const struct dea_fab_room *capacity = &s->w->capacity;
-  struct dea_region marks = {.ctx = s->part->ctx};
+  const struct dea_fab_plan *plan = &s->w->plan;
   for (int k = 0; k < DEA_FAB_MARKS; k++) {
-    dea_region_add_circle(&marks, capacity->centre_m[0] + capacity->mark_at_m[k][0],
-                          capacity->centre_m[1] + capacity->mark_at_m[k][1], capacity->mark_m,
-                          false, s->w->plan.design->fabrication.mark_diameter.length.location);
+    add_circle(s, layer, plan->mark_at_m[k], plan->mark_m,
+               plan->design->fabrication.mark_diameter.length.location);
   }
-  s->part->failed |= marks.failed;
-  add_region(s, &marks, layer, layer);
-  dea_region_free(&marks);
 }
 
 /* Whether a cross of the grid at a place of the flat film would lie on something else. */
 static bool is_taken(const struct dea_workshop *w, double x, double y)
 {
-  const struct dea_fab_room *capacity = &w->capacity;
-  double clear = 1.5 * capacity->cross_m + w->plan.feature_m;
-  bool taken =
-      (fabs(x) < capacity->opening_m[0] + clear && fabs(y) < capacity->opening_m[1] + clear) ||
-      fabs(x) > capacity->blank_m[0] - clear || fabs(y) > capacity->blank_m[1] - clear;
+  const struct dea_fab_plan *plan = &w->plan;
+  double clear = 1.5 * plan->cross_m + w->plan.feature_m;
+  bool inside = true, beyond = false;
+  for (int k = 0; k < 2; k++) {
+    const double at = plan->round ? hypot(x, y) : fabs(k == 0 ? x : y);
+    inside &= at < plan->opening_m[k] + clear;
+    beyond |= at > plan->blank_m[k] - clear;
+  }
+  bool taken = inside || beyond;
+  for (size_t i = 0; i < plan->pad_count; i++) {
+    taken |= hypot(x - plan->pad[i].at_m[0], y - plan->pad[i].at_m[1]) < plan->pad_m + clear;
+  }
   for (int k = 0; k < DEA_FAB_MARKS; k++) {
-    taken |= hypot(x - capacity->mark_at_m[k][0], y - capacity->mark_at_m[k][1]) <
-             capacity->mark_m + clear;
+    taken |= hypot(x - plan->mark_at_m[k][0], y - plan->mark_at_m[k][1]) < plan->mark_m + clear;
   }
   return taken;
 }
 
 static void add_line(const struct sheet *s, double x0, double y0, double x1, double y1)
 {
-  const double *c = s->w->capacity.centre_m;
+  const double *c = s->w->plan.centre_m;
   const double from[2] = {c[0] + x0, c[1] + y0}, to[2] = {c[0] + x1, c[1] + y1};
   double a[2], b[2];
   place(s, from, a);
@@ -277,14 +314,14 @@ static void add_line(const struct sheet *s, double x0, double y0, double x1, dou
 /* Crosses of a grid, on the film beyond the opening. */
 static void add_grid(const struct sheet *s)
 {
-  const struct dea_fab_room *capacity = &s->w->capacity;
+  const struct dea_fab_plan *plan = &s->w->plan;
   int n[2];
   for (int k = 0; k < 2; k++) {
-    n[k] = (int)fmin(capacity->blank_m[k] / capacity->grid_m, 500);
+    n[k] = (int)(plan->blank_m[k] / plan->grid_m);
   }
   for (int j = -n[1]; j <= n[1]; j++) {
     for (int i = -n[0]; i <= n[0]; i++) {
-      double x = i * capacity->grid_m, y = j * capacity->grid_m, arm = capacity->cross_m;
+      double x = i * plan->grid_m, y = j * plan->grid_m, arm = plan->cross_m;
       if (!is_taken(s->w, x, y)) {
         add_line(s, x - arm, y, x + arm, y);
         add_line(s, x, y - arm, x, y + arm);
@@ -301,7 +338,7 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
 {
   double seen[6][2];
   size_t count = 0;
-  for (size_t i = first; i < part->contour_count && count < 6; i++) {
+  for (size_t i = first; i < part->contour_count && count < 6 && !part->failed; i++) {
     const struct dea_contour contour = dea_part_contour_get(part, i);
     double box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     dea_contour_grow_box(&contour, box);
@@ -325,6 +362,37 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
   }
 }
 
+/* The same of a region that is no contour of the part by itself. */
+static void measure_region(const struct sheet *s, const struct dea_region *region, const char *what)
+{
+  struct dea_part *part = s->part;
+  const size_t contours = part->contour_count, vertices = part->vertex_count;
+  add_region(s, region, DEA_LAYER_NOTE, DEA_LAYER_CUT_OUTER);
+  measure(part, contours, DEA_LAYER_NOTE, what);
+  part->contour_count = contours;
+  part->vertex_count = vertices;
+}
+
+/* A length in the flat film, from the plan's origin. */
+static void measure_length(const struct sheet *s, double x0, double y0, double x1, double y1,
+                           const char *what, struct dea_location location)
+{
+  const double *c = s->w->plan.centre_m;
+  const double from[2] = {c[0] + x0, c[1] + y0}, to[2] = {c[0] + x1, c[1] + y1};
+  double a[2], b[2];
+  place(s, from, a);
+  place(s, to, b);
+  dea_part_measure(s->part, DEA_MEASURE_LENGTH, a[0], a[1], b[0], b[1], what, location);
+}
+
+static void measure_grid(const struct sheet *s, double share)
+{
+  const struct dea_fab_plan *plan = &s->w->plan;
+  const double y = -share * plan->blank_m[1];
+  measure_length(s, -plan->grid_m, y, 0, y, "grid",
+                 plan->design->fabrication.grid_spacing.length.location);
+}
+
 /* Sides of the box around all that is cut. */
 static void measure_box(struct dea_part *part, const char *what)
 {
@@ -344,41 +412,43 @@ static void measure_box(struct dea_part *part, const char *what)
 
 static void add_blank(struct dea_workshop *w, size_t ply)
 {
-  const struct dea_layout *l = w->plan.device->layout;
+  const struct dea_layout *l = w->plan.layout;
   const struct dea_fabrication *f = &w->plan.design->fabrication;
   char name[DEA_PART_NAME];
   dea_blank_name(l, ply, name);
-  struct sheet s = start(w, keep(w, "%s", name),
-                         keep(w, "Film '%.60s' before it is stretched", l->plies[ply].name),
-                         &l->plies[ply], false);
+  struct sheet s =
+      start(w, keep(w, "%s", name),
+            keep(w, "Film '%.60s'%s", l->plies[ply].name,
+                 dea_ply_is_stretched(&l->plies[ply]) ? " before it is stretched" : ""),
+            &l->plies[ply], false);
   s.part->quantity = dea_ply_count_like(l, ply);
   add_grid(&s);
   add_marks(&s, DEA_LAYER_MARK);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->capacity.blank_m, f->blank.margin.length.location);
-  measure_box(s.part, "film");
+  add_edge(&s, DEA_LAYER_CUT_OUTER, w->plan.blank_m, f->blank.margin.length.location);
+  measure(s.part, 0, DEA_LAYER_CUT_OUTER, "film");
+  measure_grid(&s, 0.86);
 }
 
-/* All electrodes of a face as one region. */
-static dea_status gather(struct dea_context *ctx, const struct dea_layout *l, size_t ply, bool top,
-                         struct dea_region *out)
+static bool lies_on(const struct dea_layout_electrode *e, size_t ply, bool top)
+{
+  return e->ply == ply && e->top == top;
+}
+
+/* All electrodes of a face, with their leads and pads, as one region. */
+static dea_status gather(struct dea_context *ctx, const struct dea_fab_plan *plan, size_t ply,
+                         bool top, struct dea_region *out)
 {
   const struct dea_motion still = dea_motion_translation(0, 0);
   struct dea_region all = {.ctx = ctx};
-  bool overlap = false;
-  for (size_t i = 0; i < l->electrode_count; i++) {
-    const struct dea_layout_electrode *e = &l->electrodes[i];
-    if (e->ply != ply || e->top != top) {
-      continue;
+  size_t count = 0;
+  for (size_t i = 0; i < plan->layout->electrode_count; i++) {
+    if (lies_on(&plan->layout->electrodes[i], ply, top)) {
+      dea_region_add_moved(&all, &plan->inked[i], &still);
+      count++;
     }
-    for (size_t j = 0; j < i && !overlap; j++) {
-      const struct dea_layout_electrode *b = &l->electrodes[j];
-      overlap =
-          b->ply == ply && b->top == top && !(dea_layout_overlap_m2(l, e->region, b->region) <= 0);
-    }
-    dea_region_add_moved(&all, &l->regions[e->region].region, &still);
   }
   dea_status status = dea_region_status(&all);
-  if (status == DEA_OK && overlap) {
+  if (status == DEA_OK && count > 1) {
     status = dea_region_combine(ctx, DEA_UNION, &all, NULL, out);
   } else if (status == DEA_OK) {
     dea_region_add_moved(out, &all, &still);
@@ -388,15 +458,45 @@ static dea_status gather(struct dea_context *ctx, const struct dea_layout *l, si
   return status;
 }
 
+/* Sizes of the electrodes of a face, of a lead, and of a pad. */
+static void measure_ink(const struct sheet *s, size_t ply, bool top)
+{
+  const struct dea_fab_plan *plan = &s->w->plan;
+  const struct dea_fabrication *f = &plan->design->fabrication;
+  for (size_t i = 0; i < s->layout->electrode_count; i++) {
+    const struct dea_layout_electrode *e = &s->layout->electrodes[i];
+    if (lies_on(e, ply, top)) {
+      measure_region(s, &s->layout->regions[e->region].region, "electrode");
+    }
+  }
+  for (size_t i = 0; i < plan->pad_count; i++) {
+    const struct dea_layout_electrode *e = &s->layout->electrodes[plan->pad[i].electrode];
+    const double *at = plan->pad[i].at_m, u = 0.5 * plan->lead_width_m * cos(e->lead_rad);
+    const double v = 0.5 * plan->lead_width_m * sin(e->lead_rad), back = 1.2 * plan->pad_m;
+    const double x = at[0] - back * cos(e->lead_rad), y = at[1] - back * sin(e->lead_rad);
+    struct dea_region pad = {.ctx = s->part->ctx};
+    if (!lies_on(e, ply, top)) {
+      continue;
+    }
+    measure_length(s, x + v, y - u, x - v, y + u, "lead", f->leads.width.length.location);
+    dea_region_add_circle(&pad, plan->centre_m[0] + at[0], plan->centre_m[1] + at[1], plan->pad_m,
+                          false, f->leads.pad_diameter.length.location);
+    measure_region(s, &pad, "pad");
+    dea_region_free(&pad);
+    return;
+  }
+}
+
 static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
 {
-  const struct dea_layout *l = w->plan.device->layout;
+  const struct dea_layout *l = w->plan.layout;
   struct dea_context *ctx = w->memory.ctx;
   struct dea_location edge = w->plan.design->fabrication.blank.margin.length.location;
   struct dea_region openings = {.ctx = ctx};
   char name[DEA_PART_NAME];
-  dea_status status = gather(ctx, l, ply, top, &openings);
+  dea_status status = gather(ctx, &w->plan, ply, top, &openings);
   if (status != DEA_OK) {
+    dea_region_free(&openings);
     return status;
   }
   dea_stencil_name(l, ply, top, name);
@@ -406,10 +506,10 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
                          &l->plies[ply], !top);
   add_region(&s, &openings, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
   size_t pieces = dea_part_pieces(s.part);
-  measure(s.part, 0, DEA_LAYER_CUT_INNER, "electrode");
+  measure_ink(&s, ply, top);
   measure(s.part, 0, DEA_LAYER_CUT_OUTER, "loose piece");
   add_marks(&s, DEA_LAYER_CUT_INNER);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->capacity.blank_m, edge);
+  add_box(&s, DEA_LAYER_CUT_OUTER, w->plan.blank_m, edge);
   measure_box(s.part, "stencil");
   double box[4];
   dea_part_box(s.part, box);
@@ -433,58 +533,110 @@ static void add_template(struct dea_workshop *w)
   const enum dea_layer mark = DEA_LAYER_MARK;
   s.part->paper = true;
   add_grid(&s);
-  for (size_t i = 0; i < l->ply_count; i++) {
-    if (dea_ply_like(l, i) == i) {
-      add_region(&s, &l->regions[l->plies[i].region].region, mark, mark);
+  add_marks(&s, mark);
+  for (size_t i = l->electrode_count; i-- > 0;) {
+    if (dea_face_like(l, l->electrodes[i].ply, l->electrodes[i].top) == l->electrodes[i].ply) {
+      add_region(&s, &w->plan.inked[i], mark, mark);
     }
   }
-  for (size_t i = 0; i < 2 * l->ply_count; i++) {
-    if (dea_face_like(l, i / 2, i % 2 == 1) != i / 2) {
-      continue;
-    }
-    for (size_t e = 0; e < l->electrode_count; e++) {
-      if (l->electrodes[e].ply == i / 2 && l->electrodes[e].top == (i % 2 == 1)) {
-        add_region(&s, &l->regions[l->electrodes[e].region].region, mark, mark);
-      }
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (dea_ply_is_cut(&l->plies[i]) && dea_ply_like(l, i) == i) {
+      add_region(&s, &l->regions[l->plies[i].region].region, mark, mark);
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
     add_region(&s, &l->regions[l->bodies[i].region].region, mark, mark);
   }
-  add_marks(&s, mark);
   size_t first = s.part->contour_count;
-  if (dea_layout_has_frame(w)) {
-    add_box(&s, mark, w->capacity.frame_m, f->ring.width_m.location);
+  if (dea_parts_have_frame(w)) {
+    add_edge(&s, mark, w->plan.frame_m, f->ring.width_m.location);
     measure(s.part, first, mark, "frame");
-  }
-  if (w->capacity.stretched) {
     first = s.part->contour_count;
-    add_box(&s, mark, w->capacity.blank_m, f->blank.margin.length.location);
+    add_edge(&s, mark, w->plan.blank_m, f->blank.margin.length.location);
     measure(s.part, first, mark, "film");
+    measure_grid(&s, 0.9);
   }
 }
 
-bool dea_layout_has_frame(const struct dea_workshop *workshop)
+bool dea_parts_have_frame(const struct dea_workshop *workshop)
 {
-  return workshop->capacity.held || workshop->capacity.stretched;
+  return workshop->plan.held || workshop->plan.stretched;
+}
+
+/* Holes in the frame over the pads of electrodes that lie below. */
+static void add_windows(const struct sheet *s)
+{
+  const struct dea_fab_plan *plan = &s->w->plan;
+  const size_t first = s->part->contour_count;
+  for (size_t i = 0; i < plan->pad_count && plan->window_m > 0; i++) {
+    if (!s->layout->electrodes[plan->pad[i].electrode].top) {
+      add_circle(s, DEA_LAYER_CUT_INNER, plan->pad[i].at_m, plan->window_m,
+                 plan->design->fabrication.ring.contact_window_m.location);
+    }
+  }
+  measure(s->part, first, DEA_LAYER_CUT_INNER, "contact");
 }
 
 static void add_frame(struct dea_workshop *w)
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
+  const enum dea_layer inner = DEA_LAYER_CUT_INNER, outer = DEA_LAYER_CUT_OUTER;
   struct sheet s = start(w, "frame",
-                         w->capacity.held ? "Frame, to which the edge of the film is bonded"
-                                          : "Frame that holds the film until it is cut",
+                         w->plan.held ? "Frame, to which the edge of the film is bonded"
+                                      : "Frame that holds the film until it is cut",
                          NULL, false);
-  if (w->capacity.held) {
-    add_region(&s, &w->capacity.hole, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
+  if (w->plan.held) {
+    add_region(&s, &w->plan.hole, inner, outer);
   } else {
-    add_box(&s, DEA_LAYER_CUT_INNER, w->capacity.opening_m, f->frame_gap_m.location);
+    add_box(&s, inner, w->plan.opening_m, f->frame_gap_m.location);
   }
-  measure(s.part, 0, DEA_LAYER_CUT_INNER, "opening");
-  add_marks(&s, DEA_LAYER_CUT_INNER);
-  add_box(&s, DEA_LAYER_CUT_OUTER, w->capacity.frame_m, f->ring.width_m.location);
-  measure_box(s.part, "frame");
+  measure(s.part, 0, inner, "opening");
+  size_t first = s.part->contour_count;
+  add_marks(&s, inner);
+  measure(s.part, first, inner, "mark");
+  add_windows(&s);
+  first = s.part->contour_count;
+  add_edge(&s, outer, w->plan.frame_m, f->ring.width_m.location);
+  measure(s.part, first, outer, "frame");
+}
+
+/* Pieces in a holder that is as large as the frame. */
+static dea_status add_holder(struct dea_workshop *w, size_t ply)
+{
+  const struct dea_fab_plan *plan = &w->plan;
+  const struct dea_fabrication *f = &plan->design->fabrication;
+  const struct dea_device *d = plan->device;
+  struct dea_context *ctx = w->memory.ctx;
+  struct dea_region pieces = {.ctx = ctx}, inside = {.ctx = ctx}, opening = {.ctx = ctx};
+  dea_region_add_circle(&inside, plan->centre_m[0], plan->centre_m[1], plan->holder_m, false,
+                        f->holder.tab_length_m.location);
+  dea_fab_add_pieces(plan, true, &pieces);
+  dea_status status = inside.failed ? DEA_E_MEMORY : dea_region_status(&pieces);
+  status = status == DEA_OK ? dea_region_combine(ctx, DEA_DIFFERENCE, &inside, &pieces, &opening)
+                            : status;
+  if (status == DEA_OK) {
+    char name[DEA_PART_NAME];
+    dea_outline_name(plan->layout, ply, name);
+    struct sheet s =
+        start(w, keep(w, "%s", name),
+              keep(w, "Ply '%.60s' in its holder", plan->layout->plies[ply].name), NULL, false);
+    const struct dea_location width = plan->design->fibres.width_m.location;
+    const double outer = plan->piece_outer_m, half = 0.5 * d->fibre_width_m;
+    add_region(&s, &opening, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
+    add_marks(&s, DEA_LAYER_CUT_INNER);
+    const size_t first = s.part->contour_count;
+    add_edge(&s, DEA_LAYER_CUT_OUTER, plan->frame_m, f->ring.width_m.location);
+    measure(s.part, first, DEA_LAYER_CUT_OUTER, "holder");
+    measure_length(&s, d->fibre_tip_radius_m, 0, outer, 0, "fibre", width);
+    if (plan->piece_end_m > outer) {
+      measure_length(&s, outer, 0, plan->piece_end_m, 0, "anchor", f->holder.anchor_m.location);
+    }
+    measure_length(&s, outer, -half, outer, half, "width", width);
+  }
+  dea_region_free(&pieces);
+  dea_region_free(&inside);
+  dea_region_free(&opening);
+  return status;
 }
 
 /* Pieces on a carrier, which has the marks. */
@@ -502,20 +654,21 @@ static void add_outline(struct dea_workshop *w, const char *name, const char *ti
   add_marks(&s, DEA_LAYER_MARK);
 }
 
-bool dea_layout_has_outline(const struct dea_workshop *workshop, size_t ply)
+bool dea_parts_have_outline(const struct dea_workshop *workshop, size_t ply)
 {
-  const struct dea_layout *l = workshop->plan.device->layout;
-  return dea_ply_like(l, ply) == ply &&
-         !(dea_ply_is_stretched(&l->plies[ply]) && dea_ply_is_held(l, ply));
+  const struct dea_layout *l = workshop->plan.layout;
+  return dea_ply_like(l, ply) == ply && dea_ply_is_cut(&l->plies[ply]) && !dea_ply_is_held(l, ply);
 }
 
-static void add_plies_and_bodies(struct dea_workshop *w)
+static dea_status add_plies_and_bodies(struct dea_workshop *w)
 {
-  const struct dea_layout *l = w->plan.device->layout;
+  const struct dea_layout *l = w->plan.layout;
   char name[DEA_PART_NAME];
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_layout_ply *ply = &l->plies[i];
-    if (dea_layout_has_outline(w, i)) {
+    if (i == w->plan.on_tabs) {
+      DEA_TRY(w->memory.ctx, add_holder(w, i));
+    } else if (dea_parts_have_outline(w, i)) {
       dea_outline_name(l, i, name);
       bool film = dea_ply_is_stretched(ply);
       const char *title = keep(w, "%s '%.60s'%s", film ? "Outline of the film" : "Ply", ply->name,
@@ -527,16 +680,17 @@ static void add_plies_and_bodies(struct dea_workshop *w)
     dea_body_name(l, i, name);
     add_outline(w, name, keep(w, "Rigid body '%.60s'", l->bodies[i].name), l->bodies[i].region, 1);
   }
+  return DEA_OK;
 }
 
-dea_status dea_layout_parts_make(struct dea_context *ctx, struct dea_workshop *w)
+dea_status dea_parts_make(struct dea_context *ctx, struct dea_workshop *w)
 {
-  const struct dea_layout *l = w->plan.device->layout;
+  const struct dea_layout *l = w->plan.layout;
   size_t most = 2 + 4 * l->ply_count + l->body_count;
   w->part = dea_arena_alloc(&w->memory, most, sizeof *w->part);
   DEA_TRY(ctx, dea_arena_status(&w->memory));
   for (size_t i = 0; i < l->ply_count; i++) {
-    if (dea_ply_is_stretched(&l->plies[i]) && dea_ply_like(l, i) == i) {
+    if (dea_ply_is_blank(l, i) && dea_ply_like(l, i) == i) {
       add_blank(w, i);
     }
     for (int top = 0; top < 2; top++) {
@@ -546,9 +700,9 @@ dea_status dea_layout_parts_make(struct dea_context *ctx, struct dea_workshop *w
     }
   }
   add_template(w);
-  if (dea_layout_has_frame(w)) {
+  if (dea_parts_have_frame(w)) {
     add_frame(w);
   }
-  add_plies_and_bodies(w);
+  DEA_TRY(ctx, add_plies_and_bodies(w));
   return dea_arena_status(&w->memory);
 }

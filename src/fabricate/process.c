@@ -1,8 +1,8 @@
+/* The process sheet: what is cut and printed, how it goes together, and what to check. */
 #include "fabricate/process.h"
 
 #include "base/file.h"
-#include "fabricate/part_list.h"
-#include "fabricate/process_parts.h"
+#include "fabricate/layout_parts.h"
 #include "fabricate/tolerance_effect.h"
 #include "figures/dimensions.h"
 
@@ -12,271 +12,654 @@
 
 static const double pi = 3.14159265358979323846;
 
-enum { NUMBER = 32 };
+enum { NUMBER = 32, WORDS = 256 };
+
+struct sheet {
+  const struct dea_workshop *w;
+  const struct dea_layout *layout;
+  struct dea_document *to;
+};
 
 /* ---- amounts ---- */
 
-/* Between a chord of width c of a circle and its arc. */
-static double segment(double r, double c)
+/* How much larger the flat film is than the unstretched one. */
+static double stretched_area(const struct dea_layout_ply *ply)
 {
-  return r * r * asin(0.5 * c / r) - 0.25 * c * sqrt(4 * r * r - c * c);
+  return ply->pre_stretch[0] * ply->pre_stretch[1];
 }
 
-/* Area between the circles r0 < r1 and two edges of widths w0, w1 there. */
-static double strip(double r0, double w0, double r1, double w1)
+/* The sheet of a stencil. */
+static double stencil_area(const struct sheet *s, size_t ply)
 {
-  double from = 0.5 * sqrt(4 * r0 * r0 - w0 * w0), to = 0.5 * sqrt(4 * r1 * r1 - w1 * w1);
-  return 0.5 * (w0 + w1) * (to - from) + segment(r1, w1) - segment(r0, w0);
+  const double *blank = s->w->plan.blank_m;
+  return 4 * blank[0] * blank[1] / stretched_area(&s->layout->plies[ply]);
 }
 
-/* Area of all holes of a stencil: what is printed through it. */
-static double printed_area(const struct dea_part *stencil)
+/* Area that is printed onto a face: all holes of its stencil, without loose pieces; 0: none. */
+static double printed_area(const struct sheet *s, size_t ply, bool top)
 {
-  double box[4];
-  dea_part_box(stencil, box);
-  return (box[2] - box[0]) * (box[3] - box[1]) - dea_part_area_m2(stencil);
+  const size_t like = dea_face_like(s->layout, ply, top);
+  char name[DEA_PART_NAME];
+  if (like == DEA_LAYOUT_NONE) {
+    return 0;
+  }
+  dea_stencil_name(s->layout, like, top, name);
+  return stencil_area(s, ply) - dea_part_area_m2(dea_workshop_find(s->w, name));
+}
+
+/* The same without its marks and pads. */
+static double glued_area(const struct sheet *s, size_t ply)
+{
+  const struct dea_fab_plan *plan = &s->w->plan;
+  double round = DEA_FAB_MARKS * plan->mark_m * plan->mark_m;
+  for (size_t i = 0; i < plan->pad_count; i++) {
+    const struct dea_layout_electrode *e = &s->layout->electrodes[plan->pad[i].electrode];
+    round += e->ply == ply && !e->top ? plan->pad_m * plan->pad_m : 0;
+  }
+  return printed_area(s, ply, false) - pi * round / stretched_area(&s->layout->plies[ply]);
+}
+
+/* Blanks of plies that are cut alike. */
+static double blank_area(const struct sheet *s, size_t ply)
+{
+  char name[DEA_PART_NAME];
+  dea_blank_name(s->layout, ply, name);
+  return dea_part_area_m2(dea_workshop_find(s->w, name)) *
+         (double)dea_ply_count_like(s->layout, ply);
+}
+
+static double area_of(const struct sheet *s, size_t region)
+{
+  return dea_region_area_m2(&s->layout->regions[region].region);
+}
+
+/* Thickness of what is printed or glued, of a ply that is not cut; 0: the design gives none. */
+static double thickness_of(const struct sheet *s, enum dea_ply_kind kind)
+{
+  double thickness = 0;
+  for (size_t i = 0; i < s->layout->ply_count; i++) {
+    const struct dea_layout_ply *ply = &s->layout->plies[i];
+    thickness =
+        ply->kind == kind && !dea_ply_is_cut(ply) ? ply->thickness_unstretched_m : thickness;
+  }
+  return thickness;
 }
 
 void dea_amounts_find(const struct dea_workshop *workshop, struct dea_amounts *out)
 {
-  const struct dea_fab_geometry *plan = &workshop->plan;
-  const struct dea_device *d = plan->device;
-  const struct dea_part *top = dea_workshop_find(workshop, "stencil-top");
-  const struct dea_part *bottom = dea_workshop_find(workshop, "stencil-bottom");
-  double l2 = plan->stretch * plan->stretch, side = 2 * plan->blank_m / plan->stretch;
-  double marks = DEA_FAB_MARKS * pi * plan->mark_m * plan->mark_m / l2;
-  *out = (struct dea_amounts){.film_area_m2 = pi * plan->blank_m * plan->blank_m / l2,
-                              .ink_area_m2 = printed_area(top) + printed_area(bottom),
-                              .transfer_glue_area_m2 = printed_area(bottom) - marks -
-                                                       pi * plan->pad_m * plan->pad_m / l2,
-                              .stencil_sheet_area_m2 = 2 * side * side,
-                              .ring_area_m2 = pi * plan->ring_m * plan->ring_m};
-  double thickness = d->electrode_thickness_m;
-  out->ink_volume_m3 = thickness > 0 ? out->ink_area_m2 * thickness : NAN;
-  out->bond_volume_m3 = NAN;
-  if (d->fibre_count > 0) {
-    double outer = plan->fibre_outer_m, end = plan->fibre_end_m;
-    double one = strip(d->fibre_tip_radius_m, d->fibre_tip_width_m, outer, d->fibre_width_m);
-    one += end > outer ? strip(outer, d->fibre_width_m, end, d->fibre_width_m) : 0;
-    out->bond_area_m2 = d->fibre_count * one;
-    out->fibre_sheet_area_m2 = out->ring_area_m2;
-    out->bond_volume_m3 = d->bond_thickness_m > 0 ? out->bond_area_m2 * d->bond_thickness_m : NAN;
+  const struct sheet s = {workshop, workshop->plan.layout, NULL};
+  const struct dea_fab_plan *plan = &workshop->plan;
+  *out = (struct dea_amounts){.film_area_m2 = 0};
+  for (size_t i = 0; i < s.layout->ply_count; i++) {
+    const struct dea_layout_ply *ply = &s.layout->plies[i];
+    const double density = ply->material.density_kg_per_m3;
+    const size_t layers = dea_ply_layers(ply); // printed by turns, from the bottom on
+    const double below = printed_area(&s, i, false), above = printed_area(&s, i, true);
+    const bool blank = dea_ply_is_blank(s.layout, i) && dea_ply_like(s.layout, i) == i;
+    out->film_area_m2 += blank ? blank_area(&s, i) : 0;
+    out->ink_area_m2 += (double)(layers / 2 + 1) * below + (double)((layers + 1) / 2) * above;
+    out->transfer_glue_area_m2 += below > 0 && above > 0 ? glued_area(&s, i) : 0;
+    for (int top = 0; top < 2; top++) {
+      out->stencil_sheet_area_m2 +=
+          dea_face_like(s.layout, i, top == 1) == i ? stencil_area(&s, i) : 0;
+    }
+    out->mass_kg += density > 0 ? density * ply->thickness_m * area_of(&s, ply->region) : NAN;
   }
+  const double ink = thickness_of(&s, DEA_PLY_ELECTRODE), glue = thickness_of(&s, DEA_PLY_GLUE);
+  out->ink_volume_m3 = ink > 0 ? out->ink_area_m2 * ink : NAN;
+  out->bond_area_m2 = dea_region_area_m2(&plan->bonded);
+  out->bond_volume_m3 = glue > 0 ? out->bond_area_m2 * glue : NAN;
+  out->frame_sheet_area_m2 = (plan->round ? pi : 4) * plan->frame_m[0] * plan->frame_m[1];
 }
 
 /* ---- bill of materials ---- */
 
-struct sheet {
-  const struct dea_workshop *w;
-  struct dea_document *to;
-};
-
-static void add_amount(struct sheet *s, const char *item, const char *material, double area_m2,
-                       double volume_m3, const char *note)
+/* A row of it: for what, which material, how much of one and of all; a volume of NAN is left out.
+ */
+static void add_material(const struct sheet *s, int copies, const char *item, const char *material,
+                         double area_m2, double volume_m3, const char *note)
 {
-  dea_process_add_material(s->to, s->w->plan.copies, item, material, area_m2, volume_m3, note);
+  struct dea_document *to = s->to;
+  dea_document_add(to, DEA_BLOCK_ROW, "%s", item);
+  dea_document_cell(to, "%s", material);
+  dea_document_cell(to,
+                    "%.4g\xc2\xa0"
+                    "cm\xc2\xb2",
+                    1e4 * area_m2);
+  dea_document_cell(to,
+                    "%.4g\xc2\xa0"
+                    "cm\xc2\xb2",
+                    1e4 * area_m2 * copies);
+  if (isnan(volume_m3)) {
+    dea_document_cell(to, "%s", note);
+  } else {
+    dea_document_cell(to, "%.4g\xc2\xa0mm\xc2\xb3 each, %.4g\xc2\xa0mm\xc2\xb3 in all. %s",
+                      1e9 * volume_m3, 1e9 * volume_m3 * copies, note);
+  }
 }
 
-static void add_materials(struct sheet *s)
+static void add_ply(const struct sheet *s, size_t i)
 {
-  const struct dea_device *d = s->w->plan.device;
-  struct dea_amounts a;
-  char text[160];
-  dea_amounts_find(s->w, &a);
-  dea_process_begin_materials(s->to, s->w->plan.copies);
-  snprintf(text, sizeof text, "%.4g \xc2\xb5m thick, before stretching",
-           1e6 * d->film_thickness_unstretched_m);
-  add_amount(s, "film, as cut", d->film.name, a.film_area_m2, NAN, text);
-  add_amount(s, "electrodes, leads, pads, marks",
-             d->electrode.name[0] != '\0' ? d->electrode.name : "not given", a.ink_area_m2,
-             a.ink_volume_m3,
-             isnan(a.ink_volume_m3)
-                 ? "Volume unknown: the design gives no thickness (electrodes.thickness)"
-                 : "Cured; solvent and what stays on the stencil come on top");
-  add_amount(s, "glue below the bottom electrode", "silicone (paper: LSR 4305)",
-             a.transfer_glue_area_m2, NAN,
-             "A thin layer, thickness unknown: neither the paper nor the design gives it. The pad "
-             "stays free");
-  if (d->fibre_count > 0) {
-    add_amount(s, "glue below fibres and anchors", "paper: ARclear 8932EE", a.bond_area_m2,
-               a.bond_volume_m3,
-               isnan(a.bond_volume_m3)
-                   ? "Volume unknown: the design gives no thickness (fibres.bond.thickness)"
-                   : "");
-    snprintf(text, sizeof text, "%.4g \xc2\xb5m thick; discs, before cutting",
-             1e6 * d->fibre_thickness_m);
-    add_amount(s, "fibres with holder", d->fibre.name, a.fibre_sheet_area_m2, NAN, text);
+  const struct dea_layout_ply *ply = &s->layout->plies[i];
+  const bool film = dea_ply_is_blank(s->layout, i), tabs = i == s->w->plan.on_tabs;
+  const size_t count = dea_ply_count_like(s->layout, i);
+  const double area = area_of(s, ply->region);
+  const double cut = film   ? blank_area(s, i)
+                     : tabs ? pi * s->w->plan.frame_m[0] * s->w->plan.frame_m[1]
+                            : area * (double)count;
+  double mass = area * dea_ply_stretched_layer_m(ply) * ply->material.density_kg_per_m3;
+  char item[WORDS], note[WORDS], weight[64] = "mass unknown: the material has no density";
+  if (mass > 0) {
+    snprintf(weight, sizeof weight, "%.4g g of it in the device", 1e3 * mass * (double)count);
   }
-  add_amount(s, "stencils, both", "sheet, such as PET", a.stencil_sheet_area_m2, NAN,
-             "Squares, before cutting. Its thickness sets how much is printed; the paper does not "
-             "give it");
-  add_amount(s, "frame", "rigid plate", a.ring_area_m2, NAN,
-             "Discs, before cutting; material and thickness are not in the paper");
+  snprintf(item, sizeof item, "%.60s%s", ply->name,
+           film                        ? ", as cut"
+           : tabs                      ? " with holder"
+           : ply->material.law == NULL ? ", finished"
+                                       : "");
+  if (count > 1) {
+    size_t n = strlen(item);
+    snprintf(item + n, sizeof item - n, ", %zu times", count);
+  }
+  snprintf(note, sizeof note, "%.4g \xc2\xb5m thick%s; %s%s", 1e6 * dea_ply_layer_m(ply),
+           dea_ply_is_stretched(ply) ? ", before stretching" : "", weight,
+           tabs ? "; discs, before cutting" : "");
+  add_material(s, s->w->plan.copies, item, ply->material.name, cut, NAN, note);
+}
+
+/* What is printed, and glue. */
+static void add_ink(const struct sheet *s, const struct dea_amounts *a)
+{
+  const char *ink = s->w->plan.device->electrode.name;
+  const int copies = s->w->plan.copies;
+  if (a->ink_area_m2 > 0) {
+    add_material(s, copies, "electrodes, leads, pads, marks", ink[0] != '\0' ? ink : "not given",
+                 a->ink_area_m2, a->ink_volume_m3,
+                 isnan(a->ink_volume_m3) ? "Volume unknown: the design gives them no thickness"
+                                         : "Cured; solvent and what stays on the stencil come on "
+                                           "top");
+    add_material(s, 1, "stencils", "sheet, such as PET", a->stencil_sheet_area_m2, NAN,
+                 "Before cutting. Its thickness sets how much is printed; the paper does not give "
+                 "it");
+  }
+  if (a->transfer_glue_area_m2 > 0) {
+    add_material(s, copies, "glue below bottom electrodes", "silicone (paper: LSR 4305)",
+                 a->transfer_glue_area_m2, NAN,
+                 "A thin layer, thickness unknown: neither the paper nor the design gives it. Pads "
+                 "stay free");
+  }
+  if (a->bond_area_m2 > 0) {
+    add_material(s, copies, "glue below fibres and anchors", "paper: ARclear 8932EE",
+                 a->bond_area_m2, a->bond_volume_m3,
+                 isnan(a->bond_volume_m3)
+                     ? "Volume unknown: the design gives no thickness (fibres.bond.thickness)"
+                     : "");
+  }
+}
+
+static void add_materials(const struct sheet *s)
+{
+  static const double widths[] = {0.19, 0.19, 0.12, 0.12, 0.38};
+  const struct dea_layout *l = s->layout;
+  const struct dea_fab_plan *plan = &s->w->plan;
+  struct dea_amounts a;
+  dea_amounts_find(s->w, &a);
+  dea_document_add(s->to, DEA_BLOCK_HEADING, "Bill of materials");
+  dea_document_add(s->to, DEA_BLOCK_HEAD, "for");
+  dea_document_cell(s->to, "material");
+  dea_document_cell(s->to, "one");
+  dea_document_cell(s->to, "all %d", plan->copies);
+  dea_document_cell(s->to, "remarks");
+  dea_document_widths(s->to, widths);
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (dea_ply_like(l, i) == i && dea_ply_is_cut(&l->plies[i])) {
+      add_ply(s, i);
+    }
+  }
+  add_ink(s, &a);
+  if (dea_parts_have_frame(s->w)) {
+    add_material(s, plan->held ? plan->copies : 1, "frame", "rigid plate", a.frame_sheet_area_m2,
+                 NAN, plan->held ? "Before cutting; it stays" : "Before cutting; used again");
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    char note[WORDS] = "The design gives it no mass beside its plies'";
+    if (l->bodies[i].mass_kg > 0) {
+      snprintf(note, sizeof note, "%.4g g", 1e3 * l->bodies[i].mass_kg);
+    }
+    add_material(s, plan->copies, l->bodies[i].name, "rigid", area_of(s, l->bodies[i].region), NAN,
+                 note);
+  }
 }
 
 /* ---- steps ---- */
 
-static void mm(char out[NUMBER], double length_m)
+/* Sides of a part, or its diameter. */
+static void write_size(const struct sheet *s, const char *part, char *out)
 {
-  dea_length_text(out, NUMBER, length_m);
-}
-
-static void add_printing(struct sheet *s)
-{
-  const struct dea_fab_geometry *plan = &s->w->plan;
-  const struct dea_fabrication *f = &plan->design->fabrication;
-  double l = plan->stretch, celsius = f->cure_temperature_K.si - 273.15;
-  double hours = f->cure_time_s.si / 3600;
   char a[NUMBER], b[NUMBER];
-  mm(a, 2 * plan->blank_m / l);
-  mm(b, plan->grid_m / l);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cut the film: discs of %s mm diameter (film), and draw the crosses of the "
-                   "grid, %s mm apart, and the three alignment marks.",
-                   a, b);
-  mm(a, 2 * plan->electrode_m / l);
-  mm(b, 2 * plan->electrode_m);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cut the two stencils (stencil-bottom, stencil-top). The disc of an electrode "
-                   "measures %s mm here and %s mm once stretched.",
-                   a, b);
-  dea_document_add(
-      s->to, DEA_BLOCK_STEP,
-      "Lay the film onto a PET carrier, its lower side up, so that its marks lie as in "
-      "stencil-bottom, and print the bottom electrode: disc, lead, pad and marks in "
-      "one go.");
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cure at %.4g \xc2\xb0"
-                   "C for %.4g h.",
-                   celsius, hours);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Put a thin layer of silicone glue onto the bottom electrode, leave its pad "
-                   "free, and transfer the film onto a new PET carrier with that electrode down.");
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Print the top electrode through stencil-top, its three holes over the marks; "
-                   "its lead goes to the other side.");
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cure again at %.4g \xc2\xb0"
-                   "C for %.4g h.",
-                   celsius, hours);
+  double box[4];
+  dea_part_box(dea_workshop_find(s->w, part), box);
+  dea_length_text(a, sizeof a, box[2] - box[0]);
+  dea_length_text(b, sizeof b, box[3] - box[1]);
+  if (s->w->plan.round && strcmp(a, b) == 0) {
+    snprintf(out, WORDS, "%s mm diameter", a);
+  } else {
+    snprintf(out, WORDS, "%s mm x %s mm", a, b);
+  }
 }
 
-static void add_stretching(struct sheet *s)
+static void add_cutting(const struct sheet *s)
 {
-  const struct dea_fab_geometry *plan = &s->w->plan;
-  const struct dea_device *d = plan->device;
-  char a[NUMBER], b[NUMBER], c[NUMBER];
-  mm(a, plan->grid_m / plan->stretch);
-  mm(b, plan->grid_m);
-  dea_document_add(
-      s->to, DEA_BLOCK_STEP,
-      "Stretch the film by %.4g in all directions: crosses that were %s mm apart are "
-      "%s mm apart, and film, marks and electrode cover the template. The film is then "
-      "%.4g \xc2\xb5m thick.",
-      plan->stretch, a, b, 1e6 * d->film_thickness_m);
-  mm(a, 2 * plan->frame_m);
-  mm(b, 2 * plan->contact_window_m);
-  dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Fix the film on the frame of %s mm inner diameter, holes over the marks%s%s%s.",
-                   a, plan->contact_window_m > 0 ? ", window of " : "",
-                   plan->contact_window_m > 0 ? b : "",
-                   plan->contact_window_m > 0 ? " mm over the bottom pad" : "");
-  if (d->fibre_count == 0) {
-    return;
+  const struct dea_layout *l = s->layout;
+  char name[DEA_PART_NAME], size[WORDS], grid[NUMBER];
+  dea_length_text(grid, sizeof grid, s->w->plan.grid_m / s->w->plan.stretch);
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_layout_ply *ply = &l->plies[i];
+    size_t count = dea_ply_count_like(l, i);
+    if (dea_ply_like(l, i) != i || !dea_ply_is_blank(l, i)) {
+      continue;
+    }
+    dea_blank_name(l, i, name);
+    write_size(s, name, size);
+    dea_document_add(s->to, DEA_BLOCK_STEP,
+                     "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
+                     "crosses of the grid, %s mm apart where the pre-stretch is the largest, and "
+                     "the three alignment marks%s.",
+                     count, count > 1 ? "s" : "", size, name, ply->material.name,
+                     1e6 * dea_ply_layer_m(ply), grid, count > 1 ? " on each" : "");
   }
-  mm(a, plan->fibre_outer_m - d->fibre_tip_radius_m);
-  mm(b, d->fibre_width_m);
-  mm(c, d->fibre_tip_radius_m);
+}
+
+/* Channels of the electrodes on a face: "drive, ground". */
+static void write_channels(const struct sheet *s, size_t ply, bool top, char *out)
+{
+  size_t used = 0;
+  out[0] = '\0';
+  for (size_t i = 0; i < s->layout->electrode_count && used < WORDS; i++) {
+    const struct dea_layout_electrode *e = &s->layout->electrodes[i];
+    if (e->ply == ply && e->top == top) {
+      int n = snprintf(out + used, WORDS - used, "%s%.40s", used > 0 ? ", " : "",
+                       s->layout->channels[e->channel].name);
+      used += n > 0 ? (size_t)n : 0;
+    }
+  }
+}
+
+static void add_printing(const struct sheet *s)
+{
+  const struct dea_layout *l = s->layout;
+  const struct dea_fabrication *f = &s->w->plan.design->fabrication;
+  const double celsius = f->cure_temperature_K.si - 273.15, hours = f->cure_time_s.si / 3600;
+  char name[DEA_PART_NAME], channels[WORDS];
+  for (size_t i = 0; i < 2 * l->ply_count; i++) { // the bottom of each ply, then its top
+    const bool top = i % 2 == 1;
+    const char *ply = l->plies[i / 2].name;
+    const size_t like = dea_face_like(l, i / 2, top);
+    if (like == DEA_LAYOUT_NONE) {
+      continue;
+    }
+    dea_stencil_name(l, like, top, name);
+    write_channels(s, i / 2, top, channels);
+    if (!top) {
+      dea_document_add(s->to, DEA_BLOCK_STEP,
+                       "Lay %s onto a PET carrier, its lower side up, so that its marks lie as in "
+                       "%s, and print the bottom through it: electrodes, leads, pads and marks in "
+                       "one go. Channel: %s. Cure at %.4g \xc2\xb0"
+                       "C for %.4g h.",
+                       ply, name, channels, celsius, hours);
+      continue;
+    }
+    if (dea_face_like(l, i / 2, false) != DEA_LAYOUT_NONE) {
+      dea_document_add(s->to, DEA_BLOCK_STEP,
+                       "Put a thin layer of silicone glue onto the bottom electrodes of %s, leave "
+                       "pads free, and transfer it onto a new PET carrier with them down.",
+                       ply);
+    }
+    dea_document_add(s->to, DEA_BLOCK_STEP,
+                     "Print onto the top of %s through %s, its holes over the marks. Channel: %s. "
+                     "Cure at %.4g \xc2\xb0"
+                     "C for %.4g h.",
+                     ply, name, channels, celsius, hours);
+  }
+}
+
+/* "by 1.2 in all directions", or along two axes. */
+static void write_stretch(const struct dea_layout_ply *ply, char *out)
+{
+  const double *l = ply->pre_stretch;
+  double degrees = ply->angle_rad * 180 / acos(-1);
+  if (l[0] == l[1]) {
+    snprintf(out, WORDS, "by %.4g in all directions", l[0]);
+  } else {
+    snprintf(out, WORDS, "by %.4g at %.4g\xc2\xb0 from the x axis and by %.4g across that", l[0],
+             degrees, l[1]);
+  }
+}
+
+/* How a ply comes to what is there. */
+enum way { FIRST, ABOVE, BELOW };
+
+static void add_layers(const struct sheet *s, size_t i)
+{
+  char channels[2][WORDS];
+  for (int top = 0; top < 2; top++) {
+    write_channels(s, i, top == 1, channels[top]);
+  }
+  if (dea_ply_layers(&s->layout->plies[i]) > 1) {
+    dea_document_add(s->to, DEA_BLOCK_STEP,
+                     "%s has %zu layers: do so with each of them, one on the other. Electrodes "
+                     "by turns from the bottom up: %s; %s.",
+                     s->layout->plies[i].name, dea_ply_layers(&s->layout->plies[i]), channels[0],
+                     channels[1]);
+  }
+}
+
+/* Pieces that hang in a holder. */
+static void add_tabs_step(const struct sheet *s, size_t i)
+{
+  const struct dea_layout_ply *ply = &s->layout->plies[i];
+  const struct dea_device *d = s->w->plan.device;
+  const bool anchored = s->w->plan.piece_end_m > s->w->plan.piece_outer_m;
+  char name[DEA_PART_NAME], a[NUMBER], b[NUMBER], c[NUMBER];
+  dea_outline_name(s->layout, i, name);
+  dea_length_text(a, sizeof a, s->w->plan.piece_outer_m - d->fibre_tip_radius_m);
+  dea_length_text(b, sizeof b, d->fibre_width_m);
+  dea_length_text(c, sizeof c, d->fibre_tip_radius_m);
   dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cut %d fibres with their holder (fibres) from %s, %.4g \xc2\xb5m thick: %s mm "
-                   "long inside the frame, %s mm wide.",
-                   d->fibre_count, d->fibre.name, 1e6 * d->fibre_thickness_m, a, b);
-  dea_document_add(
-      s->to, DEA_BLOCK_STEP,
-      "Put glue onto the fibres%s, not onto holder and tabs; lay them onto the side of "
-      "the top electrode, holes over the marks. The tips then lie %s mm from the "
-      "centre.",
-      d->outer_end == DEA_END_FREE ? "" : " and their anchors", c);
+                   "Cut %d %s with their holder (%s) from %s, %.4g \xc2\xb5m thick: %s mm long "
+                   "inside the frame, %s mm wide.",
+                   d->fibre_count, ply->name, name, ply->material.name, 1e6 * ply->thickness_m, a,
+                   b);
+  dea_document_add(s->to, DEA_BLOCK_STEP,
+                   "Put glue onto the %s%s, not onto holder and tabs; lay them onto what is there, "
+                   "holes over the marks. The tips then lie %s mm from the centre.",
+                   ply->name, anchored ? " and their anchors" : "", c);
   dea_document_add(s->to, DEA_BLOCK_STEP,
                    "Once the glue holds, cut the %d tabs%s and lift the "
                    "holder off.",
-                   d->fibre_count,
-                   d->outer_end == DEA_END_FREE ? " at the fibres' outer ends" : "");
+                   d->fibre_count, anchored ? "" : " at the outer ends");
+}
+
+/* A film on the frame, or onto what is there. */
+static void add_film_step(const struct sheet *s, size_t i, const char *where)
+{
+  const struct dea_layout_ply *ply = &s->layout->plies[i];
+  char name[DEA_PART_NAME], stretch[WORDS];
+  dea_blank_name(s->layout, dea_ply_like(s->layout, i), name);
+  write_stretch(ply, stretch);
+  if (dea_ply_is_stretched(ply)) {
+    dea_document_add(s->to, DEA_BLOCK_STEP,
+                     "Stretch %s (%s) %s, until its grid and marks cover the template; it is then "
+                     "%.4g \xc2\xb5m thick%s.",
+                     ply->name, name, stretch, 1e6 * dea_ply_stretched_layer_m(ply), where);
+  } else {
+    dea_document_add(s->to, DEA_BLOCK_STEP, "Lay %s (%s) flat%s.", ply->name, name, where);
+  }
+}
+
+static void add_ply_step(const struct sheet *s, size_t i, enum way way)
+{
+  const struct dea_layout_ply *ply = &s->layout->plies[i];
+  const bool film = dea_ply_is_blank(s->layout, i);
+  const struct dea_fab_plan *plan = &s->w->plan;
+  char name[DEA_PART_NAME], where[WORDS] = "";
+  if (way != FIRST) {
+    snprintf(where, sizeof where, ". %s what is there%s, marks over marks",
+             film ? "Lay it onto" : "Bond it to", way == BELOW ? ", from below" : "");
+  } else if (film) {
+    snprintf(where, sizeof where, ". Fix it on the frame, holes over the marks%s",
+             plan->pad_count > 0 && plan->window_m > 0 ? ", windows over the pads below" : "");
+  }
+  if (i == plan->on_tabs) {
+    add_tabs_step(s, i);
+    return;
+  }
+  if (film) {
+    add_film_step(s, i, where);
+    add_layers(s, i);
+    return;
+  }
+  dea_outline_name(s->layout, dea_ply_like(s->layout, i), name);
+  const struct dea_part *part = dea_workshop_find(s->w, name);
+  size_t pieces = part != NULL ? dea_part_pieces(part) : 1;
+  dea_document_add(s->to, DEA_BLOCK_STEP,
+                   "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.", ply->name, name,
+                   pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
+                   1e6 * dea_ply_stretched_layer_m(ply), where);
+  add_layers(s, i);
+}
+
+/* Films come first: what lies below them is bonded to them from below. */
+static void add_assembly(const struct sheet *s)
+{
+  const struct dea_layout *l = s->layout;
+  size_t start = 0;
+  while (start < l->ply_count && !dea_ply_is_blank(l, start)) {
+    start++;
+  }
+  start = start < l->ply_count ? start : 0;
+  for (size_t i = start; i < l->ply_count; i++) {
+    if (dea_ply_is_cut(&l->plies[i])) {
+      add_ply_step(s, i, i == start ? FIRST : ABOVE);
+    }
+  }
+  for (size_t i = start; i-- > 0;) {
+    if (dea_ply_is_cut(&l->plies[i])) {
+      add_ply_step(s, i, BELOW);
+    }
+  }
+  for (size_t i = 0; i < l->body_count; i++) {
+    char name[DEA_PART_NAME];
+    dea_body_name(l, i, name);
+    dea_document_add(s->to, DEA_BLOCK_STEP,
+                     "Cut %s (%s) from a plate that does not bend and bond it where the template "
+                     "shows it.",
+                     l->bodies[i].name, name);
+  }
+  for (size_t i = 0; i < l->ply_count; i++) {
+    if (dea_parts_have_outline(s->w, i) && dea_ply_is_stretched(&l->plies[i])) {
+      char name[DEA_PART_NAME];
+      dea_outline_name(l, i, name);
+      dea_document_add(s->to, DEA_BLOCK_STEP,
+                       "Hold what is a support (below), then cut %s along its outline "
+                       "(%s): what it is bonded to takes its tension.",
+                       l->plies[i].name, name);
+    }
+  }
+}
+
+static void add_supports(const struct sheet *s)
+{
+  const struct dea_layout *l = s->layout;
+  for (size_t i = 0; i < l->support_count; i++) {
+    const struct dea_layout_support *p = &l->supports[i];
+    bool within = p->within != DEA_LAYOUT_NONE;
+    char held[NUMBER] = "";
+    if (p->components == 0) {
+      continue;
+    }
+    for (int k = 0; k < 3; k++) {
+      size_t n = strlen(held);
+      if ((p->components & 1 << k) != 0) {
+        snprintf(held + n, sizeof held - n, "%s%c", n > 0 ? ", " : "", "xyz"[k]);
+      }
+    }
+    dea_document_add(s->to, DEA_BLOCK_STEP, "Hold %s%s%s%s along %s%s.",
+                     p->edge ? "the edge of " : "", l->regions[p->region].name,
+                     within ? " within " : "", within ? l->regions[p->within].name : "", held,
+                     p->hinged                               ? ", so that it may turn"
+                     : p->edge && !within && s->w->plan.held ? ": the frame does that"
+                                                             : "");
+  }
+  for (size_t i = 0; i < l->spring_count; i++) {
+    const struct dea_layout_spring *p = &l->springs[i];
+    static const char *const along[] = {"along x", "along y", "along z",
+                                        "about x", "about y", "about z"};
+    char force[WORDS] = "with the force of its table";
+    if (p->count == 0) {
+      snprintf(force, sizeof force, "%.4g %s", p->stiffness, p->component < 3 ? "N/m" : "N m/rad");
+    }
+    dea_document_add(s->to, DEA_BLOCK_STEP, "Fasten the spring %s to %s, %s.", along[p->component],
+                     l->bodies[p->body].name, force);
+  }
+  for (size_t i = 1; i < l->channel_count; i++) {
+    const struct dea_layout_channel *c = &l->channels[i];
+    if (c->waveform != NULL) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to a source of its own (%s).", c->name,
+                       c->waveform);
+    } else if (c->own_V != 0) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage, and %+.4g V.",
+                       c->name, c->ratio, c->own_V);
+    } else if (c->ratio == 0) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to ground.", c->name);
+    } else if (c->ratio == 1) {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s to the voltage.", c->name);
+    } else {
+      dea_document_add(s->to, DEA_BLOCK_STEP, "Connect %s: %.4g of the voltage.", c->name,
+                       c->ratio);
+    }
+  }
 }
 
 /* ---- check list ---- */
 
-/* With the effect of the tolerance: "+12 um (+3 %)", or that it is unknown. */
-static void add_check(struct sheet *s, const struct dea_sensitivity *found, const char *what,
-                      const char *wanted, const char *tolerance, int deviation)
+/* A thickness in um, another length in mm. */
+static void write_length(char out[NUMBER], double length_m, bool thickness)
 {
-  const double effect = deviation >= 0 ? found->effect_m[deviation] : NAN;
+  char mm[NUMBER - 4];
+  dea_length_text(mm, sizeof mm, length_m);
+  if (thickness) {
+    snprintf(out, NUMBER, "%.4g \xc2\xb5m", 1e6 * length_m);
+  } else {
+    snprintf(out, NUMBER, "%s mm", mm);
+  }
+}
+
+/* The number of a key in words: "thickness of film". */
+static void write_what(const struct dea_design_number *number, char *out)
+{
+  static const char *const words[][2] = {{"film.thickness", "film thickness, unstretched"},
+                                         {"pre_stretch", "pre-stretch"},
+                                         {"electrodes.diameter", "diameter of the electrodes"},
+                                         {"electrodes.radius", "radius of the electrodes"},
+                                         {"frame.inner_diameter", "inner diameter of the frame"},
+                                         {"frame.inner_radius", "inner radius of the frame"},
+                                         {"fibres.length", "length of the fibres"},
+                                         {"fibres.tip_radius", "fibre tips from the centre"},
+                                         {"fibres.overlap", "overlap of fibres and electrode"}};
+  snprintf(out, WORDS, "%s", number->key);
+  for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+    if (strcmp(number->key, words[i][0]) == 0) {
+      snprintf(out, WORDS, "%s", words[i][1]);
+    }
+  }
+  const char *end = strrchr(number->key, '.');
+  if (strncmp(number->key, "plies.", 6) == 0 && end > number->key + 5) {
+    const bool across = strstr(end, "[1]") != NULL, thick = strcmp(end, ".thickness") == 0;
+    snprintf(out, WORDS, "%s of %.*s%s", thick ? "thickness" : "pre-stretch",
+             (int)(end - number->key - 6), number->key + 6,
+             across                       ? ", second axis"
+             : strstr(end, "[0]") != NULL ? ", first axis"
+                                          : "");
+  }
+}
+
+/* Its value as the file has it, and its tolerance. */
+static void write_number(const struct sheet *s, const struct dea_design_number *number,
+                         char *wanted, char *tolerance)
+{
+  const struct dea_listing *values = &s->w->plan.design->values;
+  char a[NUMBER], b[NUMBER];
+  if (strcmp(number->unit, "1") == 0) {
+    const double grid = 5 * s->w->plan.grid_m, before = grid / number->value;
+    dea_length_text(a, sizeof a, before);
+    dea_length_text(b, sizeof b, grid);
+    snprintf(wanted, WORDS, "%.4g: five spacings of the grid, %s mm before, are %s mm",
+             number->value, a, b);
+    dea_length_text(a, sizeof a, before * number->tolerance);
+    snprintf(tolerance, WORDS, "\xc2\xb1%.3g: \xc2\xb1%s mm", number->tolerance, a);
+    return;
+  }
+  const bool thickness = strstr(number->key, "thickness") != NULL;
+  write_length(a, number->value, thickness);
+  snprintf(wanted, WORDS, "%s", a);
+  for (size_t i = 0; i < values->count && !thickness; i++) {
+    if (strcmp(values->items[i].path, number->key) == 0) { // with the state of its film
+      snprintf(wanted, WORDS, "%.60s", values->items[i].text);
+    }
+  }
+  write_length(a, number->tolerance, false);
+  snprintf(tolerance, WORDS, "\xc2\xb1%s", a);
+  if (thickness) {
+    snprintf(tolerance, WORDS, "\xc2\xb1%.3g %%", 100 * number->tolerance / number->value);
+  }
+}
+
+/* A row with what its tolerance does; plies that are cut alike deviate alike. number: NULL: none.
+ */
+static void add_row(const struct sheet *s, const struct dea_tolerance_effects *found,
+                    const struct dea_design_number *number, const char *what, const char *wanted,
+                    const char *tolerance)
+{
   dea_document_add(s->to, DEA_BLOCK_ROW, "%s", what);
   dea_document_cell(s->to, "%s", wanted);
   dea_document_cell(s->to, "%s", tolerance);
-  dea_process_add_effect(s->to, effect, found->displacement_m, true);
-}
-
-/* A length of the film in the state that its tolerance is given in. */
-static void add_length_check(struct sheet *s, const struct dea_sensitivity *found, const char *what,
-                             double stretched_m, const struct dea_inplane_length *tolerance,
-                             int deviation)
-{
-  char number[NUMBER], wanted[64], text[64];
-  bool before = tolerance->state == DEA_UNSTRETCHED;
-  mm(number, before ? stretched_m / s->w->plan.stretch : stretched_m);
-  snprintf(wanted, sizeof wanted, "%s mm %s", number, dea_film_state_name(tolerance->state));
-  mm(number, tolerance->length.si);
-  snprintf(text, sizeof text, "\xc2\xb1%s mm", number);
-  add_check(s, found, what, wanted, text, deviation);
-}
-
-static void add_check_rows(struct sheet *s, const struct dea_sensitivity *found)
-{
-  const struct dea_fab_geometry *plan = &s->w->plan;
-  const struct dea_device *d = plan->device;
-  const struct dea_fabrication *f = &plan->design->fabrication;
-  char wanted[96], tolerance[64], number[NUMBER];
-  snprintf(wanted, sizeof wanted, "%.4g \xc2\xb5m", 1e6 * d->film_thickness_unstretched_m);
-  snprintf(tolerance, sizeof tolerance, "\xc2\xb1%.3g %%", 100 * f->tolerance.thickness.si);
-  add_check(s, found, "film thickness, unstretched", wanted, tolerance, DEA_DEVIATION_THICKNESS);
-  mm(number, 5 * plan->grid_m);
-  snprintf(wanted, sizeof wanted, "%.4g: five spacings of the grid are %s mm", plan->stretch,
-           number);
-  mm(number, 5 * plan->grid_m / plan->stretch * f->tolerance.pre_stretch.si);
-  snprintf(tolerance, sizeof tolerance, "\xc2\xb1%.3g: \xc2\xb1%s mm", f->tolerance.pre_stretch.si,
-           number);
-  add_check(s, found, "pre-stretch", wanted, tolerance, DEA_DEVIATION_PRE_STRETCH);
-  add_length_check(s, found, "diameter of the electrodes", 2 * plan->electrode_m,
-                   &f->tolerance.electrode, DEA_DEVIATION_ELECTRODE);
-  mm(number, 2 * plan->frame_m);
-  snprintf(wanted, sizeof wanted, "%s mm", number);
-  mm(number, f->tolerance.frame_m.si);
-  snprintf(tolerance, sizeof tolerance, "\xc2\xb1%s mm", number);
-  add_check(s, found, "inner diameter of the frame", wanted, tolerance, DEA_DEVIATION_FRAME);
-  if (d->fibre_count > 0) {
-    add_length_check(s, found, "fibre tips from the centre", d->fibre_tip_radius_m,
-                     &f->tolerance.fibre, DEA_DEVIATION_FIBRE);
-    mm(number, d->fibre_width_m);
-    snprintf(wanted, sizeof wanted, "%s mm, %.4g \xc2\xb5m", number, 1e6 * d->fibre_thickness_m);
-    add_check(s, found, "width and thickness of the fibres", wanted, "not given", -1);
-    add_check(s, found, "glue below the fibres", d->bond_thickness_m > 0 ? "even" : "thin, even",
-              "not given", -1);
+  for (size_t m = 0; m < found->seen_count; m++) {
+    const struct dea_seen *seen = &found->seen[m];
+    double effect = number == NULL ? NAN : 0;
+    for (size_t i = 0; i < found->number_count && number != NULL; i++) {
+      effect += found->first[i] == (size_t)(number - found->number) ? found->effect[i][m] : 0;
+    }
+    if (isnan(effect)) {
+      dea_document_cell(s->to, "unknown");
+    } else {
+      dea_document_cell(s->to, seen->length ? "%+.3g \xc2\xb5m (%+.2g %%)" : "%+.3g (%+.2g %%)",
+                        seen->length ? 1e6 * effect : effect,
+                        100 * effect / (seen->value - (seen->length ? 0 : 1)));
+    }
   }
-  add_check(s, found, "top over bottom electrode", "concentric", "not given", -1);
-  mm(number, plan->kerf_m);
-  snprintf(wanted, sizeof wanted, "%s mm, on a test square", number);
-  add_check(s, found, "kerf of the cutter", wanted, "see diameters", -1);
+}
+
+static void add_rows(const struct sheet *s, const struct dea_tolerance_effects *found)
+{
+  const struct dea_device *d = s->w->plan.device;
+  char what[WORDS], wanted[WORDS], tolerance[WORDS], number[NUMBER], width[NUMBER];
+  for (size_t i = 0; i < found->number_count; i++) {
+    if (found->first[i] == i) {
+      write_what(&found->number[i], what);
+      write_number(s, &found->number[i], wanted, tolerance);
+      add_row(s, found, &found->number[i], what, wanted, tolerance);
+    }
+  }
+  if (s->w->plan.on_tabs != DEA_LAYOUT_NONE) {
+    write_length(width, d->fibre_width_m, false);
+    write_length(number, d->fibre_thickness_m, true);
+    snprintf(wanted, sizeof wanted, "%s, %s", width, number);
+    add_row(s, found, NULL, "width and thickness of the fibres", wanted, "not given");
+    add_row(s, found, NULL, "glue below the fibres",
+            d->bond_thickness_m > 0 ? "even" : "thin, even", "not given");
+  }
+  if (s->layout->electrode_count > 1) {
+    add_row(s, found, NULL, "top over bottom electrodes", "as in the template", "not given");
+  }
+  write_length(number, s->w->plan.kerf_m, false);
+  snprintf(wanted, sizeof wanted, "%s, on a test square", number);
+  add_row(s, found, NULL, "kerf of the cutter", wanted, "not given");
 }
 
 /* What the effects are of, and by which model. */
-static void add_source(struct sheet *s, const struct dea_sensitivity *found)
+static void add_source(const struct sheet *s, const struct dea_tolerance_effects *found)
 {
   const bool bound = strcmp(found->model, "lumped") == 0;
-  if (isnan(found->voltage_V)) {
-    dea_document_add(s->to, DEA_BLOCK_TEXT,
-                     "What a deviation does to the displacement is unknown: the models have no "
-                     "state to be trusted at the voltages of this design.");
+  const double highest_V = dea_design_highest_V(s->w->plan.design);
+  if (isnan(found->voltage_V) || found->seen_count == 0) {
+    dea_document_add(
+        s->to, DEA_BLOCK_TEXT, "%s",
+        !isnan(found->voltage_V)
+            ? "What a deviation does is unknown: the design has no monitor."
+            : "What a deviation does is unknown: model 3d is not installed (dea doctor), or the "
+              "models have no state to be trusted at the voltages of this design; a preview "
+              "(compute.solid.film: membrane beside stiff parts) is none.");
     return;
   }
   if (bound) {
@@ -287,60 +670,88 @@ static void add_source(struct sheet *s, const struct dea_sensitivity *found)
                      "between them: an upper bound, no prediction.");
   }
   dea_document_add(s->to, DEA_BLOCK_TEXT,
-                   "Effect of each tolerance (plus, with everything else as designed; per cent "
-                   "below 0: it moves less) on the displacement at %.4g kV: %s, %.4g \xc2\xb5m by "
-                   "model %s%s.",
-                   1e-3 * found->voltage_V, found->what, 1e6 * found->displacement_m, found->model,
-                   bound ? ""
-                   : s->w->plan.device->fibre_count > 0
-                       ? " (the film and its fibres)"
-                       : " (exact for film and electrodes in a ring)");
-  dea_process_add_voltage(s->to, found->voltage_V, dea_design_highest_V(s->w->plan.design));
+                   "Effect of each tolerance (plus, with everything else as designed; plies that "
+                   "are cut alike deviate alike; per cent below 0: it moves less) by model %s at "
+                   "%.4g kV, on:",
+                   found->model, 1e-3 * found->voltage_V);
+  for (size_t m = 0; m < found->seen_count; m++) {
+    const struct dea_seen *seen = &found->seen[m];
+    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 %s: %s %.4g%s from the flat film",
+                     seen->name, seen->motion, (seen->length ? 1e6 : 1) * seen->value,
+                     seen->length ? " \xc2\xb5m" : "");
+  }
+  if (found->seen_count < s->layout->monitor_count) {
+    dea_document_add(s->to, DEA_BLOCK_TEXT, "\xe2\x80\x93 not of the %zu monitors after these",
+                     s->layout->monitor_count - found->seen_count);
+  }
+  if (found->voltage_V < highest_V) {
+    dea_document_add(s->to, DEA_BLOCK_TEXT,
+                     "The design goes to %.4g kV. The next quarter of that is not shown: by the "
+                     "trend of its tension the film goes slack there, or the model has no state to "
+                     "be trusted.",
+                     1e-3 * highest_V);
+  }
 }
 
-static dea_status add_checks(struct dea_context *ctx, struct sheet *s)
+static dea_status add_checks(struct dea_context *ctx, const struct sheet *s, bool sensitivity)
 {
-  static const double widths[] = {0.25, 0.32, 0.21, 0.22};
-  struct dea_sensitivity found;
-  DEA_TRY(ctx, dea_sensitivity_find(ctx, s->w->plan.design, s->w->plan.device, &found));
+  static const double widths[][3 + DEA_SEEN_MAX] = {{0.3, 0.5, 0.2},
+                                                    {0.25, 0.37, 0.15, 0.23},
+                                                    {0.18, 0.28, 0.14, 0.2, 0.2},
+                                                    {0.15, 0.22, 0.12, 0.17, 0.17, 0.17}};
+  const struct dea_fab_plan *plan = &s->w->plan;
+  struct dea_tolerance_effects *found = dea_alloc(ctx, 1, sizeof *found);
+  if (found == NULL) {
+    return DEA_E_MEMORY;
+  }
+  const bool solved = sensitivity || plan->device->disc; // a disc is quick
+  const dea_status status =
+      dea_tolerance_effects_find(ctx, plan->design, plan->device, solved, found);
   dea_document_add(s->to, DEA_BLOCK_HEADING, "Check list");
-  add_source(s, &found);
+  if (status == DEA_OK && solved) {
+    add_source(s, found);
+  }
   dea_document_add(s->to, DEA_BLOCK_HEAD, "what");
   dea_document_cell(s->to, "wanted");
   dea_document_cell(s->to, "tolerance");
-  dea_document_cell(s->to, "effect (%s)", found.model);
-  dea_document_widths(s->to, widths);
-  add_check_rows(s, &found);
+  for (size_t m = 0; m < found->seen_count; m++) {
+    dea_document_cell(s->to, "%s, %s", found->seen[m].name, found->seen[m].motion);
+  }
+  dea_document_widths(s->to, widths[found->seen_count]);
+  add_rows(s, found);
   dea_document_add(s->to, DEA_BLOCK_NOTE,
                    "Tolerances are those of the design's section fabrication.tolerance; those that "
-                   "nobody wrote are assumptions (docs/fabrication.md). Unknown: no tolerance is "
-                   "given, or the model has no slope; 'dea run --sensitivity' has slopes of more.");
-  return DEA_OK;
+                   "nobody wrote are assumptions (docs/fabrication.md). %s",
+                   solved ? "'dea run --sensitivity' has slopes by other numbers of the design."
+                          : "'dea fab --sensitivity' computes what they do to the monitors.");
+  dea_free(ctx, found);
+  return status;
 }
 
 dea_status dea_process_write(struct dea_context *ctx, const struct dea_workshop *workshop,
                              bool sensitivity, struct dea_document *document)
 {
-  struct sheet s = {workshop, document};
+  const struct sheet s = {workshop, workshop->plan.layout, document};
   const struct dea_design *design = workshop->plan.design;
   const char *title = design->title.text;
   dea_document_add(document, DEA_BLOCK_TITLE, "Process sheet: %s",
                    title[0] != '\0' ? title : dea_path_name(design->file));
-  dea_document_add(
-      document, DEA_BLOCK_NOTE,
-      "Made by dea fab from %s for %d actuator%s. Steps%s "
-      "with the numbers of the design. DXF and SVG files have the kerf of the cutter in "
-      "them, parts.pdf shows the finished parts at 1:1.",
-      dea_path_name(design->file), workshop->plan.copies, workshop->plan.copies > 1 ? "s" : "",
-      workshop->plan.design->parts != NULL ? "" : " after section 3.1 of the paper,");
-  if (workshop->plan.design->parts != NULL) {
-    DEA_TRY(ctx, dea_process_write_layout(ctx, workshop, sensitivity, document));
-    return document->failed ? DEA_E_MEMORY : DEA_OK;
-  }
+  dea_document_add(document, DEA_BLOCK_NOTE,
+                   "Made by dea fab from %s for %d actuator%s. Steps after section 3.1 of the "
+                   "paper, with the numbers of the design. DXF and SVG files have the kerf of the "
+                   "cutter in them, parts.pdf shows the finished parts at 1:1.%s",
+                   dea_path_name(design->file), workshop->plan.copies,
+                   workshop->plan.copies > 1 ? "s" : "",
+                   s.layout->ply_count > 1
+                       ? " Plies lie on each other from bottom to top. Glue that has a thickness "
+                         "that counts is a ply of its own."
+                       : "");
   add_materials(&s);
   dea_document_add(document, DEA_BLOCK_HEADING, "Steps");
+  add_cutting(&s);
   add_printing(&s);
-  add_stretching(&s);
-  DEA_TRY(ctx, add_checks(ctx, &s));
+  add_assembly(&s);
+  add_supports(&s);
+  DEA_TRY(ctx, add_checks(ctx, &s, sensitivity));
   return document->failed ? DEA_E_MEMORY : DEA_OK;
 }

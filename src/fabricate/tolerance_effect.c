@@ -1,8 +1,8 @@
 #include "fabricate/tolerance_effect.h"
 
 #include "device/geometry.h"
+#include "fabricate/fab_plan.h"
 #include "result/columns.h"
-#include "study/design_gradient.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -88,38 +88,56 @@ static dea_status stand(struct dea_context *ctx, struct solver_state *s, double 
   return DEA_OK;
 }
 
-/* What is asked of a gradient there, but for the quantities. */
-static struct dea_design_gradient ask_of(const struct solver_state *s, double voltage_V,
-                                         const struct dea_design_number *numbers, size_t count)
-{
-  return (struct dea_design_gradient){.type = s->type,
-                                      .model = s->model,
-                                      .design = s->design,
-                                      .device = s->device,
-                                      .voltage_V = voltage_V,
-                                      .numbers = numbers,
-                                      .number_count = count};
-}
+// What is asked ----------------------------------------------------------------------------------
 
-// Discs ------------------------------------------------------------------------------------------
-
-/* A displacement that a model answers with, of discs with or without fibres. */
+/* A displacement of a disc without monitors that a model answers with. */
 static const struct question {
-  const char *model, *what, *column;
+  const char *model, *name, *motion, *column;
   bool fibres;
 } questions[] = {
-    {"3d", "fibre tip, out of plane", "fibre_tip_z_m", true},
-    {"lumped", "fibre tip, out of plane", "fibre_tip_z_m", true},
-    {"axisymmetric", "electrode edge, outwards", "electrode_edge_u_m", false},
+    {"3d", "fibre tip", "out of plane", "fibre_tip_z_m", true},
+    {"lumped", "fibre tip", "out of plane", "fibre_tip_z_m", true},
+    {"axisymmetric", "electrode edge", "outwards", "electrode_edge_u_m", false},
 };
 
-static enum dea_deviation deviation_of(const char *key)
+/* The ply that a key is of; DEA_LAYOUT_NONE. */
+static size_t ply_of(const struct dea_layout *layout, const char *key)
 {
-  return strcmp(key, "film.thickness") == 0     ? DEA_DEVIATION_THICKNESS
-         : strcmp(key, "pre_stretch") == 0      ? DEA_DEVIATION_PRE_STRETCH
-         : strncmp(key, "electrodes.", 11) == 0 ? DEA_DEVIATION_ELECTRODE
-         : strncmp(key, "frame.", 6) == 0       ? DEA_DEVIATION_FRAME
-                                                : DEA_DEVIATION_FIBRE;
+  char start[DEA_NUMBER_KEY_SIZE];
+  for (size_t i = 0; i < layout->ply_count; i++) {
+    snprintf(start, sizeof start, "plies.%.80s.", layout->plies[i].name);
+    if (strncmp(key, start, strlen(start)) == 0) {
+      return i;
+    }
+  }
+  return DEA_LAYOUT_NONE;
+}
+
+/* Numbers with a tolerance, and the row of those that are shown as one. */
+static dea_status find_numbers(struct dea_context *ctx, const struct solver_state *s,
+                               struct dea_tolerance_effects *out)
+{
+  const struct dea_layout *layout = s->device->layout;
+  size_t count, kept = 0;
+  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, 0, out->number, &count));
+  for (size_t i = 0; i < count; i++) {
+    if (!(out->number[i].tolerance > 0)) {
+      continue;
+    }
+    const char *key = out->number[i].key, *end = strrchr(key, '.');
+    const size_t ply = ply_of(layout, key);
+    const size_t like = ply == DEA_LAYOUT_NONE ? ply : dea_ply_like(layout, ply);
+    out->first[kept] = kept;
+    for (size_t k = 0; k < kept && like != ply; k++) {
+      const char *other = strrchr(out->number[k].key, '.');
+      if (ply_of(layout, out->number[k].key) == like && strcmp(other, end) == 0) {
+        out->first[kept] = k;
+      }
+    }
+    out->number[kept++] = out->number[i];
+  }
+  out->number_count = kept;
+  return DEA_OK;
 }
 
 /* A longer fibre, and more overlap, has its tip nearer to the centre. */
@@ -128,27 +146,30 @@ static double sign_of(const char *key)
   return strcmp(key, "fibres.length") == 0 || strcmp(key, "fibres.overlap") == 0 ? -1 : 1;
 }
 
-/* By the gradient, for all numbers with a tolerance. */
+/* By the gradient, of the column or, where that is < 0, of the monitors. */
 static dea_status differentiate(struct dea_context *ctx, const struct solver_state *s, int column,
-                                struct dea_sensitivity *out)
+                                struct dea_tolerance_effects *out)
 {
-  struct dea_design_number all[DEA_NUMBERS_MAX], numbers[DEA_DEVIATION_COUNT];
-  double slopes[DEA_DEVIATION_COUNT];
-  size_t count, chosen = 0;
+  static const size_t monitors[DEA_SEEN_MAX] = {0, 1, 2};
+  double slopes[DEA_NUMBERS_MAX * DEA_SEEN_MAX];
+  const size_t seen = out->seen_count;
   bool there;
-  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, out->voltage_V, all, &count));
-  for (size_t i = 0; i < count && chosen < DEA_DEVIATION_COUNT; i++) {
-    if (all[i].tolerance > 0) {
-      numbers[chosen++] = all[i];
-    }
-  }
-  struct dea_design_gradient ask = ask_of(s, out->voltage_V, numbers, chosen);
-  ask.columns = &column;
-  ask.column_count = 1;
+  const struct dea_design_gradient ask = {.type = s->type,
+                                          .model = s->model,
+                                          .design = s->design,
+                                          .device = s->device,
+                                          .voltage_V = out->voltage_V,
+                                          .numbers = out->number,
+                                          .number_count = out->number_count,
+                                          .columns = &column,
+                                          .column_count = column >= 0 ? seen : 0,
+                                          .monitors = monitors,
+                                          .monitor_count = column >= 0 ? 0 : seen};
   DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
-  for (size_t i = 0; i < chosen && there; i++) {
-    out->effect_m[deviation_of(numbers[i].key)] =
-        sign_of(numbers[i].key) * slopes[i] * numbers[i].tolerance;
+  for (size_t i = 0; i < out->number_count * seen; i++) {
+    const struct dea_design_number *number = &out->number[i / seen];
+    out->effect[i / seen][i % seen] =
+        there ? sign_of(number->key) * slopes[i] * number->tolerance : NAN;
   }
   return DEA_OK;
 }
@@ -175,152 +196,107 @@ static dea_status ask_moved(struct dea_context *ctx, const struct solver_state *
 /* Where fibre tips lie on the electrode's edge the gradient's mesh cannot follow them (nor is an
  * overlap of 0 a number): half of the difference from minus to plus. */
 static dea_status move_tips(struct dea_context *ctx, const struct solver_state *s, int column,
-                            struct dea_sensitivity *out)
+                            struct dea_tolerance_effects *out)
 {
   const double by_m =
       dea_length_stretched_m(&s->design->fabrication.tolerance.fibre, s->device->pre_stretch);
   double low = NAN, high = NAN;
+  size_t at = 0;
+  while (at < out->number_count && strncmp(out->number[at].key, "fibres.", 7) != 0) {
+    at++;
+  }
+  if (!(by_m > 0) || (at < out->number_count && !isnan(out->effect[at][0])) ||
+      at == DEA_NUMBERS_MAX) {
+    return DEA_OK;
+  }
   DEA_TRY(ctx, ask_moved(ctx, s, column, -by_m, out->voltage_V, &low));
   DEA_TRY(ctx, ask_moved(ctx, s, column, by_m, out->voltage_V, &high));
-  out->effect_m[DEA_DEVIATION_FIBRE] = 0.5 * (high - low);
+  if (at == out->number_count) {
+    out->number[at] = (struct dea_design_number){
+        .key = "fibres.tip_radius", .value = s->device->fibre_tip_radius_m, .unit = "m"};
+    out->number[at].tolerance = by_m;
+    out->first[at] = at;
+    out->number_count++;
+  }
+  out->effect[at][0] = 0.5 * (high - low);
   return DEA_OK;
 }
 
-static dea_status find(struct dea_context *ctx, struct solver_state *s,
-                       const struct question *question, struct dea_sensitivity *out)
+/* Where the monitors are. */
+static dea_status see_monitors(struct dea_context *ctx, const struct solver_state *s,
+                               struct dea_tolerance_effects *out)
 {
-  const int column = dea_point_column_find(question->column);
-  *out = (struct dea_sensitivity){
-      .model = question->model, .what = question->what, .displacement_m = NAN};
-  for (int d = 0; d < DEA_DEVIATION_COUNT; d++) {
-    out->effect_m[d] = NAN;
-  }
-  DEA_TRY(ctx, stand(ctx, s, &out->voltage_V));
-  if (isnan(out->voltage_V)) {
-    return DEA_OK;
-  }
-  out->displacement_m = dea_point_get(&s->point, column);
-  DEA_TRY(ctx, differentiate(ctx, s, column, out));
-  if (question->fibres && isnan(out->effect_m[DEA_DEVIATION_FIBRE])) {
-    DEA_TRY(ctx, move_tips(ctx, s, column, out));
-  }
-  return DEA_OK;
-}
-
-dea_status dea_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
-                                const struct dea_device *device, struct dea_sensitivity *out)
-{
-  bool found = false;
-  for (size_t q = 0; q < sizeof questions / sizeof questions[0] && !found; q++) {
-    if (questions[q].fibres != (device->fibre_count > 0)) {
-      continue;
-    }
-    struct solver_state s = {
-        .type = dea_model_find(questions[q].model), .design = design, .device = device};
-    const size_t errors = dea_finding_trial_begin(ctx); // the sheet says what is to be said
-    const dea_status status = find(ctx, &s, &questions[q], out);
-    dea_finding_trial_end(ctx, errors);
-    s.type->destroy(ctx, s.model);
-    DEA_TRY(ctx, status);
-    found = !isnan(out->voltage_V);
-  }
-  return DEA_OK;
-}
-
-// Devices of plies -------------------------------------------------------------------------------
-
-/* A number of a ply and what its tolerance is. */
-struct of_ply {
-  size_t ply;
-  enum dea_ply_deviation deviation;
-};
-
-/* Which number of which ply a key is. */
-static bool find_ply(const struct dea_layout *layout, const char *key, struct of_ply *out)
-{
-  static const char *const names[][DEA_PLY_DEVIATIONS] = {{"thickness", "pre_stretch", ""},
-                                                          {"", "pre_stretch[0]", "pre_stretch[1]"}};
-  char own[DEA_NUMBER_KEY_SIZE];
-  for (size_t i = 0; i < layout->ply_count; i++) {
-    for (size_t k = 0; k < 2 * DEA_PLY_DEVIATIONS; k++) {
-      const size_t d = k % DEA_PLY_DEVIATIONS;
-      snprintf(own, sizeof own, "plies.%.80s.%s", layout->plies[i].name,
-               names[k / DEA_PLY_DEVIATIONS][d]);
-      if (strcmp(own, key) == 0) {
-        *out = (struct of_ply){i, (enum dea_ply_deviation)d};
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
-static dea_status differentiate_plies(struct dea_context *ctx, const struct solver_state *s,
-                                      struct dea_layout_sensitivity *out)
-{
-  struct dea_design_number all[DEA_NUMBERS_MAX], numbers[DEA_NUMBERS_MAX];
-  struct of_ply places[DEA_NUMBERS_MAX];
-  double slopes[DEA_NUMBERS_MAX * DEA_SEEN_MAX];
-  const size_t monitors[DEA_SEEN_MAX] = {0, 1, 2};
-  size_t count, chosen = 0;
-  bool there;
-  DEA_TRY(ctx, dea_design_numbers(ctx, s->design, s->device, out->voltage_V, all, &count));
-  for (size_t i = 0; i < count; i++) {
-    if (all[i].tolerance > 0 && find_ply(s->device->layout, all[i].key, &places[chosen])) {
-      numbers[chosen++] = all[i];
-    }
-  }
-  struct dea_design_gradient ask = ask_of(s, out->voltage_V, numbers, chosen);
-  ask.monitors = monitors;
-  ask.monitor_count = out->seen;
-  DEA_TRY(ctx, answer(ctx, dea_design_gradient_find(ctx, &ask, slopes), &there));
-  for (size_t i = 0; i < chosen * out->seen && there; i++) {
-    const struct of_ply *place = &places[i / out->seen];
-    out->effect[place->ply][place->deviation][i % out->seen] =
-        slopes[i] * numbers[i / out->seen].tolerance;
-  }
-  return DEA_OK;
-}
-
-static dea_status find_layout(struct dea_context *ctx, struct solver_state *s,
-                              struct dea_layout_sensitivity *out)
-{
-  struct dea_observation seen;
   const struct dea_layout *layout = s->device->layout;
-  out->effect = dea_alloc(ctx, layout->ply_count, sizeof *out->effect);
-  if (out->effect == NULL) {
-    return DEA_E_MEMORY;
+  struct dea_observation observed;
+  DEA_TRY(ctx, dea_model_observe(ctx, s->type, s->model, &observed));
+  for (size_t i = 0; i < layout->monitor_count && i < DEA_SEEN_MAX; i++) {
+    const enum dea_observed motion = dea_observed_main(observed.monitor[i]);
+    out->seen[out->seen_count++] =
+        (struct dea_seen){layout->monitors[i].name, dea_observed_columns[motion].header,
+                          motion <= DEA_OBSERVED_Z, observed.monitor[i][motion]};
   }
-  for (size_t i = 0; i < layout->ply_count * DEA_PLY_DEVIATIONS * DEA_SEEN_MAX; i++) {
-    (&out->effect[0][0][0])[i] = NAN;
-  }
-  out->seen = layout->monitor_count < DEA_SEEN_MAX ? layout->monitor_count : DEA_SEEN_MAX;
-  out->voltage_V = NAN;
-  if (out->seen == 0) {
-    return DEA_OK;
-  }
+  return DEA_OK;
+}
+
+/* question: NULL: of monitors. */
+static dea_status find(struct dea_context *ctx, struct solver_state *s,
+                       const struct question *question, struct dea_tolerance_effects *out)
+{
+  const int column = question != NULL ? dea_point_column_find(question->column) : -1;
+  out->model = s->type->name;
   DEA_TRY(ctx, stand(ctx, s, &out->voltage_V));
   if (isnan(out->voltage_V)) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, dea_model_observe(ctx, s->type, s->model, &seen));
-  for (size_t i = 0; i < out->seen; i++) {
-    out->motion[i] = dea_observed_main(seen.monitor[i]);
-    out->value[i] = seen.monitor[i][out->motion[i]];
+  if (question != NULL) {
+    out->seen[out->seen_count++] =
+        (struct dea_seen){question->name, question->motion, true, dea_point_get(&s->point, column)};
+  } else {
+    DEA_TRY(ctx, see_monitors(ctx, s, out));
   }
-  DEA_TRY(ctx, differentiate_plies(ctx, s, out));
-  return DEA_OK;
+  DEA_TRY(ctx, differentiate(ctx, s, column, out));
+  return question != NULL && question->fibres ? move_tips(ctx, s, column, out) : DEA_OK;
 }
 
-dea_status dea_layout_sensitivity_find(struct dea_context *ctx, const struct dea_design *design,
-                                       const struct dea_device *device,
-                                       struct dea_layout_sensitivity *out)
+static dea_status ask_model(struct dea_context *ctx, struct solver_state s,
+                            const struct question *question, struct dea_tolerance_effects *out)
 {
-  struct solver_state s = {.type = dea_model_find("3d"), .design = design, .device = device};
-  *out = (struct dea_layout_sensitivity){.seen = 0};
-  const size_t errors = dea_finding_trial_begin(ctx);
-  const dea_status status = find_layout(ctx, &s, out);
+  const size_t errors = dea_finding_trial_begin(ctx); // the sheet says what is to be said
+  const dea_status status = find(ctx, &s, question, out);
   dea_finding_trial_end(ctx, errors);
   s.type->destroy(ctx, s.model);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return status;
+}
+
+dea_status dea_tolerance_effects_find(struct dea_context *ctx, const struct dea_design *design,
+                                      const struct dea_device *device, bool solve,
+                                      struct dea_tolerance_effects *out)
+{
+  struct solver_state s = {.type = dea_model_find("3d"), .design = design, .device = device};
+  *out = (struct dea_tolerance_effects){.model = s.type->name, .voltage_V = NAN};
+  DEA_TRY(ctx, find_numbers(ctx, &s, out));
+  if (!solve) {
+    return DEA_OK;
+  }
+  if (device->layout->monitor_count > 0) {
+    DEA_TRY(ctx, ask_model(ctx, s, NULL, out));
+    return DEA_OK;
+  }
+  for (size_t q = 0; device->disc && q < sizeof questions / sizeof questions[0]; q++) {
+    if (questions[q].fibres == (device->fibre_count > 0) && isnan(out->voltage_V)) {
+      s.type = dea_model_find(questions[q].model);
+      DEA_TRY(ctx, ask_model(ctx, s, &questions[q], out));
+    }
+  }
+  return DEA_OK;
+}
+
+const double *dea_tolerance_effect(const struct dea_tolerance_effects *effects, const char *key)
+{
+  for (size_t i = 0; i < effects->number_count; i++) {
+    if (strncmp(effects->number[i].key, key, strlen(key)) == 0) {
+      return effects->effect[i];
+    }
+  }
+  return NULL;
 }

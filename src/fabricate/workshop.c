@@ -1,16 +1,9 @@
 #include "fabricate/workshop.h"
 
 #include "fabricate/layout_parts.h"
-#include "fabricate/part_list.h"
 
 #include <math.h>
 #include <string.h>
-
-static const struct dea_part_type *const types[] = {
-#define PART_ROW(name) &name,
-    DEA_PART_LIST(PART_ROW)
-#undef PART_ROW
-};
 
 /* ---- sheets ---- */
 
@@ -92,31 +85,6 @@ void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out
 
 /* ---- all of it ---- */
 
-static dea_status build_parts(struct dea_context *ctx, struct dea_workshop *w)
-{
-  double l = w->plan.stretch;
-  w->part = dea_arena_alloc(&w->memory, sizeof types / sizeof types[0], sizeof *w->part);
-  DEA_TRY(ctx, dea_arena_status(&w->memory));
-  for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
-    const struct dea_part_type *type = types[i];
-    if (type->of_fibres && w->plan.device->fibre_count == 0) {
-      continue;
-    }
-    struct dea_part *part = &w->part[w->count++];
-    *part = (struct dea_part){.ctx = ctx,
-                              .name = type->name,
-                              .title = type->title,
-                              .seen = type->seen,
-                              .state = type->state,
-                              .stretch = {{l, 0}, {0, l}},
-                              .quantity = 1,
-                              .paper = type->paper,
-                              .mirrored = type->mirrored};
-    type->build(&w->plan, part);
-  }
-  return DEA_OK;
-}
-
 static dea_status check_parts(struct dea_context *ctx, const struct dea_workshop *w)
 {
   for (size_t i = 0; i < w->count; i++) {
@@ -149,24 +117,9 @@ static dea_status make(struct dea_context *ctx, const struct dea_design *design,
 {
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   w->memory.ctx = ctx;
-  if (design->parts != NULL) {
-    w->plan = (struct dea_fab_geometry){.design = design,
-                                        .device = device,
-                                        .kerf_m = design->fabrication.kerf_m.si,
-                                        .feature_m = design->fabrication.minimum_feature_m.si,
-                                        .copies = (int)design->fabrication.copies.si};
-    DEA_TRY(ctx, dea_fab_room_make(ctx, &w->plan, &w->capacity));
-  } else {
-    DEA_TRY(ctx, dea_device_check(ctx, device));
-    DEA_TRY(ctx, dea_fab_geometry_make(ctx, design, device, &w->plan));
-  }
+  DEA_TRY(ctx, dea_fab_plan_make(ctx, design, device, &w->plan));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) { // else parts have no form
-    DEA_TRY(ctx, design->parts != NULL ? dea_layout_parts_make(ctx, w) : build_parts(ctx, w));
-    if (design->parts != NULL && device->layout->electrode_count > 0) {
-      DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, design->parts->place,
-                                   "leads and pads are made for discs only: draw them as part of "
-                                   "the shapes of these electrodes"));
-    }
+    DEA_TRY(ctx, dea_parts_make(ctx, w));
     DEA_TRY(ctx, check_parts(ctx, w));
     DEA_TRY(ctx, lay_out(ctx, w));
   }
@@ -199,9 +152,7 @@ void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop
     for (size_t i = 0; i < workshop->count; i++) {
       dea_part_free(&workshop->part[i]);
     }
-    if (workshop->capacity.hole.ctx != NULL) {
-      dea_fab_room_free(&workshop->capacity);
-    }
+    dea_fab_plan_free(&workshop->plan);
     dea_arena_free(&workshop->memory);
     dea_free(ctx, workshop);
   }

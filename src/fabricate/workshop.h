@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/arena.h"
-#include "fabricate/fab_room.h"
+#include "fabricate/fab_plan.h"
 #include "fabricate/part.h"
 
 /* Copies of a part on its sheet: rows from the upper left corner. All parts of the unstretched film
@@ -18,8 +18,7 @@ struct dea_sheet_layout {
 };
 
 struct dea_workshop {
-  struct dea_fab_geometry plan;
-  struct dea_fab_room capacity;    // of a device that is no disc
+  struct dea_fab_plan plan;
   struct dea_part *part;           // [count] in the order of the work; owned
   struct dea_sheet_layout *layout; // [count] owned
   size_t count;

@@ -1,4 +1,5 @@
 /* What cannot be built is said at its place in the design, and nothing crashes or leaks. */
+// ctest: quick, heavy
 #include "design_text.h"
 #include "fabricate/dxf.h"
 #include "fabricate/labels.h"
@@ -111,7 +112,7 @@ TEST(test_lead_under_a_taper)
     size_t count, found = 0;
     const struct dea_finding *findings = dea_finding_get(ctx, &count);
     for (size_t k = 0; k < count; k++) {
-      found += strstr(findings[k].text, "runs under a fibre") != NULL;
+      found += strstr(findings[k].text, "runs under 'fibres'") != NULL;
     }
     assert_int_equal(found, i);
     dea_context_destroy(ctx);

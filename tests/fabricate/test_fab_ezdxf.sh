@@ -65,8 +65,8 @@ for example in ("frdea-4", "frdea-8", "plain-disc", "devices/bender", "devices/q
         if audit.errors or audit.fixes or drawing.units != 4 or drawing.dxfversion != "AC1015" or wrong:
             print(name, [e.message for e in audit.errors + audit.fixes], drawing.units, area, length, wanted)
             bad += 1
-if read != 29:
-    print("wanted 29 files, found", read)
+if read != 32:
+    print("wanted 32 files, found", read)
     bad += 1
 sys.exit(bad > 0)
 PYTHON
