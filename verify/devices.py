@@ -245,36 +245,6 @@ DEVICES = [
     },
 ]
 
-# What was looked for, what of it was read, and which number is missing.
-WANTED = [
-    ("Stretched silicone and acrylic films, up to 117 and 215 % (Pelrine et al., Science 287 (2000) 836)", "abstract",
-     "field and pre-strain that go with each strain"),
-    ("Pre-strained circle of acrylic film (Wissler, Mazza, Sens. Actuators A 120 (2005) 184)", "title", "all numbers"),
-    ("Film under dead load, 488 % (Giant, voltage-actuated deformation, imechanica.org/blog/21538)", "abstract", "load, voltage, thickness"),
-    ("Membrane on a chamber, area +1692 % (Harnessing snap-through instability in soft dielectrics, fodok.uni-linz.ac.at, PUB_ID 39737)", "abstract", "volume, pressure, voltage, stretch"),
-    ("Elastomeric electrodes on VHB, over 70 % (Bozlar et al., Appl. Phys. Lett. 101 (2012))", "abstract",
-     "pre-stretch, voltage, electrode's modulus and thickness"),
-    ("Ionogel electrodes on VHB, 140 % (Chen et al., Highly stretchable and transparent ionogels)", "abstract", "voltage, pre-stretch"),
-    ("Microactuators of 100 um, 80 % (Akbari, Rosset, Shea, 2013, infoscience.epfl.ch/record/186110)", "abstract",
-     "silicone, thickness, pre-stretch, field"),
-    ("PDMS membranes of 25 um, 1 to 4 mm, frequency down by 77 % (Dubois et al., Proc. SPIE 7362 (2009) 73620F)", "abstract",
-     "stress, modulus, voltage"),
-    ("Printed unimorph with hydrogel, tip 9.78 +- 2.52 mm at 5.44 kV (PMC7319180)", "abstract", "thickness of each layer, length, law"),
-    ("Cones of two silicones, 165 um: 0.57 and 0.73 mm (Bernat et al., Energies 15 (2022) 6324)", "abstract", "voltage, mass, radii, law"),
-    ("Cone with spring, mass or a second cone (Cao, Conn, Actuators 2018)", "abstract", "forces and strokes"),
-    ("Diaphragms of VHB 4905 and silicone, opening 38 mm (Tews et al., Proc. SPIE 5051 (2003))", "abstract", "pressures and volumes"),
-    ("Inflated loudspeaker membrane, modes (Garnell et al., J. Sound Vib. 459 (2019))", "abstract", "frequencies, pressure, stretch"),
-    ("Stacks (Shintake et al., Front. Robot. AI 2021, 714332)", "title", "all numbers"),
-    ("Lens of a passive and an active membrane (Shian et al., Opt. Express 21 (2013) 8669)", "abstract", "volumes, stretches, voltages"),
-    ("Fluorinated elastomer, area +253 % at 46 V/um (Feng et al., Nat. Commun. 15 (2024) 4222)", "second hand", "modulus, permittivity, pre-strain"),
-    ("Acrylic tape of 0.5 mm at stretches (4, 1), (3, 2), (2, 2): 5.7, 5.2, 8.0 kV (github.com/Khushi7kumari/Wrinkling-Stability)",
-     "second hand", "whether these are measured breakdown voltages"),
-    ("Acrylic capacitor pressed to 39 kPa, capacitance 1.35 times that at rest (pressure_cap_data.csv of github.com/ericstewart36/ionotronics)", "data",
-     "whether the plates slip, area of the plates, time"),
-    ("The same in cycles, capacitance 28.8 to 29.2 pF (uniaxial_cap_cycle_data.csv)", "data", "stretch of the cycles"),
-    ("Contractile film with fibres, 7 and 8 kV (github.com/sherwood01v/mesh-reinforcement-dea-project)", "code", "the recordings, which are not in it"),
-]
-
 
 def number_at(text, start):
     """The table row of a page that starts so, as its cells."""
@@ -384,9 +354,8 @@ def main():
     print("# Devices that others measured\n")
     print(f"""Made by `scripts/verify devices`; not to be edited. Each test has a design of `verify/devices`, run at the nominal values of
 its inputs and at all corners of their ranges; the band goes from the least to the largest of these values (what lies
-higher or lower between corners was not searched). Nothing is fitted to the measured values; one range was changed after a first run, the length of the
-strip, and no value moved into its band by that. Inputs are given in the source, or those of the catalogue with its spread, or assumed; bands whose ends
-are within a factor of two are counted by themselves.
+higher or lower between corners was not searched). Nothing is fitted to the measured values; one range (the
+strip's length) was changed after a first run, and no value moved into its band by that.
 
 **In the band: {sum(p['inside'] for p in found)} of {len(found)} values, of {len(DEVICES)} tests from four sources. Of the bands within a factor of two: {sum(p['inside'] for p in telling)} of {len(telling)}.
 With the three devices of other pages: {sum(p['inside'] for p in found) + sum(low <= m <= high for _, _, m, low, high, _ in others)} of {len(found) + len(others)} values, of {len(DEVICES) + len({o[0] for o in others})} devices.**
@@ -425,15 +394,7 @@ Two of the measured values, the frequency ratios, are known as intervals only; b
     for device, quantity, measured, low, high, page in others:
         line([device, quantity, number(measured), f"{number(low)} to {number(high)}", "yes" if low <= measured <= high else "**no**", f"[{page}.md]({page}.md)"])
     print()
-    print(READING)
-    print("## Wanted\n\nDevices that were looked for, what could be read of them, and what is missing. None of them is counted.\n")
-    line(["device", "read", "missing"])
-    line(["---"] * 3)
-    for row in WANTED:
-        line(row)
-    print("""
-Materials of others, not devices: relaxation of VHB 4910 ([vhb.md](vhb.md)), cycles of VHB 4905 at five temperatures
-([vhb-temperature.md](vhb-temperature.md)).""")
+    print(READING, end="")
 
 
 READING = """## What these say
@@ -448,12 +409,13 @@ READING = """## What these say
 * **Acrylic discs wrinkle within the band**, at 5.4 kV and 2.3 times the area (nominal 4.6 kV and 2.9), with an assumed pre-stretch. With carbon black the disc
   agrees up to 3 kV and grows ever more slowly above: stiffness, resistance, or another film.
 
-* **The paper's actuator** reaches its 0.5 mm at the end of the band only, and its force is out of reach at any depth of the tip, with the other
-  sign and another power of the voltage ([paper.md](paper.md)).
-* **A strip of VHB 4905 under 6 kV** loses the stress that lies between free and held width at all stretches, by a course that no one strip has
-  ([vhb-under-voltage.md](vhb-under-voltage.md)).
+* **The paper's actuator**: [paper.md](paper.md). **A strip of VHB 4905 under 6 kV**: [vhb-under-voltage.md](vhb-under-voltage.md).
 
 The pre-stretch of each film and the stiffness of each electrode make the wide bands.
 
+Not counted, since what could be read of them (mostly abstracts) lacks a number that decides, such as pre-stretch, field, pressure or law: films and
+discs of Pelrine and others (2000), Wissler and Mazza (2005), Bozlar and others (2012), Akbari and others (2013), Feng and others (2024); cones of
+Bernat and others (2022), Cao and Conn (2018); membranes of Tews and others (2003), Dubois and others (2009), Shian and others (2013), Garnell and others
+(2019); stacks of Shintake and others (2021).
 """
 main()

@@ -196,7 +196,7 @@ The numbers of the paper's text (its curves exist as pictures only):
 | 3.2, 4.2.1 | no breakdown is reported at 8 kV on 100 um and 16 kV on 200 um, 15 cycles at each voltage |
 
 No uncertainty and no number of samples go with any of them. Two do not go together: 50 to 65 % of 1.5 mm is 0.75 to 0.98 mm, where
-0.5 mm is the largest that was measured. Figs 8 and 11 give a shape and a sign, no number.
+0.5 mm is the largest that was measured.
 
 ## The film that survived 8 kV
 
@@ -223,12 +223,9 @@ field to that of the data sheet only far from what the paper says of them. What 
 
 * **the film holds more when stretched**: if thickness and pre-stretch were nominal, its breakdown field at
   the total stretch {nominal[2]:.2f} is at least {nominal[0]:.0f} V/um. As a power of the stretch, from 80 V/um at rest, that is an
-  exponent of at least {exponent(80):.2f}; from 100 V/um at least {exponent(100):.2f}. No source for this film is
-  known here that gives one; it is a lower bound from one survivor, not a value;
+  exponent of at least {exponent(80):.2f}; from 100 V/um at least {exponent(100):.2f}. That is a lower bound from one survivor, not a value;
 * **the film was not at 8 kV all over**, or lost less thickness than the model says: stiffer electrodes, less than nominal
   pre-stretch, fibres and glue that hold the electrode; each lowers the strain too.
-
-One survivor says nothing of the distribution.
 
 ## 500 um at 8 kV
 
@@ -277,7 +274,7 @@ way. So there are three readings of the 500 um, and the text does not decide bet
 3. compliant glue, overlap and thin fibres together, in many combinations that one number cannot tell
    apart: the fibre tip itself, downwards, growing smoothly from the first kilovolt.
 
-They differ below 6 kV: the paper's Fig 10 has that curve, its text has not.
+They differ below 6 kV.
 
 ## The glue that the paper names
 
@@ -312,14 +309,10 @@ The largest gain of force by 6 kV in this table is {gain:.1f} mN, 180 mN in the 
 `lumped` (rigid fibres, nothing in their way, eqs 18 to 20) is {lumped[-1]["force (mN)"]:.0f} mN at 6 kV, and goes with V to the power
 {math.log(lumped[-1]["force (mN)"] / lumped[1]["force (mN)"]) / math.log(2):.1f} from 3 to 6 kV, not 1.
 
-A tip that is pressed in feels less with the voltage, from either side: the field takes tension off the film. Only a tip that just touches
-from the back feels more, a hundred times too little. **None of the depths and sides computed gives the paper's force**, and its form does
+**None of the depths and sides computed gives the paper's force**, and its form does
 not depend on the design: as long as the film is taut all that follows from the field's stress goes with V^2.
 
-**A hypothesis that fits.** The paper's force is linear in the voltage, the same for four and eight fibres to 0.13 %, and 73 % of the range of
-the cell (25 g, 0.245 N); the film's goes with V^2 and differs by a fifth between four and eight fibres (72 and 88 mN at 2 mm,
-[paper.md](paper.md)). A signal proportional to the supply's command, coupled into the cell, would fit. Test: the same commands with the leads
-off the film.
+A signal coupled into the cell would fit ([paper.md](paper.md)).
 
 ## What to measure next
 

@@ -430,9 +430,7 @@ static void other_numbers(const struct swept *b4)
   printf(
       "| 5.2 | threshold of the thumb, 30 um | passed | the tip passes it at %.1f kV, as built |\n",
       1e-3 * V30);
-  puts("| Table 1 | \"prescribed displacement 1.5\" | no pre-stress (5.1 says so) | both forms "
-       "above "
-       "|\n");
+  puts("");
   close_model(&open);
 }
 
@@ -440,38 +438,30 @@ static void other_numbers(const struct swept *b4)
  */
 static void its_figures(void)
 {
-  puts(
-      "## Its figures, and which of our states they may show\n"
-      "\n"
-      "Sizes are those of the tables above; the states of the slack film without glue are in "
-      "`docs/verification/states.md`.\n"
-      "\n"
-      "| figure | what it shows | our state of that shape | its size beside the paper's | band "
-      "over the unknowns | open |\n"
-      "|---|---|---|---|---|---|\n"
-      "| 7 | simulated shapes at 6 kV, a rise over the whole middle | the film without "
-      "pre-stretch, on either branch: a dome | centre 1.2 mm, largest in the paper 1.5 mm by 7 kV "
-      "| table, \"as simulated\" | which branch theirs is on; four over eight fibres |\n"
-      "| 8a, 9 | measured at 8 kV, four fibres, 100 um: 0.5 mm, \"conical and flat\" in the middle "
-      "| as built: the tips lowest, the centre flat at two fifths of them, away from the fibres | "
-      "half of it; all of it with overlap 1 mm and fibres of 50 um "
-      "([inverse](paper-inverse.md#the-glue-that-the-paper-names)) | table, \"as built, 8 kV\" | "
-      "\"conical\" in the middle, which ours is not; glue, overlap, thickness of the fibres |\n"
-      "| 8b, 8c | eight fibres, 200 um at 16 kV and 100 um at 8 kV | not known: their states were "
-      "not searched for | the text gives no size | not made | all of it |\n"
-      "| 8d | no fibres, 200 um, 16 kV | the flat disc | no displacement; strain in the table on "
-      "200 um | | whether theirs is flat: the text does not say |\n"
-      "| 10 | displacement at the fibres' edge against V: simulated, analytic, measured | "
-      "simulated: none, for our tip without pre-stretch moves a twentieth of the centre; measured: "
-      "none | tip as built, table \"meshes\" | table, \"as built\" | what \"top edge of the "
-      "fibres\" is, and what it measured below 8 kV, which the text does not give |\n"
-      "| 11 | centre in pulses of 7 kV, eight fibres, either way up; \"on the side of the "
-      "fibers\", but down with the fibres on top | as built away from the fibres, which agrees "
-      "with the second; without pre-stretch either branch | the text gives no size | not made | "
-      "the side, and the size |\n"
-      "| 12 | force against V and time, 0.18 N at 6 kV, linear | as built, pressed by a tip | "
-      "table \"Force\": the change is less than half, and goes with V^2 | depth of the tip, table "
-      "| the depth, and what was subtracted |\n");
+  puts("## Its figures, and which of our states they may show\n"
+       "\n"
+       "States of the slack film without glue are in `docs/verification/states.md`.\n"
+       "\n"
+       "| figure | what it shows | ours | open |\n"
+       "|---|---|---|---|\n"
+       "| 7 | simulated shapes at 6 kV, a rise over the whole middle | without pre-stretch, on "
+       "either branch: a dome of 1.2 mm | which branch theirs is on; four over eight fibres |\n"
+       "| 8a, 9 | measured at 8 kV, four fibres, 100 um: 0.5 mm, \"conical and flat\" in the "
+       "middle | as built: the tips lowest, the centre flat at two fifths of them; half of the 0.5 "
+       "mm, all of it with overlap 1 mm and fibres of 50 um "
+       "([inverse](paper-inverse.md#the-glue-that-the-paper-names)) | \"conical\" in the middle; "
+       "glue, overlap, thickness of the fibres |\n"
+       "| 8b, 8c | eight fibres, 200 um at 16 kV and 100 um at 8 kV | not searched for | all of "
+       "it: the text gives no size |\n"
+       "| 8d | no fibres, 200 um, 16 kV | the flat disc | whether theirs is flat |\n"
+       "| 10 | displacement at the fibres' edge against V: simulated, analytic, measured | tip as "
+       "built (table \"meshes\"); of the simulated and the measured curve none | what \"top edge "
+       "of the fibres\" is, and what it measured below 8 kV |\n"
+       "| 11 | centre in pulses of 7 kV, eight fibres, either way up | away from the fibres, down "
+       "with the fibres on top as the paper says; without pre-stretch either branch | the side, "
+       "and the size |\n"
+       "| 12 | force against V and time, 0.18 N at 6 kV, linear | table \"Force\": the change is "
+       "less than half, and goes with V^2 | the depth of the tip, and what was subtracted |\n");
 }
 
 static void why(const struct swept *s4, const struct swept *b4)
@@ -497,17 +487,7 @@ static void why(const struct swept *s4, const struct swept *b4)
       "shapes that change from mesh to mesh. What many\n  cycles do to it is not in here.\n",
       1e-3 * fabs(tip_um(b4, 8e3)), 1e-3 * fabs(centre_um(b4, 8e3)), 1e-3 * buckled_um[0],
       1e-3 * buckled_um[1]);
-  puts("* **Thickness and hold of the fibre** move the tip most where the film has no pre-stretch; "
-       "glue and overlap where it has (table).\n"
-       "* **Direction.** As built away from the fibres as long as the film is taut. The paper says "
-       "both; "
-       "with the fibres on top its\n  membrane went down, which agrees.\n"
-       "* **Four against eight fibres.** With eight the film keeps its tension to a higher "
-       "voltage. That "
-       "four move a fifth more than eight is not\n  found at the centre.\n"
-       "* **Force.** What a tip feels before any voltage is of the size of the paper's force; what "
-       "the "
-       "voltage changes is less than half of it\n  and goes with V^2.\n");
+  puts("");
 }
 
 int main(int argc, char **argv)
