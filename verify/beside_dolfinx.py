@@ -231,8 +231,7 @@ Made by `scripts/verify beside_dolfinx`; not to be edited. `examples/devices/arr
 refinement {refinement}: nine cells under 200 Pa, the middle one at {VOLTAGE / 1e3:g} kV. gmsh's mesh of {size["elements"]} quadratic hexahedra with
 {size["unknowns"]} unknowns, as `dea mesh` writes it, is solved by `dea run` and, with the same energy, by a program for dolfinx 0.5.2
 (`verify/beside_dolfinx.py`: {theirs["unknowns"]} displacements and {theirs["pressures"]} pressures, Newton's method from the flat film, LDL^T of
-MUMPS), one process each with one thread. Whole processes: `dea run` also makes the mesh, finds the state at 0 V, counts unstable
-modes, estimates errors, and writes its files; dolfinx reads the mesh and has its forms compiled ({forms:.0f} s by the clock, not in the
+MUMPS), one process each with one thread. Whole processes: `dea run` also makes the mesh, estimates errors, and writes its files; dolfinx reads the mesh and has its forms compiled ({forms:.0f} s by the clock, not in the
 table). Over the first line in brackets.
 
 | | processor time (s) | clock (s) | memory (GB) | z of the middle cell (um) | of its neighbour (um) |
@@ -244,7 +243,8 @@ table). Over the first line in brackets.
 * The two programs' heights differ by {far:.1e} of themselves (tolerance {TOLERANCE:g}), those on one rank and on two by {apart:.1e}.
   Both are means of the film's two faces: in a film that bends its middle is p h^2/(8 T) = 3.2 nm away from that.
 * dolfinx: {theirs["factors"]} factorisations and solutions in {theirs["factor_s"]:.0f} s, as many assemblies in {theirs["assemble_s"]:.0f} s.
-* Two ranks: processor time and memory are sums of both, with what MPI spends on waiting.
+* Two ranks: processor time and memory are sums of both.
+
 * Load of the machine, which has {os.cpu_count()} processors: {load[0]:.1f} before, {load[1]:.1f} and {load[2]:.1f} after; with more than that the clock measures the
   other work, and processor time is what compares.""")
     sys.exit(0 if far < TOLERANCE and apart < 1e-6 else "heights are out of tolerance")

@@ -262,9 +262,7 @@ def print_section(limit, ours, same, theirs, far):
 
 `verify/beside_dolfinx_tip.py`: [frdea-4.yaml](../../examples/frdea-4.yaml), 0 to {VOLTAGES[-1] / 1e3:g} kV in steps of 1 kV, a sector of 45
 degrees, z of the fibre's tip at {VOLTAGES[-1] / 1e3:g} kV. Both programs have the same energy, elements of order 2 with linear pressures,
-one through the film. Error: against {limit:.3f} um, extrapolated from elements of order 3 as in [trust.md](trust.md), where elements of order 2
-that are halved twice come to the same place; all meshes are off to the same side, so that equal errors are equal tips,
-whatever the limit is. Processor time (`user` and `sys`) of whole processes of one thread, of dea the median of
+one through the film. Error: against {limit:.3f} um, extrapolated from elements of order 3 as in [trust.md](trust.md), all meshes are off to the same side, so that equal errors are equal tips, whatever the limit is. Processor time (`user` and `sys`) of whole processes of one thread, of dea the median of
 three; the compiler of dolfinx's forms and the making of its meshes (gmsh's, read from a file) are not in it, those of
 dea's are, and its files; loop: dolfinx without starting Python and setting up.
 
@@ -289,9 +287,8 @@ dea, and dolfinx on the same meshes (those of `dea mesh`) and on gmsh's at the s
               f"{on_same / cpu:.1f} | " + " | ".join(ratio) + " |")
     print(f"""
 * On the same meshes the tips differ by {far:.1e} of themselves at most (tolerance {SAME:g}).
-* At the error of the default mesh dolfinx takes {first:.0f} times as long ({WANTED} were wanted). Most of it is the mesh: dea's
-  has blocks along the fibre, long where nothing changes and as thin as the film across its end, where gmsh's elements are as
-  long as wide. On that mesh dolfinx is {same[0][1] / ours[0][0]:.1f} times as long, and its loop alone {same[0][2] / ours[0][0]:.1f} times.""")
+* At the error of the default mesh dolfinx takes {first:.0f} times as long ({WANTED} were wanted). Most of it is the mesh, with
+  blocks along the fibre. On that mesh dolfinx is {same[0][1] / ours[0][0]:.1f} times as long, and its loop alone {same[0][2] / ours[0][0]:.1f} times.""")
 
 
 def main():

@@ -205,7 +205,7 @@ to 3 s. What the supply's output really is, is asked of the imitation, and for 2
 program's end. Runs in which "at 0 V" was said, or the supply taken for clean, and it was not:
 **{wrong}**.
 
-Eight runs at a time on a machine of two cores with other work on it: times are upper bounds. The
+Times are upper bounds (other work on the machine). The
 fault is at the moment 0; a run without one, or whose supply lives through it, comes to 0 V by the
 end of its sequence.
 
@@ -216,7 +216,7 @@ end of its sequence.
     table(rows, faults)
     print("""
 The alarm is the end of the program with its exit code; that of a program that was killed is its death. A hung supply keeps its
-voltage: only its own switch helps, and the message says so.
+voltage: only its own switch helps.
 """)
     line, line_good = serial(max(COUNT // 5, 8))
     lies = sum(said == "at 0 V" and int(volts) > 20 for said, volts in line)

@@ -185,9 +185,8 @@ for law, what, tests in CASES:
     print(f"\nchi-square: {fit['chi_square']:.4f} and {result.chisqr:.4f}.\n")
     bad = bad or abs(fit["chi_square"] - result.chisqr) > 1e-3 * result.chisqr
     if widened:
-        print("The law does not fit: its residuals are structured. dea fit widens its error bars for that "
-              "(by the number of rows that count, and by the misfit); the others, told to take the "
-              "uncertainties as known, do not. Only the values are compared.\n")
+        print("The law does not fit: dea fit widens its error bars for that; the others, told to take the uncertainties as known, do not. "
+              "Only the values are compared.\n")
 print("""## Times
 
 Processor time of the whole command, with reading, all profiles, figure and files, against lmfit's fits and

@@ -45,8 +45,7 @@ cat <<'EOF'
 Pages are of 4096 bytes, sectors of 512; "some" is each one by the toss of a coin, in any order. No
 completed cycle is lost as long as a page of 4096 bytes reaches the disk as a whole or not, as file
 systems and disks with sectors of that size write it. The last row is what a disk does that tears
-pages: some numbers of HDF5's own tables are then neither old nor new, and it does not read such a
-file. The fourth row stands for disks that write in another order than they were asked to.
+pages: HDF5 does not read such a file. The fourth row stands for disks that write in another order than they were asked to.
 
 Made by `scripts/verify recordings`; in the tests, `test_lab_killed.c` and `test_lab_power.c` make 40
 of each by fixed seeds.

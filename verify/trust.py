@@ -28,13 +28,10 @@ changed of it, [plain-disc.yaml](../../examples/plain-disc.yaml), devices of `ex
 the voltage that is written, taut or with its tension lost in places, with the default mesh, whose run estimates its error
 ([theory](../theory/trust.md)).
 
-* **Found**: the error of the default mesh (order 2, one element through the film) against a limit, extrapolated from it, the same
-  mesh with elements of order 3, and that with half the size in all directions. Devices of plies: order 2 with half and a
-  third of the size in all directions; solid films without stiff parts: a quarter and an eighth in the plane (pure shear a half
-  and a quarter); coupled field: half and a third in the plane, six elements through the film. With a `*`: from meshes of order 2
-  that were computed once (`FINE` in `verify/trust.py`).
-  Errors go with (size / order^2)^p (Babuska and Suri 1987); p is the one observed, between 1 and 2: an incompressible film that
-  is bonded along an edge of something stiff has stresses of 1/sqrt(r), that is p = 1, which is also taken where none is observed.
+* **Found**: the error of the default mesh (order 2, one element through the film) against a limit, extrapolated from it and two finer
+  meshes (`MESHES` in `verify/trust.py`; with a `*`: from meshes of order 2 that were computed once, `FINE`).
+  Errors go with (size / order^2)^p (Babuska and Suri 1987); p is the one observed, between 1 (as of stresses of 1/sqrt(r), also where
+  none is observed) and 2.
 * **+-**: how far the limit may be off, in % of the quantity: its change between p = {least_order:g} (or the observed p, if
   larger) and p = 2; without an observed order three times the last change. Above a third of what is found the effectivity has a `~`.
 * **Effectivity**: estimated over found, of root mean squares over both voltages. In brackets and not counted: both below
@@ -398,8 +395,6 @@ def print_set(number, designs, lines):
             lines.append([number, *row[1]])
             outside += [row[0]] if row[2] else []
     print()
-    for quantity, ratios in tally.items():
-        print_count(quantity, [r for r, _ in ratios])
     every = [pair for ratios in tally.values() for pair in ratios]
     if every:
         print_count("all", [r for r, _ in every])

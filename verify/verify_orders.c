@@ -161,8 +161,7 @@ int main(int argc, char **argv)
   }
   print_orders(states, STATES, small ? 2 : 3, found);
   puts("\n"
-       "The pressure is kept to a tenth of the shear modulus; a larger one brings the orders of u "
-       "above theory on coarse meshes.");
+       "The pressure is kept to a tenth of the shear modulus.");
   dea_solid_stop();
   dea_context_destroy(states_ctx);
   return verify_end();

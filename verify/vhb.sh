@@ -45,9 +45,7 @@ No test was made in other ways than in uniaxial tension, and the law is not to b
 
 $(grep '^no ' "$work/said" | sed 's/^/    /')
 
-The law was chosen by asking a fit to two of the three stretches for the third one: the first table has
-what it missed, over its uncertainty of 1 %, which chooses, and over the largest stress. \`ogden-2\`
-has four constants of the slow law where three stretches were measured, and shows it.
+The law was chosen by asking a fit to two of the three stretches for the third one.
 
 ## What it misses of its own data
 
@@ -62,8 +60,7 @@ for stretch in 2 3 5; do
 done
 awk -F, '$2 == "fit" && (x = 100 * $10 / $6) ^ 2 > most ^ 2 { most = x } END { printf "\nThe largest is %+.1f %%.\n", most }' "$rows"
 cat <<'END'
-The residuals are not noise: at the stretch 3 the law is too stiff in the first ten seconds, at 5 too soft at the peak. A branch whose time or
-spring depends on the stretch could have both.
+The residuals are not noise: at the stretch 3 the law is too stiff in the first ten seconds, at 5 too soft at the peak.
 
 ## What it foretells
 
@@ -98,7 +95,7 @@ for rate in 0.01 0.05; do
 done
 cat <<'END'
 
-At 0.05 1/s the law is within 3 % but for the last value of unloading; at the slower rate it is 4 to 7 % too soft as long as the strip is loaded.
+At 0.05 1/s the law is within 3 % but for the last value of unloading; at the slower rate 4 to 7 % too soft on loading.
 
 ## Equilibrium, not fitted
 
@@ -116,8 +113,5 @@ limit of its chains, which the measured curve shows from about 7 on.
 
 ## What it lacks
 
-* Time below about a second: the fastest branch stands for all that relaxes during the ramp, and its
-  modulus and time are known to a third only.
-* The limit of the chains: nothing above the stretch 5 was fitted.
-* Small stretches (1.25 and below), temperature, humidity, batches: not in these data.
+Time below about a second, the limit of the chains (nothing above the stretch 5 was fitted), small stretches, temperature, humidity, batches.
 END
