@@ -378,15 +378,21 @@ Two of the measured values, the frequency ratios, are known as intervals only; b
     if any(p["none"] for p in found):
         print("\n\\*\\* Some of the runs have no such state.")
     print()
+    before = []
     for device in DEVICES:
         print(f"## {device['name']}\n\n[verify/devices/{device['design']}.yaml](../../verify/devices/{device['design']}.yaml).")
         for text in (f"Source: {device['source']}.", f"Missing or assumed: {device['missing']}."):
             print(textwrap.fill(text, 118, break_long_words=False, break_on_hyphens=False))
         print()
-        line(["input", "low", "nominal", "high", "from"])
-        line(["---"] * 5)
-        for name, low, mid, high, unit, origin in device["inputs"]:
+        inputs = [i for i in device["inputs"] if (device["design"], i) not in before]
+        if inputs:
+            line(["input", "low", "nominal", "high", "from"])
+            line(["---"] * 5)
+        for name, low, mid, high, unit, origin in inputs:
             line([name + (f" ({unit})" if unit else ""), low, mid, high, origin])
+        if len(inputs) < len(device["inputs"]):
+            print(("\nOther inputs" if inputs else "Inputs") + " as before.")
+        before = [(device["design"], i) for i in device["inputs"]]
         print()
     print("## Devices of other pages\n")
     line(["device", "quantity", "measured", "band", "in the band", "page"])
