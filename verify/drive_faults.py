@@ -91,8 +91,7 @@ def meters_text(rows):
 0.5 s) by five waveforms between 0 and 2 kV of 0.5, 1 and 2 Hz (pulses: a fifth of a cycle long), each
 sixteen at a time. What goes wrong does so from the start, or at a random moment of the first 7.2 s;
 an output that stays does so after it has moved. "At 0 V" said while the output was not: **{said}**.
-Honest supplies stopped (by an answer that the busy machine delayed beyond `behind`, too), or not
-believed at the end: **{stopped}** of {len(honest)}. Wrong outputs or meters
+Honest supplies stopped, or not believed at the end: **{stopped}** of {len(honest)}. Wrong outputs or meters
 that nobody noticed (exit code 0): **{missed}** of {len(rows) - len(honest)}, beside {warned} of which the check had said that
 they are too fast to be told.
 

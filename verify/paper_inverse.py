@@ -180,8 +180,8 @@ most = max(tips, key=lambda t: abs(t[1]))
 far = [(n, max(abs(r["highest z (um)"]), abs(r["lowest z (um)"]))) for n, r in scan if r]
 print(f"""# The paper's measurements read backwards
 
-Made by `scripts/verify paper-inverse`; not to be edited. [paper.md](paper.md) computes what the paper's
-design gives; this page, which values of what the paper does not give would give what was measured. Nothing here is a prediction.
+Made by `scripts/verify paper-inverse`; not to be edited. Which values of what the paper does not give would
+give what was measured; nothing here is a prediction.
 
 ## What there is to go by
 
@@ -267,7 +267,7 @@ All tips go away from the fibres' side (negative). The solid film of [paper.md](
 tip is between -60 and -219 um at 8 kV, and only where the slack film buckles in front of the tips does
 anything come to 0.5 mm (-500 um with fibres 3 mm wide), in a shape that changes from mesh to mesh. With less than 1.1 of pre-stretch left, the centre of the solid
 film bulges by more than 1 mm at 8 kV; between 1.1 and 1.05 it passes 500 um, on a branch that depends on the
-way. So there are three readings of the 500 um, and the text does not decide between them:
+way. So there are three readings of the 500 um:
 
 1. wrinkles of a slack film above 6 kV, at any pre-stretch: 0.2 to 0.65 mm in paper.md, not at the fibre tip;
 2. little pre-stretch left (1.05 to 1.1): a bulge of that height in the centre, from about 6 kV on;

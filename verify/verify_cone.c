@@ -474,9 +474,7 @@ static void full(void)
   converge(solids, 4);
   make_thinner();
   puts("\n## Charge\n\nForce F and charge Q come of one energy: at 3 kV the slope of the force by "
-       "the "
-       "voltage is that of the charge by the\nplace; and the charge of the hung cone follows the "
-       "voltage as the tangent with its rigid body says. Central\ndifferences of 10 V and 10 um, "
+       "the voltage is that of the charge by the place. Central\ndifferences of 10 V and 10 um, "
        "8 x 8 membranes. Tolerance 1e-6.");
   check_charge(&membranes[1], true);
   puts(

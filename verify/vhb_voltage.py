@@ -349,7 +349,7 @@ factor of {measured[SHOWN[-1]] / measured[SHOWN[0]]:.1f}, those of the nearest s
 a permittivity that falls with stretch, electrodes that do not reach the grips, another law across the pull.
 
 Model 3d flags the strips under 6 kV as `slack` below the stretch 1.2 and from about 2.3 on (2.0 at 50 degC): beside the grips, which hold
-back the widening, the film loses its tension. A real one wrinkles there; these numbers are of a flat one.
+back the widening, the film loses its tension. These numbers are of a flat one.
 
 Mesh: the fall of the strip of ratio {check_ratio:g} changes by at most {coarse[0]:.2f} kPa up to the stretch 2.5, and {coarse[1]:.2f} beyond, with elements of second
 order in the plane.
