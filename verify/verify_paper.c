@@ -4,7 +4,7 @@
 
 static bool small;
 
-// The branch that starts at 0 V, wherever a step comes out (see branches()).
+// The branch that starts at 0 V, wherever a step comes out.
 #define NO_PRE_STRETCH                                                                             \
   {"pre_stretch", "1"},                                                                            \
   {                                                                                                \
@@ -144,8 +144,8 @@ static void text_numbers(const struct swept *s4, const struct swept *s8, const s
          100 * centre_um(b4, 4e3) / centre_um(s4, 4e3),
          100 * centre_um(b4, 6e3) / centre_um(s4, 6e3));
   puts("| 4.2.1 | direction | \"on the side of the fibers\", and down with the fibres on top | "
-       "both, see "
-       "below; away from the fibres on the branch that starts at 0 V | away from the fibres | not "
+       "both ([branches](../verification/branches.md)); away from the fibres on the branch that "
+       "starts at 0 V | away from the fibres | not "
        "said "
        "|\n");
 }
@@ -177,36 +177,6 @@ static void thickness_numbers(const struct swept *b4, const struct swept *b8)
            1e6 * point_of(&t4, 2 * V)->electrode_edge_u_m, tip_um(&d4, V), tip_um(&t4, 2 * V),
            tip_um(&d8, V), tip_um(&t8, 2 * V));
     verify_relative("200 um beside 100 um", b - 1, a - 1, 6e-3); // thickness over radius
-  }
-  puts("");
-}
-
-/* As simulated: the film buckles to either side. */
-static void branches(const struct swept *s4)
-{
-  static const struct variant above = {
-      {NO_PRE_STRETCH, {"compute.solid.buckling_branch", "fibres"}}};
-  struct swept up = sweep("3d", &above, NULL, 250, 8e3);
-  puts("## The two branches without pre-stretch\n\n"
-       "Centre in um and energy in uJ. The one away from the fibres grows out of the flat film at "
-       "0 V: "
-       "the field bends fibre and film\nthat way from the first volt on. The other is detached; a "
-       "sweep "
-       "reaches it by `compute.solid.buckling_branch: fibres`, which goes over to it at the\nfirst "
-       "voltage "
-       "where "
-       "it is there.\n\n| V (kV) | away from the fibres | energy | to the fibres | energy |\n"
-       "|---|---|---|---|---|");
-  for (size_t i = 2; i < s4->count; i += i < 8 ? 1 : 4) {
-    const struct dea_load_point *down = &s4->at[i], *other = &up.at[i];
-    if (other->centre_z_m > 0) {
-      printf("| %.4g | %.0f | %.3f | %.0f | %.3f |\n", 1e-3 * down->voltage_V,
-             1e6 * down->centre_z_m, 1e6 * down->energy_J, 1e6 * other->centre_z_m,
-             1e6 * other->energy_J);
-    } else {
-      printf("| %.4g | %.0f | %.3f | | |\n", 1e-3 * down->voltage_V, 1e6 * down->centre_z_m,
-             1e6 * down->energy_J);
-    }
   }
   puts("");
 }
@@ -508,7 +478,6 @@ int main(int argc, char **argv)
     struct swept b8 = sweep("3d", &built8, NULL, 250, 8e3);
     struct swept l4 = sweep("lumped", &built4, NULL, 250, 8e3);
     text_numbers(&s4, &s8, &b4, &b8, &l4);
-    branches(&s4);
     meshes();
     thickness_numbers(&b4, &b8);
     force_numbers();

@@ -87,8 +87,8 @@ static void arms(void)
       {"electrodes.diameter", "7.5 mm stretched"},
       {"compute.states", "{voltage: [0.5 kV, 1 kV, 2 kV], modes: 1, push: [200 um]}"}};
   struct found found = find(sets, sizeof sets / sizeof sets[0]);
-  puts("## Without pre-stretch\n\nBoth arms of the buckled film, in brackets as the page on the "
-       "paper has them.\n\n| V (kV) | state | energy (uJ) | centre (um) | reached | leads up to | "
+  puts("## Without pre-stretch\n\nBoth arms of the buckled film, in brackets those of sweeps.\n\n| "
+       "V (kV) | state | energy (uJ) | centre (um) | reached | leads up to | "
        "down to |\n|---|---|---|---|---|---|---|");
   verify_absolute("states without pre-stretch", (double)found.table->row_count, 5, 0);
   for (size_t i = 1; i < 5 && i < found.table->row_count; i++) {
