@@ -387,7 +387,6 @@ static void sweep(struct cone *it, const double kV[2], const double limit_mm[2],
   const double step[4] = {0.999 * kV[0], 1.001 * kV[0], 1.001 * kV[1], 0.999 * kV[1]};
   double mm[4];
   solve(it, 0);
-  double rest = place(it);
   for (int i = 0; i < 4; i++) {
     solve(it, step[i]);
     verify_absolute("unstable modes", it->report.unstable_modes, 0, 0);
@@ -397,10 +396,7 @@ static void sweep(struct cone *it, const double kV[2], const double limit_mm[2],
       mm[0] < limit_mm[0] && mm[1] > limit_mm[1] && mm[2] > limit_mm[1] && mm[3] < limit_mm[0];
   verify_absolute("a sweep jumps at both voltages", jumps, 1, 0);
   if (print) {
-    printf("\nA sweep is at h = %.3f mm at 0 V, at %.3f mm at 0.999 of the first voltage and at "
-           "%.3f mm\nat 1.001 of it; on the way down at %.3f mm at 1.001 of the second, and at "
-           "%.3f mm at 0.999.\n",
-           rest, mm[0], mm[1], mm[2], mm[3]);
+    puts("\nA sweep jumps at both.");
   }
 }
 

@@ -246,13 +246,11 @@ static void order_page(void)
   struct pulse at[KINDS][RUNS];
   const int runs = RUNS;
   printf("\n## Order of the steps\n\nA free square of 1 mm, mu = 100 kPa, 1000 kg/m^3, under a "
-         "smooth pulse of 0.3 ms that makes it swing (its slowest period is about that long); "
+         "smooth pulse of 0.3 ms that makes it swing; "
          "branches of 2 mu with 0.1 ms and 1 mu with 1 ms. Differences of strain and pressure "
          "between so many steps and twice as many; of two orders of a step: the ratio of one "
-         "difference to the next is 4. Tolerance of the last ratio: 10 %%. With ever shorter steps "
-         "the "
-         "pressures stop converging where what is left of J - 1 (1e-7) over h^2 is felt as an "
-         "acceleration ([time.md](../theory/time.md)); here from about 300 steps on.\n\n"
+         "difference to the next is 4. Tolerance of the last ratio: 10 %%. Pressures stop "
+         "converging at about 300 steps ([time.md](../theory/time.md)).\n\n"
          "| | steps | strain | difference | ratio | pressure, Pa | difference | ratio |\n"
          "|---|---|---|---|---|---|---|---|\n");
   for (int k = 0; k < KINDS; k++) {
