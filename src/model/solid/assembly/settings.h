@@ -42,11 +42,6 @@
   X(double, shift_down, 10, "1", "divisor to a smaller one")                                       \
   X(int, shift_modes, 8, "1", "negative pivots whose lowest eigenvalue is looked for")             \
   X(double, shift_margin, 2, "of the lowest eigenvalue", "next shift")                             \
-  X(double, pair_residual, 0.03, "of the sum of element forces", "forces left in a valley")        \
-  X(double, pair_gentle, 1, "of the slope",                                                        \
-    "rise of a step up below which the shift is too large")                                        \
-  X(double, pair_wild, 5, "of the slope", "rise of a step up above which the shift stays")         \
-  X(double, pair_down, 2, "1", "divisor of the shift of a step up; its cube after a gentle one")   \
   X(double, bulk_soft, 1.0 / 16, "1", "power of 2, factor of kappa on the way down")               \
   X(double, soft_end, 1e-3, "of theta, and of the sum of element forces",                          \
     "what is left where it ends")                                                                  \
@@ -60,8 +55,6 @@
   X(int, approach_rounds, 12, "1", "times that load steps go on from a point of the path")         \
   X(int, coupled_iterations, 15, "1",                                                              \
     "of one minimum of a taut film with a coupled field, before the path is followed")             \
-  X(int, slack_iterations, 160, "1", "of one minimum from a slack film")                           \
-  X(int, slack_iterations_free, 120, "1", "those that may go up in energy there")                  \
   X(int, approach_lost, 12, "1", "`lost` on the way to a voltage")                                 \
   X(int, approach_points, 40, "1", "points of the path on the way, twice that where it bends")     \
   X(double, approach_unit, 0.1, "of the displacement on the way", "counts as much as all of it")   \
@@ -69,14 +62,10 @@
   X(double, approach_step_most, 4, "of the way or of that displacement", "longest step")           \
   X(double, left_branch, 1, "of what the tangent foresees",                                        \
     "off it, at most, up to a limit point")                                                        \
-  X(double, limit_close, 0.1, "of the displacement", "to a state that lies beyond a limit point")  \
   X(double, branch_jump_way, 1e-3, "of the way", "to which load steps close in on where they end") \
   X(int, descent_modes, 4, "1", "unstable modes that are left one after the other")                \
   X(double, descent_push, 0.05, "of the solid's length", "first push along a mode")                \
   X(double, descent_equal, 1e-6, "of the fall", "energies of two sides that count as equal")       \
-  X(int, mode_path_points, 80, "1", "points on the path of a force along a mode")                  \
-  X(double, mode_path_step, 0.1, "of the solid's length", "first step on it")                      \
-  X(double, mode_path_step_most, 1, "of the solid's length", "longest step on it")                 \
   /* ---- paths: steps ---- */                                                                     \
   X(int, path_attempts, 16, "1", "at one step, each half as long")                                 \
   X(int, path_iterations_many, 8, "1", "iterations above which the next step is shorter")          \

@@ -6,31 +6,6 @@
 
 #include <math.h>
 
-/* A minimum; close to one whose pressures settle slowly, since the film there is far stiffer than
- * kappa (docs/theory/branches.md), steps with the factor of a raised kappa first. *there: they have
- * come to the equilibrium. */
-static dea_status minimise(struct dea_context *ctx, struct dea_solid *s, bool soft,
-                           struct dea_solid_report *report, bool *there)
-{
-  bool slow = false;
-  int negative;
-  *there = false;
-  DEA_TRY(ctx, dea_solid_minimise(ctx, s, soft, s->problem.field == NULL ? &slow : NULL, report));
-  if (!slow) {
-    return DEA_OK;
-  }
-  s->found.factor_fits = s->found.predicted_fits = s->found.factor_before = false;
-  DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
-  report->factorisations++;
-  s->found.stiff_factor_fits = negative == 0;
-  DEA_TRY(ctx, dea_solid_follow(ctx, s, NAN, false, report, NULL, there));
-  if (!*there) {
-    s->found.stiff_factor_fits = false;
-    DEA_TRY(ctx, dea_solid_minimise(ctx, s, false, NULL, report));
-  }
-  return DEA_OK;
-}
-
 /* Minima at multipliers that follow, until the constraints hold. Where there is no equilibrium any
  * more minima at given multipliers may go on, but violate the constraints more and more. */
 dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
@@ -39,14 +14,10 @@ dea_status dea_solid_equilibrate(struct dea_context *ctx, struct dea_solid *s,
   const struct dea_solid_settings *o = &s->settings;
   double best = INFINITY;
   for (int i = 0, worse = 0; i < o->rounds && worse < o->rounds_worse; i++) {
-    bool there;
-    DEA_TRY(ctx, minimise(ctx, s, i == 0 && !o->accept_unstable, report, &there));
-    if (there) {
-      return DEA_OK;
-    }
+    DEA_TRY(ctx, dea_solid_minimise(ctx, s, i == 0 && !o->accept_unstable, report));
     report->load_error = dea_solid_update_loads(s);
     double error = fmax(report->theta_max / o->theta, report->load_error);
-    there = report->theta_max < o->theta && report->load_error <= 1;
+    bool there = report->theta_max < o->theta && report->load_error <= 1;
     if (!there && report->theta_max < o->theta) {
       DEA_TRY(ctx, dea_solid_follow(ctx, s, NAN, false, report, NULL, &there));
     }

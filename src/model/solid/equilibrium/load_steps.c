@@ -2,10 +2,8 @@
 
 #include "model/solid/assembly/assemble.h"
 #include "model/solid/assembly/controls.h"
-#include "model/solid/assembly/mass.h"
 #include "model/solid/assembly/matrix.h"
 #include "model/solid/assembly/potential.h"
-#include "model/solid/equilibrium/continuation.h"
 #include "model/solid/equilibrium/equilibrate.h"
 #include "model/solid/equilibrium/follow.h"
 #include "model/solid/equilibrium/modes.h"
@@ -15,84 +13,6 @@
 
 #include <math.h>
 #include <string.h>
-
-/* ---- the path of a force along an unstable mode ---- */
-
-/* The controls as they are (where the path starts), and with a force that would hold the mode back
- * at a displacement of the solid's length if its stiffness stayed what it is. */
-static dea_status mode_force_controls(struct dea_context *ctx, struct dea_solid *s, double value,
-                                      const double *mode, double *from, double *goal)
-{
-  const struct dea_solid_problem *p = &s->problem;
-  size_t moves = 3 * p->grid->node_count;
-  double volume = 0, *mass = dea_solid_alloc(ctx, p->dofs, sizeof *mass);
-  if (mass == NULL) {
-    return DEA_E_MEMORY;
-  }
-  dea_solid_lump_volume(s, mass);
-  for (size_t i = 0; i < moves; i++) {
-    volume += mass[i] / 3;
-  }
-  double amplitude = p->length_m * sqrt(volume);
-  dea_solid_controls_get(s, from);
-  // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): both are there
-  memcpy(goal, from, s->work.load_steps.control_count * sizeof *goal);
-  for (size_t i = 0; i < moves; i++) {
-    goal[1 + i] += fabs(value) * amplitude * mass[i] * mode[i];
-  }
-  dea_free(ctx, mass);
-  return DEA_OK;
-}
-
-/* Along the path until the force has come to nothing. */
-static dea_status follow_force(struct dea_context *ctx, const struct dea_solid *s,
-                               struct dea_solid_continuation *trace)
-{
-  struct dea_continuation_point point = {0};
-  double first = 0;
-  for (int i = 0; i < s->settings.mode_path_points; i++) {
-    DEA_TRY(ctx, dea_solid_continuation_step(ctx, trace, &point));
-    first = i == 0 ? point.load : first;
-    if (point.load * first <= 0) {
-      return DEA_OK;
-    }
-  }
-  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "a force along an unstable mode does not vanish");
-}
-
-/* From an unstable equilibrium to the next one on the path of a force along its unstable mode
- * [3 node_count] of that value: it holds back at first and comes to nothing again. side: 1 or -1.
- */
-static dea_status follow_mode(struct dea_context *ctx, struct dea_solid *s, int side, double value,
-                              const double *mode, struct dea_solid_report *report)
-{
-  const struct dea_solid_settings *o = &s->settings;
-  // the stiffness is negative: a force against the mode leads along it
-  const struct dea_continuation_options options = {
-      side > 0 ? -o->mode_path_step : o->mode_path_step, o->mode_path_step_most,
-      s->problem.length_m, false};
-  struct dea_solid_continuation *trace = NULL;
-  double *from = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *from);
-  double *goal = dea_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
-  dea_status status = dea_solid_agree(ctx, from != NULL && goal != NULL ? DEA_OK : DEA_E_MEMORY);
-  if (status == DEA_OK) {
-    status = mode_force_controls(ctx, s, value, mode, from, goal);
-  }
-  if (status == DEA_OK) {
-    status = dea_continuation_create_to(ctx, s, goal, &options, &trace);
-  }
-  if (status == DEA_OK) {
-    status = follow_force(ctx, s, trace);
-    dea_solid_controls_set(s, from);
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_equilibrate(ctx, s, report);
-  }
-  dea_solid_continuation_destroy(ctx, trace);
-  dea_free(ctx, from);
-  dea_free(ctx, goal);
-  return status;
-}
 
 /* ---- from an unstable equilibrium down to a stable one ---- */
 
@@ -137,76 +57,48 @@ static double choose_push(struct dea_context *ctx, struct dea_solid *s, const do
   return push;
 }
 
-/* One step down along the lowest mode: a push, or on the path of a force. */
-static dea_status step_down(struct dea_context *ctx, struct dea_solid *s, int side, bool pull,
-                            double *mode, struct dea_solid_report *report)
+/* Perturbs the solid along its lowest mode [3 node_count] and minimises from there, until no mode
+ * is unstable; the energy falls. */
+static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side, double *mode,
+                          struct dea_solid_report *report)
 {
-  double value;
-  DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
-  double push = choose_push(ctx, s, s->state.u, mode,
-                            s->settings.descent_push * s->problem.length_m, side, report->energy_J);
-  if (push == 0) {
-    return dea_fail(ctx, DEA_E_NOT_CONVERGED, "an unstable mode without a way down");
-  }
-  s->found.factor_fits = false;
-  if (pull) {
-    DEA_TRY(ctx, follow_mode(ctx, s, push > 0 ? 1 : -1, value, mode, report));
-    return DEA_OK;
-  }
-  energy_beside(ctx, s, s->state.u, mode, push);
-  memcpy(s->state.u, s->work.trial, s->problem.dofs * sizeof *s->state.u);
-  DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
-  return DEA_OK;
-}
-
-/* Until no mode is unstable and the energy is lower. */
-static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side, bool pull,
-                          double *mode, struct dea_solid_report *report)
-{
-  double energy = report->energy_J;
+  const double energy = report->energy_J, size_m = s->settings.descent_push * s->problem.length_m;
   for (int k = 0; k < s->settings.descent_modes && report->unstable_modes > 0; k++) {
-    DEA_TRY(ctx, step_down(ctx, s, k == 0 ? side : 0, pull, mode, report));
+    double value;
+    DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
+    double push =
+        choose_push(ctx, s, s->state.u, mode, size_m, k == 0 ? side : 0, report->energy_J);
+    if (push == 0) {
+      return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the energy falls along no unstable mode");
+    }
+    energy_beside(ctx, s, s->state.u, mode, push);
+    memcpy(s->state.u, s->work.trial, s->problem.dofs * sizeof *s->state.u);
+    s->found.factor_fits = false;
+    DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   }
   return report->unstable_modes == 0 && report->energy_J <= energy
              ? DEA_OK
-             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no way down from an unstable equilibrium");
+             : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no stable equilibrium below an unstable one");
 }
 
-/* First by pushes; where those come back or do not end, by forces. state: where it starts. */
-static dea_status try_both(struct dea_context *ctx, struct dea_solid *s, int side, double *mode,
-                           const double *state, struct dea_solid_report *report)
-{
-  const struct dea_solid_report before = *report;
-  dea_status status = descend(ctx, s, side, false, mode, report);
-  if (dea_solid_may_shorten(status)) {
-    dea_context_clear(ctx);
-    dea_solid_state_set(s, state);
-    dea_solid_forget(s);
-    *report = before;
-    status = descend(ctx, s, side, true, mode, report);
-  }
-  return status;
-}
-
-/* At an unstable equilibrium that *report speaks of; the solid stays there where no way is found.
- */
+/* At an unstable equilibrium, which *report speaks of; the solid stays there where no stable one is
+ * found. */
 static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int side,
                                struct dea_solid_report *report)
 {
+  const struct dea_solid_report before = *report;
   double *mode = dea_alloc(ctx, 3 * s->problem.grid->node_count, sizeof *mode);
   double *state = dea_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
   dea_status status = dea_solid_agree(ctx, mode != NULL && state != NULL ? DEA_OK : DEA_E_MEMORY);
   if (status == DEA_OK) {
-    struct dea_solid_report before = *report;
     dea_solid_state_get(s, state);
-    status = try_both(ctx, s, side, mode, state, report);
-    if (status == DEA_OK) {
-      report->snapped = true;
-    } else {
-      dea_solid_state_set(s, state);
-      *report = before;
-      dea_solid_forget(s);
-    }
+    status = descend(ctx, s, side, mode, report);
+    report->snapped |= status == DEA_OK;
+  }
+  if (status != DEA_OK && state != NULL && mode != NULL) {
+    dea_solid_state_set(s, state);
+    dea_solid_forget(s);
+    *report = before;
   }
   dea_free(ctx, mode);
   dea_free(ctx, state);

@@ -11,15 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A shifted step that went up, out of the valley, and the next one, back into it. */
-struct pair {
-  int steps;         // of them taken in a row; 0: none
-  double shift_Pa;   // of the first
-  double energy_J;   // before it
-  double promised_J; // the size of its slope times its share
-  double share, rise;
-};
-
 struct newton {
   double voltage_V;
   double shift_Pa;
@@ -32,7 +23,6 @@ struct newton {
   int lost;           // iterates in a row whose forces are far out of balance
   int stuck;          // shifted steps in a row that are too small to matter
   double softness;    // kappa over its own
-  struct pair pair;
   struct dea_solid_report *report;
 };
 
@@ -168,51 +158,21 @@ static bool search_line(struct dea_context *ctx, struct dea_solid *s, const stru
   return false;
 }
 
-/* None where it is too small to matter. */
-static void set_shift(const struct dea_solid *s, struct newton *d, double shift_Pa)
-{
-  d->shift_Pa = shift_Pa < s->settings.shift_least * s->problem.modulus_Pa ? 0 : shift_Pa;
-}
-
-/* The shift of the next step from how this one went. */
+/* The shift of the next step from how this one went. A whole step up by less than its slope leaves
+ * the floor of the valley, to which the next one returns: its shift was more than enough. */
 static void adapt_shift(const struct dea_solid *s, struct newton *d, double share, double rise)
 {
   double shift_Pa = d->shift_Pa;
   const struct dea_solid_settings *o = &s->settings;
-  if (share < 1 || rise > 0) {
+  if (share < 1 || (rise > 0 && shift_Pa == 0)) {
     shift_Pa = shift_Pa > 0 ? shift_Pa * (share < 0.2 ? o->shift_up * o->shift_up : o->shift_up)
                             : o->shift_first * s->problem.modulus_Pa;
+  } else if (rise > 0) {
+    shift_Pa /= rise < 1 ? 2 : 1;
   } else if (rise < -0.25) {
     shift_Pa /= fabs(rise + 0.5) < 0.05 ? o->shift_down * o->shift_down : o->shift_down;
   }
-  set_shift(s, d, shift_Pa);
-}
-
-/* Whether a step from there, with that shift and slope, is one of a pair. */
-static void begin_pair(struct newton *d, double shift_Pa, double slope, double share, double rise)
-{
-  if (rise > 0 && shift_Pa > 0 && !d->strict) {
-    d->pair = (struct pair){1, shift_Pa, d->report->energy_J, share * fabs(slope), share, rise};
-  } else {
-    d->pair.steps = d->pair.steps == 1 ? 2 : 0;
-  }
-}
-
-/* The shift after both steps of a pair that have come back into the valley, from that of the first:
- * the second, quadratic as it may be, says nothing of the valley. */
-static void end_pair(const struct dea_solid *s, struct newton *d)
-{
-  const struct dea_solid_settings *o = &s->settings;
-  const struct pair *p = &d->pair;
-  d->pair.steps = 0;
-  if (d->report->residual > o->pair_residual) {
-    return;
-  }
-  double down = p->share < 1 || p->rise > o->pair_wild ? 1
-                : p->rise < o->pair_gentle             ? o->pair_down * o->pair_down * o->pair_down
-                                                       : o->pair_down;
-  set_shift(s, d,
-            d->report->energy_J > p->energy_J ? o->shift_up * p->shift_Pa : p->shift_Pa / down);
+  d->shift_Pa = shift_Pa < s->settings.shift_least * s->problem.modulus_Pa ? 0 : shift_Pa;
 }
 
 /* ---- stresses and pressures at the end of a step ---- */
@@ -349,7 +309,6 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       if (start) {
         return DEA_OK;
       }
-      begin_pair(d, there, slope, share, rise);
       adapt_shift(s, d, share, rise);
       d->chords = 0;
       d->chord = quadratic && there == 0 && d->softness == 1;
@@ -382,9 +341,6 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, tangent, &report->energy_J));
   }
   d->norm_before = size;
-  if (d->pair.steps == 2) {
-    end_pair(s, d);
-  }
   return DEA_OK;
 }
 
@@ -436,8 +392,7 @@ static dea_status count_there(struct dea_context *ctx, struct dea_solid *s, stru
   return dea_solid_count_unstable(ctx, s, tangent, d->report);
 }
 
-static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct newton *d, bool soft,
-                          bool *slow)
+static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct newton *d, bool soft)
 {
   const struct dea_solid_settings *o = &s->settings;
   struct dea_solid_report *report = d->report;
@@ -457,10 +412,6 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
       return count_there(ctx, s, d, !d->chord && d->shift_Pa == 0 && !s->found.predicted_fits);
     }
     DEA_TRY(ctx, heed_divergence(ctx, s, d));
-    if (slow != NULL && d->unresolved > 2 && !fits) {
-      *slow = true;
-      return DEA_OK;
-    }
     if (d->chord) {
       DEA_TRY(ctx, chord_step(ctx, s, d));
     } else {
@@ -474,7 +425,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
                   o->iterations, report->residual);
 }
 
-dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool soft, bool *slow,
+dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool soft,
                               struct dea_solid_report *report)
 {
   double voltage_V = s->state.voltage_V;
@@ -483,7 +434,7 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool
   s->found.factor_fits = false;
   dea_status status = dea_solid_solve_potential(ctx, s, voltage_V, s->state.u);
   if (status == DEA_OK) {
-    status = descend(ctx, s, &d, soft, slow);
+    status = descend(ctx, s, &d, soft);
   }
   soften(s, &d, 1);
   return status;

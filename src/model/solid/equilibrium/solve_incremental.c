@@ -396,8 +396,8 @@ static dea_status solve_steps(struct dea_context *ctx, const struct search *a, c
   struct dea_solid_settings *o = &a->s->settings;
   const struct dea_solid_settings own = *o;
   if (!a->taut) {
-    o->iterations = o->slack_iterations;
-    o->iterations_free = o->slack_iterations_free;
+    o->iterations *= 2;
+    o->iterations_free *= 2;
   } else if (a->s->problem.field != NULL) {
     o->iterations = o->coupled_iterations < o->iterations ? o->coupled_iterations : o->iterations;
     o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
@@ -423,27 +423,25 @@ static dea_status take_steps(struct dea_context *ctx, struct search *a, const do
 
 /* Down in energy from the limit point that was found to a stable state a little beyond it. *beyond:
  * there is one, to which the film has not grown at once, and the solid is there; otherwise it is
- * where the search began. One that is close by is where a spot of the mesh has turned over. */
+ * where the search began. */
 static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *beyond)
 {
   struct dea_solid *s = a->s;
   const struct dea_solid_settings *o = &s->settings;
   struct dea_solid_change change = {.grew = true};
   struct dea_solid_report report;
-  bool close = false;
   dea_solid_restore_state(s, &a->limit);
   set_between(s, a->start.controls, a->goal, fmin(a->stop->way + o->load_step_least, 1), a->next);
   dea_status status = solve_steps(ctx, a, a->next, 1, &report);
   if (status == DEA_OK && report.unstable_modes == 0) {
     status = see_change(ctx, a, &change);
-    close = moved_m(s, s->state.u, a->limit.state) < o->limit_close * moved_m(s, a->limit.state, 0);
   }
   *beyond = status == DEA_OK && !change.grew;
   if (*beyond) {
-    a->snapped |= !close || !a->taut;
+    a->snapped = true;
     a->stop->way = share_of(s, a->begin, a->goal, a->limit.controls);
     a->stop->kind = DEA_STOP_UNKNOWN;
-    return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
+    return DEA_OK;
   }
   dea_solid_restore_state(s, &a->start);
   if (dea_solid_may_shorten(status)) {
