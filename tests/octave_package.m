@@ -152,9 +152,9 @@ expect_error('dea:argument', 'components are', @() bar.hold('w', []));
 expect_error('dea:argument', 'no node 45', @() bar.hold('x', [], 'nodes', 46));
 expect_error('dea:argument', 'neo-hookean', ...
              @() dea.Solid(dea.Part('neo-hooke', 1e5), 'box_m', [1 1 1]));
-bar.set('iterations', 1);
+bar.set('newton_max_iterations', 1);
 found = bar.settings();
-assert(found(strcmp({found.name}, 'iterations')).value, 1);
+assert(found(strcmp({found.name}, 'newton_max_iterations')).value, 1);
 bar.pull([0 0 mu], 'low_m', [0 0 0.04]);
 expect_error('dea:not_converged', 'after 1 iterations', @() bar.solve());
 laws = dea.laws();

@@ -469,7 +469,7 @@ dea_status dea_solid_pull(dea_context *ctx, dea_solid *solid, const double low_m
 dea_status dea_solid_set_channel(dea_context *ctx, dea_solid *solid, int channel, double voltage_V);
 /* A tolerance or limit of the solvers. */
 typedef struct {
-  const char *name;    // "residual"
+  const char *name;    // "newton_rtol"
   const char *unit;    // what a relative number is relative to: "of the sum of element forces"
   const char *meaning; // "forces left at an equilibrium"
   double value;

@@ -103,7 +103,7 @@ TEST(test_steps_with_one_factor)
   struct disc alone = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   struct dea_solid_report one, many;
   size_t count = 3 * follows.grid->node_count;
-  dea_solid_settings_of(alone.solid)->follow_part = 2; // never
+  dea_solid_settings_of(alone.solid)->anderson_step_min = 2; // never
   for (int step = 0; step <= 8; step++) {
     double V = 500 * step, apart = 0, most = 0;
     assert_int_equal(dea_load_steps_solve(ctx, follows.solid, V, &one), DEA_OK);
@@ -123,25 +123,25 @@ TEST(test_steps_with_one_factor)
   disc_destroy(&alone);
 }
 
-/* A way in parts takes fewer of them with the bend of the part before, and ends in the same state.
- */
-TEST(test_bend)
+/* A long load step takes few parts with the curvature of the part before, and ends in the state
+ * that a descent finds; without it there were seven factors. */
+TEST(test_curvature)
 {
-  struct disc bent = disc_create(100e-6, 1.5, 2, 4, 2e-4);
-  struct disc straight = disc_create(100e-6, 1.5, 2, 4, 2e-4);
+  struct disc follows = disc_create(100e-6, 1.5, 2, 4, 2e-4);
+  struct disc descends = disc_create(100e-6, 1.5, 2, 4, 2e-4);
   struct dea_solid_report one, other;
-  dea_solid_settings_of(straight.solid)->follow_bend = 1e-12; // never
+  dea_solid_settings_of(descends.solid)->anderson_step_min = 2; // never
   for (int step = 0; step < 2; step++) {
     double V = 1e4 * step;
-    assert_int_equal(dea_load_steps_solve(ctx, bent.solid, V, &one), DEA_OK);
-    assert_int_equal(dea_load_steps_solve(ctx, straight.solid, V, &other), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, follows.solid, V, &one), DEA_OK);
+    assert_int_equal(dea_load_steps_solve(ctx, descends.solid, V, &other), DEA_OK);
   }
-  const double *u = dea_solid_displacement(bent.solid) + 3 * bent.edge;
+  const double *u = dea_solid_displacement(follows.solid) + 3 * follows.edge;
   print_message("%d and %d factorisations\n", one.factorisations, other.factorisations);
-  assert_close(u[0], dea_solid_displacement(straight.solid)[3 * straight.edge], 1e-9, 0);
-  assert_true(one.shifted == 0 && one.factorisations < other.factorisations);
-  disc_destroy(&bent);
-  disc_destroy(&straight);
+  assert_close(u[0], dea_solid_displacement(descends.solid)[3 * descends.edge], 1e-9, 0);
+  assert_true(one.shifted == 0 && one.factorisations <= 5);
+  disc_destroy(&follows);
+  disc_destroy(&descends);
 }
 
 /* 0 to 11 kV in steps of 1 kV without help, no unstable mode on the way, within 0.4 % of the disc

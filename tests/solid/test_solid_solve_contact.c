@@ -141,7 +141,7 @@ static void check_one_factor(struct dea_solid *solid, struct dea_contact *contac
   for (int descent = 0; descent < 2; descent++) {
     dea_contact_move(contact, (const double[3]){0, 0, from});
     assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-    dea_solid_settings_of(solid)->follow_part = descent ? 2 : 0.25; // 2: never
+    dea_solid_settings_of(solid)->anderson_step_min = descent ? 2 : 0.25; // 2: never
     dea_contact_move(contact, (const double[3]){0, 0, to});
     assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
     assert_true(descent ? report.factorisations > 2 : report.factorisations == 1);
@@ -231,7 +231,7 @@ TEST(test_sphere_on_film)
       .place_m = {0, 0, touch_m},
       .stiffness_Pa_per_m = 1e10};
   press_on_film(4, &options, &film);
-  dea_solid_settings_of(film.solid)->follow_part = 2; // never
+  dea_solid_settings_of(film.solid)->anderson_step_min = 2; // never
   for (int i = 0; i < 5; i++) {
     dea_contact_move(film.contact, (const double[3]){0, 0, touch_m - 50e-6 * i});
     assert_int_equal(dea_load_steps_solve(ctx, film.solid, 0, &report), DEA_OK);

@@ -144,7 +144,8 @@ TEST(test_voltage_beyond_any_equilibrium)
 }
 
 /* A descent that has lost its way - the forces stay as large as those of the elements - is given up
- * after `lost` iterations out of balance, well before all of its iterations are used up. */
+ * after `max_divergent` iterations out of balance, well before all of its iterations are used up.
+ */
 TEST(test_divergence_is_seen)
 {
   struct dea_part_material layer = film();
@@ -156,7 +157,7 @@ TEST(test_divergence_is_seen)
   assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
   assert_int_equal(dea_load_steps_solve_within(ctx, solid, 400e3, 1, &all), DEA_E_NOT_CONVERGED);
   clear();
-  early.lost = early.approach_lost;
+  early.max_divergent = 12;
   settings = &early;
   assert_int_equal(solve(&layer, held, 20e3), DEA_OK);
   assert_int_equal(dea_load_steps_solve_within(ctx, solid, 400e3, 1, &few), DEA_E_NOT_CONVERGED);
@@ -231,19 +232,19 @@ TEST(test_settings)
   settings = &own;
   assert_int_equal(solve(&layer, held, 10e3), DEA_OK);
   clear();
-  own.iterations = 1;
+  own.newton_max_iterations = 1;
   assert_int_equal(solve(&layer, held, 10e3), DEA_E_NOT_CONVERGED);
   expect("no equilibrium after 1 iterations");
   clear();
   own = dea_solid_settings_default();
-  own.shift_first = 0;
+  own.shift_initial = 0;
   assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
-  expect("the setting shift_first has to be above 0");
+  expect("the setting shift_initial has to be above 0");
   clear();
   own = dea_solid_settings_default();
-  own.bulk_stiff = 100;
+  own.descent_bulk_factor = 0.1;
   assert_int_equal(solve(&layer, held, 0), DEA_E_ARGUMENT);
-  expect("bulk_stiff has to be a power of 2");
+  expect("descent_bulk_factor has to be a power of 2");
   clear();
   settings = NULL;
 }

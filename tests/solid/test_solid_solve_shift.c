@@ -95,7 +95,7 @@ TEST(test_many_modes)
     for (size_t n = 0; n < grid->node_count; n++) {
       s->state.u[3 * n + 2] = 0.05 * (1 - cos(2 * acos(-1) * grid->X[3 * n] / strip.size[0]));
     }
-    s->settings.shift_modes = modes[i];
+    s->settings.shift_max_modes = modes[i];
     assert_int_equal(dea_load_steps_solve(ctx, s, 0, &report), DEA_OK);
     assert_int_equal(report.unstable_modes, 0);
     energy_J[i] = report.energy_J;

@@ -33,7 +33,7 @@ static dea_status go_down(struct dea_solid *s, const struct dea_grid *grid, doub
 static struct dea_solid *make(const struct dea_grid *grid, double soft)
 {
   struct dea_solid *s = block_solid(ctx, grid, strip.order_z, &layer, ends);
-  s->settings.bulk_soft = soft;
+  s->settings.descent_bulk_factor = soft;
   return s;
 }
 
@@ -72,7 +72,7 @@ TEST(test_small_push)
     struct dea_solid *s = make(grid, 1.0 / 16);
     struct dea_solid_report report;
     assert_int_equal(go_down(s, grid, share, &report), DEA_OK);
-    assert_close(report.residual, 0, 0, s->settings.residual);
+    assert_close(report.residual, 0, 0, s->settings.newton_rtol);
     dea_solid_destroy(ctx, s);
   }
   dea_grid_destroy(ctx, grid);
@@ -83,7 +83,7 @@ TEST(test_is_its_own_again)
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *s = make(grid, 1.0 / 16);
   struct dea_solid_report report;
-  s->settings.iterations = 3;
+  s->settings.newton_max_iterations = 3;
   assert_int_equal(go_down(s, grid, 0.05, &report), DEA_E_NOT_CONVERGED);
   assert_true(s->state.bulk_factor == 1);
   dea_context_clear(ctx);

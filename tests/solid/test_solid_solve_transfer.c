@@ -51,7 +51,7 @@ static dea_status try(struct dea_context *with)
     layers[i].thickness_m = strip.size[2];
     assert_int_equal(dea_part_material_relax(&layers[i]), DEA_OK);
   }
-  settings.iterations = iterations > 0 ? iterations : settings.iterations;
+  settings.newton_max_iterations = iterations > 0 ? iterations : settings.newton_max_iterations;
   const struct dea_solid_options options = {.order_z = strip.order_z,
                                             .part_material_count = 2,
                                             .part_materials = layers,

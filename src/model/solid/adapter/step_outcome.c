@@ -75,7 +75,7 @@ static double slack_V(const struct dea_step_outcome *e, int first)
 static dea_status see_slack_beyond(struct dea_context *ctx, struct dea_step_outcome *e, bool *slack)
 {
   const double V = dea_solid_voltage(e->owner.solid), beyond = slack_V(e, 1);
-  const double near = 1 + e->owner.solid->settings.branch_jump_way;
+  const double near = 1 + dea_branch_jump_width;
   *slack = e->tension_V[2] == V && e->tension_V[1] != V && beyond >= V && beyond <= near * V;
   if (*slack) {
     DEA_TRY(ctx, take_event(ctx, e, DEA_EVENT_SLACK));

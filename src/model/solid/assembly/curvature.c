@@ -139,7 +139,7 @@ static dea_status add_loads(struct dea_solid *s, size_t count, const double *v, 
 static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s,
                              struct capacity *capacity, size_t count, const double *v, double *out)
 {
-  const double stiff = s->settings.bulk_stiff * s->state.bulk_factor;
+  const double stiff = DEA_SOLID_STIFF * s->state.bulk_factor;
   const size_t pressures = dea_solid_pressure_count(s);
   double *own = dea_solid_alloc(ctx, pressures + 1, sizeof *own);
   if (own == NULL) {
@@ -201,7 +201,7 @@ static dea_status add_motion(struct dea_solid *s, size_t e, const double *v, con
   }
   const struct dea_element_motion motion = {
       .v = moving, .potential = potential, .pressure = q + e * (size_t)p->elements.pressures};
-  place.part_material.kappa_Pa *= s->settings.bulk_stiff;
+  place.part_material.kappa_Pa *= DEA_SOLID_STIFF;
   dea_status status = element->type->motion(element, &in, &motion, &bent, &moved);
   if (status == DEA_OK && p->body_count > 0) {
     place.part_material.kappa_Pa = 0;

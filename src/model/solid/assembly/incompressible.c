@@ -51,21 +51,19 @@ static void keep_pressures(struct dea_solid *s, double factor)
 
 void dea_solid_raise_bulk_modulus(struct dea_solid *s)
 {
-  const struct dea_solid_settings *o = &s->settings;
-  keep_pressures(s, o->bulk_stiff);
-  dea_solid_scale_bulk_modulus(s, o->bulk_stiff);
+  keep_pressures(s, DEA_SOLID_STIFF);
+  dea_solid_scale_bulk_modulus(s, DEA_SOLID_STIFF);
 }
 
 void dea_solid_restore_bulk_modulus_at_pressure(struct dea_solid *s)
 {
-  dea_solid_scale_bulk_modulus(s, 1 / s->settings.bulk_stiff);
+  dea_solid_scale_bulk_modulus(s, 1.0 / DEA_SOLID_STIFF);
 }
 
 void dea_solid_restore_bulk_modulus(struct dea_solid *s)
 {
-  const struct dea_solid_settings *o = &s->settings;
-  keep_pressures(s, 1 / o->bulk_stiff);
-  dea_solid_scale_bulk_modulus(s, 1 / o->bulk_stiff);
+  keep_pressures(s, 1.0 / DEA_SOLID_STIFF);
+  dea_solid_scale_bulk_modulus(s, 1.0 / DEA_SOLID_STIFF);
 }
 
 dea_status dea_solid_assemble_stiff(struct dea_context *ctx, struct dea_solid *s)

@@ -4,6 +4,9 @@
 
 #include "model/solid/assembly/problem.h"
 
+/* kappa is raised by that where unstable modes are counted; a power of 2 leaves no rounding. */
+enum { DEA_SOLID_STIFF = 128 };
+
 /* Largest theta of the last assembly. */
 double dea_solid_theta_max(const struct dea_solid *s);
 /* The multipliers take over kappa theta. */

@@ -7,11 +7,12 @@
 
 static const struct member {
   struct dea_solid_setting about;
+  const char *former;
   size_t offset;
   bool whole; // an int, otherwise a double
 } members[] = {
-#define MEMBER(type, member, value, unit, meaning)                                                 \
-  {{#member, unit, meaning}, offsetof(struct dea_solid_settings, member), (type)0.5 == 0},
+#define MEMBER(type, member, former, value, unit, meaning)                                         \
+  {{#member, unit, meaning}, former, offsetof(struct dea_solid_settings, member), (type)0.5 == 0},
     DEA_SOLID_SETTINGS(MEMBER)
 #undef MEMBER
 };
@@ -20,7 +21,7 @@ enum { MEMBERS = sizeof members / sizeof members[0] };
 
 struct dea_solid_settings dea_solid_settings_default(void)
 {
-#define DEFAULT(type, member, value, unit, meaning) .member = (value),
+#define DEFAULT(type, member, former, value, unit, meaning) .member = (value),
   return (struct dea_solid_settings){DEA_SOLID_SETTINGS(DEFAULT).accept_unstable = false};
 #undef DEFAULT
 }
@@ -48,7 +49,8 @@ dea_status dea_solid_settings_set(struct dea_context *ctx, struct dea_solid_sett
 {
   struct dea_solid_settings next = *settings;
   size_t i = 0;
-  while (i < MEMBERS && strcmp(members[i].about.name, name) != 0) {
+  while (i < MEMBERS && strcmp(members[i].about.name, name) != 0 &&
+         strcmp(members[i].former, name) != 0) {
     i++;
   }
   if (i == MEMBERS) {
@@ -69,15 +71,6 @@ dea_status dea_solid_settings_set(struct dea_context *ctx, struct dea_solid_sett
   return DEA_OK;
 }
 
-static dea_status check_power(struct dea_context *ctx, const char *name, double value)
-{
-  int exponent;
-  return frexp(value, &exponent) == 0.5
-             ? DEA_OK
-             : dea_fail(ctx, DEA_E_ARGUMENT, "the setting %s has to be a power of 2, not %g", name,
-                        value);
-}
-
 dea_status dea_solid_settings_check(struct dea_context *ctx,
                                     const struct dea_solid_settings *settings)
 {
@@ -89,8 +82,11 @@ dea_status dea_solid_settings_check(struct dea_context *ctx,
                       setting->name, value);
     }
   }
-  DEA_TRY(ctx, check_power(ctx, "bulk_soft", settings->bulk_soft));
-  DEA_TRY(ctx, check_power(ctx, "bulk_stiff", settings->bulk_stiff));
-  DEA_TRY(ctx, check_power(ctx, "path_bulk", settings->path_bulk));
+  int exponent;
+  if (frexp(settings->descent_bulk_factor, &exponent) != 0.5) {
+    return dea_fail(ctx, DEA_E_ARGUMENT,
+                    "the setting descent_bulk_factor has to be a power of 2, not %g",
+                    settings->descent_bulk_factor);
+  }
   return DEA_OK;
 }

@@ -144,7 +144,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_adjoint *a)
   if (a->factorised) { // K at a finite kappa may have a negative pivot
     DEA_TRY(ctx, dea_solid_count_unstable(ctx, s, false, &report));
   }
-  a->stiff = s->found.factor_fits ? 1 : s->settings.bulk_stiff;
+  a->stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF;
   DEA_TRY(ctx, find_constraints(ctx, a));
   return DEA_OK;
 }
@@ -516,7 +516,7 @@ void dea_adjoint_mode_pressures(const struct dea_adjoint *a, const double *v, do
   for (size_t k = 0; k < p->own_count && most > 0; k++) {
     size_t e = p->own[k], count = (size_t)dea_solid_element(a->s, e)->pressures;
     const double *b = a->b + k * most * DEA_HEX_DOFS_MAX, *L = a->L + k * most * most;
-    const double kappa_Pa = a->s->settings.bulk_stiff * dea_solid_bulk_modulus(a->s, e);
+    const double kappa_Pa = DEA_SOLID_STIFF * dea_solid_bulk_modulus(a->s, e);
     size_t dofs = 3 * (size_t)dea_solid_gather(a->s, e, v, own);
     for (size_t m = count; m-- > 0 && L[0] > 0;) { // L^T out = kappa b v
       double sum = 0;

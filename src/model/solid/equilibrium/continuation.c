@@ -15,6 +15,28 @@
 #include <math.h>
 #include <string.h>
 
+enum { MAX_ATTEMPTS = 16 };   // at one step, each half as long
+enum { MANY_ITERATIONS = 8 }; // above which the next step is shorter
+static const double max_off =
+    0.3; // of the step: a point farther from its prediction is of another path
+static const double aimed_off = 0.08;   // of the step: distance that steps aim at
+static const double min_bend = 0.02;    // of a unit tangent, below which a path is an arc
+static const double min_step = 1e-6;    // of the first step
+static const double stol = 1e-10;       // of the solid's length
+static const double rough_rtol = 1e-4;  // of the step, on the way to an event
+static const double plane_rtol = 1e-9;  // of the step
+static const double theta_share = 1e-2; // of volume_tol: there kappa theta is no pressure any more
+static const double bulk_factor = 16;  // of kappa in the corrector; a power of 2 leaves no rounding
+static const double difference = 1e-5; // of tau: the force is linear in it
+static const double predicting_rate =
+    0.3;                              // of the residual before: falls less where stresses mislead
+enum { MAX_HIDDEN = 3 };              // steps in a row that rounding hides
+enum { MAX_ROUNDS = 20 };             // of regula falsi
+static const double zero_rtol = 1e-8; // of what it was
+static const double beside = 0.03;    // of the bracket: first distance from a singular point
+enum { MAX_BESIDE = 4 };              // attempts beside it, each twice as far
+enum { MAX_SWITCHES = 6 };            // attempts at another branch, each half as far
+
 /* An equilibrium on the path. */
 struct dea_continuation_path_point {
   double *state; // [state_count]
@@ -131,7 +153,7 @@ static dea_status force_rate(struct dea_context *ctx, struct dea_solid_continuat
 {
   struct dea_solid *s = t->s;
   const size_t size = s->problem.dofs * sizeof(double);
-  double energy, tau = t->load, by = s->settings.path_difference;
+  double energy, tau = t->load, by = difference;
   memcpy(t->rate, s->work.g, size);
   if (set_load(ctx, t, tau + by) != DEA_OK) {
     dea_context_clear(ctx);
@@ -227,9 +249,9 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &t->energy_J));
   *residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g)) /
               (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
-  bool constrained = dea_solid_theta_max(s) < o->path_theta * o->theta;
-  *there = isfinite(before) && constrained && *residual < o->path_residual &&
-           fabs(off_plane(t)) < o->path_plane * fabs(t->plane.length);
+  bool constrained = dea_solid_theta_max(s) < theta_share * o->volume_tol;
+  *there = isfinite(before) && constrained && *residual < o->arc_rtol &&
+           fabs(off_plane(t)) < plane_rtol * fabs(t->plane.length);
   if (*there) {
     return DEA_OK;
   }
@@ -238,14 +260,14 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   DEA_TRY(ctx, bordered_step(ctx, t, &dtau));
   *hidden = constrained && !dea_solid_resolved(s, dea_solid_dot(s, s->work.g, s->work.step));
   double share = share_with_energy(s);
-  bool stresses = *residual < o->path_fall * before;
+  bool stresses = *residual < predicting_rate * before;
   DEA_TRY(ctx, dea_solid_predict(ctx, s, s->state.voltage_V, s->work.step, share, stresses, true));
   for (size_t i = 0; i < s->problem.dofs; i++) {
     s->state.u[i] += share * s->work.step[i];
     most = fmax(most, fabs(s->work.step[i]));
   }
   double size = hypot(size_of(t, s->work.step), dtau);
-  *small = (constrained && most < o->path_step * s->problem.length_m) ||
+  *small = (constrained && most < stol * s->problem.length_m) ||
            (share == 1 && size < t->plane.enough * fabs(t->plane.length));
   DEA_TRY(ctx, set_load(ctx, t, t->load + share * dtau));
   return DEA_OK;
@@ -259,17 +281,17 @@ static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation
   const struct dea_solid_settings *o = &t->s->settings;
   double residual = INFINITY;
   int in_a_row = 0; // hidden steps
-  for (*iterations = 1; *iterations <= o->path_iterations; ++*iterations) {
+  for (*iterations = 1; *iterations <= o->arc_max_iterations; ++*iterations) {
     bool there = false, small = false, hidden = false;
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
     DEA_TRY(ctx, correct_once(ctx, t, &residual, &there, &small, &hidden));
     in_a_row = hidden ? in_a_row + 1 : 0;
-    if ((there || in_a_row >= o->path_hidden || (small && *iterations > 1)) &&
+    if ((there || in_a_row >= MAX_HIDDEN || (small && *iterations > 1)) &&
         dea_solid_update_loads(t->s) <= 1) {
       return DEA_OK;
     }
   }
-  *iterations = o->path_iterations;
+  *iterations = o->arc_max_iterations;
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium in the plane (residual %.1e)",
                   residual);
 }
@@ -278,10 +300,9 @@ static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation
 static dea_status solve_in_plane(struct dea_context *ctx, struct dea_solid_continuation *t,
                                  int *iterations)
 {
-  const struct dea_solid_settings *o = &t->s->settings;
-  dea_solid_scale_bulk_modulus(t->s, o->path_bulk);
+  dea_solid_scale_bulk_modulus(t->s, bulk_factor);
   dea_status status = correct(ctx, t, iterations);
-  dea_solid_scale_bulk_modulus(t->s, 1 / o->path_bulk);
+  dea_solid_scale_bulk_modulus(t->s, 1 / bulk_factor);
   t->s->found.predicted_fits = false;
   return status;
 }
@@ -440,7 +461,7 @@ static dea_status follow_curve(struct dea_context *ctx, struct dea_solid_continu
   const size_t dofs = s->problem.dofs;
   const double *last = t->last.state, *before = t->before.state;
   double h, load;
-  if (!t->arc || !(curve(t, &h, &load) < s->settings.path_off_most)) {
+  if (!t->arc || !(curve(t, &h, &load) < max_off)) {
     return DEA_OK;
   }
   const double square = t->step * t->step / (h * h);
@@ -461,7 +482,6 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
                                double *off, int *iterations)
 {
   struct dea_solid *s = t->s;
-  const struct dea_solid_settings *o = &s->settings;
   DEA_TRY(ctx, return_to(ctx, t, &t->last));
   for (size_t i = 0; i < s->problem.dofs; i++) {
     t->start[i] = t->step * t->tangent[i];
@@ -470,13 +490,13 @@ static dea_status attempt_step(struct dea_context *ctx, struct dea_solid_continu
   memcpy(t->start, s->state.u, s->problem.dofs * sizeof *t->start);
   double tau = t->load;
   DEA_TRY(ctx, follow_curve(ctx, t));
-  set_plane(t, t->tangent, t->tangent_load, &t->last, t->step, t->rough ? o->path_rough : 0);
+  set_plane(t, t->tangent, t->tangent_load, &t->last, t->step, t->rough ? rough_rtol : 0);
   DEA_TRY(ctx, solve_in_plane(ctx, t, iterations));
   *off = distance_from(t, t->start, tau) / t->step;
-  if (*off < o->path_off_most) {
+  if (*off < max_off) {
     t->next.arc = t->last.arc + t->step;
     DEA_TRY(ctx, record_point(ctx, t, t->tangent, t->tangent_load, false, &t->next));
-    if (bend(t) < fmax(*off, o->path_bend_least)) {
+    if (bend(t) < fmax(*off, min_bend)) {
       return DEA_OK;
     }
   }
@@ -502,11 +522,10 @@ static void accept_point(struct dea_solid_continuation *t)
 dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid_continuation *t,
                                        struct dea_continuation_point *point)
 {
-  const struct dea_solid_settings *o = &t->s->settings;
   double off = 0;
   int iterations = 0, all = 0;
   dea_status status = DEA_OK;
-  for (int i = 0; i < o->path_attempts; i++) {
+  for (int i = 0; i < MAX_ATTEMPTS; i++) {
     dea_context_clear(ctx);
     iterations = 0;
     status = attempt_step(ctx, t, &off, &iterations);
@@ -528,8 +547,8 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
   accept_point(t);
   report_point(t, &t->last, t->event, point);
   point->iterations = all;
-  double longer = off > 0 ? fmin(sqrt(o->path_off_good / off), 2) : 2;
-  longer = iterations > o->path_iterations_many ? fmin(longer, 0.7) : longer;
+  double longer = off > 0 ? fmin(sqrt(aimed_off / off), 2) : 2;
+  longer = iterations > MANY_ITERATIONS ? fmin(longer, 0.7) : longer;
   t->step = fmin(t->step * fmax(longer, 0.5), t->step_most);
   return DEA_OK;
 }
@@ -613,7 +632,7 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
     t->metric[i] /= volume * options->unit_m * options->unit_m;
   }
   t->step = fabs(options->step);
-  t->step_least = s->settings.path_step_least * t->step;
+  t->step_least = min_step * t->step;
   t->step_most = options->step_most > 0 ? options->step_most : INFINITY;
   t->rough = options->rough;
   return DEA_OK;
@@ -629,8 +648,8 @@ static dea_status settle(struct dea_context *ctx, struct dea_solid_continuation 
   DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, s->state.voltage_V, s->state.u));
   DEA_TRY(ctx, dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_FORCE, &t->energy_J));
   double residual = sqrt(dea_solid_dot(s, s->work.g, s->work.g));
-  if (!(residual < o->residual * s->found.force_scale_N) || dea_solid_theta_max(s) >= o->theta ||
-      dea_solid_update_loads(s) > 1) {
+  if (!(residual < o->newton_rtol * s->found.force_scale_N) ||
+      dea_solid_theta_max(s) >= o->volume_tol || dea_solid_update_loads(s) > 1) {
     DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, &report));
   }
   return DEA_OK;
@@ -787,12 +806,10 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid_conti
 static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_continuation *t,
                                    const struct bracket *b, double *share)
 {
-  const struct dea_solid_settings *o = &t->s->settings;
   dea_status status = solve_at_share(ctx, t, b, *share);
   bool first_half = *share - b->at[0] < b->at[1] - *share;
-  double by = (first_half ? o->critical_aside : -o->critical_aside) * (b->at[1] - b->at[0]),
-         from = *share;
-  for (int i = 0; i < o->critical_aside_most && dea_solid_may_shorten(status); i++, by *= 2) {
+  double by = (first_half ? beside : -beside) * (b->at[1] - b->at[0]), from = *share;
+  for (int i = 0; i < MAX_BESIDE && dea_solid_may_shorten(status); i++, by *= 2) {
     dea_context_clear(ctx);
     *share = from + by;
     status = solve_at_share(ctx, t, b, *share);
@@ -814,9 +831,9 @@ static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuatio
   const struct dea_solid_settings *o = &t->s->settings;
   double seen[2] = {fabs(b->value[0]), fabs(b->value[1])}, first = fmax(seen[0], seen[1]);
   double value = NAN, share = next_share(b);
-  double enough = t->event == DEA_CONTINUATION_LIMIT ? o->critical_limit : o->critical_bifurcation;
+  double enough = t->event == DEA_CONTINUATION_LIMIT ? o->limit_point_rtol : o->bifurcation_rtol;
   int stays = -1;
-  for (int i = 0; i < o->critical_rounds; i++) {
+  for (int i = 0; i < MAX_ROUNDS; i++) {
     DEA_TRY(ctx, solve_near_share(ctx, t, b, &share));
     DEA_TRY(ctx, measure_critical(ctx, t, b, &value));
     int end = (value < 0) == (b->value[0] < 0) ? 0 : 1;
@@ -828,7 +845,7 @@ static dea_status close_in(struct dea_context *ctx, struct dea_solid_continuatio
     stays = 1 - end;
     bow_by_point(t, b, share);
     double next = next_share(b);
-    if (fabs(next - share) < enough || fabs(value) < o->critical_flat * first ||
+    if (fabs(next - share) < enough || fabs(value) < zero_rtol * first ||
         fabs(value) > fmax(seen[0], seen[1])) {
       return DEA_OK;
     }
@@ -923,7 +940,7 @@ dea_status dea_solid_continuation_switch(struct dea_context *ctx, struct dea_sol
     return dea_fail(ctx, DEA_E_ARGUMENT, "another branch starts at a bifurcation that was located");
   }
   dea_status status = DEA_OK;
-  for (int i = 0; i < t->s->settings.branch_attempts; i++, distance /= 2) {
+  for (int i = 0; i < MAX_SWITCHES; i++, distance /= 2) {
     dea_context_clear(ctx);
     status = switch_along(ctx, t, side < 0 ? -distance : distance);
     if (!dea_solid_may_shorten(status)) {

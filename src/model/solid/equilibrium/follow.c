@@ -12,6 +12,11 @@
 #include <math.h>
 #include <string.h>
 
+static const double max_rate = 0.6;        // of the first step: slower ones do not pay
+static const double near = 1e-3;           // of the first step: enough for one further on
+static const double max_curvature = 0.1;   // of the first step
+static const double max_extrapolation = 3; // of the step before
+
 /* Newton's method on displacements u and pressures q = p + kappa theta with the tangent of the
  * start kept:
  *
@@ -196,7 +201,6 @@ static bool knows_before(const struct follow *w)
  */
 static void bend(struct follow *w)
 {
-  const struct dea_solid_settings *o = &w->s->settings;
   const struct dea_load_steps *path = &w->s->work.load_steps;
   double V = w->s->state.voltage_V, last = path->last_V, before = path->before_last_V;
   double r = (V * V - last * last) / (last * last - before * before), beside = 0, along = 0;
@@ -205,7 +209,7 @@ static void bend(struct follow *w)
     beside += d * d;
     along += w->f[i] * w->f[i];
   }
-  if (r > 0 && r <= o->follow_bend_way && sqrt(beside) < o->follow_bend * sqrt(along)) {
+  if (r > 0 && r <= max_extrapolation && sqrt(beside) < max_curvature * sqrt(along)) {
     for (size_t i = 0; i < w->count; i++) {
       w->x[i] += r * w->f[i] - r * r * (w->first[i] - path->before_last[i]);
     }
@@ -362,14 +366,14 @@ static bool pays(const struct follow *w, int k)
   double goal = w->accuracy * w->size_first / w->size_renewed;
   k -= w->renewed;
   return k == 0 ||
-         (size < o->follow_rate && (k < 2 || k * log(goal) / log(size) < o->follow_steps));
+         (size < max_rate && (k < 2 || k * log(goal) / log(size) < o->anderson_max_iterations));
 }
 
 /* Brings the loads' multipliers up to date at x, once that is near enough. What is remembered is of
  * other forces then. */
 static bool renew_loads(struct follow *w, int k)
 {
-  if (w->load_error <= 1 || !(w->size < w->s->settings.follow_on_the_way * w->size_first)) {
+  if (w->load_error <= 1 || !(w->size < near * w->size_first)) {
     return false;
   }
   set(w, w->x);
@@ -397,8 +401,9 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
   w->size_renewed = renewed ? w->size : w->size_renewed;
   bool small = k > 0 && w->size < w->accuracy * w->size_first;
   w->rate = k == 1 ? w->size / w->size_first : w->rate;
-  *there = small && (!w->equilibrium || (w->report->theta_max < o->theta &&
-                                         w->report->residual < o->residual && w->load_error <= 1));
+  *there =
+      small && (!w->equilibrium || (w->report->theta_max < o->volume_tol &&
+                                    w->report->residual < o->newton_rtol && w->load_error <= 1));
   *ends = !*there && !pays(w, k);
   if (!*ends) {
     if (!renewed) {
@@ -450,8 +455,9 @@ static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *t
   for (size_t i = 0; i < w->s->problem.load_count; i++) {
     w->load_error = w->s->problem.loads[i].update != NULL ? INFINITY : w->load_error;
   }
-  for (int k = 0;
-       k - w->renewed <= w->s->settings.follow_steps && status == DEA_OK && !*there && !ends; k++) {
+  for (int k = 0; k - w->renewed <= w->s->settings.anderson_max_iterations && status == DEA_OK &&
+                  !*there && !ends;
+       k++) {
     status = iterate(ctx, w, k, there, &ends);
   }
   if (*there) {
@@ -521,15 +527,14 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double
 {
   struct follow w = {.memory = {.ctx = ctx},
                      .s = s,
-                     .accuracy =
-                         on_the_way ? s->settings.follow_on_the_way : s->settings.follow_accuracy,
+                     .accuracy = on_the_way ? near : s->settings.anderson_rtol,
                      .equilibrium = !on_the_way,
                      .from_V = from_V,
                      .report = report,
                      .dofs = s->problem.dofs,
                      .pressures = dea_solid_pressure_count(s),
                      .count = s->problem.dofs + dea_solid_pressure_count(s),
-                     .stiff = s->found.factor_fits ? 1 : s->settings.bulk_stiff};
+                     .stiff = s->found.factor_fits ? 1 : DEA_SOLID_STIFF};
   *there = false;
   if (rate != NULL) {
     *rate = 0;

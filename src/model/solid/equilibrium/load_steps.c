@@ -14,6 +14,9 @@
 #include <math.h>
 #include <string.h>
 
+static const double aimed_rate = 0.5; // of the first step: about ten steps to anderson_rtol
+static const double equal = 1e-6;     // of the fall: both sides of a pitchfork
+
 /* ---- from an unstable equilibrium down to a stable one ---- */
 
 /* trial = u + size v, and the energy there; INFINITY where there is none. */
@@ -45,7 +48,7 @@ static double choose_push(struct dea_context *ctx, struct dea_solid *s, const do
     double down = side <= 0 ? energy_beside(ctx, s, u, mode, -size) : INFINITY;
     lowest = fmin(up, down);
     if (lowest < energy) {
-      push = up <= down + s->settings.descent_equal * fabs(energy - down) ? size : -size;
+      push = up <= down + equal * fabs(energy - down) ? size : -size;
     }
   }
   double next = push != 0 ? energy_beside(ctx, s, u, mode, 2 * push) : INFINITY;
@@ -62,8 +65,9 @@ static double choose_push(struct dea_context *ctx, struct dea_solid *s, const do
 static dea_status descend(struct dea_context *ctx, struct dea_solid *s, int side, double *mode,
                           struct dea_solid_report *report)
 {
-  const double energy = report->energy_J, size_m = s->settings.descent_push * s->problem.length_m;
-  for (int k = 0; k < s->settings.descent_modes && report->unstable_modes > 0; k++) {
+  const double energy = report->energy_J,
+               size_m = s->settings.descent_perturbation * s->problem.length_m;
+  for (int k = 0; k < s->settings.descent_max_modes && report->unstable_modes > 0; k++) {
     double value;
     DEA_TRY(ctx, dea_solid_unstable_mode(ctx, s, &value, mode));
     double push =
@@ -243,9 +247,9 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
 
 /* The next part of the way after one, whose iterations fell by `rate` at first (0: not known),
  * which goes with the part. */
-static double next_part(const struct dea_solid *s, double part, double rate, bool there)
+static double next_part(double part, double rate, bool there)
 {
-  double share = rate > 0 ? s->settings.follow_aim / rate : there ? 2 : 0.5;
+  double share = rate > 0 ? aimed_rate / rate : there ? 2 : 0.5;
   return part * (there ? fmin(fmax(share, 0.5), 2) : fmin(fmax(share, 0.125), 0.5));
 }
 
@@ -261,7 +265,7 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   bool fits = true;
   path->last_V = path->before_last_V; // no bend of another solve: a state that is kept has none
   bool alone = memcmp(from + 1, goal + 1, (path->control_count - 1) * sizeof *from) == 0;
-  while (report->way < 1 && part >= s->settings.follow_part && fits) {
+  while (report->way < 1 && part >= s->settings.anderson_step_min && fits) {
     double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
     part = way - report->way;
     double here_V = alone ? from[0] + report->way * (goal[0] - from[0]) : NAN;
@@ -272,7 +276,7 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
     from_here = *there ? INFINITY : rate / sqrt(part);
     to_end = way < 1 ? to_end : rate / sqrt(part);
     report->way = *there ? way : report->way;
-    part = next_part(s, part, rate, *there);
+    part = next_part(part, rate, *there);
   }
   set_share(s, report->way);
   *there = report->way == 0 || report->way >= 1;
@@ -337,7 +341,7 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, d
 dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *s, double voltage_V,
                                 struct dea_solid_report *report)
 {
-  return dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.load_step_least, report);
+  return dea_load_steps_solve_within(ctx, s, voltage_V, s->settings.load_step_min, report);
 }
 
 dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid *s,

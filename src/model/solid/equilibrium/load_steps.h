@@ -11,7 +11,7 @@
 dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                                 struct dea_solid_report *report);
 
-/* The same with steps of `least` of the way or more, in place of settings.load_step_least. */
+/* The same with steps of `least` of the way or more, in place of settings.load_step_min. */
 dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid *solid,
                                        double voltage_V, double least,
                                        struct dea_solid_report *report);

@@ -12,6 +12,11 @@
 #include <math.h>
 #include <string.h>
 
+static const double min_gap = 1e-6;    // of their values: a count tells modes apart
+enum { MAX_ROUNDS = 6 };               // searches at one end of the spectrum
+enum { MAX_EXTRA = 4 };                // modes that more are asked for
+static const double first_extra = 0.5; // of the modes: those that more are asked for at first
+
 /* SLEPc's Krylov-Schur on K^-1 B with the factor of K that the solver of equilibria makes. Its
  * eigenvalues 1/lambda are extreme at both ends for the modes that are wanted: unstable ones at
  * one, the softest stable ones at the other. Each end is searched by itself. */
@@ -68,8 +73,7 @@ static PetscErrorCode configure(EPS eps, struct eigen *f, PetscInt wanted)
   CHECK(EPSSetEigenvalueComparison(eps, compare_eigenvalues, f));
   CHECK(EPSSetWhichEigenpairs(eps, EPS_WHICH_USER));
   CHECK(EPSSetDimensions(eps, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
-  CHECK(
-      EPSSetTolerances(eps, f->solid->settings.mode_residual, f->solid->settings.mode_iterations));
+  CHECK(EPSSetTolerances(eps, f->solid->settings.eps_tol, f->solid->settings.eps_max_iterations));
   CHECK(EPSSetDeflationSpace(eps, f->count, f->vectors));
   CHECK(EPSGetST(eps, &st));
   CHECK(STSetType(st, STSINVERT));
@@ -139,7 +143,7 @@ static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, b
   for (int k = count; k <= f->count; k++) { // behind the last found there may be none
     double low = f->value[f->order[k - 1]];
     double high = k < f->count ? f->value[f->order[k]] : low + fabs(low);
-    if (high - low > f->solid->settings.mode_apart * (fabs(low) + fabs(high))) {
+    if (high - low > min_gap * (fabs(low) + fabs(high))) {
       int below = 0;
       DEA_TRY(ctx, count_below(ctx, f, 0.5 * (low + high), &below));
       *all = below == k;
@@ -154,12 +158,11 @@ static dea_status certify(struct dea_context *ctx, struct eigen *f, int count, b
  * ones in a round. */
 static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, bool below)
 {
-  const struct dea_solid_settings *o = &f->solid->settings;
   // of few modes, one more: with more asked for, Lanczos' first space of vectors does not do
-  const PetscInt extra = (count + 1) / 2 < o->mode_extra ? (count + 1) / 2 : o->mode_extra;
-  PetscInt wanted = below ? count : count - f->count + extra + (PetscInt)(o->mode_room * count);
+  const PetscInt extra = (count + 1) / 2 < MAX_EXTRA ? (count + 1) / 2 : MAX_EXTRA;
+  PetscInt wanted = below ? count : count - f->count + extra + (PetscInt)(first_extra * count);
   f->below = below;
-  for (int round = 0; round < o->mode_rounds; round++) {
+  for (int round = 0; round < MAX_ROUNDS; round++) {
     PetscInt before = f->count;
     wanted = wanted < f->capacity - f->count ? wanted : f->capacity - f->count;
     if (wanted < 1) {
@@ -180,7 +183,7 @@ static dea_status find_end(struct dea_context *ctx, struct eigen *f, int count, 
     if (!below) {
       DEA_TRY(ctx, dea_solid_factor_any(ctx, f->solid));
     }
-    wanted = below ? count - f->count : o->mode_extra + count / 2;
+    wanted = below ? count - f->count : MAX_EXTRA + count / 2;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "only %d modes were found, and not all up to the %d-th",
                   (int)f->count, count);
@@ -267,7 +270,7 @@ static dea_status hand_over(struct dea_context *ctx, const struct eigen *f, size
 static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_mode_metric metric,
                              int unstable, int count)
 {
-  f->capacity = 3 * (unstable > count ? unstable : count) + 8 * f->solid->settings.mode_extra;
+  f->capacity = 3 * (unstable > count ? unstable : count) + 8 * MAX_EXTRA;
   f->memory.ctx = ctx;
   f->order = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->order);
   f->value = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->value);

@@ -11,6 +11,17 @@
 #include <math.h>
 #include <string.h>
 
+static const double divergence_rtol = 0.3; // of the sum of element forces: none balances another
+enum { MAX_STALLED = 3 };               // shifted steps in a row that are shorter than newton_stol
+static const double lag_rate = 0.2;     // of the residual before: an old factor is good enough
+static const double max_rise = 20;      // of the slope: along a curved valley linear steps go up
+enum { MAX_SHIFTS = 40 };               // attempts to make the tangent positive definite
+static const double min_shift = 3e-5;   // of the softest modulus; below there is none
+static const double shift_growth = 4;   // after a step that was cut
+static const double shift_decay = 10;   // after a good step, its square after a quadratic one
+static const double shift_margin = 2;   // of the lowest eigenvalue: as far above 0 as it was below
+static const double descent_end = 1e-3; // of theta and residual, where kappa is its own again
+
 struct newton {
   double voltage_V;
   double shift_Pa;
@@ -51,9 +62,9 @@ static dea_status raise_shift(struct dea_context *ctx, struct dea_solid *s, stru
                               double there, int negative, Mat *L)
 {
   const struct dea_solid_settings *o = &s->settings;
-  double lowest_Pa = 0, more = o->shift_up * (negative > MANY ? 16 : negative > SOME ? 4 : 1);
-  d->shift_Pa = there > 0 ? more * there : o->shift_first * s->problem.modulus_Pa;
-  if (negative > o->shift_modes) {
+  double lowest_Pa = 0, more = shift_growth * (negative > MANY ? 16 : negative > SOME ? 4 : 1);
+  d->shift_Pa = there > 0 ? more * there : o->shift_initial * s->problem.modulus_Pa;
+  if (negative > o->shift_max_modes) {
     return DEA_OK;
   }
   if (*L == NULL) {
@@ -61,7 +72,7 @@ static dea_status raise_shift(struct dea_context *ctx, struct dea_solid *s, stru
   }
   DEA_TRY(ctx, dea_solid_lowest_by_laplace(ctx, s, *L, negative, &lowest_Pa));
   if (lowest_Pa < 0) {
-    d->shift_Pa = there - o->shift_margin * lowest_Pa;
+    d->shift_Pa = there - shift_margin * lowest_Pa;
   }
   return DEA_OK;
 }
@@ -70,8 +81,8 @@ static dea_status raise_shift(struct dea_context *ctx, struct dea_solid *s, stru
 static dea_status search_definite(struct dea_context *ctx, struct dea_solid *s, struct newton *d,
                                   double *there, Mat *L)
 {
-  const int most = s->settings.shift_modes > MANY ? s->settings.shift_modes : MANY;
-  for (int i = 0; i < s->settings.shifts; i++) {
+  const int most = s->settings.shift_max_modes > MANY ? s->settings.shift_max_modes : MANY;
+  for (int i = 0; i < MAX_SHIFTS; i++) {
     int negative;
     double more_Pa = d->shift_Pa - *there;
     if (more_Pa != 0 && *L != NULL) {
@@ -128,7 +139,8 @@ void dea_solid_predict_tangent(struct dea_solid *s, const double *step)
 
 bool dea_solid_resolved(const struct dea_solid *s, double change)
 {
-  return fabs(change) > s->settings.energy * s->found.energy_scale_J + s->problem.energy_floor_J;
+  return fabs(change) >
+         s->settings.energy_rtol * s->found.energy_scale_J + s->problem.energy_floor_J;
 }
 
 /* The longest share of the step that the energy lets pass, into work.trial. *rise: of the energy
@@ -137,10 +149,10 @@ static bool search_line(struct dea_context *ctx, struct dea_solid *s, const stru
                         double slope, double *share, double *rise)
 {
   const struct dea_solid_settings *o = &s->settings;
-  double energy = d->report->energy_J, allowed = d->strict ? -o->downhill : o->uphill, at;
+  double energy = d->report->energy_J, allowed = d->strict ? -o->linesearch_alpha : max_rise, at;
   *rise = -0.5;
   *share = 1;
-  for (int i = 0; i < o->halvings; i++, *share /= 2) {
+  for (int i = 0; i < o->linesearch_max_iterations; i++, *share /= 2) {
     for (size_t k = 0; k < s->problem.dofs; k++) {
       s->work.trial[k] = s->state.u[k] + *share * s->work.step[k];
     }
@@ -165,14 +177,14 @@ static void adapt_shift(const struct dea_solid *s, struct newton *d, double shar
   double shift_Pa = d->shift_Pa;
   const struct dea_solid_settings *o = &s->settings;
   if (share < 1 || (rise > 0 && shift_Pa == 0)) {
-    shift_Pa = shift_Pa > 0 ? shift_Pa * (share < 0.2 ? o->shift_up * o->shift_up : o->shift_up)
-                            : o->shift_first * s->problem.modulus_Pa;
+    shift_Pa = shift_Pa > 0 ? shift_Pa * (share < 0.2 ? shift_growth * shift_growth : shift_growth)
+                            : o->shift_initial * s->problem.modulus_Pa;
   } else if (rise > 0) {
     shift_Pa /= rise < 1 ? 2 : 1;
   } else if (rise < -0.25) {
-    shift_Pa /= fabs(rise + 0.5) < 0.05 ? o->shift_down * o->shift_down : o->shift_down;
+    shift_Pa /= fabs(rise + 0.5) < 0.05 ? shift_decay * shift_decay : shift_decay;
   }
-  d->shift_Pa = shift_Pa < s->settings.shift_least * s->problem.modulus_Pa ? 0 : shift_Pa;
+  d->shift_Pa = shift_Pa < min_shift * s->problem.modulus_Pa ? 0 : shift_Pa;
 }
 
 /* ---- stresses and pressures at the end of a step ---- */
@@ -236,9 +248,10 @@ static void choose_softness(struct dea_solid *s, struct newton *d, bool soft)
 {
   const struct dea_solid_settings *o = &s->settings;
   bool near =
-      d->shift_Pa == 0 && d->report->theta_max < o->soft_end && d->report->residual < o->soft_end;
+      d->shift_Pa == 0 && d->report->theta_max < descent_end && d->report->residual < descent_end;
   if (!d->chord && s->problem.elements.pressures > 0) {
-    soften(s, d, soft && !near && d->shift_Pa <= s->problem.modulus_Pa ? o->bulk_soft : 1);
+    soften(s, d,
+           soft && !near && d->shift_Pa <= s->problem.modulus_Pa ? o->descent_bulk_factor : 1);
   }
 }
 
@@ -290,7 +303,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
   double there = 0, share, rise;
   bool start = d->start;
   d->start = d->chord = *done = false;
-  for (int i = 0; i < o->shifts; i++) {
+  for (int i = 0; i < MAX_SHIFTS; i++) {
     if (!start) {
       DEA_TRY(ctx, factorise_definite(ctx, s, d, &there));
       d->report->iterations++;
@@ -300,10 +313,12 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
     if (search_line(ctx, s, d, slope, &share, &rise)) {
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
-      *done = !start && there == 0 && largest(s, s->work.step) < o->step * s->problem.length_m;
-      d->stuck = there > 0 && share * largest(s, s->work.step) < o->step * s->problem.length_m
-                     ? d->stuck + 1
-                     : 0;
+      *done =
+          !start && there == 0 && largest(s, s->work.step) < o->newton_stol * s->problem.length_m;
+      d->stuck =
+          there > 0 && share * largest(s, s->work.step) < o->newton_stol * s->problem.length_m
+              ? d->stuck + 1
+              : 0;
       d->unresolved = there == 0 && !start && !dea_solid_resolved(s, slope) ? d->unresolved + 1 : 0;
       DEA_TRY(ctx, take_step(ctx, s, d, share, !*done));
       if (start) {
@@ -317,7 +332,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     if (start) {
       return DEA_OK; // the next step has a tangent of its own
     }
-    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : o->shift_first * s->problem.modulus_Pa;
+    d->shift_Pa = d->shift_Pa > 0 ? 16 * d->shift_Pa : o->shift_initial * s->problem.modulus_Pa;
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "the line search found no lower energy");
 }
@@ -335,8 +350,8 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
   double size = norm(s, s->work.g);
   report->residual = size / (s->found.force_scale_N > 0 ? s->found.force_scale_N : 1);
   report->theta_max = dea_solid_theta_max(s);
-  if (d->chord && (d->chords == o->chords || !(size < o->chord_rate * d->norm_before)) &&
-      !(report->residual < o->residual)) {
+  if (d->chord && (d->chords == o->lag_jacobian || !(size < lag_rate * d->norm_before)) &&
+      !(report->residual < o->newton_rtol)) {
     d->chord = false;
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, tangent, &report->energy_J));
   }
@@ -369,15 +384,15 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
 static dea_status heed_divergence(struct dea_context *ctx, const struct dea_solid *s,
                                   struct newton *d)
 {
-  const struct dea_solid_settings *o = &s->settings;
-  d->lost = d->report->residual > o->lost_residual ? d->lost + 1 : 0;
-  if (d->lost >= o->lost) {
+  const int most = s->settings.max_divergent;
+  d->lost = d->report->residual > divergence_rtol ? d->lost + 1 : 0;
+  if (most > 0 && d->lost >= most) {
     return dea_fail(ctx, DEA_E_NOT_CONVERGED,
                     "no equilibrium is near: %d iterations in a row are out of balance (residual "
                     "%.1e)",
                     d->lost, d->report->residual);
   }
-  return d->stuck < o->stuck
+  return d->stuck < MAX_STALLED
              ? DEA_OK
              : dea_fail(ctx, DEA_E_NOT_CONVERGED, "no step lowers the energy (residual %.1e)",
                         d->report->residual);
@@ -396,19 +411,19 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
 {
   const struct dea_solid_settings *o = &s->settings;
   struct dea_solid_report *report = d->report;
-  for (int i = 0; i < o->iterations; i++) {
+  for (int i = 0; i < o->newton_max_iterations; i++) {
     bool done = false;
     DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
-    if (i == o->iterations_free) {
+    if (i == o->newton_max_nonmonotone) {
       d->strict = true;
       d->chord = s->found.predicted_fits = false;
     }
     if (i > 0) {
-      choose_softness(s, d, soft && 2 * i < o->iterations_free);
+      choose_softness(s, d, soft && 2 * i < o->newton_max_nonmonotone);
     }
     DEA_TRY(ctx, evaluate(ctx, s, d));
-    bool fits = d->strict || report->theta_max < o->theta;
-    if (i > 0 && fits && (report->residual < o->residual || d->unresolved > 2)) {
+    bool fits = d->strict || report->theta_max < o->volume_tol;
+    if (i > 0 && fits && (report->residual < o->newton_rtol || d->unresolved > 2)) {
       return count_there(ctx, s, d, !d->chord && d->shift_Pa == 0 && !s->found.predicted_fits);
     }
     DEA_TRY(ctx, heed_divergence(ctx, s, d));
@@ -422,7 +437,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
     }
   }
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "no equilibrium after %d iterations (residual %.1e)",
-                  o->iterations, report->residual);
+                  o->newton_max_iterations, report->residual);
 }
 
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool soft,

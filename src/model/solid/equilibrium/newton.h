@@ -6,8 +6,8 @@
 
 /* Equilibrium at the controls and multipliers of loads as they are, downhill from where it is: a
  * minimum, or a point that has a valley on all sides that a Newton step sees. Pressures follow;
- * where they do not, report->theta_max is above settings.theta. soft: with a soft bulk modulus at
- * first, which may lead further away. */
+ * where they do not, report->theta_max is above settings.volume_tol. soft: with a soft bulk modulus
+ * at first, which may lead further away. */
 dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool soft,
                               struct dea_solid_report *report);
 /* One linear step in which the held components go their work.increment and the rest follows. */

@@ -10,6 +10,16 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { MAX_DIVERGENT = 12 };          // a shorter step or the path costs less than the rest of them
+static const double path_share = 0.5; // of the increment: a shorter step costs more than the path
+static const double slack_share = 0.25;  // of the increment: steps of a slack film take long
+enum { MAX_ROUNDS = 12 };                // of load steps and path in turn
+enum { COUPLED_ITERATIONS = 15 };        // a taut film with a coupled field takes few, or jumps
+static const double path_unit = 0.1;     // of the displacement: counts as much as the increment
+static const double path_step = 0.5;     // of the increment: first step on the path
+static const double max_path_step = 4;   // of the increment
+static const double max_off_tangent = 1; // of the tangent step: farther off lies another branch
+
 /* To controls that are wanted. */
 struct search {
   struct dea_solid *s;
@@ -138,7 +148,7 @@ static double unit_of(const struct dea_solid *s, const double *from, const doubl
 {
   double before = from[0] * from[0], way = fabs(goal[0] * goal[0] - before);
   double grown = moved_m(s, s->state.u, NULL) / sqrt(3) * (way < before ? way / before : 1);
-  return s->settings.approach_unit * fmax(grown, s->settings.approach_unit * s->problem.length_m);
+  return path_unit * fmax(grown, path_unit * s->problem.length_m);
 }
 
 /* The limit point or bifurcation that the last step has passed, or where it cannot be closed in on
@@ -265,7 +275,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
 {
   static const double bent = 0.75; // slope over the first one, towards a limit point
   struct dea_continuation_point at = {0};
-  const int points = a->s->settings.approach_points;
+  const int points = a->s->settings.arc_max_points;
   double first = 0;
   int of_mesh = 0; // unstable modes that are no modes of the film
   for (int i = 0; i < (at.slope < bent * first ? 2 : 1) * points; i++) {
@@ -301,8 +311,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
  * further on (a->went_on), or where it was. Fails only where no shorter step would help. */
 static dea_status search_path(struct dea_context *ctx, struct search *a)
 {
-  const struct dea_solid_settings *o = &a->s->settings;
-  struct dea_continuation_options options = {o->approach_step, o->approach_step_most, 0, true};
+  struct dea_continuation_options options = {path_step, max_path_step, 0, true};
   struct dea_solid_continuation *path = NULL;
   start_here(a);
   options.unit_m = unit_of(a->s, a->start.controls, a->goal);
@@ -363,7 +372,7 @@ static bool left_branch(const struct search *a, double share)
     off += beyond * beyond;
     way += step * step;
   }
-  return off > way * s->settings.left_branch * s->settings.left_branch;
+  return off > way * max_off_tangent * max_off_tangent;
 }
 
 /* Whether load steps from the start have stayed on the path that they began on; otherwise the solid
@@ -396,11 +405,15 @@ static dea_status solve_steps(struct dea_context *ctx, const struct search *a, c
   struct dea_solid_settings *o = &a->s->settings;
   const struct dea_solid_settings own = *o;
   if (!a->taut) {
-    o->iterations *= 2;
-    o->iterations_free *= 2;
+    o->newton_max_iterations *= 2;
+    o->newton_max_nonmonotone *= 2;
   } else if (a->s->problem.field != NULL) {
-    o->iterations = o->coupled_iterations < o->iterations ? o->coupled_iterations : o->iterations;
-    o->iterations_free = o->iterations < o->iterations_free ? o->iterations : o->iterations_free;
+    o->newton_max_iterations = COUPLED_ITERATIONS < o->newton_max_iterations
+                                   ? COUPLED_ITERATIONS
+                                   : o->newton_max_iterations;
+    o->newton_max_nonmonotone = o->newton_max_iterations < o->newton_max_nonmonotone
+                                    ? o->newton_max_iterations
+                                    : o->newton_max_nonmonotone;
   }
   dea_status status = dea_load_steps_solve_to(ctx, a->s, goal, least, report);
   *o = own;
@@ -431,7 +444,7 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *be
   struct dea_solid_change change = {.grew = true};
   struct dea_solid_report report;
   dea_solid_restore_state(s, &a->limit);
-  set_between(s, a->start.controls, a->goal, fmin(a->stop->way + o->load_step_least, 1), a->next);
+  set_between(s, a->start.controls, a->goal, fmin(a->stop->way + o->load_step_min, 1), a->next);
   dea_status status = solve_steps(ctx, a, a->next, 1, &report);
   if (status == DEA_OK && report.unstable_modes == 0) {
     status = see_change(ctx, a, &change);
@@ -475,9 +488,7 @@ static dea_status step_near(struct dea_context *ctx, struct search *a, dea_statu
 static double closest(const struct search *a, dea_status last)
 {
   const struct dea_solid_settings *o = &a->s->settings;
-  return a->taut                ? o->branch_jump_way
-         : last == DEA_E_DOMAIN ? o->load_step_least
-                                : o->approach_part_least;
+  return a->taut ? dea_branch_jump_width : last == DEA_E_DOMAIN ? o->load_step_min : slack_share;
 }
 
 /* Where the path says nothing - a membrane that goes slack has a corner, which arc length does not
@@ -539,10 +550,9 @@ static dea_status close_in(struct dea_context *ctx, struct search *a)
 /* Long load steps and the path in turn. */
 static dea_status go(struct dea_context *ctx, struct search *a)
 {
-  const struct dea_solid_settings *o = &a->s->settings;
-  for (int i = 0; i < o->approach_rounds; i++) {
+  for (int i = 0; i < MAX_ROUNDS; i++) {
     bool stays = false, on = true;
-    dea_status status = take_steps(ctx, a, a->goal, o->approach_part, &stays);
+    dea_status status = take_steps(ctx, a, a->goal, path_share, &stays);
     if (status == DEA_OK && stays) {
       see_plane(a);
       return DEA_OK;
@@ -599,8 +609,8 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   dea_status status = search_create(ctx, &memory, &a);
   if (status == DEA_OK) {
-    const int lost = s->settings.lost;
-    s->settings.lost = s->settings.approach_lost;
+    const int divergent = s->settings.max_divergent;
+    s->settings.max_divergent = MAX_DIVERGENT;
     dea_solid_controls_get(s, a.begin);
     dea_solid_controls_goal(s, voltage_V, a.goal);
     status = go(ctx, &a);
@@ -610,7 +620,7 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
     }
     dea_solid_controls_get(s, a.next);
     report->way = status == DEA_OK ? 1 : share_of(s, a.begin, a.goal, a.next);
-    s->settings.lost = lost;
+    s->settings.max_divergent = divergent;
   }
   dea_solid_saved_state_free(&a.limit);
   dea_solid_saved_state_free(&a.start);

@@ -53,6 +53,9 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
                                        struct dea_solid_report *report,
                                        struct dea_solid_stop *stop);
 
+/* Width of the increment, over all of it, to which load steps close in on where they end. */
+static const double dea_branch_jump_width = 1e-3;
+
 /* Where the solid has been. */
 struct dea_solid_saved_state {
   struct dea_arena memory;

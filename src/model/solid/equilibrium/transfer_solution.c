@@ -323,7 +323,7 @@ dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid
                                        struct dea_solid_report *report, bool *found)
 {
   const struct dea_solid_report before = *report;
-  const double own = s->settings.bulk_soft;
+  const double own = s->settings.descent_bulk_factor;
   struct carrying c;
   *found = false;
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
@@ -334,9 +334,9 @@ dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid
     dea_solid_controls_get(s, c.controls);
     dea_solid_controls_goal(s, voltage_V, path->controls_goal);
     dea_solid_controls_set(s, path->controls_goal);
-    s->settings.bulk_soft = 1; // it is near
+    s->settings.descent_bulk_factor = 1; // it is near
     status = carry(ctx, s, &c, displacement_m, report, found);
-    s->settings.bulk_soft = own;
+    s->settings.descent_bulk_factor = own;
     if (!*found) {
       dea_solid_controls_set(s, c.controls);
       dea_solid_state_set(s, c.state);
