@@ -352,7 +352,7 @@ class Solids(unittest.TestCase):
         self.assertIn("c1 [Pa]", dea.laws()["yeoh"].parameters)
         bar.pull((0, 0, 0.4e6), low_m=(0, 0, 0.04))
         bar.set("iterations", 1)
-        self.assertEqual(bar.settings["iterations"].value, 1)
+        self.assertEqual(bar.settings["newton_max_iterations"].value, 1)
         self.assertRaises(dea.SolverError, bar.solve)
 
     def test_points_outlive_the_solid(self):
