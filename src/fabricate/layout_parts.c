@@ -547,11 +547,13 @@ static void add_template(struct dea_workshop *w)
   for (size_t i = 0; i < l->body_count; i++) {
     add_region(&s, &l->regions[l->bodies[i].region].region, mark, mark);
   }
-  size_t first = s.part->contour_count;
+  const struct dea_layout_ply *film = dea_layout_film(l);
+  if (film != NULL && film->pre_stretch[0] == film->pre_stretch[1]) {
+    dea_ply_stretch(film, s.part->stretch);
+  }
   if (dea_parts_have_frame(w)) {
     add_edge(&s, mark, w->plan.frame_m, f->ring.width_m.location);
-    measure(s.part, first, mark, "frame");
-    first = s.part->contour_count;
+    const size_t first = s.part->contour_count;
     add_edge(&s, mark, w->plan.blank_m, f->blank.margin.length.location);
     measure(s.part, first, mark, "film");
     measure_grid(&s, 0.9);
