@@ -29,6 +29,16 @@ static inline dea_status workshop_make(const char *text, const struct dea_overri
   return status == DEA_OK ? dea_workshop_create(ctx, design, device, &workshop) : status;
 }
 
+static inline const struct dea_part *workshop_find(const char *name)
+{
+  for (size_t i = 0; i < workshop->count; i++) {
+    if (strcmp(workshop->part[i].name, name) == 0) {
+      return &workshop->part[i];
+    }
+  }
+  return NULL;
+}
+
 static inline int workshop_set_up(void **state)
 {
   return dea_context_create(NULL, &ctx) == DEA_OK ? 0 : -1;

@@ -27,58 +27,6 @@ static void write_slug(const char *name, char out[32])
   out[n] = '\0';
 }
 
-/* "KIND-NAME", and the number of the part where the name of another one would give the same. */
-#define WRITE_NAME(kind, items, count, index, out)                                                 \
-  do {                                                                                             \
-    char slug[32], other[32];                                                                      \
-    bool alone = true;                                                                             \
-    write_slug((items)[index].name, slug);                                                         \
-    for (size_t i = 0; i < (count); i++) {                                                         \
-      write_slug((items)[i].name, other);                                                          \
-      alone &= i == (index) || strcmp(slug, other) != 0;                                           \
-    }                                                                                              \
-    if (alone) {                                                                                   \
-      snprintf(out, DEA_PART_NAME, "%s-%s", kind, slug);                                           \
-    } else {                                                                                       \
-      snprintf(out, DEA_PART_NAME, "%s-%s-%zu", kind, slug, (index) + 1);                          \
-    }                                                                                              \
-  } while (0)
-
-static void write_ply_name(const struct dea_layout *layout, const char *kind, size_t ply, char *out)
-{
-  const char *part = layout->plies[ply].part;
-  if (part != NULL) {
-    snprintf(out, DEA_PART_NAME, "%.50s", part);
-  } else {
-    WRITE_NAME(kind, layout->plies, layout->ply_count, ply, out);
-  }
-}
-
-void dea_blank_name(const struct dea_layout *layout, size_t ply, char *out)
-{
-  write_ply_name(layout, "blank", ply, out);
-}
-
-void dea_outline_name(const struct dea_layout *layout, size_t ply, char *out)
-{
-  write_ply_name(layout, "ply", ply, out);
-}
-
-void dea_body_name(const struct dea_layout *layout, size_t body, char *out)
-{
-  WRITE_NAME("body", layout->bodies, layout->body_count, body, out);
-}
-
-void dea_stencil_name(const struct dea_layout *layout, size_t ply, bool top, char *out)
-{
-  snprintf(out, DEA_PART_NAME, "stencil");
-  if (layout->plies[ply].part == NULL) {
-    WRITE_NAME("stencil", layout->plies, layout->ply_count, ply, out);
-  }
-  size_t n = strlen(out);
-  snprintf(out + n, DEA_PART_NAME - n, "%s", top ? "-top" : "-bottom");
-}
-
 size_t dea_part_pieces(const struct dea_part *part)
 {
   size_t pieces = 0;
@@ -114,24 +62,54 @@ static const char *keep(struct dea_workshop *w, const char *format, ...)
   return text != NULL ? text : "";
 }
 
-/* Starts the next part: of the flat film, or of the unstretched one of a ply, seen from above or
- * from below. */
-static struct sheet start(struct dea_workshop *w, const char *name, const char *title,
-                          const struct dea_layout_ply *unstretched, bool below)
+/* "KIND-NAME", with the number of the ply or body where the name of another one would give the
+ * same; a ply may bring its own. */
+static const char *name_of(struct dea_workshop *w, enum dea_part_kind kind, size_t of)
+{
+  static const char *const words[] = {"blank", "stencil", "stencil", "ply",
+                                      "body",  "frame",   "template"};
+  static const char *const sides[] = {[DEA_PART_BOTTOM] = "-bottom", [DEA_PART_TOP] = "-top"};
+  const char *word = words[kind], *side = kind <= DEA_PART_TOP && sides[kind] ? sides[kind] : "";
+  const struct dea_layout *l = w->plan.layout;
+  const bool body = kind == DEA_PART_BODY;
+  char slug[32], other[32];
+  bool alone = true;
+  if (kind >= DEA_PART_FRAME) {
+    return word;
+  }
+  if (!body && l->plies[of].part != NULL) {
+    return side[0] != '\0' ? keep(w, "%s%s", word, side) : l->plies[of].part;
+  }
+  write_slug(body ? l->bodies[of].name : l->plies[of].name, slug);
+  for (size_t i = 0; i < (body ? l->body_count : l->ply_count); i++) {
+    write_slug(body ? l->bodies[i].name : l->plies[i].name, other);
+    alone &= i == of || strcmp(slug, other) != 0;
+  }
+  return alone ? keep(w, "%s-%s%s", word, slug, side)
+               : keep(w, "%s-%s-%zu%s", word, slug, of + 1, side);
+}
+
+/* Starts the next part: of the flat film, or a blank or stencil of the unstretched one of its ply,
+ * which is seen from below where that face is printed. */
+static struct sheet start(struct dea_workshop *w, enum dea_part_kind kind, size_t of,
+                          const char *title)
 {
   struct sheet s = {.w = w, .layout = w->plan.layout, .map = {{1, 0}, {0, 1}}};
+  const bool below = kind == DEA_PART_BOTTOM;
   s.part = &w->part[w->count++];
   *s.part = (struct dea_part){.ctx = w->memory.ctx,
-                              .name = name,
+                              .kind = kind,
+                              .of = of,
+                              .name = name_of(w, kind, of),
                               .title = title,
                               .seen = below ? "seen from below" : "seen from above",
                               .state = DEA_STRETCHED,
                               .flat = !w->plan.stretched,
                               .quantity = 1,
                               .mirrored = below};
-  if (unstretched != NULL && dea_ply_is_stretched(unstretched)) {
+  if (kind <= DEA_PART_TOP && dea_ply_is_stretched(&s.layout->plies[of])) {
     double(*F)[2] = s.part->stretch;
-    dea_ply_stretch(unstretched, F);
+    dea_ply_stretch(&s.layout->plies[of], F);
     double det = F[0][0] * F[1][1] - F[0][1] * F[1][0];
     s.part->state = DEA_UNSTRETCHED;
     s.map[0][0] = F[0][1] == 0 ? 1 / F[0][0] : F[1][1] / det;
@@ -414,13 +392,10 @@ static void add_blank(struct dea_workshop *w, size_t ply)
 {
   const struct dea_layout *l = w->plan.layout;
   const struct dea_fabrication *f = &w->plan.design->fabrication;
-  char name[DEA_PART_NAME];
-  dea_blank_name(l, ply, name);
   struct sheet s =
-      start(w, keep(w, "%s", name),
+      start(w, DEA_PART_BLANK, ply,
             keep(w, "Film '%.60s'%s", l->plies[ply].name,
-                 dea_ply_is_stretched(&l->plies[ply]) ? " before it is stretched" : ""),
-            &l->plies[ply], false);
+                 dea_ply_is_stretched(&l->plies[ply]) ? " before it is stretched" : ""));
   s.part->quantity = dea_ply_count_like(l, ply);
   add_grid(&s);
   add_marks(&s, DEA_LAYER_MARK);
@@ -493,17 +468,14 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
   struct dea_context *ctx = w->memory.ctx;
   struct dea_location edge = w->plan.design->fabrication.blank.margin.length.location;
   struct dea_region openings = {.ctx = ctx};
-  char name[DEA_PART_NAME];
   dea_status status = gather(ctx, &w->plan, ply, top, &openings);
   if (status != DEA_OK) {
     dea_region_free(&openings);
     return status;
   }
-  dea_stencil_name(l, ply, top, name);
-  struct sheet s = start(w, keep(w, "%s", name),
+  struct sheet s = start(w, top ? DEA_PART_TOP : DEA_PART_BOTTOM, ply,
                          keep(w, "Stencil of the electrodes on the %s of '%.60s'",
-                              top ? "top" : "bottom", l->plies[ply].name),
-                         &l->plies[ply], !top);
+                              top ? "top" : "bottom", l->plies[ply].name));
   add_region(&s, &openings, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
   size_t pieces = dea_part_pieces(s.part);
   measure_ink(&s, ply, top);
@@ -520,7 +492,8 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, l->plies[ply].location,
                                  "%s: %zu piece%s within an electrode %s loose; cut the stencil "
                                  "from adhesive foil on a carrier, which keeps places",
-                                 name, pieces, pieces > 1 ? "s" : "", pieces > 1 ? "are" : "is"));
+                                 s.part->name, pieces, pieces > 1 ? "s" : "",
+                                 pieces > 1 ? "are" : "is"));
   }
   return DEA_OK;
 }
@@ -528,7 +501,7 @@ static dea_status add_stencil(struct dea_workshop *w, size_t ply, bool top)
 static void add_template(struct dea_workshop *w)
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
-  struct sheet s = start(w, "template", "Template of the flat device, for paper", NULL, false);
+  struct sheet s = start(w, DEA_PART_TEMPLATE, 0, "Template of the flat device, for paper");
   const struct dea_layout *l = s.layout;
   const enum dea_layer mark = DEA_LAYER_MARK;
   s.part->paper = true;
@@ -551,18 +524,13 @@ static void add_template(struct dea_workshop *w)
   if (film != NULL && film->pre_stretch[0] == film->pre_stretch[1]) {
     dea_ply_stretch(film, s.part->stretch);
   }
-  if (dea_parts_have_frame(w)) {
+  if (w->plan.held || w->plan.stretched) {
     add_edge(&s, mark, w->plan.frame_m, f->ring.width_m.location);
     const size_t first = s.part->contour_count;
     add_edge(&s, mark, w->plan.blank_m, f->blank.margin.length.location);
     measure(s.part, first, mark, "film");
     measure_grid(&s, 0.9);
   }
-}
-
-bool dea_parts_have_frame(const struct dea_workshop *workshop)
-{
-  return workshop->plan.held || workshop->plan.stretched;
 }
 
 /* Holes in the frame over the pads of electrodes that lie below. */
@@ -583,10 +551,9 @@ static void add_frame(struct dea_workshop *w)
 {
   const struct dea_fabrication *f = &w->plan.design->fabrication;
   const enum dea_layer inner = DEA_LAYER_CUT_INNER, outer = DEA_LAYER_CUT_OUTER;
-  struct sheet s = start(w, "frame",
+  struct sheet s = start(w, DEA_PART_FRAME, 0,
                          w->plan.held ? "Frame, to which the edge of the film is bonded"
-                                      : "Frame that holds the film until it is cut",
-                         NULL, false);
+                                      : "Frame that holds the film until it is cut");
   if (w->plan.held) {
     add_region(&s, &w->plan.hole, inner, outer);
   } else {
@@ -617,11 +584,8 @@ static dea_status add_holder(struct dea_workshop *w, size_t ply)
   status = status == DEA_OK ? dea_region_combine(ctx, DEA_DIFFERENCE, &inside, &pieces, &opening)
                             : status;
   if (status == DEA_OK) {
-    char name[DEA_PART_NAME];
-    dea_outline_name(plan->layout, ply, name);
-    struct sheet s =
-        start(w, keep(w, "%s", name),
-              keep(w, "Ply '%.60s' in its holder", plan->layout->plies[ply].name), NULL, false);
+    struct sheet s = start(w, DEA_PART_OUTLINE, ply,
+                           keep(w, "Ply '%.60s' in its holder", plan->layout->plies[ply].name));
     const struct dea_location width = plan->design->fibres.width_m.location;
     const double outer = plan->piece_outer_m, half = 0.5 * d->fibre_width_m;
     add_region(&s, &opening, DEA_LAYER_CUT_INNER, DEA_LAYER_CUT_OUTER);
@@ -642,11 +606,11 @@ static dea_status add_holder(struct dea_workshop *w, size_t ply)
 }
 
 /* Pieces on a carrier, which has the marks. */
-static void add_outline(struct dea_workshop *w, const char *name, const char *title, size_t region,
-                        size_t quantity)
+static void add_outline(struct dea_workshop *w, enum dea_part_kind kind, size_t of,
+                        const char *title, size_t region)
 {
-  struct sheet s = start(w, keep(w, "%s", name), title, NULL, false);
-  s.part->quantity = quantity;
+  struct sheet s = start(w, kind, of, title);
+  s.part->quantity = kind == DEA_PART_BODY ? 1 : dea_ply_count_like(s.layout, of);
   add_region(&s, &s.layout->regions[region].region, DEA_LAYER_CUT_OUTER, DEA_LAYER_CUT_INNER);
   if (dea_part_pieces(s.part) > 1) {
     measure_box(s.part, "in all");
@@ -656,31 +620,24 @@ static void add_outline(struct dea_workshop *w, const char *name, const char *ti
   add_marks(&s, DEA_LAYER_MARK);
 }
 
-bool dea_parts_have_outline(const struct dea_workshop *workshop, size_t ply)
-{
-  const struct dea_layout *l = workshop->plan.layout;
-  return dea_ply_like(l, ply) == ply && dea_ply_is_cut(&l->plies[ply]) && !dea_ply_is_held(l, ply);
-}
-
 static dea_status add_plies_and_bodies(struct dea_workshop *w)
 {
   const struct dea_layout *l = w->plan.layout;
-  char name[DEA_PART_NAME];
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_layout_ply *ply = &l->plies[i];
     if (i == w->plan.on_tabs) {
       DEA_TRY(w->memory.ctx, add_holder(w, i));
-    } else if (dea_parts_have_outline(w, i)) {
-      dea_outline_name(l, i, name);
-      bool film = dea_ply_is_stretched(ply);
-      const char *title = keep(w, "%s '%.60s'%s", film ? "Outline of the film" : "Ply", ply->name,
-                               film ? ", cut once it is stretched and bonded" : "");
-      add_outline(w, name, title, ply->region, dea_ply_count_like(l, i));
+    } else if (dea_ply_like(l, i) == i && dea_ply_is_cut(ply) && !dea_ply_is_held(l, i)) {
+      const bool film = dea_ply_is_stretched(ply);
+      add_outline(w, DEA_PART_OUTLINE, i,
+                  keep(w, "%s '%.60s'%s", film ? "Outline of the film" : "Ply", ply->name,
+                       film ? ", cut once it is stretched and bonded" : ""),
+                  ply->region);
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    dea_body_name(l, i, name);
-    add_outline(w, name, keep(w, "Rigid body '%.60s'", l->bodies[i].name), l->bodies[i].region, 1);
+    add_outline(w, DEA_PART_BODY, i, keep(w, "Rigid body '%.60s'", l->bodies[i].name),
+                l->bodies[i].region);
   }
   return DEA_OK;
 }
@@ -702,7 +659,7 @@ dea_status dea_parts_make(struct dea_context *ctx, struct dea_workshop *w)
     }
   }
   add_template(w);
-  if (dea_parts_have_frame(w)) {
+  if (w->plan.held || w->plan.stretched) {
     add_frame(w);
   }
   DEA_TRY(ctx, add_plies_and_bodies(w));

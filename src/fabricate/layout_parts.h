@@ -18,14 +18,5 @@
  * known before cutting, such as loose pieces of a stencil. */
 dea_status dea_parts_make(struct dea_context *ctx, struct dea_workshop *workshop);
 
-/* Whether the device needs the frame, and whether a ply has a part of its outline. */
-bool dea_parts_have_frame(const struct dea_workshop *workshop);
-bool dea_parts_have_outline(const struct dea_workshop *workshop, size_t ply);
-/* Names of parts into out[DEA_PART_NAME]. */
-enum { DEA_PART_NAME = 56 };
-void dea_blank_name(const struct dea_layout *layout, size_t ply, char *out);
-void dea_outline_name(const struct dea_layout *layout, size_t ply, char *out);
-void dea_stencil_name(const struct dea_layout *layout, size_t ply, bool top, char *out);
-void dea_body_name(const struct dea_layout *layout, size_t body, char *out);
 /* Pieces that a part falls into once it is cut. */
 size_t dea_part_pieces(const struct dea_part *part);

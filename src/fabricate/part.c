@@ -4,8 +4,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* Room for one more item of an array; false when memory is short. */
 static bool make_room(struct dea_part *part, void **items, size_t size, size_t count,
                       size_t *capacity)
@@ -24,7 +22,7 @@ static bool make_room(struct dea_part *part, void **items, size_t size, size_t c
   return true;
 }
 
-void dea_part_begin(struct dea_part *part, enum dea_layer layer, bool closed)
+static void begin(struct dea_part *part, enum dea_layer layer, bool closed)
 {
   void *items = part->contour;
   if (make_room(part, &items, sizeof *part->contour, part->contour_count, &part->contour_room)) {
@@ -45,28 +43,10 @@ static void add_vertex(struct dea_part *part, double x, double y, double bulge,
   }
 }
 
-void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_location location)
-{
-  add_vertex(part, x_m, y_m, 0, location);
-}
-
-void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
-                  double to_rad, struct dea_location location)
-{
-  int pieces = (int)ceil(fabs(to_rad - from_rad) / (0.5 * pi) - 1e-9); // of a quarter at most
-  pieces = pieces < 1 ? 1 : pieces;
-  double step = (to_rad - from_rad) / pieces;
-  for (int i = 0; i < pieces; i++) {
-    double angle = from_rad + i * step;
-    add_vertex(part, centre_m[0] + radius_m * cos(angle), centre_m[1] + radius_m * sin(angle),
-               tan(0.25 * step), location);
-  }
-}
-
 void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_vertex *vertices,
                   size_t count, bool circle)
 {
-  dea_part_begin(part, layer, true);
+  begin(part, layer, true);
   for (size_t i = 0; i < count; i++) {
     add_vertex(part, vertices[i].x_m, vertices[i].y_m, vertices[i].bulge, vertices[i].location);
   }
@@ -86,7 +66,7 @@ void dea_part_circle(struct dea_part *part, enum dea_layer layer, double x_m, do
 void dea_part_line(struct dea_part *part, enum dea_layer layer, double x0_m, double y0_m,
                    double x1_m, double y1_m, struct dea_location location)
 {
-  dea_part_begin(part, layer, false);
+  begin(part, layer, false);
   add_vertex(part, x0_m, y0_m, 0, location);
   add_vertex(part, x1_m, y1_m, 0, location);
 }

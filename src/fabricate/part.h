@@ -27,6 +27,16 @@ struct dea_part_contour {
 
 enum { DEA_PART_TEXT_SIZE = 64, DEA_PART_TEXTS_MAX = 4, DEA_PART_MEASURES_MAX = 16 };
 
+enum dea_part_kind {
+  DEA_PART_BLANK,  // of a ply that a frame holds
+  DEA_PART_BOTTOM, // stencil of that face of a ply
+  DEA_PART_TOP,
+  DEA_PART_OUTLINE, // of a ply, or its pieces in their holder
+  DEA_PART_BODY,
+  DEA_PART_FRAME,
+  DEA_PART_TEMPLATE,
+};
+
 /* Words on a part, on layer MARK; x, y: middle of the first line. */
 struct dea_part_text {
   double x_m, y_m, height_m;
@@ -45,6 +55,8 @@ struct dea_part_measure {
 struct dea_part {
   struct dea_context *ctx; // failed stays set when memory was short, as in struct dea_text
   bool failed;
+  enum dea_part_kind kind;
+  size_t of;         // number of the ply or body
   const char *name;  // of the files: "frame"
   const char *title; // "Pre-stretch frame"
   const char *seen;  // from where: "seen from the fibres"
@@ -66,13 +78,6 @@ struct dea_part {
 
 /* ---- making one ---- */
 
-/* What follows is one contour on a layer. */
-void dea_part_begin(struct dea_part *part, enum dea_layer layer, bool closed);
-/* A vertex from which a line goes on. */
-void dea_part_point(struct dea_part *part, double x_m, double y_m, struct dea_location location);
-/* Vertices of an arc from an angle to another about a centre, without its end. */
-void dea_part_arc(struct dea_part *part, const double centre_m[2], double radius_m, double from_rad,
-                  double to_rad, struct dea_location location);
 /* A closed contour of vertices[count]; circle: of two half circles. */
 void dea_part_add(struct dea_part *part, enum dea_layer layer, const struct dea_vertex *vertices,
                   size_t count, bool circle);

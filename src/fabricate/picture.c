@@ -1,7 +1,6 @@
 #include "fabricate/picture.h"
 
 #include "base/file.h"
-#include "fabricate/layout_parts.h"
 #include "figures/device_drawing.h"
 
 #include <math.h>
@@ -119,7 +118,7 @@ static void make(struct picture *p, const struct dea_workshop *w)
   }
   snprintf(p->below, sizeof p->below, "%.80s%s; lengths in the %s film", file, of,
            plan->stretched ? "stretched" : "flat");
-  if (dea_parts_have_frame(w)) {
+  if (dea_workshop_part(w, DEA_PART_FRAME, 0) != NULL) {
     add_frame(p, plan);
     add_leads(p, plan);
   }

@@ -35,16 +35,16 @@ static double stencil_area(const struct sheet *s, size_t ply)
   return 4 * blank[0] * blank[1] / stretched_area(&s->layout->plies[ply]);
 }
 
+static enum dea_part_kind stencil_kind(bool top)
+{
+  return top ? DEA_PART_TOP : DEA_PART_BOTTOM;
+}
+
 /* Area that is printed onto a face: all holes of its stencil, without loose pieces; 0: none. */
 static double printed_area(const struct sheet *s, size_t ply, bool top)
 {
-  const size_t like = dea_face_like(s->layout, ply, top);
-  char name[DEA_PART_NAME];
-  if (like == DEA_LAYOUT_NONE) {
-    return 0;
-  }
-  dea_stencil_name(s->layout, like, top, name);
-  return stencil_area(s, ply) - dea_part_area_m2(dea_workshop_find(s->w, name));
+  const struct dea_part *stencil = dea_workshop_part(s->w, stencil_kind(top), ply);
+  return stencil != NULL ? stencil_area(s, ply) - dea_part_area_m2(stencil) : 0;
 }
 
 /* The same without its marks and pads. */
@@ -62,9 +62,7 @@ static double glued_area(const struct sheet *s, size_t ply)
 /* Blanks of plies that are cut alike. */
 static double blank_area(const struct sheet *s, size_t ply)
 {
-  char name[DEA_PART_NAME];
-  dea_blank_name(s->layout, ply, name);
-  return dea_part_area_m2(dea_workshop_find(s->w, name)) *
+  return dea_part_area_m2(dea_workshop_part(s->w, DEA_PART_BLANK, ply)) *
          (double)dea_ply_count_like(s->layout, ply);
 }
 
@@ -217,7 +215,7 @@ static void add_materials(const struct sheet *s)
     }
   }
   add_ink(s, &a);
-  if (dea_parts_have_frame(s->w)) {
+  if (dea_workshop_part(s->w, DEA_PART_FRAME, 0) != NULL) {
     add_material(s, plan->held ? plan->copies : 1, "frame", "rigid plate", a.frame_sheet_area_m2,
                  NAN, plan->held ? "Before cutting; it stays" : "Before cutting; used again");
   }
@@ -234,11 +232,11 @@ static void add_materials(const struct sheet *s)
 /* ---- steps ---- */
 
 /* Sides of a part, or its diameter. */
-static void write_size(const struct sheet *s, const char *part, char *out)
+static void write_size(const struct sheet *s, const struct dea_part *part, char *out)
 {
   char a[NUMBER], b[NUMBER];
   double box[4];
-  dea_part_box(dea_workshop_find(s->w, part), box);
+  dea_part_box(part, box);
   dea_length_text(a, sizeof a, box[2] - box[0]);
   dea_length_text(b, sizeof b, box[3] - box[1]);
   if (s->w->plan.round && strcmp(a, b) == 0) {
@@ -251,7 +249,7 @@ static void write_size(const struct sheet *s, const char *part, char *out)
 static void add_cutting(const struct sheet *s)
 {
   const struct dea_layout *l = s->layout;
-  char name[DEA_PART_NAME], size[WORDS], grid[NUMBER];
+  char size[WORDS], grid[NUMBER];
   dea_length_text(grid, sizeof grid, s->w->plan.grid_m / s->w->plan.stretch);
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_layout_ply *ply = &l->plies[i];
@@ -259,13 +257,13 @@ static void add_cutting(const struct sheet *s)
     if (dea_ply_like(l, i) != i || !dea_ply_is_blank(l, i)) {
       continue;
     }
-    dea_blank_name(l, i, name);
-    write_size(s, name, size);
+    const struct dea_part *blank = dea_workshop_part(s->w, DEA_PART_BLANK, i);
+    write_size(s, blank, size);
     dea_document_add(s->to, DEA_BLOCK_STEP,
                      "Cut %zu film%s of %s (%s) from %s, %.4g \xc2\xb5m thick, and draw the "
                      "crosses of the grid, %s mm apart where the pre-stretch is the largest, and "
                      "the three alignment marks%s.",
-                     count, count > 1 ? "s" : "", size, name, ply->material.name,
+                     count, count > 1 ? "s" : "", size, blank->name, ply->material.name,
                      1e6 * dea_ply_layer_m(ply), grid, count > 1 ? " on each" : "");
   }
 }
@@ -290,15 +288,14 @@ static void add_printing(const struct sheet *s)
   const struct dea_layout *l = s->layout;
   const struct dea_fabrication *f = &s->w->plan.design->fabrication;
   const double celsius = f->cure_temperature_K.si - 273.15, hours = f->cure_time_s.si / 3600;
-  char name[DEA_PART_NAME], channels[WORDS];
+  char channels[WORDS];
   for (size_t i = 0; i < 2 * l->ply_count; i++) { // the bottom of each ply, then its top
     const bool top = i % 2 == 1;
     const char *ply = l->plies[i / 2].name;
-    const size_t like = dea_face_like(l, i / 2, top);
-    if (like == DEA_LAYOUT_NONE) {
+    const struct dea_part *stencil = dea_workshop_part(s->w, stencil_kind(top), i / 2);
+    if (stencil == NULL) {
       continue;
     }
-    dea_stencil_name(l, like, top, name);
     write_channels(s, i / 2, top, channels);
     if (!top) {
       dea_document_add(s->to, DEA_BLOCK_STEP,
@@ -306,10 +303,10 @@ static void add_printing(const struct sheet *s)
                        "%s, and print the bottom through it: electrodes, leads, pads and marks in "
                        "one go. Channel: %s. Cure at %.4g \xc2\xb0"
                        "C for %.4g h.",
-                       ply, name, channels, celsius, hours);
+                       ply, stencil->name, channels, celsius, hours);
       continue;
     }
-    if (dea_face_like(l, i / 2, false) != DEA_LAYOUT_NONE) {
+    if (dea_workshop_part(s->w, DEA_PART_BOTTOM, i / 2) != NULL) {
       dea_document_add(s->to, DEA_BLOCK_STEP,
                        "Put a thin layer of silicone glue onto the bottom electrodes of %s, leave "
                        "pads free, and transfer it onto a new PET carrier with them down.",
@@ -319,7 +316,7 @@ static void add_printing(const struct sheet *s)
                      "Print onto the top of %s through %s, its holes over the marks. Channel: %s. "
                      "Cure at %.4g \xc2\xb0"
                      "C for %.4g h.",
-                     ply, name, channels, celsius, hours);
+                     ply, stencil->name, channels, celsius, hours);
   }
 }
 
@@ -360,8 +357,8 @@ static void add_tabs_step(const struct sheet *s, size_t i)
   const struct dea_layout_ply *ply = &s->layout->plies[i];
   const struct dea_device *d = s->w->plan.device;
   const bool anchored = s->w->plan.piece_end_m > s->w->plan.piece_outer_m;
-  char name[DEA_PART_NAME], a[NUMBER], b[NUMBER], c[NUMBER];
-  dea_outline_name(s->layout, i, name);
+  const char *name = dea_workshop_part(s->w, DEA_PART_OUTLINE, i)->name;
+  char a[NUMBER], b[NUMBER], c[NUMBER];
   dea_length_text(a, sizeof a, s->w->plan.piece_outer_m - d->fibre_tip_radius_m);
   dea_length_text(b, sizeof b, d->fibre_width_m);
   dea_length_text(c, sizeof c, d->fibre_tip_radius_m);
@@ -384,8 +381,8 @@ static void add_tabs_step(const struct sheet *s, size_t i)
 static void add_film_step(const struct sheet *s, size_t i, const char *where)
 {
   const struct dea_layout_ply *ply = &s->layout->plies[i];
-  char name[DEA_PART_NAME], stretch[WORDS];
-  dea_blank_name(s->layout, dea_ply_like(s->layout, i), name);
+  const char *name = dea_workshop_part(s->w, DEA_PART_BLANK, i)->name;
+  char stretch[WORDS];
   write_stretch(ply, stretch);
   if (dea_ply_is_stretched(ply)) {
     dea_document_add(s->to, DEA_BLOCK_STEP,
@@ -402,7 +399,7 @@ static void add_ply_step(const struct sheet *s, size_t i, enum way way)
   const struct dea_layout_ply *ply = &s->layout->plies[i];
   const bool film = dea_ply_is_blank(s->layout, i);
   const struct dea_fab_plan *plan = &s->w->plan;
-  char name[DEA_PART_NAME], where[WORDS] = "";
+  char where[WORDS] = "";
   if (way != FIRST) {
     snprintf(where, sizeof where, ". %s what is there%s, marks over marks",
              film ? "Lay it onto" : "Bond it to", way == BELOW ? ", from below" : "");
@@ -419,12 +416,11 @@ static void add_ply_step(const struct sheet *s, size_t i, enum way way)
     add_layers(s, i);
     return;
   }
-  dea_outline_name(s->layout, dea_ply_like(s->layout, i), name);
-  const struct dea_part *part = dea_workshop_find(s->w, name);
-  size_t pieces = part != NULL ? dea_part_pieces(part) : 1;
+  const struct dea_part *part = dea_workshop_part(s->w, DEA_PART_OUTLINE, i);
+  const size_t pieces = dea_part_pieces(part);
   dea_document_add(s->to, DEA_BLOCK_STEP,
-                   "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.", ply->name, name,
-                   pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
+                   "Cut %s (%s, %zu piece%s) from %s, %.4g \xc2\xb5m thick%s.", ply->name,
+                   part->name, pieces, pieces > 1 ? "s on their carrier" : "", ply->material.name,
                    1e6 * dea_ply_stretched_layer_m(ply), where);
   add_layers(s, i);
 }
@@ -449,21 +445,18 @@ static void add_assembly(const struct sheet *s)
     }
   }
   for (size_t i = 0; i < l->body_count; i++) {
-    char name[DEA_PART_NAME];
-    dea_body_name(l, i, name);
     dea_document_add(s->to, DEA_BLOCK_STEP,
                      "Cut %s (%s) from a plate that does not bend and bond it where the template "
                      "shows it.",
-                     l->bodies[i].name, name);
+                     l->bodies[i].name, dea_workshop_part(s->w, DEA_PART_BODY, i)->name);
   }
   for (size_t i = 0; i < l->ply_count; i++) {
-    if (dea_parts_have_outline(s->w, i) && dea_ply_is_stretched(&l->plies[i])) {
-      char name[DEA_PART_NAME];
-      dea_outline_name(l, i, name);
+    const struct dea_part *part = dea_workshop_part(s->w, DEA_PART_OUTLINE, i);
+    if (part != NULL && part->of == i && dea_ply_is_stretched(&l->plies[i])) {
       dea_document_add(s->to, DEA_BLOCK_STEP,
                        "Hold what is a support (below), then cut %s along its outline "
                        "(%s): what it is bonded to takes its tension.",
-                       l->plies[i].name, name);
+                       l->plies[i].name, part->name);
     }
   }
 }

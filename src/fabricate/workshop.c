@@ -158,10 +158,16 @@ void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop
   }
 }
 
-const struct dea_part *dea_workshop_find(const struct dea_workshop *workshop, const char *name)
+const struct dea_part *dea_workshop_part(const struct dea_workshop *workshop,
+                                         enum dea_part_kind kind, size_t of)
 {
+  const struct dea_layout *l = workshop->plan.layout;
+  const bool stencil = kind == DEA_PART_TOP || kind == DEA_PART_BOTTOM;
+  const size_t like = kind >= DEA_PART_BODY ? of
+                      : stencil             ? dea_face_like(l, of, kind == DEA_PART_TOP)
+                                            : dea_ply_like(l, of);
   for (size_t i = 0; i < workshop->count; i++) {
-    if (strcmp(workshop->part[i].name, name) == 0) {
+    if (workshop->part[i].kind == kind && workshop->part[i].of == like) {
       return &workshop->part[i];
     }
   }

@@ -31,8 +31,10 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
                                const struct dea_device *device, struct dea_workshop **out);
 void dea_workshop_destroy(struct dea_context *ctx, struct dea_workshop *workshop);
 
-/* The part of that name; NULL. */
-const struct dea_part *dea_workshop_find(const struct dea_workshop *workshop, const char *name);
+/* The part of that kind of a ply or body, or of the first ply that is cut or printed as that one;
+ * NULL. */
+const struct dea_part *dea_workshop_part(const struct dea_workshop *workshop,
+                                         enum dea_part_kind kind, size_t of);
 /* Centre of a copy on its sheet. */
 void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out_m[2]);
 /* Tool path of contour i: the kerf's half outside of outer edges and inside of holes; what is only

@@ -28,7 +28,7 @@ static const double pi = 3.14159265358979323846;
 
 static const struct dea_part *find(const char *name)
 {
-  const struct dea_part *part = dea_workshop_find(workshop, name);
+  const struct dea_part *part = workshop_find(name);
   assert_non_null(part);
   return part;
 }
@@ -99,12 +99,12 @@ TEST(test_flat)
   assert_true(find("template")->paper);
   // an edge that is held stays on the frame, whose opening it is
   assert_int_equal(workshop_make(DEVICE("1.3", "supports: [{edge: film}]\n"), NULL, 0), DEA_OK);
-  assert_null(dea_workshop_find(workshop, "ply-film"));
+  assert_null(workshop_find("ply-film"));
   assert_close(dea_part_area_m2(find("frame")), 60e-3 * 44e-3 - 960e-6 - marks, 1e-12, 0);
   // a film that is not stretched needs no frame, and is cut as it is
   assert_int_equal(workshop_make(DEVICE("1", ""), NULL, 0), DEA_OK);
-  assert_null(dea_workshop_find(workshop, "frame"));
-  assert_null(dea_workshop_find(workshop, "blank-film"));
+  assert_null(workshop_find("frame"));
+  assert_null(workshop_find("blank-film"));
   assert_close(dea_part_area_m2(find("ply-film")), 960e-6, 1e-12, 0);
   assert_string_equal(dea_part_film_name(find("ply-film")), "flat");
 }
@@ -168,7 +168,7 @@ TEST(test_alike)
   assert_int_equal(workshop_make(text, NULL, 0), DEA_OK);
   assert_int_equal(find("ply-a-b-1")->quantity, 2); // names that give the same file have numbers
   assert_int_equal(find("ply-a-b-2")->quantity, 1);
-  assert_null(dea_workshop_find(workshop, "ply-c"));
+  assert_null(workshop_find("ply-c"));
   find("stencil-a-b-1-bottom");
   find("stencil-a-b-1-top");
   for (size_t i = 0; i < 3; i++) {
