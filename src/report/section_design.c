@@ -153,16 +153,15 @@ static void add_breakdown(struct dea_text *out, const struct dea_breakdown_set *
   }
 }
 
-/* Index of the set of that id, the first for "". */
-#define FIND_SET(sets, count, wanted, found)                                                       \
+/* Index of the set that a value of the material is of; the first of several alike. */
+#define FIND_SET(sets, count, is_it, found)                                                        \
   size_t found = 0;                                                                                \
-  for (size_t set_ = 0; set_ < (count); set_++) {                                                  \
-    found = strcmp((sets)[set_].id.text, (wanted)) == 0 ? set_ : found;                            \
+  for (size_t i = (count); i-- > 0;) {                                                             \
+    found = (is_it) ? i : found;                                                                   \
   }
 
 static void add_material(struct dea_report *report, const struct dea_material_data *data,
-                         const struct dea_material *used, const char *permittivity,
-                         const char *breakdown, const char *part)
+                         const struct dea_material *used, const char *part)
 {
   struct dea_text *out = &report->text;
   char caption[2 * DEA_TITLE_SIZE];
@@ -174,20 +173,23 @@ static void add_material(struct dea_report *report, const struct dea_material_da
                   "<th scope=\"col\">Uncertainty</th><th scope=\"col\">Range</th>"
                   "<th scope=\"col\">Source</th>");
   if (used->law != NULL) {
-    FIND_SET(data->laws, data->law_count, used->law_id, law)
+    FIND_SET(data->laws, data->law_count, strcmp(data->laws[i].id.text, used->law_id) == 0, law)
     add_law(out, &data->laws[law]);
   }
   if (data->permittivity_count > 0) {
-    FIND_SET(data->permittivity, data->permittivity_count, permittivity, set)
+    FIND_SET(data->permittivity, data->permittivity_count,
+             data->permittivity[i].at_rest.si == used->permittivity.at_rest, set)
     add_row(out, "relative permittivity", data->permittivity[set].at_rest.si, "1");
     add_notes(out, &data->permittivity[set].notes);
   }
   if (data->breakdown_count > 0) {
-    FIND_SET(data->breakdown, data->breakdown_count, breakdown, set)
+    FIND_SET(data->breakdown, data->breakdown_count,
+             data->breakdown[i].at_rest_V_per_m.si == used->breakdown.law.at_rest_V_per_m, set)
     add_breakdown(out, &data->breakdown[set], &used->breakdown);
   }
   if (used->viscosity_id[0] != '\0' && data->viscosity_count > 0) { // "" for none
-    FIND_SET(data->viscosity, data->viscosity_count, used->viscosity_id, set)
+    FIND_SET(data->viscosity, data->viscosity_count,
+             strcmp(data->viscosity[i].id.text, used->viscosity_id) == 0, set)
     add_viscosity(out, &data->viscosity[set]);
   }
   if (data->has_elastic) {
@@ -221,59 +223,38 @@ static const struct dea_material_data *find_data(struct dea_context *ctx,
   return &(*entry)->data;
 }
 
-/* A material with the part that it is that of. */
-struct part {
-  const struct dea_material *used;
-  const char *permittivity, *breakdown, *name;
-};
-
 static void add_part(struct dea_report *report, const struct dea_design *design,
-                     const struct part *part)
+                     const struct dea_material *used, const char *name)
 {
   struct dea_catalogue_entry *entry = NULL;
   const struct dea_material_data *data =
-      part->used->name[0] != '\0' ? find_data(report->ctx, design, part->used->name, &entry) : NULL;
+      used->name[0] != '\0' ? find_data(report->ctx, design, used->name, &entry) : NULL;
   if (data != NULL) {
-    add_material(report, data, part->used, part->permittivity, part->breakdown, part->name);
+    add_material(report, data, used, name);
   }
   dea_catalogue_destroy(report->ctx, entry);
 }
 
-/* Materials of plies, each once. */
-static void add_plies(struct dea_report *report, const struct dea_report_run *run)
-{
-  const struct dea_layout *l = run->device->layout;
-  for (size_t i = 0; i < l->ply_count; i++) {
-    const struct dea_parts_ply *ply = &run->design->parts->plies[i];
-    const struct part part = {&l->plies[i].material, ply->permittivity.text, ply->breakdown.text,
-                              l->plies[i].name};
-    size_t first = 0;
-    while (strcmp(l->plies[first].material.name, part.used->name) != 0) {
-      first++;
-    }
-    if (first == i) {
-      add_part(report, run->design, &part);
-    }
-  }
-}
-
+/* Materials of plies, each once, and of electrodes that are no plies. */
 dea_status dea_section_materials(struct dea_report *report, const struct dea_report_run *run)
 {
   if (run->device == NULL) {
     return DEA_OK;
   }
-  const struct dea_design *design = run->design;
-  const struct part parts[] = {
-      {&run->device->film, design->film.permittivity.text, design->film.breakdown.text, "Film"},
-      {&run->device->electrode, "", "", "Electrodes"},
-      {&run->device->fibre, "", "", "Fibres"},
-  };
+  const struct dea_layout *l = run->device->layout;
   dea_section_begin(report, "materials", run->number, "Materials and their sources");
-  for (size_t i = 0; i < sizeof parts / sizeof parts[0] && design->parts == NULL; i++) {
-    add_part(report, design, &parts[i]);
+  for (size_t i = 0; i < l->ply_count; i++) {
+    const struct dea_material *used = &l->plies[i].material;
+    size_t first = 0;
+    while (strcmp(l->plies[first].material.name, used->name) != 0) {
+      first++;
+    }
+    if (first == i) {
+      add_part(report, run->design, used, l->plies[i].name);
+    }
   }
-  if (design->parts != NULL) {
-    add_plies(report, run);
+  if (!(run->device->electrode_thickness_m > 0)) {
+    add_part(report, run->design, &run->device->electrode, "electrodes");
   }
   dea_section_end(report);
   return DEA_OK;
