@@ -68,50 +68,40 @@ size_t dea_ply_count_like(const struct dea_layout *layout, size_t ply)
   return count;
 }
 
-static bool lies_on(const struct dea_layout_electrode *electrode, size_t ply, bool top)
-{
-  return electrode->ply == ply && electrode->top == top;
-}
-
-/* Whether every electrode of face `ply` has one of its region on face `other`. */
-static bool covers(const struct dea_layout *layout, size_t other, size_t ply, bool top)
+/* Whether two faces have electrodes of the same regions with the same leads, in one order; none:
+ * false. */
+static bool same_face(const struct dea_layout *layout, size_t a, size_t b, bool top)
 {
   const struct dea_layout_electrode *e = layout->electrodes;
-  for (size_t i = 0; i < layout->electrode_count; i++) {
-    bool found = !lies_on(&e[i], ply, top);
-    for (size_t j = 0; j < layout->electrode_count && !found; j++) {
-      found = lies_on(&e[j], other, top) && e[j].region == e[i].region && e[j].lead == e[i].lead &&
-              e[j].lead_rad == e[i].lead_rad;
+  size_t j = 0, count = 0;
+  for (size_t i = 0; i <= layout->electrode_count; i++) {
+    if (i < layout->electrode_count && (e[i].ply != a || e[i].top != top)) {
+      continue;
     }
-    if (!found) {
+    while (j < layout->electrode_count && (e[j].ply != b || e[j].top != top)) {
+      j++;
+    }
+    if (i == layout->electrode_count || j == layout->electrode_count) {
+      return i == j && count > 0;
+    }
+    if (e[i].region != e[j].region || e[i].lead != e[j].lead || e[i].lead_rad != e[j].lead_rad) {
       return false;
     }
-  }
-  return true;
-}
-
-static bool has_electrodes(const struct dea_layout *layout, size_t ply, bool top)
-{
-  for (size_t i = 0; i < layout->electrode_count; i++) {
-    if (lies_on(&layout->electrodes[i], ply, top)) {
-      return true;
-    }
+    j++;
+    count++;
   }
   return false;
 }
 
 size_t dea_face_like(const struct dea_layout *layout, size_t ply, bool top)
 {
-  if (!has_electrodes(layout, ply, top)) {
-    return DEA_LAYOUT_NONE;
+  const struct dea_layout_ply *p = layout->plies;
+  for (size_t i = 0; i <= ply; i++) {
+    if (same_stretch(&p[i], &p[ply]) && same_face(layout, i, ply, top)) {
+      return i;
+    }
   }
-  size_t i = 0;
-  while (i < ply &&
-         !(has_electrodes(layout, i, top) && same_stretch(&layout->plies[i], &layout->plies[ply]) &&
-           covers(layout, i, ply, top) && covers(layout, ply, i, top))) {
-    i++;
-  }
-  return i;
+  return DEA_LAYOUT_NONE;
 }
 
 void dea_ply_stretch(const struct dea_layout_ply *ply, double out[2][2])
@@ -138,30 +128,21 @@ static double largest_stretch(const struct dea_layout *layout)
 }
 
 /* The opening of a frame that stays: all that it holds the edge of. */
-static dea_status make_hole(struct dea_context *ctx, const struct dea_layout *layout,
-                            struct dea_fab_plan *out)
+static dea_status make_hole(struct dea_context *ctx, struct dea_fab_plan *plan)
 {
   const struct dea_motion still = dea_motion_translation(0, 0);
+  const struct dea_layout *layout = plan->layout;
   struct dea_region all = {.ctx = ctx};
-  size_t last = DEA_LAYOUT_NONE, count = 0;
+  size_t last = DEA_LAYOUT_NONE;
   for (size_t i = 0; i < layout->support_count; i++) {
-    size_t region = layout->supports[i].region;
+    const size_t region = layout->supports[i].region;
     if (dea_support_is_frame(&layout->supports[i]) && region != last) {
       dea_region_add_moved(&all, &layout->regions[region].region, &still);
       last = region;
-      count++;
+      plan->held = true;
     }
   }
-  out->held = count > 0;
-  dea_status status = dea_region_status(&all);
-  if (status == DEA_OK && count > 1) {
-    status = dea_region_combine(ctx, DEA_UNION, &all, NULL, &out->hole);
-  } else if (status == DEA_OK) {
-    dea_region_add_moved(&out->hole, &all, &still);
-    status = dea_region_status(&out->hole);
-  }
-  dea_region_free(&all);
-  return status;
+  return dea_fab_unite(ctx, &all, &plan->hole);
 }
 
 /* Whether a region is one circle. */
@@ -179,15 +160,15 @@ static bool is_circle(const struct dea_region *region)
   return round;
 }
 
-/* Half way between the opening and the outer edge of the frame, from a place in a direction. */
-static void place_on_frame(const struct dea_fab_plan *plan, const double from[2], double angle_rad,
-                           double out[2])
+/* Half way between an edge and the outer edge of the frame, from a place in a direction. */
+static void place_on_frame(const struct dea_fab_plan *plan, const double edge_m[2],
+                           const double from[2], double angle_rad, double out[2])
 {
   const double u[2] = {cos(angle_rad), sin(angle_rad)};
   const double along = from[0] * u[0] + from[1] * u[1];
   double t = INFINITY;
   for (int k = 0; k < 2; k++) {
-    const double half = 0.5 * (plan->opening_m[k] + plan->frame_m[k]);
+    const double half = 0.5 * (edge_m[k] + plan->frame_m[k]);
     if (plan->round) {
       t = sqrt(along * along + half * half - from[0] * from[0] - from[1] * from[1]) - along;
     } else if (u[k] != 0) {
@@ -199,33 +180,10 @@ static void place_on_frame(const struct dea_fab_plan *plan, const double from[2]
   }
 }
 
-/* Three marks beside the opening. All distances between them differ, so that a sheet that is turned
- * over or around does not fit; the third one's place is the best of some for that. */
-static void place_marks_beside(struct dea_fab_plan *plan)
-{
-  static const double share[] = {0.15, -0.1, 0.3, 0.45};
-  double x = 0.5 * (plan->opening_m[0] + plan->frame_m[0]),
-         y = 0.5 * (plan->opening_m[1] + plan->frame_m[1]);
-  double best = -1;
-  for (size_t i = 0; i < sizeof share / sizeof share[0]; i++) {
-    const double at[DEA_FAB_MARKS][2] = {{-x, -0.35 * y}, {x, 0.2 * y}, {share[i] * x, y}};
-    double d[DEA_FAB_MARKS];
-    for (int k = 0; k < DEA_FAB_MARKS; k++) {
-      const double *to = at[(k + 1) % DEA_FAB_MARKS];
-      d[k] = hypot(at[k][0] - to[0], at[k][1] - to[1]);
-    }
-    double least = fmin(fabs(d[0] - d[1]), fmin(fabs(d[1] - d[2]), fabs(d[2] - d[0])));
-    if (least > best) {
-      best = least;
-      memcpy(plan->mark_at_m, at, sizeof at);
-    }
-  }
-}
-
-/* Three marks on a ring: two on the wider way from the one lead to the other, one on the other way.
- * All three distances between them differ, so that a sheet that is turned over or around does not
- * fit: two equal ones would let it be turned over. */
-static void place_marks_around(struct dea_fab_plan *plan)
+/* Three marks on the frame: two on the wider way from the last lead to the first, one on the other
+ * way. All three distances between them differ, so that a sheet that is turned over or around does
+ * not fit: two equal ones would let it be turned over. */
+static void place_marks(struct dea_fab_plan *plan)
 {
   const double *last = plan->pad_count > 0 ? plan->pad[plan->pad_count - 1].at_m : NULL;
   const double from = last != NULL ? atan2(last[1], last[0]) : 0;
@@ -235,10 +193,10 @@ static void place_marks_around(struct dea_fab_plan *plan)
   const bool wider = way >= pi * (1 - 1e-9);
   const double two = wider ? way : way - 2 * pi, one = wider ? way - 2 * pi : way;
   const double angle[DEA_FAB_MARKS] = {from + two / 3, from + 2 * two / 3, from + 0.4 * one};
-  const double radius = 0.5 * (plan->holder_m + plan->frame_m[0]);
+  const double centre[2] = {0, 0}, holder[2] = {plan->holder_m, plan->holder_m};
   for (int m = 0; m < DEA_FAB_MARKS; m++) {
-    plan->mark_at_m[m][0] = radius * cos(angle[m]);
-    plan->mark_at_m[m][1] = radius * sin(angle[m]);
+    place_on_frame(plan, plan->round ? holder : plan->opening_m, centre, angle[m],
+                   plan->mark_at_m[m]);
   }
 }
 
@@ -254,7 +212,7 @@ static dea_status fill(struct dea_context *ctx, struct dea_fab_plan *plan)
   for (size_t i = 0; i < layout->ply_count; i++) {
     plan->stretched |= dea_ply_is_stretched(&layout->plies[i]);
   }
-  DEA_TRY(ctx, make_hole(ctx, layout, plan));
+  DEA_TRY(ctx, make_hole(ctx, plan));
   plan->round = plan->held && is_circle(&plan->hole);
   dea_layout_box_m(layout, box);
   for (size_t i = 0; i < layout->body_count; i++) {
@@ -355,14 +313,13 @@ static dea_status place_pads(struct dea_context *ctx, struct dea_fab_plan *plan)
       dea_region_centroid_m(&l->regions[e->region].region, from);
       from[0] -= plan->centre_m[0];
       from[1] -= plan->centre_m[1];
-      place_on_frame(plan, from, e->lead_rad, pad->at_m);
+      place_on_frame(plan, plan->opening_m, from, e->lead_rad, pad->at_m);
     }
   }
   return DEA_OK;
 }
 
-/* Parts that overlap as one region; they are freed. */
-static dea_status unite(struct dea_context *ctx, struct dea_region *parts, struct dea_region *out)
+dea_status dea_fab_unite(struct dea_context *ctx, struct dea_region *parts, struct dea_region *out)
 {
   dea_status status = dea_region_status(parts);
   status = status == DEA_OK ? dea_region_combine(ctx, DEA_UNION, parts, NULL, out) : status;
@@ -387,7 +344,7 @@ static dea_status ink(struct dea_context *ctx, struct dea_fab_plan *plan)
     struct dea_region parts = {.ctx = ctx};
     dea_region_add_moved(&parts, own, &still);
     add_lead(plan, pad++, &parts);
-    DEA_TRY(ctx, unite(ctx, &parts, &plan->inked[i]));
+    DEA_TRY(ctx, dea_fab_unite(ctx, &parts, &plan->inked[i]));
   }
   return DEA_OK;
 }
@@ -663,7 +620,7 @@ dea_status dea_fab_plan_make(struct dea_context *ctx, const struct dea_design *d
   DEA_TRY(ctx, fill(ctx, out));
   fill_tabs(out);
   DEA_TRY(ctx, place_pads(ctx, out));
-  (out->round ? place_marks_around : place_marks_beside)(out);
+  place_marks(out);
   DEA_TRY(ctx, check_cutter(ctx, out));
   DEA_TRY(ctx, check_pads(ctx, out));
   DEA_TRY(ctx, check_tabs(ctx, out));
@@ -675,7 +632,7 @@ dea_status dea_fab_plan_make(struct dea_context *ctx, const struct dea_design *d
   if (out->on_tabs != DEA_LAYOUT_NONE) {
     struct dea_region parts = {.ctx = ctx};
     dea_fab_add_pieces(out, false, &parts);
-    DEA_TRY(ctx, unite(ctx, &parts, &out->bonded));
+    DEA_TRY(ctx, dea_fab_unite(ctx, &parts, &out->bonded));
   }
   return check_leads(ctx, out);
 }

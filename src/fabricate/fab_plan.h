@@ -57,6 +57,9 @@ void dea_fab_plan_free(struct dea_fab_plan *plan);
 /* Adds pieces on tabs with their anchors, on the frame, and perhaps their tabs, which overlap. */
 void dea_fab_add_pieces(const struct dea_fab_plan *plan, bool tabs, struct dea_region *out);
 
+/* Parts that overlap as one region, into an empty one; the parts are freed. */
+dea_status dea_fab_unite(struct dea_context *ctx, struct dea_region *parts, struct dea_region *out);
+
 /* ---- of a layout ---- */
 
 /* Whether a ply is cut, and whether it is cut as a blank that a frame then holds. */

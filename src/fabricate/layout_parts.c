@@ -415,22 +415,12 @@ static dea_status gather(struct dea_context *ctx, const struct dea_fab_plan *pla
 {
   const struct dea_motion still = dea_motion_translation(0, 0);
   struct dea_region all = {.ctx = ctx};
-  size_t count = 0;
   for (size_t i = 0; i < plan->layout->electrode_count; i++) {
     if (lies_on(&plan->layout->electrodes[i], ply, top)) {
       dea_region_add_moved(&all, &plan->inked[i], &still);
-      count++;
     }
   }
-  dea_status status = dea_region_status(&all);
-  if (status == DEA_OK && count > 1) {
-    status = dea_region_combine(ctx, DEA_UNION, &all, NULL, out);
-  } else if (status == DEA_OK) {
-    dea_region_add_moved(out, &all, &still);
-    status = dea_region_status(out);
-  }
-  dea_region_free(&all);
-  return status;
+  return dea_fab_unite(ctx, &all, out);
 }
 
 /* Sizes of the electrodes of a face, of a lead, and of a pad. */

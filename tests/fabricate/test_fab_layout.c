@@ -131,6 +131,30 @@ TEST(test_turned_axes)
   assert_close(layer_area(bottom, DEA_LAYER_CUT_INNER, box), (108e-6 + marks) / 1.8, 1e-7, 0);
 }
 
+/* Marks on a frame of any proportions: a sheet that is turned over or around does not fit. */
+TEST(test_marks_beside_rectangles)
+{
+  static const char *const heights[] = {"4 mm", "12 mm", "24 mm", "60 mm", "200 mm"};
+  for (size_t i = 0; i < 5; i++) {
+    const struct dea_override sets[] = {{"shapes[0].height", heights[i]},
+                                        {"shapes[1].height", "2 mm"},
+                                        {"shapes[1].y", "0 mm"},
+                                        {"shapes[2].radius", "1 mm"},
+                                        {"shapes[3].outer_radius", "1.9 mm"},
+                                        {"shapes[3].inner_radius", "0.6 mm"},
+                                        {"fabrication.sheet.height", "400 mm"}};
+    assert_int_equal(workshop_make(DEVICE("1.3", ""), sets, 7), DEA_OK);
+    double side[3];
+    for (size_t k = 0; k < 3; k++) {
+      const double *a = workshop->plan.mark_at_m[k], *b = workshop->plan.mark_at_m[(k + 1) % 3];
+      side[k] = hypot(a[0] - b[0], a[1] - b[1]);
+    }
+    for (size_t k = 0; k < 3; k++) {
+      assert_true(fabs(side[k] - side[(k + 1) % 3]) > 1e-3);
+    }
+  }
+}
+
 /* Rows of copies are as far apart as the parts are high, 74 mm, not wide. */
 TEST(test_rows_of_copies)
 {
