@@ -340,15 +340,14 @@ static void measure(struct dea_part *part, size_t first, enum dea_layer layer, c
   }
 }
 
-/* The same of a region that is no contour of the part by itself. */
-static void measure_region(const struct sheet *s, const struct dea_region *region, const char *what)
+/* Dimensions of contours from `first` on that are none of the part, and go again. */
+static void measure_and_drop(struct dea_part *part, size_t first, const char *what)
 {
-  struct dea_part *part = s->part;
-  const size_t contours = part->contour_count, vertices = part->vertex_count;
-  add_region(s, region, DEA_LAYER_NOTE, DEA_LAYER_CUT_OUTER);
-  measure(part, contours, DEA_LAYER_NOTE, what);
-  part->contour_count = contours;
-  part->vertex_count = vertices;
+  measure(part, first, DEA_LAYER_NOTE, what);
+  if (!part->failed && first < part->contour_count) {
+    part->vertex_count = part->contour[first].first;
+    part->contour_count = first;
+  }
 }
 
 /* A length in the flat film, from the plan's origin. */
@@ -428,26 +427,25 @@ static void measure_ink(const struct sheet *s, size_t ply, bool top)
 {
   const struct dea_fab_plan *plan = &s->w->plan;
   const struct dea_fabrication *f = &plan->design->fabrication;
+  const size_t first = s->part->contour_count;
   for (size_t i = 0; i < s->layout->electrode_count; i++) {
     const struct dea_layout_electrode *e = &s->layout->electrodes[i];
     if (lies_on(e, ply, top)) {
-      measure_region(s, &s->layout->regions[e->region].region, "electrode");
+      add_region(s, &s->layout->regions[e->region].region, DEA_LAYER_NOTE, DEA_LAYER_CUT_OUTER);
     }
   }
+  measure_and_drop(s->part, first, "electrode");
   for (size_t i = 0; i < plan->pad_count; i++) {
     const struct dea_layout_electrode *e = &s->layout->electrodes[plan->pad[i].electrode];
     const double *at = plan->pad[i].at_m, u = 0.5 * plan->lead_width_m * cos(e->lead_rad);
     const double v = 0.5 * plan->lead_width_m * sin(e->lead_rad), back = 1.2 * plan->pad_m;
     const double x = at[0] - back * cos(e->lead_rad), y = at[1] - back * sin(e->lead_rad);
-    struct dea_region pad = {.ctx = s->part->ctx};
     if (!lies_on(e, ply, top)) {
       continue;
     }
     measure_length(s, x + v, y - u, x - v, y + u, "lead", f->leads.width.length.location);
-    dea_region_add_circle(&pad, plan->centre_m[0] + at[0], plan->centre_m[1] + at[1], plan->pad_m,
-                          false, f->leads.pad_diameter.length.location);
-    measure_region(s, &pad, "pad");
-    dea_region_free(&pad);
+    add_circle(s, DEA_LAYER_NOTE, at, plan->pad_m, f->leads.pad_diameter.length.location);
+    measure_and_drop(s->part, first, "pad");
     return;
   }
 }

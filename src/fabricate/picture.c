@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FRAME = 0xc9ced6, GROUND = 0x707070, DRIVE = 0x0072b2, FIBRE = 0xe0a04a, WHITE = 0xffffff };
+enum { FRAME = 0xc9ced6, FIBRE = 0xe0a04a, WHITE = 0xffffff };
 
 static const struct dea_location nowhere = {0};
 
@@ -73,7 +73,7 @@ static void add_leads(struct picture *p, const struct dea_fab_plan *plan)
     const struct dea_layout_electrode *e = &plan->layout->electrodes[plan->pad[i].electrode];
     const bool ground = e->channel == 0;
     const struct dea_drawn_shape lead = {.over = true,
-                                         .colour = ground ? GROUND : DRIVE,
+                                         .colour = dea_device_drawing_channel(e->channel),
                                          .opacity = ground ? 0.1 : 0.25,
                                          .dash_mm = ground ? 0.8 : 0};
     const struct dea_drawn_shape pad = {

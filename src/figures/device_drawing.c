@@ -61,7 +61,7 @@ static double y_of(const struct view *v, double y_m)
   return v->plan_y + v->scale * (y_m - 0.5 * (v->box[1] + v->box[3]));
 }
 
-static unsigned channel_colour(size_t channel)
+unsigned dea_device_drawing_channel(size_t channel)
 {
   return channel_line[channel == 0 ? 0 : 1 + (channel - 1) % (CHANNEL_COLOURS - 1)];
 }
@@ -103,7 +103,7 @@ static struct style ply_style(const struct dea_layout *l, size_t ply)
 
 static struct style channel_style(size_t channel)
 {
-  unsigned colour = channel_colour(channel);
+  unsigned colour = dea_device_drawing_channel(channel);
   return (struct style){colour, colour, channel == 0 ? 0.06 : 0.25, 0.3, channel == 0 ? 0.8 : 0};
 }
 
@@ -652,7 +652,7 @@ static void draw_section_electrode(const struct view *v, size_t number, const do
       type->line(v->paper->canvas, x_of(v, x[k]), y, x_of(v, x[k + 1]), y);
     }
   }
-  type->stroke(v->paper->canvas, 0.7, channel_colour(e->channel), 0);
+  type->stroke(v->paper->canvas, 0.7, dea_device_drawing_channel(e->channel), 0);
 }
 
 /* Clamps at both ends of what is held all around. */

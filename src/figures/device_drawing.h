@@ -28,6 +28,8 @@ struct dea_device_drawing {
   size_t shape_count;
 };
 
+/* Colour of what is connected to a channel. */
+unsigned dea_device_drawing_channel(size_t channel);
 /* Size of its page, and drawing it on one of that size. */
 void dea_device_drawing_size(const struct dea_device_drawing *drawing, double out_mm[2]);
 void dea_device_drawing_draw(const struct dea_paper *paper,
