@@ -1,7 +1,7 @@
 /* What the workshop needs beside the actuator itself: section `fabrication` of a design file.
- * Reasons for the defaults: docs/fabrication.md. A design of the general form has kerf to blank,
- * ring.width_m and frame_gap_m of its frame, marks, cure, and tolerances of thickness and
- * pre-stretch; the rest is 0. */
+ * Reasons for the defaults: docs/fabrication.md. A design of the general form has all but the angle
+ * of leads, which each electrode says, the holder, and tolerances beyond those of thickness and
+ * pre-stretch: these are 0. */
 #pragma once
 
 #include "base/value.h"

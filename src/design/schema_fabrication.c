@@ -19,19 +19,14 @@ static const struct dea_field sheet_fields[] = {
 static const struct dea_record sheet_record = {"sheet", "material that parts are cut from",
                                                sheet_fields, COUNT(sheet_fields)};
 
-#define MARGIN_ROW(edge)                                                                           \
-  {                                                                                                \
-    .key = "margin", .kind = DEA_FIELD_INPLANE, .offset = AT(blank.margin), .unit = "m", .max = 1, \
-    .default_text = "10 mm stretched",                                                             \
-    .doc = "film beyond the outer edge of the " edge ", for the grips of the stretcher",           \
-    .example = "10 mm stretched"                                                                   \
-  }
-static const struct dea_field blank_fields[] = {MARGIN_ROW("ring")};
+static const struct dea_field blank_fields[] = {
+    DEA_FIELD_ROW(INPLANE, "margin", AT(blank.margin), .unit = "m", .max = 1,
+                  .default_text = "10 mm stretched",
+                  .doc = "film beyond the outer edge of the frame, for the grips of the stretcher",
+                  .example = "10 mm stretched"),
+};
 static const struct dea_record blank_record = {"blank", "film as it is cut", blank_fields,
                                                COUNT(blank_fields)};
-static const struct dea_field general_blank_fields[] = {MARGIN_ROW("frame")};
-static const struct dea_record general_blank_record = {
-    "blank", "film as it is cut", general_blank_fields, COUNT(general_blank_fields)};
 
 static const struct dea_field frame_fields[] = {
     DEA_NUMBER_ROW("width", AT(ring.width_m), "m", "10 mm",
@@ -189,7 +184,7 @@ static const struct dea_field general_fields[] = {
     FEATURE_ROW,
     COPIES_ROW,
     SHEET_ROW,
-    SECTION_ROW("blank", general_blank_record, "film as it is cut, where it is to be stretched"),
+    SECTION_ROW("blank", blank_record, "film as it is cut, where a frame holds it"),
     SECTION_ROW("frame", frame_record,
                 "the plate that holds a stretched film, or an edge that is a support"),
     MARKS_ROW,
