@@ -251,6 +251,38 @@ TEST(test_leads)
   expect_refusal(no_frame, "electrodes[0].lead", "0 degree", "but no frame stays");
 }
 
+/* A disc written either way is cut alike. */
+TEST(test_disc_in_both_forms)
+{
+  static const char *const texts[] = {
+      "dea: 1\nfilm: {material: film, thickness: 100 um}\npre_stretch: 1.5\n"
+      "frame: {inner_radius: 15 mm}\nelectrodes: {radius: 4 mm stretched}\n" FILM_MATERIAL,
+      "dea: 1\nshapes:\n  - {name: film, kind: circle, radius: 15 mm}\n"
+      "  - {name: active, kind: circle, radius: 4 mm}\n"
+      "plies: [{name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.5}]\n"
+      "supports: [{edge: film}]\nelectrodes:\n"
+      "  - {ply: film, side: bottom, shape: active, channel: ground, lead: 180 degree}\n"
+      "  - {ply: film, side: top, shape: active, channel: drive, lead: 0 degree}\n" FILM_MATERIAL};
+  struct dea_amounts amounts[2];
+  double area[2][8], length[2][8];
+  for (size_t k = 0; k < 2; k++) {
+    assert_int_equal(workshop_make(texts[k], NULL, 0), DEA_OK);
+    dea_amounts_find(workshop, &amounts[k]);
+    assert_int_equal(workshop->count, 5);
+    for (size_t i = 0; i < 5; i++) {
+      area[k][i] = dea_part_area_m2(&workshop->part[i]);
+      length[k][i] = dea_part_length_m(&workshop->part[i], DEA_LAYER_CUT_INNER) +
+                     dea_part_length_m(&workshop->part[i], DEA_LAYER_MARK);
+    }
+  }
+  for (size_t i = 0; i < 5; i++) {
+    assert_close(area[1][i], area[0][i], 1e-12, 0);
+    assert_close(length[1][i], length[0][i], 1e-12, 0);
+  }
+  assert_close(amounts[1].ink_area_m2, amounts[0].ink_area_m2, 1e-12, 0);
+  assert_close(amounts[1].film_area_m2, amounts[0].film_area_m2, 1e-12, 0);
+}
+
 TEST(test_refusals)
 {
   static const char good[] = DEVICE("1.3", "");
