@@ -41,16 +41,6 @@ void dea_layout_destroy(struct dea_context *ctx, struct dea_layout *layout)
   }                                                                                                \
   return DEA_LAYOUT_NONE
 
-size_t dea_layout_find_region(const struct dea_layout *layout, const char *name)
-{
-  FIND_BY_NAME(layout->regions, layout->region_count);
-}
-
-size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name)
-{
-  FIND_BY_NAME(layout->plies, layout->ply_count);
-}
-
 size_t dea_layout_find_body(const struct dea_layout *layout, const char *name)
 {
   FIND_BY_NAME(layout->bodies, layout->body_count);

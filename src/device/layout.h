@@ -192,9 +192,7 @@ const struct dea_layout_ply *dea_layout_film(const struct dea_layout *layout);
  * from *at on, which starts at 0; false: there is no more. */
 bool dea_layout_next_pair(const struct dea_layout *layout, size_t ply, size_t *at,
                           const struct dea_layout_electrode *pair[2]);
-/* Number of a region, ply, body, or channel of that name; DEA_LAYOUT_NONE. */
-size_t dea_layout_find_region(const struct dea_layout *layout, const char *name);
-size_t dea_layout_find_ply(const struct dea_layout *layout, const char *name);
+/* Number of a body, or channel of that name; DEA_LAYOUT_NONE. */
 size_t dea_layout_find_body(const struct dea_layout *layout, const char *name);
 size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name);
 /* DEA_E_DESIGN where the material of a ply has no density, which weight and inertia need. */

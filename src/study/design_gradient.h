@@ -94,12 +94,3 @@ dea_status dea_design_gradient_find(struct dea_context *ctx, const struct dea_de
 dea_status dea_design_gradient_critical(struct dea_context *ctx,
                                         const struct dea_design_gradient *ask,
                                         const struct dea_critical *critical, double *slopes);
-
-/* All from a design: values [column_count] of quantities at a voltage and their slopes
- * [key_count][column_count] by keys, as above. DEA_E_ARGUMENT for a key that is no such number, and
- * as the model's `solve`. */
-dea_status dea_design_gradient_at(struct dea_context *ctx, const struct dea_model_type *type,
-                                  const struct dea_design *design, const struct dea_device *device,
-                                  double voltage_V, const char *const *keys, size_t key_count,
-                                  const int *columns, size_t column_count, double *values,
-                                  double *slopes);
