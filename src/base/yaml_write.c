@@ -22,6 +22,19 @@ static bool is_plain(const char *text)
   return true;
 }
 
+void dea_yaml_add_quoted(struct dea_text *out, const char *text, size_t length)
+{
+  for (const char *c = text; c < text + length; c++) {
+    if (*c == '"' || *c == '\\') {
+      dea_text_add(out, "\\%c", *c);
+    } else if ((unsigned char)*c < 0x20) {
+      dea_text_add(out, "\\x%02x", (unsigned)*c);
+    } else {
+      dea_text_add(out, "%c", *c);
+    }
+  }
+}
+
 static void add_value(struct dea_text *out, const struct dea_node *node)
 {
   if (node->empty) {
@@ -33,15 +46,7 @@ static void add_value(struct dea_text *out, const struct dea_node *node)
     return;
   }
   dea_text_add(out, "\"");
-  for (const char *c = node->text; *c != '\0'; c++) {
-    if (*c == '"' || *c == '\\') {
-      dea_text_add(out, "\\%c", *c);
-    } else if ((unsigned char)*c < 0x20) {
-      dea_text_add(out, "\\x%02x", (unsigned)*c);
-    } else {
-      dea_text_add(out, "%c", *c);
-    }
-  }
+  dea_yaml_add_quoted(out, node->text, strlen(node->text));
   dea_text_add(out, "\"");
 }
 

@@ -1,6 +1,7 @@
 #include "cli/models.h"
 
 #include "base/file.h"
+#include "base/yaml_write.h"
 
 #include <string.h>
 #include <unistd.h>
@@ -17,9 +18,7 @@ const struct dea_model_type *cli_model_find(struct dea_cli *cli, const char *nam
 static void add_quoted(struct dea_text *out, const char *text, size_t length)
 {
   dea_text_add(out, "\"");
-  for (size_t i = 0; i < length; i++) {
-    dea_text_add(out, "%s%c", text[i] == '"' || text[i] == '\\' ? "\\" : "", text[i]);
-  }
+  dea_yaml_add_quoted(out, text, length);
   dea_text_add(out, "\"");
 }
 

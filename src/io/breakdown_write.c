@@ -25,14 +25,6 @@ static void add_power(struct dea_text *out, const struct dea_breakdown_fit *fit,
   }
 }
 
-/* Text inside of quotation marks. */
-static void add_words(struct dea_text *out, const char *text)
-{
-  for (const char *c = text; *c != '\0'; c++) {
-    dea_text_add(out, *c == '"' || *c == '\\' ? "\\%c" : *c == '\n' ? " " : "%c", *c);
-  }
-}
-
 /* The item of `breakdown`, in one line. */
 static void add_law(struct dea_text *out, const struct dea_breakdown_fit *fit)
 {
@@ -56,7 +48,7 @@ static void add_law(struct dea_text *out, const struct dea_breakdown_fit *fit)
   }
   dea_text_add(out, "\", source: \"");
   if (file->head.source.text[0] != '\0') {
-    add_words(out, file->head.source.text);
+    dea_yaml_add_quoted(out, file->head.source.text, strlen(file->head.source.text));
     dea_text_add(out, "; ");
   }
   dea_text_add(out, "dea %s fit of %s (SHA-256 %s) to %s (%s)\"", DEA_VERSION,
@@ -129,12 +121,7 @@ json_t *dea_breakdown_fit_json(const struct dea_breakdown_fit *fit, const char *
   dea_json_put(root, "reference_thickness_m", fit->data.thickness0_m);
   dea_json_put(root, "reference_area_m2", fit->data.area0_m2);
   for (size_t k = 0; k < DEA_WEIBULL_PARAMS; k++) {
-    json_t *object = json_object();
-    dea_json_put_text(object, "name", keys[k]);
-    dea_json_put(object, "value", fit->fit.value[k]);
-    dea_json_put(object, "standard_uncertainty", fit->fit.std[k]);
-    dea_json_put(object, "interval_low", fit->fit.low[k]);
-    dea_json_put(object, "interval_high", fit->fit.high[k]);
+    json_t *object = dea_fit_json_weibull(&fit->fit, k, keys[k]);
     json_object_set_new(object, "fixed", json_boolean(fit->data.held[k]));
     json_array_append_new(list, object);
   }

@@ -41,6 +41,17 @@ void dea_fit_json_value(json_t *object, const struct dea_fit_value *value)
   json_object_set_new(object, "interval_bends", json_boolean(value->bends));
 }
 
+json_t *dea_fit_json_weibull(const struct dea_weibull_fit *fit, size_t param, const char *name)
+{
+  json_t *object = json_object();
+  dea_json_put_text(object, "name", name);
+  dea_json_put(object, "value", fit->value[param]);
+  dea_json_put(object, "standard_uncertainty", fit->std[param]);
+  dea_json_put(object, "interval_low", fit->low[param]);
+  dea_json_put(object, "interval_high", fit->high[param]);
+  return object;
+}
+
 void dea_fit_json_statistics(json_t *root, bool known, const char *scatter_key, double scatter,
                              const struct dea_lsq_fit *least_squares,
                              const struct dea_lsq_statistics *statistics)

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/json.h"
 #include "identify/fit.h"
+#include "identify/weibull.h"
 
 enum { DEA_FIT_JSON_SCHEMA = 1 };
 
@@ -14,6 +15,8 @@ void dea_fit_add_field(struct dea_text *out, double value);
 json_t *dea_fit_json_begin(const struct dea_fit_head *head, const char *command);
 /* Adds value, uncertainty, interval and what is said of them. */
 void dea_fit_json_value(json_t *object, const struct dea_fit_value *value);
+/* A parameter of Weibull's law as an object. */
+json_t *dea_fit_json_weibull(const struct dea_weibull_fit *fit, size_t param, const char *name);
 /* Adds "correlations", chi-square, rows, condition. scatter_key: of the scatter, where no
  * uncertainty was given (known). */
 void dea_fit_json_statistics(json_t *root, bool known, const char *scatter_key, double scatter,

@@ -1,6 +1,7 @@
 #include "base/file.h"
 #include "base/version.h"
 #include "base/write_file.h"
+#include "base/yaml_write.h"
 #include "figures/fit_figures.h"
 #include "io/csv.h"
 #include "io/fit_common.h"
@@ -13,22 +14,12 @@
 
 /* ---- the material ---- */
 
-/* Adds a text as YAML. */
-static void add_quoted(struct dea_text *out, const char *text)
-{
-  dea_text_add(out, "\"");
-  for (const char *c = text; *c != '\0'; c++) {
-    dea_text_add(out, *c == '"' || *c == '\\' ? "\\%c" : *c == '\n' ? " " : "%c", *c);
-  }
-  dea_text_add(out, "\"");
-}
-
 static void add_key(struct dea_text *out, const char *indent, const char *key, const char *text)
 {
   if (text != NULL && text[0] != '\0') {
-    dea_text_add(out, "%s%s: ", indent, key);
-    add_quoted(out, text);
-    dea_text_add(out, "\n");
+    dea_text_add(out, "%s%s: \"", indent, key);
+    dea_yaml_add_quoted(out, text, strlen(text));
+    dea_text_add(out, "\"\n");
   }
 }
 

@@ -59,13 +59,7 @@ json_t *dea_life_fit_json(const struct dea_life_fit *fit, const char *command)
   dea_json_put_count(root, "failed", fit->failed);
   json_object_set_new(root, "lives", specimens_json(fit));
   for (size_t k = 0; k < 2 && fit->has_law; k++) {
-    json_t *object = json_object();
-    dea_json_put_text(object, "name", keys[k]);
-    dea_json_put(object, "value", fit->fit.value[k]);
-    dea_json_put(object, "standard_uncertainty", fit->fit.std[k]);
-    dea_json_put(object, "interval_low", fit->fit.low[k]);
-    dea_json_put(object, "interval_high", fit->fit.high[k]);
-    json_array_append_new(list, object);
+    json_array_append_new(list, dea_fit_json_weibull(&fit->fit, k, keys[k]));
   }
   json_object_set_new(root, "parameters", list);
   if (fit->has_law) {

@@ -271,9 +271,7 @@ static dea_status put_title(struct dea_context *ctx, struct dea_yaml *document, 
 {
   struct dea_text text = {.ctx = ctx};
   dea_text_add(&text, "\"");
-  for (const char *c = title; *c != '\0'; c++) {
-    dea_text_add(&text, *c == '"' || *c == '\\' ? "\\%c" : "%c", *c);
-  }
+  dea_yaml_add_quoted(&text, title, strlen(title));
   dea_text_add(&text, "\"");
   dea_status status =
       text.failed ? DEA_E_MEMORY : dea_yaml_override(ctx, document, "title", dea_text_get(&text));
