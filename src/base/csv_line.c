@@ -1,6 +1,7 @@
 #include "base/csv_line.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -43,4 +44,15 @@ void dea_csv_add_name(struct dea_text *text, const char *name)
     dea_text_add(text, "%s%c", *c == '"' ? "\"" : "", *c);
   }
   dea_text_add(text, "%s", quoted ? "\"" : "");
+}
+
+void dea_csv_add_numbers(struct dea_text *text, int digits, const double *values, size_t count)
+{
+  for (size_t i = 0; i < count; i++) {
+    if (isfinite(values[i])) {
+      dea_text_add(text, ",%.*g", digits, values[i]);
+    } else {
+      dea_text_add(text, ",");
+    }
+  }
 }

@@ -1,4 +1,5 @@
 /* The tables of a sweep: one row a case, and what samples say. */
+#include "base/csv_line.h"
 #include "base/h5.h"
 #include "base/write_file.h"
 #include "explore/explore_sweep.h"
@@ -30,11 +31,6 @@ static const char *unit_of(const struct work *w, size_t value)
   return w->case_key->quantities[i].shown.si_unit;
 }
 
-static void add_field(struct dea_text *out, double value)
-{
-  dea_text_add(out, isnan(value) ? "," : ",%.12g", value);
-}
-
 // The cases ---------------------------------------------------------------------------------------
 
 static dea_status write_cases(const struct work *w)
@@ -63,10 +59,10 @@ static dea_status write_cases(const struct work *w)
     }
     dea_text_add(&out, "%zu,%s", c, done->id);
     for (size_t j = 0; j < w->params; j++) {
-      add_field(&out, done->p[j]);
+      DEA_CSV_ADD(&out, 12, done->p[j]);
     }
     for (size_t i = 0; i < w->values; i++) {
-      add_field(&out, done->q[i]);
+      DEA_CSV_ADD(&out, 12, done->q[i]);
     }
     dea_text_add(&out, ",%.4g", done->wall_s);
     for (size_t k = 0; k < w->case_key->voltage_count; k++) {
@@ -228,10 +224,9 @@ static dea_status write_statistics(const struct work *w, const size_t *doubted, 
     name[strcspn(name, "@")] = '\0';
     dea_text_add(&out, "%s,%s,%.6g,%zu", name, unit_of(w, i),
                  1e-3 * w->case_key->voltages_V[i / w->case_key->quantity_count], spreads[i].count);
-    add_field(&out, spreads[i].mean);
-    add_field(&out, spreads[i].std);
+    DEA_CSV_ADD(&out, 12, spreads[i].mean, spreads[i].std);
     for (size_t k = 0; k < DEA_SHARES; k++) {
-      add_field(&out, spreads[i].quantile[k]);
+      DEA_CSV_ADD(&out, 12, spreads[i].quantile[k]);
     }
     dea_text_add(&out, ",%zu\n", doubted[i / w->case_key->quantity_count]);
   }
@@ -256,11 +251,9 @@ static dea_status write_limits(const struct work *w)
     }
     const double share = (double)crossed / (double)n;
     dea_text_add(&out, "%s", w->case_key->quantities[limit->column].key);
-    add_field(&out, limit->above);
-    add_field(&out, limit->below);
+    DEA_CSV_ADD(&out, 12, limit->above, limit->below);
     dea_text_add(&out, ",%zu,%zu", n, crossed);
-    add_field(&out, share);
-    add_field(&out, sqrt(share * (1 - share) / (double)n));
+    DEA_CSV_ADD(&out, 12, share, sqrt(share * (1 - share) / (double)n));
     dea_text_add(&out, "\n");
   }
   dea_status status =
@@ -282,8 +275,7 @@ static dea_status write_indices(const struct work *w, double *values)
       double first, total;
       dea_sobol_index(values, values + n, values + (2 + j) * n, n, &first, &total);
       dea_text_add(&out, "%s,%s", name, w->case_key->params[j].param.name);
-      add_field(&out, first);
-      add_field(&out, total);
+      DEA_CSV_ADD(&out, 12, first, total);
       dea_text_add(&out, "\n");
     }
   }

@@ -16,15 +16,12 @@ static void add_rows(struct dea_text *out, const struct dea_device_curve *curve)
     dea_csv_add_name(out, curve->text->name.text);
     dea_text_add(out, ",%s,%s,%zu,%s", column->key, dea_fit_use_names[curve->text->use.value],
                  curve->line[i], curve->used[i] ? "yes" : "no");
-    dea_fit_add_field(out, 1e-3 * curve->voltage_V[i]);
-    dea_fit_add_field(out, 1e3 * curve->depth_m[i]);
-    dea_fit_add_field(out, column->factor * curve->value[i]);
-    dea_fit_add_field(out, column->factor * curve->std[i]);
-    dea_fit_add_field(out, column->factor * curve->model[i]);
-    dea_fit_add_field(out, column->factor * curve->model_std[i]);
-    dea_fit_add_field(out, column->factor * curve->designed[i]);
+    DEA_CSV_ADD(out, 8, 1e-3 * curve->voltage_V[i], 1e3 * curve->depth_m[i],
+                column->factor * curve->value[i], column->factor * curve->std[i],
+                column->factor * curve->model[i], column->factor * curve->model_std[i],
+                column->factor * curve->designed[i]);
     dea_text_add(out, ",%s", column->display_unit);
-    dea_fit_add_field(out, curve->time_s[i]);
+    DEA_CSV_ADD(out, 8, curve->time_s[i]);
     dea_text_add(out, "\n");
   }
 }

@@ -7,15 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-void dea_fit_add_field(struct dea_text *out, double value)
-{
-  if (isfinite(value)) {
-    dea_text_add(out, ",%.8g", value);
-  } else {
-    dea_text_add(out, ",");
-  }
-}
-
 // JSON --------------------------------------------------------------------------------------------
 
 json_t *dea_fit_json_begin(const struct dea_fit_head *head, const char *command)

@@ -8,9 +8,6 @@
 
 enum { DEA_FIT_JSON_SCHEMA = 1 };
 
-/* Adds ",1.25", with nothing behind the comma where the value is no number. */
-void dea_fit_add_field(struct dea_text *out, double value);
-
 /* A new fit.json with program, command (NULL: none) and fit file. */
 json_t *dea_fit_json_begin(const struct dea_fit_head *head, const char *command);
 /* Adds value, uncertainty, interval and what is said of them. */

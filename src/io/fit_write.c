@@ -290,13 +290,9 @@ static void add_rows(struct dea_text *out, const struct dea_fit_curve *curve)
   for (size_t i = 0; i < series->rows; i++) {
     dea_csv_add_name(out, series->test->name.text);
     dea_text_add(out, ",%s,%zu", dea_fit_use_names[series->test->use.value], series->line[i]);
-    dea_fit_add_field(out, series->time_s != NULL ? series->time_s[i] : NAN);
-    dea_fit_add_field(out, series->stretch[i]);
-    dea_fit_add_field(out, 1e-3 * series->stress_Pa[i]);
-    dea_fit_add_field(out, 1e-3 * series->std_Pa[i]);
-    dea_fit_add_field(out, 1e-3 * curve->stress_Pa[i]);
-    dea_fit_add_field(out, 1e-3 * curve->std_Pa[i]);
-    dea_fit_add_field(out, 1e-3 * (curve->stress_Pa[i] - series->stress_Pa[i]));
+    DEA_CSV_ADD(out, 8, series->time_s != NULL ? series->time_s[i] : NAN, series->stretch[i],
+                1e-3 * series->stress_Pa[i], 1e-3 * series->std_Pa[i], 1e-3 * curve->stress_Pa[i],
+                1e-3 * curve->std_Pa[i], 1e-3 * (curve->stress_Pa[i] - series->stress_Pa[i]));
     dea_text_add(out, "\n");
   }
 }

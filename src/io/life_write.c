@@ -18,13 +18,12 @@ static void add_rows(struct dea_text *csv, const struct dea_life_fit *fit)
     dea_csv_add_name(csv, fit->file->specimens[i].name.text);
     dea_text_add(csv, ",%d,%s", !fit->survived[i], dea_life_end_names[life->end]);
     for (int k = 0; k < DEA_LIFE_CLOCKS; k++) {
-      dea_fit_add_field(csv, dea_life_clock_factors[k] * life->clock[k]);
+      DEA_CSV_ADD(csv, 8, dea_life_clock_factors[k] * life->clock[k]);
     }
     double std;
-    dea_fit_add_field(csv, fabs(life->last_stroke) / life->first_stroke);
-    dea_fit_add_field(csv, fit->has_law
-                               ? -expm1(-exp(dea_weibull_z(&fit->fit, fit->value[i], &std)))
-                               : (double)NAN);
+    DEA_CSV_ADD(csv, 8, fabs(life->last_stroke) / life->first_stroke,
+                fit->has_law ? -expm1(-exp(dea_weibull_z(&fit->fit, fit->value[i], &std)))
+                             : (double)NAN);
     dea_text_add(csv, "\n");
   }
 }

@@ -1,5 +1,6 @@
 #include "reduce/output.h"
 
+#include "base/csv_line.h"
 #include "base/write_file.h"
 
 #include <stdio.h>
@@ -109,14 +110,6 @@ struct dea_reduced_row dea_reduced_row_at(const struct dea_reduction *reduction,
 
 // Fields -----------------------------------------------------------------------------------------
 
-static void add(struct dea_text *text, double value)
-{
-  dea_text_add(text, ",");
-  if (!isnan(value)) {
-    dea_text_add(text, "%.10g", value);
-  }
-}
-
 /* "name what (unit)", in place of "name (unit)" for what "". */
 static void add_title(struct dea_text *text, const char *name, const char *what, const char *unit)
 {
@@ -224,8 +217,8 @@ static dea_status write_measurement(struct dea_context *ctx, const struct dea_re
     dea_text_add(&text, "\n%.10g", 1e-3 * row.voltage_V);
     for (size_t k = 0; k < count; k++) {
       const double std = means ? mean_uncertainty(&row, kinds[k], usual[k]) : row.std[kinds[k]];
-      add(&text, dea_reduced_meanings[kinds[k]].factor * row.mean[kinds[k]]);
-      add(&text, dea_reduced_meanings[kinds[k]].factor * std);
+      DEA_CSV_ADD(&text, 10, dea_reduced_meanings[kinds[k]].factor * row.mean[kinds[k]],
+                  dea_reduced_meanings[kinds[k]].factor * std);
     }
     l += row.levels;
   }
@@ -262,25 +255,18 @@ static dea_status write_levels(struct dea_context *ctx, const struct dea_reducti
   for (size_t l = 0; l < r->level_count; l++) {
     const struct dea_voltage_level *level = &r->levels[l];
     dea_text_add(&text, "\n%.10g,%zu,%zu", 1e-3 * level->voltage_V, level->step, level->cycles);
-    add(&text, level->shape);
-    add(&text, level->shape_uncertainty);
+    DEA_CSV_ADD(&text, 10, level->shape, level->shape_uncertainty);
     if (current) {
-      add(&text, 1e12 * level->capacitance_F);
-      add(&text, 1e12 * level->capacitance_std_F);
-      add(&text, level->sensed_stretch);
+      DEA_CSV_ADD(&text, 10, 1e12 * level->capacitance_F, 1e12 * level->capacitance_std_F,
+                  level->sensed_stretch);
     }
     for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
       if (dea_reduced_has(r, (enum dea_reduced_kind)kind)) {
         double f = dea_reduced_meanings[kind].factor;
-        add(&text, f * level->mean[kind]);
-        add(&text, f * level->std[kind]);
-        add(&text, f * level->noise[kind]);
-        add(&text, f * level->uncertainty[kind]);
-        add(&text, level->rise_s[kind]);
-        add(&text, level->fall_s[kind]);
-        add(&text, f * level->creep[kind]);
-        add(&text, f * level->drift[kind]);
-        add(&text, f * level->drift_uncertainty[kind]);
+        DEA_CSV_ADD(&text, 10, f * level->mean[kind], f * level->std[kind], f * level->noise[kind],
+                    f * level->uncertainty[kind], level->rise_s[kind], level->fall_s[kind],
+                    f * level->creep[kind], f * level->drift[kind],
+                    f * level->drift_uncertainty[kind]);
       }
     }
   }
@@ -313,16 +299,10 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
   for (size_t k = 0; k < r->cycle_count; k++) {
     const struct dea_reduced_cycle *c = &r->cycles[k];
     dea_text_add(&text, "\n%zu,%zu", c->cycle.step, c->cycle.number);
-    add(&text, c->cycle.start_s);
-    add(&text, c->cycle.end_s);
-    add(&text, c->under_voltage_s);
-    add(&text, 1e-3 * c->cycle.level_V);
-    add(&text, 1e-3 * c->voltage_V);
-    add(&text, c->shape);
+    DEA_CSV_ADD(&text, 10, c->cycle.start_s, c->cycle.end_s, c->under_voltage_s,
+                1e-3 * c->cycle.level_V, 1e-3 * c->voltage_V, c->shape);
     if (current) {
-      add(&text, 1e12 * c->capacitance_F);
-      add(&text, 1e9 * c->leakage_A);
-      add(&text, 1e6 * c->charge_C);
+      DEA_CSV_ADD(&text, 10, 1e12 * c->capacitance_F, 1e9 * c->leakage_A, 1e6 * c->charge_C);
       dea_text_add(&text, ",%zu,%zu", c->discharges, c->breakdowns);
     }
     for (int kind = 0; kind < DEA_REDUCED_KINDS; kind++) {
@@ -331,7 +311,7 @@ static dea_status write_cycles(struct dea_context *ctx, const struct dea_reducti
       const double fields[] = {f * v->amplitude, f * v->uncertainty, f * v->rest, f * v->active,
                                v->rise_s,        v->fall_s,          f * v->creep};
       for (size_t i = 0; i < 7 && dea_reduced_has(r, (enum dea_reduced_kind)kind); i++) {
-        add(&text, fields[i]);
+        DEA_CSV_ADD(&text, 10, fields[i]);
       }
     }
   }
@@ -358,14 +338,12 @@ static dea_status write_life(struct dea_context *ctx, const struct dea_recording
   for (size_t k = 0; k < r->cycle_count; k++) {
     const struct dea_reduced_cycle *c = &r->cycles[k];
     dea_text_add(&text, "%.12g", c->cycle.end_s - r->cycles[0].cycle.start_s);
-    add(&text, c->under_voltage_s);
-    add(&text, 1e-3 * c->cycle.level_V);
+    DEA_CSV_ADD(&text, 10, c->under_voltage_s, 1e-3 * c->cycle.level_V);
     if (stroke) {
-      add(&text, dea_reduced_meanings[kind].factor * c->values[kind].amplitude);
+      DEA_CSV_ADD(&text, 10, dea_reduced_meanings[kind].factor * c->values[kind].amplitude);
     }
     if (current) {
-      add(&text, 1e6 * c->charge_C);
-      add(&text, 1e9 * c->leakage_A);
+      DEA_CSV_ADD(&text, 10, 1e6 * c->charge_C, 1e9 * c->leakage_A);
       dea_text_add(&text, ",%zu", c->breakdowns);
     }
     dea_text_add(&text, ",%d\n", k + 1 == r->cycle_count && !recording->complete);
@@ -383,9 +361,7 @@ static dea_status write_discharges(struct dea_context *ctx, const struct dea_red
     const struct dea_discharge *d = &r->discharges[i];
     dea_text_add(&text, "\n%.10g,%s", d->time_s,
                  d->kind == DEA_BREAKDOWN ? "breakdown" : "discharge");
-    add(&text, 1e-3 * d->voltage_V);
-    add(&text, 1e6 * d->peak_A);
-    add(&text, 1e9 * d->charge_C);
+    DEA_CSV_ADD(&text, 10, 1e-3 * d->voltage_V, 1e6 * d->peak_A, 1e9 * d->charge_C);
   }
   dea_text_add(&text, "\n");
   return write(ctx, &text, before, directory, "discharges.csv");
@@ -402,9 +378,7 @@ static dea_status write_profiles(struct dea_context *ctx, const struct dea_reduc
     for (size_t i = 0; i < r->points; i++) {
       if (!isnan(level->z_m[i])) {
         dea_text_add(&text, "%.10g", 1e-3 * level->voltage_V);
-        add(&text, 1e3 * r->radius_m[i]);
-        add(&text, 1e6 * level->z_m[i]);
-        add(&text, 1e6 * level->z_std_m[i]);
+        DEA_CSV_ADD(&text, 10, 1e3 * r->radius_m[i], 1e6 * level->z_m[i], 1e6 * level->z_std_m[i]);
         dea_text_add(&text, "\n");
       }
     }
@@ -441,10 +415,10 @@ static dea_status write_time_series(struct dea_context *ctx, const struct dea_re
   }
   for (size_t i = 0; i < table.rows; i++) {
     dea_text_add(&text, "\n%.12g", table.time_s[i]);
-    add(&text, 1e-3 * table.voltage_V[i]);
+    DEA_CSV_ADD(&text, 10, 1e-3 * table.voltage_V[i]);
     for (size_t k = 0; k < 3; k++) {
       if (columns[k] != NULL) {
-        add(&text, dea_reduced_meanings[named[k]].factor * columns[k][i]);
+        DEA_CSV_ADD(&text, 10, dea_reduced_meanings[named[k]].factor * columns[k][i]);
       }
     }
   }
