@@ -142,24 +142,15 @@ static dea_status put_design(struct dea_context *ctx, const struct dea_variant *
       v->curve.count > 0 ? &v->curve.points[v->curve.count - 1] : &none;
   bool sized = v->size.nodes > 0;
   char flags[DEA_FLAGS_SIZE];
-  const struct dea_result_table_value row[] = {
-      {.text = v->name},
-      {.number = v->refinement},
-      {.number = sized ? (double)v->size.elements : NAN},
-      {.number = sized ? (double)v->size.nodes : NAN},
-      {.number = sized ? (double)v->size.unknowns : NAN},
-      {.number = v->wall_s},
-      {.number = v->curve.complete},
-      {.number = (double)index},
-      {.number = p->voltage_V},
-      {.number = p->electrode_stretch - 1},
-      {.number = shown_z(p->centre_z_m)},
-      {.number = shown_z(p->fibre_tip_z_m)},
-      {.number = p->true_field_V_per_m},
-      {.text = dea_flags_text(dea_load_point_flags(p), flags)},
-      {.text = v->curve.stopped},
-  };
-  return dea_result_table_add_row(ctx, table, row);
+  return DEA_TABLE_ADD(ctx, table, DEA_TEXT_CELL(v->name), DEA_CELL(v->refinement),
+                       DEA_CELL(sized ? (double)v->size.elements : NAN),
+                       DEA_CELL(sized ? (double)v->size.nodes : NAN),
+                       DEA_CELL(sized ? (double)v->size.unknowns : NAN), DEA_CELL(v->wall_s),
+                       DEA_CELL(v->curve.complete), DEA_CELL((double)index), DEA_CELL(p->voltage_V),
+                       DEA_CELL(p->electrode_stretch - 1), DEA_CELL(shown_z(p->centre_z_m)),
+                       DEA_CELL(shown_z(p->fibre_tip_z_m)), DEA_CELL(p->true_field_V_per_m),
+                       DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(p), flags)),
+                       DEA_TEXT_CELL(v->curve.stopped), );
 }
 
 static dea_status put_monitors(struct dea_context *ctx, const char *model,
@@ -170,10 +161,9 @@ static dea_status put_monitors(struct dea_context *ctx, const char *model,
   struct dea_result_table *table;
   for (size_t k = 0; k < count; k++) {
     const double last = dea_point_get(&v->curve.points[v->curve.count - 1], columns[k]);
-    const struct dea_result_table_value row[] = {
-        {.text = v->name}, {.number = columns[k]}, {.number = last}};
     DEA_TRY(ctx, dea_result_get_table(ctx, result, &monitor_table, model, &table));
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_TEXT_CELL(v->name), DEA_CELL(columns[k]),
+                               DEA_CELL(last)));
   }
   return DEA_OK;
 }

@@ -157,9 +157,9 @@ static dea_status put_facts(struct dea_context *ctx, const struct dea_convergenc
 {
   struct dea_text verdict = {.ctx = ctx};
   dea_convergence_verdict(c, &verdict);
-  const struct dea_result_table_value row[] = {{.number = c->tolerance},
-                                               {.text = dea_text_get(&verdict)}};
-  dea_status status = verdict.failed ? DEA_E_MEMORY : dea_result_table_add_row(ctx, table, row);
+  dea_status status = verdict.failed ? DEA_E_MEMORY
+                                     : DEA_TABLE_ADD(ctx, table, DEA_CELL(c->tolerance),
+                                                     DEA_TEXT_CELL(dea_text_get(&verdict)));
   dea_text_free(&verdict);
   return status;
 }
@@ -170,17 +170,12 @@ static dea_status put_meshes(struct dea_context *ctx, const struct dea_convergen
   for (size_t m = 0; m < c->mesh_count; m++) {
     const struct dea_variant *mesh = c->meshes[m];
     bool sized = mesh->size.nodes > 0;
-    const struct dea_result_table_value row[] = {
-        {.text = mesh->name},
-        {.number = mesh->refinement},
-        {.number = sized ? (double)mesh->size.elements : NAN},
-        {.number = sized ? (double)mesh->size.nodes : NAN},
-        {.number = sized ? (double)mesh->size.unknowns : NAN},
-        {.number = mesh->wall_s},
-        {.number = mesh->curve.complete},
-        {.text = mesh->curve.stopped},
-    };
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_TEXT_CELL(mesh->name), DEA_CELL(mesh->refinement),
+                               DEA_CELL(sized ? (double)mesh->size.elements : NAN),
+                               DEA_CELL(sized ? (double)mesh->size.nodes : NAN),
+                               DEA_CELL(sized ? (double)mesh->size.unknowns : NAN),
+                               DEA_CELL(mesh->wall_s), DEA_CELL(mesh->curve.complete),
+                               DEA_TEXT_CELL(mesh->curve.stopped), ));
   }
   return DEA_OK;
 }
@@ -190,16 +185,10 @@ static dea_status put_quantities(struct dea_context *ctx, const struct dea_conve
 {
   for (size_t i = 0; i < c->row_count; i++) {
     const struct dea_convergence_row *r = &c->rows[i];
-    const struct dea_result_table_value row[] = {
-        {.number = r->column},
-        {.number = r->voltage_V},
-        {.list = r->values},
-        {.list = r->errors},
-        {.number = r->order},
-        {.number = r->extrapolated},
-        {.text = dea_order_text(r->kind)},
-    };
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx,
+            DEA_TABLE_ADD(ctx, table, DEA_CELL(r->column), DEA_CELL(r->voltage_V),
+                          DEA_LIST_CELL(r->values), DEA_LIST_CELL(r->errors), DEA_CELL(r->order),
+                          DEA_CELL(r->extrapolated), DEA_TEXT_CELL(dea_order_text(r->kind)), ));
   }
   return DEA_OK;
 }
@@ -212,10 +201,9 @@ static dea_status put_enough(struct dea_context *ctx, const struct dea_convergen
     double voltage_V = c->rows[i].voltage_V;
     if (i == 0 || voltage_V != c->rows[i - 1].voltage_V) {
       size_t mesh = dea_convergence_enough(c, voltage_V);
-      const struct dea_result_table_value row[] = {
-          {.number = voltage_V},
-          {.number = mesh < c->mesh_count ? c->meshes[mesh]->refinement : NAN}};
-      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+      DEA_TRY(ctx,
+              DEA_TABLE_ADD(ctx, table, DEA_CELL(voltage_V),
+                            DEA_CELL(mesh < c->mesh_count ? c->meshes[mesh]->refinement : NAN)));
     }
   }
   return DEA_OK;
@@ -228,19 +216,12 @@ static dea_status put_errors(struct dea_context *ctx, const struct dea_convergen
   for (size_t i = 0; i < c->row_count * c->mesh_count; i++) {
     const struct dea_convergence_row *r = &c->rows[i / c->mesh_count];
     const struct dea_variant *mesh = c->meshes[i % c->mesh_count];
-    const struct dea_result_table_value row[] = {
-        {.number = r->column},
-        {.text = r->shown->display_unit},
-        {.number = r->voltage_V},
-        {.number = mesh->refinement},
-        {.number = (double)mesh->size.unknowns},
-        {.number = r->values[i % c->mesh_count]},
-        {.number = r->errors[i % c->mesh_count]},
-        {.number = r->order},
-        {.number = r->extrapolated},
-        {.text = dea_order_text(r->kind)},
-    };
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(
+                     ctx, table, DEA_CELL(r->column), DEA_TEXT_CELL(r->shown->display_unit),
+                     DEA_CELL(r->voltage_V), DEA_CELL(mesh->refinement),
+                     DEA_CELL((double)mesh->size.unknowns), DEA_CELL(r->values[i % c->mesh_count]),
+                     DEA_CELL(r->errors[i % c->mesh_count]), DEA_CELL(r->order),
+                     DEA_CELL(r->extrapolated), DEA_TEXT_CELL(dea_order_text(r->kind)), ));
   }
   return DEA_OK;
 }

@@ -621,15 +621,12 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
       force_N = fmax(force_N, part.points[k].force_interpolation_error_N);
       rest = fmax(rest, part.points[k].interpolation_error);
     }
-    const struct dea_result_table_value row[] = {{.number = part.points[0].tip_depth_m},
-                                                 {.number = (double)part.count},
-                                                 {.number = (double)count_computed(&part)},
-                                                 {.number = part.points[0].force_N},
-                                                 {.number = part.points[part.count - 1].force_N},
-                                                 {.number = dea_curve_trust(&part).trusted_V},
-                                                 {.number = force_N},
-                                                 {.number = rest}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx,
+            DEA_TABLE_ADD(
+                ctx, table, DEA_CELL(part.points[0].tip_depth_m), DEA_CELL((double)part.count),
+                DEA_CELL((double)count_computed(&part)), DEA_CELL(part.points[0].force_N),
+                DEA_CELL(part.points[part.count - 1].force_N),
+                DEA_CELL(dea_curve_trust(&part).trusted_V), DEA_CELL(force_N), DEA_CELL(rest)));
     DEA_TRY(ctx, warn_of_no_touch(ctx, model, &part.points[0]));
   }
   return DEA_OK;

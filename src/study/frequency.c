@@ -515,17 +515,12 @@ static dea_status add_peaks(struct dea_context *ctx, const struct line *line, co
   for (size_t i = 0; i < line->count; i++) {
     const char *word = peak_word(line, i, most);
     char flags[DEA_FLAGS_SIZE];
-    const struct dea_result_table_value row[] = {
-        {.number = at->voltage_V},
-        {.text = moves},
-        {.text = word},
-        {.number = line->frequency_Hz[i]},
-        {.number = line->amplitude_m[i]},
-        {.number = line->phase_rad[i]},
-        {.number = line->amplitude_m[i] / line->amplitude_m[0]},
-        {.text = dea_flags_text(dea_load_point_flags(at), flags)}};
     if (word != NULL) {
-      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+      DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(at->voltage_V), DEA_TEXT_CELL(moves),
+                                 DEA_TEXT_CELL(word), DEA_CELL(line->frequency_Hz[i]),
+                                 DEA_CELL(line->amplitude_m[i]), DEA_CELL(line->phase_rad[i]),
+                                 DEA_CELL(line->amplitude_m[i] / line->amplitude_m[0]),
+                                 DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(at), flags))));
     }
   }
   return DEA_OK;

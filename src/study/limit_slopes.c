@@ -65,19 +65,13 @@ static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
 {
   for (size_t i = 0; i < f->number_count; i++) {
     const struct dea_design_number *number = &f->numbers[i];
-    const struct dea_result_table_value row[] = {
-        {.text = dea_event_name(f->limit->kind)},
-        {.number = f->voltage_V},
-        {.text = number->key},
-        {.number = number->value},
-        {.text = number->unit},
-        {.number = f->slopes[i]},
-        {.number = elasticity(f, i)},
-        {.number = number->tolerance},
-        {.number = f->slopes[i] * number->tolerance},
-    };
     if (!isnan(f->slopes[i])) {
-      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+      DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_TEXT_CELL(dea_event_name(f->limit->kind)),
+                                 DEA_CELL(f->voltage_V), DEA_TEXT_CELL(number->key),
+                                 DEA_CELL(number->value), DEA_TEXT_CELL(number->unit),
+                                 DEA_CELL(f->slopes[i]), DEA_CELL(elasticity(f, i)),
+                                 DEA_CELL(number->tolerance),
+                                 DEA_CELL(f->slopes[i] * number->tolerance), ));
     }
   }
   return DEA_OK;
@@ -99,11 +93,10 @@ static dea_status put_matter(struct dea_context *ctx, const struct found *f,
     const struct dea_tolerated tolerated = dea_number_tolerated(number, f->slopes[best], "V");
     char value[48];
     dea_number_text(number->value, number->unit, value, sizeof value);
-    const struct dea_result_table_value row[] = {
-        {.text = f->limit->title}, {.number = f->voltage_V},        {.text = number->key},
-        {.text = value},           {.number = elasticity(f, best)}, {.text = tolerated.tolerance},
-        {.text = tolerated.change}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_TEXT_CELL(f->limit->title), DEA_CELL(f->voltage_V),
+                               DEA_TEXT_CELL(number->key), DEA_TEXT_CELL(value),
+                               DEA_CELL(elasticity(f, best)), DEA_TEXT_CELL(tolerated.tolerance),
+                               DEA_TEXT_CELL(tolerated.change)));
   }
   return DEA_OK;
 }

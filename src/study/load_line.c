@@ -33,9 +33,8 @@ static dea_status add_forces(struct dea_context *ctx, const struct dea_model_typ
     if (is_fatal(status)) {
       return status;
     }
-    const struct dea_result_table_value row[] = {
-        {.number = voltage_V}, {.number = height_m}, {.number = status == DEA_OK ? force_N : NAN}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(voltage_V), DEA_CELL(height_m),
+                               DEA_CELL(status == DEA_OK ? force_N : NAN)));
   }
   return DEA_OK;
 }

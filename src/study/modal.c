@@ -110,11 +110,10 @@ static dea_status tables(struct dea_context *ctx, const char *model, struct dea_
   for (size_t i = 0; i < curve->count; i++) {
     const struct dea_load_point *p = &curve->points[i];
     char flags[DEA_FLAGS_SIZE];
-    const struct dea_result_table_value row[] = {
-        {.number = p->voltage_V},    {.number = p->mode},
-        {.number = p->frequency_Hz}, {.number = p->mode_out_of_plane},
-        {.number = p->mode_centre},  {.text = dea_flags_text(dea_load_point_flags(p), flags)}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(p->voltage_V), DEA_CELL(p->mode),
+                               DEA_CELL(p->frequency_Hz), DEA_CELL(p->mode_out_of_plane),
+                               DEA_CELL(p->mode_centre),
+                               DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(p), flags))));
   }
   return DEA_OK;
 }

@@ -22,11 +22,6 @@ static const struct dea_result_column source_columns[] = {
     DEA_NUMBER_COLUMN("largest_current_A", "A", "uA", 1e6, "current",
                       "largest size of its source's current, jumps aside"),
 };
-enum {
-  SOURCE_COLUMNS = sizeof source_columns / sizeof source_columns[0],
-  PASS_COLUMNS = sizeof pass_columns / sizeof pass_columns[0]
-};
-
 static const struct dea_result_table_type of_passes = DEA_RESULT_TABLE(
     "sweep", "adaptation", pass_columns, .key = "adaptation", .title = "Adaptive refinement",
     .where = DEA_IN_JSON | DEA_IN_CSV | DEA_IN_SCREEN);
@@ -138,13 +133,10 @@ dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_mo
   struct dea_result_table *table;
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &of_passes, type->name, 0, &table));
   for (size_t i = 0; i < count; i++) {
-    const struct dea_result_table_value row[PASS_COLUMNS] = {{.number = (double)(i + 1)},
-                                                             {.number = (double)pass[i].elements},
-                                                             {.number = (double)pass[i].unknowns},
-                                                             {.number = pass[i].value},
-                                                             {.number = pass[i].error},
-                                                             {.number = pass[i].within ? 1 : 0}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx,
+            DEA_TABLE_ADD(ctx, table, DEA_CELL((double)(i + 1)), DEA_CELL((double)pass[i].elements),
+                          DEA_CELL((double)pass[i].unknowns), DEA_CELL(pass[i].value),
+                          DEA_CELL(pass[i].error), DEA_CELL(pass[i].within ? 1 : 0)));
   }
   return DEA_OK;
 }
@@ -169,14 +161,13 @@ dea_status dea_study_sources(struct dea_context *ctx, const struct dea_monitor_s
     if (c->source != DEA_OF_CHANNEL || c->number != DEA_OBSERVED_VOLTAGE) {
       continue;
     }
-    const struct dea_result_table_value row[SOURCE_COLUMNS] = {
-        {.text = result->device->layout->channels[c->index].name},
-        {.number = -largest(curve, c->column, -1)},
-        {.number = largest(curve, c->column, 1)},
-        {.number = largest(curve, c[DEA_OBSERVED_CHARGE].column, 0)},
-        {.number = largest(curve, c[DEA_OBSERVED_CURRENT].column, 0)}};
     DEA_TRY(ctx, dea_result_get_table(ctx, result, &of_sources, curve->model, &table));
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table,
+                               DEA_TEXT_CELL(result->device->layout->channels[c->index].name),
+                               DEA_CELL(-largest(curve, c->column, -1)),
+                               DEA_CELL(largest(curve, c->column, 1)),
+                               DEA_CELL(largest(curve, c[DEA_OBSERVED_CHARGE].column, 0)),
+                               DEA_CELL(largest(curve, c[DEA_OBSERVED_CURRENT].column, 0))));
   }
   return DEA_OK;
 }

@@ -515,12 +515,9 @@ static dea_status add_axis(struct dea_context *ctx, const struct axis *axis, siz
                       table->row_count);
     }
     DEA_TRY(ctx, find_limits(ctx, &axis->number, value, map));
-    const struct dea_result_table_value row[] = {{.number = value},
-                                                 {.number = map->now.slack_V},
-                                                 {.number = map->now.breakdown_V},
-                                                 {.number = map->now.pull_in_V},
-                                                 {.list = map->now.level_V}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(value), DEA_CELL(map->now.slack_V),
+                               DEA_CELL(map->now.breakdown_V), DEA_CELL(map->now.pull_in_V),
+                               DEA_LIST_CELL(map->now.level_V)));
   }
   return DEA_OK;
 }

@@ -316,25 +316,15 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
     const size_t n = i / stop->width, k = i % stop->width;
     const struct dea_design_number *number = &stop->numbers[n];
     const double slope = slope_of(stop, n, k);
-    const struct dea_result_table_value row[] = {
-        {.number = stop->voltage_V},
-        {.text = number->key},
-        {.number = number->value},
-        {.text = number->unit},
-        {.number = (double)column_of(stop, k)},
-        {.number = value_of(stop, k)},
-        {.number = slope},
-        {.number = elasticity(stop, n, k)},
-        {.number = number->tolerance},
-        {.number = slope * number->tolerance},
-        {.number = mode_number(stop, k)},
-        {.number = depth_of(stop)},
-        {.number = held_by(stop)},
-        {.number = loaded_to(stop)},
-        {.text = flags},
-    };
     if (!isnan(slope)) {
-      DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+      DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(stop->voltage_V), DEA_TEXT_CELL(number->key),
+                                 DEA_CELL(number->value), DEA_TEXT_CELL(number->unit),
+                                 DEA_CELL((double)column_of(stop, k)), DEA_CELL(value_of(stop, k)),
+                                 DEA_CELL(slope), DEA_CELL(elasticity(stop, n, k)),
+                                 DEA_CELL(number->tolerance), DEA_CELL(slope * number->tolerance),
+                                 DEA_CELL(mode_number(stop, k)), DEA_CELL(depth_of(stop)),
+                                 DEA_CELL(held_by(stop)), DEA_CELL(loaded_to(stop)),
+                                 DEA_TEXT_CELL(flags), ));
     }
   }
   return DEA_OK;

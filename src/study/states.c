@@ -777,20 +777,12 @@ static dea_status put_state_row(const struct search *s, const struct state *stat
   name_branch(state->variant, name);
   name_lead(s, state, UP, up);
   name_lead(s, state, DOWN, down);
-  const struct dea_result_table_value row[] = {
-      {.number = p->voltage_V},
-      {.text = name},
-      {.number = p->energy_J},
-      {.number = p->energy_J - lowest_J},
-      SHAPE_OF(p),
-      {.number = p->unstable_modes},
-      {.number = state->stiffness_N_per_m4},
-      {.text = dea_flags_text(dea_load_point_flags(p), flags)},
-      {.number = (double)state->copies},
-      {.text = state->reached},
-      {.text = up},
-      {.text = down}};
-  return dea_result_table_add_row(s->ctx, table, row);
+  return DEA_TABLE_ADD(s->ctx, table, DEA_CELL(p->voltage_V), DEA_TEXT_CELL(name),
+                       DEA_CELL(p->energy_J), DEA_CELL(p->energy_J - lowest_J), SHAPE_OF(p),
+                       DEA_CELL(p->unstable_modes), DEA_CELL(state->stiffness_N_per_m4),
+                       DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(p), flags)),
+                       DEA_CELL((double)state->copies), DEA_TEXT_CELL(state->reached),
+                       DEA_TEXT_CELL(up), DEA_TEXT_CELL(down));
 }
 
 /* Least (side -1) or most (1) of a quantity over the states at a level; NAN where it is none. */
@@ -814,22 +806,15 @@ static dea_status put_band_row(const struct search *s, size_t level, const struc
   char name[NAME_SIZE], up[NAME_SIZE];
   name_branch(lowest->variant, name);
   name_branch(s->states[level].variant, up);
-  const struct dea_result_table_value row[] = {
-      {.number = s->voltages_V[level]},
-      {.number = (double)states_at(s, level)},
-      {.text = name},
-      {.text = up},
-      {.number = !isnan(s->states[level].stiffness_N_per_m4)},
-      {.number = extreme(s, level, "centre_z_m", -1)},
-      {.number = extreme(s, level, "centre_z_m", 1)},
-      {.number = extreme(s, level, "fibre_tip_z_m", -1)},
-      {.number = extreme(s, level, "fibre_tip_z_m", 1)},
-      {.number = extreme(s, level, "electrode_edge_u_m", -1)},
-      {.number = extreme(s, level, "electrode_edge_u_m", 1)},
-      {.number = extreme(s, level, "lowest_z_m", -1)},
-      {.number = extreme(s, level, "highest_z_m", 1)},
-  };
-  return dea_result_table_add_row(s->ctx, table, row);
+  return DEA_TABLE_ADD(
+      s->ctx, table, DEA_CELL(s->voltages_V[level]), DEA_CELL((double)states_at(s, level)),
+      DEA_TEXT_CELL(name), DEA_TEXT_CELL(up), DEA_CELL(!isnan(s->states[level].stiffness_N_per_m4)),
+      DEA_CELL(extreme(s, level, "centre_z_m", -1)), DEA_CELL(extreme(s, level, "centre_z_m", 1)),
+      DEA_CELL(extreme(s, level, "fibre_tip_z_m", -1)),
+      DEA_CELL(extreme(s, level, "fibre_tip_z_m", 1)),
+      DEA_CELL(extreme(s, level, "electrode_edge_u_m", -1)),
+      DEA_CELL(extreme(s, level, "electrode_edge_u_m", 1)),
+      DEA_CELL(extreme(s, level, "lowest_z_m", -1)), DEA_CELL(extreme(s, level, "highest_z_m", 1)));
 }
 
 /* The i-th state on a mesh; NULL: on the design's. */
@@ -855,17 +840,11 @@ static dea_status put_mesh_row(const struct search *s, size_t i, const struct fi
   } else if (s->type->size != NULL) {
     s->type->size(s->model, &size);
   }
-  const struct dea_result_table_value row[] = {
-      {.number = state->point.voltage_V},
-      {.text = name},
-      {.number = mesh != NULL ? mesh->refinement : refinement_of(s->settings, &settings)},
-      {.number = (double)size.unknowns},
-      {.text = same},
-      {.number = p->energy_J},
-      {.number = p->energy_J - lowest_J},
-      SHAPE_OF(p),
-      {.text = flags}};
-  return dea_result_table_add_row(s->ctx, table, row);
+  return DEA_TABLE_ADD(
+      s->ctx, table, DEA_CELL(state->point.voltage_V), DEA_TEXT_CELL(name),
+      DEA_CELL(mesh != NULL ? mesh->refinement : refinement_of(s->settings, &settings)),
+      DEA_CELL((double)size.unknowns), DEA_TEXT_CELL(same), DEA_CELL(p->energy_J),
+      DEA_CELL(p->energy_J - lowest_J), SHAPE_OF(p), DEA_TEXT_CELL(flags));
 }
 
 /* Lowest energy of those at a level that came to a mesh (NULL: of the search). */
@@ -976,12 +955,9 @@ static dea_status put_relaxed_mesh(struct search *s, const struct dea_model_sett
     char flags[DEA_FLAGS_SIZE];
     status = s->type->solve(s->ctx, model, s->voltages_V[level], &p);
     if (status == DEA_OK) {
-      const struct dea_result_table_value row[] = {
-          {.number = p.voltage_V},
-          {.number = refinement_of(s->settings, settings)},
-          SHAPE_OF(&p),
-          {.text = dea_flags_text(dea_load_point_flags(&p), flags)}};
-      status = dea_result_table_add_row(s->ctx, table, row);
+      status = DEA_TABLE_ADD(s->ctx, table, DEA_CELL(p.voltage_V),
+                             DEA_CELL(refinement_of(s->settings, settings)), SHAPE_OF(&p),
+                             DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(&p), flags)));
     }
   }
   if (model != NULL) {

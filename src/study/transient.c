@@ -620,21 +620,15 @@ static dea_status put_facts(struct dea_context *ctx, const struct dea_curve *cur
 {
   struct dea_energy_balance e;
   struct dea_result_table *table;
-  const struct dea_result_table_value facts[] = {
-      {.number = (double)curve->count},
-      {.number = curve->points[curve->count - 1].time_s},
-      {.text = column < 0 ? "" : dea_point_columns[column].key}};
   bool balanced = dea_time_series_balance(curve, &e);
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &fact_table, model, 0, &table));
-  DEA_TRY(ctx, dea_result_table_add_row(ctx, table, facts));
+  DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL((double)curve->count),
+                             DEA_CELL(curve->points[curve->count - 1].time_s),
+                             DEA_TEXT_CELL(column < 0 ? "" : dea_point_columns[column].key)));
   if (balanced) {
-    const struct dea_result_table_value energies[] = {{.number = e.supply_work_J},
-                                                      {.number = e.stored_J},
-                                                      {.number = e.kinetic_J},
-                                                      {.number = e.dissipated_J},
-                                                      {.number = e.error}};
     DEA_TRY(ctx, dea_result_add_table(ctx, result, &energy_table, model, 0, &table));
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, energies));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(e.supply_work_J), DEA_CELL(e.stored_J),
+                               DEA_CELL(e.kinetic_J), DEA_CELL(e.dissipated_J), DEA_CELL(e.error)));
   }
   return DEA_OK;
 }
@@ -647,24 +641,20 @@ static dea_status put_cycles(struct dea_context *ctx, const struct dea_cycle *cy
   table->quantity = column;
   for (size_t i = 0; i < count; i++) {
     const struct dea_cycle *c = &cycles[i];
-    const struct dea_result_table_value row[] = {
-        {.number = c->start_s},   {.number = c->end_s},      {.number = c->level_V},
-        {.number = c->amplitude}, {.number = c->farthest},   {.number = c->highest},
-        {.number = c->lowest},    {.number = c->rise_time_s}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx,
+            DEA_TABLE_ADD(ctx, table, DEA_CELL(c->start_s), DEA_CELL(c->end_s),
+                          DEA_CELL(c->level_V), DEA_CELL(c->amplitude), DEA_CELL(c->farthest),
+                          DEA_CELL(c->highest), DEA_CELL(c->lowest), DEA_CELL(c->rise_time_s)));
   }
   DEA_TRY(ctx, dea_result_add_table(ctx, result, &creep_table, model, 0, &table));
   table->quantity = column;
   for (size_t first = 0, last; first < count; first = last + 1) {
     last = dea_time_series_level_end(cycles, count, first);
     const struct dea_cycle *a = &cycles[first], *b = &cycles[last];
-    const struct dea_result_table_value row[] = {{.number = a->level_V},
-                                                 {.number = (double)(last - first + 1)},
-                                                 {.number = a->farthest},
-                                                 {.number = b->farthest},
-                                                 {.number = b->farthest - a->farthest},
-                                                 {.number = a->rise_time_s}};
-    DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
+    DEA_TRY(ctx,
+            DEA_TABLE_ADD(ctx, table, DEA_CELL(a->level_V), DEA_CELL((double)(last - first + 1)),
+                          DEA_CELL(a->farthest), DEA_CELL(b->farthest),
+                          DEA_CELL(b->farthest - a->farthest), DEA_CELL(a->rise_time_s)));
   }
   return DEA_OK;
 }

@@ -490,14 +490,11 @@ static dea_status add_effects(struct work *w, const struct dea_curve *curve, int
   const bool shown = i < SIZE_MAX && dea_point_get(&curve->std[i], column) > 0;
   for (size_t j = 0; shown && j <= w->count; j++) {
     const bool all = j == w->count;
-    const struct dea_result_table_value row[] = {
-        {.number = column},
-        {.number = curve->points[i].voltage_V},
-        {.text = all ? "all" : w->params[j].param.name},
-        {.text = all ? "" : w->std_text[j]},
-        {.number = effect(w, curve, i, column, j)},
-    };
-    DEA_TRY(w->ctx, dea_result_table_add_row(w->ctx, table, row));
+    DEA_TRY(w->ctx,
+            DEA_TABLE_ADD(w->ctx, table, DEA_CELL(column), DEA_CELL(curve->points[i].voltage_V),
+                          DEA_TEXT_CELL(all ? "all" : w->params[j].param.name),
+                          DEA_TEXT_CELL(all ? "" : w->std_text[j]),
+                          DEA_CELL(effect(w, curve, i, column, j)), ));
   }
   return DEA_OK;
 }
