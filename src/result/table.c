@@ -118,6 +118,15 @@ dea_status dea_result_table_add_row(struct dea_context *ctx, struct dea_result_t
   return DEA_OK;
 }
 
+dea_status dea_result_table_add_cells(struct dea_context *ctx, struct dea_result_table *table,
+                                      const struct dea_result_table_value *cells, size_t count)
+{
+  return count == table->type.column_count
+             ? dea_result_table_add_row(ctx, table, cells)
+             : dea_fail(ctx, DEA_E_ARGUMENT, "a row of %zu cells for %zu columns", count,
+                        table->type.column_count);
+}
+
 const struct dea_column *dea_result_table_quantity(const struct dea_result_table *table, size_t row)
 {
   for (size_t c = 0; c < table->type.column_count; c++) {

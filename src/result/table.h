@@ -115,9 +115,14 @@ struct dea_result_table_value {
 /* Adds a row. values: one for each column, in their order. */
 dea_status dea_result_table_add_row(struct dea_context *ctx, struct dea_result_table *table,
                                     const struct dea_result_table_value *values);
-/* The same of cells: DEA_TABLE_ADD(ctx, table, DEA_CELL(1), DEA_TEXT_CELL("a")). */
+/* The same of cells, which have to be as many as the columns:
+ * DEA_TABLE_ADD(ctx, table, DEA_CELL(1), DEA_TEXT_CELL("a")). */
+dea_status dea_result_table_add_cells(struct dea_context *ctx, struct dea_result_table *table,
+                                      const struct dea_result_table_value *cells, size_t count);
 #define DEA_TABLE_ADD(ctx, table, ...)                                                             \
-  dea_result_table_add_row(ctx, table, (const struct dea_result_table_value[]){__VA_ARGS__})
+  dea_result_table_add_cells(ctx, table, (const struct dea_result_table_value[]){__VA_ARGS__},     \
+                             sizeof((const struct dea_result_table_value[]){__VA_ARGS__}) /        \
+                                 sizeof(struct dea_result_table_value))
 #define DEA_CELL(value) ((struct dea_result_table_value){.number = (value)})
 #define DEA_TEXT_CELL(value) ((struct dea_result_table_value){.text = (value)})
 #define DEA_LIST_CELL(value) ((struct dea_result_table_value){.list = (value)})

@@ -439,26 +439,15 @@ static dea_status take(struct dea_context *ctx, struct loading *l, double value,
     *limit = passed->point.force_N;
   }
   l->point++;
-  const struct dea_result_table_value row[] = {
-      {.number = l->voltage_V},
-      {.number = (double)l->point},
-      {.number = back},
-      {.number = v[AT_SHIFT]},
-      {.number = v[AT_TURN]},
-      {.number = v[OF_FORCE]},
-      {.number = v[OF_MOMENT]},
-      {.number = v[AT_PRESSURE]},
-      {.number = v[AT_CHARGE]},
-      {.number = l->range == CHARGE ? at.voltage_V : NAN},
-      {.number = at.highest_z_m},
-      {.number = at.lowest_z_m},
-      {.number = at.energy_J},
-      {.number = at.min_tension_N_per_m},
-      {.number = at.unstable_modes},
-      {.number = dea_load_point_trusted(&at)},
-      {.text = dea_flags_text(dea_load_point_flags(&at), flags)}};
-  _Static_assert(COUNT(row) == COUNT(point_columns), "a value a column");
-  DEA_TRY(ctx, dea_result_table_add_row(ctx, &l->result->tables[l->table[POINTS]], row));
+  DEA_TRY(ctx, DEA_TABLE_ADD(ctx, &l->result->tables[l->table[POINTS]], DEA_CELL(l->voltage_V),
+                             DEA_CELL((double)l->point), DEA_CELL(back), DEA_CELL(v[AT_SHIFT]),
+                             DEA_CELL(v[AT_TURN]), DEA_CELL(v[OF_FORCE]), DEA_CELL(v[OF_MOMENT]),
+                             DEA_CELL(v[AT_PRESSURE]), DEA_CELL(v[AT_CHARGE]),
+                             DEA_CELL(l->range == CHARGE ? at.voltage_V : NAN),
+                             DEA_CELL(at.highest_z_m), DEA_CELL(at.lowest_z_m),
+                             DEA_CELL(at.energy_J), DEA_CELL(at.min_tension_N_per_m),
+                             DEA_CELL(at.unstable_modes), DEA_CELL(dea_load_point_trusted(&at)),
+                             DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(&at), flags))));
   DEA_TRY(ctx, dea_study_add_point(ctx, l->type, l->model, l->result->device, &at,
                                    &l->result->curves[l->curve]));
   DEA_TRY(ctx, watch(ctx, l, back, v[AT_SHIFT], v[OF_FORCE]));
@@ -533,18 +522,11 @@ static dea_status follow(struct dea_context *ctx, struct loading *l, double volt
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
   }
   double blocked = l->blocked[1] - l->blocked[0];
-  const struct dea_result_table_value row[] = {{.number = voltage_V},
-                                               {.number = l->range == SHIFT ? blocked : NAN},
-                                               {.number = l->range == TURN ? blocked : NAN},
-                                               {.number = l->peak},
-                                               {.number = l->peak_at},
-                                               {.number = l->least},
-                                               {.number = l->least_at},
-                                               {.number = (double)(l->point - before)},
-                                               {.number = stopped == DEA_OK},
-                                               {.text = why}};
-  _Static_assert(COUNT(row) == COUNT(line_columns), "a value a column");
-  dea_status status = dea_result_table_add_row(ctx, &l->result->tables[l->table[LINES]], row);
+  dea_status status = DEA_TABLE_ADD(
+      ctx, &l->result->tables[l->table[LINES]], DEA_CELL(voltage_V),
+      DEA_CELL(l->range == SHIFT ? blocked : NAN), DEA_CELL(l->range == TURN ? blocked : NAN),
+      DEA_CELL(l->peak), DEA_CELL(l->peak_at), DEA_CELL(l->least), DEA_CELL(l->least_at),
+      DEA_CELL((double)(l->point - before)), DEA_CELL(stopped == DEA_OK), DEA_TEXT_CELL(why));
   if (status != DEA_OK) {
     return status;
   }
