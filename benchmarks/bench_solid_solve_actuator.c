@@ -6,10 +6,10 @@
  *   bench_solid_solve_actuator [REFINEMENT...]     default: 1 1.5 2; the others are held to the
  * last
  */
-#include "bench_factorisations.h"
 #include "design/design.h"
 #include "model/model.h"
 #include "study/design_file.h"
+#include "timing.h"
 
 #include <math.h>
 
@@ -18,6 +18,11 @@ enum { POINTS = 17, MESHES_MAX = 8, COMPARED = 13 }; // compared: up to 6.5 kV
 struct sweep {
   double time_s, factorisations, tip_m[POINTS], edge_m[POINTS];
 };
+
+static double factorisations(struct dea_context *ctx)
+{
+  return (double)dea_context_counters(ctx)->factorisations;
+}
 
 static struct sweep run(struct dea_context *ctx, const char *refinement, const char *film,
                         double step_V, int points)
@@ -32,7 +37,7 @@ static struct sweep run(struct dea_context *ctx, const char *refinement, const c
   const struct dea_model_type *type = dea_model_find("3d");
   bench_need(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", sets, 2, &design), ctx);
   bench_need(dea_device_build(ctx, design, &device), ctx);
-  double start = bench_processor_s(), before = bench_factorisations();
+  double start = bench_processor_s(), before = factorisations(ctx);
   bench_need(dea_model_create(ctx, type, design, device, &model), ctx);
   for (int i = 0; i < points; i++) {
     bench_need(type->solve(ctx, model, step_V * i, &point), ctx);
@@ -40,7 +45,7 @@ static struct sweep run(struct dea_context *ctx, const char *refinement, const c
     sweep.edge_m[i] = point.electrode_edge_u_m;
   }
   sweep.time_s = bench_processor_s() - start;
-  sweep.factorisations = bench_factorisations() - before;
+  sweep.factorisations = factorisations(ctx) - before;
   type->destroy(ctx, model);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
@@ -73,7 +78,6 @@ int main(int argc, char **argv)
   if (count > MESHES_MAX || dea_context_create(NULL, &ctx) != DEA_OK) {
     return 1;
   }
-  bench_count_factorisations(ctx);
   run(ctx, "1", "solid", 1000, 2); // what is made once
   membrane = run(ctx, "1", "membrane", 500, POINTS);
   for (int i = 0; i < count; i++) {

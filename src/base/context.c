@@ -35,6 +35,7 @@ struct dea_context {
   bool interrupted_elsewhere;
   dea_finding_fn finding_fn;
   void *finding_user;
+  struct dea_solver_counters counters;
 };
 
 static void *default_resize(void *user, void *pointer, size_t size)
@@ -47,6 +48,11 @@ static void default_release(void *user, void *pointer)
 {
   (void)user;
   free(pointer);
+}
+
+struct dea_solver_counters *dea_context_counters(struct dea_context *ctx)
+{
+  return &ctx->counters;
 }
 
 dea_status dea_context_create(const struct dea_allocator *allocator, struct dea_context **out)

@@ -53,11 +53,28 @@ typedef bool (*dea_interrupt_fn)(void *user);
 /* Told of each finding as it is added; lent. */
 typedef void (*dea_finding_fn)(void *user, const struct dea_finding *finding);
 
+/* What the solver of model 3d has done; X(member, label). A cut step is one that the line search
+ * has shortened. */
+#define DEA_SOLVER_COUNTERS(X)                                                                     \
+  X(load_steps, "load steps")                                                                      \
+  X(rejected_steps, "rejected")                                                                    \
+  X(newton_iterations, "Newton iterations")                                                        \
+  X(line_searches, "steps cut by the line search")                                                 \
+  X(factorisations, "factorisations")
+struct dea_solver_counters {
+#define DEA_SOLVER_COUNTER(member, label) unsigned long member;
+  DEA_SOLVER_COUNTERS(DEA_SOLVER_COUNTER)
+#undef DEA_SOLVER_COUNTER
+};
+
 struct dea_context;
 
 /* allocator: NULL for malloc/free; copied. out: owned by the caller, NULL on failure. */
 dea_status dea_context_create(const struct dea_allocator *allocator, struct dea_context **out);
 void dea_context_destroy(struct dea_context *ctx);
+
+/* Those of all solves with this context, at first 0; lent. */
+struct dea_solver_counters *dea_context_counters(struct dea_context *ctx);
 
 /* Memory from the context's allocator, zeroed. count * size is checked for overflow; both may be 0
  * (then a valid pointer comes back). NULL on failure, after dea_fail(DEA_E_MEMORY). */

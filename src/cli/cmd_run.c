@@ -351,6 +351,20 @@ static void print_folder(struct dea_cli *cli, const struct run *run)
   dea_free(cli->ctx, figures);
 }
 
+/* What the solver of model 3d has done, if anything. */
+static void print_solver(const struct dea_solver_counters *solver)
+{
+  const char *join = "solver:";
+#define PRINT(member, label)                                                                       \
+  printf("%s %lu " label, join, solver->member);                                                   \
+  join = ",";
+  if (solver->newton_iterations > 0) {
+    DEA_SOLVER_COUNTERS(PRINT)
+    puts("");
+  }
+#undef PRINT
+}
+
 /* Writes what there is, whatever happened before: partial results are results. */
 static dea_status deliver(struct dea_cli *cli, const struct request *request, struct run *run)
 {
@@ -371,6 +385,9 @@ static dea_status deliver(struct dea_cli *cli, const struct request *request, st
     if (!cli->quiet &&
         (status == DEA_OK || status == DEA_E_TOOL)) { // without gnuplot the data are there
       print_folder(cli, run);
+    }
+    if (cli->verbose) {
+      print_solver(&run->result->provenance.solver);
     }
   }
   return status;

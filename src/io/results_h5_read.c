@@ -382,6 +382,12 @@ static void get_rest(struct h5 *h, hid_t file, struct dea_run *run)
   dea_h5_get_text(h, group, "libraries", p->libraries, sizeof p->libraries);
   dea_h5_get_text(h, group, "started", p->started, sizeof p->started);
   p->wall_s = dea_h5_get_real(h, group, "wall_s");
+#define GET(member, label)                                                                         \
+  if (h->status == DEA_OK && H5Aexists(group, #member) > 0) { /* not in files of older versions */ \
+    p->solver.member = (unsigned long)dea_h5_get_int(h, group, #member);                           \
+  }
+  DEA_SOLVER_COUNTERS(GET)
+#undef GET
   p->command = dea_h5_get_long_text(h, group, "command");
   dea_h5_close(group);
 }

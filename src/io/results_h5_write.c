@@ -322,6 +322,9 @@ static void put_provenance(struct h5 *h, hid_t file, const struct dea_provenance
   dea_h5_put_text(h, group, "libraries", p->libraries);
   dea_h5_put_text(h, group, "started", p->started);
   dea_h5_put_real(h, group, "wall_s", p->wall_s);
+#define PUT(member, label) dea_h5_put_int(h, group, #member, (long long)p->solver.member);
+  DEA_SOLVER_COUNTERS(PUT)
+#undef PUT
   dea_h5_put_long_text(h, group, "command", p->command);
   dea_h5_close(group);
 }

@@ -96,6 +96,12 @@ static json_t *provenance_json(const struct dea_provenance *p)
   dea_json_put_text(object, "libraries", p->libraries);
   dea_json_put_text(object, "started", p->started);
   dea_json_put(object, "wall_s", p->wall_s);
+  json_t *solver = json_object();
+#define PUT(member, label)                                                                         \
+  json_object_set_new(solver, #member, json_integer((json_int_t)p->solver.member));
+  DEA_SOLVER_COUNTERS(PUT)
+#undef PUT
+  json_object_set_new(object, "solver", solver);
   dea_json_put_text(object, "input_sha256", p->input_sha256);
   dea_json_put_text(object, "overrides", p->overrides);
   dea_json_put_text(object, "command", p->command);

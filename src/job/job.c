@@ -197,6 +197,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
                        bool *began)
 {
   struct timespec start, end;
+  const struct dea_solver_counters before = *dea_context_counters(ctx);
   dea_status first = DEA_OK;
   char message[1024] = "";
   *began = false;
@@ -221,6 +222,10 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   clock_gettime(CLOCK_MONOTONIC, &end);
   result->provenance.wall_s =
       (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+#define COUNTED(member, label)                                                                     \
+  result->provenance.solver.member = dea_context_counters(ctx)->member - before.member;
+  DEA_SOLVER_COUNTERS(COUNTED)
+#undef COUNTED
   job->status = first;
   return first == DEA_OK ? DEA_OK : dea_fail(ctx, first, "%s", message);
 }

@@ -61,6 +61,7 @@ struct dea_provenance {
   char libraries[256];           // "libyaml 0.2.5, HDF5 1.10.8, ..."
   char started[32];              // ISO 8601, UTC
   double wall_s;
+  struct dea_solver_counters solver; // of this process; zeros: model 3d was not solved
   char input_sha256[65]; // of the design file's bytes
   char *input;           // the design file itself; owned
   char *overrides;       // "key=value" a line; owned, may be NULL

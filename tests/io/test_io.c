@@ -106,6 +106,7 @@ TEST(test_store_reads_back_to_the_bit)
   strcpy(result->curves[0].stopped, "no equilibrium above 4.6 kV");
   result->curves[0].points[3].force_N = NAN; // a hole in a column
   result->provenance.wall_s = 0.1;
+  result->provenance.solver = (struct dea_solver_counters){1, 2, 3, 4, 5};
   assert_int_equal(dea_results_h5_write(ctx, result, in_folder("results.h5")), DEA_OK);
   assert_int_equal(dea_run_read(ctx, folder, &run), DEA_OK);
   const struct dea_result *back = run->result;
@@ -146,6 +147,8 @@ TEST(test_store_reads_back_to_the_bit)
   assert_string_equal(back->provenance.overrides, result->provenance.overrides);
   assert_string_equal(back->provenance.command, result->provenance.command);
   assert_close(back->provenance.wall_s, 0.1, 0, 0);
+  assert_memory_equal(&back->provenance.solver, &result->provenance.solver,
+                      sizeof result->provenance.solver);
   dea_run_destroy(ctx, run);
 }
 

@@ -61,7 +61,7 @@ TEST(test_plain_disc)
 }
 
 /* A result names the libraries that have computed it, of this model PETSc with what it brings:
- * once, and not where another model alone has computed. */
+ * once, and not where another model alone has computed; and what its solver has done. */
 TEST(test_libraries)
 {
   static const char *const designs[] = {
@@ -76,6 +76,7 @@ TEST(test_libraries)
     const char *petsc = strstr(at, ", PETSc 3."), *slepc = strstr(at, ", SLEPc 3.");
     const char *mumps = strstr(at, ", MUMPS 5.");
     assert_true((petsc != NULL && slepc != NULL && mumps != NULL) == (i > 0));
+    assert_true((strstr(at, "\"factorisations\": 0") == NULL) == (i > 0)); // the solver's counts
     assert_true(petsc == NULL ||
                 (petsc < strchr(at, '\n') && strstr(petsc + 2, ", PETSc") == NULL));
   }

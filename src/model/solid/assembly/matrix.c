@@ -365,6 +365,7 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
   DEA_TRY(ctx, heed_before_factor(ctx));
+  dea_context_counters(ctx)->factorisations++;
   for (PetscInt capacity = ROOM; capacity <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY;
        capacity *= 2) {
     if (capacity > ROOM) {
@@ -449,22 +450,16 @@ static dea_status factor_by_pivots(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-/* One more among the factors that PETSc counts, which those by fronts are not. */
-static dea_status count_factor(struct dea_context *ctx, Mat K)
-{
-  PetscLogEvent event;
-  DEA_PETSC(ctx, PetscLogEventGetId("MatCholFctrNum", &event));
-  DEA_PETSC(ctx, PetscLogEventBegin(event, K, 0, 0, 0));
-  DEA_PETSC(ctx, PetscLogEventEnd(event, K, 0, 0, 0));
-  return DEA_OK;
-}
-
 dea_status dea_solid_factorise(struct dea_context *ctx, struct dea_solid *s, int *negative)
 {
   int fewer;
   s->found.stiff_factor_fits = false;
   DEA_TRY(ctx, factor_by_fronts(ctx, s, 0, negative));
-  DEA_TRY(ctx, *negative == 0 ? count_factor(ctx, s->work.K) : factor_by_pivots(ctx, s, negative));
+  if (s->work.by_fronts) {
+    dea_context_counters(ctx)->factorisations++;
+  } else {
+    DEA_TRY(ctx, factor_by_pivots(ctx, s, negative));
+  }
   DEA_TRY(ctx, dea_solid_rank_one_factor(ctx, s, solve_by_factor, &fewer));
   *negative -= fewer;
   return DEA_OK;
@@ -478,7 +473,11 @@ dea_status dea_solid_factor_roughly(struct dea_context *ctx, struct dea_solid *s
   }
   s->found.stiff_factor_fits = false;
   DEA_TRY(ctx, factor_by_fronts(ctx, s, most, negative));
-  DEA_TRY(ctx, *negative >= 0 ? count_factor(ctx, s->work.K) : factor_by_pivots(ctx, s, negative));
+  if (*negative >= 0) {
+    dea_context_counters(ctx)->factorisations++;
+  } else {
+    DEA_TRY(ctx, factor_by_pivots(ctx, s, negative));
+  }
   return DEA_OK;
 }
 

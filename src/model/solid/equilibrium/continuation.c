@@ -270,6 +270,8 @@ static dea_status correct_once(struct dea_context *ctx, struct dea_solid_continu
   *small = (constrained && most < stol * s->problem.length_m) ||
            (share == 1 && size < t->plane.enough * fabs(t->plane.length));
   DEA_TRY(ctx, set_load(ctx, t, t->load + share * dtau));
+  dea_context_counters(ctx)->newton_iterations++;
+  dea_context_counters(ctx)->line_searches += share < 1;
   return DEA_OK;
 }
 
@@ -530,6 +532,8 @@ dea_status dea_solid_continuation_step(struct dea_context *ctx, struct dea_solid
     iterations = 0;
     status = attempt_step(ctx, t, &off, &iterations);
     all += iterations;
+    dea_context_counters(ctx)->load_steps += status == DEA_OK;
+    dea_context_counters(ctx)->rejected_steps += status != DEA_OK;
     if (!dea_solid_may_shorten(status) || t->step < 2 * t->step_least) {
       break;
     }

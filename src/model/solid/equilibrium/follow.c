@@ -414,6 +414,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
       bend(w);
     }
     w->report->corrections++;
+    dea_context_counters(ctx)->newton_iterations++;
   }
   return DEA_OK;
 }
@@ -547,6 +548,8 @@ dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double
   if (status == DEA_OK && *there) {
     status = count(ctx, &w, there);
   }
+  dea_context_counters(ctx)->load_steps += status == DEA_OK && *there;
+  dea_context_counters(ctx)->rejected_steps += !*there;
   if (status == DEA_OK && *there) {
     keep_way(&w);
   }

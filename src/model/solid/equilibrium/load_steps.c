@@ -323,6 +323,8 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, d
   for (;;) {
     double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
     dea_status status = solve_at_share(ctx, s, way, report);
+    dea_context_counters(ctx)->load_steps += status == DEA_OK;
+    dea_context_counters(ctx)->rejected_steps += status != DEA_OK;
     if (status == DEA_OK) {
       report->way = way;
       if (way >= 1) {

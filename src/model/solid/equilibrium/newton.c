@@ -291,6 +291,7 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
   }
   d->chords++;
   d->report->corrections++;
+  dea_context_counters(ctx)->newton_iterations++;
   return take_step(ctx, s, d, 1, false);
 }
 
@@ -311,7 +312,10 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
     DEA_TRY(ctx, linear_step(ctx, s));
     dea_solid_predict_tangent(s, there == 0 ? s->work.step : NULL);
     double slope = dea_solid_dot(s, s->work.g, s->work.step);
-    if (search_line(ctx, s, d, slope, &share, &rise)) {
+    bool found = search_line(ctx, s, d, slope, &share, &rise);
+    dea_context_counters(ctx)->line_searches += !found || share < 1;
+    if (found) {
+      dea_context_counters(ctx)->newton_iterations++;
       bool quadratic = fabs(rise + 0.5) < 0.05 && share == 1;
       *done =
           !start && there == 0 && largest(s, s->work.step) < o->newton_stol * s->problem.length_m;
