@@ -386,7 +386,7 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 }
 
 /* Largest K that is tried by fronts: of larger ones nothing was measured. */
-static const size_t fronts_most = 60000;
+static const size_t fronts_most = 100000;
 
 /* The factor by fronts, as dea_fronts_factor; *negative: -1 also where that is not to be had. */
 static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s, int most,
