@@ -67,7 +67,7 @@ static void bodies_destroy(struct bodies *it)
 static void solve(struct bodies *it)
 {
   assert_int_equal(dea_load_steps_solve(ctx, it->solid, 0, &it->report), DEA_OK);
-  assert_close(it->report.way, 1, 0, 0);
+  assert_close(it->report.load_factor, 1, 0, 0);
 }
 
 static int clamped(const void *self, const double X[3])

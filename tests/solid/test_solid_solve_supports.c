@@ -65,7 +65,7 @@ TEST(test_bar_is_pulled_and_pushed)
   for (size_t i = 0; i < 4; i++) {
     pull_end(solid, grid, length * (stretch[i] - 1));
     assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-    assert_close(report.way, 1, 0, 0);
+    assert_close(report.load_factor, 1, 0, 0);
     assert_close(reaction(solid, grid), stress(stretch[i]), 1e-8, 1e-8 * mu);
     assert_true(report.iterations <= 12);
     for (size_t n = 0; n < grid->node_count; n++) {
@@ -162,13 +162,13 @@ TEST(test_way_that_ends)
   struct dea_solid_report report;
   pull_end(solid, grid, -1.5 * length);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_E_NOT_CONVERGED);
-  assert_true(report.way > 0.3 && report.way < 2 / 3.0);
+  assert_true(report.load_factor > 0.3 && report.load_factor < 2 / 3.0);
   size_t end = 0;
   while (!at_end(grid, end)) {
     end++;
   }
   double way = dea_solid_displacement(solid)[3 * end];
-  assert_close(way, -1.5 * length * report.way, 1e-9, 0);
+  assert_close(way, -1.5 * length * report.load_factor, 1e-9, 0);
   // and it goes on from there
   pull_end(solid, grid, way);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);

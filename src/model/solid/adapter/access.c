@@ -41,10 +41,10 @@ struct dea_solid_object {
   size_t channel_count; // ground not counted
   double *charges;      // voltages, charges, both matrices of capacitances; NULL: not asked for
   size_t body_count;
-  double *body_told; // [4][body_count][3] shift, turn, force, moment
+  double *body_values; // [4][body_count][3] shift, turn, force, moment
   size_t spring_count;
   struct held_spring *springs; // [spring_count]
-  double *spring_told;         // [2][spring_count] force, moment
+  double *spring_values;       // [2][spring_count] force, moment
 };
 
 // Mesh -------------------------------------------------------------------------------------------
@@ -390,7 +390,7 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
       dea_spring_destroy(ctx, object->springs[i].spring);
     }
     dea_free(ctx, object->springs);
-    dea_free(ctx, object->spring_told);
+    dea_free(ctx, object->spring_values);
     dea_grid_destroy(ctx, object->grid);
     dea_free(ctx, object->part_materials);
     dea_free(ctx, object->between);
@@ -398,7 +398,7 @@ static void destroy(struct dea_context *ctx, struct dea_solid_object *object)
     dea_free(ctx, object->mode_square);
     dea_free(ctx, object->mode_shape);
     dea_free(ctx, object->charges);
-    dea_free(ctx, object->body_told);
+    dea_free(ctx, object->body_values);
     dea_free(ctx, object);
   }
 }
@@ -445,10 +445,10 @@ static dea_status fill(struct dea_context *ctx, const struct dea_solid_spec *spe
     DEA_TRY(ctx, make_part_material(ctx, &spec->parts[i], &object->part_materials[i]));
   }
   object->body_count = spec->body_count;
-  object->body_told = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));
+  object->body_values = dea_alloc(ctx, 12 * spec->body_count, sizeof(double));
   struct dea_solid_body *bodies = dea_alloc(ctx, spec->body_count, sizeof *bodies);
   int *follows = dea_alloc(ctx, object->mesh_node_count + 2 * spec->body_count, sizeof *follows);
-  dea_status status = object->body_told != NULL && bodies != NULL && follows != NULL
+  dea_status status = object->body_values != NULL && bodies != NULL && follows != NULL
                           ? make_solid(ctx, spec, object, bodies, follows)
                           : DEA_E_MEMORY;
   dea_free(ctx, bodies);
@@ -557,9 +557,9 @@ static dea_status add_spring(struct dea_context *ctx, struct dea_solid_object *o
   size_t count = object->spring_count + 1;
   struct held_spring *springs = dea_resize(ctx, object->springs, count, sizeof *springs);
   object->springs = springs != NULL ? springs : object->springs;
-  double *told = dea_resize(ctx, object->spring_told, 2 * count, sizeof *told);
-  object->spring_told = told != NULL ? told : object->spring_told;
-  if (springs == NULL || told == NULL) {
+  double *values = dea_resize(ctx, object->spring_values, 2 * count, sizeof *values);
+  object->spring_values = values != NULL ? values : object->spring_values;
+  if (springs == NULL || values == NULL) {
     return DEA_E_MEMORY;
   }
   const struct dea_solid_body *body = &object->solid->problem.bodies[spec->body];
@@ -598,30 +598,30 @@ static dea_status move_spring(struct dea_context *ctx, struct dea_solid_object *
 }
 
 /* What springs pull back by. */
-static const double *tell_springs(struct dea_solid_object *object)
+static const double *find_springs(struct dea_solid_object *object)
 {
   size_t count = object->spring_count;
   for (size_t i = 0; i < count; i++) {
     const struct held_spring *held = &object->springs[i];
     double x = spring_end(object, held->body, held->component);
     double pull = dea_spring_force(held->spring, x);
-    object->spring_told[i] = held->component < 3 ? pull : NAN;
-    object->spring_told[count + i] = held->component < 3 ? NAN : pull;
+    object->spring_values[i] = held->component < 3 ? pull : NAN;
+    object->spring_values[count + i] = held->component < 3 ? NAN : pull;
   }
-  return count > 0 ? object->spring_told : NULL;
+  return count > 0 ? object->spring_values : NULL;
 }
 
 /* Where the bodies are and what holds them. */
-static const double *tell_bodies(struct dea_solid_object *object)
+static const double *find_bodies(struct dea_solid_object *object)
 {
   size_t count = object->body_count;
-  double *told = object->body_told;
+  double *values = object->body_values;
   for (size_t k = 0; k < count; k++) {
-    dea_solid_body_place(object->solid, k, told + 3 * k, told + 3 * (count + k));
-    dea_solid_body_reaction(object->solid, k, told + 3 * (2 * count + k),
-                            told + 3 * (3 * count + k));
+    dea_solid_body_place(object->solid, k, values + 3 * k, values + 3 * (count + k));
+    dea_solid_body_reaction(object->solid, k, values + 3 * (2 * count + k),
+                            values + 3 * (3 * count + k));
   }
-  return count > 0 ? told : NULL;
+  return count > 0 ? values : NULL;
 }
 
 static dea_status set(struct dea_context *ctx, struct dea_solid_object *object, const char *name,
@@ -792,10 +792,10 @@ static const double *array(struct dea_solid_object *object, const char *name, co
   size_t n = object->grid->node_count, c = object->channel_count + 1;
   size_t b = object->body_count;
   const double *charges = object->charges;
-  const double *told = strncmp(name, "body_", strlen("body_")) == 0 ? tell_bodies(object) : NULL;
+  const double *values = strncmp(name, "body_", strlen("body_")) == 0 ? find_bodies(object) : NULL;
   size_t k = object->spring_count;
   const double *pull =
-      strncmp(name, "spring_", strlen("spring_")) == 0 ? tell_springs(object) : NULL;
+      strncmp(name, "spring_", strlen("spring_")) == 0 ? find_springs(object) : NULL;
   const struct {
     const char *name, *unit;
     const double *data;
@@ -807,10 +807,10 @@ static const double *array(struct dea_solid_object *object, const char *name, co
       {"force_N", "N", dea_solid_force(object->solid), {n, 3}},
       {"mode_Hz", "Hz", object->mode_square, {object->mode_count, 0}},
       {"mode_shape", "kg^-1/2", object->mode_shape, {object->mode_count, n, 3}},
-      {"body_shift_m", "m", told, {b, 3}},
-      {"body_turn_rad", "rad", told != NULL ? told + 3 * b : NULL, {b, 3}},
-      {"body_force_N", "N", told != NULL ? told + 6 * b : NULL, {b, 3}},
-      {"body_moment_N_m", "N m", told != NULL ? told + 9 * b : NULL, {b, 3}},
+      {"body_shift_m", "m", values, {b, 3}},
+      {"body_turn_rad", "rad", values != NULL ? values + 3 * b : NULL, {b, 3}},
+      {"body_force_N", "N", values != NULL ? values + 6 * b : NULL, {b, 3}},
+      {"body_moment_N_m", "N m", values != NULL ? values + 9 * b : NULL, {b, 3}},
       {"spring_force_N", "N", pull, {k, 0}},
       {"spring_moment_N_m", "N m", pull != NULL ? pull + k : NULL, {k, 0}},
       {"channel_V", "V", charges, {c, 0}},

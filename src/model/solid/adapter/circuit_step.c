@@ -402,10 +402,10 @@ static double unaccounted(const struct dea_circuit_step *d, const struct dea_sol
          (b->resistance_loss_J - a->resistance_loss_J) - (b->leakage_loss_J - a->leakage_loss_J);
 }
 
-/* Whether the film has leapt to another equilibrium, which no shorter step divides: seen on the
+/* Whether the film has jumped to another equilibrium, which no shorter step divides: seen on the
  * way, or since the accounts of a step a third as long miss about as much. */
-static bool has_leapt(const struct dea_circuit_step *d, double lost_J,
-                      const struct dea_solid_report *report)
+static bool has_jumped(const struct dea_circuit_step *d, double lost_J,
+                       const struct dea_solid_report *report)
 {
   return !d->options.inertia &&
          (report->snapped || (d->branch_jump.tried && d->step_s < 0.35 * d->branch_jump.step_s &&
@@ -431,7 +431,7 @@ static double find_error(struct dea_circuit_step *d, double error_m, double lost
     error = fmax(error, voltage_error(d, d->step_s) / voltage_V);
   }
   d->lost_next_J = d->lost_J;
-  if (has_leapt(d, lost_J, report)) {
+  if (has_jumped(d, lost_J, report)) {
     d->lost_next_J += lost_J;
   } else if (energy_J > 0 && dea_solid_resolved(d->driven.solid, lost_J / d->driven.copies)) {
     error = fmax(error, fabs(lost_J) / energy_J);

@@ -193,14 +193,14 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
   dea_status status = dea_step_outcome_move(ctx, &model->at.outcome, &model->at.report, &share);
   const double limit = from + share * (value - from);
   if (status != DEA_OK) {
-    double reached = from + model->at.report.way * (value - from);
+    double reached = from + model->at.report.load_factor * (value - from);
     snprintf(why, sizeof why, "%s", dea_context_message(ctx));
     DEA_TRY(ctx, set_control(ctx, model, control, reached));
     if (status == DEA_E_NO_EQUILIBRIUM) {
       return fail_at_limit(ctx, model, control, limit);
     }
     return dea_fail(ctx, status, "stopped %.3g of the way to the next value (%s)",
-                    model->at.report.way, why);
+                    model->at.report.load_factor, why);
   }
   dea_solid_model_note_states(model, model->at.report.snapped);
   if (!isnan(share)) {

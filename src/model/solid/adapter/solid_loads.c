@@ -409,13 +409,13 @@ static dea_status explain_pressure(struct dea_context *ctx, struct dea_model *mo
   static const double falls = 0.25, least = 1e-3; // of the stiffness; step, of the pressure found
   const struct dea_layout_pressure *pressure = &model->layout->pressures[0];
   char why[160];
-  double way = model->at.report.way;
+  double way = model->at.report.load_factor;
   snprintf(why, sizeof why, "%s", dea_context_message(ctx));
   dea_solid_pressures_set(model, fmin(1, 1.1 * way)); // closer to where it ends
   if (dea_load_steps_solve_within(ctx, model->solid, 0, 10 * least, &model->at.report) == DEA_OK) {
     return dea_fail(ctx, status, "%s", why);
   }
-  way += model->at.report.way * (fmin(1, 1.1 * way) - way);
+  way += model->at.report.load_factor * (fmin(1, 1.1 * way) - way);
   const double low = lowest_stiffness(ctx, model);
   dea_solid_pressures_set(model, 0.5 * way);
   const double half = dea_load_steps_solve(ctx, model->solid, 0, &model->at.report) == DEA_OK
@@ -460,7 +460,7 @@ static dea_status explain_loads(struct dea_context *ctx, struct dea_model *model
         "a film without tension wrinkles when it is twisted or shifted in its plane, and "
         "no state is found beyond %.3g %% of that: give its ply a pre_stretch above 1 "
         "(%s)",
-        100 * model->at.report.way, why);
+        100 * model->at.report.load_factor, why);
   }
   const bool alone =
       l->pressure_count == 1 && l->body_count == 0 && l->pressures[0].encloses == DEA_OPEN;
@@ -528,7 +528,7 @@ dea_status dea_solid_loads_release(struct dea_context *ctx, struct dea_model *mo
     return dea_fail(ctx, status,
                     "the solver did not converge: the film at rest is not found (%s); let go by "
                     "%.3g %% from the flat state it is; please report the design",
-                    why, 100 * model->at.report.way);
+                    why, 100 * model->at.report.load_factor);
   }
   DEA_TRY(ctx, status);
   model->at.left_a_state = model->at.report.snapped;

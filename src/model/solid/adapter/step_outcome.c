@@ -291,14 +291,14 @@ static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, doub
 dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcome *e,
                                  struct dea_solid_report *report, double *share)
 {
-  struct dea_solid_stop stop = {.way = NAN};
+  struct dea_solid_stop stop = {.load_factor = NAN};
   bool passed;
   double area;
   e->has_passed = false;
   drop_limit(e);
   dea_status status =
       approach(ctx, e, dea_solid_voltage(e->owner.solid), report, &stop, &passed, &area);
-  *share = passed || status == DEA_E_NO_EQUILIBRIUM ? stop.way : NAN;
+  *share = passed || status == DEA_E_NO_EQUILIBRIUM ? stop.load_factor : NAN;
   return status;
 }
 

@@ -351,7 +351,7 @@ static dea_status try_factor(struct dea_context *ctx, Mat A, PetscInt room_perce
 }
 
 /* That of a large mesh takes seconds, and hears nothing. */
-static dea_status heed_before_factor(struct dea_context *ctx)
+static dea_status check_before_factor(struct dea_context *ctx)
 {
   return dea_interrupted_anywhere(ctx)
              ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted before the next factor")
@@ -364,7 +364,7 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
 {
   MatFactorError error = MAT_FACTOR_OUTMEMORY;
   dea_status status = DEA_OK;
-  DEA_TRY(ctx, heed_before_factor(ctx));
+  DEA_TRY(ctx, check_before_factor(ctx));
   dea_context_counters(ctx)->factorisations++;
   for (PetscInt capacity = ROOM; capacity <= ROOM_MAX && error == MAT_FACTOR_OUTMEMORY;
        capacity *= 2) {
@@ -401,7 +401,7 @@ static dea_status factor_by_fronts(struct dea_context *ctx, struct dea_solid *s,
       s->work.takes_small_pivots || s->work.no_fronts) {
     return DEA_OK;
   }
-  DEA_TRY(ctx, heed_before_factor(ctx));
+  DEA_TRY(ctx, check_before_factor(ctx));
   if (s->work.fronts != NULL && !dea_fronts_fit(s->work.fronts, s->work.K)) {
     dea_fronts_destroy(ctx, s->work.fronts);
     s->work.fronts = NULL;

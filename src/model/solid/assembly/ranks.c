@@ -146,7 +146,7 @@ void *dea_solid_alloc(struct dea_context *ctx, size_t count, size_t size)
   return here;
 }
 
-dea_status dea_solid_heed_interruption(struct dea_context *ctx)
+dea_status dea_solid_check_interruption(struct dea_context *ctx)
 {
   return dea_interrupted_anywhere(ctx)
              ? dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted on the way to an equilibrium")

@@ -38,7 +38,7 @@ static inline bool dea_solid_may_shorten(dea_status status)
 }
 
 /* DEA_E_INTERRUPTED on all ranks when one of them was interrupted: for each iteration. */
-dea_status dea_solid_heed_interruption(struct dea_context *ctx);
+dea_status dea_solid_check_interruption(struct dea_context *ctx);
 
 /* PETSc's error code as a status: DEA_E_MEMORY, DEA_E_UNSUPPORTED, DEA_E_NOT_CONVERGED of numerical
  * failures, DEA_E_TOOL of all others. call: its text, for the message. */

@@ -76,7 +76,7 @@ struct dea_solid_report {
   double energy_J, residual;   // residual: relative to the sum of element forces
   double theta_max;            // largest projected J - 1 left
   double load_error;           // largest constraint violation of a load over the one it allows
-  double way;                  // share of the way to what was asked for; 1 unless the solve failed
+  double load_factor;          // share of the increment that was reached; 1 unless the solve failed
 };
 
 /* grid: lent, outlives the solid. out: owned by the caller, NULL on failure. */

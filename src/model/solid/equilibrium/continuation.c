@@ -285,7 +285,7 @@ static dea_status correct(struct dea_context *ctx, struct dea_solid_continuation
   int in_a_row = 0; // hidden steps
   for (*iterations = 1; *iterations <= o->arc_max_iterations; ++*iterations) {
     bool there = false, small = false, hidden = false;
-    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    DEA_TRY(ctx, dea_solid_check_interruption(ctx));
     DEA_TRY(ctx, correct_once(ctx, t, &residual, &there, &small, &hidden));
     in_a_row = hidden ? in_a_row + 1 : 0;
     if ((there || in_a_row >= MAX_HIDDEN || (small && *iterations > 1)) &&

@@ -389,7 +389,7 @@ static dea_status iterate(struct dea_context *ctx, struct follow *w, int k, bool
 {
   struct dea_solid *s = w->s;
   const struct dea_solid_settings *o = &s->settings;
-  DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+  DEA_TRY(ctx, dea_solid_check_interruption(ctx));
   bool renewed = k == 0 || renew_loads(w, k);
   DEA_TRY(ctx, find_forces(ctx, w));
   w->report->residual = sqrt(dea_solid_dot(s, w->h, w->h)) /

@@ -112,7 +112,7 @@ static dea_status descend_from(struct dea_context *ctx, struct dea_solid *s, int
 dea_status dea_solid_descend_unstable(struct dea_context *ctx, struct dea_solid *s, int side,
                                       struct dea_solid_report *report)
 {
-  *report = (struct dea_solid_report){.way = 1};
+  *report = (struct dea_solid_report){.load_factor = 1};
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   if (report->unstable_modes > 0) {
@@ -148,7 +148,7 @@ static dea_status solve_pushed(struct dea_context *ctx, struct dea_solid *s, con
     s->state.u[i] += s->work.step[i];
   }
   s->found.factor_fits = false;
-  *report = (struct dea_solid_report){.way = 1};
+  *report = (struct dea_solid_report){.load_factor = 1};
   DEA_TRY(ctx, dea_solid_equilibrate(ctx, s, report));
   return DEA_OK;
 }
@@ -191,14 +191,14 @@ void dea_solid_accept_unstable(struct dea_solid *solid, bool stay)
   solid->settings.accept_unstable = stay;
 }
 
-/* path->at: the controls a share of the way to the goal, to the solid. */
-static void set_share(struct dea_solid *s, double way)
+/* path->at: the controls at a load factor, from 0 at the start to 1 at the goal, to the solid. */
+static void set_load_factor(struct dea_solid *s, double load_factor)
 {
   struct dea_load_steps *path = &s->work.load_steps;
   const double *from = path->controls_from;
   for (size_t i = 0; i < path->control_count; i++) {
-    path->at[i] =
-        way >= 1 ? path->controls_goal[i] : from[i] + way * (path->controls_goal[i] - from[i]);
+    path->at[i] = load_factor >= 1 ? path->controls_goal[i]
+                                   : from[i] + load_factor * (path->controls_goal[i] - from[i]);
   }
   dea_solid_controls_set(s, path->at);
 }
@@ -216,15 +216,15 @@ static bool moves_contact(const struct dea_solid *s)
   return moves;
 }
 
-/* The equilibrium a share of the way to the goal; the solid stays as it was when it fails. */
-static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, double way,
-                                 struct dea_solid_report *report)
+/* The equilibrium at a load factor; the solid stays as it was when it fails. */
+static dea_status solve_at_load_factor(struct dea_context *ctx, struct dea_solid *s,
+                                       double load_factor, struct dea_solid_report *report)
 {
   struct dea_load_steps *path = &s->work.load_steps;
   const double *next = path->at;
   dea_solid_state_get(s, path->keep);
   s->found.factor_fits = s->found.factor_fits && !moves_contact(s); // normals turn with the tip
-  set_share(s, way);
+  set_load_factor(s, load_factor);
   dea_status status = DEA_OK;
   if (dea_solid_controls_increment(s, next)) {
     status = dea_solid_prescribed_increment(ctx, s, report);
@@ -236,7 +236,7 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
     status = descend_if_possible(ctx, s, report);
   }
   if (status != DEA_OK) {
-    s->found.predicts_tangent = false; // of the whole way only
+    s->found.predicts_tangent = false; // of the whole increment only
     dea_solid_state_set(s, path->keep);
     dea_solid_controls_set(s, path->controls);
     return status;
@@ -245,17 +245,17 @@ static dea_status solve_at_share(struct dea_context *ctx, struct dea_solid *s, d
   return DEA_OK;
 }
 
-/* The next part of the way after one, whose iterations fell by `rate` at first (0: not known),
- * which goes with the part. */
+/* The next part of the increment after one, whose iterations fell by `rate` at first (0: not
+ * known), which goes with the part. */
 static double next_part(double part, double rate, bool there)
 {
   double share = rate > 0 ? aimed_rate / rate : there ? 2 : 0.5;
   return part * (there ? fmin(fmax(share, 0.5), 2) : fmin(fmax(share, 0.125), 0.5));
 }
 
-/* With the factors of points on the way, report->way, in steps as long as their rate allows, until
- * shorter ones fall no faster: from the same point, or to the end. *there: at the last of them is
- * an equilibrium. */
+/* With the factor of each point reached, report->load_factor, in steps as long as their rate of
+ * convergence allows, until shorter ones converge no faster: from the same point, or to the end.
+ * *there: at the last of them is an equilibrium. */
 static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
                             struct dea_solid_report *report, bool *there)
 {
@@ -265,21 +265,21 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   bool fits = true;
   path->last_V = path->before_last_V; // no bend of another solve: a state that is kept has none
   bool alone = memcmp(from + 1, goal + 1, (path->control_count - 1) * sizeof *from) == 0;
-  while (report->way < 1 && part >= s->settings.anderson_step_min && fits) {
-    double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
-    part = way - report->way;
-    double here_V = alone ? from[0] + report->way * (goal[0] - from[0]) : NAN;
-    set_share(s, way);
-    DEA_TRY(ctx, dea_solid_follow(ctx, s, here_V, way < 1, report, &rate, there));
+  while (report->load_factor < 1 && part >= s->settings.anderson_step_min && fits) {
+    double load_factor = report->load_factor + part >= 1 - 1e-9 ? 1 : report->load_factor + part;
+    part = load_factor - report->load_factor;
+    double here_V = alone ? from[0] + report->load_factor * (goal[0] - from[0]) : NAN;
+    set_load_factor(s, load_factor);
+    DEA_TRY(ctx, dea_solid_follow(ctx, s, here_V, load_factor < 1, report, &rate, there));
     fits = (s->found.factor_fits || s->found.stiff_factor_fits) &&
-           (*there || rate < sqrt(part) * (way < 1 ? from_here : fmin(from_here, to_end)));
+           (*there || rate < sqrt(part) * (load_factor < 1 ? from_here : fmin(from_here, to_end)));
     from_here = *there ? INFINITY : rate / sqrt(part);
-    to_end = way < 1 ? to_end : rate / sqrt(part);
-    report->way = *there ? way : report->way;
+    to_end = load_factor < 1 ? to_end : rate / sqrt(part);
+    report->load_factor = *there ? load_factor : report->load_factor;
     part = next_part(part, rate, *there);
   }
-  set_share(s, report->way);
-  *there = report->way == 0 || report->way >= 1;
+  set_load_factor(s, report->load_factor);
+  *there = report->load_factor == 0 || report->load_factor >= 1;
   fits = s->found.factor_fits || s->found.stiff_factor_fits;
   if (!*there && fits) { // it is only near one
     double here_V = alone ? s->state.voltage_V : NAN;
@@ -288,7 +288,7 @@ static dea_status follow_on(struct dea_context *ctx, struct dea_solid *s,
   return DEA_OK;
 }
 
-/* As far as that goes, to an equilibrium at report->way. */
+/* As far as that goes, to an equilibrium at report->load_factor. */
 static dea_status follow_in_steps(struct dea_context *ctx, struct dea_solid *s,
                                   struct dea_solid_report *report)
 {
@@ -297,8 +297,8 @@ static dea_status follow_in_steps(struct dea_context *ctx, struct dea_solid *s,
   dea_solid_state_get(s, path->keep);
   dea_status status = follow_on(ctx, s, report, &there);
   if (status != DEA_OK || !there) {
-    report->way = 0;
-    set_share(s, 0);
+    report->load_factor = 0;
+    set_load_factor(s, 0);
     dea_solid_state_set(s, path->keep);
     dea_solid_forget(s);
   }
@@ -306,7 +306,8 @@ static dea_status follow_in_steps(struct dea_context *ctx, struct dea_solid *s,
   return status;
 }
 
-/* In steps that are halved where one fails, down to `least` of the way, and grow again after. */
+/* In steps that are halved where one fails, down to `least` of the increment, and grow again after.
+ */
 static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, double least,
                                  struct dea_solid_report *report)
 {
@@ -316,18 +317,18 @@ static dea_status solve_in_steps(struct dea_context *ctx, struct dea_solid *s, d
   double part = 1;
   if (moves && !dea_solid_controls_increment(s, path->controls_goal)) { // no support moves
     DEA_TRY(ctx, follow_in_steps(ctx, s, report));
-    if (report->way >= 1) {
+    if (report->load_factor >= 1) {
       return DEA_OK;
     }
   }
   for (;;) {
-    double way = report->way + part >= 1 - 1e-9 ? 1 : report->way + part;
-    dea_status status = solve_at_share(ctx, s, way, report);
+    double load_factor = report->load_factor + part >= 1 - 1e-9 ? 1 : report->load_factor + part;
+    dea_status status = solve_at_load_factor(ctx, s, load_factor, report);
     dea_context_counters(ctx)->load_steps += status == DEA_OK;
     dea_context_counters(ctx)->rejected_steps += status != DEA_OK;
     if (status == DEA_OK) {
-      report->way = way;
-      if (way >= 1) {
+      report->load_factor = load_factor;
+      if (load_factor >= 1) {
         return DEA_OK;
       }
       part = fmin(2 * part, 1);

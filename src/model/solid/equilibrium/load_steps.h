@@ -5,13 +5,13 @@
 #include "model/solid/assembly/solid.h"
 
 /* Equilibrium at a voltage, with the dead loads, prescribed displacements and parameters of loads
- * that were asked for, from the last one. Where the whole way fails it is gone in smaller steps, in
- * all of them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found,
- * report->way of the way. */
+ * that were asked for, from the last one. Where the whole increment fails it is divided, for all of
+ * them alike. DEA_E_NOT_CONVERGED leaves the solid at the last equilibrium that was found, at
+ * report->load_factor of the increment. */
 dea_status dea_load_steps_solve(struct dea_context *ctx, struct dea_solid *solid, double voltage_V,
                                 struct dea_solid_report *report);
 
-/* The same with steps of `least` of the way or more, in place of settings.load_step_min. */
+/* The same with steps of `least` of the increment or more, in place of settings.load_step_min. */
 dea_status dea_load_steps_solve_within(struct dea_context *ctx, struct dea_solid *solid,
                                        double voltage_V, double least,
                                        struct dea_solid_report *report);

@@ -385,8 +385,8 @@ dea_status dea_solid_count_unstable(struct dea_context *ctx, struct dea_solid *s
 /* Whether iterations lead to no equilibrium any more (docs/theory/branches.md): the forces stay as
  * large as those of the elements, of which none holds another one's balance, or the energy falls
  * along no step that is longer than rounding. */
-static dea_status heed_divergence(struct dea_context *ctx, const struct dea_solid *s,
-                                  struct newton *d)
+static dea_status check_divergence(struct dea_context *ctx, const struct dea_solid *s,
+                                   struct newton *d)
 {
   const int most = s->settings.max_divergent;
   d->lost = d->report->residual > divergence_rtol ? d->lost + 1 : 0;
@@ -417,7 +417,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
   struct dea_solid_report *report = d->report;
   for (int i = 0; i < o->newton_max_iterations; i++) {
     bool done = false;
-    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    DEA_TRY(ctx, dea_solid_check_interruption(ctx));
     if (i == o->newton_max_nonmonotone) {
       d->strict = true;
       d->chord = s->found.predicted_fits = false;
@@ -430,7 +430,7 @@ static dea_status descend(struct dea_context *ctx, struct dea_solid *s, struct n
     if (i > 0 && fits && (report->residual < o->newton_rtol || d->unresolved > 2)) {
       return count_there(ctx, s, d, !d->chord && d->shift_Pa == 0 && !s->found.predicted_fits);
     }
-    DEA_TRY(ctx, heed_divergence(ctx, s, d));
+    DEA_TRY(ctx, check_divergence(ctx, s, d));
     if (d->chord) {
       DEA_TRY(ctx, chord_step(ctx, s, d));
     } else {

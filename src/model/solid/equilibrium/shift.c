@@ -110,7 +110,7 @@ static dea_status iterate(struct dea_context *ctx, struct lanczos *z, int negati
   double length = 0;
   DEA_TRY(ctx, begin(ctx, z, &length));
   for (int k = 0; k < z->steps && length > 0; k++) {
-    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    DEA_TRY(ctx, dea_solid_check_interruption(ctx));
     DEA_TRY(ctx, step(ctx, z, k));
     length = z->b[k];
     if ((k % 3 == 2 || k + 1 == z->steps || length == 0) && says(z, k + 1, negative, lowest_Pa)) {

@@ -31,10 +31,10 @@ struct search {
   struct dea_solid_saved_state start; // the equilibrium that load steps or the path begin at
   struct dea_solid_saved_state limit; // where the path turns back or turns unstable
   bool taut;                          // the film has tension all over where it began
-  bool snapped;                       // the solid has, on the way, to a state that is not close by
-  bool leapt;                         // a load step has, past a limit point
-  bool went_on, arrived;              // the path leads to a stable equilibrium; that is the goal's
-  bool left;                          // it may lead out of the plane of a flat film
+  bool snapped;          // the solid has, in this increment, to a state that is not close by
+  bool jumped;           // a load step has, past a limit point
+  bool went_on, arrived; // the path leads to a stable equilibrium; that is the goal's
+  bool left;             // it may lead out of the plane of a flat film
 };
 
 /* The equilibrium that the solid is at is where what follows begins. */
@@ -142,8 +142,8 @@ static double moved_m(const struct dea_solid *s, const double *u, const double *
   return sqrt(3 * sum / (double)count);
 }
 
-/* Displacement that counts as much as the whole load: a share of that on the way, as far as the
- * displacements that are there tell, which go with the square of the voltage. */
+/* Displacement that counts as much as the whole load: a share of that in this increment, as far as
+ * the displacements that are there tell, which go with the square of the voltage. */
 static double unit_of(const struct dea_solid *s, const double *from, const double *goal)
 {
   double before = from[0] * from[0], way = fabs(goal[0] * goal[0] - before);
@@ -167,7 +167,7 @@ static dea_status take_stop(struct dea_context *ctx, struct search *a,
   }
   DEA_TRY(ctx, status);
   a->stop->voltage_V = at->voltage_V;
-  a->stop->way = at->load;
+  a->stop->load_factor = at->load;
   dea_solid_state_get(a->s, a->limit.state);
   dea_solid_controls_get(a->s, a->limit.controls);
   return see(ctx, a, kind == DEA_STOP_LIMIT && !located ? DEA_STOP_NEAR : kind);
@@ -283,7 +283,7 @@ static dea_status follow(struct dea_context *ctx, struct search *a,
     first = i == 0 ? at.slope : first;
     if (at.passed == DEA_CONTINUATION_LIMIT) {
       DEA_TRY(ctx, take_stop(ctx, a, DEA_STOP_LIMIT, path, &at));
-      return a->stop->way < 1 ? DEA_OK : return_to_goal(ctx, a);
+      return a->stop->load_factor < 1 ? DEA_OK : return_to_goal(ctx, a);
     }
     struct dea_solid_change change;
     DEA_TRY(ctx, see_change(ctx, a, &change));
@@ -336,7 +336,8 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
 
 // Load steps --------------------------------------------------------------------------------------
 
-/* Controls a share of the way: the square of the voltage, and all others, in proportion. */
+/* Controls at a share of the increment: the square of the voltage, and all others, in proportion.
+ */
 static void set_between(const struct dea_solid *s, const double *from, const double *goal,
                         double share, double *out)
 {
@@ -346,7 +347,7 @@ static void set_between(const struct dea_solid *s, const double *from, const dou
   out[0] = sqrt((1 - share) * from[0] * from[0] + share * goal[0] * goal[0]);
 }
 
-/* Share of the way from some controls to others that the controls `at` are at. */
+/* Share of the increment from some controls to others that the controls `at` are at. */
 static double share_of(const struct dea_solid *s, const double *from, const double *goal,
                        const double *at)
 {
@@ -386,7 +387,7 @@ static dea_status check_branch(struct dea_context *ctx, struct search *a, const 
   dea_solid_controls_get(s, a->next);
   bool left = change.grew || (a->taut && change.taut && !a->report->snapped &&
                               left_branch(a, share_of(s, a->start.controls, goal, a->next)));
-  a->leapt |= left;
+  a->jumped |= left;
   left |= a->taut && change.taut && !a->left && left_plane(a);
   if (left || status != DEA_OK) { // or beyond what the law knows
     dea_solid_restore_state(s, &a->start);
@@ -395,9 +396,9 @@ static dea_status check_branch(struct dea_context *ctx, struct search *a, const 
   return status;
 }
 
-/* Load steps to controls, the shortest one `least` of the way, with the limits of the film: with a
- * coupled field a taut one is solved in a few iterations, or leaps; a slack one has a long way
- * down.
+/* Load steps to controls, the shortest one `least` of the increment, with the limits of the film:
+ * with a coupled field a taut one is solved in a few iterations, or leaps; a slack one has a long
+ * way down.
  */
 static dea_status solve_steps(struct dea_context *ctx, const struct search *a, const double *goal,
                               double least, struct dea_solid_report *report)
@@ -444,7 +445,8 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *be
   struct dea_solid_change change = {.grew = true};
   struct dea_solid_report report;
   dea_solid_restore_state(s, &a->limit);
-  set_between(s, a->start.controls, a->goal, fmin(a->stop->way + o->load_step_min, 1), a->next);
+  set_between(s, a->start.controls, a->goal, fmin(a->stop->load_factor + o->load_step_min, 1),
+              a->next);
   dea_status status = solve_steps(ctx, a, a->next, 1, &report);
   if (status == DEA_OK && report.unstable_modes == 0) {
     status = see_change(ctx, a, &change);
@@ -452,7 +454,7 @@ static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *be
   *beyond = status == DEA_OK && !change.grew;
   if (*beyond) {
     a->snapped = true;
-    a->stop->way = share_of(s, a->begin, a->goal, a->limit.controls);
+    a->stop->load_factor = share_of(s, a->begin, a->goal, a->limit.controls);
     a->stop->kind = DEA_STOP_UNKNOWN;
     return DEA_OK;
   }
@@ -503,7 +505,7 @@ static dea_status halve_steps(struct dea_context *ctx, struct search *a, dea_sta
   memcpy(a->bad, a->goal, size);
   for (double apart = 1; apart > 0.5 * least && (apart > least || !failed); apart /= 2) {
     dea_status ended;
-    DEA_TRY(ctx, dea_solid_heed_interruption(ctx));
+    DEA_TRY(ctx, dea_solid_check_interruption(ctx));
     set_between(a->s, a->start.controls, a->bad, apart > least ? 0.5 : 1, a->at);
     DEA_TRY(ctx, step_near(ctx, a, &ended, &there));
     if (!there) {
@@ -538,7 +540,7 @@ static dea_status close_in(struct dea_context *ctx, struct search *a)
   if (a->went_on || a->stop->kind == DEA_STOP_LIMIT) {
     return DEA_OK;
   }
-  if (!a->leapt) {
+  if (!a->jumped) {
     return dea_fail(ctx, last, "%s", why);
   }
   *a->stop = (struct dea_solid_stop){DEA_STOP_LIMIT, dea_solid_voltage(a->s), 0, 0};
@@ -605,7 +607,7 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
   struct dea_arena memory;
   memset(&memory, 0, sizeof memory);
   *stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
-  *report = (struct dea_solid_report){.way = 0};
+  *report = (struct dea_solid_report){.load_factor = 0};
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   dea_status status = search_create(ctx, &memory, &a);
   if (status == DEA_OK) {
@@ -616,10 +618,10 @@ dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid
     status = go(ctx, &a);
     report->snapped |= a.snapped;
     if (stop->kind == DEA_STOP_LIMIT) {
-      stop->way = share_of(s, a.begin, a.goal, a.limit.controls);
+      stop->load_factor = share_of(s, a.begin, a.goal, a.limit.controls);
     }
     dea_solid_controls_get(s, a.next);
-    report->way = status == DEA_OK ? 1 : share_of(s, a.begin, a.goal, a.next);
+    report->load_factor = status == DEA_OK ? 1 : share_of(s, a.begin, a.goal, a.next);
     s->settings.max_divergent = divergent;
   }
   dea_solid_saved_state_free(&a.limit);

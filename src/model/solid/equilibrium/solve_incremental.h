@@ -16,11 +16,11 @@ enum dea_solid_stop_kind {
 struct dea_solid_stop {
   enum dea_solid_stop_kind kind;
   double voltage_V;   // of the limit point; where the path is first known to be unstable
-  double way;         // share of the way to there
+  double load_factor; // there, of the increment from where the solve began
   int unstable_modes; // there
 };
 
-/* Looks at the solid at a point of the path; where: DEA_STOP_UNKNOWN at one on the way, otherwise
+/* Looks at the solid at a point of the path; where: DEA_STOP_UNKNOWN at one in between, otherwise
  * at the limit point or bifurcation that was located, or with DEA_STOP_NEAR near one. */
 typedef dea_status (*dea_solid_path_sink)(struct dea_context *ctx, void *user,
                                           enum dea_solid_stop_kind where);
@@ -44,9 +44,10 @@ struct dea_solid_watch {
  * branch or past a limit point - are taken back, and the path is followed by arc length, around a
  * bifurcation and, where that leads to a stable state, past a limit point too; then by load steps
  * again. watch: sees each point of such a path; NULL: nobody does. taut: the film has tension. A
- * failure leaves the solid at the last equilibrium that was found, report->way of the way:
- * DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step. *stop says
- * what is known; stop->way is that of the last limit point that was found or passed. */
+ * failure leaves the solid at the last equilibrium that was found, at report->load_factor of the
+ * increment: DEA_E_NO_EQUILIBRIUM beyond a limit point; otherwise the status of the last load step.
+ * *stop says what is known; stop->load_factor is that of the last limit point that was found or
+ * passed. */
 dea_status dea_solid_solve_incremental(struct dea_context *ctx, struct dea_solid *solid,
                                        double voltage_V, bool taut,
                                        const struct dea_solid_watch *watch,

@@ -231,7 +231,7 @@ static dea_status fade(struct dea_context *ctx, struct dea_solid *s, struct hold
     return status;
   }
   for (double k = hold_first; k > hold_least && status == DEA_OK; k /= hold_less) {
-    struct dea_solid_report report = {.way = 1};
+    struct dea_solid_report report = {.load_factor = 1};
     hold->k = k * unit;
     dea_solid_forget(s);
     status = dea_solid_equilibrate(ctx, s, &report);
@@ -244,20 +244,20 @@ static dea_status fade(struct dea_context *ctx, struct dea_solid *s, struct hold
 /* ---- from one mesh to another ---- */
 
 /* Memory of one, [dofs] or [state_count] each. */
-struct carrying {
+struct transfer {
   struct dea_arena memory;
-  double *way;    // to where it is carried
+  double *way;    // to where it is transferred
   double *goal;   // displacements there
   double *start;  // the same, with no element inverted
   double *volume; // of nodes
   double *state, *controls;
 };
 
-static dea_status carrying_create(struct dea_context *ctx, struct dea_solid *s,
-                                  struct carrying *out)
+static dea_status transfer_create(struct dea_context *ctx, struct dea_solid *s,
+                                  struct transfer *out)
 {
   size_t dofs = s->problem.dofs;
-  *out = (struct carrying){.memory = {.ctx = ctx}};
+  *out = (struct transfer){.memory = {.ctx = ctx}};
   struct dea_arena *memory = &out->memory;
   out->way = dea_arena_alloc(memory, dofs, sizeof(double));
   out->goal = dea_arena_alloc(memory, dofs, sizeof(double));
@@ -279,8 +279,8 @@ static void set_way(const struct dea_solid *s, const double *u, double *way)
 }
 
 /* From c->start, held near to c->goal at first. */
-static dea_status carry_held(struct dea_context *ctx, struct dea_solid *s, struct carrying *c,
-                             struct dea_solid_report *report, bool *found)
+static dea_status transfer_held(struct dea_context *ctx, struct dea_solid *s, struct transfer *c,
+                                struct dea_solid_report *report, bool *found)
 {
   struct hold hold = {.u0 = c->goal, .volume = c->volume};
   dea_solid_lump_volume(s, c->volume);
@@ -301,8 +301,8 @@ static dea_status carry_held(struct dea_context *ctx, struct dea_solid *s, struc
 }
 
 /* At the controls of the goal. */
-static dea_status carry(struct dea_context *ctx, struct dea_solid *s, struct carrying *c,
-                        const double *u, struct dea_solid_report *report, bool *found)
+static dea_status transfer(struct dea_context *ctx, struct dea_solid *s, struct transfer *c,
+                           const double *u, struct dea_solid_report *report, bool *found)
 {
   size_t left;
   set_way(s, u, c->way);
@@ -315,7 +315,7 @@ static dea_status carry(struct dea_context *ctx, struct dea_solid *s, struct car
   }
   set_way(s, c->start, c->way);
   DEA_TRY(ctx, dea_solid_push(ctx, s, c->way, NULL, NULL, report, found));
-  return *found ? DEA_OK : carry_held(ctx, s, c, report, found);
+  return *found ? DEA_OK : transfer_held(ctx, s, c, report, found);
 }
 
 dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid *s,
@@ -324,18 +324,18 @@ dea_status dea_solid_transfer_solution(struct dea_context *ctx, struct dea_solid
 {
   const struct dea_solid_report before = *report;
   const double own = s->settings.descent_bulk_factor;
-  struct carrying c;
+  struct transfer c;
   *found = false;
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   struct dea_load_steps *path = &s->work.load_steps;
-  dea_status status = carrying_create(ctx, s, &c);
+  dea_status status = transfer_create(ctx, s, &c);
   if (status == DEA_OK) {
     dea_solid_state_get(s, c.state);
     dea_solid_controls_get(s, c.controls);
     dea_solid_controls_goal(s, voltage_V, path->controls_goal);
     dea_solid_controls_set(s, path->controls_goal);
     s->settings.descent_bulk_factor = 1; // it is near
-    status = carry(ctx, s, &c, displacement_m, report, found);
+    status = transfer(ctx, s, &c, displacement_m, report, found);
     s->settings.descent_bulk_factor = own;
     if (!*found) {
       dea_solid_controls_set(s, c.controls);
