@@ -5,6 +5,7 @@
 #include "study/loading.h"
 #include "base/schema.h"
 #include "study/observe.h"
+#include "study/stepper.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -364,38 +365,35 @@ static dea_status watch(struct dea_context *ctx, struct loading *l, bool back, d
   return DEA_OK;
 }
 
-/* Moves in the history that has begun, from a value to the next at the rate of the study, by steps
- * in time that are as long as their estimated error allows. */
+/* A move in the history that has begun, and how long it takes. */
+struct move {
+  struct loading *loading;
+  double from, to, time_s;
+};
+
+/* `set` of a stepper. */
+static void set_control(void *user, double to_s, bool last, struct dea_time_step *step)
+{
+  const struct move *move = user;
+  step->source_voltage_V = move->loading->voltage_V;
+  step->control = &move->loading->control;
+  step->value = last ? move->to : move->from + to_s / move->time_s * (move->to - move->from);
+}
+
+/* Moves in it from a value to the next at the rate of the study. */
 static dea_status move_in_time(struct dea_context *ctx, struct loading *l, double from, double to,
                                struct dea_load_point *at)
 {
-  static const double tolerance = 1e-3, shortest = 1e-7; // of what has moved; of the time
-  const double time_s = l->settings->duration_s.si / l->settings->steps.si;
-  double done = 0, next = fmin(1, l->step_s / time_s);
-  while (done < 1) {
-    const bool last = next >= (1 - done) * (1 - 1e-9);
-    const double share = last ? 1 - done : fmin(next, 0.5 * (1 - done));
-    const struct dea_time_step step = {.length_s = share * time_s,
-                                       .source_voltage_V = l->voltage_V,
-                                       .control = &l->control,
-                                       .value = from + (done + share) * (to - from)};
-    double error = INFINITY;
-    dea_status status = dea_model_advance(ctx, l->type, l->model, &step, at, &error);
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
-      return status;
-    }
-    if (status == DEA_OK && error <= tolerance) {
-      l->type->accept(l->model);
-      done = last ? 1 : done + share;
-      l->step_s = fmax(next, share) * time_s * fmin(0.9 * cbrt(tolerance / fmax(error, 1e-12)), 3);
-      next = l->step_s / time_s;
-    } else if (share < shortest) {
-      return status != DEA_OK ? status
-                              : dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                                         "the error of a step stays above the tolerance");
-    } else {
-      next = share * (status == DEA_OK ? fmax(0.9 * cbrt(tolerance / error), 0.1) : 0.25);
-    }
+  struct move move = {l, from, to, l->settings->duration_s.si / l->settings->steps.si};
+  const double shortest_s = 1e-7 * move.time_s;
+  struct dea_stepper stepper = {l->step_s, INFINITY,    shortest_s, shortest_s,
+                                1e-3,      set_control, &move};
+  double now_s = 0;
+  bool last = false;
+  while (!last) {
+    DEA_TRY(ctx,
+            dea_stepper_step(ctx, &stepper, l->type, l->model, move.time_s, &now_s, &last, at));
+    l->step_s = stepper.next_s;
   }
   return DEA_OK;
 }

@@ -4,6 +4,7 @@
 #include "result/time_series.h"
 #include "study/force.h"
 #include "study/observe.h"
+#include "study/stepper.h"
 #include "study/study.h"
 
 #include <math.h>
@@ -319,12 +320,18 @@ static double find_corner(struct player *p)
   return first_s;
 }
 
-static struct dea_time_step step_of(const struct player *p, double length_s)
+static void set_step(const struct player *p, struct dea_time_step *step)
 {
-  return (struct dea_time_step){.length_s = length_s,
-                                .source_voltage_V = p->next_V[0],
-                                .disconnected = p->time_s >= p->disconnect_s,
-                                .own_V = p->any_own ? p->next_V : NULL};
+  step->source_voltage_V = p->next_V[0];
+  step->disconnected = p->time_s >= p->disconnect_s;
+  step->own_V = p->any_own ? p->next_V : NULL;
+}
+
+/* `set` of a stepper. */
+static void set_step_to(void *user, double to_s, bool last, struct dea_time_step *step)
+{
+  find_voltages(user, to_s, last);
+  set_step(user, step);
 }
 
 // Steps ------------------------------------------------------------------------------------------
@@ -332,9 +339,10 @@ static struct dea_time_step step_of(const struct player *p, double length_s)
 /* Sources jump to next_V here. */
 static dea_status jump(struct dea_context *ctx, struct player *p)
 {
-  const struct dea_time_step step = step_of(p, 0);
+  struct dea_time_step step = {.length_s = 0};
   struct dea_load_point point;
   double error;
+  set_step(p, &step);
   dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
   if (status != DEA_OK) {
     return status == DEA_E_MEMORY ? status : stop(ctx, p, status);
@@ -348,38 +356,19 @@ static dea_status jump(struct dea_context *ctx, struct player *p)
 static dea_status one_step(struct dea_context *ctx, struct player *p, double end)
 {
   // Circuits may be that fast; where an equilibrium is lost need not be known as closely.
-  double longest = fmin(p->longest_s, p->until_s), smallest = 1e-13 * longest;
-  for (;;) {
-    double left = end - p->time_s, h = fmin(p->next_s, p->longest_s);
-    bool last = h >= left * (1 - 1e-9);
-    h = last ? left : fmin(h, fmax(0.5 * left, smallest)); // no last one that is much shorter
-    find_voltages(p, last ? end : p->time_s + h, last);
-    const struct dea_time_step step = step_of(p, h);
-    struct dea_load_point point;
-    double error;
-    dea_status status = dea_model_advance(ctx, p->type, p->model, &step, &point, &error);
-    if (status == DEA_OK && error <= p->tolerance) {
-      p->type->accept(p->model);
-      p->time_s = last ? end : p->time_s + h;
-      take_voltages(p);
-      double factor = 0.9 * cbrt(p->tolerance / fmax(error, 1e-30));
-      p->next_s = fmax(p->next_s, h) * fmin(fmax(factor, 0.3), 3);
-      return keep(ctx, p, &point, last);
-    }
-    if (status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED) {
-      return status;
-    }
-    double factor = status != DEA_OK ? 0.25
-                    : error >= 1     ? 0.95 / error
-                                     : fmax(0.9 * cbrt(p->tolerance / error), 0.1);
-    p->next_s = h * fmin(factor, 0.7);
-    if (p->next_s < (status != DEA_OK ? 1e-6 * longest : smallest)) {
-      status = status != DEA_OK ? status
-                                : dea_fail(ctx, DEA_E_NOT_CONVERGED,
-                                           "the error of a step stays above the tolerance");
-      return stop(ctx, p, status);
-    }
+  const double longest = fmin(p->longest_s, p->until_s);
+  struct dea_stepper stepper = {
+      p->next_s, p->longest_s, 1e-13 * longest, 1e-6 * longest, p->tolerance, set_step_to, p};
+  struct dea_load_point point;
+  bool last;
+  dea_status status =
+      dea_stepper_step(ctx, &stepper, p->type, p->model, end, &p->time_s, &last, &point);
+  p->next_s = stepper.next_s;
+  if (status != DEA_OK) {
+    return status == DEA_E_MEMORY || status == DEA_E_INTERRUPTED ? status : stop(ctx, p, status);
   }
+  take_voltages(p);
+  return keep(ctx, p, &point, last);
 }
 
 static void tell(struct dea_context *ctx, struct player *p)
