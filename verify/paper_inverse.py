@@ -263,16 +263,13 @@ far_glued = [(g, b) for (g, b), row in bonded.items() if row and row[8][TIP] <= 
 print(f"""
 {"No single change comes to 500 um at the fibre tip. These together do: " + "; ".join(n for n, _ in reach) + "." if reach else
  "None of them reaches 500 um at the fibre tip; the farthest is '%s' with %.0f um." % (most[0], most[1])}
-All tips go away from the fibres' side (negative). The solid film of [paper.md](paper.md) says the same of single changes: its
-tip is between -60 and -219 um at 8 kV, and only where the slack film buckles in front of the tips does
-anything come to 0.5 mm (-500 um with fibres 3 mm wide), in a shape that changes from mesh to mesh. With less than 1.1 of pre-stretch left, the centre of the solid
-film bulges by more than 1 mm at 8 kV; between 1.1 and 1.05 it passes 500 um, on a branch that depends on the
-way. So there are three readings of the 500 um:
+All tips go away from the fibres' side (negative). In the solid film of
+[paper.md](paper.md) what is slack buckles in front of the tips, and with less than 1.1 of pre-stretch left the centre bulges by more than 1 mm at 8 kV. So there are three readings of the 500 um:
 
 1. wrinkles of a slack film above 6 kV, at any pre-stretch: 0.2 to 0.65 mm in paper.md, not at the fibre tip;
 2. little pre-stretch left (1.05 to 1.1): a bulge of that height in the centre, from about 6 kV on;
-3. compliant glue, overlap and thin fibres together, in many combinations that one number cannot tell
-   apart: the fibre tip itself, downwards, growing smoothly from the first kilovolt.
+3. compliant glue, overlap and thin fibres together, in many combinations: the fibre tip itself,
+   downwards, growing smoothly from the first kilovolt.
 
 They differ below 6 kV.
 
@@ -292,7 +289,7 @@ With the fibres of [paper.md](paper.md) (100 um thick, no overlap) the glue puts
 where it is {bonded[glues[0], builds[0]][6][TIP]:.0f} and {bonded[glues[0], builds[0]][8][TIP]:.0f} um without: that band is what "as built" means. All of them move away from the fibres' side, as the paper says,
 and grow smoothly to 6 kV; at 8 kV {sum(1 for r in bonded.values() if r and r[8]["trusted"] < 1)} of {len(bonded)} films are slack somewhere (flagged: a bound, not a prediction).
 500 um at the tip are reached with {"; ".join("overlap %g mm and fibres of %g um, glue of %s um at each modulus" % (*b, " and ".join("%g" % um for um in sorted({g[0] for g, k in far_glued if k == b}))) for b in builds if any(k == b for _, k in far_glued)) or "none of them"}.
-Which of overlap, thickness of the fibres, and glue it is, one number cannot tell; the profile can: centre over tip at 8 kV is
+Which of overlap, thickness of the fibres, and glue it is, the profile can tell: centre over tip at 8 kV is
 {min(abs(r[8]["z centre (um)"] / r[8][TIP]) for r in bonded.values() if r):.2f} to {max(abs(r[8]["z centre (um)"] / r[8][TIP]) for r in bonded.values() if r):.2f}.
 
 ## 0.18 N at 6 kV

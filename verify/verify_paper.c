@@ -292,8 +292,8 @@ static void force_numbers(void)
         "\nA tip pressed %.1f mm into the film feels the paper's 0.18 N before any voltage. What "
         "6 kV change at 2 mm is %.0f mN with four\nfibres and %.0f mN with eight; without "
         "indentation the tip does not touch (as built the film moves away from the fibres' "
-        "side).\nThe paper does not say how deep the tip was, so its 0.18 N cannot be predicted; a "
-        "change of 0.18 N by 6 kV is out of reach of\nthis design at any of these depths.\n",
+        "side).\nThe paper does not say how deep the tip was; a change of 0.18 N by 6 kV is out of "
+        "reach of\nthis design at any of these depths.\n",
         last_mm, 1e3 * (four[4][0] - four[4][2]), 1e3 * (eight[4][0] - eight[4][2]));
     reading(four[4], eight[4]);
   }

@@ -192,8 +192,7 @@ Nominal stress in kPa on loading, predicted (measured).
         values_at = [at(curves[t], x) for x in (2, 3, 4, 5)]
         line([t, f"{slow(curves[t]):.2f}", *("none" if v is None else f"{v:.2f}" for v in values_at), f"{10 ** corner(curves[t]):.2g}"])
     print("""
-Unstretched tape. The catalogue's sets `spectroscopy-0C`, ... are the mean of 0.3 to 3 Hz, which does for what is slower than the last
-column; faster, the permittivity is lower than any computation here has it: by 13 % at 1 kHz and 0 degC.
+Unstretched tape. The catalogue's sets `spectroscopy-0C`, ... are the mean of 0.3 to 3 Hz; faster, the permittivity is lower: by 13 % at 1 kHz and 0 degC.
 
 ## What is not in these data
 
