@@ -117,5 +117,6 @@
       });
     }
   };
-  document.querySelectorAll('figure.plot').forEach(dress);
+  dea.dress = (root) => root.querySelectorAll('figure.plot').forEach(dress);
+  dea.dress(document);
 })();

@@ -10,3 +10,9 @@ extern const char dea_asset_script[]; // the scripts, one after the other
 extern const size_t dea_asset_script_length;
 extern const char dea_asset_reduced[]; // reduced_core.h and reduced_core.c of model/reduced
 extern const size_t dea_asset_reduced_length;
+extern const char dea_asset_studio_page[]; // the page of dea studio, with its own style and script
+extern const size_t dea_asset_studio_page_length;
+extern const char dea_asset_studio_style[];
+extern const size_t dea_asset_studio_style_length;
+extern const char dea_asset_studio_script[];
+extern const size_t dea_asset_studio_script_length;

@@ -59,6 +59,7 @@ struct dea_command {
   X(cmd_plot)                                                                                      \
   X(cmd_compare)                                                                                   \
   X(cmd_report)                                                                                    \
+  X(cmd_studio)                                                                                    \
   X(cmd_reduce)                                                                                    \
   X(cmd_reduce_order)                                                                              \
   X(cmd_fit)                                                                                       \

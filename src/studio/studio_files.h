@@ -1,0 +1,22 @@
+/* The files of the folder, none outside of it: no "..", no hidden name, no symbolic link. */
+#pragma once
+
+#include "base/bytes.h"
+
+#include <jansson.h>
+
+/* Whether a text is the name of a file in the folder itself, or with `deep` of one below it too. */
+bool dea_studio_name_good(const char *name, bool deep);
+/* Opens a regular file to read, or a folder; -1 where there is none. folder: open. */
+int dea_studio_open(int folder, const char *name, bool directory);
+/* Reads a file of at most max bytes; owned by the caller. DEA_E_IO. */
+dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name, size_t max,
+                           struct dea_bytes *out);
+/* What changes when a file is written; "" where there is none. */
+enum { DEA_STUDIO_STAMP = 64 };
+void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP]);
+/* {designs: [{name, stamp}], runs: [{name, stamp, report}], tables: [name], folders: [name]} in the
+ * order of their names; NULL when memory is short. */
+json_t *dea_studio_list(int folder);
+/* [name] of the files in a folder of the folder; NULL: there is none. */
+json_t *dea_studio_list_in(int folder, const char *name);

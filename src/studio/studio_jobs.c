@@ -1,0 +1,431 @@
+#define _GNU_SOURCE // memfd_create, ptsname_r, environ
+#include "studio/studio_jobs.h"
+
+#include "base/clock.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+// Command lines -----------------------------------------------------------------------------------
+
+void dea_studio_line_add(struct dea_studio_line *line, const char *argument)
+{
+  const size_t size = strlen(argument) + 1;
+  if (line->count + 3 > DEA_STUDIO_ARGUMENTS || size > sizeof line->text - line->length) {
+    line->full = true;
+    return;
+  }
+  memcpy(line->text + line->length, argument, size);
+  line->length += size;
+  line->count++;
+}
+
+void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *out)
+{
+  static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789"
+                              "_-./=,:+@%";
+  dea_text_add(out, "dea");
+  for (size_t at = 0; at < line->length; at += strlen(line->text + at) + 1) {
+    const char *word = line->text + at;
+    if (word[0] != '\0' && word[strspn(word, plain)] == '\0') {
+      dea_text_add(out, " %s", word);
+      continue;
+    }
+    dea_text_add(out, " '");
+    for (const char *c = word; *c != '\0'; c++) {
+      dea_text_add(out, "%s%c", *c == '\'' ? "'\\'" : "", *c);
+    }
+    dea_text_add(out, "'");
+  }
+}
+
+// Processes ---------------------------------------------------------------------------------------
+
+/* Starts the command in the folder, in a group of its own; out, err: what it writes to. It is told
+ * to end when the thread that calls this does. */
+static pid_t start(const char *program, int folder, const struct dea_studio_line *line, int out,
+                   int err)
+{
+  const char *argv[DEA_STUDIO_ARGUMENTS] = {program};
+  size_t count = 1;
+  for (size_t at = 0; at < line->length; at += strlen(line->text + at) + 1) {
+    argv[count++] = line->text + at;
+  }
+  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const pid_t parent = getpid(), pid = nothing >= 0 ? fork() : -1;
+  if (pid == 0) { // only what a process of several threads may call here
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    signal(SIGINT, SIG_DFL);
+    if (getppid() != parent || setpgid(0, 0) != 0 || fchdir(folder) != 0 ||
+        dup2(nothing, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0 ||
+        dup2(err, STDERR_FILENO) < 0) {
+      _exit(127);
+    }
+    execv(program, (char *const *)argv);
+    _exit(127);
+  }
+  if (nothing >= 0) {
+    close(nothing);
+  }
+  return pid;
+}
+
+static void take(int file, struct dea_bytes *out)
+{
+  char chunk[16384];
+  ssize_t got;
+  lseek(file, 0, SEEK_SET);
+  while ((got = read(file, chunk, sizeof chunk)) > 0) {
+    dea_bytes_add(out, chunk, (size_t)got);
+  }
+  dea_bytes_add_u8(out, 0);
+  out->length -= !out->failed;
+}
+
+dea_status dea_studio_ask(struct dea_context *ctx, const char *program, int folder,
+                          const struct dea_studio_line *line, double limit_s, struct dea_bytes *out,
+                          struct dea_bytes *err, int *code)
+{
+  const int files[2] = {memfd_create("out", MFD_CLOEXEC), memfd_create("err", MFD_CLOEXEC)};
+  const pid_t pid =
+      files[0] >= 0 && files[1] >= 0 ? start(program, folder, line, files[0], files[1]) : -1;
+  const double began_s = dea_clock_s();
+  int state = 0;
+  pid_t ended = 0;
+  while (pid > 0 && ended == 0) {
+    ended = waitpid(pid, &state, WNOHANG);
+    if (ended == 0 && dea_clock_s() - began_s > limit_s) {
+      kill(-pid, SIGKILL);
+    }
+    if (ended == 0) {
+      dea_clock_wait(0.001);
+    }
+  }
+  for (size_t i = 0; i < 2; i++) {
+    if (files[i] >= 0) {
+      take(files[i], i == 0 ? out : err);
+      close(files[i]);
+    }
+  }
+  *code = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+  if (pid < 0 || !WIFEXITED(state)) {
+    return dea_fail(ctx, DEA_E_TOOL, "%s could not be run to its end", program);
+  }
+  return out->failed || err->failed ? DEA_E_MEMORY : DEA_OK;
+}
+
+// The queue ---------------------------------------------------------------------------------------
+
+enum { JOBS_MAX = 48, SAID_MAX = 6000, LAST_LINE = 160, NAME_SIZE = 256, PATIENCE_S = 10 };
+
+enum state { WAITING, RUNNING, DONE, FAILED, STOPPED };
+static const char *const states[] = {"waiting", "running", "done", "failed", "stopped"};
+
+struct job {
+  int id;
+  enum state state;
+  char action[16], subject[NAME_SIZE], output[NAME_SIZE];
+  struct dea_studio_line line;
+  pid_t process;
+  int terminal; // that it writes to
+  int code;
+  int told; // how often it was told to end
+  char said[SAID_MAX];
+  char last[LAST_LINE]; // what it says of its progress
+  char half[512];       // a line that has not ended
+  size_t half_length;
+  bool rewritten; // that line takes the place of another one
+};
+
+struct dea_studio_jobs {
+  const char *program;
+  int folder;
+  int cores;
+  int last_id;
+  int wake[2]; // a pipe: there is something to do
+  pthread_mutex_t lock;
+  size_t count;
+  struct job jobs[JOBS_MAX];
+};
+
+struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const char *program,
+                                               int folder)
+{
+  struct dea_studio_jobs *jobs = dea_alloc(ctx, 1, sizeof *jobs);
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  if (jobs == NULL) {
+    return NULL;
+  }
+  jobs->program = program;
+  jobs->folder = folder;
+  jobs->cores = cores > 1 ? (int)cores : 1;
+  if (pipe2(jobs->wake, O_CLOEXEC | O_NONBLOCK) != 0 ||
+      pthread_mutex_init(&jobs->lock, NULL) != 0) {
+    dea_fail(ctx, DEA_E_IO, "no queue: %s", strerror(errno));
+    dea_free(ctx, jobs);
+    return NULL;
+  }
+  return jobs;
+}
+
+/* Makes room in the list: the oldest that is over goes. */
+static bool make_room(struct dea_studio_jobs *jobs)
+{
+  for (size_t i = 0; i < jobs->count && jobs->count == JOBS_MAX; i++) {
+    if (jobs->jobs[i].state > RUNNING) {
+      jobs->count--;
+      memmove(&jobs->jobs[i], &jobs->jobs[i + 1], (jobs->count - i) * sizeof jobs->jobs[0]);
+    }
+  }
+  return jobs->count < JOBS_MAX;
+}
+
+int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const char *subject,
+                        const char *output, const struct dea_studio_line *line)
+{
+  int id = 0;
+  bool free_place = true;
+  pthread_mutex_lock(&jobs->lock);
+  for (size_t i = 0; i < jobs->count; i++) {
+    const struct job *other = &jobs->jobs[i];
+    free_place = free_place && !(other->state <= RUNNING && strcmp(other->output, output) == 0);
+  }
+  if (free_place && !line->full && make_room(jobs)) {
+    struct job *job = &jobs->jobs[jobs->count++];
+    *job = (struct job){.id = ++jobs->last_id, .line = *line, .terminal = -1};
+    snprintf(job->action, sizeof job->action, "%s", action);
+    snprintf(job->subject, sizeof job->subject, "%s", subject);
+    snprintf(job->output, sizeof job->output, "%s", output);
+    id = job->id;
+  }
+  pthread_mutex_unlock(&jobs->lock);
+  (void)!write(jobs->wake[1], "", 1);
+  return id;
+}
+
+/* Tells one that runs to end: its own end first, which keeps what it has, then that of all that it
+ * has started. */
+static void tell(struct job *job)
+{
+  job->told++;
+  kill(job->told > 1 ? -job->process : job->process, job->told > 1 ? SIGKILL : SIGTERM);
+}
+
+bool dea_studio_jobs_stop(struct dea_studio_jobs *jobs, int id)
+{
+  bool found = false;
+  pthread_mutex_lock(&jobs->lock);
+  for (size_t i = 0; i < jobs->count; i++) {
+    struct job *job = &jobs->jobs[i];
+    if (job->id == id && job->state == WAITING) {
+      job->state = STOPPED;
+      found = true;
+    } else if (job->id == id && job->state == RUNNING) {
+      tell(job);
+      found = true;
+    }
+  }
+  pthread_mutex_unlock(&jobs->lock);
+  return found;
+}
+
+static json_t *job_json(const struct job *job)
+{
+  struct dea_context *ctx = NULL;
+  json_t *json = json_pack("{s:i, s:s, s:s, s:s, s:s, s:i}", "id", job->id, "action", job->action,
+                           "subject", job->subject, "output", job->output, "state",
+                           states[job->state], "code", job->code);
+  if (dea_context_create(NULL, &ctx) == DEA_OK) {
+    struct dea_text command = {.ctx = ctx};
+    dea_studio_line_show(&job->line, &command);
+    json_object_set_new(json, "command", json_string(dea_text_get(&command)));
+    dea_text_free(&command);
+    dea_context_destroy(ctx);
+  }
+  json_object_set_new(json, "progress", json_string(job->last));
+  json_t *said = json_string(job->said); // NULL where its first letter was cut
+  for (size_t skip = 1; said == NULL && skip < 4 && job->said[skip] != '\0'; skip++) {
+    said = json_string(job->said + skip);
+  }
+  json_object_set_new(json, "said", said != NULL ? said : json_string(""));
+  return json;
+}
+
+json_t *dea_studio_jobs_json(struct dea_studio_jobs *jobs)
+{
+  json_t *list = json_array();
+  pthread_mutex_lock(&jobs->lock);
+  for (size_t i = 0; i < jobs->count; i++) {
+    json_array_append_new(list, job_json(&jobs->jobs[i]));
+  }
+  pthread_mutex_unlock(&jobs->lock);
+  return list;
+}
+
+/* A terminal for one: its progress is told there as a user sees it. *writes: its other end. */
+static int open_terminal(int *writes)
+{
+  char name[64];
+  const int reads = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  *writes = -1;
+  if (reads < 0 || grantpt(reads) != 0 || unlockpt(reads) != 0 ||
+      ptsname_r(reads, name, sizeof name) != 0 ||
+      (*writes = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC)) < 0) {
+    if (reads >= 0) {
+      close(reads);
+    }
+    return -1;
+  }
+  struct termios how;
+  if (tcgetattr(*writes, &how) == 0) {
+    how.c_oflag &= ~(tcflag_t)OPOST;
+    how.c_lflag &= ~(tcflag_t)ECHO;
+    tcsetattr(*writes, TCSANOW, &how);
+  }
+  fcntl(reads, F_SETFL, O_NONBLOCK);
+  return reads;
+}
+
+static void begin(struct dea_studio_jobs *jobs, struct job *job)
+{
+  int writes;
+  job->terminal = open_terminal(&writes);
+  job->process =
+      job->terminal >= 0 ? start(jobs->program, jobs->folder, &job->line, writes, writes) : -1;
+  job->state = job->process > 0 ? RUNNING : FAILED;
+  if (writes >= 0) {
+    close(writes);
+  }
+  if (job->state == FAILED) {
+    snprintf(job->said, sizeof job->said, "cannot be started: %s", strerror(errno));
+    if (job->terminal >= 0) {
+      close(job->terminal);
+    }
+  }
+}
+
+/* Adds a line to what it has said, of which the first goes where it gets long. */
+static void keep_line(struct job *job)
+{
+  const size_t length = job->half_length, used = strlen(job->said);
+  size_t gone = 0;
+  if (used + length + 2 > sizeof job->said) {
+    gone = used + length + 2 - sizeof job->said;
+    gone = gone < used ? gone : used;
+    memmove(job->said, job->said + gone, used - gone + 1);
+  }
+  snprintf(job->said + used - gone, sizeof job->said - (used - gone), "%.*s\n", (int)length,
+           job->half);
+}
+
+static void hear_byte(struct job *job, char byte)
+{
+  static const char erase[] = "\033[K";
+  if (byte == '\r' || byte == '\n') {
+    const bool progress = job->half_length >= 3 && memcmp(job->half, erase, 3) == 0;
+    if (progress) {
+      snprintf(job->last, sizeof job->last, "%.*s", (int)job->half_length - 3, job->half + 3);
+    } else if (byte == '\n') {
+      keep_line(job);
+    }
+    job->half_length = 0;
+  } else if (job->half_length < sizeof job->half && (byte == 0x1b || (unsigned char)byte >= 0x20)) {
+    job->half[job->half_length++] = byte;
+  }
+}
+
+/* The line that has not ended yet is progress, too: the next one comes with its own start. */
+static void hear(struct job *job)
+{
+  char chunk[4096];
+  ssize_t got;
+  while ((got = read(job->terminal, chunk, sizeof chunk)) > 0) {
+    for (ssize_t i = 0; i < got; i++) {
+      hear_byte(job, chunk[i]);
+    }
+  }
+  if (job->half_length > 3 && memcmp(job->half, "\033[K", 3) == 0) {
+    snprintf(job->last, sizeof job->last, "%.*s", (int)job->half_length - 3, job->half + 3);
+  }
+}
+
+static void look_at(struct job *job)
+{
+  int state = 0;
+  const bool over = waitpid(job->process, &state, WNOHANG) == job->process;
+  hear(job);
+  if (over) {
+    job->code = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    job->state = job->told > 0 ? STOPPED : job->code == 0 ? DONE : FAILED;
+    close(job->terminal);
+    job->terminal = -1;
+  }
+}
+
+void dea_studio_jobs_turn(struct dea_studio_jobs *jobs)
+{
+  struct pollfd wait[JOBS_MAX + 1] = {{.fd = jobs->wake[0], .events = POLLIN}};
+  nfds_t count = 1;
+  char taken[64];
+  int running = 0;
+  pthread_mutex_lock(&jobs->lock);
+  for (size_t i = 0; i < jobs->count; i++) {
+    running += jobs->jobs[i].state == RUNNING;
+  }
+  for (size_t i = 0; i < jobs->count; i++) {
+    struct job *job = &jobs->jobs[i];
+    if (job->state == WAITING && running < jobs->cores) {
+      begin(jobs, job);
+      running += job->state == RUNNING;
+    } else if (job->state == RUNNING) {
+      look_at(job);
+    }
+    if (job->state == RUNNING) {
+      wait[count++] = (struct pollfd){.fd = job->terminal, .events = POLLIN};
+    }
+  }
+  pthread_mutex_unlock(&jobs->lock);
+  poll(wait, count, 100);
+  if (wait[0].revents == 0) { // a terminal without a writer is always ready
+    dea_clock_wait(0.02);
+  }
+  (void)!read(jobs->wake[0], taken, sizeof taken);
+}
+
+void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jobs)
+{
+  if (jobs == NULL) {
+    return;
+  }
+  for (size_t i = 0; i < jobs->count; i++) {
+    if (jobs->jobs[i].state == RUNNING) {
+      tell(&jobs->jobs[i]);
+    }
+  }
+  for (size_t i = 0; i < jobs->count; i++) {
+    struct job *job = &jobs->jobs[i];
+    const double began_s = dea_clock_s();
+    while (job->state == RUNNING) {
+      look_at(job);
+      dea_clock_wait(0.01);
+      if (job->told == 1 && dea_clock_s() - began_s > PATIENCE_S) {
+        tell(job);
+      }
+    }
+  }
+  close(jobs->wake[0]);
+  close(jobs->wake[1]);
+  pthread_mutex_destroy(&jobs->lock);
+  dea_free(ctx, jobs);
+}

@@ -1,0 +1,50 @@
+/* What the studio has the command do: short questions, and a queue of runs, one a core. */
+#pragma once
+
+#include "base/bytes.h"
+#include "base/text.h"
+
+#include <jansson.h>
+
+/* Arguments of the command, one after the other, each with its zero. Zero-initialise. */
+enum { DEA_STUDIO_LINE = 4096, DEA_STUDIO_ARGUMENTS = 48 };
+struct dea_studio_line {
+  char text[DEA_STUDIO_LINE];
+  size_t length, count;
+  bool full; // something did not fit
+};
+void dea_studio_line_add(struct dea_studio_line *line, const char *argument);
+/* "dea run 'my design.yaml'", for a shell. */
+void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *out);
+
+/* Runs the command in the folder and waits for it, at most limit_s. out, err: what it says. *code:
+ * its exit code. DEA_E_TOOL where it cannot be started, takes too long or dies. */
+dea_status dea_studio_ask(struct dea_context *ctx, const char *program, int folder,
+                          const struct dea_studio_line *line, double limit_s, struct dea_bytes *out,
+                          struct dea_bytes *err, int *code);
+
+struct dea_studio_jobs;
+
+/* program, folder: lent. NULL on failure. */
+struct dea_studio_jobs *dea_studio_jobs_create(struct dea_context *ctx, const char *program,
+                                               int folder);
+/* Stops what runs, waits for it, and frees them. */
+void dea_studio_jobs_destroy(struct dea_context *ctx, struct dea_studio_jobs *jobs);
+
+// From any thread:
+
+/* Puts one at the end of the queue; subject: the file that it is about, output: what it writes. Its
+ * number, from 1; 0: too many wait, or another one writes there. */
+int dea_studio_jobs_add(struct dea_studio_jobs *jobs, const char *action, const char *subject,
+                        const char *output, const struct dea_studio_line *line);
+/* Interrupts it, the second time ends it at once; takes one that waits out of the queue. */
+bool dea_studio_jobs_stop(struct dea_studio_jobs *jobs, int id);
+/* [{id, action, subject, output, command, state, code, progress, said}], the oldest first; state:
+ * waiting, running, done, failed, stopped. */
+json_t *dea_studio_jobs_json(struct dea_studio_jobs *jobs);
+
+// From the thread that made them, with whose end they end:
+
+/* Starts those whose turn it is, hears what they say, and takes their ends; waits for something of
+ * that, at most 0.1 s. */
+void dea_studio_jobs_turn(struct dea_studio_jobs *jobs);

@@ -1,0 +1,695 @@
+#define _POSIX_C_SOURCE 200809L // fstatat
+#include "studio/studio_routes.h"
+
+#include "base/assets.h"
+#include "base/file.h"
+#include "base/write_file.h"
+#include "result/provenance.h"
+#include "studio/studio_curves.h"
+#include "studio/studio_files.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const char json_mime[] = "application/json", html_mime[] = "text/html; charset=utf-8";
+
+/* What a route works with. */
+struct work {
+  struct dea_context *ctx;
+  struct dea_studio_room *room;
+  const struct dea_studio_request *request;
+  struct dea_studio_reply *reply;
+};
+
+// Replies -----------------------------------------------------------------------------------------
+
+static void give(struct work *w, int status, const char *type, const char *bytes, size_t length)
+{
+  w->reply->status = status;
+  w->reply->type = type;
+  w->reply->body.length = 0;
+  dea_bytes_add(&w->reply->body, bytes, length);
+}
+
+/* Takes it. */
+static void give_json(struct work *w, int status, json_t *json)
+{
+  char *text = json != NULL ? json_dumps(json, JSON_COMPACT) : NULL;
+  give(w, text != NULL ? status : 500, json_mime, text != NULL ? text : "{}",
+       text != NULL ? strlen(text) : 2);
+  free(text);
+  json_decref(json);
+}
+
+/* {error: text}; the texts of findings go before the message. */
+static void give_error(struct work *w, int status, const char *text)
+{
+  give_json(w, status, json_pack("{s:s}", "error", text));
+}
+
+static void give_failure(struct work *w)
+{
+  size_t count;
+  const struct dea_finding *findings = dea_finding_get(w->ctx, &count);
+  struct dea_text text = {.ctx = w->ctx};
+  for (size_t i = 0; i < count; i++) {
+    if (findings[i].severity == DEA_ERROR) {
+      dea_text_add(&text, "%s:%zu:%zu: %s\n", dea_path_name(findings[i].location.file),
+                   findings[i].location.line, findings[i].location.column, findings[i].text);
+    }
+  }
+  dea_text_add(&text, "%s", dea_context_message(w->ctx));
+  give_error(w, 422, dea_text_get(&text));
+  dea_text_free(&text);
+}
+
+// Arguments ---------------------------------------------------------------------------------------
+
+/* The i-th of that name in the address; NULL: there is none. */
+static const char *argument(const struct work *w, const char *name, size_t i)
+{
+  return json_string_value(json_array_get(json_object_get(w->request->arguments, name), i));
+}
+
+/* The name of a file in the folder; after an answer NULL. */
+static const char *file_argument(struct work *w, const char *name)
+{
+  const char *file = argument(w, name, 0);
+  if (file == NULL || !dea_studio_name_good(file, false)) {
+    give_error(w, 400, "that is no name of a file in this folder");
+    return NULL;
+  }
+  return file;
+}
+
+/* Whether what has a name in the folder is a folder itself, and no link to one. */
+static bool is_run(const struct work *w, const char *name)
+{
+  char results[DEA_STUDIO_STAMP], path[300];
+  snprintf(path, sizeof path, "%s/results.h5", name);
+  dea_studio_stamp(w->room->folder, path, results);
+  return dea_studio_name_good(name, false) && results[0] != '\0';
+}
+
+/* Its path; owned by the caller. */
+static char *path_of(const struct work *w, const char *name)
+{
+  return dea_path_join(w->ctx, w->room->path, name);
+}
+
+/* Adds the name of a file to a command, which must not take it for an option. */
+static void add_file(struct dea_studio_line *line, const char *name)
+{
+  char path[300];
+  snprintf(path, sizeof path, "%s%s", name[0] == '-' ? "./" : "", name);
+  dea_studio_line_add(line, path);
+}
+
+// The page and its parts --------------------------------------------------------------------------
+
+static void get_page(struct work *w)
+{
+  give(w, 200, html_mime, dea_asset_studio_page, dea_asset_studio_page_length);
+}
+
+static void get_style(struct work *w)
+{
+  give(w, 200, "text/css; charset=utf-8", dea_asset_studio_style, dea_asset_studio_style_length);
+}
+
+static void get_script(struct work *w)
+{
+  give(w, 200, "text/javascript; charset=utf-8", dea_asset_studio_script,
+       dea_asset_studio_script_length);
+}
+
+json_t *dea_studio_state(struct dea_studio_room *room)
+{
+  json_t *state = dea_studio_list(room->folder);
+  json_object_set_new(state, "folder", json_string(room->path));
+  json_object_set_new(state, "open",
+                      json_string(room->options->open != NULL ? room->options->open : ""));
+  json_object_set_new(state, "jobs", dea_studio_jobs_json(room->jobs));
+  return state;
+}
+
+static void get_state(struct work *w)
+{
+  give_json(w, 200, dea_studio_state(w->room));
+}
+
+// Designs and tables ------------------------------------------------------------------------------
+
+/* {text, version} of a file, without a text where it is not in UTF-8; NULL: there is none. */
+static json_t *file_json(struct work *w, const char *name)
+{
+  struct dea_bytes bytes = {.ctx = w->ctx};
+  char version[65];
+  json_t *json = NULL;
+  if (dea_studio_read(w->ctx, w->room->folder, name, DEA_STUDIO_BODY_MAX, &bytes) == DEA_OK) {
+    dea_sha256_hex(bytes.data, bytes.length, version);
+    json = json_pack("{s:s}", "version", version);
+    json_object_set_new(json, "text", json_stringn(bytes.data, bytes.length));
+  }
+  dea_bytes_free(&bytes);
+  return json;
+}
+
+static void get_design(struct work *w)
+{
+  const char *name = file_argument(w, "name");
+  if (name == NULL) {
+    return;
+  }
+  json_t *json = file_json(w, name);
+  if (json_object_get(json, "text") == NULL) {
+    json_decref(json);
+    give_error(w, 404, "there is no such file, or it is no text in UTF-8");
+    return;
+  }
+  give_json(w, 200, json);
+}
+
+/* Whether the name is of a regular file or of nothing. */
+static bool can_write(const struct work *w, const char *name)
+{
+  struct stat file;
+  return fstatat(w->room->folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0 || S_ISREG(file.st_mode);
+}
+
+/* Writes the body where the file is still the version that the page knows ("": none is there). */
+static void put_file(struct work *w)
+{
+  const char *name = file_argument(w, "name"), *known = argument(w, "version", 0);
+  if (name == NULL) {
+    return;
+  }
+  if (!can_write(w, name)) {
+    give_error(w, 403, "a folder or a link has that name");
+    return;
+  }
+  pthread_mutex_lock(&w->room->write_lock);
+  json_t *there = file_json(w, name);
+  const char *version = there != NULL ? json_string_value(json_object_get(there, "version")) : "";
+  if (strcmp(version, known != NULL ? known : "") != 0) {
+    give_json(w, 409,
+              there != NULL ? json_incref(there)
+                            : json_pack("{s:s, s:s}", "text", "", "version", ""));
+  } else {
+    char now[65];
+    char *path = path_of(w, name);
+    dea_sha256_hex(w->request->body, w->request->body_length, now);
+    if (path != NULL &&
+        dea_file_write(w->ctx, path, w->request->body, w->request->body_length) == DEA_OK) {
+      give_json(w, 200, json_pack("{s:s}", "version", now));
+    } else {
+      give_failure(w);
+    }
+    dea_free(w->ctx, path);
+  }
+  json_decref(there);
+  pthread_mutex_unlock(&w->room->write_lock);
+}
+
+static void get_file(struct work *w)
+{
+  static const struct {
+    const char *ending, *type;
+  } types[] = {{".html", "text/html; charset=utf-8"},
+               {".svg", "image/svg+xml"},
+               {".png", "image/png"},
+               {".pdf", "application/pdf"},
+               {".csv", "text/plain; charset=utf-8"},
+               {".json", "application/json"},
+               {".yaml", "text/plain; charset=utf-8"}};
+  const char *name = argument(w, "name", 0);
+  const char *type = "application/octet-stream";
+  enum { FILE_MAX = 256 << 20 };
+  w->reply->foreign = true;
+  if (name == NULL || !dea_studio_name_good(name, true) ||
+      dea_studio_read(w->ctx, w->room->folder, name, FILE_MAX, &w->reply->body) != DEA_OK) {
+    give_error(w, 404, "there is no such file in this folder");
+    return;
+  }
+  for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
+    const char *at = strrchr(name, '.');
+    type = at != NULL && strcmp(at, types[i].ending) == 0 ? types[i].type : type;
+  }
+  w->reply->status = 200;
+  w->reply->type = type;
+}
+
+static void get_list(struct work *w)
+{
+  const char *name = file_argument(w, "name");
+  json_t *list = name != NULL ? dea_studio_list_in(w->room->folder, name) : NULL;
+  if (name != NULL && list == NULL) {
+    give_error(w, 404, "there is no such folder");
+  } else if (name != NULL) {
+    give_json(w, 200, list);
+  }
+}
+
+// Questions to the command ------------------------------------------------------------------------
+
+enum { QUESTION_S = 30 };
+
+/* What a command says, as JSON, into `key` of an answer that shows the command; what is no JSON is
+ * an error. */
+static json_t *ask(struct work *w, const struct dea_studio_line *line, const char *key)
+{
+  struct dea_bytes out = {.ctx = w->ctx}, err = {.ctx = w->ctx};
+  struct dea_text shown = {.ctx = w->ctx};
+  int code = -1;
+  const dea_status status = dea_studio_ask(w->ctx, w->room->options->program, w->room->folder, line,
+                                           QUESTION_S, &out, &err, &code);
+  json_t *json = json_object(), *said = NULL;
+  dea_studio_line_show(line, &shown);
+  if (status == DEA_OK) {
+    said = json_loadb(out.data, out.length, JSON_ALLOW_NUL, NULL);
+  }
+  if (said != NULL) {
+    json_object_set_new(json, key, said);
+  } else {
+    const char *text = status == DEA_OK && err.length > 0 ? err.data : dea_context_message(w->ctx);
+    json_t *error = json_string(text);
+    json_object_set_new(json, "error", error != NULL ? error : json_string("?"));
+  }
+  json_object_set_new(json, "command", json_string(dea_text_get(&shown)));
+  dea_text_free(&shown);
+  dea_bytes_free(&out);
+  dea_bytes_free(&err);
+  return json;
+}
+
+/* A name for a file in the scratch folder; owned by the caller. */
+static char *scratch_name(struct work *w, const char *ending)
+{
+  char name[40];
+  pthread_mutex_lock(&w->room->write_lock);
+  snprintf(name, sizeof name, "%u.%s", ++w->room->scratch_count, ending);
+  pthread_mutex_unlock(&w->room->write_lock);
+  return dea_path_join(w->ctx, w->room->scratch, name);
+}
+
+/* Checks a design and draws it: {check, svg, command}. */
+static void check(struct work *w, const char *design, const char *shown)
+{
+  struct dea_studio_line line = {.count = 0};
+  char *drawing = scratch_name(w, "svg"), *bytes = NULL, command[700];
+  size_t length;
+  if (drawing == NULL) {
+    give_failure(w);
+    return;
+  }
+  dea_studio_line_add(&line, "check");
+  add_file(&line, design);
+  dea_studio_line_add(&line, "--json");
+  dea_studio_line_add(&line, "--svg");
+  dea_studio_line_add(&line, drawing);
+  json_t *json = ask(w, &line, "check");
+  if (dea_path_exists(drawing) &&
+      dea_file_read(w->ctx, drawing, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
+    json_object_set_new(json, "svg", json_stringn(bytes, length));
+    dea_free(w->ctx, bytes);
+  }
+  unlink(drawing);
+  dea_free(w->ctx, drawing);
+  snprintf(command, sizeof command, "dea check %s --svg %.*s.svg", shown, (int)strcspn(shown, "."),
+           shown);
+  json_object_set_new(json, "command", json_string(command));
+  give_json(w, 200, json);
+}
+
+static void get_check(struct work *w)
+{
+  const char *name = file_argument(w, "name");
+  if (name != NULL && can_write(w, name)) { // a link would lead out
+    check(w, name, name);
+  } else if (name != NULL) {
+    give_error(w, 404, "there is no such file in this folder");
+  }
+}
+
+static void get_schema(struct work *w)
+{
+  struct dea_studio_line line = {.count = 0};
+  dea_studio_line_add(&line, "schema");
+  dea_studio_line_add(&line, "--json");
+  give_json(w, 200, ask(w, &line, "schema"));
+}
+
+/* Adds the runs and the table that the address names, or those of a body; false after an answer. */
+static bool add_runs(struct work *w, const json_t *runs, const char *measured,
+                     struct dea_studio_line *line, const char *option)
+{
+  size_t i;
+  const json_t *run;
+  json_array_foreach(runs, i, run)
+  {
+    const char *name = json_string_value(run);
+    if (name == NULL || !is_run(w, name)) {
+      give_error(w, 404, "there is no such run in this folder");
+      return false;
+    }
+    add_file(line, name);
+  }
+  if (measured != NULL && (!dea_studio_name_good(measured, false) || !can_write(w, measured))) {
+    give_error(w, 404, "there is no such table in this folder");
+    return false;
+  }
+  if (measured != NULL && option != NULL) {
+    dea_studio_line_add(line, option);
+  }
+  if (measured != NULL) {
+    add_file(line, measured);
+  }
+  return true;
+}
+
+/* The misfit of runs to a table or to the last of them: {compare, command}. */
+static void get_compare(struct work *w)
+{
+  struct dea_studio_line line = {.count = 0};
+  dea_studio_line_add(&line, "compare");
+  if (add_runs(w, json_object_get(w->request->arguments, "run"), argument(w, "measured", 0), &line,
+               NULL)) {
+    dea_studio_line_add(&line, "--json");
+    give_json(w, 200, ask(w, &line, "compare"));
+  }
+}
+
+/* Figures of runs as HTML. */
+static void get_curves(struct work *w)
+{
+  const json_t *runs = json_object_get(w->request->arguments, "run");
+  const char *measured = argument(w, "measured", 0);
+  struct dea_studio_line unused = {.count = 0};
+  char *paths[DEA_STUDIO_RUNS_MAX + 1] = {NULL};
+  const size_t asked = json_array_size(runs);
+  if (!add_runs(w, runs, measured, &unused, NULL)) {
+    return;
+  }
+  if (asked == 0 || asked > DEA_STUDIO_RUNS_MAX) {
+    give_error(w, 400, "1 to 6 runs can be shown at a time");
+    return;
+  }
+  bool whole = true;
+  for (size_t i = 0; i <= asked; i++) {
+    const char *name = i < asked ? json_string_value(json_array_get(runs, i)) : measured;
+    paths[i] = name != NULL ? path_of(w, name) : NULL;
+    whole = whole && (paths[i] != NULL || name == NULL);
+  }
+  struct dea_text out = {.ctx = w->ctx};
+  pthread_mutex_lock(&w->room->results_lock);
+  dea_status status =
+      whole ? dea_studio_curves(w->ctx, (const char *const *)paths, asked, paths[asked], &out)
+            : DEA_E_MEMORY;
+  pthread_mutex_unlock(&w->room->results_lock);
+  if (status == DEA_OK && !out.failed) {
+    give(w, 200, html_mime, dea_text_get(&out), out.length);
+  } else {
+    give_failure(w);
+  }
+  dea_text_free(&out);
+  for (size_t i = 0; i <= asked; i++) {
+    dea_free(w->ctx, paths[i]);
+  }
+}
+
+// Examples ----------------------------------------------------------------------------------------
+
+static const struct dea_studio_example *example_argument(struct work *w)
+{
+  const char *name = argument(w, "name", 0);
+  for (size_t i = 0; name != NULL && i < w->room->options->example_count; i++) {
+    if (strcmp(w->room->options->examples[i].name, name) == 0) {
+      return &w->room->options->examples[i];
+    }
+  }
+  give_error(w, 404, "there is no such example");
+  return NULL;
+}
+
+/* The rest of the first line that begins with a word; "" where there is none. */
+static void find_line(const char *text, const char *word, char *out, size_t size)
+{
+  out[0] = '\0';
+  for (const char *line = text; line != NULL; line = strchr(line, '\n')) {
+    line += *line == '\n';
+    if (strncmp(line, word, strlen(word)) == 0) {
+      const char *rest = line + strlen(word);
+      snprintf(out, size, "%.*s", (int)strcspn(rest, "\r\n"), rest);
+      return;
+    }
+  }
+}
+
+static void get_examples(struct work *w)
+{
+  json_t *list = json_array();
+  for (size_t i = 0; i < w->room->options->example_count; i++) {
+    const struct dea_studio_example *example = &w->room->options->examples[i];
+    char title[200], *bytes = NULL;
+    size_t length;
+    if (dea_file_read(w->ctx, example->path, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
+      find_line(bytes, "title: ", title, sizeof title);
+      json_array_append_new(list, json_pack("{s:s, s:s}", "name", example->name, "title", title));
+      dea_free(w->ctx, bytes);
+    }
+  }
+  give_json(w, 200, list);
+}
+
+static void get_picture(struct work *w)
+{
+  const struct dea_studio_example *example = example_argument(w);
+  if (example != NULL) {
+    check(w, example->path, example->name);
+  }
+}
+
+/* Writes what an example says under a name that no file has. */
+static bool copy_text(struct work *w, const char *text, size_t length, const char *to)
+{
+  struct stat file;
+  char *path = path_of(w, to);
+  bool done = false;
+  pthread_mutex_lock(&w->room->write_lock);
+  if (fstatat(w->room->folder, to, &file, AT_SYMLINK_NOFOLLOW) == 0) {
+    give_error(w, 409, "a file of that name is there");
+  } else if (path == NULL || dea_file_write(w->ctx, path, text, length) != DEA_OK) {
+    give_failure(w);
+  } else {
+    done = true;
+  }
+  pthread_mutex_unlock(&w->room->write_lock);
+  dea_free(w->ctx, path);
+  return done;
+}
+
+/* Files beside an example that it names, a drawing for one, come along; those that are there
+ * stay. */
+static void copy_beside(struct work *w, const struct dea_studio_example *example, const char *text)
+{
+  static const char ends[] = " \t\r\n,}]'\"";
+  for (const char *at = strstr(text, "file: "); at != NULL; at = strstr(at + 1, "file: ")) {
+    char name[200], *bytes = NULL;
+    const char *from = at + strlen("file: ");
+    size_t length;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(from, ends), from);
+    char *path =
+        dea_studio_name_good(name, false) ? dea_path_beside(w->ctx, example->path, name) : NULL;
+    if (path != NULL &&
+        dea_file_read(w->ctx, path, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
+      copy_text(w, bytes, length, name);
+    }
+    dea_free(w->ctx, bytes);
+    dea_free(w->ctx, path);
+  }
+}
+
+static void post_copy(struct work *w)
+{
+  const struct dea_studio_example *example = example_argument(w);
+  const char *to = example != NULL ? file_argument(w, "to") : NULL;
+  char *bytes = NULL;
+  size_t length;
+  if (to == NULL) {
+    return;
+  }
+  if (dea_file_read(w->ctx, example->path, DEA_STUDIO_BODY_MAX, &bytes, &length) != DEA_OK) {
+    give_failure(w);
+    return;
+  }
+  if (copy_text(w, bytes, length, to)) {
+    copy_beside(w, example, bytes);
+    give_json(w, 200, json_pack("{s:s}", "name", to));
+  }
+  dea_free(w->ctx, bytes);
+}
+
+// Runs --------------------------------------------------------------------------------------------
+
+/* Adds "OPTION VALUE" for each text of a list; false where one is no plain word. */
+static bool add_words(struct dea_studio_line *line, const char *option, const json_t *words)
+{
+  size_t i;
+  const json_t *word;
+  json_array_foreach(words, i, word)
+  {
+    const char *text = json_string_value(word);
+    if (text == NULL || text[0] == '\0' ||
+        text[strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789-")] != '\0' || text[0] == '-') {
+      return false;
+    }
+    dea_studio_line_add(line, option);
+    dea_studio_line_add(line, text);
+  }
+  return true;
+}
+
+/* Takes out of a body what a job is about. */
+static const char *text_of(const json_t *body, const char *key)
+{
+  return json_string_value(json_object_get(body, key));
+}
+
+/* The file and the folder that it writes; NULL after an answer. */
+static const char *job_output(struct work *w, const char *file, const char *output)
+{
+  struct stat info;
+  if (file == NULL || output == NULL || !dea_studio_name_good(file, false) || !can_write(w, file) ||
+      !dea_studio_name_good(output, false) ||
+      (fstatat(w->room->folder, output, &info, AT_SYMLINK_NOFOLLOW) == 0 &&
+       !S_ISDIR(info.st_mode))) {
+    give_error(w, 400, "a file of this folder and a folder for what comes of it are needed");
+    return NULL;
+  }
+  return output;
+}
+
+/* One of the jobs that read a file and write a folder: {action, file, output, ...}. */
+static bool make_file_job(struct work *w, const json_t *body, const char *action,
+                          struct dea_studio_line *line)
+{
+  const char *output = job_output(w, text_of(body, "file"), text_of(body, "output"));
+  if (output == NULL) {
+    return false;
+  }
+  const bool run = strcmp(action, "run") == 0;
+  dea_studio_line_add(line, action);
+  add_file(line, text_of(body, "file"));
+  dea_studio_line_add(line, "-o");
+  add_file(line, output);
+  if (strcmp(action, "fab") == 0 || json_is_true(json_object_get(body, "force"))) {
+    dea_studio_line_add(line, "--force");
+  }
+  if (run && json_is_true(json_object_get(body, "resume"))) {
+    dea_studio_line_add(line, "--resume");
+  }
+  if (run && (!add_words(line, "--model", json_object_get(body, "models")) ||
+              !add_words(line, "--study", json_object_get(body, "studies")))) {
+    give_error(w, 400, "names of models and studies are small letters, digits and '-'");
+    return false;
+  }
+  return true;
+}
+
+/* A report of runs, into the first one's folder: {action, runs, measured}. */
+static bool make_report(struct work *w, const json_t *body, struct dea_studio_line *line)
+{
+  const json_t *runs = json_object_get(body, "runs");
+  if (json_array_size(runs) == 0 || json_array_size(runs) > DEA_STUDIO_RUNS_MAX) {
+    give_error(w, 400, "1 to 6 runs make a report");
+    return false;
+  }
+  dea_studio_line_add(line, "report");
+  return add_runs(w, runs, text_of(body, "measured"), line, "--measurement");
+}
+
+static void post_job(struct work *w)
+{
+  static const char *const actions[] = {"run", "fab", "fit", "sweep", "optimise"};
+  json_t *body = json_loadb(w->request->body, w->request->body_length, 0, NULL);
+  struct dea_studio_line line = {.count = 0};
+  const char *action = text_of(body, "action"), *subject = text_of(body, "file"),
+             *output = text_of(body, "output");
+  bool made = false, known = false;
+  if (action != NULL && strcmp(action, "report") == 0) {
+    subject = json_string_value(json_array_get(json_object_get(body, "runs"), 0));
+    output = subject;
+    known = true;
+    made = make_report(w, body, &line);
+  }
+  for (size_t i = 0; action != NULL && i < sizeof actions / sizeof actions[0]; i++) {
+    if (strcmp(action, actions[i]) == 0) {
+      known = true;
+      made = make_file_job(w, body, action, &line);
+    }
+  }
+  if (!known) {
+    give_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
+  } else if (made) {
+    const int id = dea_studio_jobs_add(w->room->jobs, action, subject, output, &line);
+    give_json(w, id > 0 ? 200 : 409,
+              id > 0 ? json_pack("{s:i}", "id", id)
+                     : json_pack("{s:s}", "error", "another one writes there, or too many wait"));
+  }
+  json_decref(body);
+}
+
+static void post_stop(struct work *w)
+{
+  json_t *body = json_loadb(w->request->body, w->request->body_length, 0, NULL);
+  const int id = (int)json_integer_value(json_object_get(body, "id"));
+  json_decref(body);
+  if (dea_studio_jobs_stop(w->room->jobs, id)) {
+    give_json(w, 200, json_object());
+  } else {
+    give_error(w, 404, "that does not run");
+  }
+}
+
+// -------------------------------------------------------------------------------------------------
+
+void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
+                       const struct dea_studio_request *request, struct dea_studio_reply *reply)
+{
+  static const struct {
+    const char *method, *path;
+    void (*answer)(struct work *w);
+  } routes[] = {{"GET", "", get_page},
+                {"GET", "studio.css", get_style},
+                {"GET", "studio.js", get_script},
+                {"GET", "state", get_state},
+                {"GET", "design", get_design},
+                {"PUT", "design", put_file},
+                {"GET", "check", get_check},
+                {"GET", "schema", get_schema},
+                {"GET", "compare", get_compare},
+                {"GET", "curves", get_curves},
+                {"GET", "examples", get_examples},
+                {"GET", "picture", get_picture},
+                {"GET", "file", get_file},
+                {"GET", "list", get_list},
+                {"POST", "copy", post_copy},
+                {"POST", "job", post_job},
+                {"POST", "stop", post_stop}};
+  struct work w = {ctx, room, request, reply};
+  bool path_known = false;
+  for (size_t i = 0; i < sizeof routes / sizeof routes[0]; i++) {
+    if (strcmp(routes[i].path, request->path) == 0) {
+      path_known = true;
+      if (strcmp(routes[i].method, request->method) == 0) {
+        routes[i].answer(&w);
+        return;
+      }
+    }
+  }
+  give_error(&w, path_known ? 405 : 404, path_known ? "not that way" : "there is no such thing");
+}

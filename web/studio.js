@@ -1,0 +1,834 @@
+// The page of dea studio: a design as text and as values, its drawing, its runs. All that it does is a file in the folder
+// or a command that it shows.
+(() => {
+  const $ = (id) => document.getElementById(id);
+  if ($('desk') === null) {
+    return;
+  }
+  const wait = (ms) => new Promise((done) => { setTimeout(done, ms); });
+  const stem = (name) => name.replace(/^.*\//, '').replace(/\.[^.]*$/, '');
+  const query = (values) => Object.entries(values).flatMap(([key, value]) => [].concat(value).map((one) => `${key}=${encodeURIComponent(one)}`)).join('&');
+  const address = (path, values = {}) => `${path}?${query(values)}`;
+  // { status, json or text }
+  const call = async (method, path, values, body) => {
+    const answer = await fetch(address(path, values), { method, body });
+    const text = await answer.text();
+    const json = (answer.headers.get('Content-Type') ?? '').startsWith('application/json') ? JSON.parse(text) : null;
+    return { status: answer.status, text, json };
+  };
+  const tell = (text) => { $('saved').textContent = text; };
+  const command = (text) => { $('command').textContent = text; };
+
+  // The editor: CodeMirror where this program was built with it, else a plain field -----------------
+
+  const editor = (() => {
+    const host = $('editor');
+    const heard = [];
+    const hear = (change) => heard.push(change);
+    const changed = () => heard.forEach((change) => change());
+    if (window.CodeMirror === undefined) {
+      const field = dea.element('textarea', { spellcheck: 'false', wrap: 'off', 'aria-label': 'Design' });
+      const offset = (line, column) => field.value.split('\n').slice(0, line).reduce((sum, one) => sum + one.length + 1, 0) + column;
+      host.append(field);
+      field.addEventListener('input', changed);
+      const replace = (text, from, to) => {
+        const at = document.activeElement;
+        field.focus({ preventScroll: true });
+        field.setSelectionRange(from, to);
+        if (!document.execCommand('insertText', false, text)) { // keeps what can be undone
+          field.setRangeText(text, from, to, 'end');
+          changed();
+        }
+        at?.focus({ preventScroll: true });
+      };
+      return {
+        hear, get: () => field.value, read: (text) => { field.value = text; },
+        set: (text) => replace(text, 0, field.value.length),
+        replace: (text, line, from, to) => replace(text, offset(line, from), offset(line, to)),
+        go: (line, column) => { field.focus(); field.setSelectionRange(offset(line, column), offset(line, column)); },
+        mark: () => {}, refresh: () => {},
+      };
+    }
+    const mirror = window.CodeMirror(host, {
+      mode: 'yaml', lineNumbers: true, lineWrapping: false, indentUnit: 2, inputStyle: 'contenteditable',
+      extraKeys: { Tab: false, 'Shift-Tab': false, 'Ctrl-Space': 'autocomplete', 'Ctrl-/': 'toggleComment' }, // Tab leaves
+      hintOptions: { hint: (cm) => complete(cm), completeSingle: false },
+    });
+    mirror.getInputField().setAttribute('aria-label', 'Design');
+    mirror.on('change', (_, change) => { if (change.origin !== 'setValue') { changed(); } });
+    mirror.on('inputRead', (_, change) => {
+      if (/^[A-Za-z_]$/.test(change.text[0]) && !mirror.state.completionActive) {
+        mirror.showHint();
+      }
+    });
+    return {
+      hear, get: () => mirror.getValue(),
+      read: (text) => { mirror.setValue(text); mirror.clearHistory(); },
+      set: (text) => mirror.replaceRange(text, { line: 0, ch: 0 }, { line: mirror.lastLine() + 1, ch: 0 }, '*read'),
+      replace: (text, line, from, to) => mirror.replaceRange(text, { line, ch: from }, { line, ch: to }, '*form'),
+      go: (line, column) => { mirror.focus(); mirror.setCursor(line, column); },
+      mark: (findings) => {
+        mirror.getAllMarks().forEach((one) => one.clear());
+        for (const one of findings.filter((finding) => finding.line > 0 && finding.line <= mirror.lineCount())) {
+          const line = one.line - 1;
+          const end = scalarEnd(mirror.getLine(line), one.column - 1);
+          mirror.markText({ line, ch: one.column - 1 }, { line, ch: Math.max(end, one.column) }, { className: `finding-${one.severity}`, attributes: { title: one.text } });
+        }
+      },
+      refresh: () => mirror.refresh(),
+    };
+  })();
+
+  // Places in the text ------------------------------------------------------------------------------
+
+  // Where the value that begins at a column of a line ends.
+  const scalarEnd = (line, from) => {
+    const first = line[from];
+    if (first === '"' || first === "'") {
+      const end = line.indexOf(first, from + 1);
+      return end < 0 ? line.length : end + 1;
+    }
+    const flow = (line.slice(0, from).match(/[[{]/g) ?? []).length > (line.slice(0, from).match(/[\]}]/g) ?? []).length;
+    let depth = 0;
+    let end = from;
+    for (; end < line.length; end++) {
+      const c = line[end];
+      if (c === '#' && /\s/.test(line[end - 1] ?? ' ')) {
+        break;
+      }
+      if ('[{'.includes(c)) {
+        depth++;
+      } else if (']}'.includes(c)) {
+        if (depth === 0 && flow) {
+          break;
+        }
+        depth--;
+      } else if (c === ',' && depth === 0 && flow) {
+        break;
+      }
+    }
+    return from + line.slice(from, end).trimEnd().length;
+  };
+  const lineOf = (number) => editor.get().split('\n')[number] ?? '';
+  const place = (value) => {
+    const line = value.line - 1;
+    const from = value.column - 1;
+    return { line, from, to: scalarEnd(lineOf(line), from) };
+  };
+  const plain = (text) => text.replace(/^(["'])(.*)\1$/, '$2');
+
+  // The schema: what keys there are, and what they mean ----------------------------------------------
+
+  let schema = null;
+  const flatten = (node) => {
+    if (node === undefined || node === null || schema === null) {
+      return [];
+    }
+    if (node.$ref !== undefined) {
+      return flatten(schema.$defs[node.$ref.replace('#/$defs/', '')]);
+    }
+    return [node, ...['oneOf', 'anyOf', 'allOf'].flatMap((how) => (node[how] ?? []).flatMap(flatten))];
+  };
+  const root = () => (/^plies:/m.test(editor.get()) ? schema?.then : schema?.else);
+  const at = (path) => path.reduce((nodes, key) => nodes.flatMap((node) => (key === '[]'
+    ? flatten(node.items) : flatten(node.properties?.[key]))), flatten(root()));
+  const describe = (path) => at(path).map((node) => node.description).find((text) => text !== undefined) ?? '';
+  const words = (path) => [...new Set(at(path).flatMap((node) => node.enum ?? (node.const !== undefined ? [node.const] : [])))].map(String);
+  const parts = (key) => key.replace(/\[\d+\]/g, '.[]').split('.');
+
+  // Path of the section around a place, by indentation and by braces on its line.
+  const around = (lines, number, column) => {
+    const path = [];
+    let indent = Infinity;
+    const before = lines[number].slice(0, column);
+    const own = /^(\s*)((?:- )*)/.exec(before);
+    let inner = before.slice(own[0].length);
+    const opened = [];
+    for (let i = 0; i < inner.length; i++) {
+      if ('{['.includes(inner[i])) {
+        opened.push(i);
+      } else if ('}]'.includes(inner[i])) {
+        opened.pop();
+      }
+    }
+    for (const i of opened.reverse()) {
+      const key = /([\w-]+):\s*$/.exec(inner.slice(0, i));
+      if (inner[i] === '[') {
+        path.unshift('[]');
+      }
+      if (key !== null) {
+        path.unshift(key[1]);
+      }
+    }
+    indent = own[1].length;
+    if (own[2] !== '') {
+      path.unshift('[]');
+      indent += 1; // a list may stand as far left as its key
+    }
+    for (let i = number - 1; i >= 0 && indent > 0; i--) {
+      const found = /^(\s*)((?:- )?)([\w-]+):\s*(#.*)?$/.exec(lines[i]);
+      const item = /^(\s*)- /.exec(lines[i]);
+      if (found !== null && found[1].length + found[2].length < indent) {
+        path.unshift(found[3]);
+        indent = found[1].length + found[2].length;
+      }
+      if (item !== null && item[1].length < indent) {
+        path.unshift('[]');
+        indent = item[1].length + 1;
+      }
+    }
+    return path;
+  };
+  const complete = (cm) => {
+    const cursor = cm.getCursor();
+    const line = cm.getLine(cursor.line);
+    const before = line.slice(0, cursor.ch);
+    if (/#/.test(before) || schema === null) {
+      return null;
+    }
+    const typed = /[\w-]*$/.exec(before)[0];
+    const path = around(cm.getValue().split('\n'), cursor.line, cursor.ch);
+    const value = /([\w-]+):\s*\[?[^,{}]*$/.exec(before);
+    const asked = value !== null && /:\s/.test(before.slice(value.index));
+    let list;
+    if (asked) {
+      const own = [...(path.at(-1) === '[]' && before.includes('[') ? path.slice(0, -2) : path), value[1]];
+      list = [...words(own), ...words([...own, '[]'])].map((text) => ({ text, note: '' }));
+    } else {
+      const keys = Object.assign({}, ...at(path).map((node) => node.properties ?? {}).reverse());
+      list = Object.keys(keys).map((key) => ({ text: `${key}: `, shown: key, note: describe([...path, key]) }));
+    }
+    list = list.filter((one) => (one.shown ?? one.text).startsWith(typed) && one.text !== typed);
+    return {
+      from: { line: cursor.line, ch: cursor.ch - typed.length }, to: cursor,
+      list: list.map((one) => ({
+        text: one.text,
+        render: (node) => node.append(dea.element('b', {}, one.shown ?? one.text), ' ', dea.element('small', {}, one.note)),
+      })),
+    };
+  };
+
+  // One file: saved as it is typed, checked, drawn ---------------------------------------------------
+
+  let state = { designs: [], runs: [], tables: [], folders: [], jobs: [] };
+  const open = { name: '', version: '', saved: '', kind: 'design', busy: null, again: false, asked: false, values: [] };
+
+  const kindOf = (text) => (/^dea_fit:/m.test(text) ? 'fit' : /^dea_explore:/m.test(text)
+    ? (/^objectives?:/m.test(text) ? 'optimise' : 'sweep') : /^dea:/m.test(text) ? 'design' : 'other');
+
+  const askWhich = (theirs) => {
+    open.asked = true;
+    $('asked-text').textContent = `${open.name} was changed by another program while you changed it here.`;
+    $('asked-mine').textContent = 'Keep what is here';
+    $('asked-theirs').textContent = 'Take what the file says';
+    $('asked-other').textContent = theirs.text ?? '';
+    $('asked').hidden = false;
+    $('asked-mine').onclick = () => {
+      open.version = theirs.version;
+      open.asked = false;
+      $('asked').hidden = true;
+      touch();
+    };
+    $('asked-theirs').onclick = () => {
+      open.version = theirs.version;
+      open.saved = theirs.text;
+      open.asked = false;
+      $('asked').hidden = true;
+      editor.set(theirs.text); // which can be undone
+    };
+  };
+
+  const save = async () => {
+    const text = editor.get();
+    if (text === open.saved || open.asked || open.name === '') {
+      return;
+    }
+    tell('saving');
+    const name = open.name;
+    const answer = await call('PUT', 'design', { name, version: open.version }, text);
+    if (name !== open.name) {
+      return;
+    }
+    if (answer.status === 409) {
+      askWhich(answer.json);
+      tell('not saved');
+    } else if (answer.status === 200) {
+      open.version = answer.json.version;
+      open.saved = text;
+      tell('saved');
+    } else {
+      tell(`not saved: ${answer.json?.error ?? answer.status}`);
+    }
+  };
+
+  const showFindings = (findings) => {
+    $('findings').replaceChildren(...findings.map((one) => {
+      const button = dea.element('button', { type: 'button' }, `${one.line > 0 ? `${one.line}:${one.column} ` : ''}${one.text}`);
+      button.addEventListener('click', () => { if (one.line > 0) { editor.go(one.line - 1, Math.max(0, one.column - 1)); } });
+      return dea.element('li', { class: one.severity }, button);
+    }));
+    editor.mark(findings);
+  };
+
+  const check = async () => {
+    const began = performance.now();
+    const { name } = open;
+    const { json } = await call('GET', 'check', { name });
+    if (name !== open.name) {
+      return;
+    }
+    const answer = json.check;
+    command(json.command);
+    if (answer === undefined) {
+      showFindings([{ severity: 'error', text: json.error ?? '', line: 0, column: 0 }]);
+      return;
+    }
+    showFindings(answer.findings);
+    $('picture').classList.toggle('stale', !answer.good);
+    if (json.svg !== undefined) {
+      $('picture').innerHTML = json.svg; // of this program, which writes texts as texts
+      $('drawn').textContent = `in ${Math.round(performance.now() - began)} ms`;
+    }
+    if (answer.values !== undefined) {
+      open.values = answer.values;
+      showValues();
+    }
+  };
+
+  // Whatever has changed: saves and checks, one after the other.
+  const touch = async () => {
+    if (open.busy !== null) {
+      open.again = true;
+      return open.busy;
+    }
+    open.busy = (async () => {
+      do {
+        open.again = false;
+        try {
+          await save();
+          if (open.kind === 'design' && open.name !== '') {
+            await check();
+          }
+        } catch (error) {
+          tell(`not saved: ${error.message}`);
+        }
+      } while (open.again);
+    })();
+    await open.busy;
+    open.busy = null;
+    return null;
+  };
+  let soon = 0;
+  editor.hear(() => {
+    clearTimeout(soon);
+    soon = setTimeout(touch, 30);
+  });
+
+  // Values: a field for each that the file gives -----------------------------------------------------
+
+  const hidden = /(^dea|\.(name|kind|shape|ply|body|channel|side|edge|within)|\.of\[\d+\]|\.free\[\d+\])$/;
+  const edit = (value, text) => {
+    const spot = place(value);
+    const line = lineOf(spot.line);
+    if (line.slice(spot.from, spot.to) !== text) {
+      editor.replace(text, spot.line, spot.from, spot.to);
+    }
+  };
+  // A number goes one step up or down in its second digit.
+  const stepped = (text, way) => {
+    const found = /^([+-]?[\d.]+)(.*)$/.exec(text);
+    if (found === null || !Number.isFinite(Number(found[1]))) {
+      return null;
+    }
+    const number = Number(found[1]);
+    const step = number === 0 ? 1 : 10 ** (Math.floor(Math.log10(Math.abs(number))) - 1);
+    return `${Number((number + way * step).toPrecision(6))}${found[2]}`;
+  };
+  const field = (value) => {
+    const path = parts(value.key);
+    const known = words(path);
+    const input = dea.element('input', { type: 'text', value: value.text, 'data-key': value.key, title: describe(path), ...(known.length > 0 ? { list: `words-${value.key}` } : {}) });
+    const here = () => open.values.find((one) => one.key === value.key && one.origin === 'given');
+    const take = () => { const now = here(); if (now !== undefined && input.value.trim() !== '') { edit(now, input.value.trim()); } };
+    input.addEventListener('input', async () => { // the place is that of the text as it was checked
+      await open.busy;
+      take();
+    });
+    input.addEventListener('keydown', (event) => {
+      const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+      const next = way !== undefined && known.length === 0 ? stepped(input.value, way) : null;
+      if (next !== null) {
+        event.preventDefault();
+        input.value = next;
+        input.dispatchEvent(new Event('input'));
+      }
+    });
+    const name = value.key.includes('.') ? value.key.slice(value.key.indexOf('.') + 1) : value.key;
+    return dea.element('label', {}, dea.element('span', { title: describe(path) }, name), input,
+      ...(known.length > 0 ? [dea.element('datalist', { id: `words-${value.key}` }, ...known.map((word) => dea.element('option', { value: word })))] : []));
+  };
+  // A part is named by its own name where it has one: "plies film".
+  const partName = (part) => {
+    const named = open.values.find((value) => value.key === `${part}.name` && value.origin === 'given');
+    return named !== undefined ? `${part.replace(/\[\d+\]/, '')} ${named.text}` : part;
+  };
+  const showValues = () => {
+    const given = open.values.filter((value) => value.origin === 'given' && !hidden.test(value.key));
+    const keys = given.map((value) => value.key).join('\n');
+    if (keys === $('form').dataset.keys) { // the same fields: what is typed in one stays
+      for (const value of given) {
+        const input = $('form').querySelector(`[data-key="${CSS.escape(value.key)}"]`);
+        if (input !== document.activeElement && input.value !== value.text) {
+          input.value = value.text;
+        }
+      }
+    } else {
+      const groups = new Map();
+      for (const value of given) {
+        const part = value.key.includes('.') ? value.key.slice(0, value.key.indexOf('.')) : '';
+        groups.set(part, [...(groups.get(part) ?? []), field(value)]);
+      }
+      const focus = document.activeElement?.dataset?.key;
+      $('form').replaceChildren(...[...groups].map(([part, fields]) => dea.element('fieldset', {}, dea.element('legend', {}, part === '' ? 'design' : partName(part)), ...fields)));
+      $('form').dataset.keys = keys;
+      if (focus !== undefined) {
+        $('form').querySelector(`[data-key="${CSS.escape(focus)}"]`)?.focus();
+      }
+    }
+    const absent = open.values.filter((value) => value.origin === 'default' || value.origin === 'absent');
+    const sibling = (value) => open.values.findLast((one) => one.origin === 'given' && value.key.includes('.') && one.key.replace(/\.[^.]*$/, '') === value.key.replace(/\.[^.]*$/, ''));
+    $('add').replaceChildren(dea.element('option', { value: '' }, ''), ...absent.filter((value) => sibling(value) !== undefined)
+      .map((value) => dea.element('option', { value: value.key, title: describe(parts(value.key)) }, `${value.key} (${value.text})`)));
+    $('add').onchange = () => {
+      const value = absent.find((one) => one.key === $('add').value);
+      if (value !== undefined) {
+        addKey(value, sibling(value));
+      }
+    };
+    showModels();
+  };
+  // A key goes after one of its section, the way that stands there.
+  const addKey = (value, beside) => {
+    const spot = place(beside);
+    const line = lineOf(spot.line);
+    const key = value.key.replace(/^.*\./, '');
+    const text = value.origin === 'default' ? value.text : '';
+    const flow = (line.slice(0, spot.from).match(/{/g) ?? []).length > (line.slice(0, spot.from).match(/}/g) ?? []).length;
+    if (flow) {
+      editor.replace(`, ${key}: ${text}`, spot.line, spot.to, spot.to);
+    } else {
+      const indent = /^\s*(- )?/.exec(line)[0].replace('-', ' ');
+      editor.replace(`\n${indent}${key}: ${text}`, spot.line, line.length, line.length);
+    }
+    editor.go(spot.line + (flow ? 0 : 1), flow ? spot.to + key.length + 4 : lineOf(spot.line + 1).length);
+  };
+  $('form').addEventListener('submit', (event) => event.preventDefault());
+
+  const models = ['lumped', 'axisymmetric', '3d', 'reduced'];
+  const showModels = () => {
+    const given = open.values.filter((value) => /^compute\.models\[/.test(value.key) && value.origin === 'given').map((value) => value.text);
+    const any = open.values.some((value) => value.key.startsWith('plies['));
+    if ($('models').dataset.for === `${open.name} ${given}`) {
+      return;
+    }
+    $('models').dataset.for = `${open.name} ${given}`;
+    $('models').replaceChildren(dea.element('legend', {}, 'Models'), ...models.filter((name) => !any || name === '3d' || name === 'reduced').map((name) => {
+      const box = dea.element('input', { type: 'checkbox', value: name });
+      box.checked = given.includes(name) || (given.length === 0 && name === '3d');
+      box.dataset.given = box.checked ? '1' : '';
+      return dea.element('label', {}, box, name);
+    }));
+  };
+
+  // Runs ---------------------------------------------------------------------------------------------
+
+  const chosen = new Set();
+  let curvesOf = '';
+
+  const run = async (beside) => {
+    await touch();
+    const { name, kind } = open;
+    const own = `${stem(name)}.${kind === 'design' ? 'run' : kind}`;
+    let output = own;
+    const there = new Set([...state.runs.map((one) => one.name), ...state.folders]);
+    for (let n = 2; beside && there.has(output); n++) {
+      output = own.replace(/\.(\w+)$/, `-${n}.$1`);
+    }
+    const boxes = [...$('models').querySelectorAll('input')];
+    const other = boxes.some((box) => box.checked !== (box.dataset.given === '1')); // than the design says
+    const job = { action: kind === 'design' ? 'run' : kind, file: name, output, models: kind === 'design' && other ? boxes.filter((box) => box.checked).map((box) => box.value) : [] };
+    await start(job);
+  };
+  const start = async (job) => {
+    const answer = await call('POST', 'job', {}, JSON.stringify(job));
+    if (answer.status !== 200) {
+      tell(answer.json?.error ?? `refused: ${answer.status}`);
+      return;
+    }
+    if (job.action === 'run') {
+      if (!job.resume && chosen.size > 0 && !$('shown').dataset.many) {
+        chosen.clear();
+      }
+      chosen.add(job.output);
+    }
+    waiting.set(answer.json.id, job);
+  };
+  const waiting = new Map(); // jobs of this page that are not over
+
+  const showFolder = async (name) => {
+    const { json } = await call('GET', 'list', { name });
+    if (!Array.isArray(json)) {
+      return;
+    }
+    $('folder-view').hidden = false;
+    $('folder-title').textContent = name;
+    $('files').replaceChildren(...json.map((file) => {
+      const href = address('file', { name: `${name}/${file}` });
+      const link = dea.element('a', { href, target: '_blank', rel: 'noopener', ...(/\.(svg|html|csv|yaml|json|png)$/.test(file) ? {} : { download: file }) }, file);
+      return dea.element('div', {}, ...(/\.(svg|png)$/.test(file) ? [dea.element('img', { src: href, alt: file, loading: 'lazy' })] : []), link);
+    }));
+  };
+  const showReport = (name) => {
+    $('folder-view').hidden = false;
+    $('folder-title').textContent = `Report of ${name}`;
+    $('files').replaceChildren(dea.element('iframe', { src: address('file', { name: `${name}/report.html` }), title: `Report of ${name}`, sandbox: 'allow-scripts' }));
+    $('folder-view').scrollIntoView();
+  };
+
+  const jobRow = (job) => {
+    const going = job.state === 'running' || job.state === 'waiting';
+    const count = /(\d+)\/(\d+)/.exec(job.progress);
+    const head = dea.element('span', { class: 'head' }, dea.element('b', {}, job.output), ` ${job.action}: ${job.state}${going && job.progress ? `, ${job.progress}` : ''}`);
+    const row = dea.element('li', { 'data-id': job.id }, head);
+    const button = (text, act) => {
+      const node = dea.element('button', { type: 'button' }, text);
+      node.addEventListener('click', act);
+      head.append(node);
+    };
+    if (going) {
+      button('Stop', () => call('POST', 'stop', {}, JSON.stringify({ id: job.id })));
+      row.append(dea.element('progress', { 'aria-label': job.output, ...(count !== null && Number(count[2]) > 0 ? { value: count[1], max: count[2] } : {}) }));
+    } else if (job.action === 'run' && job.state !== 'done') {
+      button('Go on', () => start({ action: 'run', file: job.subject, output: job.output, resume: true }));
+      button('Start anew', () => start({ action: 'run', file: job.subject, output: job.output, force: true }));
+    } else if (!going && !['run', 'report'].includes(job.action)) {
+      button('Files', () => showFolder(job.output));
+    }
+    row.append(dea.element('details', job.state === 'failed' ? { open: '' } : {}, dea.element('summary', {}, dea.element('span', { class: 'code' }, job.command)), dea.element('pre', { tabindex: '0' }, job.said)));
+    return row;
+  };
+  const showJobs = () => {
+    const opened = new Set([...$('jobs').querySelectorAll('li')].filter((row) => row.querySelector('details').open).map((row) => row.dataset.id));
+    const focus = document.activeElement?.closest?.('#jobs li')?.dataset.id;
+    const jobs = state.jobs.slice(-6).reverse();
+    if ($('jobs').dataset.last !== JSON.stringify(jobs)) {
+      $('jobs').dataset.last = JSON.stringify(jobs);
+      $('jobs').replaceChildren(...jobs.map((job) => {
+        const row = jobRow(job);
+        row.querySelector('details').open ||= opened.has(String(job.id));
+        return row;
+      }));
+      if (focus !== undefined) {
+        $('jobs').querySelector(`li[data-id="${focus}"] button`)?.focus();
+      }
+    }
+    for (const job of state.jobs) {
+      if (waiting.has(job.id)) {
+        command(job.command);
+        if (job.state !== 'waiting' && job.state !== 'running') {
+          waiting.delete(job.id);
+          if (job.action === 'report' && job.state === 'done') {
+            showReport(job.output);
+          } else if (job.action !== 'run' && job.state === 'done') {
+            showFolder(job.output);
+          }
+        }
+      }
+    }
+  };
+  const pick = (select, names, none) => {
+    const was = select.value;
+    select.replaceChildren(...(none !== null ? [dea.element('option', { value: '' }, none)] : []), ...names.map((name) => dea.element('option', { value: name }, name)));
+    select.value = names.includes(was) ? was : '';
+  };
+  const showRuns = () => {
+    const names = state.runs.map((one) => one.name);
+    const text = JSON.stringify([names, [...chosen], state.runs.map((one) => one.report)]);
+    if ($('shown').dataset.last !== text) {
+      $('shown').dataset.last = text;
+      const focus = document.activeElement?.value;
+      $('shown').replaceChildren(...state.runs.map((one) => {
+        const box = dea.element('input', { type: 'checkbox', value: one.name });
+        box.checked = chosen.has(one.name);
+        box.addEventListener('change', () => {
+          (box.checked ? (name) => chosen.add(name) : (name) => chosen.delete(name))(one.name);
+          $('shown').dataset.many = chosen.size > 1 ? '1' : '';
+          showRuns();
+          showCurves();
+        });
+        const row = dea.element('li', {}, dea.element('label', {}, box, one.name));
+        if (one.report !== '') {
+          const button = dea.element('button', { type: 'button' }, 'Open report');
+          button.addEventListener('click', () => showReport(one.name));
+          row.append(button);
+        }
+        return row;
+      }));
+      [...$('shown').querySelectorAll('input')].find((box) => box.value === focus)?.focus();
+    }
+    if ($('measured').dataset.last !== JSON.stringify(state.tables)) {
+      $('measured').dataset.last = JSON.stringify(state.tables);
+      pick($('measured'), state.tables, 'none');
+    }
+    $('report').disabled = shown().length === 0;
+  };
+  // Runs that are drawn; one that goes on beside older results is in its own folder.
+  const shown = () => [...chosen].flatMap((name) => {
+    const going = state.jobs.some((job) => job.output === name && job.state === 'running');
+    const found = state.runs.find((one) => going && one.name === `${name}.part`) ?? state.runs.find((one) => one.name === name);
+    return found !== undefined ? [found] : [];
+  }).slice(0, 6);
+  let drawing = false;
+  const showCurves = async () => {
+    const runs = shown();
+    const measured = $('measured').value;
+    const text = JSON.stringify([runs.map((one) => [one.name, one.stamp]), measured, state.tables]);
+    if (text === curvesOf || drawing) {
+      return;
+    }
+    if (runs.length === 0) {
+      curvesOf = text;
+      $('curves').replaceChildren(dea.element('p', { class: 'still' }, 'Run the design, or choose a run.'));
+      $('misfit').replaceChildren();
+      return;
+    }
+    drawing = true;
+    const names = { run: runs.map((one) => one.name), ...(measured !== '' ? { measured } : {}) };
+    const answer = await call('GET', 'curves', names);
+    drawing = false;
+    if (answer.status === 200) {
+      curvesOf = text;
+      dea.listeners.length = 0;
+      $('curves').innerHTML = answer.text; // as the report: texts are texts
+      if (runs.length > 1) {
+        $('curves').prepend(dea.element('p', { class: 'still' }, runs.map((one, i) => `${i + 1} ${one.name}`).join(', ')));
+      }
+      dea.dress($('curves'));
+    } else if (measured !== '') {
+      curvesOf = text;
+      $('curves').replaceChildren(dea.element('p', { class: 'warning verdict' }, answer.json?.error ?? `refused: ${answer.status}`));
+    } // else it is just being written
+    await showMisfit(names);
+    showCurves(); // what has come meanwhile
+  };
+  const showMisfit = async (names) => {
+    if (names.measured === undefined && names.run.length < 2) {
+      $('misfit').replaceChildren();
+      return;
+    }
+    const { json } = await call('GET', 'compare', names);
+    const rows = (json.compare?.comparisons ?? []).flatMap((pair) => pair.quantities.map((one) => [pair.a, one]));
+    const table = dea.element('table', {}, dea.element('caption', {}, `Misfit to ${json.compare?.reference ?? ''}`),
+      dea.element('thead', {}, dea.element('tr', {}, ...['Run', 'Quantity', 'rms', 'largest', 'of the range'].map((text, i) => dea.element('th', { scope: 'col', ...(i > 1 ? { class: 'n' } : {}) }, text)))),
+      dea.element('tbody', {}, ...rows.map(([name, one]) => dea.element('tr', {}, dea.element('td', {}, name), dea.element('td', {}, `${one.quantity}${one.unit && one.unit !== '1' ? ` (${one.unit})` : ''}`),
+        dea.element('td', { class: 'n' }, dea.number(one.rms)), dea.element('td', { class: 'n' }, dea.number(one.largest)), dea.element('td', { class: 'n' }, one.relative_rms !== undefined ? `${dea.number(100 * one.relative_rms, 3)} %` : '–')))));
+    $('misfit').replaceChildren(rows.length > 0 ? dea.element('div', { class: 'scroll' }, table) : dea.element('p', { class: 'still' }, json.error ?? ''));
+    command(json.command);
+  };
+
+  const takeTable = async (file) => {
+    const name = file.name.replace(/^\.+/, '').replace(/[/\\]/g, '-');
+    const body = await file.arrayBuffer();
+    let answer = await call('PUT', 'design', { name, version: '' }, body);
+    if (answer.status === 409 && window.confirm(`Replace ${name} in the folder?`)) {
+      answer = await call('PUT', 'design', { name, version: answer.json.version }, body);
+    }
+    if (answer.status !== 200) {
+      tell(answer.json?.error ?? `not taken: ${answer.status}`);
+      return;
+    }
+    state.tables = [...new Set([...state.tables, name])].sort();
+    showRuns();
+    $('measured').value = name;
+    curvesOf = '';
+    showCurves();
+  };
+  for (const target of [$('results'), $('runs')]) {
+    target.addEventListener('dragover', (event) => { event.preventDefault(); target.classList.add('over'); });
+    target.addEventListener('dragleave', () => target.classList.remove('over'));
+    target.addEventListener('drop', (event) => {
+      event.preventDefault();
+      target.classList.remove('over');
+      [...event.dataTransfer.files].slice(0, 1).forEach(takeTable);
+    });
+  }
+  $('table').addEventListener('change', () => { [...$('table').files].slice(0, 1).forEach(takeTable); $('table').value = ''; });
+  $('measured').addEventListener('change', showCurves);
+  $('run').addEventListener('click', () => run(false));
+  $('run-beside').addEventListener('click', () => { $('shown').dataset.many = '1'; run(true); });
+  $('report').addEventListener('click', () => start({ action: 'report', runs: shown().map((one) => one.name), ...($('measured').value !== '' ? { measured: $('measured').value } : {}) }));
+  $('fab').addEventListener('click', async () => { await touch(); start({ action: 'fab', file: open.name, output: `${stem(open.name)}.fab` }); });
+
+  // Files and the start page --------------------------------------------------------------------------
+
+  const openFile = async (name) => {
+    await open.busy;
+    const answer = await call('GET', 'design', { name });
+    if (answer.status !== 200) {
+      tell(answer.json?.error ?? `not there: ${answer.status}`);
+      window.location.hash = '';
+      return;
+    }
+    Object.assign(open, { name, version: answer.json.version, saved: answer.json.text, kind: kindOf(answer.json.text), asked: false, values: [] });
+    $('asked').hidden = true;
+    $('start').hidden = true;
+    $('desk').hidden = false;
+    $('folder-view').hidden = true;
+    editor.read(answer.json.text);
+    editor.refresh();
+    tell('saved');
+    document.title = `${name} – dea studio`;
+    $('edit-title').textContent = name;
+    const design = open.kind === 'design';
+    for (const id of ['values', 'drawing', 'models']) {
+      $(id).hidden = !design;
+    }
+    $('picture').replaceChildren();
+    $('findings').replaceChildren();
+    $('form').dataset.keys = '';
+    $('form').replaceChildren();
+    $('run').disabled = open.kind === 'other';
+    $('run').textContent = { fit: 'Fit', sweep: 'Sweep', optimise: 'Optimise' }[open.kind] ?? 'Run';
+    $('run-beside').disabled = $('fab').disabled = !design;
+    chosen.clear();
+    const own = state.runs.find((one) => one.name === `${stem(name)}.run`);
+    if (design && own !== undefined) {
+      chosen.add(own.name);
+    }
+    showFiles();
+    showRuns();
+    showCurves();
+    if (design) {
+      await touch();
+    } else if (state.folders.includes(`${stem(name)}.${open.kind}`)) {
+      showFolder(`${stem(name)}.${open.kind}`);
+    }
+  };
+  const showFiles = () => {
+    const names = state.designs.map((one) => one.name);
+    $('file').replaceChildren(dea.element('option', { value: '' }, 'Start page'), ...names.map((name) => dea.element('option', { value: name }, name)));
+    $('file').value = names.includes(open.name) ? open.name : '';
+    $('folder').textContent = state.folder ?? '';
+    $('designs').replaceChildren(...names.map((name) => dea.element('li', {}, dea.element('a', { href: `#${encodeURIComponent(name)}` }, name))),
+      ...(names.length === 0 ? [dea.element('li', { class: 'faint' }, 'none yet')] : []));
+  };
+  $('file').addEventListener('change', () => { window.location.hash = encodeURIComponent($('file').value); });
+
+  const copy = async (example) => {
+    const taken = new Set(state.designs.map((one) => one.name));
+    let to = `${stem(example)}.yaml`;
+    for (let n = 2; taken.has(to); n++) {
+      to = `${stem(example)}-${n}.yaml`;
+    }
+    const answer = await call('POST', 'copy', { name: example, to });
+    command(`dea examples ${example.replace(/\.yaml$/, '')} > ${to}`);
+    if (answer.status === 200) {
+      window.location.hash = encodeURIComponent(to);
+    } else {
+      tell(answer.json?.error ?? `refused: ${answer.status}`);
+    }
+  };
+  let gallery = null;
+  const showStart = async () => {
+    await open.busy;
+    open.name = '';
+    document.title = 'dea studio';
+    $('start').hidden = false;
+    $('desk').hidden = true;
+    $('run').disabled = $('run-beside').disabled = $('fab').disabled = true;
+    tell('');
+    showFiles();
+    if (gallery !== null) {
+      return;
+    }
+    gallery = (await call('GET', 'examples')).json;
+    const cards = gallery.map(({ name, title }) => {
+      const shot = dea.element('span', { class: 'shot' });
+      const card = dea.element('button', { type: 'button', 'data-example': name }, shot, dea.element('b', {}, title || stem(name)), dea.element('small', {}, `Copy and open ${stem(name)}.yaml`));
+      card.addEventListener('click', () => copy(name));
+      return { card, shot, name };
+    });
+    $('gallery').replaceChildren(...cards.map((one) => one.card));
+    for (const { shot, name } of cards) { // one after the other, so that a click is not kept waiting
+      const { json } = await call('GET', 'picture', { name });
+      if (json?.svg !== undefined) {
+        shot.innerHTML = json.svg;
+        shot.querySelector('svg').setAttribute('aria-hidden', 'true');
+      }
+    }
+  };
+  const route = () => {
+    const name = decodeURIComponent(window.location.hash.slice(1));
+    return name === '' ? showStart() : openFile(name);
+  };
+  window.addEventListener('hashchange', route);
+
+  document.addEventListener('keydown', (event) => {
+    if (!(event.ctrlKey || event.metaKey)) {
+      return;
+    }
+    if (event.key === 's') {
+      event.preventDefault();
+      touch();
+    } else if (event.key === 'Enter' && !$('run').disabled) {
+      event.preventDefault();
+      (event.shiftKey ? $('run-beside') : $('run')).click();
+    }
+  });
+
+  // What there is, as it changes ----------------------------------------------------------------------
+
+  const stamps = new Map();
+  const take = async (next) => {
+    const files = JSON.stringify(next.designs.map((one) => one.name)) !== JSON.stringify(state.designs.map((one) => one.name));
+    state = next;
+    if (files) {
+      showFiles();
+    }
+    showJobs();
+    showRuns();
+    showCurves();
+    const own = state.designs.find((one) => one.name === open.name);
+    const was = stamps.get(open.name);
+    stamps.clear();
+    state.designs.forEach((one) => stamps.set(one.name, one.stamp));
+    if (own === undefined || was === undefined || own.stamp === was || open.busy !== null) {
+      return;
+    }
+    const answer = await call('GET', 'design', { name: open.name }); // written by us or by another program
+    if (answer.status === 200 && answer.json.version !== open.version && open.busy === null) {
+      if (editor.get() === open.saved) {
+        open.version = answer.json.version;
+        open.saved = answer.json.text;
+        editor.set(answer.json.text);
+        tell('read again: another program has changed it');
+        touch();
+      } else {
+        askWhich(answer.json);
+      }
+    }
+  };
+  const begin = async () => {
+    state = (await call('GET', 'state')).json;
+    state.designs.forEach((one) => stamps.set(one.name, one.stamp));
+    const events = new EventSource('events');
+    events.onmessage = (event) => { $('lost').hidden = true; take(JSON.parse(event.data)); };
+    events.onerror = async () => { await wait(500); $('lost').hidden = events.readyState === EventSource.OPEN; };
+    if (window.location.hash.length < 2 && state.open !== '') {
+      window.location.replace(`#${encodeURIComponent(state.open)}`);
+    }
+    await route();
+    call('GET', 'schema').then(({ json }) => { schema = json.schema ?? null; if (open.values.length > 0) { $('form').dataset.keys = ''; showValues(); } });
+  };
+  dea.ready = begin();
+})();
