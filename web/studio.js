@@ -265,7 +265,7 @@
     $('findings').replaceChildren(...findings.map((one) => {
       const button = dea.element('button', { type: 'button' }, `${one.line > 0 ? `${one.line}:${one.column} ` : ''}${one.text}`);
       button.addEventListener('click', () => { if (one.line > 0) { editor.go(one.line - 1, Math.max(0, one.column - 1)); } });
-      return dea.element('li', { class: one.severity }, button);
+      return dea.element('li', { class: `is-${one.severity}` }, button);
     }));
     editor.mark(findings);
   };
@@ -321,12 +321,12 @@
   let soon = 0;
   editor.hear(() => {
     clearTimeout(soon);
-    soon = setTimeout(touch, 30);
+    soon = setTimeout(touch, 15);
   });
 
   // Values: a field for each that the file gives -----------------------------------------------------
 
-  const hidden = /(^dea|\.(name|kind|shape|ply|body|channel|side|edge|within)|\.of\[\d+\]|\.free\[\d+\])$/;
+  const hidden = /(^dea|^compute\.models\[\d+\]|\.(name|kind|shape|ply|body|channel|side|edge|within)|\.of\[\d+\]|\.free\[\d+\])$/;
   const edit = (value, text) => {
     const spot = place(value);
     const line = lineOf(spot.line);
@@ -373,7 +373,7 @@
     return named !== undefined ? `${part.replace(/\[\d+\]/, '')} ${named.text}` : part;
   };
   const showValues = () => {
-    const given = open.values.filter((value) => value.origin === 'given' && !hidden.test(value.key));
+    const given = open.values.filter((value) => value.origin === 'given' && !hidden.test(value.key)).sort((a, b) => a.line - b.line || a.column - b.column);
     const keys = given.map((value) => value.key).join('\n');
     if (keys === $('form').dataset.keys) { // the same fields: what is typed in one stays
       for (const value of given) {
@@ -552,12 +552,13 @@
     select.value = names.includes(was) ? was : '';
   };
   const showRuns = () => {
-    const names = state.runs.map((one) => one.name);
-    const text = JSON.stringify([names, [...chosen], state.runs.map((one) => one.report)]);
+    const runs = state.runs.filter((one) => !one.name.endsWith('.part')); // those are halves of others
+    const going = state.jobs.filter((job) => job.state === 'running' || job.state === 'waiting').map((job) => job.output);
+    const text = JSON.stringify([open.name, going, [...chosen], runs.map((one) => [one.name, one.report, one.state])]);
     if ($('shown').dataset.last !== text) {
       $('shown').dataset.last = text;
       const focus = document.activeElement?.value;
-      $('shown').replaceChildren(...state.runs.map((one) => {
+      $('shown').replaceChildren(...runs.map((one) => {
         const box = dea.element('input', { type: 'checkbox', value: one.name });
         box.checked = chosen.has(one.name);
         box.addEventListener('change', () => {
@@ -567,10 +568,16 @@
           showCurves();
         });
         const row = dea.element('li', {}, dea.element('label', {}, box, one.name));
+        const button = (text, title, act) => {
+          const node = dea.element('button', { type: 'button', title }, text);
+          node.addEventListener('click', act);
+          row.append(node);
+        };
         if (one.report !== '') {
-          const button = dea.element('button', { type: 'button' }, 'Open report');
-          button.addEventListener('click', () => showReport(one.name));
-          row.append(button);
+          button('Open report', `${one.name}/report.html`, () => showReport(one.name));
+        }
+        if (one.state !== '' && one.name.startsWith(stem(open.name)) && !going.includes(one.name)) {
+          button('Go on', 'dea run --resume: from the state that the run has left', () => start({ action: 'run', file: open.name, output: one.name, resume: true }));
         }
         return row;
       }));
@@ -763,7 +770,9 @@
       const { json } = await call('GET', 'picture', { name });
       if (json?.svg !== undefined) {
         shot.innerHTML = json.svg;
-        shot.querySelector('svg').setAttribute('aria-hidden', 'true');
+        const svg = shot.querySelector('svg');
+        svg.setAttribute('aria-hidden', 'true');
+        svg.setAttribute('preserveAspectRatio', 'xMidYMin slice'); // the plan; section and key lie below
       }
     }
   };

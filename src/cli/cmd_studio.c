@@ -1,4 +1,4 @@
-#define _GNU_SOURCE // environ
+#define _GNU_SOURCE // environ, POSIX_SPAWN_SETSID
 #include "base/write_file.h"
 #include "cli/cli.h"
 #include "cli/data_files.h"
@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -35,13 +36,16 @@ static void open_browser(const char *page)
   pid_t process;
   char *const argv[] = {(char *)"xdg-open", (char *)(uintptr_t)page, NULL};
   posix_spawn_file_actions_t actions;
-  if (posix_spawn_file_actions_init(&actions) != 0) {
+  posix_spawnattr_t own; // Ctrl-C here is not for the browser
+  if (posix_spawn_file_actions_init(&actions) != 0 || posix_spawnattr_init(&own) != 0) {
     return;
   }
+  posix_spawnattr_setflags(&own, POSIX_SPAWN_SETSID);
   for (int file = 0; file < 3; file++) { // what a browser says is no output of ours
     posix_spawn_file_actions_addopen(&actions, file, "/dev/null", O_RDWR, 0);
   }
-  (void)posix_spawnp(&process, argv[0], &actions, NULL, argv, environ);
+  (void)posix_spawnp(&process, argv[0], &actions, &own, argv, environ);
+  posix_spawnattr_destroy(&own);
   posix_spawn_file_actions_destroy(&actions);
 }
 
@@ -112,6 +116,7 @@ static int run(struct dea_cli *cli, void *user)
     options.example_count = choose(&list, examples);
     options.examples = examples;
     cli_watch(cli);
+    setenv("NO_COLOR", "1", 1); // what runs say is shown in the page
     status = serve(cli, request, &options);
   }
   const int code = cli_report(cli, folder.failed || examples == NULL ? DEA_E_MEMORY : status);

@@ -127,11 +127,13 @@ static void add_entry(int folder, const char *name, json_t *lists)
       json_array_append_new(json_object_get(lists, "folders"), json_string(name));
       return;
     }
-    char report[DEA_STUDIO_STAMP];
+    char report[DEA_STUDIO_STAMP], kept[DEA_STUDIO_STAMP], state[NAME_MAX_LENGTH + 16];
+    snprintf(state, sizeof state, "%s/3d_state.h5", name);
     dea_studio_stamp(folder, page, report);
-    json_array_append_new(
-        json_object_get(lists, "runs"),
-        json_pack("{s:s, s:s, s:s}", "name", name, "stamp", stamp, "report", report));
+    dea_studio_stamp(folder, state, kept);
+    json_array_append_new(json_object_get(lists, "runs"),
+                          json_pack("{s:s, s:s, s:s, s:s}", "name", name, "stamp", stamp, "report",
+                                    report, "state", kept));
   } else if (S_ISREG(file.st_mode) && (ends_with(name, ".yaml") || ends_with(name, ".yml"))) {
     dea_studio_stamp(folder, name, stamp);
     json_array_append_new(json_object_get(lists, "designs"),

@@ -15,8 +15,8 @@ dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name
 /* What changes when a file is written; "" where there is none. */
 enum { DEA_STUDIO_STAMP = 64 };
 void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP]);
-/* {designs: [{name, stamp}], runs: [{name, stamp, report}], tables: [name], folders: [name]} in the
- * order of their names; NULL when memory is short. */
+/* {designs: [{name, stamp}], runs: [{name, stamp, report, state}], tables: [name], folders: [name]}
+ * in the order of their names; NULL when memory is short. */
 json_t *dea_studio_list(int folder);
 /* [name] of the files in a folder of the folder; NULL: there is none. */
 json_t *dea_studio_list_in(int folder, const char *name);

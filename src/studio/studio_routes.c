@@ -376,6 +376,10 @@ static void get_compare(struct work *w)
 {
   struct dea_studio_line line = {.count = 0};
   dea_studio_line_add(&line, "compare");
+  if (json_array_size(json_object_get(w->request->arguments, "run")) == 0) {
+    give_error(w, 400, "runs are needed");
+    return;
+  }
   if (add_runs(w, json_object_get(w->request->arguments, "run"), argument(w, "measured", 0), &line,
                NULL)) {
     dea_studio_line_add(&line, "--json");
