@@ -6,7 +6,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   set(share ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/${component}${CPACK_PACKAGING_INSTALL_PREFIX}/share)
   file(READ ${CPACK_RESOURCE_FILE_LICENSE} licence)
   file(WRITE ${share}/doc/${package}/copyright "${licence}\nThe module of model 3d loads PETSc and SuiteSparse, parts of which \
-are under the GPL (see /usr/share/common-licenses/GPL-2): with that module, this package may be passed on under its terms only.\n")
+are under the GPL (see /usr/share/common-licenses/GPL-2): with that module, this package may be passed on under its terms only.\n\nThe page of dea studio has \
+CodeMirror in it, (C) Marijn Haverbeke and others, under the MIT licence: its text is in the package libjs-codemirror.\n")
   file(REMOVE ${share}/doc/${package}/LICENSE)
   file(GLOB manuals ${share}/man/man1/*.1)
   string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)

@@ -7,6 +7,7 @@
 #include <jansson.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ struct browser {
   char session[128];
   char trouble[BROWSER_TROUBLE_SIZE]; // errors, messages and requests of pages so far
   int requests;                       // for documents
+  const char *site;                   // of a server that may be asked; NULL: none
 };
 
 static inline void browser_trouble(struct browser *b, const char *what, const json_t *detail)
@@ -44,7 +46,9 @@ static inline void browser_event(struct browser *b, const char *method, const js
   } else if (strcmp(method, "Network.requestWillBeSent") == 0) {
     const char *url = json_string_value(json_object_get(json_object_get(params, "request"), "url"));
     b->requests += url != NULL && strncmp(url, "file:", 5) == 0;
-    if (url == NULL || (strncmp(url, "file:", 5) != 0 && strncmp(url, "data:", 5) != 0)) {
+    const bool site = b->site != NULL && url != NULL && strncmp(url, b->site, strlen(b->site)) == 0;
+    if (!site &&
+        (url == NULL || (strncmp(url, "file:", 5) != 0 && strncmp(url, "data:", 5) != 0))) {
       browser_trouble(b, "request", params);
     }
   } else if (strcmp(method, "Page.javascriptDialogOpening") == 0) {
@@ -160,8 +164,8 @@ static inline void browser_start(struct browser *b, const char *program, const c
   b->from = back[0];
 }
 
-/* A new page that reports what it does, then the file; returns when it is loaded and its scripts
- * are ready. */
+/* A new page that reports what it does, then the file or address; returns when it is loaded and its
+ * scripts are ready. */
 static inline void browser_open(struct browser *b, const char *path)
 {
   b->session[0] = b->trouble[0] = '\0';
@@ -180,7 +184,7 @@ static inline void browser_open(struct browser *b, const char *path)
     browser_do(b, listen[i], NULL);
   }
   char url[800];
-  snprintf(url, sizeof url, "file://%s", path);
+  snprintf(url, sizeof url, "%s%s", path[0] == '/' ? "file://" : "", path);
   browser_do(b, "Page.navigate", json_pack("{s:s}", "url", url));
 }
 
@@ -215,8 +219,8 @@ static inline double browser_number(struct browser *b, const char *expression)
 static inline void browser_ready(struct browser *b)
 {
   for (int i = 0; i < 600; i++) {
-    if (browser_number(b, "location.protocol === 'file:' && document.readyState === 'complete'") ==
-        1) {
+    if (browser_number(b, "location.protocol !== 'about:' && document.readyState === 'complete' && "
+                          "typeof dea === 'object'") == 1) {
       json_decref(browser_value(b, "Promise.resolve(dea.ready).then(() => 1)"));
       return;
     }

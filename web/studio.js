@@ -211,7 +211,7 @@
   // One file: saved as it is typed, checked, drawn ---------------------------------------------------
 
   let state = { designs: [], runs: [], tables: [], folders: [], jobs: [] };
-  const open = { name: '', version: '', saved: '', kind: 'design', busy: null, again: false, asked: false, values: [] };
+  const open = { name: '', version: '', saved: '', stamp: '', kind: 'design', busy: null, again: false, asked: false, values: [] };
 
   const kindOf = (text) => (/^dea_fit:/m.test(text) ? 'fit' : /^dea_explore:/m.test(text)
     ? (/^objectives?:/m.test(text) ? 'optimise' : 'sweep') : /^dea:/m.test(text) ? 'design' : 'other');
@@ -316,6 +316,7 @@
     })();
     await open.busy;
     open.busy = null;
+    look();
     return null;
   };
   let soon = 0;
@@ -349,10 +350,13 @@
     const known = words(path);
     const input = dea.element('input', { type: 'text', value: value.text, 'data-key': value.key, title: describe(path), ...(known.length > 0 ? { list: `words-${value.key}` } : {}) });
     const here = () => open.values.find((one) => one.key === value.key && one.origin === 'given');
-    const take = () => { const now = here(); if (now !== undefined && input.value.trim() !== '') { edit(now, input.value.trim()); } };
-    input.addEventListener('input', async () => { // the place is that of the text as it was checked
-      await open.busy;
-      take();
+    input.addEventListener('input', async () => {
+      const text = input.value.trim();
+      await open.busy; // the place is that of the text as it was checked
+      const now = here();
+      if (now !== undefined && text !== '') {
+        edit(now, text);
+      }
     });
     input.addEventListener('keydown', (event) => {
       const way = { ArrowUp: 1, ArrowDown: -1 }[event.key];
@@ -686,7 +690,7 @@
       window.location.hash = '';
       return;
     }
-    Object.assign(open, { name, version: answer.json.version, saved: answer.json.text, kind: kindOf(answer.json.text), asked: false, values: [] });
+    Object.assign(open, { name, version: answer.json.version, saved: answer.json.text, kind: kindOf(answer.json.text), stamp: '', asked: false, values: [] });
     $('asked').hidden = true;
     $('start').hidden = true;
     $('desk').hidden = false;
@@ -797,7 +801,6 @@
 
   // What there is, as it changes ----------------------------------------------------------------------
 
-  const stamps = new Map();
   const take = async (next) => {
     const files = JSON.stringify(next.designs.map((one) => one.name)) !== JSON.stringify(state.designs.map((one) => one.name));
     state = next;
@@ -807,29 +810,37 @@
     showJobs();
     showRuns();
     showCurves();
+    look();
+  };
+  // Whether the file was written, by us or by another program.
+  const look = async () => {
+    await open.busy;
     const own = state.designs.find((one) => one.name === open.name);
-    const was = stamps.get(open.name);
-    stamps.clear();
-    state.designs.forEach((one) => stamps.set(one.name, one.stamp));
-    if (own === undefined || was === undefined || own.stamp === was || open.busy !== null) {
+    if (own === undefined || own.stamp === open.stamp || open.asked) {
       return;
     }
-    const answer = await call('GET', 'design', { name: open.name }); // written by us or by another program
-    if (answer.status === 200 && answer.json.version !== open.version && open.busy === null) {
-      if (editor.get() === open.saved) {
-        open.version = answer.json.version;
-        open.saved = answer.json.text;
-        editor.set(answer.json.text);
-        tell('read again: another program has changed it');
-        touch();
-      } else {
-        askWhich(answer.json);
-      }
+    const { stamp, name } = own;
+    const { version } = open;
+    const answer = await call('GET', 'design', { name });
+    if (answer.status !== 200 || name !== open.name || open.busy !== null || version !== open.version) {
+      return; // what has saved meanwhile looks again
+    }
+    open.stamp = stamp;
+    if (answer.json.version === open.version) {
+      return;
+    }
+    if (editor.get() === open.saved) {
+      open.version = answer.json.version;
+      open.saved = answer.json.text;
+      editor.set(answer.json.text);
+      tell('read again: another program has changed it');
+      touch();
+    } else {
+      askWhich(answer.json);
     }
   };
   const begin = async () => {
     state = (await call('GET', 'state')).json;
-    state.designs.forEach((one) => stamps.set(one.name, one.stamp));
     const events = new EventSource('events');
     events.onmessage = (event) => { $('lost').hidden = true; take(JSON.parse(event.data)); };
     events.onerror = async () => { await wait(500); $('lost').hidden = events.readyState === EventSource.OPEN; };

@@ -1,12 +1,11 @@
 /* dea studio as a program on the network sees it: what it refuses, and what it answers. */
 // ctest: quick, heavy
-#include "command.h"
+#include "studio_server.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <jansson.h>
 #include <poll.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <sys/socket.h>
@@ -14,8 +13,7 @@
 
 enum { ANSWER_MAX = 1 << 21, SLOW = 20 };
 
-static pid_t server;
-static int server_out;
+static struct studio_server studio;
 static int port;
 static char secret[80]; // with the slashes around it
 static char answer[ANSWER_MAX];
@@ -107,34 +105,8 @@ static void body_text(const char *key, char *out, size_t size)
 
 static void start_server(void)
 {
-  int ends[2];
-  char address[256] = "";
-  assert_int_equal(pipe(ends), 0);
-  server = fork();
-  assert_true(server >= 0);
-  if (server == 0) {
-    dup2(ends[1], STDOUT_FILENO);
-    close(ends[0]);
-    close(ends[1]);
-    unsetenv("XDG_RUNTIME_DIR");
-    setenv("TMPDIR", command_folder, 1);
-    execl(DEA_COMMAND, DEA_COMMAND, "studio", "--no-browser", "--quiet", "room", (char *)NULL);
-    _exit(127);
-  }
-  close(ends[1]);
-  server_out = ends[0];
-  for (size_t used = 0; strchr(address, '\n') == NULL; used++) {
-    assert_int_equal(read(server_out, address + used, 1), 1);
-  }
-  assert_int_equal(sscanf(address, "http://127.0.0.1:%d%79s", &port, secret), 2);
-}
-
-static void stop_server(int number)
-{
-  int state;
-  kill(server, number);
-  assert_int_equal(waitpid(server, &state, 0), server);
-  close(server_out);
+  studio_start(&studio, "room");
+  assert_int_equal(sscanf(studio.address, "http://127.0.0.1:%d%79s", &port, secret), 2);
 }
 
 static const char disc[] = "dea: 1\n"
@@ -170,7 +142,7 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-  stop_server(SIGTERM);
+  studio_stop(&studio, SIGTERM);
   return chdir("/") == 0 ? command_tear_down(state) : -1;
 }
 
@@ -509,7 +481,7 @@ TEST(test_nothing_is_lost)
   command_write("room/cone.yaml", cone);
   add_job("{\"action\":\"run\",\"file\":\"cone.yaml\",\"output\":\"killed.run\"}");
   wait_points("room/killed.run/results.h5");
-  stop_server(SIGKILL);
+  studio_stop(&studio, SIGKILL);
   for (int i = 0; i < 1500 && access("room/killed.run/.running", F_OK) == 0; i++) {
     usleep(20000); // it is told to end, and writes what it has
   }
