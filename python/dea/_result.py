@@ -117,7 +117,12 @@ class Mesh:
 
     def __getitem__(self, name: str) -> Array:
         """Values of a field."""
+        if name not in self.fields:
+            raise KeyError(f"there is no field '{name}'; there are: {', '.join(self.fields)}")
         return self.fields[name].values
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.fields)
 
     def linear(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Cells of order 1 in the order of VTK, elements of a higher order split at their nodes:
@@ -171,8 +176,13 @@ class Result(Mapping):
         out = ffi.new("dea_array **")
         status = lib.dea_result_array(self._context.handle, self._handle.pointer, name.encode(), out)
         if status != lib.DEA_OK:
-            error = self._context.error(status)
-            raise KeyError(str(error)) from None
+            error = str(self._context.error(status))
+            if name in self.curves:
+                first = next(key for key in self if key.startswith(name + "/"))
+                error = f"'{name}' is a curve, whose arrays have names such as '{first}'"
+            elif "did you mean" not in error:
+                error += f"; there are those of: {', '.join(self.curves)}"
+            raise KeyError(error) from None
         return _array(out[0], self._handle)
 
     def __iter__(self) -> Iterator[str]:
@@ -252,16 +262,32 @@ class Result(Mapping):
     def __repr__(self) -> str:
         return f"<dea.Result {self.text('title')!r}: {', '.join(self.curves[:6])}>"
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+    def _headline(self, curve: str) -> str:
+        """The largest displacement at the last point of a curve."""
+        columns = self.table(curve)
+        moves = {k: abs(v[-1]) for k, v in columns.items()
+                 if v.ndim == 1 and v.unit == "m" and np.isfinite(v[-1])}
+        if not moves or "voltage_V" not in columns:
+            return ""
+        key = max(moves, key=lambda k: (k not in ("highest_z_m", "lowest_z_m"), moves[k],
+                                        k.endswith("z_m")))
+        return f"{key} = {columns[key][-1]:.4g} at {columns['voltage_V'][-1]:.4g} V"
+
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{html.escape(c)}</td><td>{len(next(iter(self.table(c).values())))}</td></tr>"
-            for c in self.curves if c.count("/") == 1)
-        try:
-            figure = str(self.figure())
-        except DeaError:
-            figure = ""
+            f"<tr><td>{html.escape(c)}</td><td>{len(next(iter(self.table(c).values())))}</td>"
+            f"<td>{html.escape(self._headline(c))}</td></tr>" for c in self.curves if c.count("/") == 1)
+        figure = ""
+        for name in ("monitors", ""):  # the first there is, where nothing is monitored
+            try:
+                figure = figure or str(self.figure(name))
+            except DeaError:
+                pass
         return (f"<h4>{html.escape(self.text('title'))}</h4><table><tr><th>curve</th><th>points</th>"
-                f"</tr>{rows}</table>{figure}")
+                f"<th>last point</th></tr>{rows}</table>{figure}")
 
 
 def _names(names: Union[str, Sequence[str], None], kept: list) -> tuple[Any, int]:

@@ -95,6 +95,11 @@ class Runs(unittest.TestCase):
         self.assertEqual({len(column) for column in table.values()}, {5})
         with self.assertRaises(KeyError):
             result["lumped/sweep/voltage"]
+        with self.assertRaisesRegex(KeyError, "is a curve, .* 'lumped/sweep/voltage_V'"):
+            result["lumped/sweep"]
+        with self.assertRaisesRegex(KeyError, "there are those of: lumped/path, "):
+            result["something else entirely"]
+        self.assertIn("lumped/sweep/voltage_V", result._ipython_key_completions_())
         with tempfile.TemporaryDirectory() as folder:
             result.save(folder + "/a.h5")
             again = dea.load(folder + "/a.h5")
@@ -104,6 +109,7 @@ class Runs(unittest.TestCase):
                 dea.load(folder + "/none.h5")
         self.assertEqual(result.design().yaml, DISC)
         self.assertIn("<svg", result._repr_html_())
+        self.assertIn("electrode_edge_u_m = 0.0002699 at 4000 V", result._repr_html_())
 
     def test_abilities(self):
         self.assertEqual(set(dea.models()), {"lumped", "axisymmetric", "3d", "reduced"})
