@@ -129,7 +129,7 @@
     }
     return [node, ...['oneOf', 'anyOf', 'allOf'].flatMap((how) => (node[how] ?? []).flatMap(flatten))];
   };
-  const root = () => (/^plies:/m.test(editor.get()) ? schema?.then : schema?.else);
+  const root = () => (open.kind !== 'design' ? undefined : /^plies:/m.test(editor.get()) ? schema?.then : schema?.else);
   const at = (path) => path.reduce((nodes, key) => nodes.flatMap((node) => (key === '[]'
     ? flatten(node.items) : flatten(node.properties?.[key]))), flatten(root()));
   const describe = (path) => at(path).map((node) => node.description).find((text) => text !== undefined) ?? '';
@@ -486,11 +486,10 @@
     }
     $('folder-view').hidden = false;
     $('folder-title').textContent = name;
-    $('files').replaceChildren(...json.map((file) => {
-      const href = address('file', { name: `${name}/${file}` });
-      const link = dea.element('a', { href, target: '_blank', rel: 'noopener', ...(/\.(svg|html|csv|yaml|json|png)$/.test(file) ? {} : { download: file }) }, file);
-      return dea.element('div', {}, ...(/\.(svg|png)$/.test(file) ? [dea.element('img', { src: href, alt: file, loading: 'lazy' })] : []), link);
-    }));
+    const href = (file) => address('file', { name: `${name}/${file}` });
+    const links = json.map((file) => dea.element('li', {}, dea.element('a', { href: href(file), target: '_blank', rel: 'noopener', ...(/\.(svg|html|csv|yaml|json|png)$/.test(file) ? {} : { download: file }) }, file)));
+    const pictures = json.filter((file) => file.endsWith('.svg')).map((file) => dea.element('img', { src: href(file), alt: file, loading: 'lazy' }));
+    $('files').replaceChildren(dea.element('ul', {}, ...links), ...pictures);
   };
   const showReport = (name) => {
     $('folder-view').hidden = false;
