@@ -681,8 +681,22 @@
 
   // Files and the start page --------------------------------------------------------------------------
 
+  // What is typed is saved before another file is shown; false: it cannot be, and the user stays with it.
+  const leave = async () => {
+    clearTimeout(soon);
+    await touch();
+    if (open.name === '' || editor.get() === open.saved || window.confirm(`${open.name} is not saved. Leave it so?`)) {
+      return true;
+    }
+    window.history.replaceState(null, '', `#${encodeURIComponent(open.name)}`);
+    return false;
+  };
+  window.addEventListener('beforeunload', (event) => {
+    if (open.name !== '' && editor.get() !== open.saved) {
+      event.preventDefault();
+    }
+  });
   const openFile = async (name) => {
-    await open.busy;
     const answer = await call('GET', 'design', { name });
     if (answer.status !== 200) {
       tell(answer.json?.error ?? `not there: ${answer.status}`);
@@ -750,7 +764,6 @@
   };
   let gallery = null;
   const showStart = async () => {
-    await open.busy;
     open.name = '';
     document.title = 'dea studio';
     $('start').hidden = false;
@@ -779,9 +792,11 @@
       }
     }
   };
-  const route = () => {
+  const route = async () => {
     const name = decodeURIComponent(window.location.hash.slice(1));
-    return name === '' ? showStart() : openFile(name);
+    if (await leave()) {
+      await (name === '' ? showStart() : openFile(name));
+    }
   };
   window.addEventListener('hashchange', route);
 

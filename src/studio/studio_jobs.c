@@ -52,8 +52,8 @@ void dea_studio_line_show(const struct dea_studio_line *line, struct dea_text *o
 
 // Processes ---------------------------------------------------------------------------------------
 
-/* Starts the command in the folder, in a group of its own; out, err: what it writes to. It is told
- * to end when the thread that calls this does. */
+/* Starts the command in the folder, in a group of its own; out, err: what it writes to. It dies
+ * with the thread that calls this. */
 static pid_t start(const char *program, int folder, const struct dea_studio_line *line, int out,
                    int err)
 {
@@ -64,8 +64,8 @@ static pid_t start(const char *program, int folder, const struct dea_studio_line
   }
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   const pid_t parent = getpid(), pid = nothing >= 0 ? fork() : -1;
-  if (pid == 0) { // only what a process of several threads may call here
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (pid == 0) {                     // only what a process of several threads may call here
+    prctl(PR_SET_PDEATHSIG, SIGKILL); // what a run has kept is whole at any time
     signal(SIGINT, SIG_DFL);
     if (getppid() != parent || setpgid(0, 0) != 0 || fchdir(folder) != 0 ||
         dup2(nothing, STDIN_FILENO) < 0 || dup2(out, STDOUT_FILENO) < 0 ||

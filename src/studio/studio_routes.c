@@ -300,7 +300,9 @@ static char *scratch_name(struct work *w, const char *ending)
 static void check(struct work *w, const char *design, const char *shown)
 {
   struct dea_studio_line line = {.count = 0};
-  char *drawing = scratch_name(w, "svg"), *bytes = NULL, command[700];
+  struct dea_studio_line by_hand = {.count = 0};
+  struct dea_text command = {.ctx = w->ctx};
+  char *drawing = scratch_name(w, "svg"), *bytes = NULL, name[280];
   size_t length;
   if (drawing == NULL) {
     give_failure(w);
@@ -319,9 +321,14 @@ static void check(struct work *w, const char *design, const char *shown)
   }
   unlink(drawing);
   dea_free(w->ctx, drawing);
-  snprintf(command, sizeof command, "dea check %s --svg %.*s.svg", shown, (int)strcspn(shown, "."),
-           shown);
-  json_object_set_new(json, "command", json_string(command));
+  snprintf(name, sizeof name, "%.*s.svg", (int)strcspn(shown, "."), shown);
+  dea_studio_line_add(&by_hand, "check");
+  add_file(&by_hand, shown);
+  dea_studio_line_add(&by_hand, "--svg");
+  add_file(&by_hand, name);
+  dea_studio_line_show(&by_hand, &command);
+  json_object_set_new(json, "command", json_string(dea_text_get(&command)));
+  dea_text_free(&command);
   give_json(w, 200, json);
 }
 

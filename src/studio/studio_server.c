@@ -104,6 +104,7 @@ static void send_head(struct mg_connection *connection, int status, const char *
             "HTTP/1.1 %d %s\r\nContent-Type: %s\r\nContent-Security-Policy: %s\r\n"
             "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\n"
             "Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n"
+            "Cross-Origin-Opener-Policy: same-origin\r\n"
             "Connection: close\r\n",
             status, mg_get_response_code_text(connection, status), type, policy);
   if (length >= 0) {

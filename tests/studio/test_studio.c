@@ -415,6 +415,27 @@ TEST(test_tells_events)
   assert_string_equal(wait_end(id), "done");
 }
 
+TEST(test_twenty_clients)
+{
+  enum { CLIENTS = 20 };
+  int listeners[CLIENTS];
+  char text[256];
+  const int length = snprintf(text, sizeof text,
+                              "GET %sevents HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n", secret, port);
+  for (size_t i = 0; i < CLIENTS; i++) {
+    listeners[i] = connect_to();
+    say(listeners[i], text, (size_t)length);
+  }
+  for (size_t i = 0; i < CLIENTS; i++) { // each is told what there is
+    assert_int_equal(recv(listeners[i], text, 15, MSG_WAITALL), 15);
+    assert_memory_equal(text, "HTTP/1.1 200 OK", 15);
+  }
+  assert_int_equal(ask("GET", "state", NULL), 200); // and there is room for questions
+  for (size_t i = 0; i < CLIENTS; i++) {
+    close(listeners[i]);
+  }
+}
+
 static const char cone[] =
     "dea: 1\n"
     "title: cone\n"
@@ -432,7 +453,7 @@ static const char cone[] =
     "monitors: [{name: hub, body: hub}]\n"
     "compute: {models: [3d], voltage: {to: 5 kV, step: 0.002 kV}, solid: {film: membrane}}\n";
 
-/* Waits until the run in a folder has kept points. */
+/* Waits until a run has kept a file. */
 static void wait_points(const char *results)
 {
   for (int i = 0; i < 1500 && access(results, F_OK) != 0; i++) {
@@ -473,19 +494,17 @@ TEST(test_slow_clients_are_left)
   }
 }
 
-/* The server dies: its run ends and has kept its points, which the next server shows, and goes on.
+/* The server dies: its run dies with it and has kept its points, which the next server shows, and
+ * goes on.
  */
 TEST(test_nothing_is_lost)
 {
   char now[16], stop[32];
   command_write("room/cone.yaml", cone);
   add_job("{\"action\":\"run\",\"file\":\"cone.yaml\",\"output\":\"killed.run\"}");
-  wait_points("room/killed.run/results.h5");
+  wait_points("room/killed.run/3d_state.h5");
   studio_stop(&studio, SIGKILL);
-  for (int i = 0; i < 1500 && access("room/killed.run/.running", F_OK) == 0; i++) {
-    usleep(20000); // it is told to end, and writes what it has
-  }
-  assert_int_equal(access("room/killed.run/summary.json", F_OK), 0);
+  usleep(200000); // until it is gone
   start_server();
   assert_int_equal(ask("GET", "curves?run=killed.run", NULL), 200);
   assert_contains(answer, "<figure");
