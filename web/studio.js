@@ -540,6 +540,7 @@
         command(job.command);
         if (job.state !== 'waiting' && job.state !== 'running') {
           waiting.delete(job.id);
+          tell(`${job.output}: ${job.state}`);
           if (job.action === 'report' && job.state === 'done') {
             showReport(job.output);
           } else if (job.action !== 'run' && job.state === 'done') {
