@@ -570,6 +570,7 @@
           $('shown').dataset.many = chosen.size > 1 ? '1' : '';
           showRuns();
           showCurves();
+          showFilm();
         });
         const row = dea.element('li', {}, dea.element('label', {}, box, one.name));
         const button = (text, title, act) => {
@@ -632,6 +633,21 @@
     await showMisfit(names);
     showCurves(); // what has come meanwhile
   };
+  // The film of the first run, while its panel is open; of one that goes on not more often than can be looked at.
+  let filmOf = '';
+  let filmAt = 0;
+  const showFilm = () => {
+    const [run] = shown();
+    const text = run !== undefined ? address('film', { run: run.name, stamp: run.stamp }) : '';
+    const going = state.jobs.some((job) => job.state === 'running' && run?.name.startsWith(job.output));
+    $('space').hidden = run === undefined;
+    if ($('space').open && text !== '' && text !== filmOf && !(going && performance.now() - filmAt < 4000)) {
+      filmOf = text;
+      filmAt = performance.now();
+      $('space').querySelector('iframe').src = text;
+    }
+  };
+  $('space').addEventListener('toggle', showFilm);
   const showMisfit = async (names) => {
     if (names.measured === undefined && names.run.length < 2) {
       $('misfit').replaceChildren();
@@ -733,6 +749,7 @@
     showFiles();
     showRuns();
     showCurves();
+    showFilm();
     if (design) {
       await touch();
     } else if (state.folders.includes(`${stem(name)}.${open.kind}`)) {
@@ -825,6 +842,7 @@
     showJobs();
     showRuns();
     showCurves();
+    showFilm();
     look();
   };
   // Whether the file was written, by us or by another program.

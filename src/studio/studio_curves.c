@@ -1,5 +1,6 @@
 #include "studio/studio_curves.h"
 
+#include "base/assets.h"
 #include "base/file.h"
 #include "base/write_file.h"
 #include "compare/measured.h"
@@ -20,9 +21,25 @@ static dea_status add_sections(struct dea_report *report)
   return report->text.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
+/* The film of one run in space, as a page of its own with the report's script. */
+static dea_status add_film(struct dea_report *report)
+{
+  dea_text_add(&report->text,
+               "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+               "<title>Film</title><style>%s</style></head><body><nav hidden><ul></ul></nav><main>",
+               dea_asset_style);
+  const size_t before = report->text.length;
+  DEA_TRY(report->ctx, dea_section_membrane(report, &report->runs[0]));
+  if (report->text.length == before) {
+    dea_text_add(&report->text, "<p>This run has no film in space.</p>");
+  }
+  dea_text_add(&report->text, "</main><script>%s</script></body></html>\n", dea_asset_script);
+  return report->text.failed ? DEA_E_MEMORY : DEA_OK;
+}
+
 /* Runs that are read: reads what is beside them, and draws. */
 static dea_status draw(struct dea_context *ctx, const struct dea_report_run *runs, size_t count,
-                       const char *measured, struct dea_text *out)
+                       const char *measured, bool film, struct dea_text *out)
 {
   const struct dea_report_options options = {.measurement = measured};
   struct dea_report report = {
@@ -36,7 +53,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_report_run *run
   }
   if (status == DEA_OK) {
     void *before = dea_c_locale_enter();
-    status = add_sections(&report);
+    status = film ? add_film(&report) : add_sections(&report);
     dea_c_locale_leave(before);
   }
   *out = report.text;
@@ -45,7 +62,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_report_run *run
 }
 
 dea_status dea_studio_curves(struct dea_context *ctx, const char *const paths[], size_t count,
-                             const char *measured, struct dea_text *out)
+                             const char *measured, bool film, struct dea_text *out)
 {
   struct dea_report_run runs[DEA_STUDIO_RUNS_MAX] = {0};
   dea_status status = DEA_OK;
@@ -61,7 +78,7 @@ dea_status dea_studio_curves(struct dea_context *ctx, const char *const paths[],
     }
   }
   if (status == DEA_OK) {
-    status = draw(ctx, runs, count, measured, out);
+    status = draw(ctx, runs, count, measured, film, out);
   }
   for (size_t i = 0; i < read; i++) {
     dea_run_destroy(ctx, runs[i].run);

@@ -394,8 +394,8 @@ static void get_compare(struct work *w)
   }
 }
 
-/* Figures of runs as HTML. */
-static void get_curves(struct work *w)
+/* Figures of runs as HTML, or the film of one. */
+static void show_runs(struct work *w, bool film)
 {
   const json_t *runs = json_object_get(w->request->arguments, "run");
   const char *measured = argument(w, "measured", 0);
@@ -418,7 +418,7 @@ static void get_curves(struct work *w)
   struct dea_text out = {.ctx = w->ctx};
   pthread_mutex_lock(&w->room->results_lock);
   dea_status status =
-      whole ? dea_studio_curves(w->ctx, (const char *const *)paths, asked, paths[asked], &out)
+      whole ? dea_studio_curves(w->ctx, (const char *const *)paths, asked, paths[asked], film, &out)
             : DEA_E_MEMORY;
   pthread_mutex_unlock(&w->room->results_lock);
   if (status == DEA_OK && !out.failed) {
@@ -430,6 +430,17 @@ static void get_curves(struct work *w)
   for (size_t i = 0; i <= asked; i++) {
     dea_free(w->ctx, paths[i]);
   }
+}
+
+static void get_curves(struct work *w)
+{
+  show_runs(w, false);
+}
+
+static void get_film(struct work *w)
+{
+  show_runs(w, true);
+  w->reply->foreign = true; // a page of its own
 }
 
 // Examples ----------------------------------------------------------------------------------------
@@ -684,6 +695,7 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
                 {"GET", "schema", get_schema},
                 {"GET", "compare", get_compare},
                 {"GET", "curves", get_curves},
+                {"GET", "film", get_film},
                 {"GET", "examples", get_examples},
                 {"GET", "picture", get_picture},
                 {"GET", "file", get_file},

@@ -213,8 +213,9 @@ TEST(test_no_file_outside)
                                       "%2Fetc%2Fpasswd",
                                       "..%5Coutside.yaml",
                                       "%ff%fe"};
-  static const char *const routes[] = {"design?name=", "file?name=",   "list?name=",
-                                       "curves?run=",  "compare?run=", "curves?run=x&measured="};
+  static const char *const routes[] = {
+      "design?name=",           "file?name=", "list?name=", "curves?run=", "compare?run=",
+      "curves?run=x&measured=", "film?run="};
   char path[256];
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     for (size_t k = 0; k < sizeof routes / sizeof routes[0]; k++) {
@@ -379,6 +380,8 @@ TEST(test_runs_and_compares)
   assert_contains(answer, "electrode_stretch");
   assert_contains(answer, "dea compare a.run mine.csv --json");
   assert_int_equal(ask("GET", "curves?run=a.run&run=a.run", NULL), 200);
+  assert_int_equal(ask("GET", "film?run=a.run", NULL), 200);
+  assert_contains(answer, "no film in space"); // a model of a point
   assert_string_equal(wait_end(add_job("{\"action\":\"report\",\"runs\":[\"a.run\"]}")), "done");
   assert_int_equal(ask("GET", "file?name=a.run/report.html", NULL), 200);
   assert_contains(answer, "Content-Security-Policy: sandbox allow-scripts;"); // not for the user
@@ -474,6 +477,8 @@ TEST(test_stops_a_run)
   assert_string_equal(wait_job(id, "waiting", "", now), "running");
   assert_int_equal(ask("GET", "curves?run=cone.run", NULL), 200); // while it goes on
   assert_contains(answer, "<figure");
+  assert_int_equal(ask("GET", "film?run=cone.run", NULL), 200);
+  assert_contains(answer, "class=\"surface\"");
   char stop[32];
   snprintf(stop, sizeof stop, "{\"id\":%d}", id);
   assert_int_equal(ask("POST", "stop", stop), 200);

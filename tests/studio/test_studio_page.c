@@ -142,6 +142,8 @@ TEST(test_runs_beside_each_other)
 
 TEST(test_a_report_opens)
 {
+  act("document.querySelector('#space').open = true");
+  until("document.querySelector('#space iframe').src.includes('film?run=cone-loading.run')");
   act("document.querySelector('#report').click()");
   until("document.querySelector('#files iframe') !== null");
   assert_quiet();
