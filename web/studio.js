@@ -393,10 +393,13 @@
         groups.set(part, [...(groups.get(part) ?? []), field(value)]);
       }
       const focus = document.activeElement?.dataset?.key;
+      const typed = document.activeElement?.value;
       $('form').replaceChildren(...[...groups].map(([part, fields]) => dea.element('fieldset', {}, dea.element('legend', {}, part === '' ? 'design' : partName(part)), ...fields)));
       $('form').dataset.keys = keys;
-      if (focus !== undefined) {
-        $('form').querySelector(`[data-key="${CSS.escape(focus)}"]`)?.focus();
+      const again = focus !== undefined ? $('form').querySelector(`[data-key="${CSS.escape(focus)}"]`) : null;
+      if (again !== null) {
+        again.value = typed;
+        again.focus();
       }
     }
     const absent = open.values.filter((value) => value.origin === 'default' || value.origin === 'absent');
