@@ -359,7 +359,7 @@ strip's length) was changed after a first run, and no value moved into its band 
 
 **In the band: {sum(p['inside'] for p in found)} of {len(found)} values, of {len(DEVICES)} tests from four sources. Of the bands within a factor of two: {sum(p['inside'] for p in telling)} of {len(telling)}.
 With the three devices of other pages: {sum(p['inside'] for p in found) + sum(low <= m <= high for _, _, m, low, high, _ in others)} of {len(found) + len(others)} values, of {len(DEVICES) + len({o[0] for o in others})} devices.**
-Two of the measured values, the frequency ratios, are known as intervals only; both intervals are in their bands.
+Two of the measured values, the frequency ratios, are known as intervals only.
 [devices.csv](devices.csv) has all numbers.
 
 ![Computed over measured, with bands](../figures/devices.svg)
@@ -410,8 +410,7 @@ READING = """## What these say
   measurement is within 2.3 % of that formula.
 * **The expanding circle is out**, by a factor of two at the largest pre-stretch of the range and of five at the nominal one; the ratio of the two values,
   2.2, is that of the nominal film (2.1). Electrodes as stiff in the plane as the film of 20 um could do that, or a field over another thickness.
-* **The strip's capacitance grows less than its stretch**, by 3 to 7 %, which a film of constant permittivity cannot do. The catalogue does not know how the
-  permittivity of this tape changes with stretch. Its value at rest would need a permittivity of 6.7 at the size assumed.
+* **The strip's capacitance grows less than its stretch**, by 3 to 7 %, which a film of constant permittivity cannot do. Its value at rest would need a permittivity of 6.7 at the size assumed.
 * **Acrylic discs wrinkle within the band**, at 5.4 kV and 2.3 times the area (nominal 4.6 kV and 2.9), with an assumed pre-stretch. With carbon black the disc
   agrees up to 3 kV and grows ever more slowly above: stiffness, resistance, or another film.
 
