@@ -241,7 +241,7 @@ table). Over the first line in brackets.
 {row("dea, two ranks", two, ours)}
 
 * The two programs' heights differ by {far:.1e} of themselves (tolerance {TOLERANCE:g}), those on one rank and on two by {apart:.1e}.
-  Both are means of the film's two faces: in a film that bends its middle is p h^2/(8 T) = 3.2 nm away from that.
+  Both are means of the film's two faces.
 * dolfinx: {theirs["factors"]} factorisations and solutions in {theirs["factor_s"]:.0f} s, as many assemblies in {theirs["assemble_s"]:.0f} s.
 * Two ranks: processor time and memory are sums of both.
 

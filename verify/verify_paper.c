@@ -238,15 +238,7 @@ static double power(const double *force_N)
 /* What a force that is linear in the voltage may be; forces at 0, 3 and 6 kV. */
 static void reading(const double *four_N, const double *eight_N)
 {
-  const double stiffer = 281.2 / 178.4, weaker = 1.5 / 2.8, change_N = four_N[0] - four_N[2],
-               change8_N = eight_N[0] - eight_N[2];
-  printf(
-      "\nThe group's other constants, 281.2 kPa for the first of Yeoh's law and a permittivity of "
-      "1.5 (the article with the rest of the law was not at\nhand), make the film %.2f times as "
-      "stiff and the field's stress %.2f times as large. In proportion a tip at 2 mm feels %.0f mN "
-      "before any\nvoltage, and 6 kV change %.0f and %.0f mN: further from the paper's number.\n",
-      stiffer, weaker, 1e3 * stiffer * four_N[0], 1e3 * weaker * change_N,
-      1e3 * weaker * change8_N);
+  const double change_N = four_N[0] - four_N[2], change8_N = eight_N[0] - eight_N[2];
   printf(
       "\n**A hypothesis that fits**: a signal proportional to the supply's command, coupled into "
       "the cell. Of the force that the paper gives, 73 %% of the\ncell's range (25 g, 0.245 N), "
