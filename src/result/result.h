@@ -62,10 +62,10 @@ struct dea_provenance {
   char started[32];              // ISO 8601, UTC
   double wall_s;
   struct dea_solver_counters solver; // of this process; zeros: model 3d was not solved
-  char input_sha256[65]; // of the design file's bytes
-  char *input;           // the design file itself; owned
-  char *overrides;       // "key=value" a line; owned, may be NULL
-  char *command;         // command line; owned, may be NULL
+  char input_sha256[65];             // of the design file's bytes
+  char *input;                       // the design file itself; owned
+  char *overrides;                   // "key=value" a line; owned, may be NULL
+  char *command;                     // command line; owned, may be NULL
 };
 
 struct dea_result {
