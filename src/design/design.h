@@ -96,6 +96,7 @@ struct dea_design {
     struct dea_inplane_length radius; // given as radius or diameter; length.si is the radius
     struct dea_label material;
     struct dea_quantity thickness_m; // of each; 0 = no stiffness
+    struct dea_quantity sheet_resistance_ohm;
   } electrodes;
 
   bool has_fibres;

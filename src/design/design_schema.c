@@ -53,6 +53,10 @@ static const struct dea_field electrode_fields[] = {
     DEA_NUMBER_ROW("thickness", AT(electrodes.thickness_m), "m", "10 um",
                    "thickness of each electrode; 0: without stiffness", .max = 0.01,
                    .default_text = "0 um"),
+    DEA_NUMBER_ROW("sheet_resistance", AT(electrodes.sheet_resistance_ohm), "ohm", "50 kohm",
+                   "resistance of a square of each electrode, which is fed all along its edge: it "
+                   "charges in time (model 3d)",
+                   .max = 1e15, .default_text = "0 ohm"),
 };
 
 static const struct dea_field voltage_fields[] = {

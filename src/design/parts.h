@@ -75,6 +75,7 @@ struct dea_parts_electrode {
   struct dea_label name, ply, shape, channel;
   struct dea_choice side;       // enum dea_parts_side
   struct dea_quantity lead_rad; // absent: no lead
+  struct dea_quantity sheet_resistance_ohm;
 };
 
 struct dea_parts_channel {

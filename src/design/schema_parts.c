@@ -92,6 +92,10 @@ static const struct dea_field electrode_fields[] = {
            "direction of a lead from its middle to a pad on the frame, counter-clockwise from x, "
            "which `dea fab` makes and no model sees",
            "45 degree", .min = -7, .max = 7, .absent_text = "none"),
+    NUMBER(dea_parts_electrode, sheet_resistance_ohm, "sheet_resistance", "ohm",
+           "resistance of a square of it: in time it charges from where it meets an electrode of "
+           "the same face and channel without one, else from all along its outer edge",
+           "50 kohm", .max = 1e15, .default_text = "0 ohm"),
 };
 
 static const struct dea_field channel_fields[] = {

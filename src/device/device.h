@@ -28,6 +28,7 @@ struct dea_device {
   double frame_radius_m;               // L_r of paper eq 20
   double electrode_radius_m;           // r_a of paper eq 18
   double electrode_thickness_m;        // 0: without stiffness
+  double sheet_resistance_ohm[2];      // of the lower and the upper electrode; 0: ideal
   double coverage;                     // R of paper eq 17
 
   int fibre_count; // 0: none; the rest then is 0

@@ -187,10 +187,19 @@ static void add_plies(const struct dea_device *d, bool membrane, struct dea_layo
   if (d->fibre_count > 0) {
     add_fibre_plies(d, membrane, l);
   }
-  l->electrodes[0] = (struct dea_layout_electrode){
-      .name = "ground", .region = ELECTRODE, .ply = film, .channel = 0};
-  l->electrodes[1] = (struct dea_layout_electrode){
-      .name = "drive", .region = ELECTRODE, .ply = film, .top = true, .channel = 1};
+  l->electrodes[0] =
+      (struct dea_layout_electrode){.name = "ground",
+                                    .region = ELECTRODE,
+                                    .ply = film,
+                                    .channel = 0,
+                                    .sheet_resistance_ohm = d->sheet_resistance_ohm[0]};
+  l->electrodes[1] =
+      (struct dea_layout_electrode){.name = "drive",
+                                    .region = ELECTRODE,
+                                    .ply = film,
+                                    .top = true,
+                                    .channel = 1,
+                                    .sheet_resistance_ohm = d->sheet_resistance_ohm[1]};
   l->electrode_count = 2;
   l->supports[0] = (struct dea_layout_support){.region = FILM,
                                                .edge = true,

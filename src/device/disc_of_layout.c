@@ -119,6 +119,9 @@ static dea_status take_film(struct dea_context *ctx, const struct dea_layout *l,
   out->pre_stretch = ply->pre_stretch[0];
   out->frame_radius_m = frame.radius_m;
   out->electrode_radius_m = electrode->radius_m;
+  for (size_t i = 0; i < 2; i++) {
+    out->sheet_resistance_ohm[l->electrodes[i].top ? 1 : 0] = l->electrodes[i].sheet_resistance_ohm;
+  }
   out->coverage = electrode->radius_m / frame.radius_m;
   return DEA_OK;
 }

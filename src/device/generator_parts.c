@@ -230,6 +230,7 @@ static dea_status add_electrodes(struct maker *m)
     struct dea_layout_electrode *to = &l->electrodes[i];
     to->name = keep(m, from->name.origin == DEA_ABSENT ? from->channel.text : from->name.text);
     to->top = from->side.value == DEA_SIDE_TOP;
+    to->sheet_resistance_ohm = from->sheet_resistance_ohm.si;
     to->location = from->shape.location;
     to->lead = from->lead_rad.origin != DEA_ABSENT;
     to->lead_rad = to->lead ? from->lead_rad.si : 0;

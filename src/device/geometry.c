@@ -69,6 +69,8 @@ void dea_geometry_fill(const struct dea_design *design, struct dea_device *devic
   device->frame_radius_m = design->frame.radius_m.si;
   device->electrode_radius_m = dea_length_stretched_m(&design->electrodes.radius, l_pre);
   device->electrode_thickness_m = design->electrodes.thickness_m.si;
+  device->sheet_resistance_ohm[0] = device->sheet_resistance_ohm[1] =
+      design->electrodes.sheet_resistance_ohm.si;
   double ratio = device->electrode_radius_m / device->frame_radius_m;
   device->coverage = design->compute.coverage.origin != DEA_ABSENT ? design->compute.coverage.si
                      : design->compute.coverage_by.value == DEA_COVERAGE_AREA ? ratio * ratio

@@ -148,7 +148,8 @@ static void label_all(const struct dea_layout *layout, struct labelled *out)
     add(out, layout, layout->plies[i].region, first++);
   }
   LIKE_ONES(e, layout->electrode_count,
-            e[j].ply == e[i].ply && e[j].top == e[i].top && e[j].channel == e[i].channel);
+            e[j].ply == e[i].ply && e[j].top == e[i].top && e[j].channel == e[i].channel &&
+                e[j].sheet_resistance_ohm == e[i].sheet_resistance_ohm);
   LIKE_ONES(s, layout->support_count,
             s[j].edge == s[i].edge && s[j].components == s[i].components &&
                 s[j].hinged == s[i].hinged &&

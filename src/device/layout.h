@@ -60,6 +60,8 @@ struct dea_layout_electrode {
   size_t channel;  // 0: ground
   bool lead;       // it has a lead to a pad on the frame, which no model sees
   double lead_rad; // direction of that from the electrode's centroid
+  double
+      sheet_resistance_ohm; // of a square of it, deformed or not; 0: ideal, also a lead of others
   struct dea_location location;
 };
 

@@ -66,6 +66,8 @@
     "energy of motion that was not resolved: damped by the steps with inertia, lost in leaps "     \
     "without")                                                                                     \
   X(supply_work_J, "J", "uJ", 1e6, "supply work", "work of the supply since the start")            \
+  X(lowest_voltage_V, "V", "kV", 1e-3, "lowest V",                                                 \
+    "voltage between electrodes of a sheet resistance where it is lowest")                         \
   X(mode, "1", "1", 1.0, "mode", "number of the mode, from the lowest on")                         \
   X(frequency_Hz, "Hz", "Hz", 1.0, "frequency",                                                    \
     "of the mode, in vacuo (negative: unstable, growing at this rate over 2 pi), or of the "       \

@@ -243,6 +243,11 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
     return dea_fail(ctx, DEA_E_DESIGN, "inertia needs the density of '%s', which is unknown",
                     model->device.film.name);
   }
+  if (fmax(model->device.sheet_resistance_ohm[0], model->device.sheet_resistance_ohm[1]) > 0) {
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
+                                 "model lumped has ideal electrodes: only model 3d knows their "
+                                 "sheet_resistance"));
+  }
   dea_status status = dea_lumped_begin(motion, last.electrode_stretch, last.voltage_V);
   status = status == DEA_OK ? moment_point(model, &motion->now, out) : status;
   return status == DEA_OK ? status

@@ -339,7 +339,8 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   return status;
 }
 
-static bool is_within(const struct dea_layout_mesh *mesh, size_t plane_region, size_t region)
+bool dea_layout_mesh_is_within(const struct dea_layout_mesh *mesh, size_t plane_region,
+                               size_t region)
 {
   size_t group = mesh->group[region];
   return group != DEA_LAYOUT_NONE &&
@@ -479,9 +480,10 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_model_settin
 
 // Electrodes -------------------------------------------------------------------------------------
 
-/* Channel of the electrode on a face of a ply, that of the ply at the other side included; -1:
- * there is none. */
-static int channel_at(const struct dea_layout_mesh *mesh, size_t plane_region, size_t ply, bool top)
+/* The electrode on a face of a ply, that of the ply at the other side included; -1: there is none.
+ */
+static int electrode_at(const struct dea_layout_mesh *mesh, size_t plane_region, size_t ply,
+                        bool top)
 {
   const struct dea_layout *l = mesh->layout;
   size_t other = DEA_LAYOUT_NONE;
@@ -493,13 +495,14 @@ static int channel_at(const struct dea_layout_mesh *mesh, size_t plane_region, s
     other = there && ply_below(mesh, plane_region, q) == ply ? q : other;
   }
   if (!top && other != DEA_LAYOUT_NONE && dea_ply_layers(&l->plies[other]) % 2 == 0) {
-    return channel_at(mesh, plane_region, other, false); // by turns: the uppermost is the lowest's
+    return electrode_at(mesh, plane_region, other,
+                        false); // by turns: the uppermost is the lowest's
   }
   for (size_t i = 0; i < l->electrode_count; i++) {
     const struct dea_layout_electrode *e = &l->electrodes[i];
     bool here = (e->ply == ply && e->top == top) || (e->ply == other && e->top != top);
-    if (here && is_within(mesh, plane_region, e->region)) {
-      return (int)e->channel;
+    if (here && dea_layout_mesh_is_within(mesh, plane_region, e->region)) {
+      return (int)i;
     }
   }
   return -1;
@@ -511,13 +514,15 @@ static void find_fields(struct dea_layout_mesh *mesh)
   size_t plies = mesh->layout->ply_count;
   for (size_t i = 0; i < mesh->plane->region_count * plies; i++) {
     struct dea_layout_field *field = &mesh->field[i];
-    *field = (struct dea_layout_field){-1, -1};
+    *field = (struct dea_layout_field){-1, -1, -1, -1};
     if (mesh->present[i]) {
-      int top = channel_at(mesh, i / plies, i % plies, true);
+      const struct dea_layout_electrode *e = mesh->layout->electrodes;
+      int top = electrode_at(mesh, i / plies, i % plies, true);
       // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a mesh has plies
-      int bottom = channel_at(mesh, i / plies, i % plies, false);
-      if (top >= 0 && bottom >= 0 && top != bottom) {
-        *field = (struct dea_layout_field){top, bottom};
+      int bottom = electrode_at(mesh, i / plies, i % plies, false);
+      if (top >= 0 && bottom >= 0 && e[top].channel != e[bottom].channel) {
+        *field =
+            (struct dea_layout_field){(int)e[top].channel, (int)e[bottom].channel, top, bottom};
         mesh->dielectric[i % plies] = true;
       }
     }
@@ -538,7 +543,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_model_settings 
   dea_layout_box_m(l, box);
   mesh->near_m = near_share * hypot(box[2] - box[0], box[3] - box[1]);
   for (size_t i = 0; i < count; i++) {
-    mesh->present[i] = is_within(mesh, i / plies, l->plies[i % plies].region);
+    mesh->present[i] = dea_layout_mesh_is_within(mesh, i / plies, l->plies[i % plies].region);
   }
   find_fields(mesh);
   for (size_t i = 0; i < plies; i++) {
@@ -627,7 +632,7 @@ void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh)
 
 bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, size_t region)
 {
-  return is_within(mesh, (size_t)mesh->grid->region[element], region);
+  return dea_layout_mesh_is_within(mesh, (size_t)mesh->grid->region[element], region);
 }
 
 bool dea_layout_mesh_marks_copy(const struct dea_layout_mesh *mesh, size_t region, bool edge,
@@ -661,7 +666,8 @@ size_t dea_layout_mesh_mark(const struct dea_layout_mesh *mesh, size_t region, b
   double near_m = mesh->near_m;
   memset(marked, 0, plane->node_count * sizeof *marked);
   for (size_t q = 0; q < plane->quad_count; q++) {
-    for (size_t n = 0; n < per && (edge || is_within(mesh, (size_t)plane->region[q], region));
+    for (size_t n = 0;
+         n < per && (edge || dea_layout_mesh_is_within(mesh, (size_t)plane->region[q], region));
          n++) {
       marked[plane->quads[q * per + n]] = true;
     }

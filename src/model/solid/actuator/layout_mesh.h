@@ -7,9 +7,10 @@
 #include "model/solid/mesh/fibre_disc.h"
 #include "model/solid/mesh/grid.h"
 
-/* Channels of an element at its top and bottom; top -1: it is not between electrodes. */
+/* Channels of an element at its top and bottom, top -1: it is not between electrodes; and these
+ * electrodes. */
 struct dea_layout_field {
-  int top, bottom;
+  int top, bottom, top_electrode, bottom_electrode;
 };
 
 struct dea_layout_mesh {
@@ -62,7 +63,9 @@ dea_status dea_layout_mesh_create_like(struct dea_context *ctx, const struct dea
 void dea_layout_mesh_used(const struct dea_layout *layout, bool *used);
 void dea_layout_mesh_free(struct dea_context *ctx, struct dea_layout_mesh *mesh);
 
-/* Whether an element lies in a region of the layout. */
+/* Whether a region of the plane mesh, or an element, lies in a region of the layout. */
+bool dea_layout_mesh_is_within(const struct dea_layout_mesh *mesh, size_t plane_region,
+                               size_t region);
 bool dea_layout_mesh_within(const struct dea_layout_mesh *mesh, size_t element, size_t region);
 /* Marks the nodes of the plane mesh that lie in a region, its boundary included, or on its boundary
  * only; `within`: and in this region too (DEA_LAYOUT_NONE: anywhere). Returns their number.

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { VOLTAGES_MAX = 12 };
+enum { VOLTAGES_MAX = 12, SHEET_MAX = 30 };
 static const double voltage_close = 1e-8;   // of the largest voltage
 static const double smallest_motion = 1e-2; // of the thickness: errors are not relative to less
 
@@ -21,10 +21,10 @@ struct branch_jump {
   double step_s, lost_J;
 };
 
-/* Charges of all channels of the grid, and what leaks between them. */
+/* Of all channels of the grid. */
 struct network {
-  struct dea_solid_charged charged;
-  double *conductance_S; // [count][count]
+  double *voltage_V, *charge_C; // [channels]
+  double *leak_A;               // [channels], and behind them the power that this takes
 };
 
 struct dea_circuit_step {
@@ -35,6 +35,7 @@ struct dea_circuit_step {
   bool *own_source;                     // [channels] of options
   bool own;                             // any channel has a voltage of its own
   struct dea_driven_solid driven;
+  struct dea_sheet *sheet; // NULL: all electrodes are at the voltage of their channel
   struct dea_solid_time *time;
   struct dea_time_options options;
   bool no_charge;       // of films whose charge cannot be held: its voltage is looked for
@@ -113,11 +114,9 @@ static dea_status allocate_network(struct dea_circuit_step *d)
   size_t count = channel_count(d);
   struct network *const networks[] = {&d->network, &d->network_next};
   for (size_t i = 0; i < 2; i++) {
-    struct dea_solid_charged *charged = &networks[i]->charged;
-    charged->count = count;
-    charged->voltage_V = dea_arena_alloc(&d->memory, count, sizeof(double));
-    charged->capacitance_F = dea_arena_alloc(&d->memory, count * count, sizeof(double));
-    networks[i]->conductance_S = dea_arena_alloc(&d->memory, count * count, sizeof(double));
+    networks[i]->voltage_V = dea_arena_alloc(&d->memory, count, sizeof(double));
+    networks[i]->charge_C = dea_arena_alloc(&d->memory, count, sizeof(double));
+    networks[i]->leak_A = dea_arena_alloc(&d->memory, count + 1, sizeof(double));
   }
   d->own_V = dea_arena_alloc(&d->memory, count, sizeof *d->own_V);
   d->own_start_V = dea_arena_alloc(&d->memory, count, sizeof *d->own_start_V);
@@ -126,56 +125,31 @@ static dea_status allocate_network(struct dea_circuit_step *d)
   return dea_arena_status(&d->memory);
 }
 
-/* Charges and conductances as they are now; tried: of the step that was closed. */
-static dea_status find_network(struct dea_context *ctx, struct dea_circuit_step *d, bool tried,
+/* As it is now. */
+static dea_status find_network(struct dea_context *ctx, struct dea_circuit_step *d,
                                struct network *out)
 {
-  struct dea_solid *solid = d->driven.solid;
-  size_t count = out->charged.count;
-  if (d->own) {
-    const struct dea_solid_charged *charged = dea_solid_time_charged(d->time, tried);
-    memcpy(out->charged.voltage_V, charged->voltage_V, count * sizeof(double));
-    memcpy(out->charged.capacitance_F, charged->capacitance_F, count * count * sizeof(double));
-  } else {
-    dea_solid_channel_voltages(solid, out->charged.voltage_V);
-    DEA_TRY(ctx, dea_solid_capacitances(ctx, solid, true, out->charged.capacitance_F));
-  }
-  if (d->leaks_evenly) {
-    for (size_t i = 0; i < count * count; i++) {
-      out->conductance_S[i] = d->leakage_per_s * out->charged.capacitance_F[i];
-    }
-    return DEA_OK;
-  }
-  DEA_TRY(ctx, dea_solid_conductances(ctx, solid, d->driven.leakage_per_s, out->conductance_S));
-  return DEA_OK;
-}
-
-/* Row of a matrix of channels times their voltages. */
-static double row_times(const double *matrix, size_t row, const struct dea_solid_charged *at)
-{
-  double sum = 0;
-  for (size_t l = 0; l < at->count; l++) {
-    sum += matrix[row * at->count + l] * at->voltage_V[l];
-  }
-  return sum;
+  dea_solid_channel_voltages(d->driven.solid, out->voltage_V);
+  return dea_solid_flows(ctx, d->driven.solid, d->driven.leakage_per_s, out->charge_C, out->leak_A);
 }
 
 /* Charge that leaves a channel through the films in a step between the two networks. */
 static double leaked_C(const struct dea_circuit_step *d, size_t channel)
 {
-  return 0.5 * d->step_s *
-         (row_times(d->network.conductance_S, channel, &d->network.charged) +
-          row_times(d->network_next.conductance_S, channel, &d->network_next.charged));
+  return 0.5 * d->step_s * (d->network.leak_A[channel] + d->network_next.leak_A[channel]);
+}
+
+/* What its source gives a channel in that step. */
+static double given_C(const struct dea_circuit_step *d, size_t channel)
+{
+  return d->network_next.charge_C[channel] - d->network.charge_C[channel] + leaked_C(d, channel);
 }
 
 /* Mean currents of the step between the two networks. */
 static void find_currents(struct dea_circuit_step *d)
 {
-  const struct network *from = &d->network, *to = &d->network_next;
-  for (size_t k = 0; k < to->charged.count; k++) {
-    double given = row_times(to->charged.capacitance_F, k, &to->charged) -
-                   row_times(from->charged.capacitance_F, k, &from->charged) + leaked_C(d, k);
-    d->current_A[k] = d->step_s > 0 ? d->driven.copies * given / d->step_s : 0;
+  for (size_t k = 0; k < channel_count(d); k++) {
+    d->current_A[k] = d->step_s > 0 ? d->driven.copies * given_C(d, k) / d->step_s : 0;
   }
 }
 
@@ -188,32 +162,39 @@ static double supply_share(const struct dea_circuit_step *d, size_t channel)
 static double supply_charge_C(const struct dea_circuit_step *d, const struct network *at)
 {
   double sum = 0;
-  for (size_t k = 0; k < at->charged.count; k++) {
-    sum += supply_share(d, k) * row_times(at->charged.capacitance_F, k, &at->charged);
+  for (size_t k = 0; k < channel_count(d); k++) {
+    sum += supply_share(d, k) * at->charge_C[k];
   }
   return d->driven.copies * sum;
 }
 
 /* The step's account with an ideal source on each channel; charge and current of the state are
- * those of the supply that the others share. */
-static void advance_network(struct dea_circuit_step *d, const struct dea_time_step *step)
+ * those of the supply that the others share. film_J: what the film took up of the grid's sources.
+ * It gets all that they give but for leaks, unless electrodes have a resistance. */
+static void advance_network(struct dea_circuit_step *d, const struct dea_time_step *step,
+                            double film_J)
 {
   const struct network *from = &d->network, *to = &d->network_next;
   struct dea_circuit_state *next = &d->circuit_next;
-  double copies = d->driven.copies, h = step->length_s;
+  const size_t count = channel_count(d);
+  double copies = d->driven.copies, h = step->length_s, given_J = 0, leaked_J = 0;
   *next = d->circuit;
   next->source_voltage_V = next->voltage_V = step->source_voltage_V;
   next->charge_C = supply_charge_C(d, to);
   next->current_A = 0;
-  for (size_t k = 0; k < to->charged.count; k++) {
-    double V[2] = {from->charged.voltage_V[k], to->charged.voltage_V[k]};
+  for (size_t k = 0; k < count; k++) {
+    const double V = 0.5 * (from->voltage_V[k] + to->voltage_V[k]);
     next->current_A += supply_share(d, k) * d->current_A[k];
-    next->supply_work_J += copies * 0.5 * (V[0] + V[1]) * leaked_C(d, k);
-    next->leakage_loss_J += copies * 0.5 * h *
-                            (V[0] * row_times(from->conductance_S, k, &from->charged) +
-                             V[1] * row_times(to->conductance_S, k, &to->charged));
+    given_J += V * given_C(d, k);
+    leaked_J += V * leaked_C(d, k);
   }
-  next->supply_work_J += h > 0 ? copies * dea_solid_sources_work(&from->charged, &to->charged) : 0;
+  const double leak_J = 0.5 * h * (from->leak_A[count] + to->leak_A[count]);
+  next->leakage_loss_J += copies * leak_J;
+  if (h > 0) {
+    given_J = d->sheet != NULL ? given_J : film_J + leaked_J;
+    next->supply_work_J += copies * given_J;
+    next->resistance_loss_J += d->sheet != NULL ? copies * (given_J - film_J - leak_J) : 0;
+  }
 }
 
 /* Where the channels go in a step: those with a source of their own to its voltage. */
@@ -236,7 +217,8 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
   double voltage_V = dea_solid_voltage(solid);
   size_t count = channel_count(d);
   bool own_sources = any_of(d->options.own_sources, count);
-  d->own = own_sources || dea_solid_has_own_voltages(solid);
+  DEA_TRY(ctx, dea_sheet_create(ctx, d->driven.mesh, solid, d->driven.leakage_per_s, &d->sheet));
+  d->own = own_sources || dea_solid_has_own_voltages(solid) || d->sheet != NULL;
   const struct dea_solid_time_options options = {.branches = d->driven.branches,
                                                  .inertia = d->options.inertia,
                                                  .spectral_radius = d->options.rho_inf,
@@ -244,8 +226,10 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
   struct dea_circuit_film film = {.capacitance_F = 0};
   if (d->own && (!dea_circuit_is_ideal(&d->options.circuit) || !d->driven.channels)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "channels with a voltage or a waveform of their own have ideal sources: no "
-                    "series resistance and no limit of the current is known of them");
+                    "%s ideal sources: no series resistance and no limit of the current is known "
+                    "of them",
+                    d->sheet != NULL ? "electrodes with a sheet resistance have"
+                                     : "channels with a voltage or a waveform of their own have");
   }
   find_leakage(d);
   DEA_TRY(ctx, dea_solid_time_create(ctx, solid, &options, &d->time));
@@ -255,7 +239,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
     if (own_sources) {
       memcpy(d->own_source, d->options.own_sources, count * sizeof *d->own_source);
     }
-    DEA_TRY(ctx, find_network(ctx, d, false, &d->network));
+    DEA_TRY(ctx, find_network(ctx, d, &d->network));
   }
   DEA_TRY(ctx, find_film(ctx, d, &film));
   d->circuit = (struct dea_circuit_state){.source_voltage_V = voltage_V,
@@ -269,7 +253,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_circuit_step *d)
     d->circuit.current_A = 0; // a mean of no step
   }
   d->circuit_next = d->circuit;
-  d->charged_J = d->own ? d->driven.copies * dea_solid_charged_energy(&d->network.charged)
+  d->charged_J = d->own ? d->driven.copies * dea_solid_time_charged_J(d->time, false)
                         : d->circuit.charge_C * voltage_V;
   d->largest_m = smallest_motion * d->driven.thickness_m;
   d->largest_V = fabs(voltage_V);
@@ -301,6 +285,7 @@ void dea_circuit_step_destroy(struct dea_context *ctx, struct dea_circuit_step *
 {
   if (d != NULL) {
     dea_solid_time_destroy(ctx, d->time);
+    dea_sheet_destroy(ctx, d->sheet);
     dea_arena_free(&d->memory);
     dea_free(ctx, d);
   }
@@ -364,6 +349,29 @@ static dea_status find_step(struct dea_context *ctx, struct dea_circuit_step *d,
   }
   dea_solid_time_reject(d->time);
   return dea_fail(ctx, DEA_E_NOT_CONVERGED, "film and circuit find no common voltage");
+}
+
+/* The step with potentials of electrodes that have a sheet resistance and the capacitances that the
+ * film has with them: fixed points. */
+static dea_status find_sheet_step(struct dea_context *ctx, struct dea_circuit_step *d,
+                                  const struct dea_time_step *step, struct dea_solid_report *report)
+{
+  double change_V;
+  if (step->disconnected) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "electrodes with a sheet resistance have ideal sources, always connected");
+  }
+  for (int i = 0; i < SHEET_MAX; i++) {
+    DEA_TRY(ctx, dea_sheet_solve(ctx, d->sheet, step->length_s, step->source_voltage_V, d->own_V,
+                                 &change_V));
+    if (i > 0 && change_V <= voltage_close * fmax(d->largest_V, fabs(step->source_voltage_V))) {
+      return DEA_OK;
+    }
+    DEA_TRY(ctx, i > 0 ? dea_solid_time_again(ctx, d->time, step->source_voltage_V, report)
+                       : try_step(ctx, d, step->source_voltage_V, step->length_s, report));
+  }
+  dea_solid_time_reject(d->time);
+  return dea_fail(ctx, DEA_E_NOT_CONVERGED, "film and electrodes find no common potentials");
 }
 
 /* Of the voltage: what it costs to take it as straight. Without resistance it follows from the
@@ -430,6 +438,7 @@ static double find_error(struct dea_circuit_step *d, double error_m, double lost
   if (voltage_V > 0) {
     error = fmax(error, voltage_error(d, d->step_s) / voltage_V);
   }
+  error = d->sheet != NULL ? fmax(error, dea_sheet_error(d->sheet)) : error;
   d->lost_next_J = d->lost_J;
   if (has_jumped(d, lost_J, report)) {
     d->lost_next_J += lost_J;
@@ -449,7 +458,7 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
                                 const struct dea_circuit_film *film)
 {
   if (d->driven.channels) {
-    dea_status status = find_network(ctx, d, true, &d->network_next);
+    dea_status status = find_network(ctx, d, &d->network_next);
     if (status != DEA_OK) {
       dea_solid_time_reject(d->time);
       return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
@@ -457,8 +466,10 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
     find_currents(d);
   }
   if (d->own) {
-    advance_network(d, step);
-    d->charged_J = d->driven.copies * dea_solid_charged_energy(&d->network_next.charged);
+    advance_network(d, step,
+                    dea_solid_time_energies(d->time, true).supply -
+                        dea_solid_time_energies(d->time, false).supply);
+    d->charged_J = d->driven.copies * dea_solid_time_charged_J(d->time, true);
     return DEA_OK;
   }
   dea_circuit_advance(&d->options.circuit, &d->circuit, step, film, &d->circuit_next);
@@ -481,8 +492,9 @@ dea_status dea_circuit_step_advance(struct dea_context *ctx, struct dea_circuit_
   }
   DEA_TRY(ctx, step->disconnected ? prepare_charge(ctx, d) : DEA_OK);
   drive_channels(d, step);
-  DEA_TRY(ctx, d->own ? try_step(ctx, d, step->source_voltage_V, step->length_s, report)
-                      : find_step(ctx, d, step, &film, report));
+  DEA_TRY(ctx, d->sheet != NULL ? find_sheet_step(ctx, d, step, report)
+               : d->own         ? try_step(ctx, d, step->source_voltage_V, step->length_s, report)
+                                : find_step(ctx, d, step, &film, report));
   DEA_TRY(ctx, dea_solid_time_close(ctx, d->time, &error_m));
   struct dea_solid_energies to = dea_solid_time_energies(d->time, true);
   d->step_s = step->length_s;
@@ -506,6 +518,9 @@ void dea_circuit_step_accept(struct dea_circuit_step *d)
   d->largest_m = largest_motion(d);
   d->largest_J = largest_work(d);
   dea_solid_time_accept(d->time);
+  if (d->sheet != NULL) {
+    dea_sheet_accept(d->sheet);
+  }
   d->step_before_s = d->step_s;
   d->voltage_before_V = d->circuit.voltage_V;
   d->circuit = d->circuit_next;
@@ -536,6 +551,9 @@ void dea_circuit_step_point(const struct dea_circuit_step *d, struct dea_load_po
   point->supply_work_J = circuit->supply_work_J;
   if (d->own) { // of several voltages there is no one
     point->capacitance_F = NAN;
+  }
+  if (d->sheet != NULL) {
+    point->lowest_voltage_V = dea_sheet_lowest_V(d->sheet);
   }
 }
 

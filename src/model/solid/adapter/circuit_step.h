@@ -5,6 +5,7 @@
 #pragma once
 
 #include "model/model.h"
+#include "model/solid/adapter/sheet.h"
 #include "model/solid/motion/time.h"
 
 struct dea_circuit_step;
@@ -12,6 +13,7 @@ struct dea_circuit_step;
 /* What is driven. All lent. */
 struct dea_driven_solid {
   struct dea_solid *solid;
+  const struct dea_layout_mesh *mesh;  // for electrodes with a sheet resistance; NULL: without
   const struct dea_branches *branches; // [part_material_count]
   const double *leakage_per_s;         // [part_material_count] conductance over capacitance
   /* Channels have currents, which are found. Otherwise there is one, on which the supply is. */

@@ -23,7 +23,8 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   const struct dea_driven_solid driven = {.solid = model->solid,
                                           .branches = model->plies.branches,
                                           .leakage_per_s = model->plies.leakage_per_s,
-                                          .channels = !model->disc,
+                                          .mesh = &model->mesh,
+                                          .channels = !model->disc || dea_sheet_any(model->layout),
                                           .copies = model->copies,
                                           .thickness_m =
                                               model->layout->plies[model->plies.film].thickness_m};
@@ -55,7 +56,7 @@ static void mark_layout(const struct dea_layout *l, struct dea_model_marks *mark
   for (size_t i = 0; i < l->electrode_count; i++) {
     const struct dea_layout_electrode *e = &l->electrodes[i];
     const double own[] = {(double)e->ply, e->top, (double)e->region, (double)e->channel};
-    mark(marks, own, 4);
+    mark(marks, own, 4); // a sheet resistance is of no equilibrium
   }
   for (size_t i = 0; i < l->support_count; i++) {
     mark(marks, l->supports[i].move_m, 3);
@@ -158,6 +159,12 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   model->answers = answers != NULL ? answers : model->answers;
   if (dea_solid_any(answers == NULL)) {
     return DEA_E_MEMORY;
+  }
+  if (dea_sheet_any(model->layout)) {
+    return dea_fail(ctx, DEA_E_UNSUPPORTED,
+                    "model 3d: an excitation by electrodes with a sheet resistance is known in "
+                    "time only (compute.transient with a sine); without sheet_resistance: that of "
+                    "ideal electrodes");
   }
   DEA_TRY(ctx, find_motions(ctx, model, &motions));
   motions.take = width > 0 ? take_answer : NULL;

@@ -108,7 +108,7 @@ struct sums {
   double *capacitance_F; // [channels][channels]
   const double *per_s;   // [part materials] conductance over capacitance
   double *conductance_S;
-  double *conductances_S; // [channels][channels]
+  double *leak_A; // [channels], and behind them the power that this takes
 };
 
 /* Adds what lies between two channels to a matrix [count][count] of theirs. */
@@ -125,8 +125,10 @@ static void add_element(const struct dea_solid *s, size_t e, double C, const str
   const struct dea_solid_problem *p = &s->problem;
   size_t count = p->channel_count + 1;
   size_t top = (size_t)p->between[e][0], bottom = (size_t)p->between[e][1];
+  double V = dea_solid_voltage_across(s, e, s->state.voltage_V);
+  double charge = C * V * (s->state.evenness != NULL ? s->state.evenness[e] : 1);
+  double per_s = sums->per_s != NULL ? sums->per_s[p->part_material_of[e]] : 0;
   if (sums->charge_C != NULL) {
-    double charge = C * dea_solid_voltage_across(s, e, s->state.voltage_V);
     sums->charge_C[top] += charge;
     sums->charge_C[bottom] -= charge;
   }
@@ -135,10 +137,12 @@ static void add_element(const struct dea_solid *s, size_t e, double C, const str
   }
   if (sums->conductance_S != NULL) {
     double share = p->share[top] - p->share[bottom];
-    *sums->conductance_S += share * share * sums->per_s[p->part_material_of[e]] * C;
+    *sums->conductance_S += share * share * per_s * C;
   }
-  if (sums->conductances_S != NULL) {
-    add_between(sums->per_s[p->part_material_of[e]] * C, top, bottom, count, sums->conductances_S);
+  if (sums->leak_A != NULL) {
+    sums->leak_A[top] += per_s * charge;
+    sums->leak_A[bottom] -= per_s * charge;
+    sums->leak_A[count] += per_s * C * V * V;
   }
 }
 
@@ -182,15 +186,17 @@ dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *s, c
   return DEA_OK;
 }
 
-dea_status dea_solid_conductances(struct dea_context *ctx, struct dea_solid *s, const double *per_s,
-                                  double *conductance_S)
+dea_status dea_solid_flows(struct dea_context *ctx, struct dea_solid *s, const double *per_s,
+                           double *charge_C, double *leak_A)
 {
   size_t count = s->problem.channel_count + 1;
-  memset(conductance_S, 0, count * count * sizeof *conductance_S);
+  const struct sums sums = {.charge_C = charge_C, .per_s = per_s, .leak_A = leak_A};
+  memset(charge_C, 0, count * sizeof *charge_C);
+  memset(leak_A, 0, (count + 1) * sizeof *leak_A);
   DEA_TRY(ctx, refuse_coupled(ctx, s));
-  const struct sums sums = {.per_s = per_s, .conductances_S = conductance_S};
   DEA_TRY(ctx, dea_solid_agree(ctx, add_own(s, &sums)));
-  dea_solid_sum(conductance_S, count * count);
+  dea_solid_sum(charge_C, count);
+  dea_solid_sum(leak_A, count + 1);
   return DEA_OK;
 }
 

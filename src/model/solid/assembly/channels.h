@@ -25,10 +25,11 @@ dea_status dea_solid_charges(struct dea_context *ctx, struct dea_solid *solid, d
 dea_status dea_solid_conductance(struct dea_context *ctx, struct dea_solid *solid,
                                  const double *per_s, double *conductance_S);
 
-/* Currents from channel to channel through those films over the voltages, [channel_count + 1]
- * squared, in the form of capacitances below. DEA_E_UNSUPPORTED for a coupled field. */
-dea_status dea_solid_conductances(struct dea_context *ctx, struct dea_solid *solid,
-                                  const double *per_s, double *conductance_S);
+/* Charges as above, and the currents that leak from the channels through those films,
+ * [channel_count
+ * + 1], followed by the power that this takes. DEA_E_UNSUPPORTED for a coupled field. */
+dea_status dea_solid_flows(struct dea_context *ctx, struct dea_solid *solid, const double *per_s,
+                           double *charge_C, double *leak_A);
 
 /* What charges change by with the voltages: capacitance_F [channel_count + 1] squared, symmetric,
  * the change of charge k with voltage l in row k; rows and columns sum to 0. held: of the film as

@@ -21,7 +21,7 @@ static size_t control_count(const struct dea_solid *s)
   for (size_t i = 0; i < p->load_count; i++) {
     count += p->loads[i].parameter_count;
   }
-  return count;
+  return count + (s->state.drop_V != NULL ? p->grid->element_count : 0);
 }
 
 static size_t state_count(const struct dea_solid *s)
@@ -114,6 +114,10 @@ static void pack(const struct dea_solid *s, double voltage_V, const double *forc
       *controls++ = wanted ? load->goal[k] : load->now[k];
     }
   }
+  if (s->state.drop_V != NULL) {
+    memcpy(controls, wanted ? s->state.drop_goal_V : s->state.drop_V,
+           p->grid->element_count * sizeof *controls);
+  }
 }
 
 void dea_solid_controls_get(struct dea_solid *s, double *controls)
@@ -146,6 +150,9 @@ void dea_solid_controls_set(struct dea_solid *s, const double *controls)
     for (size_t k = 0; k < p->loads[i].parameter_count; k++) {
       p->loads[i].now[k] = *controls++;
     }
+  }
+  if (s->state.drop_V != NULL) {
+    memcpy(s->state.drop_V, controls, p->grid->element_count * sizeof *controls);
   }
 }
 

@@ -73,15 +73,19 @@ struct dea_solid_state {
   double *own_V;      // [channel_count + 1] voltage of a channel beside its share, by the same
   double *own_goal_V; // [channel_count + 1] those that the next solve goes to, by the caller
   double *lift_V; // [channel_count + 1] voltage that a given charge takes beside (charge_control.h)
-  double *u;      // [dofs] displacements [m], then psi, by the solvers
-  double *multiplier; // [elements][elements.pressures] pressures [Pa], by the solvers
-  double *theta;      // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
-                      // dea_solid_predict writes over it
-  double bulk_factor; // kappa is so many times that of the part materials, a power of 2; at first
-                      // 1, by dea_solid_scale_bulk_modulus and steps in time
-  double *force;      // [dofs] dead loads [N] and charges as they stand, by dea_solid_controls_set
-  double *force_goal; // [dofs] those that the next solve goes to, by the caller
-  double *u_goal;     // [nodes][3] of prescribed (local) components [m], by dea_solid_prescribe
+  /* Of electrodes with a sheet resistance in time (adapter/sheet.h), [elements]; NULL: none. */
+  double *drop_V;      // what the voltage across an element has beside, by dea_solid_controls_set
+  double *drop_goal_V; // those that the next solve goes to, by the caller
+  double *evenness;    // mean voltage across an element over its root mean square, which counts
+  double *u;           // [dofs] displacements [m], then psi, by the solvers
+  double *multiplier;  // [elements][elements.pressures] pressures [Pa], by the solvers
+  double *theta;       // [elements][elements.pressures] J - 1, projected, by dea_solid_assemble;
+                       // dea_solid_predict writes over it
+  double bulk_factor;  // kappa is so many times that of the part materials, a power of 2; at first
+                       // 1, by dea_solid_scale_bulk_modulus and steps in time
+  double *force;       // [dofs] dead loads [N] and charges as they stand, by dea_solid_controls_set
+  double *force_goal;  // [dofs] those that the next solve goes to, by the caller
+  double *u_goal;      // [nodes][3] of prescribed (local) components [m], by dea_solid_prescribe
   /* Of a step in time that is under way (motion/time.h), lent. NULL: elastic; without inertia. */
   struct dea_internal_variables *internal_variables;
   struct dea_solid_inertia *inertia;
@@ -206,12 +210,15 @@ static inline double dea_solid_bulk_modulus(const struct dea_solid *s, size_t e)
   return s->state.bulk_factor * dea_solid_part_material(s, e)->kappa_Pa;
 }
 
-/* Whether a channel has a voltage beside its share of the whole's. */
+/* Whether a channel, or an element, has a voltage beside its share of the whole's. */
 static inline bool dea_solid_has_own_voltages(const struct dea_solid *s)
 {
   bool any = false;
   for (size_t k = 1; k <= s->problem.channel_count; k++) {
     any = any || s->state.own_V[k] != 0 || s->state.lift_V[k] != 0;
+  }
+  for (size_t e = 0; s->state.drop_V != NULL && e < s->problem.grid->element_count && !any; e++) {
+    any = s->state.drop_V[e] != 0;
   }
   return any;
 }
@@ -222,7 +229,8 @@ static inline double dea_solid_voltage_across(const struct dea_solid *s, size_t 
   const struct dea_solid_problem *p = &s->problem;
   int top = p->between[e][0], bottom = p->between[e][1];
   return (p->share[top] - p->share[bottom]) * voltage_V + s->state.own_V[top] -
-         s->state.own_V[bottom] + s->state.lift_V[top] - s->state.lift_V[bottom];
+         s->state.own_V[bottom] + s->state.lift_V[top] - s->state.lift_V[bottom] +
+         (s->state.drop_V != NULL ? s->state.drop_V[e] : 0);
 }
 
 /* Nodes of an element; *nodes: [count] them. */

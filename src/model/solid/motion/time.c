@@ -13,6 +13,13 @@
 #include <math.h>
 #include <string.h>
 
+/* What lies between electrodes, by elements of this rank, and of all the sum of charges times
+ * voltages. */
+struct charged {
+  double *voltage_V, *capacitance_F; // [own_count]
+  double energy_J;
+};
+
 struct dea_solid_time {
   struct dea_arena memory; // of all arrays but keep and controls
   struct dea_solid *solid;
@@ -35,8 +42,9 @@ struct dea_solid_time {
   double first_J; // stored energy at the start
   double capacitance_F, capacitance_next_F;
   bool own, driven;            // channels have voltages of their own; own_first_V is filled
-  double *own_V, *own_first_V; // [charged.count] that are gone to; goals at the start
-  struct dea_solid_charged charged, charged_next;
+  double *own_V, *own_first_V; // [channels] that are gone to; goals at the start
+  size_t channels;             // with ground
+  struct charged charged, charged_next;
 };
 
 /* ---- forces and stored energy at a state ---- */
@@ -90,17 +98,41 @@ static dea_status constrain_at_end(struct dea_context *ctx, struct dea_solid_tim
   return DEA_OK;
 }
 
-static dea_status find_charged(struct dea_context *ctx, struct dea_solid *s,
-                               struct dea_solid_charged *out)
+static dea_status find_charged(struct dea_context *ctx, struct dea_solid *s, struct charged *out)
 {
-  dea_solid_channel_voltages(s, out->voltage_V);
-  return dea_solid_capacitances(ctx, s, true, out->capacitance_F);
+  dea_status status = DEA_OK;
+  out->energy_J = 0;
+  for (size_t i = 0; i < s->problem.own_count && status == DEA_OK; i++) {
+    const size_t e = s->problem.own[i];
+    if (s->problem.active[e]) {
+      status = dea_solid_element_capacitance(s, e, s->state.u, &out->capacitance_F[i]);
+      out->voltage_V[i] = dea_solid_voltage_across(s, e, s->state.voltage_V);
+      out->energy_J += out->capacitance_F[i] * out->voltage_V[i] * out->voltage_V[i];
+    }
+  }
+  status = dea_solid_agree(ctx, status);
+  dea_solid_sum(&out->energy_J, 1);
+  return status;
+}
+
+/* Work of the sources from one to the other. */
+static double work_between(const struct dea_solid *s, const struct charged *from,
+                           const struct charged *to)
+{
+  double sum = 0;
+  for (size_t i = 0; i < s->problem.own_count; i++) {
+    const double voltage_V[2] = {from->voltage_V[i], to->voltage_V[i]};
+    const double capacitance_F[2] = {from->capacitance_F[i], to->capacitance_F[i]};
+    sum += dea_solid_source_work(voltage_V, capacitance_F);
+  }
+  dea_solid_sum(&sum, 1);
+  return sum;
 }
 
 /* Elastic and electric energy and that of loads, without what steps add, and capacitance or, with
  * own voltages, what is charged: of films as wide as they are with it, where they wrinkle. */
 static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t, double *stored,
-                              double *capacitance_F, struct dea_solid_charged *charged)
+                              double *capacitance_F, struct charged *charged)
 {
   struct dea_solid *s = t->solid;
   double potential = 0, capacitance = 0, step = 0;
@@ -116,7 +148,7 @@ static dea_status find_stored(struct dea_context *ctx, struct dea_solid_time *t,
     return dea_fail(ctx, status, "the energy of the film cannot be evaluated");
   }
   if (t->own) {
-    *stored = potential + dea_solid_charged_energy(charged);
+    *stored = potential + charged->energy_J;
     return DEA_OK;
   }
   *capacitance_F = isnan(capacitance) ? 0 : capacitance; // NAN: no electrodes
@@ -145,14 +177,14 @@ static dea_status allocate_time(struct dea_solid_time *t)
     *memory[i] = dea_arena_alloc(&t->memory, t->count, sizeof(double));
   }
   if (t->own) {
-    size_t channels = t->solid->problem.channel_count + 1;
-    struct dea_solid_charged *const charged[] = {&t->charged, &t->charged_next};
-    t->own_V = dea_arena_alloc(&t->memory, channels, sizeof(double));
-    t->own_first_V = dea_arena_alloc(&t->memory, channels, sizeof(double));
+    const size_t count = t->solid->problem.own_count;
+    struct charged *const charged[] = {&t->charged, &t->charged_next};
+    t->channels = t->solid->problem.channel_count + 1;
+    t->own_V = dea_arena_alloc(&t->memory, t->channels, sizeof(double));
+    t->own_first_V = dea_arena_alloc(&t->memory, t->channels, sizeof(double));
     for (size_t i = 0; i < 2; i++) {
-      charged[i]->count = channels;
-      charged[i]->voltage_V = dea_arena_alloc(&t->memory, channels, sizeof(double));
-      charged[i]->capacitance_F = dea_arena_alloc(&t->memory, channels * channels, sizeof(double));
+      charged[i]->voltage_V = dea_arena_alloc(&t->memory, count, sizeof(double));
+      charged[i]->capacitance_F = dea_arena_alloc(&t->memory, count, sizeof(double));
     }
   }
   return dea_arena_status(&t->memory);
@@ -164,8 +196,8 @@ static dea_status start_time(struct dea_context *ctx, struct dea_solid_time *t,
   struct dea_solid *s = t->solid;
   DEA_TRY(ctx, dea_solid_agree(ctx, allocate_time(t)));
   if (t->own) {
-    memcpy(t->own_V, s->state.own_goal_V, t->charged.count * sizeof *t->own_V);
-    memcpy(t->own_first_V, s->state.own_goal_V, t->charged.count * sizeof *t->own_V);
+    memcpy(t->own_V, s->state.own_goal_V, t->channels * sizeof *t->own_V);
+    memcpy(t->own_first_V, s->state.own_goal_V, t->channels * sizeof *t->own_V);
     t->driven = true;
   }
   if (options->branches != NULL) {
@@ -231,7 +263,7 @@ void dea_solid_time_destroy(struct dea_context *ctx, struct dea_solid_time *t)
     return_to_accepted(t);
   }
   if (t->driven) {
-    memcpy(t->solid->state.own_goal_V, t->own_first_V, t->charged.count * sizeof *t->own_V);
+    memcpy(t->solid->state.own_goal_V, t->own_first_V, t->channels * sizeof *t->own_V);
   }
   t->solid->state.internal_variables = NULL;
   t->solid->state.inertia = NULL;
@@ -252,7 +284,7 @@ double *dea_solid_velocity(struct dea_solid_time *time)
 
 void dea_solid_time_drive(struct dea_solid_time *time, const double *own_V)
 {
-  memcpy(time->own_V, own_V, time->charged.count * sizeof *own_V);
+  memcpy(time->own_V, own_V, time->channels * sizeof *own_V);
 }
 
 /* ---- steps ---- */
@@ -326,7 +358,7 @@ static dea_status solve_step(struct dea_context *ctx, struct dea_solid_time *t, 
   struct dea_solid *s = t->solid;
   follow_stiffness(t);
   if (t->own) {
-    memcpy(s->state.own_goal_V, own_V, t->charged.count * sizeof *own_V);
+    memcpy(s->state.own_goal_V, own_V, t->channels * sizeof *own_V);
   }
   s->state.inertia = t->inertial ? &t->inertia : NULL;
   dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
@@ -417,32 +449,9 @@ double dea_solid_source_work(const double voltage_V[2], const double capacitance
          0.25 * (capacitance_F[0] + capacitance_F[1]) * (square[1] - square[0]);
 }
 
-/* Q.V at the end less Q.V at the start, less the integral of Q dV, which is half that of dV C V: C
- * is symmetric, and nearly straight along the step. */
-double dea_solid_sources_work(const struct dea_solid_charged *from,
-                              const struct dea_solid_charged *to)
+double dea_solid_time_charged_J(const struct dea_solid_time *time, bool tried)
 {
-  const struct dea_solid_charged of_first = {from->count, to->voltage_V, from->capacitance_F};
-  const struct dea_solid_charged of_last = {from->count, from->voltage_V, to->capacitance_F};
-  double first = dea_solid_charged_energy(from), last = dea_solid_charged_energy(to);
-  return last - first -
-         0.25 * (dea_solid_charged_energy(&of_first) - first + last -
-                 dea_solid_charged_energy(&of_last));
-}
-
-double dea_solid_charged_energy(const struct dea_solid_charged *at)
-{
-  double sum = 0;
-  for (size_t i = 0; i < at->count * at->count; i++) {
-    sum += at->voltage_V[i / at->count] * at->capacitance_F[i] * at->voltage_V[i % at->count];
-  }
-  return sum;
-}
-
-const struct dea_solid_charged *dea_solid_time_charged(const struct dea_solid_time *time,
-                                                       bool tried)
-{
-  return tried ? &time->charged_next : &time->charged;
+  return tried ? time->charged_next.energy_J : time->charged.energy_J;
 }
 
 static double half_square(const double *v, const double *momentum, size_t count)
@@ -468,7 +477,7 @@ static dea_status find_energies(struct dea_context *ctx, struct dea_solid_time *
   DEA_TRY(ctx, find_stored(ctx, t, &stored, &t->capacitance_next_F, &t->charged_next));
   const double voltage_V[2] = {t->controls[0], s->state.voltage_V};
   const double capacitance_F[2] = {t->capacitance_F, t->capacitance_next_F};
-  sums->supply += t->own ? dea_solid_sources_work(&t->charged, &t->charged_next)
+  sums->supply += t->own ? work_between(s, &t->charged, &t->charged_next)
                          : dea_solid_source_work(voltage_V, capacitance_F);
   sums->stored = stored - t->first_J;
   sums->branches = branches.stored;
@@ -577,8 +586,9 @@ void dea_solid_time_accept(struct dea_solid_time *t)
   t->start = t->start_next;
   t->open = false;
   t->capacitance_F = t->capacitance_next_F;
-  swap_arrays(&t->charged.voltage_V, &t->charged_next.voltage_V);
-  swap_arrays(&t->charged.capacitance_F, &t->charged_next.capacitance_F);
+  const struct charged charged = t->charged;
+  t->charged = t->charged_next;
+  t->charged_next = charged;
 }
 
 /* ---- jumps ---- */
@@ -599,7 +609,7 @@ dea_status dea_solid_time_jump(struct dea_context *ctx, struct dea_solid_time *t
     memcpy(t->a_next, t->a, t->count * sizeof *t->a);
     s->state.voltage_V = voltage_V;
     if (t->own) {
-      memcpy(s->state.own_V, t->own_V, t->charged.count * sizeof *t->own_V);
+      memcpy(s->state.own_V, t->own_V, t->channels * sizeof *t->own_V);
     }
     DEA_TRY(ctx, dea_solid_solve_potential(ctx, s, voltage_V, s->state.u));
   } else {

@@ -18,16 +18,9 @@ struct dea_solid_time_options {
   /* Of the steps with inertia for what they cannot resolve, 0 to 1: 1 damps nothing, 0 takes it
    * away in one step. */
   double spectral_radius;
-  /* Channels have voltages of their own, which `dea_solid_time_drive` says; otherwise none may. Not
-   * for a coupled field. */
+  /* Channels or elements have voltages of their own, which `dea_solid_time_drive` and the drops of
+   * the solid say; otherwise none may. Not for a coupled field. */
   bool own_voltages;
-};
-
-/* Voltages of all channels and their capacitances, the film held; charges are their product. */
-struct dea_solid_charged {
-  size_t count;          // of channels, with ground
-  double *voltage_V;     // [count]
-  double *capacitance_F; // [count][count]
 };
 
 /* Of the grid, not of its copies [J]; sums are from the creation on. */
@@ -81,14 +74,9 @@ struct dea_solid_energies dea_solid_time_energies(const struct dea_solid_time *t
  * [1]. */
 double dea_solid_source_work(const double voltage_V[2], const double capacitance_F[2]);
 
-/* The same of a source on each channel; any two states of the same channels. */
-double dea_solid_sources_work(const struct dea_solid_charged *from,
-                              const struct dea_solid_charged *to);
-/* Sum of charges times voltages [J]. */
-double dea_solid_charged_energy(const struct dea_solid_charged *at);
-/* With own voltages: of the step that was closed last, or at the accepted state; lent. */
-const struct dea_solid_charged *dea_solid_time_charged(const struct dea_solid_time *time,
-                                                       bool tried);
+/* With own voltages: sum of charges times voltages, of the step that was closed last, or at the
+ * accepted state. */
+double dea_solid_time_charged_J(const struct dea_solid_time *time, bool tried);
 
 /* Largest component of a displacement from where the solid was at the start [m]. */
 double dea_solid_time_motion(const struct dea_solid_time *time);
