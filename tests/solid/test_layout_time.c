@@ -250,4 +250,165 @@ TEST(test_swing)
   dea_device_destroy(ctx, device);
 }
 
+/* ---- electrodes with a sheet resistance ---- */
+
+static const double sheet_ohm = 1e9, line_m = 20e-3;
+
+/* A held strip of film, on its upper face an ideal electrode, 1 mm, and beside it one with a sheet
+ * resistance. */
+static struct dea_device *line_new(void)
+{
+  struct dea_device *device = device_new();
+  struct dea_layout *l = device->layout;
+  add_rectangle(device, "film", -1e-3, 0, line_m + 1e-3, 4e-3);
+  add_rectangle(device, "lead", -1e-3, 0, 1e-3, 4e-3);
+  add_rectangle(device, "line", 0, 0, line_m, 4e-3);
+  add_film(device, 0, 1.2, 1.2);
+  add_electrode(device, 0, false, 0, 0);
+  add_electrode(device, 0, true, 1, 1);
+  add_electrode(device, 0, true, 2, 1);
+  l->electrodes[2].sheet_resistance_ohm = sheet_ohm;
+  l->supports[l->support_count++] = (struct dea_layout_support){
+      .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
+  return device;
+}
+
+/* Capacitance of a film by its area. */
+static double per_area(const struct dea_layout_ply *film)
+{
+  return DEA_EPSILON_0 * film->material.permittivity.at_rest / film->thickness_m;
+}
+
+/* The far end of a line of resistance R and capacitance C comes up as
+ * 1 - 4/pi sum of (-1)^k/(2k + 1) exp(-((2k + 1) pi/2)^2 t/(R C)). */
+TEST(test_line_charges)
+{
+  enum { STEPS = 18 };
+  struct dea_device *device = line_new();
+  struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE);
+  const double V = 10, time_s = sheet_ohm * per_area(&device->layout->plies[0]) * line_m * line_m;
+  struct dea_load_point point;
+  double t = 0;
+  begin(model, 0, false, V, &point);
+  for (int i = 0; i < STEPS; i++) {
+    const double h = time_s * (i < 4 ? 5e-3 : 0.06);
+    double share = 1;
+    step(model, h, V, &point);
+    t += h / time_s;
+    for (int k = 0; k < 20; k++) {
+      const double odd = 2 * k + 1;
+      share -= 4 / pi * (k % 2 == 0 ? 1 : -1) / odd * exp(-odd * odd * pi * pi / 4 * t);
+    }
+    assert_close(point.lowest_voltage_V, i < 4 ? 0 : share * V, 0, 0.01 * V);
+  }
+  assert_close(point.charge_C,
+               per_area(&device->layout->plies[0]) * 4e-3 * V *
+                   (1e-3 + line_m * (1 - 8 / pi / pi * exp(-pi * pi / 4 * t))),
+               2e-3, 0);
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* Where the film leaks the far end stays below: V/cosh(L sqrt(R/(rho h))); and what the supply
+ * gives is lost. */
+TEST(test_line_leaks)
+{
+  struct dea_device *device = line_new();
+  struct dea_layout_ply *film = &device->layout->plies[0];
+  film->material.resistivity_ohm_m = sheet_ohm * line_m * line_m / film->thickness_m;
+  struct dea_model *model = model_of(device, DEA_FILM_MEMBRANE);
+  const double V = 10, long_s = 50 * sheet_ohm * per_area(film) * line_m * line_m;
+  struct dea_load_point last, point;
+  begin(model, 0, false, V, &point);
+  for (int i = 0; i < 3; i++) {
+    last = point;
+    step(model, long_s, V, &point);
+  }
+  assert_close(point.lowest_voltage_V, V / cosh(1), 2e-3, 0);
+  assert_close(point.current_A, V * 4e-3 / line_m / sheet_ohm * (tanh(1) + 1e-3 / line_m), 2e-3, 0);
+  assert_close(point.supply_work_J - last.supply_work_J, V * point.current_A * long_s, 1e-6, 0);
+  assert_close(point.dissipated_J - last.dissipated_J, V * point.current_A * long_s, 1e-6, 0);
+  dea_model_find("3d")->destroy(ctx, model);
+  dea_device_destroy(ctx, device);
+}
+
+/* Both electrodes of a disc are fed along their edge: the voltage at the centre is
+ * 1 - sum of 2/(j J_1(j)) exp(-j^2 t/(2 R c a^2)) over the zeros j of J_0. On a ramp of V' each of
+ * them loses pi R (c V')^2 a^4/8. */
+TEST(test_disc_charges)
+{
+  enum { STEPS = 30, SUM = 3 };
+  static const double zero[SUM] = {2.404825557695773, 5.520078110286311, 8.653727912911013},
+                      J1[SUM] = {0.5191474972894669, -0.3402648065583682, 0.2714522999283819};
+  struct dea_device disc = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
+  disc.sheet_resistance_ohm[0] = disc.sheet_resistance_ohm[1] = sheet_ohm;
+  struct dea_model *model = model_of(&disc, DEA_FILM_MEMBRANE);
+  const double a = disc.electrode_radius_m,
+               c = DEA_EPSILON_0 * disc.film.permittivity.at_rest / disc.film_thickness_m, V = 10,
+               time_s = 2 * sheet_ohm * c * a * a;
+  struct dea_load_point point, last;
+  begin(model, 0, false, V, &point);
+  for (int i = 1; i <= STEPS; i++) {
+    double share = 1, t = 0.5 * i * i / (STEPS * STEPS);
+    step(model, time_s * (t - 0.5 * (i - 1) * (i - 1) / (STEPS * STEPS)), V, &point);
+    for (int k = 0; k < SUM; k++) {
+      share -= 2 / (zero[k] * J1[k]) * exp(-zero[k] * zero[k] * t);
+    }
+    assert_close(point.lowest_voltage_V, i > 10 ? share * V : 0, 0, (i > 10 ? 5e-3 : 0.2) * V);
+  }
+  const double rate = V / time_s;
+  for (int i = 1; i <= 12; i++) {
+    last = point;
+    step(model, 0.25 * time_s, V + 0.25 * i * V, &point);
+  }
+  assert_close(point.dissipated_J - last.dissipated_J,
+               0.25 * time_s * pi / 4 * sheet_ohm * c * c * rate * rate * a * a * a * a, 5e-3, 0);
+  dea_model_find("3d")->destroy(ctx, model);
+}
+
+/* A film that moves takes up, with its electrodes, all that the supply gives; where it has charged
+ * it is at the equilibrium of ideal electrodes. */
+TEST(test_sheet_moves)
+{
+  struct dea_device disc = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
+  disc.sheet_resistance_ohm[1] = sheet_ohm;
+  struct dea_model *model = model_of(&disc, DEA_FILM_MEMBRANE);
+  const struct dea_model_type *type = dea_model_find("3d");
+  struct dea_load_point start, point, ideal;
+  begin(model, 0, false, 0, &start);
+  begin(model, 0, false, 5e3, &point);
+  for (int i = 0; i < 24; i++) {
+    step(model, 1e-5 * pow(1.4, i), 5e3, &point);
+    assert_close(unaccounted(&start, &point), 0, 0, 1e-4);
+    assert_true(point.dissipated_J > 0);
+  }
+  assert_true(isnan(point.capacitance_F));
+  assert_int_equal(type->solve(ctx, model, 5e3, &ideal), DEA_OK);
+  assert_close(point.electrode_edge_u_m, ideal.electrode_edge_u_m, 1e-3, 0);
+  assert_close(point.charge_C, ideal.capacitance_F * 5e3, 1e-3, 0);
+  type->destroy(ctx, model);
+}
+
+/* What is not known of them is refused. */
+TEST(test_sheet_refuses)
+{
+  struct dea_device disc = test_disc(silicone(), 1.5, 3.75e-3, 0.25, 0);
+  disc.sheet_resistance_ohm[1] = sheet_ohm;
+  struct dea_model *model = model_of(&disc, DEA_FILM_MEMBRANE);
+  const struct dea_model_type *type = dea_model_find("3d");
+  const struct dea_time_options slow = {
+      .circuit = {.series_resistance_ohm = 1e6, .current_limit_A = INFINITY}, .rho_inf = 1};
+  const struct dea_time_step open = {.length_s = 1, .disconnected = true};
+  const struct dea_ac_excitation excitation = {.amplitude_V = 1};
+  const double frequency_Hz = 100;
+  struct dea_load_point point;
+  double error;
+  assert_int_equal(type->begin(ctx, model, &slow, &point), DEA_E_UNSUPPORTED);
+  begin(model, 0, false, 10, &point);
+  assert_int_equal(type->advance(ctx, model, &open, &point, &error), DEA_E_UNSUPPORTED);
+  assert_int_equal(type->respond(ctx, model, &point, &excitation, &frequency_Hz, 1, &point),
+                   DEA_E_UNSUPPORTED);
+  type->destroy(ctx, model);
+}
+
 TESTS(context_set_up, context_tear_down)

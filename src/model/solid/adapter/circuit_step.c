@@ -12,6 +12,7 @@
 
 enum { VOLTAGES_MAX = 12, SHEET_MAX = 30 };
 static const double voltage_close = 1e-8;   // of the largest voltage
+static const double sheet_close = 1e-6;     // the same
 static const double smallest_motion = 1e-2; // of the thickness: errors are not relative to less
 
 /* What a step gives that the accounts do not hold, and whether another one was tried before it from
@@ -362,9 +363,9 @@ static dea_status find_sheet_step(struct dea_context *ctx, struct dea_circuit_st
                     "electrodes with a sheet resistance have ideal sources, always connected");
   }
   for (int i = 0; i < SHEET_MAX; i++) {
-    DEA_TRY(ctx, dea_sheet_solve(ctx, d->sheet, step->length_s, step->source_voltage_V, d->own_V,
-                                 &change_V));
-    if (i > 0 && change_V <= voltage_close * fmax(d->largest_V, fabs(step->source_voltage_V))) {
+    DEA_TRY(ctx, dea_sheet_solve(ctx, d->sheet, i == 0, step->length_s, step->source_voltage_V,
+                                 d->own_V, &change_V));
+    if (i > 0 && change_V <= sheet_close * fmax(d->largest_V, fabs(step->source_voltage_V))) {
       return DEA_OK;
     }
     DEA_TRY(ctx, i > 0 ? dea_solid_time_again(ctx, d->time, step->source_voltage_V, report)

@@ -36,6 +36,7 @@ struct dea_sheet {
   double *potential_V;               // [unknowns] present
   double *charge_C, *charge_next_C;  // [unknowns] accepted, present
   double *half_V, *whole_V, *half_C; // [unknowns] work
+  double *off_V, factor;             // [unknowns] what the film would change them by, and how far
   double error, largest_C;
   Mat A;
   KSP solver;
@@ -488,8 +489,30 @@ static dea_status extrapolate(struct dea_context *ctx, struct dea_sheet *sheet, 
   return DEA_OK;
 }
 
-dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, double length_s,
-                           double voltage_V, const double *own_V, double *change_V)
+/* From the potentials that the film has towards those that it would give, half_V, by Aitken's
+ * factor for both. The first of a step: to them. Returns the largest difference. */
+static double relax(struct dea_sheet *sheet, bool first)
+{
+  double most = 0, along = 0, square = 0;
+  for (size_t a = 0; a < sheet->unknowns; a++) {
+    const double off = sheet->half_V[a] - sheet->potential_V[a], bend = off - sheet->off_V[a];
+    most = fmax(most, fabs(off));
+    along -= sheet->off_V[a] * bend;
+    square += bend * bend;
+    sheet->off_V[a] = first ? 0 : off;
+  }
+  if (!first && along > 0) { // else that of the step before
+    sheet->factor = fmin(fmax(sheet->factor * along / square, 0.1), 2);
+  }
+  for (size_t a = 0; a < sheet->unknowns; a++) {
+    sheet->potential_V[a] =
+        first ? sheet->half_V[a] : sheet->potential_V[a] + sheet->factor * sheet->off_V[a];
+  }
+  return most;
+}
+
+dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, bool first,
+                           double length_s, double voltage_V, const double *own_V, double *change_V)
 {
   const double h = length_s > 0 ? length_s : short_s(sheet);
   DEA_TRY(ctx, find_capacitances(ctx, sheet, sheet->capacitance_F[1]));
@@ -497,13 +520,7 @@ dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, dou
     sheet->channel_V[1][k] = sheet->solid->problem.share[k] * voltage_V + own_V[k];
   }
   DEA_TRY(ctx, extrapolate(ctx, sheet, h));
-  *change_V = 0;
-  for (size_t a = 0; a < sheet->unknowns; a++) {
-    *change_V = fmax(*change_V, fabs(sheet->half_V[a] - sheet->potential_V[a]));
-  }
-  fprintf(stderr, "h %g err %g low %g change %g\n", h, sheet->error, dea_sheet_lowest_V(sheet),
-          *change_V);
-  memcpy(sheet->potential_V, sheet->half_V, sheet->unknowns * sizeof *sheet->half_V);
+  *change_V = relax(sheet, first);
   set_goals(sheet);
   return DEA_OK;
 }
@@ -569,7 +586,8 @@ static dea_status allocate_places(struct dea_sheet *sheet)
 static dea_status allocate_unknowns(struct dea_sheet *sheet)
 {
   double **const values[] = {&sheet->potential_V, &sheet->charge_C, &sheet->charge_next_C,
-                             &sheet->half_V,      &sheet->whole_V,  &sheet->half_C};
+                             &sheet->half_V,      &sheet->whole_V,  &sheet->half_C,
+                             &sheet->off_V};
   sheet->lead = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof *sheet->lead);
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
     *values[i] = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof(double));
@@ -655,6 +673,7 @@ dea_status dea_sheet_create(struct dea_context *ctx, const struct dea_layout_mes
   sheet->mesh = mesh;
   sheet->solid = solid;
   sheet->per_s = per_s;
+  sheet->factor = 1;
   const dea_status status = prepare(ctx, sheet);
   if (status != DEA_OK) {
     dea_sheet_destroy(ctx, sheet);

@@ -18,9 +18,10 @@ void dea_sheet_destroy(struct dea_context *ctx, struct dea_sheet *sheet);
 
 /* Potentials at the end of a step from the accepted state, with the film as it is now, into the
  * goals of the solid's next solve. Length 0: the leads jump. voltage_V, own_V [channels]: of the
- * solid then. *change_V: largest change of a potential since the last call. */
-dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, double length_s,
-                           double voltage_V, const double *own_V, double *change_V);
+ * solid then. first: of this step. *change_V: largest difference to what the film has. */
+dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, bool first,
+                           double length_s, double voltage_V, const double *own_V,
+                           double *change_V);
 void dea_sheet_accept(struct dea_sheet *sheet);
 
 /* Of the last solve. Error: of charge, over the largest charge so far; lowest: voltage between
