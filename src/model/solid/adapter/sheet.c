@@ -28,6 +28,7 @@ struct dea_sheet {
   int *node;      // [electrodes][columns] of the grid
   size_t *first;  // [electrodes] the first one on the same face and channel
   double *shares; // [elements][shape.nodes] of its plane nodes in an element's capacitance
+  int *channel;   // [unknowns]
   int *lead;      // [unknowns] its channel, where it is at that; -1: elsewhere
   int (*end)[2];  // [elements] electrode at TOP and BOTTOM with a resistance; -1: without
   double *capacitance_F[2];          // [elements] accepted, present
@@ -556,6 +557,64 @@ double dea_sheet_lowest_V(const struct dea_sheet *sheet)
   return least;
 }
 
+// How long it takes ------------------------------------------------------------------------------
+
+static double dot(const struct dea_sheet *sheet, const double *a, const double *b)
+{
+  double sum = 0;
+  for (size_t i = 0; i < sheet->unknowns; i++) {
+    sum += a[i] * b[i];
+  }
+  return sum;
+}
+
+/* Largest voltage across an element at potentials over channels at 0 V. */
+static double largest_across_V(const struct dea_sheet *sheet, const double *phi)
+{
+  double most = 0;
+  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
+    for (int n = 0; counts(sheet, e) && n < sheet->shape.nodes; n++) {
+      most = fmax(most, fabs(across_V(sheet, 1, phi, e, n)));
+    }
+  }
+  return most;
+}
+
+/* The slowest mode of M dphi/dt + K phi = 0, by inverse iteration, and what a step of the voltage
+ * leaves of it where it is largest. */
+static dea_status find_settling(struct dea_context *ctx, struct dea_sheet *sheet,
+                                double settling_s[2])
+{
+  enum { ITERATIONS = 30 };
+  static const double long_share = 1e18; // of short_s: nothing of M is left
+  const struct part part = {1, long_share * short_s(sheet), sheet->half_C};
+  double *phi = sheet->half_V, *start = sheet->off_V, time_s = 0, last_s = INFINITY;
+  memset(sheet->channel_V[1], 0, sheet->channels * sizeof(double));
+  for (size_t a = 0; a < sheet->unknowns; a++) {
+    start[a] = sheet->lead[a] < 0 ? sheet->solid->problem.share[sheet->channel[a]] : 0;
+    phi[a] = start[a];
+  }
+  for (int i = 0; i < ITERATIONS && fabs(time_s - last_s) > 1e-4 * time_s; i++) {
+    find_charges(sheet, 1, phi, sheet->half_C);
+    DEA_TRY(ctx, euler_step(ctx, sheet, &part, sheet->whole_V));
+    last_s = time_s;
+    time_s =
+        part.length_s * dot(sheet, sheet->whole_V, sheet->half_C) / dot(sheet, phi, sheet->half_C);
+    const double largest = largest_across_V(sheet, sheet->whole_V);
+    for (size_t a = 0; a < sheet->unknowns; a++) {
+      phi[a] = sheet->whole_V[a] / largest;
+    }
+  }
+  find_charges(sheet, 1, phi, sheet->half_C);
+  const double left = dot(sheet, start, sheet->half_C) / dot(sheet, phi, sheet->half_C) /
+                      largest_across_V(sheet, start);
+  settling_s[0] = time_s;
+  settling_s[1] = time_s * log(10 * fabs(left));
+  memcpy(sheet->channel_V[1], sheet->channel_V[0], sheet->channels * sizeof(double));
+  memset(sheet->off_V, 0, sheet->unknowns * sizeof *sheet->off_V);
+  return DEA_OK;
+}
+
 // Creation ---------------------------------------------------------------------------------------
 
 static dea_status allocate_places(struct dea_sheet *sheet)
@@ -588,6 +647,7 @@ static dea_status allocate_unknowns(struct dea_sheet *sheet)
   double **const values[] = {&sheet->potential_V, &sheet->charge_C, &sheet->charge_next_C,
                              &sheet->half_V,      &sheet->whole_V,  &sheet->half_C,
                              &sheet->off_V};
+  sheet->channel = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof *sheet->channel);
   sheet->lead = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof *sheet->lead);
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
     *values[i] = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof(double));
@@ -619,13 +679,8 @@ static void set_start(struct dea_sheet *sheet)
   }
   dea_solid_channel_voltages(sheet->solid, sheet->channel_V[0]);
   memcpy(sheet->channel_V[1], sheet->channel_V[0], sheet->channels * sizeof(double));
-  for (size_t i = 0; i < sheet->mesh->layout->electrode_count; i++) {
-    for (size_t c = 0; c < sheet->columns; c++) {
-      const int at = sheet->at[i * sheet->columns + c];
-      if (at > 0) {
-        sheet->potential_V[at - 1] = sheet->channel_V[0][electrode(sheet, i)->channel];
-      }
-    }
+  for (size_t a = 0; a < sheet->unknowns; a++) {
+    sheet->potential_V[a] = sheet->channel_V[0][sheet->channel[a]];
   }
 }
 
@@ -638,8 +693,11 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
   }
   number(sheet);
   DEA_TRY(ctx, dea_solid_agree(ctx, allocate_unknowns(sheet)));
-  for (size_t a = 0; a < sheet->unknowns; a++) {
-    sheet->lead[a] = -1;
+  for (size_t i = 0; i < sheet->mesh->layout->electrode_count * sheet->columns; i++) {
+    if (sheet->at[i] > 0) {
+      sheet->channel[sheet->at[i] - 1] = (int)electrode(sheet, i / sheet->columns)->channel;
+      sheet->lead[sheet->at[i] - 1] = -1;
+    }
   }
   find_leads(sheet);
   find_ends(sheet);
@@ -651,6 +709,17 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
   DEA_TRY(ctx, find_capacitances(ctx, sheet, sheet->capacitance_F[0]));
   memcpy(sheet->u, sheet->solid->state.u, 3 * sheet->mesh->grid->node_count * sizeof *sheet->u);
   find_charges(sheet, 0, sheet->potential_V, sheet->charge_C);
+  memcpy(sheet->capacitance_F[1], sheet->capacitance_F[0],
+         sheet->mesh->grid->element_count * sizeof(double));
+  double settling_s[2] = {0};
+  DEA_TRY(ctx, find_settling(ctx, sheet, settling_s));
+  if (settling_s[1] > 0) { // false where no channel has a part of the supply's voltage
+    DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
+                                 "model 3d: by their sheet resistance electrodes charge with a "
+                                 "time constant of %.3g s; where that takes longest 90 %% of a "
+                                 "step of the supply is there after %.3g s (film as it lies)",
+                                 settling_s[0], settling_s[1]));
+  }
   return DEA_OK;
 }
 
