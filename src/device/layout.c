@@ -51,6 +51,15 @@ size_t dea_layout_find_channel(const struct dea_layout *layout, const char *name
   FIND_BY_NAME(layout->channels, layout->channel_count);
 }
 
+bool dea_layout_has_sheet_resistance(const struct dea_layout *layout)
+{
+  bool any = false;
+  for (size_t i = 0; i < layout->electrode_count; i++) {
+    any = any || layout->electrodes[i].sheet_resistance_ohm > 0;
+  }
+  return any;
+}
+
 /* Whether an electrode lies on that face of a ply, its own or its neighbour's in the list. */
 static bool lies_on(const struct dea_layout_electrode *electrode, size_t ply, bool top)
 {

@@ -186,6 +186,8 @@ static inline double dea_ply_stretched_layer_m(const struct dea_layout_ply *ply)
   return ply->thickness_m / (double)dea_ply_layers(ply);
 }
 
+/* Whether an electrode has a sheet resistance. */
+bool dea_layout_has_sheet_resistance(const struct dea_layout *layout);
 /* Whether a ply is between electrodes of two channels somewhere. */
 bool dea_layout_is_dielectric(const struct dea_layout *layout, size_t ply);
 /* The first ply of which that holds; NULL: there is none. */

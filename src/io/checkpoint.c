@@ -129,7 +129,8 @@ dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_resul
   bool whole = result->design == NULL || result->design->report.fields_of.value == DEA_FIELDS_WHOLE;
   for (size_t i = 0; i < result->surface_count; i++) {
     const struct dea_surface_record *record = &result->surfaces[i];
-    if (dea_surface_has_shapes(record)) {
+    if (dea_surface_has_shapes(record) ||
+        dea_field_mesh_find(record->mesh, DEA_VOLTAGE_FIELD) != NULL) {
       char name[NAME_SIZE];
       field_name(record->model, record->point, name);
       DEA_TRY(ctx, write_vtu(ctx, directory, name, record->mesh, record->voltage_V, whole));

@@ -29,7 +29,8 @@ dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory
                                   struct dea_result *result);
 
 /* Shapes of modes that a result has, as fields for ParaView: fields/MODEL_modal_0000.vtu, one for
- * each voltage. */
+ * each voltage; and what it has of electrodes with a sheet resistance, fields/MODEL_transient_...
+ * of points in time. */
 dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_result *result,
                                  const char *directory);
 

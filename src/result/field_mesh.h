@@ -38,6 +38,8 @@ struct dea_mesh_block {
  * what is added to a model's name for surfaces of a result that hold them. */
 #define DEA_SHAPE_FIELD "mode_%d"
 #define DEA_SHAPES_SUFFIX "_modal"
+/* Voltage across a film of electrodes with a sheet resistance. */
+#define DEA_VOLTAGE_FIELD "film_voltage_V"
 
 /* How large the system of a model on a mesh is. */
 struct dea_model_size {

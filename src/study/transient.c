@@ -146,6 +146,8 @@ struct player {
   bool *own, any_own;
   double *now_V, *next_V, *corner_s;
   struct dea_curve *curve;
+  struct dea_result *result;
+  enum dea_fields_at fields; // of electrodes with a sheet resistance, at points that are kept
   double until_s, tolerance, longest_s, interval_s;
   double time_s;
   double next_s;                 // length of the next step
@@ -219,6 +221,19 @@ static bool would_be_missed(struct player *p, const struct dea_load_point *point
   return p->has_pending && most > visible;
 }
 
+/* Where the film has which voltage at the last point of the curve, which the model is at. */
+static dea_status add_fields(struct dea_context *ctx, struct player *p)
+{
+  const size_t last = p->curve->count - 1;
+  char name[DEA_NAME_SIZE];
+  struct dea_field_mesh *mesh;
+  snprintf(name, sizeof name, "%.50s_%s", p->type->name, study_name);
+  DEA_TRY(ctx, dea_model_fields(ctx, p->type, p->model, DEA_FIELDS_SURFACE, &mesh));
+  DEA_TRY(ctx, dea_result_add_surface(ctx, p->result, name, last, p->curve->points[last].voltage_V,
+                                      mesh));
+  return DEA_OK;
+}
+
 /* Takes a point to the curve if it is needed there; corner: in any case. */
 static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_load_point *point,
                        bool corner)
@@ -235,7 +250,11 @@ static dea_status keep(struct dea_context *ctx, struct player *p, struct dea_loa
   }
   double waited_s = p->time_s - curve->points[curve->count - 1].time_s;
   if (corner || waited_s >= (p->interval_s > 0 ? p->interval_s : p->longest_s) * (1 - 1e-9)) {
-    return add(ctx, p, point);
+    const bool ends = p->time_s >= p->until_s;
+    DEA_TRY(ctx, add(ctx, p, point));
+    return p->fields == DEA_FIELDS_ALL || (ends && p->fields == DEA_FIELDS_LAST)
+               ? add_fields(ctx, p)
+               : DEA_OK;
   }
   struct dea_monitor_values *seen = p->seen.values; // stays with the point
   p->seen.values = p->spare;
@@ -525,11 +544,24 @@ static dea_status make_room(struct dea_context *ctx, const struct dea_result *re
   return dea_arena_status(&p->seen.memory);
 }
 
+/* What report.fields asks for of electrodes with a sheet resistance. */
+static enum dea_fields_at fields_of(const struct dea_model_type *type,
+                                    const struct dea_result *result)
+{
+  const struct dea_layout *layout = type->fields != NULL ? result->device->layout : NULL;
+  return layout != NULL && dea_layout_has_sheet_resistance(layout)
+             ? (enum dea_fields_at)result->design->report.fields.value
+             : DEA_FIELDS_NONE;
+}
+
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
                       struct dea_model *model, struct dea_result *result)
 {
   (void)model; // none: this starts from rest
-  struct player p = {.type = type, .inertia = settings_of(result->design)->inertia.value == 1};
+  struct player p = {.type = type,
+                     .result = result,
+                     .fields = fields_of(type, result),
+                     .inertia = settings_of(result->design)->inertia.value == 1};
   DEA_TRY(ctx, dea_result_add_curve(ctx, result, type->name, study_name, &p.curve));
   snprintf(p.what, sizeof p.what, "%s transient (%%)", type->name);
   dea_status status = make_room(ctx, result, &p);

@@ -44,15 +44,6 @@ struct dea_sheet {
   Vec right, solution;
 };
 
-bool dea_sheet_any(const struct dea_layout *layout)
-{
-  bool any = false;
-  for (size_t i = 0; i < layout->electrode_count; i++) {
-    any = any || layout->electrodes[i].sheet_resistance_ohm > 0;
-  }
-  return any;
-}
-
 // Places -----------------------------------------------------------------------------------------
 
 static const struct dea_layout_electrode *electrode(const struct dea_sheet *sheet, size_t i)
@@ -727,7 +718,7 @@ dea_status dea_sheet_create(struct dea_context *ctx, const struct dea_layout_mes
                             struct dea_solid *solid, const double *per_s, struct dea_sheet **out)
 {
   *out = NULL;
-  if (mesh == NULL || !dea_sheet_any(mesh->layout)) {
+  if (mesh == NULL || !dea_layout_has_sheet_resistance(mesh->layout)) {
     return DEA_OK;
   }
   if (solid->problem.field != NULL) {

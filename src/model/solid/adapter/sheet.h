@@ -8,7 +8,6 @@
 
 struct dea_sheet;
 
-bool dea_sheet_any(const struct dea_layout *layout);
 /* At the voltages that the solid's channels have. *out: NULL where all electrodes are ideal or
  * there is no mesh. per_s: [part materials] conductance of the films over their capacitance. All
  * lent. DEA_E_UNSUPPORTED for a coupled field. */

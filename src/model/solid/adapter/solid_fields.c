@@ -49,7 +49,8 @@ static dea_status prepare(struct dea_context *ctx, const struct dea_solid *s, st
                                        .u = s->state.u,
                                        .multiplier = s->state.multiplier,
                                        .across_V = out->across_V,
-                                       .potential_V = out->potential_V};
+                                       .potential_V = out->potential_V,
+                                       .uneven = s->state.drop_V != NULL};
   return status;
 }
 

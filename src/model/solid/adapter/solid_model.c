@@ -20,14 +20,14 @@ static const double field_step_V_per_m = 10e6; // a longer way is gone in such s
 static dea_status begin(struct dea_context *ctx, struct dea_model *model,
                         const struct dea_time_options *time, struct dea_load_point *out)
 {
-  const struct dea_driven_solid driven = {.solid = model->solid,
-                                          .branches = model->plies.branches,
-                                          .leakage_per_s = model->plies.leakage_per_s,
-                                          .mesh = &model->mesh,
-                                          .channels = !model->disc || dea_sheet_any(model->layout),
-                                          .copies = model->copies,
-                                          .thickness_m =
-                                              model->layout->plies[model->plies.film].thickness_m};
+  const struct dea_driven_solid driven = {
+      .solid = model->solid,
+      .branches = model->plies.branches,
+      .leakage_per_s = model->plies.leakage_per_s,
+      .mesh = &model->mesh,
+      .channels = !model->disc || dea_layout_has_sheet_resistance(model->layout),
+      .copies = model->copies,
+      .thickness_m = model->layout->plies[model->plies.film].thickness_m};
   if (time->inertia) {
     DEA_TRY(ctx, dea_solid_check_densities(ctx, model));
   }
@@ -160,7 +160,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   if (dea_solid_any(answers == NULL)) {
     return DEA_E_MEMORY;
   }
-  if (dea_sheet_any(model->layout)) {
+  if (dea_layout_has_sheet_resistance(model->layout)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
                     "model 3d: an excitation by electrodes with a sheet resistance is known in "
                     "time only (compute.transient with a sine); without sheet_resistance: that of "

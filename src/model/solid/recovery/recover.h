@@ -26,6 +26,7 @@ struct dea_recover_input {
   const int *part_material;
   const bool *active;
   const double *u, *multiplier, *across_V, *potential_V;
+  bool uneven; // voltages of one pair of electrodes differ from place to place
 };
 
 /* All elements with displacement, stretches, stresses, tension, field and energy at points (one a
@@ -35,7 +36,7 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
                               struct dea_field_mesh **out);
 
 /* The middle surface of a ply, between electrodes or not, under another ply or not: these four
- * parts do not share points. Fields: those of DEA_SURFACE_* below, cells: whether between
- * electrodes and whether under a fibre. */
+ * parts do not share points. Fields: those of DEA_SURFACE_* below, of uneven voltages
+ * DEA_VOLTAGE_FIELD; cells: whether between electrodes and whether under a fibre. */
 dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover_input *in, int ply,
                                struct dea_field_mesh **out);

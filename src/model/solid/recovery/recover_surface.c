@@ -5,8 +5,8 @@
 
 #include <string.h>
 
-// displacement 3, F 9, field, height, membrane force 6
-enum { SUMS = 20, FIELD = 12, HEIGHT = 13, FORCE = 14, GROUPS = 4 };
+// displacement 3, F 9, field, height, membrane force 6, voltage
+enum { SUMS = 21, FIELD = 12, HEIGHT = 13, FORCE = 14, VOLTAGE = 20, GROUPS = 4 };
 
 struct work {
   struct dea_context *ctx;
@@ -87,6 +87,7 @@ static void add_level(struct work *w, size_t element, double z, const int *point
       sum[3 + i] += share * at->F[n][i];
     }
     sum[FIELD] += share * at->field[n];
+    sum[VOLTAGE] += share * in->across_V[element];
   }
 }
 
@@ -179,11 +180,17 @@ static dea_status add_columns(struct work *w)
 /* Where the values of the fields go. */
 struct fields {
   double *displacement, *stretch, *tension, *field, *between, *under;
+  double *voltage; // NULL: they are even
 };
 
-static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh,
+static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh, bool uneven,
                              struct fields *out)
 {
+  static const struct dea_mesh_field voltage = {
+      .name = DEA_VOLTAGE_FIELD,
+      .unit = "V",
+      .meaning = "voltage across the film, of electrodes with a sheet resistance",
+      .components = 1};
   static const struct dea_mesh_field between = {"between_electrodes",
                                                 "1",
                                                 "1 where the film lies between electrodes",
@@ -205,6 +212,10 @@ static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mes
   dea_recover_add(ctx, mesh, &dea_recover_true_field, &out->field, &status);
   dea_recover_add(ctx, mesh, &between, &out->between, &status);
   dea_recover_add(ctx, mesh, &under, &out->under, &status);
+  out->voltage = NULL;
+  if (uneven) {
+    dea_recover_add(ctx, mesh, &voltage, &out->voltage, &status);
+  }
   return status;
 }
 
@@ -225,6 +236,9 @@ static void fill_point(const struct work *w, size_t p, double *X, const struct f
   memcpy(to->stretch + 3 * p, plane.stretch, sizeof plane.stretch);
   memcpy(to->tension + 2 * p, plane.tension, sizeof plane.tension);
   to->field[p] = mean[FIELD];
+  if (to->voltage != NULL) {
+    to->voltage[p] = mean[VOLTAGE];
+  }
 }
 
 static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
@@ -232,7 +246,7 @@ static dea_status fill_mesh(struct work *w, struct dea_field_mesh *mesh)
   int order = w->in->grid->order, *nodes;
   struct fields to;
   DEA_TRY(w->ctx, dea_field_mesh_add_block(w->ctx, mesh, order, 0, w->column_count, &nodes));
-  DEA_TRY(w->ctx, add_fields(w->ctx, mesh, &to));
+  DEA_TRY(w->ctx, add_fields(w->ctx, mesh, w->in->uneven, &to));
   memcpy(nodes, w->nodes, w->column_count * (size_t)((order + 1) * (order + 1)) * sizeof *nodes);
   for (size_t c = 0; c < w->column_count; c++) {
     const int half = w->group[c] / 2;
