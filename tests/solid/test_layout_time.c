@@ -332,6 +332,23 @@ TEST(test_line_leaks)
   dea_device_destroy(ctx, device);
 }
 
+/* Lowest and highest voltage on the film as a field. */
+static void field_V(struct dea_model *model, double out[2])
+{
+  struct dea_field_mesh *mesh;
+  assert_int_equal(dea_model_find("3d")->fields(ctx, model, DEA_FIELDS_SURFACE, &mesh), DEA_OK);
+  const double *V = dea_field_mesh_find(mesh, DEA_VOLTAGE_FIELD)->values;
+  const double *r = mesh->X;
+  out[0] = INFINITY;
+  out[1] = 0;
+  for (size_t i = 0; i < mesh->point_count; i++) {
+    const bool inside = hypot(r[3 * i], r[3 * i + 1]) < 3.7e-3;
+    out[0] = inside ? fmin(out[0], V[i]) : out[0];
+    out[1] = fmax(out[1], V[i]);
+  }
+  dea_field_mesh_destroy(ctx, mesh);
+}
+
 /* Both electrodes of a disc are fed along their edge: the voltage at the centre is
  * 1 - sum of 2/(j J_1(j)) exp(-j^2 t/(2 R c a^2)) over the zeros j of J_0. On a ramp of V' each of
  * them loses pi R (c V')^2 a^4/8. */
@@ -356,6 +373,10 @@ TEST(test_disc_charges)
     }
     assert_close(point.lowest_voltage_V, i > 10 ? share * V : 0, 0, (i > 10 ? 5e-3 : 0.2) * V);
   }
+  double range_V[2];
+  field_V(model, range_V); // means over elements
+  assert_close(range_V[0], point.lowest_voltage_V, 0.02, 0);
+  assert_close(range_V[1], V, 0.02, 0);
   const double rate = V / time_s;
   for (int i = 1; i <= 12; i++) {
     last = point;
