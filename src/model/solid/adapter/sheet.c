@@ -6,38 +6,41 @@
 #include <math.h>
 #include <petscksp.h>
 
-/* Number of an unknown at each end of an element's capacitance, negative: that of a channel, -1 -
- * k.
- */
 enum { TOP, BOTTOM, SIDES };
+
+/* Of the capacitance of an element what is at one of its plane nodes. */
+struct cell {
+  size_t element;
+  int end[SIDES]; // potentials
+  double share;
+};
 
 /* A step, or a part of it, to a share of the way between the accepted state and the present one. */
 struct part {
   double share, length_s;
-  const double *charge_C; // [unknowns] that it starts from
+  const double *charge_C; // [potentials] that it starts from
 };
 
+/* Potentials are those of the channels, which are known, and then of the free nodes. */
 struct dea_sheet {
   struct dea_arena memory;
   const struct dea_layout_mesh *mesh;
   struct dea_solid *solid;
   const double *per_s;
   struct dea_flat_shape shape;
-  size_t columns, unknowns, channels;
-  int *at;        // [electrodes][columns] number of an unknown from 1 on; 0: none
-  int *node;      // [electrodes][columns] of the grid
-  size_t *first;  // [electrodes] the first one on the same face and channel
-  double *shares; // [elements][shape.nodes] of its plane nodes in an element's capacitance
-  int *channel;   // [unknowns]
-  int *lead;      // [unknowns] its channel, where it is at that; -1: elsewhere
-  int (*end)[2];  // [elements] electrode at TOP and BOTTOM with a resistance; -1: without
+  size_t columns, channels, potentials, cell_count;
+  int *at;                           // [electrodes][columns] number of a potential; -1: none
+  int *node;                         // [electrodes][columns] of the grid
+  size_t *first;                     // [electrodes] the first one on the same face and channel
+  struct cell *cells;                // [cell_count] those of an element one after the other
+  int *channel;                      // [potentials] of its electrode
   double *capacitance_F[2];          // [elements] accepted, present
   double *u;                         // [nodes][3] accepted
   double *channel_V[2];              // [channels] accepted, present
-  double *potential_V;               // [unknowns] present
-  double *charge_C, *charge_next_C;  // [unknowns] accepted, present
-  double *half_V, *whole_V, *half_C; // [unknowns] work
-  double *off_V, factor;             // [unknowns] what the film would change them by, and how far
+  double *potential_V;               // [potentials] present
+  double *charge_C, *charge_next_C;  // [potentials] accepted, present
+  double *half_V, *whole_V, *half_C; // [potentials] work
+  double *off_V, factor;             // [potentials] what the film would change them by, how far
   double error, largest_C;
   Mat A;
   KSP solver;
@@ -73,7 +76,7 @@ static size_t first_of(const struct dea_sheet *sheet, size_t i)
   return j;
 }
 
-static int *unknown_at(const struct dea_sheet *sheet, size_t i, int column)
+static int *potential_at(const struct dea_sheet *sheet, size_t i, int column)
 {
   return &sheet->at[sheet->first[i] * sheet->columns + (size_t)column];
 }
@@ -100,27 +103,35 @@ static int column_of(const struct dea_sheet *sheet, size_t e, int n)
   return grid->column[grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n]];
 }
 
-/* Numbers the unknowns of electrodes with a resistance, and finds nodes of the grid at them. */
-static void number(struct dea_sheet *sheet)
+/* The node of a resisting electrode that node n of a quadrilateral is; -1: none. */
+static int node_of(const struct dea_sheet *sheet, size_t i, size_t quad, int n)
 {
-  const struct dea_layout_mesh *mesh = sheet->mesh;
-  const struct dea_grid *grid = mesh->grid;
-  for (size_t i = 0; i < mesh->layout->electrode_count; i++) {
-    const struct dea_layout_electrode *own = electrode(sheet, i);
-    for (size_t q = 0; resists(sheet, i) && q < mesh->plane->quad_count; q++) {
-      for (int n = 0; covers(sheet, i, q) && n < sheet->shape.nodes; n++) {
-        int *at = unknown_at(sheet, i, quad_nodes(sheet, q)[n]);
-        *at = *at > 0 ? *at : (int)++sheet->unknowns;
-      }
+  return resists(sheet, i) && covers(sheet, i, quad) ? quad_nodes(sheet, quad)[n] : -1;
+}
+
+/* Whether two electrodes on the same face and channel have a node in common; where the second is
+ * ideal that is the lead of the first. */
+static bool meets(struct dea_sheet *sheet, size_t i, size_t other, bool *has)
+{
+  bool any = false;
+  const int nodes = sheet->shape.nodes;
+  memset(has, 0, sheet->columns * sizeof *has);
+  for (size_t k = 0; k < sheet->mesh->plane->quad_count * (size_t)nodes; k++) {
+    const size_t q = k / (size_t)nodes;
+    if (covers(sheet, other, q)) {
+      has[quad_nodes(sheet, q)[k % (size_t)nodes]] = true;
     }
-    for (size_t e = 0; e < grid->element_count; e++) {
-      const int last = (grid->levels[e] - 1) * sheet->shape.nodes;
-      for (int n = 0; (size_t)grid->ply[e] == own->ply && n < sheet->shape.nodes; n++) {
-        sheet->node[i * sheet->columns + (size_t)column_of(sheet, e, n)] =
-            grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(n + (own->top ? last : 0))];
+  }
+  for (size_t k = 0; k < sheet->mesh->plane->quad_count * (size_t)nodes; k++) {
+    const int column = node_of(sheet, i, k / (size_t)nodes, (int)(k % (size_t)nodes));
+    if (column >= 0 && has[column]) {
+      any = true;
+      if (!resists(sheet, other)) {
+        *potential_at(sheet, i, column) = (int)electrode(sheet, i)->channel;
       }
     }
   }
+  return any;
 }
 
 /* Distance of a point from the outer edge of an electrode. */
@@ -136,86 +147,88 @@ static double edge_distance_m(const struct dea_region *region, const double x[2]
   return least;
 }
 
-/* Whether another electrode on the same face and channel meets one, and, where that is ideal, that
- * its lead is there. */
-static bool meets(struct dea_sheet *sheet, size_t i, size_t other)
-{
-  bool any = false;
-  for (size_t q = 0; q < sheet->mesh->plane->quad_count; q++) {
-    for (int n = 0; covers(sheet, other, q) && n < sheet->shape.nodes; n++) {
-      const int column = quad_nodes(sheet, q)[n];
-      const int at = *unknown_at(sheet, i, column);
-      if (at > 0 && !resists(sheet, other)) {
-        sheet->lead[at - 1] = (int)electrode(sheet, i)->channel;
-      }
-      any = any || at > 0;
-    }
-  }
-  return any;
-}
-
-/* The lead is where an ideal electrode meets one with a resistance, else all along its edge. */
-static void find_leads(struct dea_sheet *sheet)
-{
-  const struct dea_layout *l = sheet->mesh->layout;
-  for (size_t i = 0; i < l->electrode_count; i++) {
-    bool led = false;
-    for (size_t j = 0; j < l->electrode_count && resists(sheet, i); j++) {
-      const bool same = j != i && sheet->first[j] == sheet->first[i];
-      led = (same && meets(sheet, i, j)) || led;
-    }
-    for (size_t q = 0; q < sheet->mesh->plane->quad_count && resists(sheet, i) && !led; q++) {
-      for (int n = 0; covers(sheet, i, q) && n < sheet->shape.nodes; n++) {
-        const int column = quad_nodes(sheet, q)[n];
-        if (edge_distance_m(&l->regions[electrode(sheet, i)->region].region,
-                            sheet->mesh->plane->x + 2 * column) <= sheet->mesh->near_m) {
-          sheet->lead[*unknown_at(sheet, i, column) - 1] = (int)electrode(sheet, i)->channel;
-        }
-      }
-    }
-  }
-}
-
-static void find_ends(struct dea_sheet *sheet)
+/* All of the outer edge of an electrode is its lead. */
+static void lead_edge(struct dea_sheet *sheet, size_t i)
 {
   const struct dea_layout_mesh *mesh = sheet->mesh;
-  for (size_t e = 0; e < mesh->grid->element_count; e++) {
-    const struct dea_layout_field *field =
-        &mesh->field[(size_t)mesh->grid->region[e] * mesh->layout->ply_count +
-                     (size_t)mesh->grid->ply[e]];
-    const int at[SIDES] = {field->top_electrode, field->bottom_electrode};
-    for (int k = 0; k < SIDES; k++) {
-      sheet->end[e][k] =
-          sheet->solid->problem.active[e] && resists(sheet, (size_t)at[k]) ? at[k] : -1;
+  const struct dea_region *region = &mesh->layout->regions[electrode(sheet, i)->region].region;
+  for (size_t q = 0; q < mesh->plane->quad_count; q++) {
+    for (int n = 0; n < sheet->shape.nodes; n++) {
+      const int column = node_of(sheet, i, q, n);
+      if (column >= 0 && edge_distance_m(region, mesh->plane->x + 2 * column) <= mesh->near_m) {
+        *potential_at(sheet, i, column) = (int)electrode(sheet, i)->channel;
+      }
     }
   }
 }
 
-/* Whether an element charges through a resistance. */
-static bool counts(const struct dea_sheet *sheet, size_t e)
+/* An electrode with a resistance is led where it meets an ideal one, or by another one that is led
+ * and that it meets; else along its edge. led: [electrodes]. */
+static void find_leads(struct dea_sheet *sheet, bool *led, bool *has)
 {
-  return sheet->end[e][TOP] >= 0 || sheet->end[e][BOTTOM] >= 0;
+  const size_t count = sheet->mesh->layout->electrode_count;
+  bool more = true;
+  for (size_t i = 0; i < count; i++) {
+    led[i] = !resists(sheet, i);
+  }
+  while (more) {
+    more = false;
+    for (size_t k = 0; k < count * count; k++) {
+      const size_t i = k / count, j = k % count;
+      const bool ask = resists(sheet, i) && led[j] && sheet->first[i] == sheet->first[j];
+      if (ask && (!led[i] || !resists(sheet, j)) && meets(sheet, i, j, has)) {
+        more = more || !led[i];
+        led[i] = true;
+      }
+    }
+  }
+  for (size_t i = 0; i < count; i++) {
+    if (!led[i]) {
+      lead_edge(sheet, i);
+    }
+  }
 }
 
-/* Unknown at an end of an element over a plane node of it, or -1 - its channel. */
-static int end_of(const struct dea_sheet *sheet, size_t e, int side, int n)
+/* Numbers the potentials, and finds nodes of the grid at them. */
+static void number(struct dea_sheet *sheet, bool *led, bool *has)
 {
-  const int i = sheet->end[e][side];
-  return i >= 0 ? *unknown_at(sheet, (size_t)i, column_of(sheet, e, n)) - 1
-                : -1 - sheet->solid->problem.between[e][side];
+  const struct dea_layout_mesh *mesh = sheet->mesh;
+  const struct dea_grid *grid = mesh->grid;
+  const size_t electrodes = mesh->layout->electrode_count;
+  for (size_t k = 0; k < electrodes * sheet->columns; k++) {
+    sheet->at[k] = -1;
+  }
+  find_leads(sheet, led, has);
+  sheet->potentials = sheet->channels;
+  for (size_t i = 0; i < electrodes; i++) {
+    const struct dea_layout_electrode *own = electrode(sheet, i);
+    for (size_t k = 0; k < mesh->plane->quad_count * (size_t)sheet->shape.nodes; k++) {
+      const int column =
+          node_of(sheet, i, k / (size_t)sheet->shape.nodes, (int)(k % (size_t)sheet->shape.nodes));
+      if (column >= 0 && *potential_at(sheet, i, column) < 0) {
+        *potential_at(sheet, i, column) = (int)sheet->potentials++;
+      }
+    }
+    for (size_t e = 0; e < grid->element_count; e++) {
+      const int last = (grid->levels[e] - 1) * sheet->shape.nodes;
+      for (int n = 0; (size_t)grid->ply[e] == own->ply && n < sheet->shape.nodes; n++) {
+        sheet->node[i * sheet->columns + (size_t)column_of(sheet, e, n)] =
+            grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)(n + (own->top ? last : 0))];
+      }
+    }
+  }
 }
 
 /* Shares of the plane nodes of an element in its capacitance: of the integrals of their bases, all
  * of which are positive at Gauss-Lobatto points. */
-static void find_shares(struct dea_sheet *sheet, size_t e)
+static void set_shares(struct dea_sheet *sheet, struct cell *cells)
 {
   const struct dea_flat_shape *s = &sheet->shape;
-  double *out = sheet->shares + e * (size_t)s->nodes;
   double sum = 0;
   for (int q = 0; q < s->gauss; q++) {
     double map[4] = {0};
     for (int n = 0; n < s->nodes; n++) {
-      const double *x = sheet->mesh->plane->x + 2 * column_of(sheet, e, n);
+      const double *x = sheet->mesh->plane->x + 2 * column_of(sheet, cells->element, n);
       for (int a = 0; a < 4; a++) {
         map[a] += x[a / 2] * s->slope[q][a % 2][n];
       }
@@ -223,11 +236,39 @@ static void find_shares(struct dea_sheet *sheet, size_t e)
     const double area = s->weight[q] * (map[0] * map[3] - map[1] * map[2]);
     sum += area;
     for (int n = 0; n < s->nodes; n++) {
-      out[n] += area * s->value[q][n];
+      cells[n].share += area * s->value[q][n];
     }
   }
   for (int n = 0; n < s->nodes; n++) {
-    out[n] /= sum;
+    cells[n].share /= sum;
+  }
+}
+
+/* Cells of elements that charge through a resistance. */
+static void find_cells(struct dea_sheet *sheet)
+{
+  const struct dea_layout_mesh *mesh = sheet->mesh;
+  const struct dea_solid_problem *p = &sheet->solid->problem;
+  for (size_t e = 0; e < mesh->grid->element_count; e++) {
+    const struct dea_layout_field *field =
+        &mesh->field[(size_t)mesh->grid->region[e] * mesh->layout->ply_count +
+                     (size_t)mesh->grid->ply[e]];
+    const int on[SIDES] = {field->top_electrode, field->bottom_electrode};
+    struct cell *cells = sheet->cells + sheet->cell_count;
+    if (!p->active[e] ||
+        (!resists(sheet, (size_t)on[TOP]) && !resists(sheet, (size_t)on[BOTTOM]))) {
+      continue;
+    }
+    for (int n = 0; n < sheet->shape.nodes; n++) {
+      cells[n].element = e;
+      for (int k = 0; k < SIDES; k++) {
+        cells[n].end[k] = resists(sheet, (size_t)on[k])
+                              ? *potential_at(sheet, (size_t)on[k], column_of(sheet, e, n))
+                              : p->between[e][k];
+      }
+    }
+    set_shares(sheet, cells);
+    sheet->cell_count += (size_t)sheet->shape.nodes;
   }
 }
 
@@ -238,43 +279,39 @@ static double mean_of(const double *const of[2], double share, size_t i)
   return (1 - share) * of[0][i] + share * of[1][i];
 }
 
-static double channel_V(const struct dea_sheet *sheet, double share, int k)
+static double cell_F(const struct dea_sheet *sheet, double share, const struct cell *cell)
 {
-  return mean_of((const double *const *)sheet->channel_V, share, (size_t)k);
+  return cell->share * mean_of((const double *const *)sheet->capacitance_F, share, cell->element);
+}
+
+static double cell_V(const struct cell *cell, const double *phi)
+{
+  return phi[cell->end[TOP]] - phi[cell->end[BOTTOM]];
 }
 
 /* A[row][column] += value, where what is known goes to the right side. */
-static PetscErrorCode add(const struct dea_sheet *sheet, double share, int row, int column,
+static PetscErrorCode add(const struct dea_sheet *sheet, const double *phi, int row, int column,
                           double value, double *right)
 {
-  if (row < 0 || sheet->lead[row] >= 0) {
-    return 0;
+  const int known = (int)sheet->channels;
+  if (row >= known && column < known) {
+    right[row - known] -= value * phi[column];
   }
-  const int known = column < 0 ? -1 - column : sheet->lead[column];
-  if (known >= 0) {
-    right[row] -= value * channel_V(sheet, share, known);
-    return 0;
-  }
-  return MatSetValue(sheet->A, row, column, value, ADD_VALUES);
+  return row < known || column < known
+             ? 0
+             : MatSetValue(sheet->A, row - known, column - known, value, ADD_VALUES);
 }
 
-static PetscErrorCode add_capacitances(const struct dea_sheet *sheet, const struct part *part,
-                                       double *right)
+static PetscErrorCode add_cells(const struct dea_sheet *sheet, const struct part *part,
+                                const double *phi, double *right)
 {
   PetscErrorCode code = 0;
-  for (size_t e = 0; e < sheet->mesh->grid->element_count && code == 0; e++) {
-    if (!counts(sheet, e)) {
-      continue;
-    }
-    const double C = mean_of((const double *const *)sheet->capacitance_F, part->share, e);
+  for (size_t k = 0; k < 4 * sheet->cell_count && code == 0; k++) {
+    const struct cell *cell = &sheet->cells[k / 4];
     const double per_s =
-        1 / part->length_s + sheet->per_s[sheet->solid->problem.part_material_of[e]];
-    const double *shares = sheet->shares + e * (size_t)sheet->shape.nodes;
-    for (int n = 0; n < 4 * sheet->shape.nodes && code == 0; n++) {
-      const int row = end_of(sheet, e, n % 2, n / 4), column = end_of(sheet, e, n / 2 % 2, n / 4);
-      code = add(sheet, part->share, row, column,
-                 (n % 2 == n / 2 % 2 ? 1 : -1) * per_s * C * shares[n / 4], right);
-    }
+        1 / part->length_s + sheet->per_s[sheet->solid->problem.part_material_of[cell->element]];
+    code = add(sheet, phi, cell->end[k % 2], cell->end[k / 2 % 2],
+               (k % 2 == k / 2 % 2 ? per_s : -per_s) * cell_F(sheet, part->share, cell), right);
   }
   return code;
 }
@@ -315,7 +352,7 @@ static void find_conductances(const struct dea_sheet *sheet, size_t i, size_t qu
 }
 
 static PetscErrorCode add_electrode(const struct dea_sheet *sheet, size_t i, double share,
-                                    double *right)
+                                    const double *phi, double *right)
 {
   double K[DEA_FLAT_NODES_MAX * DEA_FLAT_NODES_MAX];
   const int nodes = sheet->shape.nodes;
@@ -329,30 +366,34 @@ static PetscErrorCode add_electrode(const struct dea_sheet *sheet, size_t i, dou
     }
     find_conductances(sheet, i, q, share, K);
     for (int n = 0; n < nodes * nodes && code == 0; n++) {
-      const int row = *unknown_at(sheet, i, quad_nodes(sheet, q)[n / nodes]) - 1;
-      const int column = *unknown_at(sheet, i, quad_nodes(sheet, q)[n % nodes]) - 1;
-      code = add(sheet, share, row, column, per_ohm * K[n], right);
+      const int row = *potential_at(sheet, i, quad_nodes(sheet, q)[n / nodes]);
+      const int column = *potential_at(sheet, i, quad_nodes(sheet, q)[n % nodes]);
+      code = add(sheet, phi, row, column, per_ohm * K[n], right);
     }
   }
   return code;
 }
 
-/* One implicit Euler step, (M/h + G + K) phi = Q/h, where leads are at their channels. */
+/* One implicit Euler step, (M/h + G + K) phi = Q/h, from the potentials of the channels to all. */
 static dea_status euler_step(struct dea_context *ctx, struct dea_sheet *sheet,
                              const struct part *part, double *phi)
 {
+  const size_t known = sheet->channels;
   PetscScalar *right;
   PetscErrorCode code = 0;
   DEA_PETSC(ctx, MatZeroEntries(sheet->A));
   DEA_PETSC(ctx, VecGetArray(sheet->right, &right));
-  for (size_t a = 0; a < sheet->unknowns && code == 0; a++) {
-    const int at = (int)a, lead = sheet->lead[a];
-    right[a] = lead >= 0 ? channel_V(sheet, part->share, lead) : part->charge_C[a] / part->length_s;
-    code = MatSetValue(sheet->A, at, at, lead >= 0 ? 1 : 0, ADD_VALUES);
+  for (size_t a = 0; a < sheet->potentials && code == 0; a++) {
+    if (a < known) {
+      phi[a] = mean_of((const double *const *)sheet->channel_V, part->share, a);
+    } else {
+      right[a - known] = part->charge_C[a] / part->length_s;
+      code = MatSetValue(sheet->A, (PetscInt)(a - known), (PetscInt)(a - known), 0, ADD_VALUES);
+    }
   }
-  code = code == 0 ? add_capacitances(sheet, part, right) : code;
+  code = code == 0 ? add_cells(sheet, part, phi, right) : code;
   for (size_t i = 0; i < sheet->mesh->layout->electrode_count && code == 0; i++) {
-    code = resists(sheet, i) ? add_electrode(sheet, i, part->share, right) : 0;
+    code = resists(sheet, i) ? add_electrode(sheet, i, part->share, phi, right) : 0;
   }
   DEA_PETSC(ctx, VecRestoreArray(sheet->right, &right));
   DEA_PETSC(ctx, code);
@@ -361,43 +402,22 @@ static dea_status euler_step(struct dea_context *ctx, struct dea_sheet *sheet,
   DEA_PETSC(ctx, KSPSetOperators(sheet->solver, sheet->A, sheet->A));
   DEA_PETSC(ctx, KSPSolve(sheet->solver, sheet->right, sheet->solution));
   DEA_PETSC(ctx, VecGetArray(sheet->solution, &right));
-  memcpy(phi, right, sheet->unknowns * sizeof *phi);
+  memcpy(phi + known, right, (sheet->potentials - known) * sizeof *phi);
   DEA_PETSC(ctx, VecRestoreArray(sheet->solution, &right));
   return DEA_OK;
 }
 
 // Charges and voltages ---------------------------------------------------------------------------
 
-/* Voltage across an element over a plane node of it, at potentials of the present. */
-static double across_V(const struct dea_sheet *sheet, double share, const double *phi, size_t e,
-                       int n)
-{
-  double V[SIDES];
-  for (int k = 0; k < SIDES; k++) {
-    const int at = end_of(sheet, e, k, n);
-    V[k] = at >= 0 ? phi[at] : channel_V(sheet, share, -1 - at);
-  }
-  return V[TOP] - V[BOTTOM];
-}
-
 static void find_charges(const struct dea_sheet *sheet, double share, const double *phi,
                          double *charge_C)
 {
-  memset(charge_C, 0, sheet->unknowns * sizeof *charge_C);
-  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
-    if (!counts(sheet, e)) {
-      continue;
-    }
-    const double *shares = sheet->shares + e * (size_t)sheet->shape.nodes;
-    for (int n = 0; n < sheet->shape.nodes; n++) {
-      const double C = mean_of((const double *const *)sheet->capacitance_F, share, e) * shares[n];
-      for (int k = 0; k < SIDES; k++) {
-        const int at = end_of(sheet, e, k, n);
-        if (at >= 0) {
-          charge_C[at] += (k == TOP ? C : -C) * across_V(sheet, share, phi, e, n);
-        }
-      }
-    }
+  memset(charge_C, 0, sheet->potentials * sizeof *charge_C);
+  for (size_t k = 0; k < sheet->cell_count; k++) {
+    const struct cell *cell = &sheet->cells[k];
+    const double charge = cell_F(sheet, share, cell) * cell_V(cell, phi);
+    charge_C[cell->end[TOP]] += charge;
+    charge_C[cell->end[BOTTOM]] -= charge;
   }
 }
 
@@ -405,22 +425,20 @@ static void find_charges(const struct dea_sheet *sheet, double share, const doub
 static void set_goals(struct dea_sheet *sheet)
 {
   struct dea_solid_state *state = &sheet->solid->state;
-  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
+  const size_t nodes = (size_t)sheet->shape.nodes;
+  for (size_t k = 0; k < sheet->cell_count; k += nodes) {
+    const struct cell *cells = &sheet->cells[k];
+    const int *between = sheet->solid->problem.between[cells->element];
     double mean = 0, square = 0;
-    if (!counts(sheet, e)) {
-      continue;
-    }
-    const double *shares = sheet->shares + e * (size_t)sheet->shape.nodes;
-    for (int n = 0; n < sheet->shape.nodes; n++) {
-      const double V = across_V(sheet, 1, sheet->potential_V, e, n);
-      mean += shares[n] * V;
-      square += shares[n] * V * V;
+    for (size_t n = 0; n < nodes; n++) {
+      const double V = cell_V(&cells[n], sheet->potential_V);
+      mean += cells[n].share * V;
+      square += cells[n].share * V * V;
     }
     const double root = copysign(sqrt(square), mean);
-    const int *between = sheet->solid->problem.between[e];
-    state->drop_goal_V[e] =
+    state->drop_goal_V[cells->element] =
         root - (sheet->channel_V[1][between[TOP]] - sheet->channel_V[1][between[BOTTOM]]);
-    state->evenness[e] = root != 0 ? mean / root : 1;
+    state->evenness[cells->element] = root != 0 ? mean / root : 1;
   }
 }
 
@@ -431,7 +449,7 @@ static dea_status find_capacitances(struct dea_context *ctx, struct dea_sheet *s
   memset(out, 0, p->grid->element_count * sizeof *out);
   for (size_t i = 0; i < p->own_count && status == DEA_OK; i++) {
     const size_t e = p->own[i];
-    status = counts(sheet, e)
+    status = p->active[e]
                  ? dea_solid_element_capacitance(sheet->solid, e, sheet->solid->state.u, &out[e])
                  : DEA_OK;
   }
@@ -470,7 +488,7 @@ static dea_status extrapolate(struct dea_context *ctx, struct dea_sheet *sheet, 
   DEA_TRY(ctx, euler_step(ctx, sheet, &rest, sheet->half_V));
   find_charges(sheet, 1, sheet->whole_V, sheet->charge_next_C);
   find_charges(sheet, 1, sheet->half_V, sheet->half_C);
-  for (size_t a = 0; a < sheet->unknowns; a++) {
+  for (size_t a = sheet->channels; a < sheet->potentials; a++) {
     sheet->half_V[a] = 2 * sheet->half_V[a] - sheet->whole_V[a];
     off += 0.125 * fabs(sheet->half_C[a] - sheet->charge_next_C[a]);
     sheet->charge_next_C[a] = 2 * sheet->half_C[a] - sheet->charge_next_C[a];
@@ -486,7 +504,7 @@ static dea_status extrapolate(struct dea_context *ctx, struct dea_sheet *sheet, 
 static double relax(struct dea_sheet *sheet, bool first)
 {
   double most = 0, along = 0, square = 0;
-  for (size_t a = 0; a < sheet->unknowns; a++) {
+  for (size_t a = sheet->channels; a < sheet->potentials; a++) {
     const double off = sheet->half_V[a] - sheet->potential_V[a], bend = off - sheet->off_V[a];
     most = fmax(most, fabs(off));
     along -= sheet->off_V[a] * bend;
@@ -496,7 +514,7 @@ static double relax(struct dea_sheet *sheet, bool first)
   if (!first && along > 0) { // else that of the step before
     sheet->factor = fmin(fmax(sheet->factor * along / square, 0.1), 2);
   }
-  for (size_t a = 0; a < sheet->unknowns; a++) {
+  for (size_t a = sheet->channels; a < sheet->potentials; a++) {
     sheet->potential_V[a] =
         first ? sheet->half_V[a] : sheet->potential_V[a] + sheet->factor * sheet->off_V[a];
   }
@@ -513,6 +531,7 @@ dea_status dea_sheet_solve(struct dea_context *ctx, struct dea_sheet *sheet, boo
   }
   DEA_TRY(ctx, extrapolate(ctx, sheet, h));
   *change_V = relax(sheet, first);
+  memcpy(sheet->potential_V, sheet->channel_V[1], sheet->channels * sizeof(double));
   set_goals(sheet);
   return DEA_OK;
 }
@@ -540,10 +559,8 @@ double dea_sheet_error(const struct dea_sheet *sheet)
 double dea_sheet_lowest_V(const struct dea_sheet *sheet)
 {
   double least = INFINITY;
-  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
-    for (int n = 0; counts(sheet, e) && n < sheet->shape.nodes; n++) {
-      least = fmin(least, fabs(across_V(sheet, 1, sheet->potential_V, e, n)));
-    }
+  for (size_t k = 0; k < sheet->cell_count; k++) {
+    least = fmin(least, fabs(cell_V(&sheet->cells[k], sheet->potential_V)));
   }
   return least;
 }
@@ -553,56 +570,51 @@ double dea_sheet_lowest_V(const struct dea_sheet *sheet)
 static double dot(const struct dea_sheet *sheet, const double *a, const double *b)
 {
   double sum = 0;
-  for (size_t i = 0; i < sheet->unknowns; i++) {
+  for (size_t i = sheet->channels; i < sheet->potentials; i++) {
     sum += a[i] * b[i];
   }
   return sum;
 }
 
-/* Largest voltage across an element at potentials over channels at 0 V. */
-static double largest_across_V(const struct dea_sheet *sheet, const double *phi)
+static double largest_V(const struct dea_sheet *sheet, const double *phi)
 {
   double most = 0;
-  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
-    for (int n = 0; counts(sheet, e) && n < sheet->shape.nodes; n++) {
-      most = fmax(most, fabs(across_V(sheet, 1, phi, e, n)));
-    }
+  for (size_t k = 0; k < sheet->cell_count; k++) {
+    most = fmax(most, fabs(cell_V(&sheet->cells[k], phi)));
   }
   return most;
 }
 
 /* The slowest mode of M dphi/dt + K phi = 0, by inverse iteration, and what a step of the voltage
- * leaves of it where it is largest. */
-static dea_status find_settling(struct dea_context *ctx, struct dea_sheet *sheet,
-                                double settling_s[2])
+ * leaves of it where it is largest: its time constant, and the time to 90 %. */
+static dea_status find_settling(struct dea_context *ctx, struct dea_sheet *sheet, double out_s[2])
 {
   enum { ITERATIONS = 30 };
   static const double long_share = 1e18; // of short_s: nothing of M is left
   const struct part part = {1, long_share * short_s(sheet), sheet->half_C};
-  double *phi = sheet->half_V, *start = sheet->off_V, time_s = 0, last_s = INFINITY;
+  double *phi = sheet->half_V, *start = sheet->off_V, last_s = INFINITY;
   memset(sheet->channel_V[1], 0, sheet->channels * sizeof(double));
-  for (size_t a = 0; a < sheet->unknowns; a++) {
-    start[a] = sheet->lead[a] < 0 ? sheet->solid->problem.share[sheet->channel[a]] : 0;
-    phi[a] = start[a];
+  for (size_t a = sheet->channels; a < sheet->potentials; a++) {
+    phi[a] = start[a] = sheet->solid->problem.share[sheet->channel[a]];
   }
-  for (int i = 0; i < ITERATIONS && fabs(time_s - last_s) > 1e-4 * time_s; i++) {
+  out_s[0] = 0;
+  for (int i = 0; i < ITERATIONS && fabs(out_s[0] - last_s) > 1e-4 * out_s[0]; i++) {
     find_charges(sheet, 1, phi, sheet->half_C);
     DEA_TRY(ctx, euler_step(ctx, sheet, &part, sheet->whole_V));
-    last_s = time_s;
-    time_s =
+    last_s = out_s[0];
+    out_s[0] =
         part.length_s * dot(sheet, sheet->whole_V, sheet->half_C) / dot(sheet, phi, sheet->half_C);
-    const double largest = largest_across_V(sheet, sheet->whole_V);
-    for (size_t a = 0; a < sheet->unknowns; a++) {
+    const double largest = largest_V(sheet, sheet->whole_V);
+    for (size_t a = sheet->channels; a < sheet->potentials; a++) {
       phi[a] = sheet->whole_V[a] / largest;
     }
   }
   find_charges(sheet, 1, phi, sheet->half_C);
-  const double left = dot(sheet, start, sheet->half_C) / dot(sheet, phi, sheet->half_C) /
-                      largest_across_V(sheet, start);
-  settling_s[0] = time_s;
-  settling_s[1] = time_s * log(10 * fabs(left));
+  out_s[1] =
+      out_s[0] * log(10 * fabs(dot(sheet, start, sheet->half_C) / dot(sheet, phi, sheet->half_C)) /
+                     largest_V(sheet, start));
   memcpy(sheet->channel_V[1], sheet->channel_V[0], sheet->channels * sizeof(double));
-  memset(sheet->off_V, 0, sheet->unknowns * sizeof *sheet->off_V);
+  memset(start, 0, sheet->potentials * sizeof *start);
   return DEA_OK;
 }
 
@@ -612,45 +624,46 @@ static dea_status allocate_places(struct dea_sheet *sheet)
 {
   const struct dea_layout_mesh *mesh = sheet->mesh;
   struct dea_solid *s = sheet->solid;
+  struct dea_arena *memory = &sheet->memory;
   const size_t electrodes = mesh->layout->electrode_count, elements = mesh->grid->element_count;
   sheet->columns = mesh->plane->node_count;
   sheet->channels = s->problem.channel_count + 1;
-  sheet->at = dea_arena_alloc(&sheet->memory, electrodes * sheet->columns, sizeof *sheet->at);
-  sheet->node = dea_arena_alloc(&sheet->memory, electrodes * sheet->columns, sizeof *sheet->node);
-  sheet->first = dea_arena_alloc(&sheet->memory, electrodes, sizeof *sheet->first);
-  sheet->shares = dea_arena_alloc(&sheet->memory, elements * DEA_FLAT_NODES_MAX, sizeof(double));
-  sheet->end = dea_arena_alloc(&sheet->memory, elements, sizeof *sheet->end);
-  sheet->u = dea_arena_alloc(&sheet->memory, 3 * mesh->grid->node_count, sizeof *sheet->u);
+  sheet->at = dea_arena_alloc(memory, electrodes * sheet->columns, sizeof *sheet->at);
+  sheet->node = dea_arena_alloc(memory, electrodes * sheet->columns, sizeof *sheet->node);
+  sheet->first = dea_arena_alloc(memory, electrodes, sizeof *sheet->first);
+  sheet->cells =
+      dea_arena_alloc(memory, elements * (size_t)sheet->shape.nodes, sizeof *sheet->cells);
+  sheet->u = dea_arena_alloc(memory, 3 * mesh->grid->node_count, sizeof *sheet->u);
   for (int k = 0; k < 2; k++) {
-    sheet->capacitance_F[k] = dea_arena_alloc(&sheet->memory, elements, sizeof(double));
-    sheet->channel_V[k] = dea_arena_alloc(&sheet->memory, sheet->channels, sizeof(double));
+    sheet->capacitance_F[k] = dea_arena_alloc(memory, elements, sizeof(double));
+    sheet->channel_V[k] = dea_arena_alloc(memory, sheet->channels, sizeof(double));
   }
   if (s->state.drop_V == NULL) {
     s->state.drop_V = dea_arena_alloc(&s->memory, elements, sizeof(double));
     s->state.drop_goal_V = dea_arena_alloc(&s->memory, elements, sizeof(double));
     s->state.evenness = dea_arena_alloc(&s->memory, elements, sizeof(double));
   }
-  return sheet->memory.failed || s->memory.failed ? DEA_E_MEMORY : DEA_OK;
+  return memory->failed || s->memory.failed ? DEA_E_MEMORY : DEA_OK;
 }
 
-static dea_status allocate_unknowns(struct dea_sheet *sheet)
+static dea_status allocate_potentials(struct dea_sheet *sheet)
 {
   double **const values[] = {&sheet->potential_V, &sheet->charge_C, &sheet->charge_next_C,
                              &sheet->half_V,      &sheet->whole_V,  &sheet->half_C,
                              &sheet->off_V};
-  sheet->channel = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof *sheet->channel);
-  sheet->lead = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof *sheet->lead);
+  sheet->channel = dea_arena_alloc(&sheet->memory, sheet->potentials, sizeof *sheet->channel);
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-    *values[i] = dea_arena_alloc(&sheet->memory, sheet->unknowns, sizeof(double));
+    *values[i] = dea_arena_alloc(&sheet->memory, sheet->potentials, sizeof(double));
   }
   return dea_arena_status(&sheet->memory);
 }
 
 static dea_status create_matrix(struct dea_context *ctx, struct dea_sheet *sheet)
 {
-  const PetscInt count = (PetscInt)sheet->unknowns, row = 8 * sheet->shape.nodes;
+  const PetscInt count = (PetscInt)(sheet->potentials - sheet->channels);
   PC pc;
-  DEA_PETSC(ctx, MatCreateSeqAIJ(PETSC_COMM_SELF, count, count, row, NULL, &sheet->A));
+  DEA_PETSC(
+      ctx, MatCreateSeqAIJ(PETSC_COMM_SELF, count, count, 8 * sheet->shape.nodes, NULL, &sheet->A));
   DEA_PETSC(ctx, MatSetOption(sheet->A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   DEA_PETSC(ctx, MatCreateVecs(sheet->A, &sheet->solution, &sheet->right));
   DEA_PETSC(ctx, KSPCreate(PETSC_COMM_SELF, &sheet->solver));
@@ -660,49 +673,54 @@ static dea_status create_matrix(struct dea_context *ctx, struct dea_sheet *sheet
   return DEA_OK;
 }
 
-/* All electrodes at the voltage of their channel. */
-static void set_start(struct dea_sheet *sheet)
+/* All electrodes at the voltage of their channel, with their charges. */
+static dea_status set_start(struct dea_context *ctx, struct dea_sheet *sheet)
 {
   struct dea_solid_state *state = &sheet->solid->state;
-  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
+  const struct dea_grid *grid = sheet->mesh->grid;
+  for (size_t e = 0; e < grid->element_count; e++) {
     state->drop_V[e] = state->drop_goal_V[e] = 0;
     state->evenness[e] = 1;
   }
+  for (size_t k = 0; k < sheet->channels; k++) {
+    sheet->channel[k] = (int)k;
+  }
+  for (size_t i = 0; i < sheet->mesh->layout->electrode_count * sheet->columns; i++) {
+    if (sheet->at[i] >= 0) {
+      sheet->channel[sheet->at[i]] = (int)electrode(sheet, i / sheet->columns)->channel;
+    }
+  }
   dea_solid_channel_voltages(sheet->solid, sheet->channel_V[0]);
   memcpy(sheet->channel_V[1], sheet->channel_V[0], sheet->channels * sizeof(double));
-  for (size_t a = 0; a < sheet->unknowns; a++) {
+  for (size_t a = 0; a < sheet->potentials; a++) {
     sheet->potential_V[a] = sheet->channel_V[0][sheet->channel[a]];
   }
+  memcpy(sheet->u, state->u, 3 * grid->node_count * sizeof *sheet->u);
+  DEA_TRY(ctx, find_capacitances(ctx, sheet, sheet->capacitance_F[0]));
+  memcpy(sheet->capacitance_F[1], sheet->capacitance_F[0], grid->element_count * sizeof(double));
+  find_charges(sheet, 0, sheet->potential_V, sheet->charge_C);
+  return DEA_OK;
 }
 
 static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
 {
-  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_places(sheet)));
+  const size_t electrodes = sheet->mesh->layout->electrode_count;
+  double settling_s[2] = {0};
   DEA_TRY(ctx, dea_flat_shape_create(sheet->mesh->grid->order, &sheet->shape));
-  for (size_t i = 0; i < sheet->mesh->layout->electrode_count; i++) {
+  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_places(sheet)));
+  for (size_t i = 0; i < electrodes; i++) {
     sheet->first[i] = first_of(sheet, i);
   }
-  number(sheet);
-  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_unknowns(sheet)));
-  for (size_t i = 0; i < sheet->mesh->layout->electrode_count * sheet->columns; i++) {
-    if (sheet->at[i] > 0) {
-      sheet->channel[sheet->at[i] - 1] = (int)electrode(sheet, i / sheet->columns)->channel;
-      sheet->lead[sheet->at[i] - 1] = -1;
-    }
+  bool *marks = dea_solid_alloc(ctx, electrodes + sheet->columns, sizeof *marks);
+  if (marks == NULL) {
+    return DEA_E_MEMORY;
   }
-  find_leads(sheet);
-  find_ends(sheet);
-  for (size_t e = 0; e < sheet->mesh->grid->element_count; e++) {
-    find_shares(sheet, e);
-  }
+  number(sheet, marks, marks + electrodes);
+  dea_free(ctx, marks);
+  find_cells(sheet);
+  DEA_TRY(ctx, dea_solid_agree(ctx, allocate_potentials(sheet)));
   DEA_TRY(ctx, create_matrix(ctx, sheet));
-  set_start(sheet);
-  DEA_TRY(ctx, find_capacitances(ctx, sheet, sheet->capacitance_F[0]));
-  memcpy(sheet->u, sheet->solid->state.u, 3 * sheet->mesh->grid->node_count * sizeof *sheet->u);
-  find_charges(sheet, 0, sheet->potential_V, sheet->charge_C);
-  memcpy(sheet->capacitance_F[1], sheet->capacitance_F[0],
-         sheet->mesh->grid->element_count * sizeof(double));
-  double settling_s[2] = {0};
+  DEA_TRY(ctx, set_start(ctx, sheet));
   DEA_TRY(ctx, find_settling(ctx, sheet, settling_s));
   if (settling_s[1] > 0) { // false where no channel has a part of the supply's voltage
     DEA_TRY(ctx, dea_finding_add(ctx, DEA_NOTE, (struct dea_location){0},
