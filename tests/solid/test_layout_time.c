@@ -254,20 +254,23 @@ TEST(test_swing)
 
 static const double sheet_ohm = 1e9, line_m = 20e-3;
 
-/* A held strip of film, on its upper face an ideal electrode, 1 mm, and beside it one with a sheet
- * resistance. */
+/* A held strip of film, on its upper face an ideal electrode, 1 mm, and beside it two with a sheet
+ * resistance, one fed by the other. */
 static struct dea_device *line_new(void)
 {
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
   add_rectangle(device, "film", -1e-3, 0, line_m + 1e-3, 4e-3);
   add_rectangle(device, "lead", -1e-3, 0, 1e-3, 4e-3);
-  add_rectangle(device, "line", 0, 0, line_m, 4e-3);
+  add_rectangle(device, "far", 0.5 * line_m, 0, 0.5 * line_m, 4e-3);
+  add_rectangle(device, "near", 0, 0, 0.5 * line_m, 4e-3);
   add_film(device, 0, 1.2, 1.2);
   add_electrode(device, 0, false, 0, 0);
   add_electrode(device, 0, true, 1, 1);
-  add_electrode(device, 0, true, 2, 1);
-  l->electrodes[2].sheet_resistance_ohm = sheet_ohm;
+  for (size_t i = 2; i < 4; i++) {
+    add_electrode(device, 0, true, i, 1);
+    l->electrodes[i].sheet_resistance_ohm = sheet_ohm;
+  }
   l->supports[l->support_count++] = (struct dea_layout_support){
       .region = 0, .edge = true, .within = DEA_LAYOUT_NONE, .components = 7};
   return device;
