@@ -113,20 +113,20 @@ static int node_of(const struct dea_sheet *sheet, size_t i, size_t quad, int n)
  * ideal that is the lead of the first. */
 static bool meets(struct dea_sheet *sheet, size_t i, size_t other, bool *has)
 {
+  const size_t quads = sheet->mesh->plane->quad_count;
   bool any = false;
-  const int nodes = sheet->shape.nodes;
   memset(has, 0, sheet->columns * sizeof *has);
-  for (size_t k = 0; k < sheet->mesh->plane->quad_count * (size_t)nodes; k++) {
-    const size_t q = k / (size_t)nodes;
-    if (covers(sheet, other, q)) {
-      has[quad_nodes(sheet, q)[k % (size_t)nodes]] = true;
+  for (size_t q = 0; q < quads; q++) {
+    for (int n = 0; covers(sheet, other, q) && n < sheet->shape.nodes; n++) {
+      has[quad_nodes(sheet, q)[n]] = true;
     }
   }
-  for (size_t k = 0; k < sheet->mesh->plane->quad_count * (size_t)nodes; k++) {
-    const int column = node_of(sheet, i, k / (size_t)nodes, (int)(k % (size_t)nodes));
-    if (column >= 0 && has[column]) {
-      any = true;
-      if (!resists(sheet, other)) {
+  for (size_t q = 0; q < quads; q++) {
+    for (int n = 0; n < sheet->shape.nodes; n++) {
+      const int column = node_of(sheet, i, q, n);
+      const bool common = column >= 0 && has[column];
+      any = any || common;
+      if (common && !resists(sheet, other)) {
         *potential_at(sheet, i, column) = (int)electrode(sheet, i)->channel;
       }
     }
@@ -173,12 +173,13 @@ static void find_leads(struct dea_sheet *sheet, bool *led, bool *has)
   }
   while (more) {
     more = false;
-    for (size_t k = 0; k < count * count; k++) {
-      const size_t i = k / count, j = k % count;
-      const bool ask = resists(sheet, i) && led[j] && sheet->first[i] == sheet->first[j];
-      if (ask && (!led[i] || !resists(sheet, j)) && meets(sheet, i, j, has)) {
-        more = more || !led[i];
-        led[i] = true;
+    for (size_t i = 0; i < count; i++) {
+      for (size_t j = 0; j < count && resists(sheet, i); j++) {
+        const bool ask = led[j] && (!led[i] || !resists(sheet, j));
+        if (ask && sheet->first[i] == sheet->first[j] && meets(sheet, i, j, has)) {
+          more = more || !led[i];
+          led[i] = true;
+        }
       }
     }
   }
@@ -202,11 +203,12 @@ static void number(struct dea_sheet *sheet, bool *led, bool *has)
   sheet->potentials = sheet->channels;
   for (size_t i = 0; i < electrodes; i++) {
     const struct dea_layout_electrode *own = electrode(sheet, i);
-    for (size_t k = 0; k < mesh->plane->quad_count * (size_t)sheet->shape.nodes; k++) {
-      const int column =
-          node_of(sheet, i, k / (size_t)sheet->shape.nodes, (int)(k % (size_t)sheet->shape.nodes));
-      if (column >= 0 && *potential_at(sheet, i, column) < 0) {
-        *potential_at(sheet, i, column) = (int)sheet->potentials++;
+    for (size_t q = 0; q < mesh->plane->quad_count; q++) {
+      for (int n = 0; n < sheet->shape.nodes; n++) {
+        const int column = node_of(sheet, i, q, n);
+        if (column >= 0 && *potential_at(sheet, i, column) < 0) {
+          *potential_at(sheet, i, column) = (int)sheet->potentials++;
+        }
       }
     }
     for (size_t e = 0; e < grid->element_count; e++) {
