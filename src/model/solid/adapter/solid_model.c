@@ -162,7 +162,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   }
   if (dea_layout_has_sheet_resistance(model->layout)) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED,
-                    "model 3d: an excitation by electrodes with a sheet resistance is known in "
+                    "an excitation by electrodes with a sheet resistance is known in "
                     "time only (compute.transient with a sine); without sheet_resistance: that of "
                     "ideal electrodes");
   }
