@@ -150,7 +150,7 @@ static dea_status put_design(struct dea_context *ctx, const struct dea_variant *
                        DEA_CELL(p->electrode_stretch - 1), DEA_CELL(shown_z(p->centre_z_m)),
                        DEA_CELL(shown_z(p->fibre_tip_z_m)), DEA_CELL(p->true_field_V_per_m),
                        DEA_TEXT_CELL(dea_flags_text(dea_load_point_flags(p), flags)),
-                       DEA_TEXT_CELL(v->curve.stopped), );
+                       DEA_TEXT_CELL(v->curve.stopped));
 }
 
 static dea_status put_monitors(struct dea_context *ctx, const char *model,

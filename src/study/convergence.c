@@ -175,7 +175,7 @@ static dea_status put_meshes(struct dea_context *ctx, const struct dea_convergen
                                DEA_CELL(sized ? (double)mesh->size.nodes : NAN),
                                DEA_CELL(sized ? (double)mesh->size.unknowns : NAN),
                                DEA_CELL(mesh->wall_s), DEA_CELL(mesh->curve.complete),
-                               DEA_TEXT_CELL(mesh->curve.stopped), ));
+                               DEA_TEXT_CELL(mesh->curve.stopped)));
   }
   return DEA_OK;
 }
@@ -188,7 +188,7 @@ static dea_status put_quantities(struct dea_context *ctx, const struct dea_conve
     DEA_TRY(ctx,
             DEA_TABLE_ADD(ctx, table, DEA_CELL(r->column), DEA_CELL(r->voltage_V),
                           DEA_LIST_CELL(r->values), DEA_LIST_CELL(r->errors), DEA_CELL(r->order),
-                          DEA_CELL(r->extrapolated), DEA_TEXT_CELL(dea_order_text(r->kind)), ));
+                          DEA_CELL(r->extrapolated), DEA_TEXT_CELL(dea_order_text(r->kind))));
   }
   return DEA_OK;
 }
@@ -216,12 +216,12 @@ static dea_status put_errors(struct dea_context *ctx, const struct dea_convergen
   for (size_t i = 0; i < c->row_count * c->mesh_count; i++) {
     const struct dea_convergence_row *r = &c->rows[i / c->mesh_count];
     const struct dea_variant *mesh = c->meshes[i % c->mesh_count];
-    DEA_TRY(ctx, DEA_TABLE_ADD(
-                     ctx, table, DEA_CELL(r->column), DEA_TEXT_CELL(r->shown->display_unit),
-                     DEA_CELL(r->voltage_V), DEA_CELL(mesh->refinement),
-                     DEA_CELL((double)mesh->size.unknowns), DEA_CELL(r->values[i % c->mesh_count]),
-                     DEA_CELL(r->errors[i % c->mesh_count]), DEA_CELL(r->order),
-                     DEA_CELL(r->extrapolated), DEA_TEXT_CELL(dea_order_text(r->kind)), ));
+    DEA_TRY(ctx, DEA_TABLE_ADD(ctx, table, DEA_CELL(r->column),
+                               DEA_TEXT_CELL(r->shown->display_unit), DEA_CELL(r->voltage_V),
+                               DEA_CELL(mesh->refinement), DEA_CELL((double)mesh->size.unknowns),
+                               DEA_CELL(r->values[i % c->mesh_count]),
+                               DEA_CELL(r->errors[i % c->mesh_count]), DEA_CELL(r->order),
+                               DEA_CELL(r->extrapolated), DEA_TEXT_CELL(dea_order_text(r->kind))));
   }
   return DEA_OK;
 }

@@ -71,7 +71,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct found *f,
                                  DEA_CELL(number->value), DEA_TEXT_CELL(number->unit),
                                  DEA_CELL(f->slopes[i]), DEA_CELL(elasticity(f, i)),
                                  DEA_CELL(number->tolerance),
-                                 DEA_CELL(f->slopes[i] * number->tolerance), ));
+                                 DEA_CELL(f->slopes[i] * number->tolerance)));
     }
   }
   return DEA_OK;

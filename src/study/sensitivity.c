@@ -324,7 +324,7 @@ static dea_status put_slopes(struct dea_context *ctx, const struct stop *stop,
                                  DEA_CELL(number->tolerance), DEA_CELL(slope * number->tolerance),
                                  DEA_CELL(mode_number(stop, k)), DEA_CELL(depth_of(stop)),
                                  DEA_CELL(held_by(stop)), DEA_CELL(loaded_to(stop)),
-                                 DEA_TEXT_CELL(flags), ));
+                                 DEA_TEXT_CELL(flags)));
     }
   }
   return DEA_OK;

@@ -494,7 +494,7 @@ static dea_status add_effects(struct work *w, const struct dea_curve *curve, int
             DEA_TABLE_ADD(w->ctx, table, DEA_CELL(column), DEA_CELL(curve->points[i].voltage_V),
                           DEA_TEXT_CELL(all ? "all" : w->params[j].param.name),
                           DEA_TEXT_CELL(all ? "" : w->std_text[j]),
-                          DEA_CELL(effect(w, curve, i, column, j)), ));
+                          DEA_CELL(effect(w, curve, i, column, j))));
   }
   return DEA_OK;
 }
