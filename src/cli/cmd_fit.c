@@ -55,84 +55,38 @@ static int fit_material(struct dea_cli *cli, const struct request *request)
   return code;
 }
 
-static dea_status fit_device_file(struct dea_cli *cli, const struct request *request,
-                                  struct dea_device_file **file, struct dea_device_fit **fit)
-{
-  struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_device_file_read(ctx, request->file, file));
-  DEA_TRY(ctx, dea_device_fit_run(ctx, *file, &request->options, fit));
-  DEA_TRY(ctx, dea_device_fit_folder(ctx, *file, request->output, request->force));
-  return dea_device_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
-}
-
-static int fit_device(struct dea_cli *cli, const struct request *request)
-{
-  struct dea_device_file *file = NULL;
-  struct dea_device_fit *fit = NULL;
-  dea_status status = fit_device_file(cli, request, &file, &fit);
-  if (fit != NULL && request->json) {
-    cli_print_json(dea_device_fit_json(fit, cli->command_line));
-  } else if (fit != NULL) {
-    cli_print_device_fit(fit);
+/* fit_KIND: reads a file of a kind, fits, writes the folder and prints what there is. run:
+ * fits *file into fit. */
+#define FIT_KIND(kind, run)                                                                        \
+  static dea_status fit_##kind##_file(struct dea_cli *cli, const struct request *request,          \
+                                      struct dea_##kind##_file **file,                             \
+                                      struct dea_##kind##_fit **fit)                               \
+  {                                                                                                \
+    struct dea_context *ctx = cli->ctx;                                                            \
+    DEA_TRY(ctx, dea_##kind##_file_read(ctx, request->file, file));                                \
+    DEA_TRY(ctx, run);                                                                             \
+    DEA_TRY(ctx, dea_##kind##_fit_folder(ctx, *file, request->output, request->force));            \
+    return dea_##kind##_fit_write(ctx, *fit, cli->command_line, &request->format,                  \
+                                  request->output);                                                \
+  }                                                                                                \
+  static int fit_##kind(struct dea_cli *cli, const struct request *request)                        \
+  {                                                                                                \
+    struct dea_##kind##_file *file = NULL;                                                         \
+    struct dea_##kind##_fit *fit = NULL;                                                           \
+    const dea_status status = fit_##kind##_file(cli, request, &file, &fit);                        \
+    if (fit != NULL && request->json) {                                                            \
+      cli_print_json(dea_##kind##_fit_json(fit, cli->command_line));                               \
+    } else if (fit != NULL) {                                                                      \
+      cli_print_##kind##_fit(fit);                                                                 \
+    }                                                                                              \
+    const int code = finish(cli, request, fit != NULL, status);                                    \
+    dea_##kind##_fit_destroy(cli->ctx, fit);                                                       \
+    dea_##kind##_file_destroy(cli->ctx, file);                                                     \
+    return code;                                                                                   \
   }
-  const int code = finish(cli, request, fit != NULL, status);
-  dea_device_fit_destroy(cli->ctx, fit);
-  dea_device_file_destroy(cli->ctx, file);
-  return code;
-}
-
-static dea_status fit_breakdown_file(struct dea_cli *cli, const struct request *request,
-                                     struct dea_breakdown_file **file,
-                                     struct dea_breakdown_fit **fit)
-{
-  struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_breakdown_file_read(ctx, request->file, file));
-  DEA_TRY(ctx, dea_breakdown_fit_run(ctx, *file, fit));
-  DEA_TRY(ctx, dea_breakdown_fit_folder(ctx, *file, request->output, request->force));
-  return dea_breakdown_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
-}
-
-static int fit_breakdown(struct dea_cli *cli, const struct request *request)
-{
-  struct dea_breakdown_file *file = NULL;
-  struct dea_breakdown_fit *fit = NULL;
-  dea_status status = fit_breakdown_file(cli, request, &file, &fit);
-  if (fit != NULL && request->json) {
-    cli_print_json(dea_breakdown_fit_json(fit, cli->command_line));
-  } else if (fit != NULL) {
-    cli_print_breakdown_fit(fit);
-  }
-  const int code = finish(cli, request, fit != NULL, status);
-  dea_breakdown_fit_destroy(cli->ctx, fit);
-  dea_breakdown_file_destroy(cli->ctx, file);
-  return code;
-}
-
-static dea_status fit_life_file(struct dea_cli *cli, const struct request *request,
-                                struct dea_life_file **file, struct dea_life_fit **fit)
-{
-  struct dea_context *ctx = cli->ctx;
-  DEA_TRY(ctx, dea_life_file_read(ctx, request->file, file));
-  DEA_TRY(ctx, dea_life_fit_run(ctx, *file, fit));
-  DEA_TRY(ctx, dea_life_fit_folder(ctx, *file, request->output, request->force));
-  return dea_life_fit_write(ctx, *fit, cli->command_line, &request->format, request->output);
-}
-
-static int fit_life(struct dea_cli *cli, const struct request *request)
-{
-  struct dea_life_file *file = NULL;
-  struct dea_life_fit *fit = NULL;
-  dea_status status = fit_life_file(cli, request, &file, &fit);
-  if (fit != NULL && request->json) {
-    cli_print_json(dea_life_fit_json(fit, cli->command_line));
-  } else if (fit != NULL) {
-    cli_print_life_fit(fit);
-  }
-  const int code = finish(cli, request, fit != NULL, status);
-  dea_life_fit_destroy(cli->ctx, fit);
-  dea_life_file_destroy(cli->ctx, file);
-  return code;
-}
+FIT_KIND(device, dea_device_fit_run(ctx, *file, &request->options, fit))
+FIT_KIND(breakdown, dea_breakdown_fit_run(ctx, *file, fit))
+FIT_KIND(life, dea_life_fit_run(ctx, *file, fit))
 
 /* Kinds of fit files other than that of a material, by the key that tells them. */
 static const struct {
