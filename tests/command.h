@@ -73,10 +73,14 @@ static inline int command_run(const char *arguments)
   return WEXITSTATUS(status);
 }
 
-#define assert_contains(text, part)                                                                \
+/* A text holds all of these parts. */
+#define assert_contains(text, ...)                                                                 \
   do {                                                                                             \
-    if (strstr((text), (part)) == NULL) {                                                          \
-      fail_msg("'%s' is not in:\n%s", (part), (text));                                             \
+    const char *const parts_[] = {__VA_ARGS__};                                                    \
+    for (size_t k_ = 0; k_ < sizeof parts_ / sizeof parts_[0]; k_++) {                             \
+      if (strstr((text), parts_[k_]) == NULL) {                                                    \
+        fail_msg("'%s' is not in:\n%s", parts_[k_], (text));                                       \
+      }                                                                                            \
     }                                                                                              \
   } while (0)
 

@@ -8,10 +8,9 @@
 TEST(test_dry_run)
 {
   command_prints("drive " EXAMPLE, 0, "0 kV to 8 kV, 135 cycles in 270 s");
-  assert_contains(command_out, "270000 of 3 channels at 1000 a second");
-  assert_contains(command_out, "by a control voltage of 0 V to 8 V");
-  assert_contains(command_out, "311.2 V/um of 320 V/um that are allowed");
-  assert_contains(command_out, "Nothing was played. Next:  dea drive ");
+  assert_contains(command_out, "270000 of 3 channels at 1000 a second",
+                  "by a control voltage of 0 V to 8 V", "311.2 V/um of 320 V/um that are allowed",
+                  "Nothing was played. Next:  dea drive ");
   assert_contains(command_err, "the largest jump, 8 kV, takes 58.9 us");
 }
 
@@ -24,10 +23,10 @@ TEST(test_who_plays)
                   "output: VOLT %g}, {kind: scpi, address: b, readings: [{name: leakage, query: "
                   "\"MEAS:CURR?\", quantity: current}]}, {kind: comedi}]'"),
       0);
-  assert_contains(command_out, "1  shvps             plays the output, gives readings\n");
-  assert_contains(command_out, "2  scpi              plays the output, gives readings\n");
-  assert_contains(command_out, "3  scpi              gives readings\n");
-  assert_contains(command_out, "4  comedi            plays the output, reads the channels\n");
+  assert_contains(command_out, "1  shvps             plays the output, gives readings\n",
+                  "2  scpi              plays the output, gives readings\n",
+                  "3  scpi              gives readings\n",
+                  "4  comedi            plays the output, reads the channels\n");
 }
 
 /* The paper's 16 kV for the film of 200 um are more than its amplifier gives. */
@@ -66,8 +65,7 @@ TEST(test_simulated)
                              "cycles: 2, frequency: 5 Hz}}]' --sim -o s.h5";
   char again[600];
   command_prints(text, 0, "played            0.8 s, 4 cycles to the end");
-  assert_contains(command_out, "output            at 0 V");
-  assert_contains(command_out, "Next:  dea reduce s.h5");
+  assert_contains(command_out, "output            at 0 V", "Next:  dea reduce s.h5");
   command_expect(text, 5, "'s.h5' already exists");
   snprintf(again, sizeof again, "%s --force --json", text);
   assert_int_equal(command_run(again), 0);
@@ -96,8 +94,7 @@ TEST(test_breakdown)
       command_run("drive " EXAMPLE " --sim -o b.h5 --set sim.breakdown_voltage=2.5kV "
                   "--set 'sequence=[{waveform: {kind: ramp, to: 4 kV, duration: 1 s}}]'"),
       6);
-  assert_contains(command_out, "output            at 0 V");
-  assert_contains(command_out, "ended early       the current is ");
+  assert_contains(command_out, "output            at 0 V", "ended early       the current is ");
 }
 
 TEST(test_usage)

@@ -114,8 +114,7 @@ TEST(test_signals_ramp_down)
   assert_true(WIFEXITED(status));
   assert_int_equal(WEXITSTATUS(status), 130);
   command_read("drive.txt", command_out);
-  assert_contains(command_out, "at 0 V");
-  assert_contains(command_out, "interrupted");
+  assert_contains(command_out, "at 0 V", "interrupted");
   struct dea_recording *recording = read_recording(ctx, "signals.h5");
   assert_false(recording->complete);
   assert_string_equal(recording->ended, "interrupted");

@@ -62,8 +62,8 @@ TEST(test_misfits_against_the_voltage)
   z = json_array_get(json_object_get(solid, "quantities"), 0);
   assert_close(number(z, "bias"), -620e-6 / 3.0, 1e-9, 0);
   assert_int_equal(json_array_size(json_object_get(root, "comparisons")), 2);
-  assert_contains(command_err, "axisymmetric has no 'z centre', 'force' at the voltages of red");
-  assert_contains(command_err, "3d has no 'force' at the voltages of red");
+  assert_contains(command_err, "axisymmetric has no 'z centre', 'force' at the voltages of red",
+                  "3d has no 'force' at the voltages of red");
   json_decref(root);
 }
 

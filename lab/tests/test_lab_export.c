@@ -98,11 +98,9 @@ static void check_reading_back(void)
 {
   assert_int_equal(command_run("import ex/recording.csv --force -o r.h5"), 0);
   command_prints("recording r.h5", 0, "channels       4");
-  assert_contains(command_out, "command                command ");
-  assert_contains(command_out, "amplifier voltage      voltage       1000 Hz");
-  assert_contains(command_out, "0 to 4 kV");
-  assert_contains(command_out, "10 to 10 uA");
-  assert_contains(command_out, "centre laser           displacement ");
+  assert_contains(command_out, "command                command ",
+                  "amplifier voltage      voltage       1000 Hz", "0 to 4 kV", "10 to 10 uA",
+                  "centre laser           displacement ");
   assert_contains(command_out, "0 to 800 um"); // 0.05 x 4 V^2 x 1 mm/V
 }
 
@@ -110,8 +108,8 @@ TEST(test_python)
 {
   make_files();
   assert_int_equal(run_script("", PYTHON), 0);
-  assert_contains(log_text, "output Dev7/ao0 -10 10\ninput Dev7/ai0 -10 10\ninput Dev7/ai1");
-  assert_contains(log_text, "clock 1000 own 1001\nclock 1000 /Dev7/ai/SampleClock 1001\n");
+  assert_contains(log_text, "output Dev7/ao0 -10 10\ninput Dev7/ai0 -10 10\ninput Dev7/ai1",
+                  "clock 1000 own 1001\nclock 1000 /Dev7/ai/SampleClock 1001\n");
   assert_contains(log_text, "queued 1001 2400 0\n"); // 600 samples of 4 V
   check_ramp(0);
   assert_int_equal(recorded(), 1001);
@@ -202,9 +200,9 @@ TEST(test_matlab)
   if (run_script("", OCTAVE) != 0) {
     fail_msg("%s", command_err);
   }
-  assert_contains(log_text, "daq ni\noutput Dev7/ao0 Voltage\ninput Dev7/ai0 Voltage");
-  assert_contains(log_text, "queued 1001 2400 0\nstart 1000\n");
-  assert_contains(log_text, "stop\ndelete\ndaq ni\noutput Dev7/ao0 Voltage\nwrite 0\n");
+  assert_contains(log_text, "daq ni\noutput Dev7/ao0 Voltage\ninput Dev7/ai0 Voltage",
+                  "queued 1001 2400 0\nstart 1000\n",
+                  "stop\ndelete\ndaq ni\noutput Dev7/ao0 Voltage\nwrite 0\n");
   assert_int_equal(recorded(), 1001);
   check_reading_back();
   int code = command_run("import ex/recording.mat --force -o r.h5");
@@ -214,9 +212,7 @@ TEST(test_matlab)
   }
   assert_int_equal(code, 0);
   command_prints("recording r.h5", 0, "amplifier_voltage_V    voltage       1000 Hz");
-  assert_contains(command_out, "0 to 4 kV");
-  assert_contains(command_out, "10 to 10 uA");
-  assert_contains(command_out, "0 to 800 um");
+  assert_contains(command_out, "0 to 4 kV", "10 to 10 uA", "0 to 800 um");
 }
 
 TEST(test_matlab_ends_at_zero)
@@ -253,9 +249,8 @@ TEST(test_quotes_in_names)
                 "per_volt: 1 kV}\n");
   assert_int_equal(command_run("drive quotes.yaml --force --export ex"), 0);
   command_read("ex/play_nidaqmx.py", command_out);
-  assert_contains(command_out, "OUTPUT = 'a b c d'\n");
-  assert_contains(command_out, "\"title\": 'x y  voltage (kV)',");
-  assert_contains(command_out, "\"terminal\": 'ai0 ',");
+  assert_contains(command_out, "OUTPUT = 'a b c d'\n", "\"title\": 'x y  voltage (kV)',",
+                  "\"terminal\": 'ai0 ',");
   command_read("ex/play_matlab.m", command_out);
   assert_contains(command_out, "'a b c d'");
   assert_null(strstr(command_out, "a'b"));

@@ -144,9 +144,8 @@ TEST(test_zero_beside_a_stopped_program)
   supply_kill_guard(child); // and its guard is no more
   int code = supply_run_dea(zero, 60);
   assert_true(code == 6 && !supply_said_zero());
-  assert_contains(command_err, "is in use by process");
-  assert_contains(command_err, "which may set another voltage");
-  assert_contains(command_err, "and did not end");
+  assert_contains(command_err, "is in use by process", "which may set another voltage",
+                  "and did not end");
   assert_true(falls(&s, 5));
   assert_int_equal(kill(child, SIGKILL), 0);
   assert_int_equal(kill(child, SIGCONT), 0);

@@ -360,8 +360,8 @@ TEST(test_refused)
   shvps_begin(&s);
   shvps_protocol(&s, 3, 1, SHVPS_PATIENT);
   assert_int_equal(supply_wait(shvps_arm("r.h5"), 20), 6);
-  assert_contains(command_err, "the sequence goes to 3 kV, and the SHVPS at /dev/");
-  assert_contains(command_err, "says that it gives 2.5 kV at most");
+  assert_contains(command_err, "the sequence goes to 3 kV, and the SHVPS at /dev/",
+                  "says that it gives 2.5 kV at most");
   shvps_protocol(&s, 2, 1, SHVPS_PATIENT ", name: rack");
   assert_int_equal(supply_wait(shvps_arm("r.h5"), 20), 6);
   assert_contains(command_err, "is a 'bench 5', not a 'rack'");
@@ -396,8 +396,7 @@ TEST(test_too_short_for_zero)
   shvps_protocol(&s, 2, 1, ", behind: 4 s");
   static const char *const late[] = {"drive", "p.yaml", NULL};
   assert_int_equal(supply_run_dea(late, 20), 0);
-  assert_contains(command_err, "p.yaml:7:");
-  assert_contains(command_err,
+  assert_contains(command_err, "p.yaml:7:",
                   "a late answer leaves it not known to be at 0 V; write zero_time: 16 s");
   static const char *const never[] = {"drive", "p.yaml", "--set", "safety.zero_time=4 s", NULL};
   assert_int_equal(supply_run_dea(never, 20), 0);

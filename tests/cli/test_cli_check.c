@@ -172,10 +172,9 @@ TEST(test_check_lists_values_and_what_follows)
 {
   command_prints("check @/examples/frdea-4.yaml --all --set film.thickness=200um", 0,
                  "film.thickness                     200um                     --set");
-  assert_contains(command_out,
-                  "electrodes.thickness               0 um                      default");
-  assert_contains(command_out, "fibre length                      11.25 mm");
-  assert_contains(command_out, "film thickness (stretched)        88.8889 um");
+  assert_contains(
+      command_out, "electrodes.thickness               0 um                      default",
+      "fibre length                      11.25 mm", "film thickness (stretched)        88.8889 um");
 }
 
 /* The reader finds the unknown key after a missing one, and a section's range after its list;
@@ -194,8 +193,8 @@ TEST(test_errors_in_the_order_of_the_file)
     line++;
   }
   assert_true(count >= 8);
-  assert_contains(command_err, "wrong.yaml:5:33: error: there is no model 'lumpd'");
-  assert_contains(command_err, "reduced; did you mean 'lumped'?");
+  assert_contains(command_err, "wrong.yaml:5:33: error: there is no model 'lumpd'",
+                  "reduced; did you mean 'lumped'?");
 }
 
 /* What is given and what follows, of either kind of device, on about a page. */
@@ -216,15 +215,13 @@ TEST(test_check_is_brief)
       lines++;
     }
     assert_in_range(lines, 15, 30);
-    assert_contains(command_out, "\n  symmetry ");
-    assert_contains(command_out, " um, elastosil-2030, ");
+    assert_contains(command_out, "\n  symmetry ", " um, elastosil-2030, ");
     assert_null(strstr(command_out, "fabrication"));
     assert_null(strstr(command_out, "  default\n"));
   }
   command_prints("check @/examples/frdea-4.yaml --set pre_stretch=2", 0,
                  "\n  pre_stretch     2 (--set)\n");
-  assert_contains(command_out, "\n  film            material elastosil-2030, law yeoh-178, perm");
-  assert_contains(command_out,
+  assert_contains(command_out, "\n  film            material elastosil-2030, law yeoh-178, perm",
                   "\n  compute         models lumped, axisymmetric, voltage.from 0 kV,");
   command_prints("check @/examples/devices/array-3x3.yaml", 0,
                  "\n  shapes[3]       grid, difference, of film, holes\n");
@@ -302,8 +299,7 @@ TEST(test_layout)
   // what does not fit in one line stands in two
   assert_int_equal(command_run("check @/examples/devices/cone-loading.yaml --svg drawing.svg"), 0);
   command_read("drawing.svg", svg);
-  assert_contains(svg, ">active, inside<");
-  assert_contains(svg, ">8.333 unstretched<");
+  assert_contains(svg, ">active, inside<", ">8.333 unstretched<");
   assert_int_equal(command_run("check @/examples/frdea-4.yaml --svg disc.svg"), 0);
   command_read("disc.svg", svg);
   assert_contains(svg, ">4 of 11.25 \303\227 2 mm<");
@@ -412,8 +408,8 @@ TEST(test_doctor_without_modules)
   int code = command_run("doctor");
   command_before = "";
   assert_int_equal(code, 0);
-  assert_contains(command_out, "missing  booleans of regions    not found\n");
-  assert_contains(command_out, "dea_geos_module.so belongs to this build");
+  assert_contains(command_out, "missing  booleans of regions    not found\n",
+                  "dea_geos_module.so belongs to this build");
   assert_null(strstr(command_out, "install libgeos-dev"));
 }
 

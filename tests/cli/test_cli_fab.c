@@ -23,8 +23,7 @@ TEST(test_files)
   assert_string_equal(command_out, "");
   char *text;
   read_into("frdea-4.fab/frame.dxf", &text);
-  assert_contains(text, "AC1015");
-  assert_contains(text, "$INSUNITS\n 70\n4\n");
+  assert_contains(text, "AC1015", "$INSUNITS\n 70\n4\n");
   read_into("frdea-4.fab/fibres.svg", &text);
   assert_contains(text, "width=\"210.000000mm\" height=\"297.000000mm\"");
   // what is there stays, unless it is to be replaced

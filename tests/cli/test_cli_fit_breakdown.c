@@ -39,8 +39,8 @@ TEST(test_errors)
   assert_contains(text, "at_rest is that of films at the stretch 1.5, all that were tested");
   expect("thickness: 100 um\nstretch: 1.5\narea: 20 mm^2\nexponent: 0\n",
          "voltage (kV),survived\n4.0,0\n5.0,0\n4.4,0\n5,1\n", 0, "");
-  assert_contains(command_out, "and 20 mm^2, unstretched");
-  assert_contains(command_out, "exponent                      0    fixed");
+  assert_contains(command_out, "and 20 mm^2, unstretched",
+                  "exponent                      0    fixed");
 }
 
 /* Thicknesses that scatter by 4 % hold no power; that of films twice as thick would follow from it.
@@ -141,9 +141,8 @@ TEST(test_lives_of_recordings)
   static char csv[COMMAND_TEXT_MAX];
   command_read("lives.fit/fit.csv", csv);
   // 0.8 times the mean of the first ten cycles: 319.912 um, after 1601 cycles and 269 h of these
-  assert_contains(csv, "A,1,stroke,1601,268.968,134.484,0.3202,0.79996999");
-  assert_contains(csv, "B,1,breakdown,1123,188.664,94.332,0.2246,1,");
-  assert_contains(csv, "C,0,survived,1000,168,84,0.2,1,");
+  assert_contains(csv, "A,1,stroke,1601,268.968,134.484,0.3202,0.79996999",
+                  "B,1,breakdown,1123,188.664,94.332,0.2246,1,", "C,0,survived,1000,168,84,0.2,1,");
   snprintf(keys, sizeof keys,
            "%slargest_leakage: 0.5 uA\nat_breakdown: no\nlasting: 2\nclock: "
            "under_voltage\n",

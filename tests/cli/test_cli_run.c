@@ -116,8 +116,8 @@ TEST(test_run_folder)
     snprintf(path, sizeof path, "%s/frdea-4.run/%s", command_folder, files[i]);
     assert_int_equal(access(path, R_OK), 0);
   }
-  assert_contains(command_err, "model axisymmetric: valid and below breakdown up to 3.2 kV");
-  assert_contains(command_err, "those of the film without its fibres");
+  assert_contains(command_err, "model axisymmetric: valid and below breakdown up to 3.2 kV",
+                  "those of the film without its fibres");
   assert_contains(command_out, "<5017.0"); // the tip's z of model lumped is a bound
 }
 
@@ -186,10 +186,9 @@ TEST(test_path_reaches_as_far_as_the_sweep)
       0);
   assert_contains(command_out, "\n    8.000   3."); // last row
   assert_contains(command_out, "  not trusted: slack locking breakdown\n");
-  assert_contains(command_err, "model lumped: valid and below breakdown up to ");
-  assert_contains(command_err, "the film's law is near its locking stretch");
-  assert_contains(command_out, ": the film goes slack\n");
-  assert_contains(command_out, "reaches the film's breakdown field, ");
+  assert_contains(command_err, "model lumped: valid and below breakdown up to ",
+                  "the film's law is near its locking stretch");
+  assert_contains(command_out, ": the film goes slack\n", "reaches the film's breakdown field, ");
 }
 
 static const char soft_disc[] = "dea: 1\n"
@@ -352,8 +351,7 @@ TEST(test_path_alone)
 {
   assert_int_equal(
       command_run("run @/examples/plain-disc.yaml -m lumped --study path --no-figures -o path"), 0);
-  assert_contains(command_out, "\nlumped\n  path of ");
-  assert_contains(command_out, "electrode stretch ");
+  assert_contains(command_out, "\nlumped\n  path of ", "electrode stretch ");
   assert_null(strstr(command_out, "margin   tension"));
   command_expect("run @/examples/plain-disc.yaml -m lumped --no-figures -o swept", 0,
                  "lumped sweep 116/116\n");
@@ -371,12 +369,13 @@ TEST(test_operating_map)
                                "            1                 0 ");
   assert_contains(command_out, "\n         2.55 "); // the last of 33
   assert_null(strstr(command_out, "1.0484"));       // the second
-  assert_contains(command_out, "  and 24 more (summary.json)\n");
-  assert_contains(command_out, "results: map (summary.json, results.h5, CSV, figures/)\n");
+  assert_contains(command_out, "  and 24 more (summary.json)\n",
+                  "results: map (summary.json, results.h5, CSV, figures/)\n");
   command_read("map/lumped_operating-map_pre_stretch.csv", command_out);
-  assert_contains(command_out, "pre-stretch,slack above (kV),breakdown above (kV),pull-in (kV),"
-                               "level 1 (kV),level 2 (kV),");
-  assert_contains(command_out, "\n1.0484375,");
+  assert_contains(command_out,
+                  "pre-stretch,slack above (kV),breakdown above (kV),pull-in (kV),"
+                  "level 1 (kV),level 2 (kV),",
+                  "\n1.0484375,");
   command_read("map/lumped_operating-map_film_thickness.csv", command_out);
   assert_contains(command_out, "film thickness (um),slack above (kV),");
   command_read("map/figures/map_film_thickness.svg", command_out);

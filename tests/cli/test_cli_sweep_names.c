@@ -159,8 +159,7 @@ TEST(test_modulus_of_the_fibres)
   const char *row = strstr(command_out, "fibre_tip_z_m");
   const double tip_um = strtod(row + strlen("fibre_tip_z_m"), NULL);
   command_read("fibres/best.yaml", bytes);
-  assert_contains(bytes, "soft-fibres");
-  assert_contains(bytes, "soft-electrodes");
+  assert_contains(bytes, "soft-fibres", "soft-electrodes");
   run_solid("run fibres/best.yaml --study sweep -q --no-figures --json");
   const char *point = strstr(command_out, "\"fibre_tip_z_m\": ");
   assert_non_null(point);
