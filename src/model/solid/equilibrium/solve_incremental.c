@@ -18,6 +18,7 @@ enum { COUPLED_ITERATIONS = 15 };        // a taut film with a coupled field tak
 static const double path_unit = 0.1;     // of the displacement: counts as much as the increment
 static const double path_step = 0.5;     // of the increment: first step on the path
 static const double max_path_step = 4;   // of the increment
+static const double spot_share = 0.1;    // of the displacement: less moves a spot of the mesh alone
 static const double max_off_tangent = 1; // of the tangent step: farther off lies another branch
 
 /* To controls that are wanted. */
@@ -437,26 +438,28 @@ static dea_status take_steps(struct dea_context *ctx, struct search *a, const do
 
 /* Down in energy from the limit point that was found to a stable state a little beyond it. *beyond:
  * there is one, to which the film has not grown at once, and the solid is there; otherwise it is
- * where the search began. */
+ * where the search began. One that is close by is where a spot of the mesh has turned over. */
 static dea_status pass_limit(struct dea_context *ctx, struct search *a, bool *beyond)
 {
   struct dea_solid *s = a->s;
   const struct dea_solid_settings *o = &s->settings;
   struct dea_solid_change change = {.grew = true};
   struct dea_solid_report report;
+  bool close = false;
   dea_solid_restore_state(s, &a->limit);
   set_between(s, a->start.controls, a->goal, fmin(a->stop->load_factor + o->load_step_min, 1),
               a->next);
   dea_status status = solve_steps(ctx, a, a->next, 1, &report);
   if (status == DEA_OK && report.unstable_modes == 0) {
     status = see_change(ctx, a, &change);
+    close = moved_m(s, s->state.u, a->limit.state) < spot_share * moved_m(s, a->limit.state, NULL);
   }
   *beyond = status == DEA_OK && !change.grew;
   if (*beyond) {
-    a->snapped = true;
+    a->snapped |= !close || !a->taut;
     a->stop->load_factor = share_of(s, a->begin, a->goal, a->limit.controls);
     a->stop->kind = DEA_STOP_UNKNOWN;
-    return DEA_OK;
+    return close ? see(ctx, a, DEA_STOP_PASSED) : DEA_OK;
   }
   dea_solid_restore_state(s, &a->start);
   if (dea_solid_may_shorten(status)) {
