@@ -33,9 +33,9 @@ static const double predicting_rate =
 enum { MAX_HIDDEN = 3 };              // steps in a row that rounding hides
 enum { MAX_ROUNDS = 20 };             // of regula falsi
 static const double zero_rtol = 1e-8; // of what it was
-static const double beside = 0.03;    // of the bracket: first distance from a singular point
-enum { MAX_BESIDE = 4 };              // attempts beside it, each twice as far
-enum { MAX_SWITCHES = 6 };            // attempts at another branch, each half as far
+static const double singular_offset = 0.03; // of the bracket: first distance from a singular point
+enum { MAX_OFFSETS = 4 };                   // attempts, each twice as far from it
+enum { MAX_SWITCHES = 6 };                  // attempts at another branch, each half as far
 
 /* An equilibrium on the path. */
 struct dea_continuation_path_point {
@@ -812,8 +812,9 @@ static dea_status solve_near_share(struct dea_context *ctx, struct dea_solid_con
 {
   dea_status status = solve_at_share(ctx, t, b, *share);
   bool first_half = *share - b->at[0] < b->at[1] - *share;
-  double by = (first_half ? beside : -beside) * (b->at[1] - b->at[0]), from = *share;
-  for (int i = 0; i < MAX_BESIDE && dea_solid_may_shorten(status); i++, by *= 2) {
+  double by = (first_half ? singular_offset : -singular_offset) * (b->at[1] - b->at[0]),
+         from = *share;
+  for (int i = 0; i < MAX_OFFSETS && dea_solid_may_shorten(status); i++, by *= 2) {
     dea_context_clear(ctx);
     *share = from + by;
     status = solve_at_share(ctx, t, b, *share);

@@ -12,10 +12,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double max_rate = 0.6;        // of the first step: slower ones do not pay
-static const double near = 1e-3;           // of the first step: enough for one further on
-static const double max_curvature = 0.1;   // of the first step
-static const double max_extrapolation = 3; // of the step before
+static const double max_rate = 0.6;           // of the first step: slower ones do not pay
+static const double intermediate_rtol = 1e-3; // of the first step: enough for one further on
+static const double max_curvature = 0.1;      // of the first step
+static const double max_extrapolation = 3;    // of the step before
 
 /* Newton's method on displacements u and pressures q = p + kappa theta with the tangent of the
  * start kept:
@@ -373,7 +373,7 @@ static bool pays(const struct follow *w, int k)
  * other forces then. */
 static bool renew_loads(struct follow *w, int k)
 {
-  if (w->load_error <= 1 || !(w->size < near * w->size_first)) {
+  if (w->load_error <= 1 || !(w->size < intermediate_rtol * w->size_first)) {
     return false;
   }
   set(w, w->x);
@@ -523,13 +523,13 @@ static dea_status count(struct dea_context *ctx, struct follow *w, bool *there)
 }
 
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double from_V,
-                            bool on_the_way, struct dea_solid_report *report, double *rate,
+                            bool intermediate, struct dea_solid_report *report, double *rate,
                             bool *there)
 {
   struct follow w = {.memory = {.ctx = ctx},
                      .s = s,
-                     .accuracy = on_the_way ? near : s->settings.anderson_rtol,
-                     .equilibrium = !on_the_way,
+                     .accuracy = intermediate ? intermediate_rtol : s->settings.anderson_rtol,
+                     .equilibrium = !intermediate,
                      .from_V = from_V,
                      .report = report,
                      .dofs = s->problem.dofs,

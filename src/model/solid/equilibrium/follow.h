@@ -9,9 +9,9 @@
  * *there is true, and the new factor is there for the next step. Otherwise the solid is where it
  * was: the way is too long, or the field is coupled. from_V: voltage that the solid is at, NAN
  * where not only the voltage changes; where it came there the same way the bend of that is taken
- * along. on_the_way: near the equilibrium is enough, for one further on, and multipliers need not
+ * along. intermediate: near the equilibrium is enough, for one further on, and multipliers need not
  * follow. *rate: what the second step is over the first, about in proportion to the way; 0: not
  * known; NULL: not wanted. Fails only where no shorter way would help. */
 dea_status dea_solid_follow(struct dea_context *ctx, struct dea_solid *s, double from_V,
-                            bool on_the_way, struct dea_solid_report *report, double *rate,
+                            bool intermediate, struct dea_solid_report *report, double *rate,
                             bool *there);

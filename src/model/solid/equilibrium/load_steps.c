@@ -14,8 +14,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double aimed_rate = 0.5; // of the first step: about ten steps to anderson_rtol
-static const double equal = 1e-6;     // of the fall: both sides of a pitchfork
+static const double aimed_rate = 0.5;  // of the first step: about ten steps to anderson_rtol
+static const double equal_rtol = 1e-6; // of the fall: both sides of a pitchfork
 
 /* ---- from an unstable equilibrium down to a stable one ---- */
 
@@ -48,7 +48,7 @@ static double choose_push(struct dea_context *ctx, struct dea_solid *s, const do
     double down = side <= 0 ? energy_beside(ctx, s, u, mode, -size) : INFINITY;
     lowest = fmin(up, down);
     if (lowest < energy) {
-      push = up <= down + equal * fabs(energy - down) ? size : -size;
+      push = up <= down + equal_rtol * fabs(energy - down) ? size : -size;
     }
   }
   double next = push != 0 ? energy_beside(ctx, s, u, mode, 2 * push) : INFINITY;
