@@ -19,7 +19,6 @@ static void print_order(const struct request *request, const struct dea_reduced_
   char name[120];
   dea_reduced_order_name(o, device, name, sizeof name);
   dea_reduced_at(&o->core, 0, 0, &at);
-  const double hertz = sqrt(1 / (at.by_force * o->core.mass[0])) / (2 * acos(-1));
   printf("%-20s %s\n", "coordinate", name);
   printf("%-20s %.4g to %.4g kV\n", "voltage", 1e-3 * o->voltage_V[0], 1e-3 * o->voltage_V[1]);
   printf("%-20s %.4g to %.4g %s\n", turns ? "moment" : "force", 1e3 * o->force[0],
@@ -29,8 +28,14 @@ static void print_order(const struct request *request, const struct dea_reduced_
          100 * o->charge_error);
   printf("%-20s %.5g %s\n", "stiffness", turns ? 1 / at.by_force : 1e-3 / at.by_force,
          turns ? "N m/rad" : "N/mm");
-  if (isfinite(hertz)) {
-    printf("%-20s %.5g Hz, %.3g %% of the compliance\n", "frequency", hertz, 100 * o->mode_share);
+  for (int i = 0; i < o->core.mode_count; i++) {
+    const struct dea_reduced_mode *mode = &o->core.modes[i];
+    const double x = at.q - o->core.middle;
+    printf("%-20s %.5g Hz, %.3g %% of the compliance, %.3g %% of the slope by voltage\n",
+           "frequency",
+           sqrt(1 / (at.by_force * (mode->mass[0] + x * (mode->mass[1] + x * mode->mass[2])))) /
+               (2 * acos(-1)),
+           100 * mode->share, 100 * mode->voltage_share);
   }
   printf("%-20s %d\n", "branches", o->core.branch_count);
   printf("%-20s %.3g s\n", "time", o->made_s);

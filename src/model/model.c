@@ -221,9 +221,9 @@ dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *
 
 dea_status dea_model_compliance(struct dea_context *ctx, const struct dea_model_type *type,
                                 struct dea_model *model, const struct dea_control *coordinate,
-                                bool with_mass, struct dea_compliance *out)
+                                int with, struct dea_compliance *out)
 {
-  return type->compliance != NULL ? type->compliance(ctx, model, coordinate, with_mass, out)
+  return type->compliance != NULL ? type->compliance(ctx, model, coordinate, with, out)
                                   : lacks(ctx, type, "forces along a coordinate");
 }
 

@@ -100,6 +100,13 @@ struct dea_control {
   int column;
 };
 
+/* A mode of small motions, with its part of dq/dF and of dq/dV (NAN where that is 0). */
+struct dea_compliance_mode {
+  double frequency_Hz, share, voltage_share;
+};
+enum { DEA_COMPLIANCE_MODES = 12 };
+enum { DEA_COMPLIANCE_WITH_MODES = 1, DEA_COMPLIANCE_WITH_FAST = 2 };
+
 /* How a coordinate q and the charge Q of the shared voltage V change with the force F conjugate to
  * q and with V; q, F, Q are values. */
 struct dea_compliance {
@@ -107,8 +114,8 @@ struct dea_compliance {
   double by_force, by_voltage;               // dq/dF at V, dq/dV at F
   double charge_C;                           // Q
   double charge_by_force, charge_by_voltage; // dQ/dF at V, which is dq/dV, and dQ/dV at F
-  double frequency_Hz;                       // of the mode with the largest part of dq/dF
-  double mode_share, voltage_share;          // its part of dq/dF and of dq/dV
+  double fast_by_force, fast_by_voltage;     // the same where branches do not follow, or NAN
+  struct dea_compliance_mode modes[DEA_COMPLIANCE_MODES]; // the lowest, or NAN
 };
 
 /* Where a search for another state goes off: along a soft mode, or by folding what stands out of
@@ -249,9 +256,9 @@ struct dea_model_type {
   dea_status (*move)(struct dea_context *ctx, struct dea_model *model,
                      const struct dea_control *control, double value, struct dea_load_point *out);
   /* What a coordinate, as of a conjugate control, and the charge change by at the last point
-   * solved; with_mass: also the frequency, else NAN. NULL when the model does not know. */
+   * solved; with: also the modes, else NAN. NULL when the model does not know. */
   dea_status (*compliance)(struct dea_context *ctx, struct dea_model *model,
-                           const struct dea_control *coordinate, bool with_mass,
+                           const struct dea_control *coordinate, int with,
                            struct dea_compliance *out);
   /* The softest motions at the last point solved, ascending: their stiffness by volume [N/m^4],
    * below 0 for unstable ones. The model keeps their shapes for `push`, until the next call. */
@@ -368,7 +375,7 @@ dea_status dea_model_move(struct dea_context *ctx, const struct dea_model_type *
                           struct dea_load_point *out);
 dea_status dea_model_compliance(struct dea_context *ctx, const struct dea_model_type *type,
                                 struct dea_model *model, const struct dea_control *coordinate,
-                                bool with_mass, struct dea_compliance *out);
+                                int with, struct dea_compliance *out);
 dea_status dea_model_soften(struct dea_context *ctx, const struct dea_model_type *type,
                             struct dea_model *model, size_t count, double *stiffness_N_per_m4);
 dea_status dea_model_push(struct dea_context *ctx, const struct dea_model_type *type,

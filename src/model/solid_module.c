@@ -153,11 +153,11 @@ static dea_status move(struct dea_context *ctx, struct dea_model *model,
 }
 
 static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
-                             const struct dea_control *coordinate, bool with_mass,
+                             const struct dea_control *coordinate, int with,
                              struct dea_compliance *out)
 {
   DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_compliance(ctx, model->type, model->inner, coordinate,
-                                                      with_mass, out)));
+                                                      with, out)));
   return DEA_OK;
 }
 

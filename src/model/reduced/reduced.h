@@ -24,8 +24,7 @@ struct dea_reduced_order {
   double stroke;                 // change of the coordinate with the voltage, without a force
   double error, charge_error;    // largest of samples that were left out of a fit of the others,
                                  // over stroke and largest charge
-  double mode_share;             // smallest part of dq/dF that is of the mode with the mass; NAN
-  double voltage_share[3];       // its part of dq/dV, by q as the mass
+  double mode_share;             // smallest part of dq/dF that the modes have; NAN
   struct dea_reduced_output *outputs;
   size_t output_count;
   char device[65]; // hash of the design that it is of

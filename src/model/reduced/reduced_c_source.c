@@ -50,7 +50,7 @@ static const char test[] =
     "  wrong += dea_reduced_begin(m, 0.3 * V, 0, &s) != DEA_REDUCED_OK;\n"
     "  for (int i = 1; i <= steps; i++) {\n"
     "    wrong += dea_reduced_step(m, &s, 1e-4, V * (0.3 - 0.1 * sin(1e-3 * i)), 0,\n"
-    "                              m->mass[0] > 0, 0.9, &s) != DEA_REDUCED_OK;\n  }\n"
+    "                              m->mode_count > 0, 0.9, &s) != DEA_REDUCED_OK;\n  }\n"
     "  const double took = (double)(clock() - began) / CLOCKS_PER_SEC;\n"
     "  printf(\"%d points within %.1e, %.3g steps per second, %d failures\\n\", count, worst,\n"
     "         steps / took, wrong);\n"
@@ -96,14 +96,21 @@ static void add_device(struct dea_text *out, const struct dea_reduced *core)
   add_numbers(out, "dea_reduced_force", s->breaks[0], (size_t)s->cells[0] + 1);
   add_numbers(out, "dea_reduced_voltage", s->breaks[1], (size_t)s->cells[1] + 1);
   add_numbers(out, "dea_reduced_energy", s->c, (size_t)(s->cells[0] * s->cells[1]) * terms);
-  dea_text_add(out,
-               "\nconst struct dea_reduced dea_reduced_device = {\n"
-               "    .energy = {{%d, %d}, {dea_reduced_force, dea_reduced_voltage}, "
-               "dea_reduced_energy},\n    .even = %d,\n    .middle = %.17g,\n"
-               "    .damping = %.17g,\n    .branch_count = %d,\n",
-               s->cells[0], s->cells[1], core->even, core->middle, core->damping,
-               core->branch_count);
-  add_list(out, "mass", core->mass, 3);
+  dea_text_add(
+      out,
+      "\nconst struct dea_reduced dea_reduced_device = {\n"
+      "    .energy = {{%d, %d}, {dea_reduced_force, dea_reduced_voltage}, "
+      "dea_reduced_energy},\n    .even = %d,\n    .middle = %.17g,\n"
+      "    .damping = %.17g,\n    .branch_count = %d,\n    .mode_count = %d,\n    .modes = {",
+      s->cells[0], s->cells[1], core->even, core->middle, core->damping, core->branch_count,
+      core->mode_count);
+  for (int i = 0; i < core->mode_count; i++) {
+    const struct dea_reduced_mode *mode = &core->modes[i];
+    dea_text_add(out, "{{%.17g, %.17g, %.17g}, %.17g, %.17g, {%.17g, %.17g, %.17g}}%s",
+                 mode->mass[0], mode->mass[1], mode->mass[2], mode->share, mode->voltage_share,
+                 mode->by_q[0], mode->by_q[1], mode->by_q[2], i + 1 < core->mode_count ? ", " : "");
+  }
+  dea_text_add(out, core->mode_count == 0 ? "{{0}}},\n" : "},\n");
   add_list(out, "strain", core->strain, 3);
   add_list(out, "branch_N_per_m", core->branch_N_per_m, core->branch_count);
   add_list(out, "branch_s", core->branch_s, core->branch_count);

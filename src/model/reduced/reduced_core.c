@@ -1,6 +1,7 @@
 #include "model/reduced/reduced_core.h"
 
 #include <math.h>
+#include <stddef.h>
 
 enum { TRIALS = 60 };
 static const double settled = 1e-13, beyond = 1e-9; // of the range
@@ -147,27 +148,15 @@ static double pull(const struct dea_reduced *model, const double *p, const doubl
 }
 
 /* Inertia m a + m' v^2/2 and its slope by q, with a and v by q. */
-static double inertia_at(const struct dea_reduced *model, double q, double v, double a, double a_q,
-                         double v_q, double *slope)
+static double inertia_at(const struct dea_reduced *model, const double mass[3], double q, double v,
+                         double a, double a_q, double v_q, double *slope)
 {
-  const double x = q - model->middle, m = polynomial(model->mass, x);
-  const double d = model->mass[1] + 2 * model->mass[2] * x;
-  *slope = m * a_q + d * a + d * v * v_q + model->mass[2] * v * v;
+  const double x = q - model->middle, m = polynomial(mass, x), d = mass[1] + 2 * mass[2] * x;
+  *slope = m * a_q + d * a + d * v * v_q + mass[2] * v * v;
   return m * a + d * v * v / 2;
 }
 
-int dea_reduced_begin(const struct dea_reduced *model, double voltage_V, double external,
-                      struct dea_reduced_state *out)
-{
-  *out = (struct dea_reduced_state){.external = external};
-  const int end = dea_reduced_at(model, external, voltage_V, &out->at);
-  for (int i = 0; i < model->branch_count; i++) {
-    out->p[i] = strain(model, out->at.q);
-  }
-  return end;
-}
-
-double dea_reduced_branch_J(const struct dea_reduced *model, const struct dea_reduced_state *at)
+static double branch_J(const struct dea_reduced *model, const struct dea_reduced_copy *at)
 {
   double sum = 0;
   for (int i = 0; i < model->branch_count; i++) {
@@ -177,40 +166,102 @@ double dea_reduced_branch_J(const struct dea_reduced *model, const struct dea_re
   return sum;
 }
 
-double dea_reduced_kinetic_J(const struct dea_reduced *model, const struct dea_reduced_state *at)
+// Copies ------------------------------------------------------------------------------------------
+
+/* Of the force from outside a copy has a part, so that each mode has its own of dq/dF. */
+static double force_on(const struct dea_reduced *model, int k, double external)
 {
-  return polynomial(model->mass, at->at.q - model->middle) * at->rate * at->rate / 2;
+  const struct dea_reduced_mode *mode = &model->modes[k == 0 ? 0 : (k - 1) / 2];
+  return k == 0 ? external : mode->share / mode->voltage_share * external;
 }
 
-/* A step: p = known + share e at its end, and the state before. */
+double dea_reduced_weight(const struct dea_reduced *model, int k, double *energy)
+{
+  const struct dea_reduced_mode *mode = &model->modes[k == 0 ? 0 : (k - 1) / 2];
+  const double share = mode->voltage_share, sign = k % 2 == 1 ? 1 : -1;
+  *energy = k == 0 ? 1 : sign * share * share / mode->share;
+  return k == 0 ? 1 : sign * share;
+}
+
+static int copies_of(const struct dea_reduced *model)
+{
+  return 1 + 2 * model->mode_count;
+}
+
+/* The device from its copies. */
+static void add_up(const struct dea_reduced *model, struct dea_reduced_state *s)
+{
+  s->at = s->copy[0].at;
+  s->at.force = s->external;
+  s->at.q = s->at.charge_C = s->at.energy_J = 0;
+  s->rate = s->branch_J = s->kinetic_J = s->loss_J = 0;
+  for (int k = 0; k < copies_of(model); k++) {
+    const struct dea_reduced_copy *c = &s->copy[k];
+    double w;
+    const double share = dea_reduced_weight(model, k, &w);
+    s->at.q += share * c->at.q;
+    s->rate += share * c->rate;
+    s->at.charge_C += w * c->at.charge_C;
+    s->at.energy_J += w * c->at.energy_J;
+    s->branch_J += w * branch_J(model, c);
+    s->loss_J += w * c->loss_J;
+    if (k % 2 == 1) {
+      const double m = polynomial(model->modes[k / 2].mass, c->at.q - model->middle);
+      s->kinetic_J += w * m * c->rate * c->rate / 2;
+    }
+  }
+}
+
+int dea_reduced_begin(const struct dea_reduced *model, double voltage_V, double external,
+                      struct dea_reduced_state *out)
+{
+  *out = (struct dea_reduced_state){.external = external};
+  for (int k = 0; k < copies_of(model); k++) {
+    struct dea_reduced_copy *c = &out->copy[k];
+    const int end = dea_reduced_at(model, force_on(model, k, external), voltage_V, &c->at);
+    if (end != DEA_REDUCED_OK) {
+      return end;
+    }
+    for (int i = 0; i < model->branch_count; i++) {
+      c->p[i] = strain(model, c->at.q);
+    }
+  }
+  add_up(model, out);
+  return DEA_REDUCED_OK;
+}
+
+// Steps -------------------------------------------------------------------------------------------
+
+/* A step of a copy: p = known + share e at its end, and the state before. */
 struct step {
   const struct dea_reduced *model;
-  const struct dea_reduced_state *from;
-  double h;
+  const struct dea_reduced_copy *from;
+  const double *mass; // of the copy, or NULL
+  double h, external[2];
   double known[DEA_REDUCED_BRANCHES], share[DEA_REDUCED_BRANCHES];
   double a_m, a_f, beta, gamma;
-  int inertia;
 };
 
 /* What the device does not balance of the force at a state, its branches at p. */
-static double imbalance(const struct step *s, const struct dea_reduced_state *at, double *slope)
+static double imbalance(const struct step *s, const struct dea_reduced_copy *at, double external,
+                        double *slope)
 {
   const double back = pull(s->model, at->p, s->share, at->at.q, slope);
-  return at->at.force + back + s->model->damping * at->rate - at->external;
+  return at->at.force + back + s->model->damping * at->rate - external;
 }
 
 /* The residual at to->at, of which the rest of `to` follows, and its slope by q. */
-static double residual(const struct step *s, struct dea_reduced_state *to, double *slope)
+static double residual(const struct step *s, struct dea_reduced_copy *to, double *slope)
 {
-  const struct dea_reduced_state *n = s->from;
+  const struct dea_reduced_copy *n = s->from;
   const double h = s->h, c = s->model->damping, q = to->at.q;
   double unused, by_q;
   for (int i = 0; i < s->model->branch_count; i++) {
     to->p[i] = s->known[i] + s->share[i] * strain(s->model, q);
   }
-  if (!s->inertia) {
+  if (s->mass == NULL) {
     to->rate = h > 0 ? (q - n->at.q) / h : 0;
-    const double r = imbalance(s, to, &by_q);
+    const double r = imbalance(s, to, s->external[1], &by_q);
     *slope = 1 / to->at.by_force + by_q + (h > 0 ? c / h : 0);
     return r;
   }
@@ -218,15 +269,16 @@ static double residual(const struct step *s, struct dea_reduced_state *to, doubl
   to->acceleration = (q - n->at.q - h * n->rate) * a_q - (0.5 / s->beta - 1) * n->acceleration;
   to->rate = n->rate + h * ((1 - s->gamma) * n->acceleration + s->gamma * to->acceleration);
   const double was =
-      inertia_at(s->model, n->at.q, n->rate, n->acceleration, 0, 0, &unused) * s->a_m +
-      imbalance(s, n, &unused) * s->a_f;
-  const double now = inertia_at(s->model, q, to->rate, to->acceleration, a_q, v_q, &unused);
-  const double r = imbalance(s, to, &by_q);
+      inertia_at(s->model, s->mass, n->at.q, n->rate, n->acceleration, 0, 0, &unused) * s->a_m +
+      imbalance(s, n, s->external[0], &unused) * s->a_f;
+  const double now =
+      inertia_at(s->model, s->mass, q, to->rate, to->acceleration, a_q, v_q, &unused);
+  const double r = imbalance(s, to, s->external[1], &by_q);
   *slope = (1 - s->a_m) * unused + (1 - s->a_f) * (1 / to->at.by_force + by_q + c * v_q);
   return was + (1 - s->a_m) * now + (1 - s->a_f) * r;
 }
 
-static int solve(const struct step *s, double voltage_V, struct dea_reduced_state *to)
+static int solve(const struct step *s, double voltage_V, struct dea_reduced_copy *to)
 {
   double force = s->from->at.force, slope;
   for (int i = 0; i < TRIALS; i++) {
@@ -246,18 +298,18 @@ static int solve(const struct step *s, double voltage_V, struct dea_reduced_stat
 }
 
 /* The place stays, and the acceleration follows the forces. */
-static int jump(const struct step *s, double voltage_V, struct dea_reduced_state *to)
+static int jump(const struct step *s, double voltage_V, struct dea_reduced_copy *to)
 {
   double slope;
   const int end = dea_reduced_held(s->model, s->from->at.q, voltage_V, &to->at);
-  const double x = to->at.q - s->model->middle, m = polynomial(s->model->mass, x);
-  const double d = s->model->mass[1] + 2 * s->model->mass[2] * x;
-  to->acceleration = -(imbalance(s, to, &slope) + d * to->rate * to->rate / 2) / m;
+  const double x = to->at.q - s->model->middle, m = polynomial(s->mass, x);
+  const double d = s->mass[1] + 2 * s->mass[2] * x;
+  to->acceleration = -(imbalance(s, to, s->external[1], &slope) + d * to->rate * to->rate / 2) / m;
   return end;
 }
 
 /* What branches lose while e goes straight: r = e - p is A + B exp(-t/tau). */
-static double loss(const struct step *s, const struct dea_reduced_state *to)
+static double loss(const struct step *s, const struct dea_reduced_copy *to)
 {
   const double h = s->h, e[2] = {strain(s->model, s->from->at.q), strain(s->model, to->at.q)};
   const double v = 0.5 * (s->from->rate + to->rate);
@@ -271,31 +323,52 @@ static double loss(const struct step *s, const struct dea_reduced_state *to)
   return sum;
 }
 
+/* s: all but what is of the copy. */
+static int step_copy(struct step *s, double voltage_V, struct dea_reduced_copy *to)
+{
+  const double h = s->h, e = strain(s->model, s->from->at.q);
+  for (int i = 0; i < s->model->branch_count; i++) {
+    const double y = h / s->model->branch_s[i], x = exp(-y);
+    const double mean = y > 1e-8 ? (1 - x) / y : 1 - y / 2;
+    s->share[i] = 1 - mean;
+    s->known[i] = x * s->from->p[i] + (mean - x) * e;
+  }
+  *to = *s->from;
+  const int end = s->mass != NULL && !(h > 0) ? jump(s, voltage_V, to) : solve(s, voltage_V, to);
+  if (end == DEA_REDUCED_OK && h > 0) {
+    to->loss_J += loss(s, to);
+  }
+  return end;
+}
+
 int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_state *from,
                      double length_s, double voltage_V, double external, int inertia, double rho,
                      struct dea_reduced_state *to)
 {
-  const double h = length_s;
   const struct dea_reduced_state n = *from;
-  struct step s = {.model = model, .from = &n, .h = h, .inertia = inertia};
+  struct step s = {.model = model, .h = length_s};
+  const int loaded = n.external != 0 || external != 0;
   s.a_m = (2 * rho - 1) / (rho + 1);
   s.a_f = rho / (rho + 1);
   s.beta = (1 - s.a_m + s.a_f) * (1 - s.a_m + s.a_f) / 4;
   s.gamma = 0.5 - s.a_m + s.a_f;
-  for (int i = 0; i < model->branch_count; i++) {
-    const double y = h / model->branch_s[i], x = exp(-y);
-    const double mean = y > 1e-8 ? (1 - x) / y : 1 - y / 2;
-    s.share[i] = 1 - mean;
-    s.known[i] = x * n.p[i] + (mean - x) * strain(model, n.at.q);
-  }
-  *to = n;
   to->external = external;
-  const int end = inertia && !(h > 0) ? jump(&s, voltage_V, to) : solve(&s, voltage_V, to);
-  if (end != DEA_REDUCED_OK) {
-    return end;
+  for (int k = 0; k < copies_of(model); k++) {
+    if (k > 0 && !loaded && (k % 2 == 0 || !inertia)) { // as the first
+      to->copy[k] = to->copy[0];
+      continue;
+    }
+    s.from = &n.copy[k];
+    s.mass = inertia && k % 2 == 1 ? model->modes[k / 2].mass : NULL;
+    s.external[0] = force_on(model, k, n.external);
+    s.external[1] = force_on(model, k, external);
+    const int end = step_copy(&s, voltage_V, &to->copy[k]);
+    if (end != DEA_REDUCED_OK) {
+      return end;
+    }
   }
-  to->time_s = n.time_s + h;
+  add_up(model, to);
+  to->time_s = n.time_s + length_s;
   to->external_J = n.external_J + 0.5 * (n.external + external) * (to->at.q - n.at.q);
-  to->loss_J = n.loss_J + (h > 0 ? loss(&s, to) : 0);
   return DEA_REDUCED_OK;
 }

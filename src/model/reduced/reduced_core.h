@@ -11,13 +11,21 @@
  * Functions return 0, or why they cannot: enum dea_reduced_end. Nothing allocates. */
 #pragma once
 
-enum { DEA_REDUCED_TERMS = 6, DEA_REDUCED_BRANCHES = 12 };
+enum { DEA_REDUCED_TERMS = 6, DEA_REDUCED_BRANCHES = 12, DEA_REDUCED_MODES = 3 };
 
 enum dea_reduced_end {
   DEA_REDUCED_OK,
   DEA_REDUCED_BEYOND_FORCE,   // F is outside its range
   DEA_REDUCED_BEYOND_VOLTAGE, // V is
   DEA_REDUCED_NOT_CONVERGED
+};
+
+/* A mode of the device: a part of it that moves as a device with that mass would. */
+struct dea_reduced_mode {
+  double mass[3];       // by x = q - middle [kg]: mass[0] + mass[1] x + mass[2] x^2
+  double share;         // of dq/dF
+  double voltage_share; // of dq/dV
+  double by_q[3];       // the same by x, of small motions
 };
 
 /* A function of two variables, of degree 5 in each cell: sum c[i][j] s^i t^j, with s and t from 0
@@ -31,9 +39,9 @@ struct dea_reduced_spline {
 struct dea_reduced {
   struct dea_reduced_spline energy; // Phi [J] by F and V, of an even device by F and V^2
   int even;
-  /* By x = q - middle: a mass m = mass[0] + mass[1] x + mass[2] x^2 [kg], or 0 of a device without;
-   * and de/dq = strain[0] + ... */
-  double middle, mass[3], strain[3];
+  double middle, strain[3]; // de/dq = strain[0] + ... by x
+  int mode_count;           // 0: of a device without mass
+  struct dea_reduced_mode modes[DEA_REDUCED_MODES];
   double damping; // dashpot at the coordinate [N s/m]
   int branch_count;
   double branch_N_per_m[DEA_REDUCED_BRANCHES], branch_s[DEA_REDUCED_BRANCHES];
@@ -45,12 +53,22 @@ struct dea_reduced_point {
   double by_force, by_voltage, charge_by_voltage; // dq/dF, dq/dV (which is dQ/dF), dQ/dV at F
 };
 
-struct dea_reduced_state {
-  double time_s, external; // force from outside
+/* A device of one mass or of none. */
+struct dea_reduced_copy {
   struct dea_reduced_point at;
   double rate, acceleration;
-  double p[DEA_REDUCED_BRANCHES];
-  double loss_J, external_J; // in branches and damping; work of the force from outside
+  double p[DEA_REDUCED_BRANCHES], loss_J;
+};
+
+struct dea_reduced_state {
+  double time_s, external;     // force from outside
+  struct dea_reduced_point at; // of the sum of the copies
+  double rate;
+  double branch_J, kinetic_J; // stored beside the film's energy
+  double loss_J, external_J;  // in branches and damping; work of the force from outside
+  /* Without mass; then for each mode one with it, which is added, and one without, which is taken
+   * off. */
+  struct dea_reduced_copy copy[1 + 2 * DEA_REDUCED_MODES];
 };
 
 /* Value and slopes at x, y: out f, f_x, f_y, f_xx, f_xy, f_yy. Outside: of the nearest cell. */
@@ -70,6 +88,5 @@ int dea_reduced_begin(const struct dea_reduced *model, double voltage_V, double 
 int dea_reduced_step(const struct dea_reduced *model, const struct dea_reduced_state *from,
                      double length_s, double voltage_V, double external, int inertia, double rho,
                      struct dea_reduced_state *to);
-/* The energies that are stored beside the film's: of branches, and of the mass. */
-double dea_reduced_branch_J(const struct dea_reduced *model, const struct dea_reduced_state *at);
-double dea_reduced_kinetic_J(const struct dea_reduced *model, const struct dea_reduced_state *at);
+/* What the copy k of a state counts in the coordinate, and in charge and energies. */
+double dea_reduced_weight(const struct dea_reduced *model, int k, double *energy);

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FORMAT = 1, FILE_MAX = 64 << 20, TERMS = DEA_REDUCED_TERMS };
+enum { FORMAT = 2, FILE_MAX = 64 << 20, TERMS = DEA_REDUCED_TERMS };
 
 static const char *const motions[] = {"x",         "y",         "z",           "turn_x",
                                       "turn_y",    "turn_z",    "outwards",    "stretch",
@@ -87,7 +87,8 @@ static void put_place(json_t *object, const struct dea_device *device, int colum
 static json_t *order_json(const struct dea_reduced_order *o, const struct dea_device *device)
 {
   const struct dea_reduced *core = &o->core;
-  json_t *root = json_object(), *outputs = json_array(), *coordinate = json_object();
+  json_t *root = json_object(), *outputs = json_array(), *modes = json_array(),
+         *coordinate = json_object();
   dea_json_put_count(root, "dea_reduced_order", FORMAT);
   dea_json_put_text(root, "program", DEA_VERSION);
   dea_json_put_text(root, "device", o->device);
@@ -103,8 +104,15 @@ static json_t *order_json(const struct dea_reduced_order *o, const struct dea_de
   json_object_set_new(root, "even", json_boolean(core->even));
   json_object_set_new(root, "energy", spline_json(&core->energy));
   dea_json_put(root, "middle", core->middle);
-  json_object_set_new(root, "mass", numbers(core->mass, 3));
-  json_object_set_new(root, "voltage_share", numbers(o->voltage_share, 3));
+  for (int i = 0; i < core->mode_count; i++) {
+    json_t *mode = json_object();
+    json_object_set_new(mode, "mass", numbers(core->modes[i].mass, 3));
+    dea_json_put(mode, "share", core->modes[i].share);
+    dea_json_put(mode, "voltage_share", core->modes[i].voltage_share);
+    json_object_set_new(mode, "voltage_share_by_q", numbers(core->modes[i].by_q, 3));
+    json_array_append_new(modes, mode);
+  }
+  json_object_set_new(root, "modes", modes);
   json_object_set_new(root, "strain", numbers(core->strain, 3));
   dea_json_put(root, "damping", core->damping);
   json_object_set_new(root, "branch_N_per_m",
@@ -246,8 +254,15 @@ static void read_order(struct reading *r, const json_t *root, struct dea_reduced
   core->even = json_is_true(json_object_get(root, "even"));
   read_spline(r, json_object_get(root, "energy"), &core->energy);
   core->middle = number(r, root, "middle");
-  numbers_into(r, root, "mass", 3, core->mass);
-  numbers_into(r, root, "voltage_share", 3, o->voltage_share);
+  const json_t *modes = json_object_get(root, "modes");
+  core->mode_count = (int)fmin((double)json_array_size(modes), DEA_REDUCED_MODES);
+  for (int i = 0; i < core->mode_count; i++) {
+    const json_t *mode = json_array_get(modes, (size_t)i);
+    numbers_into(r, mode, "mass", 3, core->modes[i].mass);
+    numbers_into(r, mode, "voltage_share_by_q", 3, core->modes[i].by_q);
+    core->modes[i].share = number(r, mode, "share");
+    core->modes[i].voltage_share = number(r, mode, "voltage_share");
+  }
   numbers_into(r, root, "strain", 3, core->strain);
   core->damping = number(r, root, "damping");
   array(r, root, "branch_s", SIZE_MAX, &branches);

@@ -11,6 +11,8 @@
 
 extern const struct dea_model_type dea_model_3d; // of model_list.h
 
+enum { DEFAULT_VOLTAGES = 5 }; // at first
+
 struct making {
   struct dea_context *ctx;
   const struct dea_model_type *type; // model 3d
@@ -22,7 +24,6 @@ struct making {
   struct dea_reduced_grid grid;
   struct dea_reduced_sample *samples;       // the grid's
   double (*monitors)[DEA_OBSERVED_MOTIONS]; // [forces][voltages][monitor_count]
-  double *fast;                             // [voltages] dq/dF without a force, branches held
   double force, highest_V, stroke;
   bool viscous, massive;
 };
@@ -122,7 +123,7 @@ static dea_status restart(struct making *m)
  * coordinate as far as the voltage does. */
 static dea_status find_range(struct making *m)
 {
-  const size_t steps = m->grid.voltages - 1;
+  const size_t steps = 2 * (DEFAULT_VOLTAGES - 1);
   struct dea_load_point point;
   struct dea_compliance at[2];
   double end_V = 0;
@@ -148,14 +149,15 @@ static dea_status find_range(struct making *m)
                                     "state that is sure",
                                     1e-3 * end_V));
     m->highest_V = end_V;
+    DEA_TRY(m->ctx, restart(m));
+    DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, end_V, &point));
   }
-  double q[2];
+  double unused;
+  DEA_TRY(m->ctx, read_coordinate(m, &point, &unused));
+  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, 0, &at[1]));
   DEA_TRY(m->ctx, restart(m));
-  DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, m->highest_V, &point));
-  DEA_TRY(m->ctx, read_coordinate(m, &point, &q[1]));
-  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, false, &at[1]));
   DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, 0, &point));
-  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, false, &at[0]));
+  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, 0, &at[0]));
   m->stroke = at[1].value - at[0].value;
   if (!(m->force > 0)) {
     m->force = 2 * fabs(m->stroke) / (at[0].by_force + at[1].by_force);
@@ -165,38 +167,20 @@ static dea_status find_range(struct making *m)
 
 // Samples -----------------------------------------------------------------------------------------
 
-/* dq/dF of what moves at once, with a small share of the largest force to either side. */
-static dea_status find_fast(struct making *m, double voltage_V, double *out)
-{
-  static const double share = 0.02;
-  const struct dea_time_options options = {.circuit = {0, INFINITY}, .rho_inf = 0.8};
-  struct dea_load_point point;
-  double q[2], unused;
-  DEA_TRY(m->ctx, m->type->begin(m->ctx, m->model, &options, &point));
-  for (int side = 0; side < 2; side++) {
-    const struct dea_time_step step = {.source_voltage_V = voltage_V,
-                                       .control = &m->coordinate,
-                                       .value = (2 * side - 1) * share * m->force};
-    DEA_TRY(m->ctx, m->type->advance(m->ctx, m->model, &step, &point, &unused));
-    m->type->accept(m->model);
-    DEA_TRY(m->ctx, read_coordinate(m, &point, &q[side]));
-  }
-  *out = (q[1] - q[0]) / (2 * share * m->force);
-  return DEA_OK;
-}
-
 static dea_status take_sample(struct making *m, size_t force, size_t voltage, double value)
 {
   const size_t n = force * m->grid.voltages + voltage, middle = m->grid.forces / 2,
                count = m->device->layout->monitor_count;
   struct dea_reduced_sample *out = &m->samples[n];
+  const int with =
+      (m->massive ? DEA_COMPLIANCE_WITH_MODES : 0) | (m->viscous ? DEA_COMPLIANCE_WITH_FAST : 0);
   struct dea_observation seen;
   DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, value, &out->point));
   if (is_doubtful(&out->point)) {
     return dea_fail(m->ctx, DEA_E_NO_EQUILIBRIUM, "the state is one of several there");
   }
-  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate,
-                                      m->massive && force == middle, &out->at));
+  DEA_TRY(m->ctx, m->type->compliance(m->ctx, m->model, &m->coordinate, force == middle ? with : 0,
+                                      &out->at));
   DEA_TRY(m->ctx, dea_model_observe(m->ctx, m->type, m->model, &seen));
   for (size_t i = 0; i < count; i++) {
     memcpy(m->monitors[n * count + i], seen.monitor[i], sizeof *m->monitors);
@@ -204,40 +188,91 @@ static dea_status take_sample(struct making *m, size_t force, size_t voltage, do
   return DEA_OK;
 }
 
-/* All forces at a voltage, from none outwards. */
-static dea_status take_voltage(struct making *m, size_t i)
+/* What a fit of every second sample is off at the others, over stroke and charge. */
+static dea_status hold_out(struct making *m, double error[2])
+{
+  struct dea_reduced trial = {.even = m->grid.even};
+  double charge = 0;
+  error[0] = error[1] = 0;
+  DEA_TRY(m->ctx, dea_reduced_fit_energy(&m->memory, &m->grid, 2, &trial.energy));
+  for (size_t n = 0; n < m->grid.forces * m->grid.voltages; n++) {
+    const struct dea_reduced_sample *s = &m->samples[n];
+    struct dea_reduced_point p;
+    dea_reduced_at(&trial, s->at.force, s->voltage_V, &p);
+    error[0] = fmax(error[0], fabs((p.q - s->at.value) / m->stroke));
+    error[1] = fmax(error[1], fabs(p.charge_C - s->at.charge_C));
+    charge = fmax(charge, fabs(s->at.charge_C));
+  }
+  error[1] /= charge;
+  return DEA_OK;
+}
+
+/* Room for a voltage between each two. */
+static void spread(struct making *m)
+{
+  const size_t count = m->device->layout->monitor_count, was = m->grid.voltages;
+  m->grid.voltages = 2 * was - 1;
+  for (size_t n = m->grid.forces * was; n-- > 0;) {
+    const size_t to = n / was * m->grid.voltages + n % was * 2;
+    m->samples[to] = m->samples[n];
+    memmove(m->monitors + to * count, m->monitors + n * count, count * sizeof *m->monitors);
+  }
+}
+
+/* All forces at a voltage, in the order that `side` says: the first of them is where the model is.
+ */
+static dea_status take_voltage(struct making *m, size_t i, int side)
 {
   const size_t middle = m->grid.forces / 2;
-  const double step = m->force / (double)middle;
+  const double step = side * m->force / (double)middle;
   const double V = m->highest_V * (double)i / (double)(m->grid.voltages - 1);
   struct dea_load_point point;
   DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, V, &point));
-  for (int side = -1; side <= 1; side += 2) {
-    for (size_t k = 0; k <= middle; k++) {
-      const size_t j = side < 0 ? middle - k : middle + k;
-      DEA_TRY(m->ctx, take_sample(m, j, i, side * (double)k * step));
-      m->samples[j * m->grid.voltages + i].voltage_V = V;
-    }
+  for (size_t k = 0; k < m->grid.forces; k++) {
+    const size_t j = side < 0 ? m->grid.forces - 1 - k : k;
+    const double value = k == middle ? 0 : ((double)k - (double)middle) * step;
+    DEA_TRY(m->ctx, take_sample(m, j, i, value));
+    m->samples[j * m->grid.voltages + i].voltage_V = V;
   }
-  DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, 0, &point));
-  if (m->viscous) {
-    DEA_TRY(m->ctx, find_fast(m, V, &m->fast[i]));
-    DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, 0, &point));
+  return DEA_OK;
+}
+
+/* Voltages upwards and, where these are not enough, those between them on the way back: from each
+ * to the next at the force where it ends. */
+static dea_status take_voltages(struct making *m, double error[2])
+{
+  static const double enough = 1e-3;
+  const bool chosen = m->settings.reduced.voltages > 0;
+  struct dea_load_point point;
+  int side = 1;
+  m->grid.voltages = chosen ? (size_t)m->settings.reduced.voltages : DEFAULT_VOLTAGES;
+  DEA_TRY(m->ctx, restart(m));
+  DEA_TRY(m->ctx, m->type->solve(m->ctx, m->model, 0, &point));
+  DEA_TRY(m->ctx, m->type->move(m->ctx, m->model, &m->coordinate, -m->force, &point));
+  for (size_t i = 0; i < m->grid.voltages; i++, side = -side) {
+    DEA_TRY(m->ctx, take_voltage(m, i, side));
+    dea_progress(m->ctx, "reduced-order samples", i + 1, m->grid.voltages);
   }
-  dea_progress(m->ctx, "reduced-order samples", i + 1, m->grid.voltages);
+  DEA_TRY(m->ctx, hold_out(m, error));
+  if (chosen || error[0] < enough) {
+    return DEA_OK;
+  }
+  spread(m);
+  for (size_t i = m->grid.voltages - 1; i-- > 0; i--, side = -side) {
+    DEA_TRY(m->ctx, take_voltage(m, i, side));
+    dea_progress(m->ctx, "reduced-order samples", m->grid.voltages - i / 2, m->grid.voltages);
+  }
+  DEA_TRY(m->ctx, hold_out(m, error));
   return DEA_OK;
 }
 
 /* With smaller forces where the device does not bear these, and then with smaller voltages: close
  * to where it loses its stability it bears none. */
-static dea_status take_samples(struct making *m)
+static dea_status take_samples(struct making *m, double error[2])
 {
   enum { TRIALS = 6, OF_FORCE = 2 };
   for (int trial = 0; trial < TRIALS; trial++) {
-    dea_status status = restart(m);
-    for (size_t i = 0; i < m->grid.voltages && status == DEA_OK; i++) {
-      status = take_voltage(m, i);
-    }
+    const dea_status status = take_voltages(m, error);
     if (status == DEA_OK || ends(status) || m->settings.reduced.force > 0) {
       return status == DEA_OK ? DEA_OK
                               : dea_fail_chain(m->ctx, status, __func__, __FILE__, __LINE__);
@@ -252,24 +287,6 @@ static dea_status take_samples(struct making *m)
 }
 
 // Fits --------------------------------------------------------------------------------------------
-
-/* What a fit of every second sample is off at the others. */
-static dea_status hold_out(struct making *m, struct dea_reduced_order *out)
-{
-  struct dea_reduced trial = {.even = m->grid.even};
-  double charge = 0;
-  DEA_TRY(m->ctx, dea_reduced_fit_energy(&m->memory, &m->grid, 2, &trial.energy));
-  for (size_t n = 0; n < m->grid.forces * m->grid.voltages; n++) {
-    const struct dea_reduced_sample *s = &m->samples[n];
-    struct dea_reduced_point p;
-    dea_reduced_at(&trial, s->at.force, s->voltage_V, &p);
-    out->error = fmax(out->error, fabs((p.q - s->at.value) / m->stroke));
-    out->charge_error = fmax(out->charge_error, fabs(p.charge_C - s->at.charge_C));
-    charge = fmax(charge, fabs(s->at.charge_C));
-  }
-  out->charge_error /= charge;
-  return DEA_OK;
-}
 
 static const char *const output_keys[] = {
     "electrode_stretch",    "centre_z_m",         "fibre_tip_z_m",      "highest_z_m",
@@ -319,29 +336,65 @@ static dea_status fit_outputs(struct making *m, struct dea_reduced_order *out)
   return DEA_OK;
 }
 
-/* m = K/omega^2 of the states without a force. */
-static dea_status fit_mass(struct making *m, const struct dea_reduced_sample *free, const double *x,
-                           struct dea_reduced_order *out)
+/* A mode of the states without a force: m = 1/(dq/dF omega^2) by x, and its shares. *size: of that
+ * of dq/dV. */
+static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_sample *free,
+                           const double *x, struct dea_reduced_mode *out, double *size)
 {
   double mass[DEA_REDUCED_VOLTAGES_MAX], share[DEA_REDUCED_VOLTAGES_MAX];
-  const size_t count = m->grid.voltages;
-  out->mode_share = NAN;
-  for (size_t i = 0; i < count && m->massive; i++) {
-    const double omega = 2 * acos(-1.0) * free[i].at.frequency_Hz;
+  const size_t count = m->grid.voltages, from = m->grid.even ? 1 : 0; // no dq/dV at 0 V
+  *out = (struct dea_reduced_mode){.share = 0};
+  for (size_t i = 0; i < count; i++) {
+    const struct dea_compliance_mode *mode = &free[i].at.modes[k];
+    const double omega = 2 * acos(-1.0) * mode->frequency_Hz;
     mass[i] = 1 / (free[i].at.by_force * omega * omega);
-    share[i] = free[i].at.voltage_share;                            // without a limit at 0 V
-    out->mode_share = fmin(out->mode_share, free[i].at.mode_share); // fmin: not of NAN
-    if (!isfinite(mass[i])) {
-      return dea_fail(m->ctx, DEA_E_DOMAIN, "no mode of the device moves the coordinate");
+    share[i] = mode->voltage_share;
+    if (i >= from) {
+      out->share += mode->share / (double)(count - from);
+      out->voltage_share += mode->voltage_share / (double)(count - from);
     }
   }
-  if (m->massive) {
-    const size_t from = m->grid.even ? 1 : 0;
-    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x, mass, count, out->core.mass));
-    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x + from, share + from, count - from,
-                                               out->voltage_share));
+  *size = isfinite(mass[0]) && isfinite(out->share) ? fabs(out->voltage_share) : 0;
+  if (*size > 0) {
+    DEA_TRY(m->ctx, dea_reduced_fit_polynomial(m->ctx, x, mass, count, out->mass));
+    DEA_TRY(m->ctx,
+            dea_reduced_fit_polynomial(m->ctx, x + from, share + from, count - from, out->by_q));
   }
   return DEA_OK;
+}
+
+/* The modes with the largest shares of dq/dV. */
+static dea_status fit_modes(struct making *m, const struct dea_reduced_sample *free,
+                            const double *x, struct dea_reduced_order *out)
+{
+  static const double least = 0.01;
+  double size[DEA_REDUCED_MODES + 1] = {0};
+  struct dea_reduced_mode *modes = out->core.modes;
+  out->mode_share = m->massive ? 0 : NAN;
+  for (size_t k = 0; k < DEA_COMPLIANCE_MODES && m->massive; k++) {
+    struct dea_reduced_mode mode;
+    double own;
+    DEA_TRY(m->ctx, fit_mode(m, k, free, x, &mode, &own));
+    int n = out->core.mode_count;
+    while (n > 0 && size[n - 1] < own) {
+      n--;
+    }
+    for (int i = DEA_REDUCED_MODES - 1; i > n && own >= least; i--) {
+      modes[i] = modes[i - 1];
+      size[i] = size[i - 1];
+    }
+    if (n < DEA_REDUCED_MODES && own >= least) {
+      modes[n] = mode;
+      size[n] = own;
+      out->core.mode_count += out->core.mode_count < DEA_REDUCED_MODES ? 1 : 0;
+    }
+  }
+  for (int i = 0; i < out->core.mode_count; i++) {
+    out->mode_share += modes[i].share;
+  }
+  return m->massive && out->core.mode_count == 0
+             ? dea_fail(m->ctx, DEA_E_DOMAIN, "no mode of the device moves the coordinate")
+             : DEA_OK;
 }
 
 /* Times of the branches of all plies, with shares by modulus and thickness. */
@@ -368,7 +421,8 @@ static double add_branches(const struct dea_layout *l, struct dea_reduced *core)
   return sum;
 }
 
-/* k = 1/(dq/dF) fast less slow; de/dq is the root of it over that at the middle. */
+/* k is such that without it dq/dV, or dq/dF where that is 0, is what it is at once: K (slow/fast -
+ * 1); de/dq is the root of it over that at the middle. */
 static dea_status fit_branches(struct making *m, const struct dea_reduced_sample *free,
                                const double *x, struct dea_reduced_order *out)
 {
@@ -378,7 +432,10 @@ static dea_status fit_branches(struct making *m, const struct dea_reduced_sample
     return DEA_OK;
   }
   for (size_t i = 0; i < m->grid.voltages; i++) {
-    root[i] = sqrt(1 / m->fast[i] - 1 / free[i].at.by_force);
+    const struct dea_compliance *at = &free[i].at;
+    const double by_voltage = at->by_voltage / at->fast_by_voltage - 1;
+    root[i] =
+        sqrt((by_voltage > 0 ? by_voltage : at->by_force / at->fast_by_force - 1) / at->by_force);
     if (!isfinite(root[i])) {
       return dea_fail(m->ctx, DEA_E_DOMAIN, "branches do not stiffen the coordinate");
     }
@@ -399,14 +456,13 @@ static dea_status fit(struct making *m, struct dea_reduced_order *out)
 {
   const struct dea_reduced_sample *free = m->samples + m->grid.forces / 2 * m->grid.voltages;
   double x[DEA_REDUCED_VOLTAGES_MAX];
-  DEA_TRY(m->ctx, hold_out(m, out));
   DEA_TRY(m->ctx, dea_reduced_fit_energy(&out->memory, &m->grid, 1, &out->core.energy));
   out->core.even = m->grid.even;
   out->core.middle = 0.5 * (free[0].at.value + free[m->grid.voltages - 1].at.value);
   for (size_t i = 0; i < m->grid.voltages; i++) {
     x[i] = free[i].at.value - out->core.middle;
   }
-  DEA_TRY(m->ctx, fit_mass(m, free, x, out));
+  DEA_TRY(m->ctx, fit_modes(m, free, x, out));
   DEA_TRY(m->ctx, fit_branches(m, free, x, out));
   DEA_TRY(m->ctx, fit_outputs(m, out));
   out->coordinate = m->coordinate;
@@ -422,17 +478,19 @@ static dea_status fit(struct making *m, struct dea_reduced_order *out)
 
 static dea_status make(struct making *m, struct dea_reduced_order *out)
 {
-  const size_t samples = m->grid.forces * m->grid.voltages;
+  const size_t samples = m->grid.forces * m->grid.voltages; // the most
+  double error[2];
   DEA_TRY(m->ctx, find_monitor(m));
   m->samples = dea_arena_alloc(&m->memory, samples, sizeof *m->samples);
   m->monitors = dea_arena_alloc(&m->memory, samples * (m->device->layout->monitor_count + 1),
                                 sizeof *m->monitors);
-  m->fast = dea_arena_alloc(&m->memory, m->grid.voltages, sizeof *m->fast);
   DEA_TRY(m->ctx, dea_arena_status(&m->memory));
   m->grid.samples = m->samples;
   DEA_TRY(m->ctx, restart(m));
   DEA_TRY(m->ctx, find_range(m));
-  DEA_TRY(m->ctx, take_samples(m));
+  DEA_TRY(m->ctx, take_samples(m, error));
+  out->error = error[0];
+  out->charge_error = error[1];
   DEA_TRY(m->ctx, fit(m, out));
   DEA_TRY(m->ctx, dea_reduced_order_mark(m->ctx, out, m->device, &m->settings));
   return DEA_OK;
@@ -450,7 +508,8 @@ dea_status dea_reduced_order_make(struct dea_context *ctx, const struct dea_devi
       .settings = *settings,
       .memory = {.ctx = ctx},
       .grid = {.forces = settings->reduced.forces > 0 ? (size_t)settings->reduced.forces : 5,
-               .voltages = settings->reduced.voltages > 0 ? (size_t)settings->reduced.voltages : 9,
+               .voltages = settings->reduced.voltages > 0 ? (size_t)settings->reduced.voltages
+                                                          : 2 * DEFAULT_VOLTAGES - 1,
                .even = is_even(device->layout)},
       .force = settings->reduced.force,
       .highest_V = settings->reduced.voltage_V,

@@ -17,10 +17,8 @@ struct moment {
 struct dea_model {
   const struct dea_device *device;
   struct dea_reduced_order *order;
-  struct dea_reduced_point at; // the last point
   struct dea_time_options options;
-  struct moment now, trial;
-  bool moves; // a history has begun, and the last point is that of `trial`
+  struct moment now, trial;               // accepted; the last point
   double largest_q, largest_V, largest_J; // so far, for errors of steps
   struct dea_arena memory;                // of what observations lend
   double (*monitor)[DEA_OBSERVED_COUNT], (*body)[DEA_OBSERVED_COUNT];
@@ -49,12 +47,6 @@ static dea_status say(struct dea_context *ctx, const struct dea_model *model)
                    "of the stroke and %.2g %% of the charge at samples that were left out of the "
                    "fit",
                    name, 1e-3 * o->voltage_V[1], o->made_s, 100 * o->error, 100 * o->charge_error));
-  if (o->mode_share < 0.8) {
-    DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, (struct dea_location){0},
-                                 "model reduced: its one mode has %.2g %% of the compliance of %s: "
-                                 "fast motions have more modes (compute.reduced.monitor)",
-                                 100 * o->mode_share, name));
-  }
   return DEA_OK;
 }
 
@@ -87,24 +79,29 @@ static dea_status create(struct dea_context *ctx, const struct dea_device *devic
 
 // Points ------------------------------------------------------------------------------------------
 
-static double output_at(const struct dea_model *model, const struct dea_reduced_output *output,
-                        const struct dea_reduced_point *at)
+/* Of the copies at the last point. */
+static double output_at(const struct dea_model *model, const struct dea_reduced_output *output)
 {
-  const double V = at->voltage_V;
-  double value[6];
-  dea_reduced_spline_at(&output->of, at->force, model->order->core.even ? V * V : V, value);
-  return value[0];
+  const struct dea_reduced *core = &model->order->core;
+  const struct dea_reduced_state *at = &model->trial.film;
+  const double V = at->at.voltage_V;
+  double sum = 0, value[6], unused;
+  for (int k = 0; k < 1 + 2 * core->mode_count; k++) {
+    dea_reduced_spline_at(&output->of, at->copy[k].at.force, core->even ? V * V : V, value);
+    sum += dea_reduced_weight(core, k, &unused) * value[0];
+  }
+  return sum;
 }
 
-static void fill_point(const struct dea_model *model, const struct dea_reduced_point *at,
-                       struct dea_load_point *out)
+static void fill_point(const struct dea_model *model, struct dea_load_point *out)
 {
   const struct dea_reduced_order *o = model->order;
+  const struct dea_reduced_point *at = &model->trial.film.at;
   *out = dea_load_point_empty();
   out->voltage_V = at->voltage_V;
   for (size_t i = 0; i < o->output_count; i++) {
     if (o->outputs[i].column != 0) {
-      dea_point_set(out, o->outputs[i].column, output_at(model, &o->outputs[i], at));
+      dea_point_set(out, o->outputs[i].column, output_at(model, &o->outputs[i]));
     }
   }
   if (o->coordinate.column != 0) {
@@ -117,12 +114,11 @@ static void fill_point(const struct dea_model *model, const struct dea_reduced_p
 static dea_status solve(struct dea_context *ctx, struct dea_model *model, double voltage_V,
                         struct dea_load_point *out)
 {
-  const int end = dea_reduced_at(&model->order->core, 0, voltage_V, &model->at);
+  const int end = dea_reduced_begin(&model->order->core, voltage_V, 0, &model->trial.film);
   if (end != DEA_REDUCED_OK) {
     return dea_reduced_fail(ctx, model->order, end, voltage_V);
   }
-  model->moves = false;
-  fill_point(model, &model->at, out);
+  fill_point(model, out);
   return DEA_OK;
 }
 
@@ -131,7 +127,7 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
 {
   const struct dea_layout *l = model->device->layout;
   const struct dea_reduced_order *o = model->order;
-  const struct dea_reduced_point *at = model->moves ? &model->trial.film.at : &model->at;
+  const struct dea_reduced_point *at = &model->trial.film.at;
   (void)ctx;
   for (size_t i = 0; i < (l->monitor_count + l->body_count) * DEA_OBSERVED_COUNT; i++) {
     const size_t monitor = i / DEA_OBSERVED_COUNT, k = i % DEA_OBSERVED_COUNT;
@@ -142,7 +138,7 @@ static dea_status observe(struct dea_context *ctx, struct dea_model *model,
   for (size_t i = 0; i < o->output_count; i++) {
     const struct dea_reduced_output *output = &o->outputs[i];
     if (output->column == 0) {
-      model->monitor[output->monitor][output->motion] = output_at(model, output, at);
+      model->monitor[output->monitor][output->motion] = output_at(model, output);
     }
   }
   if (o->coordinate.column == 0) {
@@ -175,17 +171,23 @@ static dea_status errors(struct dea_context *ctx, struct dea_model *model, doubl
   return DEA_OK;
 }
 
+static double mass_at(const struct dea_reduced *core, const struct dea_reduced_mode *mode, double q)
+{
+  const double x = q - core->middle;
+  return mode->mass[0] + x * (mode->mass[1] + x * mode->mass[2]);
+}
+
 static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
-                             const struct dea_control *coordinate, bool with_mass,
+                             const struct dea_control *coordinate, int with,
                              struct dea_compliance *out)
 {
-  const struct dea_reduced_order *o = model->order;
-  const struct dea_reduced_point *at = &model->at;
-  const double x = at->q - o->core.middle, *m = o->core.mass;
-  if (coordinate->column != o->coordinate.column || coordinate->body != o->coordinate.body) {
+  const struct dea_reduced *core = &model->order->core;
+  const struct dea_control *own = &model->order->coordinate;
+  const struct dea_reduced_point *at = &model->trial.film.at;
+  (void)with;
+  if (coordinate->column != own->column || coordinate->body != own->body) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "the reduced-order model has another coordinate");
   }
-  const double mass = m[0] + x * (m[1] + x * m[2]);
   *out = (struct dea_compliance){.value = at->q,
                                  .force = at->force,
                                  .by_force = at->by_force,
@@ -193,38 +195,46 @@ static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
                                  .charge_C = at->charge_C,
                                  .charge_by_force = at->by_voltage,
                                  .charge_by_voltage = at->charge_by_voltage,
-                                 .frequency_Hz = NAN,
-                                 .mode_share = o->mode_share,
-                                 .voltage_share = NAN};
-  if (with_mass && mass > 0) {
-    out->frequency_Hz = sqrt(1 / (at->by_force * mass)) / (2 * acos(-1.0));
+                                 .fast_by_force = NAN,
+                                 .fast_by_voltage = NAN};
+  for (int i = 0; i < DEA_COMPLIANCE_MODES; i++) {
+    const struct dea_reduced_mode *mode = &core->modes[i];
+    out->modes[i] = (struct dea_compliance_mode){NAN, NAN, NAN};
+    if (i < core->mode_count) {
+      out->modes[i] = (struct dea_compliance_mode){
+          sqrt(1 / (at->by_force * mass_at(core, mode, at->q))) / (2 * acos(-1.0)), mode->share,
+          mode->voltage_share};
+    }
   }
   return DEA_OK;
 }
 
 // Small motions -----------------------------------------------------------------------------------
 
-/* dq/dV at a frequency: (dq/dV)_0 [s K/(k(w) + i w c - w^2 m) + (1 - s) K/k(w)] with the part s of
- * the mode and k(w) = K + sum k d^2 i w tau/(1 + i w tau); other modes follow at once. */
+/* dq/dV at a frequency: (dq/dV)_0 [K/k(w) + sum s (K/(k(w) + i w c - w^2 m) - K/k(w))] with the
+ * share s of each mode and k(w) = K + sum k d^2 i w tau/(1 + i w tau). */
 static double complex answer(const struct dea_model *model,
                              const struct dea_ac_excitation *excitation, double omega)
 {
   const struct dea_reduced *core = &model->order->core;
-  const double x = model->at.q - core->middle;
-  const double m = core->mass[0] + x * (core->mass[1] + x * core->mass[2]);
+  const struct dea_reduced_point *at = &model->trial.film.at;
+  const double x = at->q - core->middle, K = 1 / at->by_force;
   const double d = core->strain[0] + x * (core->strain[1] + x * core->strain[2]);
-  const double K = 1 / model->at.by_force;
-  const double c = core->damping + 2 * excitation->damping_ratio * sqrt(K * m) +
-                   excitation->damping_mass_per_s * m + excitation->damping_stiffness_s * K;
-  const double *part = model->order->voltage_share;
-  const double s = part[0] + x * (part[1] + x * part[2]);
   double complex stiffness = K;
   for (int i = 0; i < core->branch_count; i++) {
     const double complex wt = I * omega * core->branch_s[i];
     stiffness += core->branch_N_per_m[i] * d * d * wt / (1 + wt);
   }
-  return model->at.by_voltage * K *
-         (s / (stiffness - omega * omega * m + I * omega * c) + (1 - s) / stiffness);
+  double complex sum = 1 / stiffness;
+  for (int i = 0; i < core->mode_count; i++) {
+    const struct dea_reduced_mode *mode = &core->modes[i];
+    const double m = mass_at(core, mode, at->q);
+    const double share = mode->by_q[0] + x * (mode->by_q[1] + x * mode->by_q[2]);
+    const double c = core->damping + 2 * excitation->damping_ratio * sqrt(K * m) +
+                     excitation->damping_mass_per_s * m + excitation->damping_stiffness_s * K;
+    sum += share * (1 / (stiffness - omega * omega * m + I * omega * c) - 1 / stiffness);
+  }
+  return at->by_voltage * K * sum;
 }
 
 static dea_status respond(struct dea_context *ctx, struct dea_model *model,
@@ -237,7 +247,7 @@ static dea_status respond(struct dea_context *ctx, struct dea_model *model,
   const bool tip = o->coordinate.column == dea_point_column_find("fibre_tip_z_m");
   model->answers = dea_arena_alloc(&model->memory, 2 * count * width + 1, sizeof *model->answers);
   DEA_TRY(ctx, dea_arena_status(&model->memory));
-  if (!(o->core.mass[0] > 0)) {
+  if (!(o->core.mode_count > 0)) {
     return dea_fail(ctx, DEA_E_DESIGN, "small motions need the densities of all parts");
   }
   for (size_t i = 0; i < count; i++) {
@@ -270,24 +280,23 @@ static const double *answers(const struct dea_model *model)
 // In time -----------------------------------------------------------------------------------------
 
 /* What is stored: in film, field and branches. */
-static double stored_J(const struct dea_model *model, const struct dea_reduced_state *s)
+static double stored_J(const struct dea_reduced_state *s)
 {
-  return s->at.energy_J + s->at.charge_C * s->at.voltage_V +
-         dea_reduced_branch_J(&model->order->core, s);
+  return s->at.energy_J + s->at.charge_C * s->at.voltage_V + s->branch_J;
 }
 
-static void fill_moment(const struct dea_model *model, const struct moment *m,
-                        struct dea_load_point *out)
+static void fill_moment(const struct dea_model *model, struct dea_load_point *out)
 {
-  fill_point(model, &m->film.at, out);
+  const struct moment *m = &model->trial;
+  fill_point(model, out);
   out->time_s = m->film.time_s;
   out->source_voltage_V = m->circuit.source_voltage_V;
   out->charge_C = m->circuit.charge_C;
   out->current_A = m->circuit.current_A;
-  out->stored_energy_J = stored_J(model, &m->film);
+  out->stored_energy_J = stored_J(&m->film);
   out->energy_J = out->stored_energy_J - out->charge_C * out->voltage_V;
   if (model->options.inertia) {
-    out->kinetic_energy_J = dea_reduced_kinetic_J(&model->order->core, &m->film);
+    out->kinetic_energy_J = m->film.kinetic_J;
   }
   out->dissipated_J = m->film.loss_J + m->circuit.resistance_loss_J + m->circuit.leakage_loss_J;
   out->supply_work_J = m->circuit.supply_work_J;
@@ -322,7 +331,7 @@ static int step_once(const struct dea_model *model, const struct moment *from,
   dea_circuit_advance(circuit, &n.circuit, step, &film, &to->circuit);
   if (h == 0 && dea_circuit_is_ideal(circuit)) {
     to->circuit.supply_work_J +=
-        stored_J(model, &to->film) - stored_J(model, &n.film) + (to->film.loss_J - n.film.loss_J);
+        stored_J(&to->film) - stored_J(&n.film) + (to->film.loss_J - n.film.loss_J);
   }
   return DEA_REDUCED_OK;
 }
@@ -335,26 +344,22 @@ static dea_status begin(struct dea_context *ctx, struct dea_model *model,
   if (options->own_sources != NULL) {
     return dea_fail(ctx, DEA_E_UNSUPPORTED, "model reduced has one source");
   }
-  if (options->inertia && !(o->core.mass[0] > 0)) {
+  if (options->inertia && !(o->core.mode_count > 0)) {
     return dea_fail(ctx, DEA_E_DESIGN, "inertia needs the densities of all parts");
   }
   model->options = *options;
   *m = (struct moment){.circuit = {.voltage_V = 0}};
-  const int end = dea_reduced_begin(&o->core, model->at.voltage_V, 0, &m->film);
-  if (end != DEA_REDUCED_OK) {
-    return dea_reduced_fail(ctx, o, end, model->at.voltage_V);
-  }
+  m->film = model->trial.film;
   const struct dea_reduced_point *at = &m->film.at;
   m->circuit.source_voltage_V = m->circuit.voltage_V = at->voltage_V;
   m->circuit.charge_C = at->charge_C;
   m->circuit.capacitance_F =
       at->voltage_V != 0 ? at->charge_C / at->voltage_V : at->charge_by_voltage;
   model->trial = *m;
-  model->moves = true;
   model->largest_q = 1e-6 * fabs(o->stroke);
   model->largest_V = 1e-4 * o->voltage_V[1];
   model->largest_J = 1e-6 * m->circuit.capacitance_F * o->voltage_V[1] * o->voltage_V[1];
-  fill_moment(model, m, out);
+  fill_moment(model, out);
   return DEA_OK;
 }
 
@@ -400,7 +405,7 @@ static dea_status advance(struct dea_context *ctx, struct dea_model *model,
   if (step->length_s > longest) { // whatever the answer, it is not to be relied on
     *error = step->length_s / longest;
   }
-  fill_moment(model, &model->trial, out);
+  fill_moment(model, out);
   return DEA_OK;
 }
 

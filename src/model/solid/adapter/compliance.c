@@ -39,73 +39,99 @@ static dea_status find_rate(struct dea_context *ctx, struct work *w, double by_e
   return DEA_OK;
 }
 
-/* The frequency of the mode that has the largest part of the coordinate's compliance, the sum of
- * (phi . slope)^2/omega^2, with that in out->mode_share. */
-static dea_status find_mode(struct dea_context *ctx, struct work *w, const double *slope,
-                            double *mode, struct dea_compliance *out)
+/* The lowest modes phi, with (phi . slope)^2/omega^2 of dq/dF, and -(phi . slope)(phi .
+ * R_V)/omega^2 of dq/dV. */
+static dea_status find_modes(struct dea_context *ctx, struct work *w, double copies,
+                             const double *slope, struct dea_compliance *out)
 {
-  enum { MODES = 6 };
   const size_t dofs = w->solid->problem.dofs;
-  double square[MODES], largest = 0, *vector = dea_solid_alloc(ctx, MODES * dofs, sizeof *vector);
+  double square[DEA_COMPLIANCE_MODES],
+      *vector = dea_solid_alloc(ctx, DEA_COMPLIANCE_MODES * dofs, sizeof *vector);
   dea_status status = vector == NULL ? DEA_E_MEMORY
                                      : dea_solid_modes_whole(ctx, w->solid, DEA_MODES_BY_MASS,
-                                                             MODES, square, vector);
-  for (size_t k = 0; k < MODES && status == DEA_OK; k++) {
-    const double along = dea_solid_dot(w->solid, vector + k * dofs, slope);
-    if (square[k] > 0 && along * along / square[k] > largest) {
-      largest = along * along / square[k];
-      out->mode_share = largest;
-      out->frequency_Hz = sqrt(square[k]) / (2 * acos(-1.0));
-      memcpy(mode, vector + k * dofs, dofs * sizeof *mode);
-    }
+                                                             DEA_COMPLIANCE_MODES, square, vector);
+  for (size_t k = 0; k < DEA_COMPLIANCE_MODES && status == DEA_OK; k++) {
+    const double *mode = vector + k * dofs, along = dea_solid_dot(w->solid, mode, slope);
+    out->modes[k] = (struct dea_compliance_mode){
+        sqrt(square[k]) / (2 * acos(-1.0)), along * along / square[k] / (copies * out->by_force),
+        -along * dea_solid_dot(w->solid, mode, w->rate) / square[k] / out->by_voltage};
   }
   dea_free(ctx, vector);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
 /* du/dF = K^-1 q_u / copies, du/dV = -K^-1 R_V. */
-static dea_status find(struct dea_context *ctx, struct work *w, double copies, const double *slope,
-                       const double *mode, struct dea_compliance *out)
+static dea_status find_slopes(struct dea_context *ctx, struct work *w, double copies,
+                              const double *slope, const double by_energy[2],
+                              struct dea_compliance *out)
 {
   const size_t size = w->solid->problem.dofs * sizeof(double);
   static const bool wanted[ANSWERS] = {true, true};
-  double by_energy[2] = {0};
-  DEA_TRY(ctx, find_rate(ctx, w, by_energy));
   memcpy(dea_adjoint_slope(w->adjoint, COORDINATE), slope, size);
   memcpy(dea_adjoint_slope(w->adjoint, VOLTAGE), w->rate, size);
   DEA_TRY(ctx, dea_adjoint_solve(ctx, w->adjoint, wanted));
   const double *by_force = dea_adjoint_answer(w->adjoint, COORDINATE),
                *by_rate = dea_adjoint_answer(w->adjoint, VOLTAGE);
-  const double compliance = dea_solid_dot(w->solid, by_force, slope);
-  out->by_force = compliance / copies;
+  out->by_force = dea_solid_dot(w->solid, by_force, slope) / copies;
   out->by_voltage = -dea_solid_dot(w->solid, by_force, w->rate);
   out->charge_by_force = -dea_solid_dot(w->solid, by_rate, slope);
   out->charge_C = -copies * by_energy[0];
   out->charge_by_voltage = copies * (dea_solid_dot(w->solid, by_rate, w->rate) - by_energy[1]);
-  if (mode != NULL) { // du/dV has the part -phi (phi . R_V)/omega^2 of it
-    const double along = dea_solid_dot(w->solid, mode, slope), square = along * along;
-    out->voltage_share = -out->mode_share / square * along *
-                         dea_solid_dot(w->solid, mode, w->rate) / out->by_voltage;
-    out->mode_share /= compliance;
-  }
   return DEA_OK;
 }
 
+/* Slopes of what moves at once: with the tangent of a step that takes no time. */
+static dea_status find_fast(struct dea_context *ctx, struct work *w, double copies,
+                            const double *slope, const struct dea_branches *branches,
+                            struct dea_compliance *out)
+{
+  struct dea_solid *s = w->solid;
+  struct dea_internal_variables *held;
+  static const bool wanted = true;
+  DEA_TRY(ctx, dea_internal_variables_create(ctx, s, branches, &held));
+  dea_internal_variables_begin(held, s, 0);
+  s->state.internal_variables = held;
+  dea_solid_forget(s);
+  dea_status status = dea_adjoint_create(ctx, s, 1, &w->adjoint);
+  if (status == DEA_OK) {
+    memcpy(dea_adjoint_slope(w->adjoint, 0), slope, s->problem.dofs * sizeof *slope);
+    status = dea_adjoint_solve(ctx, w->adjoint, &wanted);
+  }
+  if (status == DEA_OK) {
+    const double *answer = dea_adjoint_answer(w->adjoint, 0);
+    out->fast_by_force = dea_solid_dot(s, answer, slope) / copies;
+    out->fast_by_voltage = -dea_solid_dot(s, answer, w->rate);
+  }
+  s->state.internal_variables = NULL;
+  dea_solid_forget(s);
+  dea_internal_variables_destroy(ctx, held);
+  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+}
+
 dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
-                               double voltage_V, const double *slope, bool with_mass,
+                               double voltage_V, const double *slope,
+                               const struct dea_branches *branches, int with,
                                struct dea_compliance *out)
 {
   struct work w = {.solid = solid, .voltage_V = voltage_V};
-  double energy_J;
-  out->frequency_Hz = out->mode_share = out->voltage_share = NAN;
-  w.rate = dea_solid_alloc(ctx, 2 * solid->problem.dofs, sizeof *w.rate);
-  double *mode = w.rate + solid->problem.dofs;
-  dea_status status = w.rate == NULL ? DEA_E_MEMORY : DEA_OK;
-  if (status == DEA_OK && with_mass) { // first: it needs a factor of its own
-    status = find_mode(ctx, &w, slope, mode, out);
+  double energy_J, by_energy[2] = {0};
+  out->fast_by_force = out->fast_by_voltage = NAN;
+  w.rate = dea_solid_alloc(ctx, solid->problem.dofs, sizeof *w.rate);
+  for (size_t k = 0; k < DEA_COMPLIANCE_MODES; k++) {
+    out->modes[k] = (struct dea_compliance_mode){NAN, NAN, NAN};
   }
-  status = status == DEA_OK ? dea_adjoint_create(ctx, solid, ANSWERS, &w.adjoint) : status;
-  status = status == DEA_OK ? find(ctx, &w, copies, slope, with_mass ? mode : NULL, out) : status;
+  dea_status status =
+      w.rate == NULL ? DEA_E_MEMORY : dea_adjoint_create(ctx, solid, ANSWERS, &w.adjoint);
+  status = status == DEA_OK ? find_rate(ctx, &w, by_energy) : status;
+  status = status == DEA_OK ? find_slopes(ctx, &w, copies, slope, by_energy, out) : status;
+  dea_adjoint_destroy(ctx, w.adjoint);
+  w.adjoint = NULL;
+  status = status == DEA_OK && (with & DEA_COMPLIANCE_WITH_MODES)
+               ? find_modes(ctx, &w, copies, slope, out)
+               : status;
+  status = status == DEA_OK && (with & DEA_COMPLIANCE_WITH_FAST)
+               ? find_fast(ctx, &w, copies, slope, branches, out)
+               : status;
   dea_solid_hold_potential(solid, voltage_V, solid->state.u);
   if (status == DEA_OK) { // reactions are those of the equilibrium again
     status = dea_solid_assemble(ctx, solid, voltage_V, DEA_FORCE, &energy_J);

@@ -3,11 +3,12 @@
 #pragma once
 
 #include "model/model.h"
-#include "model/solid/assembly/solid.h"
+#include "model/solid/assembly/internal_variables.h"
 
 /* At the solid's last equilibrium, at a voltage. slope: of the coordinate by the unknowns [dofs];
- * copies: of the solid in the device. Fills all of out but value and force; the frequency of a
- * solid without mass is NAN. */
+ * copies: of the solid in the device; branches: [its part materials]. Fills all of out but value
+ * and force. */
 dea_status dea_compliance_find(struct dea_context *ctx, struct dea_solid *solid, double copies,
-                               double voltage_V, const double *slope, bool with_mass,
+                               double voltage_V, const double *slope,
+                               const struct dea_branches *branches, int with,
                                struct dea_compliance *out);

@@ -216,18 +216,18 @@ dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model
 }
 
 dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
-                                      const struct dea_control *coordinate, bool with_mass,
+                                      const struct dea_control *coordinate, int with,
                                       struct dea_compliance *out)
 {
   DEA_TRY(ctx, find_coordinate(ctx, model, coordinate));
-  DEA_TRY(ctx, with_mass ? dea_solid_check_densities(ctx, model) : DEA_OK);
+  DEA_TRY(ctx, with & DEA_COMPLIANCE_WITH_MODES ? dea_solid_check_densities(ctx, model) : DEA_OK);
   *out = (struct dea_compliance){.force = model->pull.force};
   const double *u = dea_solid_displacement(model->solid);
   for (size_t i = 0; i < model->solid->problem.dofs; i++) {
     out->value += model->pull.slope[i] * u[i];
   }
   DEA_TRY(ctx, dea_compliance_find(ctx, model->solid, model->copies, model->at.voltage_V,
-                                   model->pull.slope, with_mass, out));
+                                   model->pull.slope, model->plies.branches, with, out));
   return DEA_OK;
 }
 

@@ -137,7 +137,7 @@ void dea_solid_model_destroy(struct dea_context *ctx, struct dea_model *model);
 
 // solid_controls.c: as in struct dea_model_type
 dea_status dea_solid_model_compliance(struct dea_context *ctx, struct dea_model *model,
-                                      const struct dea_control *coordinate, bool with_mass,
+                                      const struct dea_control *coordinate, int with,
                                       struct dea_compliance *out);
 dea_status dea_solid_model_move(struct dea_context *ctx, struct dea_model *model,
                                 const struct dea_control *control, double value,
