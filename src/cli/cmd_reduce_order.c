@@ -28,7 +28,7 @@ static void print_order(const struct request *request, const struct dea_reduced_
          100 * o->charge_error);
   printf("%-20s %.5g %s\n", "stiffness", turns ? 1 / at.by_force : 1e-3 / at.by_force,
          turns ? "N m/rad" : "N/mm");
-  for (int i = 0; i < o->core.mode_count; i++) {
+  for (int i = 0; i < o->core.small_count; i++) {
     const struct dea_reduced_mode *mode = &o->core.modes[i];
     const double x = at.q - o->core.middle;
     printf("%-20s %.5g Hz, %.3g %% of the compliance, %.3g %% of the slope by voltage\n",

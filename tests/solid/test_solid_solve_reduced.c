@@ -124,23 +124,55 @@ static void check_file(const struct dea_reduced_order *order, const struct dea_d
 /* The force that holds q changes with V as the charge does with q; one energy. */
 static void check_reciprocity(const struct dea_reduced_order *order)
 {
-  static const double h = 1e-3; // of the range
-  const double dV = h * order->voltage_V[1], V = 0.7 * order->voltage_V[1], q = order->core.middle;
-  const double dq = h * order->stroke;
-  double F[4], Q[4]; // at -2h, -h, h, 2h
+  static const double h = 4e-3, weight[] = {-1, 9, -45, 0, 45, -9, 1}; // of the range; over 60 h
+  const double dV = h * order->voltage_V[1], V = 0.75 * order->voltage_V[1];
+  const double dq = h * order->stroke, q = order->core.middle + 0.2 * order->stroke;
+  double by_V = 0, by_q = 0;
   struct dea_reduced_point p = {.force = 0};
-  for (int i = 0; i < 4; i++) {
-    const int n = i < 2 ? i - 2 : i - 1;
-    assert_int_equal(dea_reduced_held(&order->core, q, V + n * dV, &p), DEA_REDUCED_OK);
-    F[i] = p.force;
-    assert_int_equal(dea_reduced_held(&order->core, q + n * dq, V, &p), DEA_REDUCED_OK);
-    Q[i] = p.charge_C;
+  for (int i = 0; i < 7; i++) {
+    assert_int_equal(dea_reduced_held(&order->core, q, V + (i - 3) * dV, &p), DEA_REDUCED_OK);
+    by_V += weight[i] * p.force / (60 * dV);
+    assert_int_equal(dea_reduced_held(&order->core, q + (i - 3) * dq, V, &p), DEA_REDUCED_OK);
+    by_q += weight[i] * p.charge_C / (60 * dq);
   }
-  const double by_V = (8 * (F[2] - F[1]) - (F[3] - F[0])) / (12 * dV);
-  const double by_q = (8 * (Q[2] - Q[1]) - (Q[3] - Q[0])) / (12 * dq);
-  assert_close(by_V, -by_q, 1e-9, 0);
+  assert_close(by_V, -by_q, 1e-10, 0);
   assert_int_equal(dea_reduced_held(&order->core, q, V, &p), DEA_REDUCED_OK);
-  assert_close(by_V, -p.by_voltage / p.by_force, 1e-9, 0);
+  assert_close(by_V, -p.by_voltage / p.by_force, 1e-10, 0);
+}
+
+/* Film, field, mass, branches and what these have lost, at a voltage and a force that stay. */
+static double all_J(const struct dea_reduced_state *s)
+{
+  return s->at.energy_J + s->branch_J + s->kinetic_J + s->loss_J - s->external_J;
+}
+
+/* Free motion after a jump of voltage and force, of a device with a second mode. */
+static void check_energy(const struct dea_reduced_order *order)
+{
+  enum { STEPS = 20000 };
+  struct dea_reduced two = order->core;
+  struct dea_reduced_state s;
+  const double V = 0.7 * order->voltage_V[1], F = 0.1 * order->force[1];
+  double largest = 0, worst_J = 0;
+  two.mode_count = 2;
+  two.modes[0].share = two.modes[0].voltage_share = 0.7;
+  two.modes[1] = two.modes[0];
+  two.modes[1].share = 0.2;
+  two.modes[1].voltage_share = 0.25;
+  for (int k = 0; k < 3; k++) {
+    two.modes[1].mass[k] *= 0.1;
+  }
+  assert_int_equal(dea_reduced_begin(&two, 0.6 * V, F, &s), DEA_REDUCED_OK);
+  assert_int_equal(dea_reduced_step(&two, &s, 0, V, F, 1, 1, &s), DEA_REDUCED_OK);
+  const double begin_J = all_J(&s);
+  for (int i = 0; i < STEPS; i++) {
+    assert_int_equal(dea_reduced_step(&two, &s, 2e-5, V, F, 1, 1, &s), DEA_REDUCED_OK);
+    largest = fmax(largest, s.kinetic_J);
+    worst_J = fmax(worst_J, fabs(all_J(&s) - begin_J));
+  }
+  print_message("energy off by %.1e of the largest kinetic energy; lost: %.2g of it\n",
+                worst_J / largest, s.loss_J / largest);
+  assert_true(worst_J < 1e-6 * largest && s.loss_J > 0.01 * largest);
 }
 
 TEST(test_cone)
@@ -157,6 +189,7 @@ TEST(test_cone)
   check_file(order, device);
   check_source(order, device);
   check_reciprocity(order);
+  check_energy(order);
   const double stroke_m = fabs(order->stroke);
   struct dea_model_settings from_file = settings;
   from_file.reduced.file = "reduced_cone.json";
@@ -181,6 +214,12 @@ TEST(test_cone)
   const double worst = compare_history(model, &slow, creep, 8, stroke_m);
   print_message("creep within %.1e of the stroke\n", worst);
   assert_in_range((int)(1e6 * worst), 0, 3000);
+  static const double swing[][2] = {{0.005, 2e3}, {0.005, 2e3}, {0.005, 2e3}, {0.005, 2e3},
+                                    {0.005, 2e3}, {0.005, 2e3}, {0.005, 1e3}, {0.005, 2e3}};
+  const struct dea_time_options fast = {.circuit = {0, INFINITY}, .rho_inf = 0.8, .inertia = true};
+  const double swung = compare_history(model, &fast, swing, 8, stroke_m);
+  print_message("with inertia within %.1e of the stroke\n", swung);
+  assert_in_range((int)(1e6 * swung), 0, 3000);
   struct dea_load_point beyond;
   assert_int_equal(type[1]->solve(ctx, model[1], 4.1e3, &beyond), DEA_E_DOMAIN);
   assert_non_null(strstr(dea_context_message(ctx), "outside the range"));

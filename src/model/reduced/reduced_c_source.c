@@ -96,21 +96,22 @@ static void add_device(struct dea_text *out, const struct dea_reduced *core)
   add_numbers(out, "dea_reduced_force", s->breaks[0], (size_t)s->cells[0] + 1);
   add_numbers(out, "dea_reduced_voltage", s->breaks[1], (size_t)s->cells[1] + 1);
   add_numbers(out, "dea_reduced_energy", s->c, (size_t)(s->cells[0] * s->cells[1]) * terms);
-  dea_text_add(
-      out,
-      "\nconst struct dea_reduced dea_reduced_device = {\n"
-      "    .energy = {{%d, %d}, {dea_reduced_force, dea_reduced_voltage}, "
-      "dea_reduced_energy},\n    .even = %d,\n    .middle = %.17g,\n"
-      "    .damping = %.17g,\n    .branch_count = %d,\n    .mode_count = %d,\n    .modes = {",
-      s->cells[0], s->cells[1], core->even, core->middle, core->damping, core->branch_count,
-      core->mode_count);
-  for (int i = 0; i < core->mode_count; i++) {
+  dea_text_add(out,
+               "\nconst struct dea_reduced dea_reduced_device = {\n"
+               "    .energy = {{%d, %d}, {dea_reduced_force, dea_reduced_voltage}, "
+               "dea_reduced_energy},\n    .even = %d,\n    .middle = %.17g,\n"
+               "    .damping = %.17g,\n    .branch_count = %d,\n    .mode_count = %d,\n    "
+               ".small_count = %d,\n    .modes = {",
+               s->cells[0], s->cells[1], core->even, core->middle, core->damping,
+               core->branch_count, core->mode_count, core->small_count);
+  for (int i = 0; i < core->small_count; i++) {
     const struct dea_reduced_mode *mode = &core->modes[i];
     dea_text_add(out, "{{%.17g, %.17g, %.17g}, %.17g, %.17g, {%.17g, %.17g, %.17g}}%s",
                  mode->mass[0], mode->mass[1], mode->mass[2], mode->share, mode->voltage_share,
-                 mode->by_q[0], mode->by_q[1], mode->by_q[2], i + 1 < core->mode_count ? ", " : "");
+                 mode->by_q[0], mode->by_q[1], mode->by_q[2],
+                 i + 1 < core->small_count ? ", " : "");
   }
-  dea_text_add(out, core->mode_count == 0 ? "{{0}}},\n" : "},\n");
+  dea_text_add(out, core->small_count == 0 ? "{{0}}},\n" : "},\n");
   add_list(out, "strain", core->strain, 3);
   add_list(out, "branch_N_per_m", core->branch_N_per_m, core->branch_count);
   add_list(out, "branch_s", core->branch_s, core->branch_count);

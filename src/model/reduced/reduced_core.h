@@ -40,9 +40,9 @@ struct dea_reduced {
   struct dea_reduced_spline energy; // Phi [J] by F and V, of an even device by F and V^2
   int even;
   double middle, strain[3]; // de/dq = strain[0] + ... by x
-  int mode_count;           // 0: of a device without mass
   struct dea_reduced_mode modes[DEA_REDUCED_MODES];
-  double damping; // dashpot at the coordinate [N s/m]
+  int mode_count, small_count; // in time and, with others, of small motions; 0: without mass
+  double damping;              // dashpot at the coordinate [N s/m]
   int branch_count;
   double branch_N_per_m[DEA_REDUCED_BRANCHES], branch_s[DEA_REDUCED_BRANCHES];
 };

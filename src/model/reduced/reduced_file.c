@@ -104,7 +104,7 @@ static json_t *order_json(const struct dea_reduced_order *o, const struct dea_de
   json_object_set_new(root, "even", json_boolean(core->even));
   json_object_set_new(root, "energy", spline_json(&core->energy));
   dea_json_put(root, "middle", core->middle);
-  for (int i = 0; i < core->mode_count; i++) {
+  for (int i = 0; i < core->small_count; i++) {
     json_t *mode = json_object();
     json_object_set_new(mode, "mass", numbers(core->modes[i].mass, 3));
     dea_json_put(mode, "share", core->modes[i].share);
@@ -113,6 +113,7 @@ static json_t *order_json(const struct dea_reduced_order *o, const struct dea_de
     json_array_append_new(modes, mode);
   }
   json_object_set_new(root, "modes", modes);
+  dea_json_put_count(root, "modes_in_time", (size_t)core->mode_count);
   json_object_set_new(root, "strain", numbers(core->strain, 3));
   dea_json_put(root, "damping", core->damping);
   json_object_set_new(root, "branch_N_per_m",
@@ -255,8 +256,10 @@ static void read_order(struct reading *r, const json_t *root, struct dea_reduced
   read_spline(r, json_object_get(root, "energy"), &core->energy);
   core->middle = number(r, root, "middle");
   const json_t *modes = json_object_get(root, "modes");
-  core->mode_count = (int)fmin((double)json_array_size(modes), DEA_REDUCED_MODES);
-  for (int i = 0; i < core->mode_count; i++) {
+  core->small_count = (int)fmin((double)json_array_size(modes), DEA_REDUCED_MODES);
+  core->mode_count = (int)number(r, root, "modes_in_time");
+  r->wrong = r->wrong || core->mode_count > core->small_count;
+  for (int i = 0; i < core->small_count; i++) {
     const json_t *mode = json_array_get(modes, (size_t)i);
     numbers_into(r, mode, "mass", 3, core->modes[i].mass);
     numbers_into(r, mode, "voltage_share_by_q", 3, core->modes[i].by_q);

@@ -241,7 +241,7 @@ static dea_status take_voltage(struct making *m, size_t i, int side)
  * to the next at the force where it ends. */
 static dea_status take_voltages(struct making *m, double error[2])
 {
-  static const double enough = 1e-3;
+  static const double enough = 5e-3;
   const bool chosen = m->settings.reduced.voltages > 0;
   struct dea_load_point point;
   int side = 1;
@@ -363,36 +363,41 @@ static dea_status fit_mode(struct making *m, size_t k, const struct dea_reduced_
   return DEA_OK;
 }
 
-/* The modes with the largest shares of dq/dV. */
+/* The modes with the largest shares of dq/dV; first those that have some of dq/dF too, without
+ * which a mode moves much beside the coordinate and counts in small motions alone. */
 static dea_status fit_modes(struct making *m, const struct dea_reduced_sample *free,
                             const double *x, struct dea_reduced_order *out)
 {
   static const double least = 0.01;
-  double size[DEA_REDUCED_MODES + 1] = {0};
-  struct dea_reduced_mode *modes = out->core.modes;
+  struct dea_reduced *core = &out->core;
+  double size[DEA_REDUCED_MODES];
   out->mode_share = m->massive ? 0 : NAN;
   for (size_t k = 0; k < DEA_COMPLIANCE_MODES && m->massive; k++) {
     struct dea_reduced_mode mode;
     double own;
     DEA_TRY(m->ctx, fit_mode(m, k, free, x, &mode, &own));
-    int n = out->core.mode_count;
-    while (n > 0 && size[n - 1] < own) {
-      n--;
+    if (own < least) {
+      continue;
     }
-    for (int i = DEA_REDUCED_MODES - 1; i > n && own >= least; i--) {
-      modes[i] = modes[i - 1];
-      size[i] = size[i - 1];
+    own += mode.share >= least ? 1e3 : 0;
+    int n = core->small_count;
+    for (; n > 0 && size[n - 1] < own; n--) {
+      if (n < DEA_REDUCED_MODES) {
+        core->modes[n] = core->modes[n - 1];
+        size[n] = size[n - 1];
+      }
     }
-    if (n < DEA_REDUCED_MODES && own >= least) {
-      modes[n] = mode;
+    if (n < DEA_REDUCED_MODES) {
+      core->modes[n] = mode;
       size[n] = own;
-      out->core.mode_count += out->core.mode_count < DEA_REDUCED_MODES ? 1 : 0;
+      core->small_count += core->small_count < DEA_REDUCED_MODES ? 1 : 0;
     }
   }
-  for (int i = 0; i < out->core.mode_count; i++) {
-    out->mode_share += modes[i].share;
+  for (int i = 0; i < core->small_count; i++) {
+    core->mode_count += core->modes[i].share >= least ? 1 : 0;
+    out->mode_share += core->modes[i].share;
   }
-  return m->massive && out->core.mode_count == 0
+  return m->massive && core->mode_count == 0
              ? dea_fail(m->ctx, DEA_E_DOMAIN, "no mode of the device moves the coordinate")
              : DEA_OK;
 }

@@ -200,7 +200,7 @@ static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
   for (int i = 0; i < DEA_COMPLIANCE_MODES; i++) {
     const struct dea_reduced_mode *mode = &core->modes[i];
     out->modes[i] = (struct dea_compliance_mode){NAN, NAN, NAN};
-    if (i < core->mode_count) {
+    if (i < core->small_count) {
       out->modes[i] = (struct dea_compliance_mode){
           sqrt(1 / (at->by_force * mass_at(core, mode, at->q))) / (2 * acos(-1.0)), mode->share,
           mode->voltage_share};
@@ -226,7 +226,7 @@ static double complex answer(const struct dea_model *model,
     stiffness += core->branch_N_per_m[i] * d * d * wt / (1 + wt);
   }
   double complex sum = 1 / stiffness;
-  for (int i = 0; i < core->mode_count; i++) {
+  for (int i = 0; i < core->small_count; i++) {
     const struct dea_reduced_mode *mode = &core->modes[i];
     const double m = mass_at(core, mode, at->q);
     const double share = mode->by_q[0] + x * (mode->by_q[1] + x * mode->by_q[2]);
