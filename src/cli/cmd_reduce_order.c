@@ -5,7 +5,8 @@
 #include <math.h>
 
 struct request {
-  const char *design, *output, *c;
+  const char *design, *output, *c, *state_space;
+  double bias_V, damping;
   struct cli_overrides overrides;
   bool json;
 };
@@ -63,6 +64,10 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
   if (status == DEA_OK && request->c != NULL) {
     status = dea_reduced_order_write_c(cli->ctx, order, device, request->c);
   }
+  if (status == DEA_OK && request->state_space != NULL) {
+    status = dea_reduced_order_write_state_space(cli->ctx, order, request->bias_V, request->damping,
+                                                 request->state_space);
+  }
   if (status == DEA_OK) {
     print_order(request, order, device);
   }
@@ -81,6 +86,14 @@ static const struct cli_option options[] = {
     CLI_OUTPUT_ROW(CLI_NEW_FILE, "FILE",
                    "write the model as FILE (JSON), for compute.reduced.file"),
     {"c", 0, CLI_NEW_FILE, "FILE", "write it as C99 source, with its test", CLI_AT(c)},
+    {"state-space", 0, CLI_NEW_FILE, "FILE",
+     "write A, B, C, D of small motions at the bias (JSON), from voltage and force to displacement "
+     "and charge",
+     CLI_AT(state_space)},
+    {"bias", 0, CLI_TEXT, "V", "voltage that they are at, as '3 kV'; 0 if not given",
+     CLI_AT(bias_V), cli_take_quantity, .measure = {"V", "3 kV"}},
+    {"damping", 0, CLI_TEXT, "RATIO", "of the critical damping of each mode, as 0.02",
+     CLI_AT(damping), cli_take_quantity, .measure = {"1", "0.02"}},
     CLI_SET_ROW('s', CLI_KEY, "compute.reduced.monitor=hub"),
     {0}};
 
