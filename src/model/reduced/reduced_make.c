@@ -270,7 +270,7 @@ static dea_status take_voltages(struct making *m, double error[2])
  * to where it loses its stability it bears none. */
 static dea_status take_samples(struct making *m, double error[2])
 {
-  enum { TRIALS = 6, OF_FORCE = 2 };
+  enum { TRIALS = 8, OF_FORCE = 4 };
   for (int trial = 0; trial < TRIALS; trial++) {
     const dea_status status = take_voltages(m, error);
     if (status == DEA_OK || ends(status) || m->settings.reduced.force > 0) {
