@@ -108,7 +108,7 @@ static const struct dea_field reduced_fields[] = {
                    .absent_text = "what moves the coordinate as far as the voltage"),
     DEA_INTEGER_ROW("voltages", AT(voltages), "17",
                     "voltages that model 3d computes, 1 more than a multiple of 4", .min = 5,
-                    .max = 65, .default_text = "9"),
+                    .max = 65, .absent_text = "5, and 9 where these are not enough"),
     DEA_INTEGER_ROW("forces", AT(forces), "9", "forces at each, the same", .min = 5, .max = 17,
                     .default_text = "5"),
 };

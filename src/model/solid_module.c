@@ -156,8 +156,8 @@ static dea_status compliance(struct dea_context *ctx, struct dea_model *model,
                              const struct dea_control *coordinate, int with,
                              struct dea_compliance *out)
 {
-  DEA_TRY(ctx, DEA_SOLID_IN_TURN(dea_model_compliance(ctx, model->type, model->inner, coordinate,
-                                                      with, out)));
+  DEA_TRY(ctx, DEA_SOLID_IN_TURN(
+                   dea_model_compliance(ctx, model->type, model->inner, coordinate, with, out)));
   return DEA_OK;
 }
 
