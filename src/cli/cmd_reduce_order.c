@@ -5,7 +5,7 @@
 #include <math.h>
 
 struct request {
-  const char *design, *output, *c, *state_space;
+  const char *design, *output, *c, *state_space, *spice;
   double bias_V, damping;
   struct cli_overrides overrides;
   bool json;
@@ -64,9 +64,9 @@ static dea_status make(struct dea_cli *cli, const void *user, const struct dea_d
   if (status == DEA_OK && request->c != NULL) {
     status = dea_reduced_order_write_c(cli->ctx, order, device, request->c);
   }
-  if (status == DEA_OK && request->state_space != NULL) {
+  if (status == DEA_OK && (request->state_space != NULL || request->spice != NULL)) {
     status = dea_reduced_order_write_state_space(cli->ctx, order, request->bias_V, request->damping,
-                                                 request->state_space);
+                                                 request->state_space, request->spice);
   }
   if (status == DEA_OK) {
     print_order(request, order, device);
@@ -90,6 +90,9 @@ static const struct cli_option options[] = {
      "write A, B, C, D of small motions at the bias (JSON), from voltage and force to displacement "
      "and charge",
      CLI_AT(state_space)},
+    {"spice", 0, CLI_NEW_FILE, "FILE",
+     "write the same as a subcircuit dea_film of ngspice: electrodes and displacement",
+     CLI_AT(spice)},
     {"bias", 0, CLI_TEXT, "V", "voltage that they are at, as '3 kV'; 0 if not given",
      CLI_AT(bias_V), cli_take_quantity, .measure = {"V", "3 kV"}},
     {"damping", 0, CLI_TEXT, "RATIO", "of the critical damping of each mode, as 0.02",
