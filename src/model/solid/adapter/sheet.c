@@ -1,6 +1,7 @@
 #include "model/solid/adapter/sheet.h"
 
 #include "model/solid/assembly/channels.h"
+#include "model/solid/assembly/problem.h"
 #include "model/solid/element/membrane.h"
 
 #include <math.h>

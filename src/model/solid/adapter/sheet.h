@@ -4,7 +4,7 @@
 #pragma once
 
 #include "model/solid/actuator/layout_mesh.h"
-#include "model/solid/assembly/problem.h"
+#include "model/solid/assembly/solid.h"
 
 struct dea_sheet;
 
