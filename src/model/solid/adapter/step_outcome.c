@@ -2,11 +2,13 @@
 
 #include "base/whole.h"
 #include "model/make.h"
+#include "model/solid/assembly/channels.h"
 #include "model/solid/equilibrium/newton.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* More area at once than this, and a limit point may have been passed: along a path that goes on
  * the area stretch of a step is well below it, at pull-in it goes to where the law stiffens. */
@@ -14,22 +16,48 @@ static const double branch_jump = 1.5;
 static const double no_tension =
     1e-6; // of the scale: a membrane that is slack has none to rounding
 
+/* Evaluates the films where the solid is, once: it is looked at where a load step ends and where
+ * the next one begins. */
+static dea_status evaluate_film(struct dea_context *ctx, struct dea_step_outcome *e)
+{
+  struct dea_solid *s = e->owner.solid;
+  struct dea_solid_extremes film;
+  const size_t dofs = s->problem.dofs, count = dofs + s->problem.channel_count + 1;
+  const bool first = e->film_at[0] == NULL;
+  e->memory.ctx = ctx;
+  for (int i = 0; i < 2 && first; i++) {
+    e->film_at[i] = dea_arena_alloc(&e->memory, count, sizeof *e->film_at[i]);
+  }
+  DEA_TRY(ctx, dea_solid_agree(ctx, dea_arena_status(&e->memory)));
+  double *now = e->film_at[1];
+  e->film_at[0][0] = first ? NAN : e->film_at[0][0];
+  memcpy(now, s->state.u, dofs * sizeof *now);
+  dea_solid_channel_voltages(s, now + dofs);
+  if (memcmp(now, e->film_at[0], count * sizeof *now) == 0) {
+    return DEA_OK;
+  }
+  dea_status status = dea_solid_extremes(s, e->owner.films, &film);
+  if (status != DEA_OK) {
+    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
+  }
+  e->film = film;
+  e->film_at[1] = e->film_at[0];
+  e->film_at[0] = now;
+  return DEA_OK;
+}
+
 /* Keeps the smallest tension where the solid is, which tells where the film goes slack, and its
  * largest area stretch. */
 static dea_status look_at_tension(struct dea_context *ctx, struct dea_step_outcome *e)
 {
-  struct dea_solid_extremes film;
   double V = dea_solid_voltage(e->owner.solid);
-  dea_status status = dea_solid_extremes(e->owner.solid, e->owner.films, &film);
-  if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
-  }
-  e->area = film.area;
+  DEA_TRY(ctx, evaluate_film(ctx, e));
+  e->area = e->film.area;
   for (int i = 0; i < 2 && V != e->tension_V[2]; i++) {
     e->tension[i] = e->tension[i + 1];
     e->tension_V[i] = e->tension_V[i + 1];
   }
-  e->tension[2] = film.min_tension_N_per_m;
+  e->tension[2] = e->film.min_tension_N_per_m;
   e->tension_V[2] = V;
   return DEA_OK;
 }
@@ -60,6 +88,7 @@ static void drop_limit(struct dea_step_outcome *e)
 void dea_step_outcome_free(struct dea_step_outcome *e)
 {
   drop_limit(e);
+  dea_arena_free(&e->memory);
 }
 
 /* The voltage at which two points that were looked at after each other have the tension 0 on the
@@ -127,14 +156,10 @@ static dea_status see_point(struct dea_context *ctx, void *user, enum dea_solid_
 static dea_status see_change(struct dea_context *ctx, void *user, struct dea_solid_change *out)
 {
   struct dea_step_outcome *e = user;
-  struct dea_solid_extremes film;
-  dea_status status = dea_solid_extremes(e->owner.solid, e->owner.films, &film);
-  if (status != DEA_OK) {
-    return dea_fail(ctx, status, "the film cannot be evaluated on the way");
-  }
-  out->grew = film.area > branch_jump * fmax(e->area, 1);
+  DEA_TRY(ctx, evaluate_film(ctx, e));
+  out->grew = e->film.area > branch_jump * fmax(e->area, 1);
   e->grew |= out->grew;
-  out->taut = film.min_tension_N_per_m > no_tension * e->owner.tension_scale_N_per_m;
+  out->taut = e->film.min_tension_N_per_m > no_tension * e->owner.tension_scale_N_per_m;
   return DEA_OK;
 }
 

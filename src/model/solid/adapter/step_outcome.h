@@ -35,6 +35,9 @@ struct dea_step_outcome {
   bool grew;                       // the film has at once, on the last step
   double tension[3], tension_V[3]; // smallest of the film [N/m], at the last points looked at
   double area;                     // largest area stretch at the last of them
+  struct dea_solid_extremes film;  // of the films where they were evaluated last
+  double *film_at[2]; // there and where the solid is: displacements, voltages; NULL: nowhere yet
+  struct dea_arena memory; // of these
 };
 
 /* To a voltage from that of the last equilibrium, from_V. Where that fails the message is the
