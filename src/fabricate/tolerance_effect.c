@@ -42,7 +42,7 @@ static dea_status state_at(struct dea_context *ctx, struct solver_state *s, doub
     status = s->type->solve(ctx, s->model, voltage_V, &s->point);
   }
   DEA_TRY(ctx, answer(ctx, status, there));
-  *there = *there && dea_load_point_trusted(&s->point);
+  *there = *there && dea_load_point_valid(&s->point);
   return DEA_OK;
 }
 
@@ -77,7 +77,7 @@ static dea_status stand(struct dea_context *ctx, struct solver_state *s, double 
     }
     last = s->point;
     DEA_TRY(ctx, answer(ctx, s->type->solve(ctx, s->model, voltage, &next), &there));
-    there = there && dea_load_point_trusted(&next);
+    there = there && dea_load_point_valid(&next);
     s->point = there ? next : s->point;
     *voltage_V = there ? voltage : *voltage_V;
   }

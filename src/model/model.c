@@ -40,9 +40,9 @@ struct dea_model_settings dea_model_settings_of(const struct dea_design *design)
   settings.reduced.monitor = monitor->text[0] != '\0' ? monitor->text : NULL;
   settings.reduced.motion = design->compute.reduced.motion.value - 1; // the first: the largest
   settings.reduced.voltage_V = voltage_V > 0 ? voltage_V : dea_design_highest_V(design);
-  settings.reduced.force = fmax(design->compute.reduced.force.si, 0); // 0 of NAN
-  settings.reduced.voltages = (int)design->compute.reduced.voltages.si;
-  settings.reduced.forces = (int)design->compute.reduced.forces.si;
+  settings.reduced.force = fmax(design->compute.reduced.force.si, 0);            // 0 of NAN
+  settings.reduced.voltages = (int)fmax(design->compute.reduced.voltages.si, 0); // as above
+  settings.reduced.forces = (int)fmax(design->compute.reduced.forces.si, 0);
   return settings;
 }
 
