@@ -92,7 +92,7 @@ static const char own_policy[] = "default-src 'none'; script-src 'self'; style-s
                                  "frame-src 'self'; base-uri 'none'; form-action 'none'; "
                                  "frame-ancestors 'none'",
                   foreign_policy[] = "sandbox allow-scripts; default-src 'none'; script-src "
-                                     "'unsafe-inline' 'wasm-unsafe-eval'; style-src "
+                                     "'unsafe-inline'; style-src "
                                      "'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
                                      "'none'; frame-ancestors 'self'";
 
