@@ -14,7 +14,7 @@ Numbers are SI and say so in their names; texts have any unit. Errors are except
 Docs: docs/python.md.
 """
 
-from ._door import (
+from ._api import (
     ArgumentError,
     DeaError,
     DesignError,

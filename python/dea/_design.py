@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Union
 
-from ._door import Context, ffi, lib, text
+from ._api import Context, ffi, lib, text
 
 _ORIGINS = ("absent", "default", "given", "set")
 

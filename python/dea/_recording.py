@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Union
 
-from ._door import FileError
+from ._api import FileError
 
 Path = Union[str, "os.PathLike[str]"]
 

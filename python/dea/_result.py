@@ -12,7 +12,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from ._design import Design
-from ._door import Context, DeaError, Finding, Handle, ffi, lib, text
+from ._api import Context, DeaError, Finding, Handle, ffi, lib, text
 
 Path = Union[str, os.PathLike]
 

@@ -9,7 +9,7 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
-from ._door import Context, ffi, lib, text
+from ._api import Context, ffi, lib, text
 from ._result import Array, Mesh, Path, _array
 
 Numbers = Union[Sequence[float], np.ndarray]

@@ -246,8 +246,8 @@ dea_status dea_model_transfer(struct dea_context *ctx, const struct dea_model_ty
                               struct dea_model *model, const struct dea_model *from,
                               struct dea_load_point *out, bool *found)
 {
-  return type->carry != NULL ? type->carry(ctx, model, from, out, found)
-                             : lacks(ctx, type, "states of another mesh");
+  return type->transfer != NULL ? type->transfer(ctx, model, from, out, found)
+                                : lacks(ctx, type, "states of another mesh");
 }
 
 dea_status dea_model_hold(struct dea_context *ctx, const struct dea_model_type *type,

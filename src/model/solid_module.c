@@ -185,8 +185,8 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
   return DEA_OK;
 }
 
-static dea_status carry(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_model *from, struct dea_load_point *out, bool *found)
+static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
+                           const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
   DEA_TRY(ctx, DEA_SOLID_IN_TURN(
                    dea_model_transfer(ctx, model->type, model->inner, from->inner, out, found)));
@@ -317,7 +317,7 @@ const struct dea_model_type dea_model_3d = {
     .long_path = long_path,
     .soften = soften,
     .push = push,
-    .carry = carry,
+    .transfer = transfer,
     .modes = modes,
     .respond = respond,
     .answers = answers,

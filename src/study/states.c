@@ -55,7 +55,7 @@ static const struct dea_field fields[] = {
                     "states at a voltage from which on no more are looked for there",
                     .alias = "most", .min = 1, .max = 100, .default_text = "8"),
     DEA_STUDY_REFINEMENT_FIELD(
-        "finer meshes that each state is carried to, as in compute.solid.refinement, rising",
+        "finer meshes that each state is transferred to, as in compute.solid.refinement, rising",
         "[1.5, 2, 3]", .absent_text = "none", .list_min = 1),
     DEA_CHOICE_ROW(
         "refined", AT(refined), parts, "tips",
@@ -429,8 +429,8 @@ static dea_status search_all(struct search *s)
 
 // Finer meshes -----------------------------------------------------------------------------------
 
-/* A state carried to a mesh. */
-struct carried {
+/* A state transferred to a mesh. */
+struct transferred {
   struct dea_load_point point;
   int is;    // the state that it is on this mesh, in the order of the search; NONE: it was lost
   double *u; // as of struct state, of the last mesh only; owned
@@ -443,16 +443,16 @@ struct finer {
   struct dea_model *model; // owned, of the last mesh only
   struct dea_model_size size;
   double refinement;
-  struct carried *carried; // [count of states], owned
+  struct transferred *transferred; // [count of states], owned
 };
 
 static void forget_mesh(struct search *s, struct finer *mesh)
 {
-  for (size_t i = 0; mesh->carried != NULL && i < s->count; i++) {
-    dea_state_free_values(s->ctx, &mesh->carried[i].saved);
-    dea_free(s->ctx, mesh->carried[i].u);
-    mesh->carried[i].saved = (struct dea_state){0};
-    mesh->carried[i].u = NULL;
+  for (size_t i = 0; mesh->transferred != NULL && i < s->count; i++) {
+    dea_state_free_values(s->ctx, &mesh->transferred[i].saved);
+    dea_free(s->ctx, mesh->transferred[i].u);
+    mesh->transferred[i].saved = (struct dea_state){0};
+    mesh->transferred[i].u = NULL;
   }
   if (mesh->model != NULL) {
     s->type->destroy(s->ctx, mesh->model);
@@ -463,9 +463,9 @@ static void forget_mesh(struct search *s, struct finer *mesh)
 /* Which of the states of its level, of those that came to the mesh before it, the i-th one is. */
 static int same_on_mesh(const struct search *s, const struct finer *mesh, size_t i)
 {
-  const struct carried *one = &mesh->carried[i];
+  const struct transferred *one = &mesh->transferred[i];
   for (size_t k = 0; k < i; k++) {
-    const struct carried *other = &mesh->carried[k];
+    const struct transferred *other = &mesh->transferred[k];
     if (s->states[k].level == s->states[i].level && other->is == (int)k &&
         distance_m(other->u, one->u, one->point_count) < s->settings->apart_m.si) {
       return (int)k;
@@ -475,10 +475,10 @@ static int same_on_mesh(const struct search *s, const struct finer *mesh, size_t
 }
 
 /* The i-th state is where the mesh's model is. */
-static dea_status keep_carried(struct search *s, struct finer *mesh, size_t i,
-                               const struct dea_load_point *point)
+static dea_status keep_transferred(struct search *s, struct finer *mesh, size_t i,
+                                   const struct dea_load_point *point)
 {
-  struct carried *one = &mesh->carried[i];
+  struct transferred *one = &mesh->transferred[i];
   struct search on_mesh = {.ctx = s->ctx, .type = s->type, .model = mesh->model};
   one->point = *point;
   one->is = (int)i;
@@ -488,15 +488,15 @@ static dea_status keep_carried(struct search *s, struct finer *mesh, size_t i,
 }
 
 /* The i-th state from a model of the mesh before, which has its state there. */
-static dea_status carry_one(struct search *s, struct dea_model *from, const struct dea_state *saved,
-                            struct finer *mesh, size_t i)
+static dea_status transfer_one(struct search *s, struct dea_model *from,
+                               const struct dea_state *saved, struct finer *mesh, size_t i)
 {
   struct dea_load_point point;
   bool found = false;
   DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, from, saved));
   dea_status status = dea_model_transfer(s->ctx, s->type, mesh->model, from, &point, &found);
   if (status == DEA_OK && found) {
-    DEA_TRY(s->ctx, keep_carried(s, mesh, i, &point));
+    DEA_TRY(s->ctx, keep_transferred(s, mesh, i, &point));
   }
   DEA_TRY(s->ctx, forgive(s->ctx, status));
   return DEA_OK;
@@ -505,17 +505,17 @@ static dea_status carry_one(struct search *s, struct dea_model *from, const stru
 /* A state that was lost, along its branch from the level above or below, on this mesh. */
 static dea_status follow_one(struct search *s, struct finer *mesh, size_t i)
 {
-  for (int way = UP; way <= DOWN && mesh->carried[i].is == NONE; way++) {
+  for (int way = UP; way <= DOWN && mesh->transferred[i].is == NONE; way++) {
     int near = s->states[i].leads[way];
     struct dea_load_point point;
     if (near == NONE || s->states[near].leads[way == UP ? DOWN : UP] != (int)i ||
-        mesh->carried[near].is != near) {
+        mesh->transferred[near].is != near) {
       continue;
     }
-    DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, mesh->model, &mesh->carried[near].saved));
+    DEA_TRY(s->ctx, dea_model_load(s->ctx, s->type, mesh->model, &mesh->transferred[near].saved));
     dea_status status = s->type->solve(s->ctx, mesh->model, s->states[i].point.voltage_V, &point);
     if (status == DEA_OK && point.stable) {
-      DEA_TRY(s->ctx, keep_carried(s, mesh, i, &point));
+      DEA_TRY(s->ctx, keep_transferred(s, mesh, i, &point));
     }
     DEA_TRY(s->ctx, forgive(s->ctx, status));
   }
@@ -524,7 +524,7 @@ static dea_status follow_one(struct search *s, struct finer *mesh, size_t i)
 
 /* All states from the mesh before (NULL: of the search) to this one: each by itself, what is lost
  * along its branch, up and then down. */
-static dea_status carry_all(struct search *s, struct finer *before, struct finer *mesh)
+static dea_status transfer_all(struct search *s, struct finer *before, struct finer *mesh)
 {
   enum { BY_ITSELF, FOLLOWED_UP, FOLLOWED_DOWN, PASSES };
   char what[DEA_NAME_SIZE + 48];
@@ -533,24 +533,24 @@ static dea_status carry_all(struct search *s, struct finer *before, struct finer
     size_t pass = k / s->count, at = k % s->count,
            i = pass == FOLLOWED_DOWN ? s->count - 1 - at : at;
     const struct dea_state *saved =
-        before != NULL ? &before->carried[i].saved : &s->states[i].saved;
+        before != NULL ? &before->transferred[i].saved : &s->states[i].saved;
     if (dea_interrupted_anywhere(s->ctx)) {
       return dea_fail(s->ctx, DEA_E_INTERRUPTED, "interrupted as states went to a finer mesh");
     }
-    if (pass == BY_ITSELF && (before == NULL || before->carried[i].is == (int)i)) {
-      DEA_TRY(s->ctx, carry_one(s, before != NULL ? before->model : s->model, saved, mesh, i));
-    } else if (pass != BY_ITSELF && mesh->carried[i].is == NONE) {
+    if (pass == BY_ITSELF && (before == NULL || before->transferred[i].is == (int)i)) {
+      DEA_TRY(s->ctx, transfer_one(s, before != NULL ? before->model : s->model, saved, mesh, i));
+    } else if (pass != BY_ITSELF && mesh->transferred[i].is == NONE) {
       DEA_TRY(s->ctx, follow_one(s, mesh, i));
     }
     dea_progress(s->ctx, what, k + 1, PASSES * s->count);
   }
   for (size_t i = 0; i < s->count; i++) {
-    int was = before != NULL ? before->carried[i].is : (int)i;
+    int was = before != NULL ? before->transferred[i].is : (int)i;
     if (was != NONE && was != (int)i) { // one with another since an earlier mesh
-      mesh->carried[i].point = mesh->carried[was].point;
-      mesh->carried[i].is = mesh->carried[was].is;
-    } else if (mesh->carried[i].is != NONE) {
-      mesh->carried[i].is = same_on_mesh(s, mesh, i);
+      mesh->transferred[i].point = mesh->transferred[was].point;
+      mesh->transferred[i].is = mesh->transferred[was].is;
+    } else if (mesh->transferred[i].is != NONE) {
+      mesh->transferred[i].is = same_on_mesh(s, mesh, i);
     }
   }
   return DEA_OK;
@@ -561,12 +561,12 @@ static dea_status make_mesh(struct search *s, double refinement, struct finer *m
   struct dea_model_settings settings = dea_model_settings_of(s->result->design);
   refine_model(s->settings, refinement, &settings);
   mesh->refinement = refinement;
-  mesh->carried = dea_alloc(s->ctx, s->count, sizeof *mesh->carried);
-  if (mesh->carried == NULL) {
+  mesh->transferred = dea_alloc(s->ctx, s->count, sizeof *mesh->transferred);
+  if (mesh->transferred == NULL) {
     return DEA_E_MEMORY;
   }
   for (size_t i = 0; i < s->count; i++) {
-    mesh->carried[i].is = NONE;
+    mesh->transferred[i].is = NONE;
   }
   DEA_TRY(s->ctx, s->type->create(s->ctx, s->result->device, &settings, &mesh->model));
   if (s->type->size != NULL) {
@@ -577,7 +577,7 @@ static dea_status make_mesh(struct search *s, double refinement, struct finer *m
 
 /* meshes [refinement_count], zeroed; *count: of those that all states have gone to, or been lost on
  * the way to. */
-static dea_status carry_states(struct search *s, struct finer *meshes, size_t *count)
+static dea_status transfer_states(struct search *s, struct finer *meshes, size_t *count)
 {
   const struct settings *settings = s->settings;
   dea_status status = DEA_OK;
@@ -586,7 +586,7 @@ static dea_status carry_states(struct search *s, struct finer *meshes, size_t *c
     struct finer *mesh = &meshes[*count];
     status = make_mesh(s, settings->refinements[*count].si, mesh);
     if (status == DEA_OK) {
-      status = carry_all(s, before, mesh);
+      status = transfer_all(s, before, mesh);
     }
     if (before != NULL) {
       forget_mesh(s, before);
@@ -746,7 +746,7 @@ static const struct dea_result_table_type band_table =
 
 static const struct dea_result_column mesh_columns[] = {
     KV("voltage_V", "V", "voltage"),
-    DEA_TEXT_COLUMN("state", "state", "branch of the design's mesh that it was carried from"),
+    DEA_TEXT_COLUMN("state", "state", "branch of the design's mesh that it was transferred from"),
     DEA_NUMBER_COLUMN("refinement", NULL, NULL, 1, "refinement", "of the mesh"),
     DEA_RESULT_COLUMN(COUNT, "unknowns", "unknowns", .meaning = "of the mesh"),
     DEA_TEXT_COLUMN("is", "is", "the state that it is on this mesh; -: none was found from there"),
@@ -825,9 +825,9 @@ static dea_status put_mesh_row(const struct search *s, size_t i, const struct fi
   const struct state *state = &s->states[i];
   const struct dea_model_settings settings = dea_model_settings_of(s->result->design);
   struct dea_model_size size = {0};
-  int is = mesh != NULL ? mesh->carried[i].is : (int)i;
+  int is = mesh != NULL ? mesh->transferred[i].is : (int)i;
   const struct dea_load_point *p = is == NONE     ? &unknown
-                                   : mesh != NULL ? &mesh->carried[i].point
+                                   : mesh != NULL ? &mesh->transferred[i].point
                                                   : &state->point;
   char name[NAME_SIZE], same[NAME_SIZE] = "-", flags[DEA_FLAGS_SIZE] = "";
   name_branch(state->variant, name);
@@ -852,10 +852,10 @@ static double lowest_on(const struct search *s, size_t level, const struct finer
 {
   double lowest_J = INFINITY;
   for (size_t i = 0; i < s->count; i++) {
-    bool there = mesh == NULL || mesh->carried[i].is != NONE;
+    bool there = mesh == NULL || mesh->transferred[i].is != NONE;
     if (s->states[i].level == level && there) {
-      lowest_J = fmin(lowest_J,
-                      mesh != NULL ? mesh->carried[i].point.energy_J : s->states[i].point.energy_J);
+      lowest_J = fmin(lowest_J, mesh != NULL ? mesh->transferred[i].point.energy_J
+                                             : s->states[i].point.energy_J);
     }
   }
   return lowest_J;
@@ -885,16 +885,16 @@ static dea_status refine(struct search *s)
   if (s->settings->refinement_count == 0) {
     return DEA_OK;
   }
-  if (s->type->carry == NULL) {
+  if (s->type->transfer == NULL) {
     return dea_finding_add(s->ctx, DEA_NOTE, (struct dea_location){0},
-                           "model %s cannot carry states to finer meshes of this device",
+                           "model %s cannot transfer states to finer meshes of this device",
                            s->type->name);
   }
-  dea_status status = carry_states(s, meshes, &count);
+  dea_status status = transfer_states(s, meshes, &count);
   dea_status put = status != DEA_E_MEMORY ? put_meshes(s, meshes, count) : DEA_OK;
   for (size_t m = 0; m < MESHES_MAX; m++) {
     forget_mesh(s, &meshes[m]);
-    dea_free(s->ctx, meshes[m].carried);
+    dea_free(s->ctx, meshes[m].transferred);
   }
   return status == DEA_OK ? put : status;
 }

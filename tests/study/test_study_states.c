@@ -114,7 +114,7 @@ static dea_status push(struct dea_context *context, struct dea_model *m, const s
   return DEA_OK;
 }
 
-static dea_status carry(struct dea_context *context, struct dea_model *m,
+static dea_status transfer(struct dea_context *context, struct dea_model *m,
                         const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
   m->voltage_V = from->voltage_V;
@@ -161,7 +161,7 @@ static const struct dea_model_type wells = {.name = "wells",
                                             .solve = solve,
                                             .soften = soften,
                                             .push = push,
-                                            .carry = carry,
+                                            .transfer = transfer,
                                             .fields = fields,
                                             .save = save,
                                             .load = load};

@@ -316,8 +316,8 @@ static dea_status push(struct dea_context *ctx, struct dea_model *model, const s
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
 
-static dea_status carry(struct dea_context *ctx, struct dea_model *model,
-                        const struct dea_model *from, struct dea_load_point *out, bool *found)
+static dea_status transfer(struct dea_context *ctx, struct dea_model *model,
+                           const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
   DEA_TRY(ctx, dea_solver_state_transfer(ctx, &model->at, &from->at, out, found));
   return DEA_OK;
@@ -576,7 +576,7 @@ const struct dea_model_type dea_solid_module = {
     .long_path = long_path,
     .soften = dea_solver_state_soften,
     .push = push,
-    .carry = carry,
+    .transfer = transfer,
     .modes = modes,
     .respond = respond,
     .answers = answers,

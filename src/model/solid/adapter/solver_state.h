@@ -7,7 +7,7 @@
 #include "model/solid/adapter/step_outcome.h"
 #include "result/state.h"
 
-/* Zeroed at first but for the ending's owner. */
+/* Zeroed at first but for the owner of the outcome. */
 struct dea_solver_state {
   struct dea_step_outcome outcome; // of the last solve
   struct dea_solid_report report;
@@ -58,7 +58,7 @@ dea_status dea_solver_state_push(struct dea_context *ctx, struct dea_solver_stat
                                  const struct dea_push *push, const double *fold,
                                  struct dea_load_point *out, bool *found);
 
-/* `carry`, from a model of the same device. */
+/* `transfer`, from a model of the same device. */
 dea_status dea_solver_state_transfer(struct dea_context *ctx, struct dea_solver_state *solver_state,
                                      const struct dea_solver_state *from,
                                      struct dea_load_point *out, bool *found);

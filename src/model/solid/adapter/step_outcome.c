@@ -89,6 +89,7 @@ void dea_step_outcome_free(struct dea_step_outcome *e)
 {
   drop_limit(e);
   dea_arena_free(&e->memory);
+  e->film_at[0] = e->film_at[1] = NULL;
 }
 
 /* The voltage at which two points that were looked at after each other have the tension 0 on the
