@@ -67,8 +67,9 @@ static void add_temperatures(struct dea_text *out, const char *indent, const str
     }
   }
   add_temperature(out, indent, &fit->file->reference_K);
-  dea_text_add(out, low < high ? "%stemperature_range: [%.10g K, %.10g K]\n" : "", indent, low,
-               high);
+  if (low < high) {
+    dea_text_add(out, "%stemperature_range: [%.10g K, %.10g K]\n", indent, low, high);
+  }
 }
 
 /* This fit and its files, with their hashes. */

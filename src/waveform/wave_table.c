@@ -27,8 +27,18 @@ const struct dea_record dea_wave_table_record = {"table", "times and voltages fr
                                                  fields, DEA_WAVE_COUNT(fields)};
 
 static const struct dea_csv_wanted columns[2] = {
-    [TIME] = {"time", "time (s)", {"s", "1 s"}, true, true, {"t", NULL}, false},
-    [VOLTAGE] = {"voltage", "voltage (kV)", {"V", "1 kV"}, true, true, {"v", "u"}, false},
+    [TIME] = {.name = "time",
+              .title = "time (s)",
+              .measure = {"s", "1 s"},
+              .needed = true,
+              .filled = true,
+              .other = {"t"}},
+    [VOLTAGE] = {.name = "voltage",
+                 .title = "voltage (kV)",
+                 .measure = {"V", "1 kV"},
+                 .needed = true,
+                 .filled = true,
+                 .other = {"v", "u"}},
 };
 
 /* Knots of the rows. Errors are findings. */

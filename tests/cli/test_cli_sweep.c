@@ -316,7 +316,7 @@ TEST(test_grid)
  * level takes over what is there. */
 TEST(test_sparse_grid)
 {
-  double z, error, margin;
+  double z = NAN, error = NAN, margin;
   write_file("{name: pre_stretch, low: 1.3, high: 1.7}, "
              "{name: film.thickness, low: 80 um, high: 120 um}",
              "plan: sparse-grid");
