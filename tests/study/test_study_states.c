@@ -115,7 +115,7 @@ static dea_status push(struct dea_context *context, struct dea_model *m, const s
 }
 
 static dea_status transfer(struct dea_context *context, struct dea_model *m,
-                        const struct dea_model *from, struct dea_load_point *out, bool *found)
+                           const struct dea_model *from, struct dea_load_point *out, bool *found)
 {
   m->voltage_V = from->voltage_V;
   m->x = descend(m, from->x);
