@@ -42,8 +42,8 @@ TEST(test_same_state)
   struct dea_grid *grid = block_grid(ctx, &strip);
   struct dea_solid *own = make(grid, 1), *soft = make(grid, 1.0 / 16);
   struct dea_solid_report of_own, of_soft;
-  assert_int_equal(go_down(own, grid, 0.03, &of_own), DEA_OK);
-  assert_int_equal(go_down(soft, grid, 0.03, &of_soft), DEA_OK);
+  assert_int_equal(go_down(own, grid, 0.05, &of_own), DEA_OK);
+  assert_int_equal(go_down(soft, grid, 0.05, &of_soft), DEA_OK);
   assert_int_equal(of_own.unstable_modes, 0);
   assert_int_equal(of_soft.unstable_modes, 0);
   assert_true(soft->state.bulk_factor == 1);

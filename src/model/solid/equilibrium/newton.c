@@ -12,15 +12,24 @@
 #include <string.h>
 
 static const double divergence_rtol = 0.3; // of the sum of element forces: none balances another
-enum { MAX_STALLED = 3 };               // shifted steps in a row that are shorter than newton_stol
-static const double lag_rate = 0.2;     // of the residual before: an old factor is good enough
-static const double max_rise = 20;      // of the slope: along a curved valley linear steps go up
-enum { MAX_SHIFTS = 40 };               // attempts to make the tangent positive definite
-static const double min_shift = 3e-5;   // of the softest modulus; below there is none
-static const double shift_growth = 4;   // after a step that was cut
-static const double shift_decay = 10;   // after a good step, its square after a quadratic one
+enum { MAX_STALLED = 3 };           // shifted steps in a row that are shorter than newton_stol
+static const double lag_rate = 0.2; // of the residual before: an old factor is good enough
+static const double max_rise = 20;  // of the slope: along a curved valley linear steps go up
+static const double pair_residual = 0.03; // of the sum of element forces: back in the valley
+enum { MAX_SHIFTS = 40 };                 // attempts to make the tangent positive definite
+static const double min_shift = 3e-5;     // of the softest modulus; below there is none
+static const double shift_growth = 4;     // after a step that was cut
+static const double shift_decay = 10;     // after a good step, its square after a quadratic one
 static const double shift_margin = 2;   // of the lowest eigenvalue: as far above 0 as it was below
 static const double descent_end = 1e-3; // of theta and residual, where kappa is its own again
+
+/* A shifted step that went up, out of the valley, and the next one, back into it. */
+struct pair {
+  int steps;       // of them taken in a row; 0: none
+  double shift_Pa; // of the first
+  double energy_J; // before it
+  double share, rise;
+};
 
 struct newton {
   double voltage_V;
@@ -34,6 +43,7 @@ struct newton {
   int lost;           // iterates in a row whose forces are far out of balance
   int stuck;          // shifted steps in a row that are too small to matter
   double softness;    // kappa over its own
+  struct pair pair;
   struct dea_solid_report *report;
 };
 
@@ -170,21 +180,48 @@ static bool search_line(struct dea_context *ctx, struct dea_solid *s, const stru
   return false;
 }
 
+/* None where it is too small to matter. */
+static void set_shift(const struct dea_solid *s, struct newton *d, double shift_Pa)
+{
+  d->shift_Pa = shift_Pa < min_shift * s->problem.modulus_Pa ? 0 : shift_Pa;
+}
+
 /* The shift of the next step from how this one went. A whole step up by less than its slope leaves
  * the floor of the valley, to which the next one returns: its shift was more than enough. */
 static void adapt_shift(const struct dea_solid *s, struct newton *d, double share, double rise)
 {
   double shift_Pa = d->shift_Pa;
   const struct dea_solid_settings *o = &s->settings;
-  if (share < 1 || (rise > 0 && shift_Pa == 0)) {
+  if (share < 1 || rise > 0) {
     shift_Pa = shift_Pa > 0 ? shift_Pa * (share < 0.2 ? shift_growth * shift_growth : shift_growth)
                             : o->shift_initial * s->problem.modulus_Pa;
-  } else if (rise > 0) {
-    shift_Pa /= rise < 1 ? 2 : 1;
   } else if (rise < -0.25) {
     shift_Pa /= fabs(rise + 0.5) < 0.05 ? shift_decay * shift_decay : shift_decay;
   }
-  d->shift_Pa = shift_Pa < min_shift * s->problem.modulus_Pa ? 0 : shift_Pa;
+  set_shift(s, d, shift_Pa);
+}
+
+/* Whether a step from there, with that shift, is one of a pair. */
+static void begin_pair(struct newton *d, double shift_Pa, double share, double rise)
+{
+  if (rise > 0 && shift_Pa > 0 && !d->strict) {
+    d->pair = (struct pair){1, shift_Pa, d->report->energy_J, share, rise};
+  } else {
+    d->pair.steps = d->pair.steps == 1 ? 2 : 0;
+  }
+}
+
+/* The shift after both steps of a pair that have come back into the valley, from that of the first:
+ * the second, quadratic as it may be, says nothing of the valley. */
+static void end_pair(const struct dea_solid *s, struct newton *d)
+{
+  const struct pair *p = &d->pair;
+  d->pair.steps = 0;
+  if (d->report->residual <= pair_residual) {
+    const double down = p->share < 1 || p->rise > 5 ? 1 : p->rise < 1 ? 8 : 2;
+    set_shift(s, d,
+              d->report->energy_J > p->energy_J ? shift_growth * p->shift_Pa : p->shift_Pa / down);
+  }
 }
 
 /* ---- stresses and pressures at the end of a step ---- */
@@ -328,6 +365,7 @@ static dea_status newton_step(struct dea_context *ctx, struct dea_solid *s, stru
       if (start) {
         return DEA_OK;
       }
+      begin_pair(d, there, share, rise);
       adapt_shift(s, d, share, rise);
       d->chords = 0;
       d->chord = quadratic && there == 0 && d->softness == 1;
@@ -360,6 +398,9 @@ static dea_status evaluate(struct dea_context *ctx, struct dea_solid *s, struct 
     DEA_TRY(ctx, dea_solid_assemble(ctx, s, d->voltage_V, tangent, &report->energy_J));
   }
   d->norm_before = size;
+  if (d->pair.steps == 2) {
+    end_pair(s, d);
+  }
   return DEA_OK;
 }
 
