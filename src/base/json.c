@@ -11,6 +11,11 @@ void dea_json_put(json_t *object, const char *key, double value)
   }
 }
 
+json_t *dea_json_number(double value)
+{
+  return isfinite(value) ? json_real(value) : json_null();
+}
+
 void dea_json_put_count(json_t *object, const char *key, size_t count)
 {
   json_object_set_new(object, key, json_integer((json_int_t)count));

@@ -8,6 +8,8 @@
 /* Sets a number unless it is not finite (JSON has no such number). */
 void dea_json_put(json_t *object, const char *key, double value);
 void dea_json_put_count(json_t *object, const char *key, size_t count);
+/* A number, or null where it is not finite. */
+json_t *dea_json_number(double value);
 /* Sets a text; NULL gives "". */
 void dea_json_put_text(json_t *object, const char *key, const char *text);
 /* Text of root with a final newline; takes root. out: owned by the caller (dea_free). */

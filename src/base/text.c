@@ -195,3 +195,9 @@ double dea_text_to_double(const char *text, const char **end)
   *end = stop;
   return value;
 }
+
+bool dea_text_ends_with(const char *text, const char *end)
+{
+  const size_t length = strlen(text), tail = strlen(end);
+  return length >= tail && strcmp(text + length - tail, end) == 0;
+}

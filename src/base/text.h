@@ -37,5 +37,7 @@ const char *dea_entity_name(unsigned code);
  * that begins with the word or that the word begins with (of three characters or more). */
 const char *dea_nearest_name(const char *word, const char *const candidates[], size_t count);
 
+bool dea_text_ends_with(const char *text, const char *end);
+
 /* Number of a text in the C locale, whatever the program's locale; *end as in strtod. */
 double dea_text_to_double(const char *text, const char **end);

@@ -1,6 +1,7 @@
 #include "explore/from_fit.h"
 
 #include "base/file.h"
+#include "base/text.h"
 #include "base/write_file.h"
 
 #include <jansson.h>
@@ -233,11 +234,10 @@ static dea_status take_all(struct work *w)
 
 static dea_status read_fit(struct work *w, json_t **out)
 {
-  static const char outcome[] = ".json", name[] = "fit.json";
-  const size_t length = strlen(w->at->text), end = sizeof outcome - 1;
+  static const char name[] = "fit.json";
   char *bytes = NULL, *path = dea_path_beside(w->ctx, w->file->head.file, w->at->text);
   size_t count = 0;
-  if (path != NULL && (length < end || strcmp(w->at->text + length - end, outcome) != 0)) {
+  if (path != NULL && !dea_text_ends_with(w->at->text, ".json")) {
     char *folder = path;
     path = dea_path_join(w->ctx, folder, name);
     dea_free(w->ctx, folder);

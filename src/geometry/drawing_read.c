@@ -4,11 +4,11 @@
 #include <ctype.h>
 #include <string.h>
 
-static bool ends_with(const char *file, const char *outcome)
+static bool ends_with(const char *file, const char *end)
 {
-  size_t n = strlen(file), m = strlen(outcome);
+  size_t n = strlen(file), m = strlen(end);
   for (size_t i = 0; i < m; i++) {
-    if (n < m || tolower((unsigned char)file[n - m + i]) != outcome[i]) {
+    if (n < m || tolower((unsigned char)file[n - m + i]) != end[i]) {
       return false;
     }
   }

@@ -318,17 +318,11 @@ dea_status dea_emulator_device(struct dea_context *ctx, const struct dea_design 
 
 // JSON --------------------------------------------------------------------------------------------
 
-/* With null for what is not finite. */
-static json_t *number(double value)
-{
-  return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *numbers(const double *values, size_t count)
 {
   json_t *array = json_array();
   for (size_t i = 0; i < count; i++) {
-    json_array_append_new(array, number(values[i]));
+    json_array_append_new(array, dea_json_number(values[i]));
   }
   return array;
 }
@@ -342,7 +336,7 @@ json_t *dea_emulator_json(const struct dea_emulator *e)
     const struct dea_emulator_key *key = &e->keys[j];
     json_array_append_new(keys, json_pack("{s:s, s:s, s:f, s:f, s:o}", "name", key->name, "unit",
                                           key->unit, "low", key->low, "high", key->high, "value",
-                                          number(key->value)));
+                                          dea_json_number(key->value)));
   }
   for (size_t i = 0; i < e->case_count * e->key_count; i++) {
     json_array_append_new(nodes, json_integer(e->nodes[i]));

@@ -52,16 +52,11 @@ json_t *dea_points_json(const struct dea_context *ctx, const struct dea_curve *c
   return list;
 }
 
-static json_t *number_json(double value)
-{
-  return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *list_json(const struct dea_cell *cells, size_t count)
 {
   json_t *list = json_array();
   for (size_t i = 0; i < count; i++) {
-    json_array_append_new(list, number_json(cells[i].number));
+    json_array_append_new(list, dea_json_number(cells[i].number));
   }
   return list;
 }
@@ -85,7 +80,7 @@ static json_t *cell_json(const struct dea_context *ctx, const struct dea_result 
   case DEA_CELL_VALUE:
     break;
   }
-  return number_json(cell->number);
+  return dea_json_number(cell->number);
 }
 
 /* A row's keys go into an object. */

@@ -96,11 +96,11 @@ bool dea_observed_has(enum dea_layout_monitor_kind kind, enum dea_observed obser
   }
 }
 
-static bool ends_with(const char *text, const char *outcome)
+static bool ends_with(const char *text, const char *end)
 {
-  const size_t length = strlen(text), size = strlen(outcome);
+  const size_t length = strlen(text), size = strlen(end);
   return length > size + 1 && text[length - size - 1] == '_' &&
-         strcmp(text + length - size, outcome) == 0;
+         strcmp(text + length - size, end) == 0;
 }
 
 enum { QUANTITIES = DEA_OBSERVED_COUNT + DEA_OBSERVED_OF_CHANNEL };
@@ -258,7 +258,7 @@ static dea_status add_answer(struct listing *list, const char *name, const char 
 {
   const struct dea_column *of = &dea_observed_columns[column.number];
   const char *unit = strcmp(of->si_unit, "1") == 0 ? "" : of->si_unit; // "m", "rad"
-  const size_t outcome = unit[0] != '\0' ? strlen(unit) + 1 : 0;
+  const size_t end = unit[0] != '\0' ? strlen(unit) + 1 : 0;
   char key[2 * DEA_NAME_SIZE], header[2 * DEA_NAME_SIZE];
   for (int phase = 0; phase < 2; phase++) {
     const bool length = strcmp(of->si_unit, "m") == 0;
@@ -272,9 +272,8 @@ static dea_status add_answer(struct listing *list, const char *name, const char 
                                     length ? 1e9 : of->factor,
                                     header,
                                     "of the motion that the excitation makes"};
-    snprintf(key, sizeof key, "%s_%.*s_%s%s%s", part, (int)(strlen(of->key) - outcome), of->key,
-             phase ? "phase_rad" : "amplitude", phase || outcome == 0 ? "" : "_",
-             phase ? "" : unit);
+    snprintf(key, sizeof key, "%s_%.*s_%s%s%s", part, (int)(strlen(of->key) - end), of->key,
+             phase ? "phase_rad" : "amplitude", phase || end == 0 ? "" : "_", phase ? "" : unit);
     snprintf(header, sizeof header, "%s %.63s %s", phase ? "phase" : "amplitude", name, of->header);
     column.source = phase ? DEA_OF_PHASE : DEA_OF_AMPLITUDE;
     DEA_TRY(list->ctx, dea_column_add(list->ctx, &shown, &column.column));

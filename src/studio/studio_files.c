@@ -1,6 +1,8 @@
 #define _GNU_SOURCE // O_NOFOLLOW, O_PATH
 #include "studio/studio_files.h"
 
+#include "base/text.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -105,12 +107,6 @@ void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP])
   }
 }
 
-static bool ends_with(const char *name, const char *ending)
-{
-  const size_t length = strlen(name), more = strlen(ending);
-  return length > more && strcmp(name + length - more, ending) == 0;
-}
-
 /* Adds what a name of the folder is to the lists. */
 static void add_entry(int folder, const char *name, json_t *lists)
 {
@@ -134,11 +130,12 @@ static void add_entry(int folder, const char *name, json_t *lists)
     json_array_append_new(json_object_get(lists, "runs"),
                           json_pack("{s:s, s:s, s:s, s:s}", "name", name, "stamp", stamp, "report",
                                     report, "state", kept));
-  } else if (S_ISREG(file.st_mode) && (ends_with(name, ".yaml") || ends_with(name, ".yml"))) {
+  } else if (S_ISREG(file.st_mode) &&
+             (dea_text_ends_with(name, ".yaml") || dea_text_ends_with(name, ".yml"))) {
     dea_studio_stamp(folder, name, stamp);
     json_array_append_new(json_object_get(lists, "designs"),
                           json_pack("{s:s, s:s}", "name", name, "stamp", stamp));
-  } else if (S_ISREG(file.st_mode) && ends_with(name, ".csv")) {
+  } else if (S_ISREG(file.st_mode) && dea_text_ends_with(name, ".csv")) {
     json_array_append_new(json_object_get(lists, "tables"), json_string(name));
   }
 }

@@ -334,9 +334,7 @@ static int column_along(const struct dea_context *ctx, int x_column, size_t axis
 static bool is_monitor(const struct dea_context *ctx, const struct dea_curve *curve, int column)
 {
   const char *key = dea_column_at(ctx, column)->key;
-  const size_t length = strlen(key), outcome = strlen(along_x);
-  return column >= DEA_LOAD_POINT_COLUMNS && length > outcome &&
-         strcmp(key + length - outcome, along_x) == 0 &&
+  return column >= DEA_LOAD_POINT_COLUMNS && dea_text_ends_with(key, along_x) &&
          dea_points_have(curve->points, curve->count, column);
 }
 

@@ -474,15 +474,10 @@ static dea_status no_event(void *user, const struct dea_event *event)
  * axisymmetric model's path. */
 TEST(test_charge_up_to_pull_in)
 {
-  struct dea_material soft = test_material("arruda-boyce", 15.36e3, 5.99, 0);
-  soft.permittivity.at_rest = 4.8;
-  struct dea_device plain = test_disc(soft, 1.2, 2.6e-3, 2.6 / 15.5, 0);
-  plain.film_thickness_unstretched_m = 30e-6;
-  plain.film_thickness_m = 30e-6 / 1.44;
-  plain.frame_radius_m = 15.5e-3;
+  struct dea_device plain = test_soft_disc();
   struct dea_device *device = disc_new(plain.frame_radius_m, 2.6e-3, 1.2);
   struct dea_layout_ply *ply = &device->layout->plies[0];
-  ply->material = soft;
+  ply->material = plain.film;
   ply->thickness_m = plain.film_thickness_m;
   ply->thickness_unstretched_m = plain.film_thickness_unstretched_m;
   const struct dea_model_type *exact_type = dea_model_find("axisymmetric");

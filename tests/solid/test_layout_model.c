@@ -485,18 +485,13 @@ TEST(test_disc_of_both_models)
  * the exact disc. */
 TEST(test_pull_in_is_told)
 {
-  struct dea_material soft = test_material("arruda-boyce", 15.36e3, 5.99, 0);
-  soft.permittivity.at_rest = 4.8;
-  struct dea_device plain = test_disc(soft, 1.2, 2.6e-3, 2.6 / 15.5, 0);
-  plain.film_thickness_unstretched_m = 30e-6;
-  plain.film_thickness_m = 30e-6 / 1.44;
-  plain.frame_radius_m = 15.5e-3;
+  struct dea_device plain = test_soft_disc();
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
   dea_region_add_circle(add_region(device, "film"), 0, 0, plain.frame_radius_m, false, nowhere);
   dea_region_add_circle(add_region(device, "active"), 0, 0, 2.6e-3, false, nowhere);
   add_film(device, 0, 1.2, 1.2);
-  l->plies[0].material = soft;
+  l->plies[0].material = plain.film;
   l->plies[0].thickness_m = plain.film_thickness_m;
   l->plies[0].thickness_unstretched_m = plain.film_thickness_unstretched_m;
   add_electrode(device, 0, false, 1, 0);

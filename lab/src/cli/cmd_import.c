@@ -1,5 +1,6 @@
 #define _POSIX_C_SOURCE 200809L // unlink
 #include "base/file.h"
+#include "base/json.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "cli/cli.h"
@@ -33,11 +34,6 @@ static size_t range_get(const struct dea_table_column *column, double *low, doub
   return missing;
 }
 
-static json_t *json_number(double value)
-{
-  return isfinite(value) ? json_real(value) : json_null();
-}
-
 static dea_status list_json(struct dea_cli *cli, const struct dea_table *table,
                             const struct dea_column_role *roles)
 {
@@ -49,9 +45,9 @@ static dea_status list_json(struct dea_cli *cli, const struct dea_table *table,
     json_array_append_new(
         columns, json_pack("{s:s, s:s, s:I, s:I, s:o, s:o, s:o, s:s, s:s}", "name", column->name,
                            "unit", column->unit, "count", (json_int_t)column->count, "missing",
-                           (json_int_t)missing, "smallest", json_number(low), "largest",
-                           json_number(high), "interval_s", json_number(column->interval), "as",
-                           dea_role_name(&roles[i]), "why", roles[i].why));
+                           (json_int_t)missing, "smallest", dea_json_number(low), "largest",
+                           dea_json_number(high), "interval_s", dea_json_number(column->interval),
+                           "as", dea_role_name(&roles[i]), "why", roles[i].why));
   }
   json_t *json = json_pack("{s:s, s:s, s:s, s:o}", "file", table->file, "format", table->format,
                            "note", table->note != NULL ? table->note : "", "columns", columns);
@@ -208,8 +204,9 @@ static void say_json(const char *file, const struct dea_recording *recording)
         json_pack("{s:s, s:s, s:s, s:I, s:o, s:o}", "name", channel->name, "kind",
                   dea_channel_names[channel->kind], "unit", channel->unit, "count",
                   (json_int_t)channel->count, "start_s",
-                  json_number(channel->count > 0 ? dea_channel_time(channel, 0) : NAN),
-                  "interval_s", json_number(channel->interval_s > 0 ? channel->interval_s : NAN)));
+                  dea_json_number(channel->count > 0 ? dea_channel_time(channel, 0) : NAN),
+                  "interval_s",
+                  dea_json_number(channel->interval_s > 0 ? channel->interval_s : NAN)));
   }
   cli_print_json(json_pack("{s:s, s:o, s:I, s:I}", "recording", file, "channels", channels,
                            "frames", (json_int_t)recording->profiles.count, "points",

@@ -19,12 +19,6 @@ static const char *const examples[DEA_CHANNEL_KINDS] = {
     [DEA_CHANNEL_FORCE] = "0.05 N", [DEA_CHANNEL_OTHER] = "1",
 };
 
-static bool ends_with(const char *text, const char *end)
-{
-  size_t length = strlen(text), tail = strlen(end);
-  return length >= tail && strcmp(text + length - tail, end) == 0;
-}
-
 /* A number in the unit of an input's quantity; of others in the unit that it names. */
 static dea_status read_scale(const struct dea_reader *reader,
                              const struct dea_protocol_input *input, const char *key,
@@ -33,8 +27,8 @@ static dea_status read_scale(const struct dea_reader *reader,
   char number[DEA_TITLE_SIZE], why[DEA_WHY_SIZE];
   bool other = input->kind.value == DEA_CHANNEL_OTHER;
   size_t length = strlen(text->text), unit = strlen(input->unit.text);
-  if (strcmp(key, "per_volt") == 0 && ends_with(text->text, "/V") &&
-      !ends_with(input->unit.text, "/V")) {
+  if (strcmp(key, "per_volt") == 0 && dea_text_ends_with(text->text, "/V") &&
+      !dea_text_ends_with(input->unit.text, "/V")) {
     length -= 2; // 'per volt' said twice: '2.5 mm/V'
   }
   if (other && unit > 0 && length > unit &&

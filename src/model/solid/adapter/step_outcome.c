@@ -264,17 +264,16 @@ static dea_status refuse_thin(struct dea_context *ctx, struct dea_step_outcome *
                   1e-3 * e->limit.point.voltage_V, stretch, area, 1e-3 * voltage_V);
 }
 
-/* To a voltage, and what else the solid is to come to. *passed: past a limit point, at e->limit.
- * *area: of the film where it began. */
+/* To a voltage, and what else the solid is to come to. *passed: past a limit point, at e->limit. */
 static dea_status approach(struct dea_context *ctx, struct dea_step_outcome *e, double voltage_V,
                            struct dea_solid_report *report, struct dea_solid_stop *stop,
-                           bool *passed, double *area)
+                           bool *passed)
 {
   const struct dea_solid_watch watch = {see_point, see_change, was_taut, e};
   e->from_V = dea_solid_voltage(e->owner.solid);
   e->limited = e->grew = *passed = false;
   DEA_TRY(ctx, look_at_tension(ctx, e));
-  *area = e->area;
+  e->from_area = e->area;
   const bool taut = is_taut(e);
   dea_status status =
       dea_solid_solve_incremental(ctx, e->owner.solid, voltage_V, taut, &watch, report, stop);
@@ -300,13 +299,13 @@ static dea_status step(struct dea_context *ctx, struct dea_step_outcome *e, doub
   struct dea_solid_stop stop;
   struct dea_solid_saved_state from;
   bool passed = false;
-  double area = 1;
   dea_status status = dea_solid_save_state(ctx, e->owner.solid, &from);
-  status = status == DEA_OK ? approach(ctx, e, voltage_V, report, &stop, &passed, &area) : status;
+  status = status == DEA_OK ? approach(ctx, e, voltage_V, report, &stop, &passed) : status;
   if (dea_solid_may_shorten(status) || status == DEA_E_NO_EQUILIBRIUM) {
     status = stopped(ctx, e, voltage_V, &stop, status);
   } else if (status == DEA_OK && passed) {
-    const bool thin = e->owner.membrane && !is_taut(e) && e->area > branch_jump * fmax(area, 1);
+    const bool thin =
+        e->owner.membrane && !is_taut(e) && e->area > branch_jump * fmax(e->from_area, 1);
     status = thin ? refuse_thin(ctx, e, voltage_V, &from)
                   : dea_model_say_passed(ctx, "3d", e->from_V, voltage_V, &e->limit);
   }
@@ -319,11 +318,9 @@ dea_status dea_step_outcome_move(struct dea_context *ctx, struct dea_step_outcom
 {
   struct dea_solid_stop stop = {.load_factor = NAN};
   bool passed;
-  double area;
   e->has_passed = false;
   drop_limit(e);
-  dea_status status =
-      approach(ctx, e, dea_solid_voltage(e->owner.solid), report, &stop, &passed, &area);
+  dea_status status = approach(ctx, e, dea_solid_voltage(e->owner.solid), report, &stop, &passed);
   *share = passed || status == DEA_E_NO_EQUILIBRIUM ? stop.load_factor : NAN;
   return status;
 }

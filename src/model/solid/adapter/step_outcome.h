@@ -25,10 +25,10 @@ struct dea_step_outcome_owner {
 /* Zeroed at first but for the owner. */
 struct dea_step_outcome {
   struct dea_step_outcome_owner owner;
-  double from_V;           // where the last way began
-  struct dea_event limit;  // where the last way came to its end
-  bool limited;            // it is known
-  struct dea_event passed; // a limit point that the last way has gone past to another state
+  double from_V, from_area; // where the last way began, and the film's area there
+  struct dea_event limit;   // where the last way came to its end
+  bool limited;             // it is known
+  struct dea_event passed;  // a limit point that the last way has gone past to another state
   struct dea_solid_saved_state
       at_limit;                    // there, of `passed` where that is known; state NULL: none was
   bool has_passed;                 // it is known
