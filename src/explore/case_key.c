@@ -259,21 +259,6 @@ static dea_status prepare_model(struct dea_case_key *case_key)
 
 // What is asked -----------------------------------------------------------------------------------
 
-static dea_status find_model(struct dea_case_key *case_key)
-{
-  const struct dea_label *label = &case_key->file->model;
-  const char *names[16];
-  size_t count, n = 0;
-  const struct dea_model_type *const *all = dea_model_all(&count);
-  case_key->model.type = dea_model_find(label->text);
-  for (; n < count && n < 16; n++) {
-    names[n] = all[n]->name;
-  }
-  return case_key->model.type != NULL
-             ? DEA_OK
-             : dea_explore_unknown(case_key->ctx, label, "model", names, n);
-}
-
 static dea_status read_design(struct dea_case_key *case_key)
 {
   const struct dea_explore_file *file = case_key->file;
@@ -525,7 +510,8 @@ static dea_status resolve_file(struct dea_case_key *case_key)
 {
   struct dea_context *ctx = case_key->ctx;
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
-  DEA_TRY(ctx, find_model(case_key));
+  const struct dea_label *model = &case_key->file->model;
+  DEA_TRY(ctx, dea_model_seek(ctx, model->text, model->location, &case_key->model.type));
   DEA_TRY(ctx, read_design(case_key));
   DEA_TRY(ctx, take_quantities(case_key));
   DEA_TRY(ctx, dea_from_fit_take(ctx, case_key->design, case_key->device, case_key->file));

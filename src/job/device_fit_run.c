@@ -53,23 +53,12 @@ static double value_of(const struct dea_load_point *points, const struct dea_dev
 static dea_status find_model(struct work *w)
 {
   const struct dea_label *name = &w->fit->file->model;
-  w->model.type = dea_model_find(name->text);
-  if (w->model.type != NULL) {
-    w->fit->model = w->model.type->name;
-    return DEA_OK;
+  DEA_TRY(w->ctx, dea_model_seek(w->ctx, name->text, name->location, &w->model.type));
+  if (w->model.type == NULL) {
+    return dea_fail(w->ctx, DEA_E_DESIGN, "there is no model '%.60s'", name->text);
   }
-  const char *names[16];
-  size_t count, n = 0;
-  const struct dea_model_type *const *all = dea_model_all(&count);
-  for (; n < count && n < 16; n++) {
-    names[n] = all[n]->name;
-  }
-  const char *nearest = dea_nearest_name(name->text, names, n);
-  DEA_TRY(w->ctx,
-          dea_finding_add(w->ctx, DEA_ERROR, name->location, "there is no model '%.60s'%s%s%s",
-                          name->text, nearest != NULL ? "; did you mean '" : "",
-                          nearest != NULL ? nearest : "", nearest != NULL ? "'?" : ""));
-  return dea_fail(w->ctx, DEA_E_DESIGN, "there is no model '%.60s'", name->text);
+  w->fit->model = w->model.type->name;
+  return DEA_OK;
 }
 
 static dea_status read_design(struct work *w)

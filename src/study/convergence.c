@@ -405,18 +405,12 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->size != NULL;
-}
-
 const struct dea_study dea_study_convergence = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
     .ability = "mesh refinement",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, size),
     .run = run,
     .tables = tables,
     .figures = figures,

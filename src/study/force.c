@@ -639,12 +639,6 @@ static bool asked(const struct dea_design *design)
   return dea_force_stops(design) > 0;
 }
 
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->indent != NULL;
-}
-
 const struct dea_study dea_study_force = {
     .name = study_name,
     .keys = &section,
@@ -652,7 +646,7 @@ const struct dea_study dea_study_force = {
     .needs = "compute.force.depth or compute.force.preload",
     .own_models = true,
     .ability = "indentation by a tip",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, indent),
     .run_with = run,
     .tables = tables,
     .figures = figures,

@@ -582,12 +582,6 @@ static bool asked(const struct dea_design *design)
   return settings != NULL && settings->bias_count > 0;
 }
 
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->respond != NULL;
-}
-
 static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
                          const struct dea_device *device)
 {
@@ -606,7 +600,7 @@ const struct dea_study dea_study_frequency = {
     .needs = "compute.frequency.bias",
     .own_models = true,
     .ability = "vibrations",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, respond),
     .refuse = refuse,
     .run = run,
     .tables = tables,

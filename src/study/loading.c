@@ -793,12 +793,6 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->move != NULL;
-}
-
 const struct dea_study dea_study_loading = {
     .name = study_name,
     .keys = &section,
@@ -806,7 +800,7 @@ const struct dea_study dea_study_loading = {
     .needs = "compute.loading.from and to, or turn_, force_, pressure_, charge_from and to",
     .own_models = true,
     .ability = "bodies and pressures",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, move),
     .run = run,
     .figures = figures,
     .figure_count = COUNT(figures),

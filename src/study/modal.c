@@ -172,12 +172,6 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->modes != NULL;
-}
-
 static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
                          const struct dea_device *device)
 {
@@ -190,7 +184,7 @@ const struct dea_study dea_study_modal = {
     .keys = &section,
     .own_models = true,
     .ability = "vibrations",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, modes),
     .refuse = refuse,
     .run = run,
     .tables = tables,

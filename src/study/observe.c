@@ -275,7 +275,7 @@ static void changes(const struct dea_context *ctx, const struct dea_result *resu
     for (int c = DEA_LOAD_POINT_COLUMNS;
          c < dea_column_count(ctx) && strcmp(curve->kind, kind) == 0; c++) {
       for (size_t k = 0; k < 3; k++) {
-        if (is_shown(ctx, curve, c, keys[k])) {
+        if (keys[k] != NULL && is_shown(ctx, curve, c, keys[k])) {
           most[k] = fmax(most[k], dea_curve_change(curve, c));
         }
       }
@@ -283,135 +283,68 @@ static void changes(const struct dea_context *ctx, const struct dea_result *resu
   }
 }
 
-static dea_status show_displacement(struct dea_context *ctx, const struct dea_result *result,
-                                    const char *kind, struct dea_panel *panel)
+/* What a figure shows, by its name without "history_" of histories; label NULL: by what there is.
+ */
+static const struct shown {
+  const char *name, *label;
+  const char *quantities[3]; // endings of the columns' keys
+  const char *suffixes[3];   // behind the names
+  enum dea_series_style styles[3];
+} figures[] = {
+    {"monitors", NULL, {"x_m", "y_m", "z_m"}, {"", "", ""}, {DEA_LINE, DEA_LINE, DEA_LINE}},
+    {"monitors_stretch",
+     "Stretch from the flat film",
+     {"stretch", "stretch_x", "stretch_y"},
+     {"", ", along x", ", along y"},
+     {DEA_LINE, DEA_LINE, DEA_DASHED}},
+    {"monitors_turn",
+     "Turn (deg)",
+     {"turn_x_rad", "turn_y_rad", "turn_z_rad"},
+     {", about x", ", about y", ", about z"},
+     {DEA_LINE, DEA_DASHED, DEA_DOTTED}},
+    {"channels", "Charge (nC)", {"charge_C"}, {""}, {DEA_LINE}},
+    {"voltages", "Voltage {/:Italic V} (kV)", {"voltage_V"}, {""}, {DEA_LINE}},
+    {"currents", "Current {/:Italic I} (\302\265A)", {"current_A"}, {""}, {DEA_LINE}},
+};
+
+dea_status dea_observe_build(struct dea_context *ctx, const struct dea_result *result,
+                             struct dea_plot *plot)
 {
-  static const char *const keys[] = {"x_m", "y_m", "z_m"};
-  double most[3];
-  changes(ctx, result, kind, keys, most);
-  size_t component = 2; // z where nothing moves
-  for (size_t k = 0; k < 2; k++) {
-    component = most[k] > most[component] ? k : component;
+  static const char in_time[] = "history_";
+  struct dea_panel *panel = &plot->panels[0];
+  const bool of_time = strncmp(plot->name, in_time, strlen(in_time)) == 0;
+  const char *kind = of_time ? history : sweep,
+             *name = plot->name + (of_time ? strlen(in_time) : 0);
+  const struct shown *shown = figures;
+  while (strcmp(shown->name, name) != 0) {
+    shown++;
   }
+  const bool moves = shown->label == NULL, turns = strcmp(name, "monitors_turn") == 0;
+  double most[3];
   char label[DEA_LABEL_SIZE];
-  snprintf(label, sizeof label, "Displacement {/:Italic %c} (\302\265m)", "xyz"[component]);
-  const struct lines lines = {kind, keys[component], "", DEA_LINE};
-  DEA_TRY(ctx, add_lines(ctx, result, &lines, panel));
-  finish(kind, panel, label);
-  return DEA_OK;
-}
-
-static dea_status show_stretches(struct dea_context *ctx, const struct dea_result *result,
-                                 const char *kind, struct dea_panel *panel)
-{
-  const struct lines lines[] = {{kind, "stretch", "", DEA_LINE},
-                                {kind, "stretch_x", ", along x", DEA_LINE},
-                                {kind, "stretch_y", ", along y", DEA_DASHED}};
-  for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
-    DEA_TRY(ctx, add_lines(ctx, result, &lines[i], panel));
+  changes(ctx, result, kind, shown->quantities, most);
+  size_t axis = 2; // z where nothing moves
+  for (size_t k = 0; k < 2; k++) {
+    axis = most[k] > most[axis] ? k : axis;
   }
-  finish(kind, panel, "Stretch from the flat film");
-  return DEA_OK;
-}
-
-/* Turns about the axes that bodies turn about. */
-static dea_status show_turns(struct dea_context *ctx, const struct dea_result *result,
-                             const char *kind, struct dea_panel *panel)
-{
-  static const char *const keys[] = {"turn_x_rad", "turn_y_rad", "turn_z_rad"};
-  static const char *const about[] = {", about x", ", about y", ", about z"};
-  static const enum dea_series_style styles[] = {DEA_LINE, DEA_DASHED, DEA_DOTTED};
-  double most[3];
-  changes(ctx, result, kind, keys, most);
-  double top = fmax(most[0], fmax(most[1], most[2]));
-  for (size_t k = 0, drawn = 0; k < 3; k++) {
-    if (most[k] > fmax(least_turn, turn_share * top)) {
-      const struct lines lines = {kind, keys[k], about[k], styles[drawn++]};
+  const double least = fmax(least_turn, turn_share * fmax(most[0], fmax(most[1], most[2])));
+  for (size_t k = 0, drawn = 0; k < 3 && shown->quantities[k] != NULL; k++) {
+    if (moves ? k == axis : !turns || most[k] > least) {
+      const struct lines lines = {kind, shown->quantities[k], shown->suffixes[k],
+                                  shown->styles[turns ? drawn++ : k]};
       DEA_TRY(ctx, add_lines(ctx, result, &lines, panel));
     }
   }
-  finish(kind, panel, "Turn (deg)");
+  snprintf(label, sizeof label, "Displacement {/:Italic %c} (\302\265m)", "xyz"[axis]);
+  finish(kind, panel, moves ? label : shown->label);
   return DEA_OK;
-}
-
-/* A quantity of the channels. */
-static dea_status show_channels(struct dea_context *ctx, const struct dea_result *result,
-                                const char *kind, const char *quantity, const char *label,
-                                struct dea_panel *panel)
-{
-  const struct lines lines = {kind, quantity, "", DEA_LINE};
-  DEA_TRY(ctx, add_lines(ctx, result, &lines, panel));
-  finish(kind, panel, label);
-  return DEA_OK;
-}
-
-static dea_status build_displacement(struct dea_context *ctx, const struct dea_result *result,
-                                     struct dea_plot *plot)
-{
-  return show_displacement(ctx, result, sweep, &plot->panels[0]);
-}
-
-static dea_status build_stretches(struct dea_context *ctx, const struct dea_result *result,
-                                  struct dea_plot *plot)
-{
-  return show_stretches(ctx, result, sweep, &plot->panels[0]);
-}
-
-static dea_status build_turns(struct dea_context *ctx, const struct dea_result *result,
-                              struct dea_plot *plot)
-{
-  return show_turns(ctx, result, sweep, &plot->panels[0]);
-}
-
-static dea_status build_charges(struct dea_context *ctx, const struct dea_result *result,
-                                struct dea_plot *plot)
-{
-  return show_channels(ctx, result, sweep, "charge_C", "Charge (nC)", &plot->panels[0]);
 }
 
 const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES] = {
-    DEA_STUDY_FIGURE("monitors", "sweep", build_displacement,
+    DEA_STUDY_FIGURE("monitors", "sweep", dea_observe_build,
                      "displacement of the monitors, along the axis that they move along most"),
-    DEA_STUDY_FIGURE("monitors_stretch", "sweep", build_stretches,
+    DEA_STUDY_FIGURE("monitors_stretch", "sweep", dea_observe_build,
                      "stretch between the points of lines, and mean stretch of regions"),
-    DEA_STUDY_FIGURE("monitors_turn", "sweep", build_turns, "turns of rigid bodies"),
-    DEA_STUDY_FIGURE("channels", "sweep", build_charges, "charge on the channels"),
+    DEA_STUDY_FIGURE("monitors_turn", "sweep", dea_observe_build, "turns of rigid bodies"),
+    DEA_STUDY_FIGURE("channels", "sweep", dea_observe_build, "charge on the channels"),
 };
-
-dea_status dea_observe_displacement_in_time(struct dea_context *ctx,
-                                            const struct dea_result *result, struct dea_plot *plot)
-{
-  return show_displacement(ctx, result, history, &plot->panels[0]);
-}
-
-dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                         struct dea_plot *plot)
-{
-  return show_stretches(ctx, result, history, &plot->panels[0]);
-}
-
-dea_status dea_observe_turns_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                     struct dea_plot *plot)
-{
-  return show_turns(ctx, result, history, &plot->panels[0]);
-}
-
-dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                       struct dea_plot *plot)
-{
-  return show_channels(ctx, result, history, "charge_C", "Charge (nC)", &plot->panels[0]);
-}
-
-dea_status dea_observe_voltages_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                        struct dea_plot *plot)
-{
-  return show_channels(ctx, result, history, "voltage_V", "Voltage {/:Italic V} (kV)",
-                       &plot->panels[0]);
-}
-
-dea_status dea_observe_currents_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                        struct dea_plot *plot)
-{
-  return show_channels(ctx, result, history, "current_A", "Current {/:Italic I} (\302\265A)",
-                       &plot->panels[0]);
-}

@@ -35,18 +35,10 @@ dea_status dea_study_observe_passes(struct dea_context *ctx, const struct dea_mo
 dea_status dea_study_sources(struct dea_context *ctx, const struct dea_monitor_set *set,
                              const struct dea_curve *curve, struct dea_result *result);
 
-/* Figures of these columns, for the study sweep; and what builds those of histories. */
+/* Figures of these columns, for the study sweep; and what builds them and those of histories, whose
+ * names begin with "history_": monitors, monitors_stretch, monitors_turn, channels, voltages,
+ * currents. */
 enum { DEA_OBSERVE_FIGURES = 4 };
 extern const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES];
-dea_status dea_observe_displacement_in_time(struct dea_context *ctx,
-                                            const struct dea_result *result, struct dea_plot *plot);
-dea_status dea_observe_stretches_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                         struct dea_plot *plot);
-dea_status dea_observe_turns_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                     struct dea_plot *plot);
-dea_status dea_observe_voltages_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                        struct dea_plot *plot);
-dea_status dea_observe_currents_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                        struct dea_plot *plot);
-dea_status dea_observe_charges_in_time(struct dea_context *ctx, const struct dea_result *result,
-                                       struct dea_plot *plot);
+dea_status dea_observe_build(struct dea_context *ctx, const struct dea_result *result,
+                             struct dea_plot *plot);

@@ -1220,18 +1220,12 @@ static const struct dea_figure figures[] = {
 
 // The study --------------------------------------------------------------------------------------
 
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->push != NULL;
-}
-
 const struct dea_study dea_study_states = {
     .name = study_name,
     .keys = &section,
     .own_models = true,
     .ability = "several states at a voltage",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, push),
     .run = run,
     .figures = figures,
     .figure_count = COUNT(figures),

@@ -83,11 +83,13 @@ static dea_status unknown_name(struct dea_context *ctx, const char *name)
   return status;
 }
 
-/* Whether a model knows what the study needs of it. */
-static bool is_known_to(const struct dea_study *study, const struct dea_model_type *type,
+bool dea_study_known_to(const struct dea_study *study, const struct dea_model_type *type,
                         const struct dea_result *result)
 {
-  return study->able == NULL || study->able(type, result);
+  void (*function)(void) = NULL;
+  memcpy(&function, (const char *)type + study->able_by, sizeof function);
+  return (study->able_by == 0 || function != NULL) &&
+         (study->able == NULL || study->able(type, result));
 }
 
 /* A note, but not of a study that all designs ask for. */
@@ -115,7 +117,7 @@ static void add_known_to_none(const struct dea_study *study,
   }
   dea_text_add(out, ", which %s not support %s", type_count > 1 ? "do" : "does", study->ability);
   for (size_t i = 0, able = 0; i < count; i++) {
-    if (is_known_to(study, all[i], result)) {
+    if (dea_study_known_to(study, all[i], result)) {
       dea_text_add(out, "%s%s", able++ > 0 ? ", " : "; there is one of ", all[i]->name);
     }
   }
@@ -127,7 +129,7 @@ static bool is_known_to_some(const struct dea_study *study,
                              const struct dea_result *result)
 {
   for (size_t i = 0; i < type_count; i++) {
-    if (is_known_to(study, types[i], result)) {
+    if (dea_study_known_to(study, types[i], result)) {
       return true;
     }
   }
@@ -275,7 +277,7 @@ dea_status dea_study_run_with(struct dea_context *ctx, const struct dea_model_ty
     if (!is_wanted(studies[i], names, name_count, result->design)) {
       continue;
     }
-    if (!is_known_to(studies[i], type, result)) {
+    if (!dea_study_known_to(studies[i], type, result)) {
       take(ctx, say_unknown(ctx, studies[i], type->name, names != NULL), &first);
       continue;
     }

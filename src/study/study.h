@@ -25,9 +25,11 @@ struct dea_study {
   const char *needs; // keys of the design without which it cannot run; NULL: none
   bool by_name_only; // no design asks for it
   bool own_models;   // makes its own: `run` gets none
-  /* What a model has to know for it ("vibrations"), and whether one does of the result's device;
-   * both NULL: all do. `run` is not called with one that does not. */
+  /* What a model has to know for it ("vibrations"): by a function of its type, where that stands
+   * in struct dea_model_type, 0: none; and whether it does of the result's device, NULL: it does.
+   * `run` is not called with one that does not. */
   const char *ability;
+  size_t able_by;
   bool (*able)(const struct dea_model_type *type, const struct dea_result *result);
   /* What a design has that models that are able do not take with it: a finding at its place, and
    * DEA_E_DESIGN. NULL: nothing. */
@@ -116,5 +118,8 @@ dea_status dea_study_stop_by_stop(
     dea_status (*take)(struct dea_context *ctx, const struct dea_model_type *type,
                        struct dea_model *model, const struct dea_load_point *at, size_t stop,
                        struct dea_result *result, struct dea_curve *curve));
+/* Whether a model knows what the study needs of it. */
+bool dea_study_known_to(const struct dea_study *study, const struct dea_model_type *type,
+                        const struct dea_result *result);
 /* All studies in their order; static storage. */
 const struct dea_study *const *dea_study_all(size_t *count);

@@ -880,27 +880,21 @@ static const struct dea_figure figures[] = {
     DEA_STUDY_FIGURE("history_current", study_name, build_current,
                      "current of the supply against time"),
     DEA_STUDY_FIGURE(
-        "history_monitors", study_name, dea_observe_displacement_in_time,
+        "history_monitors", study_name, dea_observe_build,
         "displacement of the monitors against time, along the axis that they move along most"),
-    DEA_STUDY_FIGURE("history_monitors_stretch", study_name, dea_observe_stretches_in_time,
+    DEA_STUDY_FIGURE("history_monitors_stretch", study_name, dea_observe_build,
                      "stretch of lines and regions against time"),
-    DEA_STUDY_FIGURE("history_monitors_turn", study_name, dea_observe_turns_in_time,
+    DEA_STUDY_FIGURE("history_monitors_turn", study_name, dea_observe_build,
                      "turns of rigid bodies against time"),
-    DEA_STUDY_FIGURE("history_voltages", study_name, dea_observe_voltages_in_time,
+    DEA_STUDY_FIGURE("history_voltages", study_name, dea_observe_build,
                      "voltages of the channels against time"),
-    DEA_STUDY_FIGURE("history_currents", study_name, dea_observe_currents_in_time,
+    DEA_STUDY_FIGURE("history_currents", study_name, dea_observe_build,
                      "currents of the channels' sources against time, means of the steps"),
-    DEA_STUDY_FIGURE("history_channels", study_name, dea_observe_charges_in_time,
+    DEA_STUDY_FIGURE("history_channels", study_name, dea_observe_build,
                      "charge on the channels against time"),
 };
 
 // The study --------------------------------------------------------------------------------------
-
-static bool able(const struct dea_model_type *type, const struct dea_result *result)
-{
-  (void)result;
-  return type->advance != NULL;
-}
 
 /* The film of a disc alone, as a model may take a fibre for rigid. */
 static dea_status refuse(struct dea_context *ctx, const struct dea_design *design,
@@ -919,7 +913,7 @@ const struct dea_study dea_study_transient = {
     .needs = "drive.waveform or channels[].waveform",
     .own_models = true,
     .ability = "transients",
-    .able = able,
+    .able_by = offsetof(struct dea_model_type, advance),
     .refuse = refuse,
     .run = run,
     .tables = tables,

@@ -58,7 +58,7 @@ TEST(test_curves)
 {
   static const char free_one[] = "{name: film.thickness}";
   command_write("sweep.csv", curve);
-  expect("lumpet", free_one, one, 3, "there is no model 'lumpet'; did you mean 'lumped'?");
+  expect("lumpet", free_one, one, 3, "reduced; did you mean 'lumped'?");
   expect("lumped", free_one, "name: s, file: none.csv", 5, "none.csv");
   expect("lumped", free_one, "name: s, file: sweep.csv", 3,
          "several quantities can only be weighed");

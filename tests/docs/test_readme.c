@@ -54,7 +54,7 @@ static void list_models(const struct dea_study *study, const struct built *b, ch
   out[0] = '\0';
   for (size_t i = 0; i < count; i++) {
     const bool takes = b->device->disc || types[i]->any_layout;
-    if (takes && (study->able == NULL || study->able(types[i], b->result))) {
+    if (takes && (dea_study_known_to(study, types[i], b->result))) {
       snprintf(out + strlen(out), 80 - strlen(out), "%s`%s`", out[0] != '\0' ? ", " : "",
                types[i]->name);
     }
