@@ -156,8 +156,7 @@ static dea_status read_folder(struct dea_context *ctx, const char *path, struct 
   DEA_TRY(ctx,
           read_rows(ctx, path, "profiles.csv", profile_columns, PROFILE_COLUMNS, &m->profile_rows));
   DEA_TRY(ctx, part_profiles(ctx, m));
-  DEA_TRY(ctx, read_history(ctx, path, m));
-  return DEA_OK;
+  return read_history(ctx, path, m);
 }
 
 dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct dea_measured **out)

@@ -276,8 +276,7 @@ static dea_status read_design(struct dea_case_key *case_key)
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_design_read_memory(ctx, case_key->path, case_key->bytes, case_key->length, NULL,
                                       0, &case_key->design));
-  DEA_TRY(ctx, dea_device_build(ctx, case_key->design, &case_key->device));
-  return DEA_OK;
+  return dea_device_build(ctx, case_key->design, &case_key->device);
 }
 
 static dea_status take_quantities(struct dea_case_key *case_key)

@@ -192,9 +192,8 @@ const struct dea_record dea_explore_record = {
 dea_status dea_explore_correlations_check(struct dea_context *ctx,
                                           const struct dea_explore_file *file)
 {
-  DEA_TRY(ctx, dea_correlations_check(ctx, file->correlations, file->correlation_count,
-                                      file->variable_count, "variable"));
-  return DEA_OK;
+  return dea_correlations_check(ctx, file->correlations, file->correlation_count,
+                                file->variable_count, "variable");
 }
 
 static dea_status check(struct dea_context *ctx, const void *user)

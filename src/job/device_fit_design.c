@@ -217,8 +217,7 @@ static dea_status put_key(struct dea_context *ctx, struct dea_yaml *document, co
 {
   char path[DEA_NUMBER_KEY_SIZE];
   snprintf(path, sizeof path, "%.90s.%.20s", prefix, key);
-  DEA_TRY(ctx, dea_yaml_override(ctx, document, path, value));
-  return DEA_OK;
+  return dea_yaml_override(ctx, document, path, value);
 }
 
 /* Has a part take a material from `materials`. */
@@ -236,8 +235,7 @@ static dea_status put_material(struct dea_context *ctx, const struct dea_device 
     DEA_TRY(ctx, put_key(ctx, document, prefix, gone[k], "null"));
   }
   const bool viscous = changed->with.branch_count > 0;
-  DEA_TRY(ctx, put_key(ctx, document, prefix, "viscosity", viscous ? "null" : "none"));
-  return DEA_OK;
+  return put_key(ctx, document, prefix, "viscosity", viscous ? "null" : "none");
 }
 
 /* Puts the values of keys into the document, and has parts take their materials from `materials`

@@ -28,8 +28,7 @@ static dea_status keep_state(struct dea_device_model *model, struct dea_model *m
   struct dea_state now = {0}, *kept = &model->states[stop];
   DEA_TRY(ctx, dea_model_save(ctx, model->type, m, &now));
   dea_state_free_values(ctx, kept);
-  DEA_TRY(ctx, dea_state_copy_values(ctx, &now, kept));
-  return DEA_OK;
+  return dea_state_copy_values(ctx, &now, kept);
 }
 
 static void drop_state(struct dea_device_model *model, struct dea_state *state)

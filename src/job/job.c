@@ -67,8 +67,7 @@ static dea_status open_folder(struct dea_context *ctx, struct dea_job *job,
   if (job->force) {
     dea_run_folder_clear(ctx, working_folder(job));
   }
-  DEA_TRY(ctx, dea_checkpoint_create(ctx, working_folder(job), &job->keep));
-  return DEA_OK;
+  return dea_checkpoint_create(ctx, working_folder(job), &job->keep);
 }
 
 /* Where a design names a model; its file: who runs it has. */
@@ -91,8 +90,7 @@ static dea_status check_model(struct dea_context *ctx, const struct dea_model_ty
     dea_context_clear(ctx);
     return dea_refuse(ctx, place_of(result->design, type->name), why);
   }
-  DEA_TRY(ctx, dea_model_check(ctx, type, result->design, result->device));
-  return DEA_OK;
+  return dea_model_check(ctx, type, result->design, result->device);
 }
 
 /* Whether each model takes the design, or some model, where what the others lack is said by their

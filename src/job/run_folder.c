@@ -109,8 +109,7 @@ static dea_status move_all(struct dea_context *ctx, const char *from, const char
 dea_status dea_run_folder_replace(struct dea_context *ctx, const char *directory, const char *by)
 {
   dea_run_folder_clear(ctx, directory);
-  DEA_TRY(ctx, move_all(ctx, by, directory));
-  return DEA_OK;
+  return move_all(ctx, by, directory);
 }
 
 static void forget_figures(struct dea_context *ctx, const char *directory)

@@ -150,8 +150,7 @@ dea_status dea_result_get_table(struct dea_context *ctx, struct dea_result *resu
       return DEA_OK;
     }
   }
-  DEA_TRY(ctx, dea_result_add_table(ctx, result, type, model, 0, out));
-  return DEA_OK;
+  return dea_result_add_table(ctx, result, type, model, 0, out);
 }
 
 dea_status dea_result_take_table(struct dea_context *ctx, struct dea_result *result,

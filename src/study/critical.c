@@ -433,11 +433,10 @@ dea_status dea_critical_find(struct dea_context *ctx, const struct dea_critical_
   *out = (struct dea_critical){
       .ask = *ask, .voltage_V = NAN, .point = dea_load_point_empty(), .model = NULL};
   DEA_TRY(ctx, make_model(&s));
-  DEA_TRY(ctx, ask->kind == DEA_EVENT_BUCKLING  ? find_buckling(&s)
-               : ask->kind != DEA_EVENT_PULL_IN ? find_crossing(&s)
-               : ask->type->path != NULL        ? find_on_path(&s)
-                                                : find_end(&s));
-  return DEA_OK;
+  return ask->kind == DEA_EVENT_BUCKLING  ? find_buckling(&s)
+         : ask->kind != DEA_EVENT_PULL_IN ? find_crossing(&s)
+         : ask->type->path != NULL        ? find_on_path(&s)
+                                          : find_end(&s);
 }
 
 void dea_critical_end(struct dea_context *ctx, struct dea_critical *critical)

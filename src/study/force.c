@@ -228,8 +228,7 @@ static dea_status press_in(struct dea_context *ctx, struct press *p, size_t stop
 {
   DEA_TRY(ctx, ready(ctx, p, stop));
   DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, p->result->design, stop));
-  DEA_TRY(ctx, keep_pressed(ctx, p, stop));
-  return DEA_OK;
+  return keep_pressed(ctx, p, stop);
 }
 
 /* All voltages from where the tip is pressed in. */
@@ -243,8 +242,7 @@ static dea_status take_line(struct dea_context *ctx, struct press *p, struct dea
                                       .voltages_V = design->compute.voltages_V,
                                       .count = design->compute.voltage_count,
                                       .tolerance = tolerance_of(design)};
-  DEA_TRY(ctx, dea_force_line_take(ctx, &line, curve));
-  return DEA_OK;
+  return dea_force_line_take(ctx, &line, curve);
 }
 
 /* The same in another process, which hands back its points. */
@@ -386,8 +384,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   if (press.model != NULL) {
     type->destroy(ctx, press.model);
   }
-  DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
-  return DEA_OK;
+  return dea_curve_end(ctx, curve, status);
 }
 
 // Figures ----------------------------------------------------------------------------------------

@@ -73,8 +73,7 @@ static dea_status keep_taut(struct way *way, size_t k)
   way->top = k;
   dea_state_free_values(way->ctx, &way->taut);
   DEA_TRY(way->ctx, dea_model_save(way->ctx, way->asked->type, way->asked->model, &now));
-  DEA_TRY(way->ctx, dea_state_copy_values(way->ctx, &now, &way->taut));
-  return DEA_OK;
+  return dea_state_copy_values(way->ctx, &now, &way->taut);
 }
 
 /* Whether tension would end before a voltage by its last two points, the first `before`, as it goes

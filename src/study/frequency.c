@@ -154,9 +154,8 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   for (size_t i = 0; i < settings->bias_count; i++) {
     biases_V[i] = settings->biases_V[i].si;
   }
-  DEA_TRY(ctx, dea_study_stop_by_stop(ctx, type, result, study_name, true, biases_V,
-                                      settings->bias_count, take));
-  return DEA_OK;
+  return dea_study_stop_by_stop(ctx, type, result, study_name, true, biases_V, settings->bias_count,
+                                take);
 }
 
 // Figures ----------------------------------------------------------------------------------------

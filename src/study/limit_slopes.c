@@ -108,8 +108,7 @@ static dea_status put(struct dea_context *ctx, const char *model, const struct f
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &matter_table, model, &table));
   DEA_TRY(ctx, put_matter(ctx, f, table));
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
-  DEA_TRY(ctx, put_slopes(ctx, f, table));
-  return DEA_OK;
+  return put_slopes(ctx, f, table);
 }
 
 /* Whether a curve has gone over to another state, as a film does that buckles. */

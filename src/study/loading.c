@@ -618,8 +618,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   l.total = count * ((size_t)settings->steps.si * (settings->back.value == 1 ? 2 : 1) + 1);
   DEA_TRY(ctx, add_tables(ctx, &l));
   dea_status status = follow_all(ctx, &l, voltages_V, count);
-  DEA_TRY(ctx, dea_curve_end(ctx, &result->curves[l.curve], status));
-  return DEA_OK;
+  return dea_curve_end(ctx, &result->curves[l.curve], status);
 }
 
 // Figure -----------------------------------------------------------------------------------------

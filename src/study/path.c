@@ -18,8 +18,7 @@ static dea_status take_point(void *user, const struct dea_load_point *point)
   struct dea_load_point with = *point;
   DEA_TRY(target->ctx, dea_monitor_set_read(target->ctx, &target->set, target->type, target->model,
                                             false, &with));
-  DEA_TRY(target->ctx, dea_curve_add_point(target->ctx, target->curve, &with));
-  return DEA_OK;
+  return dea_curve_add_point(target->ctx, target->curve, &with);
 }
 
 static dea_status take_event(void *user, const struct dea_event *event)

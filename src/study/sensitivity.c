@@ -282,8 +282,7 @@ static dea_status put_matter(struct dea_context *ctx, const struct stop *stop, s
   row[n++].text = tolerated.tolerance;
   row[n++].text = tolerated.change;
   row[n++].text = flags_of(stop, flags);
-  DEA_TRY(ctx, dea_result_table_add_row(ctx, table, row));
-  return DEA_OK;
+  return dea_result_table_add_row(ctx, table, row);
 }
 
 /* Numbers by how much they matter to a quantity, most first, and last those that only the frequency
@@ -485,8 +484,7 @@ static dea_status find_stop(struct dea_context *ctx, const struct dea_model_type
   }
   DEA_TRY(ctx, find_monitors(ctx, type, model, result->device, stop));
   stop->width = stop->seen + (stop->mode_count > 1 ? stop->mode_count - 1 : 0);
-  DEA_TRY(ctx, find_slopes(ctx, type, model, result, stop));
-  return DEA_OK;
+  return find_slopes(ctx, type, model, result, stop);
 }
 
 /* Its rows of both tables. Those of what has monitors, or is no disc, are sorted by what each
@@ -502,8 +500,7 @@ static dea_status put_stop(struct dea_context *ctx, const char *model, const str
     DEA_TRY(ctx, put_sorted(ctx, stop, k, table));
   }
   DEA_TRY(ctx, dea_result_get_table(ctx, result, &slope_table, model, &table));
-  DEA_TRY(ctx, put_slopes(ctx, stop, table));
-  return DEA_OK;
+  return put_slopes(ctx, stop, table);
 }
 
 /* What matters where the model is. tip: that it is pressed by, NULL: none. stretch: that is held in
@@ -539,8 +536,7 @@ static dea_status take(struct dea_context *ctx, const struct dea_model_type *typ
 {
   (void)number;
   DEA_TRY(ctx, dea_curve_add_point(ctx, curve, at));
-  DEA_TRY(ctx, look(ctx, type, model, at, NULL, NULL, 0, result));
-  return DEA_OK;
+  return look(ctx, type, model, at, NULL, NULL, 0, result);
 }
 
 /* A stop of study force: pressed at 0 V, then all voltages. */
@@ -625,8 +621,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   for (size_t i = 0; i < settings->stretch_count; i++) {
     DEA_TRY(ctx, follow(ctx, type, result, settings->stretches[i].si));
   }
-  DEA_TRY(ctx, dea_limit_slopes_add(ctx, type, result));
-  return DEA_OK;
+  return dea_limit_slopes_add(ctx, type, result);
 }
 
 // The study --------------------------------------------------------------------------------------

@@ -217,8 +217,7 @@ static dea_status keep_model(struct search *s, struct dea_state *kept)
 {
   struct dea_state now = {0};
   DEA_TRY(s->ctx, dea_model_save(s->ctx, s->type, s->model, &now));
-  DEA_TRY(s->ctx, dea_state_copy_values(s->ctx, &now, kept));
-  return DEA_OK;
+  return dea_state_copy_values(s->ctx, &now, kept);
 }
 
 static dea_status make_room(struct search *s)
@@ -323,8 +322,7 @@ static dea_status lead(struct search *s, size_t from, int way)
     DEA_TRY(s->ctx, add_state(s, level, &point, note, &to));
   }
   s->states[from].leads[way] = to;
-  DEA_TRY(s->ctx, forgive(s->ctx, status));
-  return DEA_OK;
+  return forgive(s->ctx, status);
 }
 
 /* From a state by one push. */
@@ -341,8 +339,7 @@ static dea_status push(struct search *s, size_t from, const struct dea_push *way
   if (status == DEA_OK && found) {
     DEA_TRY(s->ctx, add_state(s, s->states[from].level, &point, note, &to));
   }
-  DEA_TRY(s->ctx, forgive(s->ctx, status));
-  return DEA_OK;
+  return forgive(s->ctx, status);
 }
 
 /* From a state along a mode to either side, with growing pushes; in all of it or in one part. */
@@ -483,8 +480,7 @@ static dea_status keep_transferred(struct search *s, struct finer *mesh, size_t 
   one->point = *point;
   one->is = (int)i;
   DEA_TRY(s->ctx, take_film(&on_mesh, &one->u, &one->point_count));
-  DEA_TRY(s->ctx, keep_model(&on_mesh, &one->saved));
-  return DEA_OK;
+  return keep_model(&on_mesh, &one->saved);
 }
 
 /* The i-th state from a model of the mesh before, which has its state there. */
@@ -498,8 +494,7 @@ static dea_status transfer_one(struct search *s, struct dea_model *from,
   if (status == DEA_OK && found) {
     DEA_TRY(s->ctx, keep_transferred(s, mesh, i, &point));
   }
-  DEA_TRY(s->ctx, forgive(s->ctx, status));
-  return DEA_OK;
+  return forgive(s->ctx, status);
 }
 
 /* A state that was lost, along its branch from the level above or below, on this mesh. */

@@ -87,6 +87,5 @@ dea_status dea_study_stop_by_stop(
   if (model != NULL) {
     type->destroy(ctx, model);
   }
-  DEA_TRY(ctx, dea_curve_end(ctx, curve, status));
-  return DEA_OK;
+  return dea_curve_end(ctx, curve, status);
 }

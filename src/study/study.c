@@ -165,8 +165,7 @@ dea_status dea_study_check_models(struct dea_context *ctx,
       return status;
     }
   }
-  DEA_TRY(ctx, refuse(ctx, types, type_count, names, name_count, result));
-  return DEA_OK;
+  return refuse(ctx, types, type_count, names, name_count, result);
 }
 
 /* What of a design asks for a study: its section, or what else does without one. */

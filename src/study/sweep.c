@@ -32,8 +32,7 @@ static dea_status add_profile(struct dea_context *ctx, const struct dea_model_ty
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_profile(ctx, type, model, &profile));
-  DEA_TRY(ctx, dea_result_add_profile(ctx, result, type->name, voltage_V, &profile));
-  return DEA_OK;
+  return dea_result_add_profile(ctx, result, type->name, voltage_V, &profile);
 }
 
 static dea_status add_surface(struct dea_context *ctx, const struct dea_model_type *type,
@@ -46,9 +45,7 @@ static dea_status add_surface(struct dea_context *ctx, const struct dea_model_ty
     return DEA_OK;
   }
   DEA_TRY(ctx, dea_model_fields(ctx, type, model, DEA_FIELDS_SURFACE, &mesh));
-  DEA_TRY(ctx, dea_result_add_surface(ctx, result, type->name, last, curve->points[last].voltage_V,
-                                      mesh));
-  return DEA_OK;
+  return dea_result_add_surface(ctx, result, type->name, last, curve->points[last].voltage_V, mesh);
 }
 
 // Checkpoints ------------------------------------------------------------------------------------
@@ -236,8 +233,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     DEA_TRY(ctx, add_limit(ctx, type, model, curve));
     status = dea_curve_end(ctx, curve, say_slack_pull_in(ctx, curve, status));
   }
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return status;
 }
 
 const struct dea_study dea_study_sweep = {.name = "sweep",

@@ -229,9 +229,7 @@ static dea_status add_fields(struct dea_context *ctx, struct player *p)
   struct dea_field_mesh *mesh;
   snprintf(name, sizeof name, "%.50s_%s", p->type->name, study_name);
   DEA_TRY(ctx, dea_model_fields(ctx, p->type, p->model, DEA_FIELDS_SURFACE, &mesh));
-  DEA_TRY(ctx, dea_result_add_surface(ctx, p->result, name, last, p->curve->points[last].voltage_V,
-                                      mesh));
-  return DEA_OK;
+  return dea_result_add_surface(ctx, p->result, name, last, p->curve->points[last].voltage_V, mesh);
 }
 
 /* Takes a point to the curve if it is needed there; corner: in any case. */
@@ -513,8 +511,7 @@ static dea_status indent(struct dea_context *ctx, const struct dea_design *desig
         "model %s does not support tips: compute.transient.indent is without effect there",
         p->type->name);
   }
-  DEA_TRY(ctx, dea_force_indent(ctx, p->type, p->model, design, 0));
-  return DEA_OK;
+  return dea_force_indent(ctx, p->type, p->model, design, 0);
 }
 
 /* From the film at rest at 0 V. */
@@ -580,8 +577,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
     type->destroy(ctx, p.model);
   }
   free_sources(ctx, &p);
-  DEA_TRY(ctx, dea_curve_end(ctx, p.curve, status));
-  return DEA_OK;
+  return dea_curve_end(ctx, p.curve, status);
 }
 
 // Tables -----------------------------------------------------------------------------------------

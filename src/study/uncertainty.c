@@ -94,9 +94,8 @@ static dea_status check(struct dea_context *ctx, const struct dea_design *design
   const size_t n = settings->parameter_count;
   DEA_TRY(ctx, dea_fit_names_check(ctx, settings->parameters, n, sizeof settings->parameters[0],
                                    "parameter"));
-  DEA_TRY(ctx, dea_correlations_check(ctx, settings->correlations, settings->correlation_count, n,
-                                      "parameter"));
-  return DEA_OK;
+  return dea_correlations_check(ctx, settings->correlations, settings->correlation_count, n,
+                                "parameter");
 }
 
 static const struct dea_design_section section = {
@@ -518,8 +517,7 @@ static dea_status add_table(struct work *w)
     DEA_TRY(w->ctx, add_effects(w, sweep, columns[k], table));
   }
   force = force != NULL ? force : dea_result_find(w->result, w->type->name, "loading");
-  DEA_TRY(w->ctx, add_effects(w, force, dea_point_column_find("force_N"), table));
-  return DEA_OK;
+  return add_effects(w, force, dea_point_column_find("force_N"), table);
 }
 
 // The study ---------------------------------------------------------------------------------------
@@ -570,8 +568,7 @@ dea_status dea_uncertainty_check(struct dea_context *ctx, const struct dea_desig
   *w = (struct work){.ctx = ctx, .rerun = rerun, .result = &nothing};
   dea_status status = find_params(w, given->values);
   dea_free(ctx, w);
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return status;
 }
 
 static dea_status run(struct dea_context *ctx, const struct dea_model_type *type,
@@ -592,8 +589,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   }
   dea_text_free(&w->text);
   dea_free(ctx, w);
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return status;
 }
 
 bool dea_uncertainty_written(const struct dea_design *design)

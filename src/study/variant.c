@@ -54,8 +54,7 @@ dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type 
     type->destroy(ctx, model);
   }
   variant->wall_s = now_s() - start_s;
-  DEA_TRY(ctx, dea_curve_end(ctx, &variant->curve, status));
-  return DEA_OK;
+  return dea_curve_end(ctx, &variant->curve, status);
 }
 
 /* The last profile of a model in the result; NULL when it has none. */
