@@ -220,16 +220,4 @@ static dea_status check(struct dea_context *ctx, const void *user)
   return dea_explore_correlations_check(ctx, file);
 }
 
-dea_status dea_explore_file_read(struct dea_context *ctx, const char *file,
-                                 struct dea_explore_file **out)
-{
-  void *read;
-  dea_status status = dea_fit_head_read(ctx, file, &dea_explore_record, sizeof **out, check, &read);
-  *out = read;
-  return status;
-}
-
-void dea_explore_file_destroy(struct dea_context *ctx, struct dea_explore_file *file)
-{
-  dea_fit_head_destroy(ctx, file);
-}
+DEA_FIT_FILE(explore_file, dea_explore_record, check)

@@ -40,24 +40,4 @@ const struct dea_record dea_breakdown_file_record = {
     "fit file", "breakdown tests of a film, for Weibull's law of them", fields,
     sizeof fields / sizeof fields[0]};
 
-static dea_status check(struct dea_context *ctx, const void *file)
-{
-  (void)ctx;
-  (void)file; // the table says it all
-  return DEA_OK;
-}
-
-dea_status dea_breakdown_file_read(struct dea_context *ctx, const char *file,
-                                   struct dea_breakdown_file **out)
-{
-  void *fit;
-  dea_status status =
-      dea_fit_head_read(ctx, file, &dea_breakdown_file_record, sizeof **out, check, &fit);
-  *out = fit;
-  return status;
-}
-
-void dea_breakdown_file_destroy(struct dea_context *ctx, struct dea_breakdown_file *fit)
-{
-  dea_fit_head_destroy(ctx, fit);
-}
+DEA_FIT_FILE(breakdown_file, dea_breakdown_file_record, NULL)

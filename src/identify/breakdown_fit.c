@@ -214,18 +214,7 @@ static dea_status run(void *made, const void *file)
   return dea_refuse_argument(ctx, fit->file->tests.location, status);
 }
 
-dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_breakdown_file *file,
-                                 struct dea_breakdown_fit **out)
-{
-  dea_status status;
-  *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);
-  return status;
-}
-
-void dea_breakdown_fit_destroy(struct dea_context *ctx, struct dea_breakdown_fit *fit)
-{
-  dea_fit_frame_destroy(ctx, fit);
-}
+DEA_FIT_FRAME(breakdown, run)
 
 double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double share,
                                   double *log_std)

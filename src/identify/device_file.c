@@ -88,17 +88,4 @@ static dea_status check(struct dea_context *ctx, const void *file)
                              "parameter");
 }
 
-dea_status dea_device_file_read(struct dea_context *ctx, const char *file,
-                                struct dea_device_file **out)
-{
-  void *fit;
-  dea_status status =
-      dea_fit_head_read(ctx, file, &dea_device_file_record, sizeof **out, check, &fit);
-  *out = fit;
-  return status;
-}
-
-void dea_device_file_destroy(struct dea_context *ctx, struct dea_device_file *fit)
-{
-  dea_fit_head_destroy(ctx, fit);
-}
+DEA_FIT_FILE(device_file, dea_device_file_record, check)

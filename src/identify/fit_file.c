@@ -189,15 +189,4 @@ static dea_status check(struct dea_context *ctx, const void *file)
   return dea_fit_names_check(ctx, fit->tests, fit->test_count, sizeof fit->tests[0], "test");
 }
 
-dea_status dea_fit_file_read(struct dea_context *ctx, const char *file, struct dea_fit_file **out)
-{
-  void *fit;
-  dea_status status = dea_fit_head_read(ctx, file, &dea_fit_record, sizeof **out, check, &fit);
-  *out = fit;
-  return status;
-}
-
-void dea_fit_file_destroy(struct dea_context *ctx, struct dea_fit_file *fit)
-{
-  dea_fit_head_destroy(ctx, fit);
-}
+DEA_FIT_FILE(fit_file, dea_fit_record, check)

@@ -46,7 +46,7 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
   DEA_TRY(ctx, dea_file_kind_check(ctx, head->document, record->fields[0].key));
   DEA_TRY(ctx, dea_schema_read(&reader, record, dea_yaml_root(head->document), "", head));
   if (dea_finding_count(ctx, DEA_ERROR) == errors) {
-    DEA_TRY(ctx, check(ctx, head));
+    DEA_TRY(ctx, check != NULL ? check(ctx, head) : DEA_OK);
     DEA_TRY(ctx, check_name(ctx, &head->name));
   }
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;

@@ -72,8 +72,8 @@ struct dea_fit_parameter_text {
 dea_status dea_fit_file_has(struct dea_context *ctx, const char *file, const char *key, bool *out);
 
 /* Reads a file into a new struct of `size` bytes that begins with its head; check: what the table
- * cannot say, asked where the table is kept. Errors are findings with their places; DEA_E_DESIGN
- * then. out: owned by the caller, NULL on failure. */
+ * cannot say, asked where the table is kept, NULL: nothing. Errors are findings with their places;
+ * DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
 dea_status dea_fit_head_read(struct dea_context *ctx, const char *file,
                              const struct dea_record *record, size_t size,
                              dea_status (*check)(struct dea_context *ctx, const void *fit),
@@ -86,9 +86,36 @@ void dea_fit_head_destroy(struct dea_context *ctx, void *fit);
 dea_status dea_fit_names_check(struct dea_context *ctx, const void *items, size_t count,
                                size_t size, const char *what);
 
+/* The functions dea_NAME_read and dea_NAME_destroy of a struct dea_NAME that begins with a head. */
+#define DEA_FIT_FILE(name, record, check)                                                          \
+  dea_status dea_##name##_read(struct dea_context *ctx, const char *file, struct dea_##name **out) \
+  {                                                                                                \
+    void *fit;                                                                                     \
+    dea_status status = dea_fit_head_read(ctx, file, &record, sizeof **out, check, &fit);          \
+    *out = fit;                                                                                    \
+    return status;                                                                                 \
+  }                                                                                                \
+  void dea_##name##_destroy(struct dea_context *ctx, struct dea_##name *fit)                       \
+  {                                                                                                \
+    dea_fit_head_destroy(ctx, fit);                                                                \
+  }
+
 /* A fit of films or specimens, of `size` bytes: its struct begins with the arena of all that it
  * finds, and is zero otherwise when `run` fills it. file: handed on. NULL: it failed, *status. */
 void *dea_fit_frame_make(struct dea_context *ctx, size_t size, const void *file,
                          dea_status (*run)(void *fit, const void *file), dea_status *status);
 /* NULL is fine. */
 void dea_fit_frame_destroy(struct dea_context *ctx, void *fit);
+/* The functions dea_NAME_fit_run and dea_NAME_fit_destroy of such a struct dea_NAME_fit. */
+#define DEA_FIT_FRAME(name, run)                                                                   \
+  dea_status dea_##name##_fit_run(struct dea_context *ctx, const struct dea_##name##_file *file,   \
+                                  struct dea_##name##_fit **out)                                   \
+  {                                                                                                \
+    dea_status status;                                                                             \
+    *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);                              \
+    return status;                                                                                 \
+  }                                                                                                \
+  void dea_##name##_fit_destroy(struct dea_context *ctx, struct dea_##name##_fit *fit)             \
+  {                                                                                                \
+    dea_fit_frame_destroy(ctx, fit);                                                               \
+  }

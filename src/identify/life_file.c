@@ -96,16 +96,4 @@ static dea_status check(struct dea_context *ctx, const void *file)
                              "specimen");
 }
 
-dea_status dea_life_file_read(struct dea_context *ctx, const char *file, struct dea_life_file **out)
-{
-  void *fit;
-  dea_status status =
-      dea_fit_head_read(ctx, file, &dea_life_file_record, sizeof **out, check, &fit);
-  *out = fit;
-  return status;
-}
-
-void dea_life_file_destroy(struct dea_context *ctx, struct dea_life_file *fit)
-{
-  dea_fit_head_destroy(ctx, fit);
-}
+DEA_FIT_FILE(life_file, dea_life_file_record, check)

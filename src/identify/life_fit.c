@@ -289,18 +289,7 @@ static dea_status run(void *made, const void *data)
   return tells_law(fit) ? find_law(ctx, fit) : DEA_OK;
 }
 
-dea_status dea_life_fit_run(struct dea_context *ctx, const struct dea_life_file *file,
-                            struct dea_life_fit **out)
-{
-  dea_status status;
-  *out = dea_fit_frame_make(ctx, sizeof **out, file, run, &status);
-  return status;
-}
-
-void dea_life_fit_destroy(struct dea_context *ctx, struct dea_life_fit *fit)
-{
-  dea_fit_frame_destroy(ctx, fit);
-}
+DEA_FIT_FRAME(life, run)
 
 double dea_life_fit_bound(const struct dea_life_fit *fit, double *life)
 {
