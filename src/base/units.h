@@ -1,6 +1,10 @@
 /* Numbers with a unit, read through udunits2 and converted to SI. */
 #pragma once
 
+/* What stands behind a number of a unit, for "%s%s": nothing of "1". */
+#define DEA_UNIT_BEHIND(unit)                                                                      \
+  (strcmp(unit, "1") == 0 ? "" : " "), (strcmp(unit, "1") == 0 ? "" : (unit))
+
 #include "base/context.h"
 
 /* What is due: a number in a unit. */

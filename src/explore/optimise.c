@@ -49,6 +49,16 @@ static void sort(struct spread *all)
   }
 }
 
+/* Quantile of values in an order; the ends are not mixed with what is infinite. */
+static double quantile_of(const struct dea_search *search, const struct spread *all,
+                          const double *values)
+{
+  const double at = search->quantile * (double)(all->count - 1);
+  const size_t below = (size_t)at, above = below + 1 < all->count ? below + 1 : below;
+  const double low = values[all->order[below]], share = at - (double)below;
+  return share > 0 ? low + share * (values[all->order[above]] - low) : low;
+}
+
 /* Statistic of one value over all scattered designs. */
 static double statistic_of(const struct dea_search *search, struct spread *all)
 {
@@ -57,11 +67,7 @@ static double statistic_of(const struct dea_search *search, struct spread *all)
       all->value[i] = isnan(all->value[i]) ? INFINITY : all->value[i];
     }
     sort(all);
-    const double at = search->quantile * (double)(all->count - 1);
-    const size_t below = (size_t)at, above = below + 1 < all->count ? below + 1 : below;
-    const double low = all->value[all->order[below]], high = all->value[all->order[above]];
-    const double share = at - (double)below;
-    const double out = share > 0 ? low + share * (high - low) : low;
+    const double out = quantile_of(search, all, all->value);
     return isfinite(out) ? out : NAN;
   }
   double sum = 0, squares = 0;
@@ -81,11 +87,7 @@ static double statistic_slope(const struct dea_search *search, const struct spre
                               const double *slopes)
 {
   if (!isnan(search->quantile) && all->count > 1) {
-    const double at = search->quantile * (double)(all->count - 1);
-    const size_t below = (size_t)at, above = below + 1 < all->count ? below + 1 : below;
-    const double low = slopes[all->order[below]], high = slopes[all->order[above]];
-    const double share = at - (double)below;
-    return share > 0 ? low + share * (high - low) : low;
+    return quantile_of(search, all, slopes);
   }
   double mean = 0, product = 0;
   for (size_t i = 0; i < all->count; i++) {

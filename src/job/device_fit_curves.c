@@ -93,8 +93,7 @@ static dea_status read_absolute(struct reading *r, int column, double *out)
   const struct dea_label *label = &r->text->absolute;
   const struct dea_column *of = dea_column_at(r->ctx, column);
   char why[DEA_WHY_SIZE] = "", example[32];
-  snprintf(example, sizeof example, "2%s%s", strcmp(of->display_unit, "1") == 0 ? "" : " ",
-           strcmp(of->display_unit, "1") == 0 ? "" : of->display_unit);
+  snprintf(example, sizeof example, "2%s%s", DEA_UNIT_BEHIND(of->display_unit));
   *out = 0;
   if (label->text[0] == '\0' ||
       dea_units_read(r->ctx, label->text, (struct dea_measure){of->si_unit, example}, out, why)) {

@@ -2,6 +2,7 @@
 #include "job/device_fit_parts.h"
 
 #include "base/file.h"
+#include "base/units.h"
 #include "base/version.h"
 #include "base/write_file.h"
 #include "base/yaml_write.h"
@@ -98,9 +99,8 @@ static void add_law(struct dea_text *out, const struct dea_material *material)
   dea_text_add(out, "    laws:\n      - id: fit\n        law: %s\n        parameters: {",
                law->name);
   for (size_t i = 0; i < law->param_count; i++) {
-    const bool bare = strcmp(law->params[i].unit, "1") == 0;
     dea_text_add(out, "%s%s: %.10g%s%s", i > 0 ? ", " : "", law->params[i].key, material->param[i],
-                 bare ? "" : " ", bare ? "" : law->params[i].unit);
+                 DEA_UNIT_BEHIND(law->params[i].unit));
   }
   dea_text_add(out, "}\n");
   if (law->anisotropic) {
@@ -164,9 +164,8 @@ static void add_uncertainty(struct dea_text *out, const struct dea_device_fit *f
   for (size_t j = 0; j < n; j++) {
     const struct dea_fit_param *param = &fit->params[j].param;
     if (is_known(&fit->values[j])) {
-      const bool bare = strcmp(param->unit, "1") == 0;
       dea_text_add(out, "%s{name: %s, std: %.6g%s%s}", known++ > 0 ? ", " : "{parameters: [",
-                   param->name, fit->values[j].std, bare ? "" : " ", bare ? "" : param->unit);
+                   param->name, fit->values[j].std, DEA_UNIT_BEHIND(param->unit));
     }
   }
   if (known > 0) {

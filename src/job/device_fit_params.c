@@ -61,7 +61,6 @@ static dea_status prior_of_material(struct work *w, struct dea_fit_parameter_tex
   look_up(&entry->data, out, dea_material_of(w->source.device, out->material)->law, &value, &std);
   dea_catalogue_destroy(w->ctx, entry);
   snprintf(out->prior_of, sizeof out->prior_of, "%.63s", text->prior.text);
-  const bool unit = strcmp(out->param.unit, "1") != 0;
   if (isnan(value)) {
     DEA_TRY(w->ctx, dea_finding_add(w->ctx, DEA_ERROR, text->prior.location,
                                     "the material '%.40s' says nothing of %s", text->prior.text,
@@ -72,11 +71,11 @@ static dea_status prior_of_material(struct work *w, struct dea_fit_parameter_tex
                             "the material '%.40s' gives no uncertainty of %s: say one (prior_std)",
                             text->prior.text, out->param.name));
   }
-  snprintf(text->prior.text, sizeof text->prior.text, "%.17g%s%s", value, unit ? " " : "",
-           unit ? out->param.unit : "");
+  snprintf(text->prior.text, sizeof text->prior.text, "%.17g%s%s", value,
+           DEA_UNIT_BEHIND(out->param.unit));
   if (text->prior_std.text[0] == '\0' && !isnan(std)) {
-    snprintf(text->prior_std.text, sizeof text->prior_std.text, "%.17g%s%s", std, unit ? " " : "",
-             unit ? out->param.unit : "");
+    snprintf(text->prior_std.text, sizeof text->prior_std.text, "%.17g%s%s", std,
+             DEA_UNIT_BEHIND(out->param.unit));
   }
   return DEA_OK;
 }
@@ -97,12 +96,11 @@ static dea_status settle(struct work *w, const struct dea_fit_parameter_text *te
   struct dea_fit_param *param = &out->param;
   char shown[80];
   if (!(param->start >= param->low && param->start <= param->high)) {
-    const bool one = strcmp(param->unit, "1") == 0;
     dea_device_param_text(out, param->start, 6, shown);
     return dea_finding_add(
         w->ctx, DEA_ERROR, start_given ? text->start.location : text->name.location,
         "%s starts at %.40s, outside of its bounds %.6g and %.6g%s%s", param->name, shown,
-        param->low, param->high, one ? "" : " ", one ? "" : param->unit);
+        param->low, param->high, DEA_UNIT_BEHIND(param->unit));
   }
   const bool bounded = text->low.text[0] != '\0' && text->high.text[0] != '\0';
   param->scale = fabs(param->start);
@@ -149,9 +147,8 @@ static dea_status make_one(struct work *w, const struct dea_fit_parameter_text *
                            "the design has no single value of %s: give a start", name);
   }
   if (!start_given) {
-    const bool unit = strcmp(out->param.unit, "1") != 0;
-    snprintf(text.start.text, sizeof text.start.text, "%.17g%s%s", out->designed, unit ? " " : "",
-             unit ? out->param.unit : "");
+    snprintf(text.start.text, sizeof text.start.text, "%.17g%s%s", out->designed,
+             DEA_UNIT_BEHIND(out->param.unit));
   }
   const size_t errors = dea_finding_count(w->ctx, DEA_ERROR);
   DEA_TRY(w->ctx, dea_fit_param_take(w->ctx, &text, &out->param));

@@ -213,18 +213,23 @@ static dea_status add_line(struct dea_context *ctx, struct dea_plot *plot, const
   return DEA_OK;
 }
 
-/* Of the centre or of the tip. */
+/* Fills a line with the motion of the centre or of the tip at some points. */
+static void fill_disc(const struct dea_load_point *points, bool tip, struct line *line)
+{
+  for (size_t i = 0; i < line->count; i++) {
+    line->frequency_Hz[i] = points[i].frequency_Hz;
+    line->amplitude_m[i] = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
+    line->phase_rad[i] = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
+  }
+}
+
 static dea_status add_answer(struct dea_context *ctx, struct dea_plot *plot,
                              const struct dea_load_point *points, size_t count, bool tip,
                              const struct dea_series *look)
 {
   struct line line;
   DEA_TRY(ctx, line_create(ctx, count, &line));
-  for (size_t i = 0; i < count; i++) {
-    line.frequency_Hz[i] = points[i].frequency_Hz;
-    line.amplitude_m[i] = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
-    line.phase_rad[i] = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
-  }
+  fill_disc(points, tip, &line);
   dea_status status = add_line(ctx, plot, &line, look);
   dea_free(ctx, line.frequency_Hz);
   return status;
@@ -529,11 +534,7 @@ static dea_status add_bias(struct dea_context *ctx, const struct dea_curve *curv
 {
   const struct dea_load_point *points = curve->points + from;
   for (int tip = 0; tip < 2; tip++) {
-    for (size_t i = 0; i < line->count; i++) {
-      line->frequency_Hz[i] = points[i].frequency_Hz;
-      line->amplitude_m[i] = tip ? points[i].fibre_tip_amplitude_m : points[i].centre_amplitude_m;
-      line->phase_rad[i] = tip ? points[i].fibre_tip_phase_rad : points[i].centre_phase_rad;
-    }
+    fill_disc(points, tip == 1, line);
     if (isfinite(line->amplitude_m[0])) {
       DEA_TRY(ctx, add_peaks(ctx, line, tip ? "fibre tip" : "centre", points, table));
     }

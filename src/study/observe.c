@@ -247,21 +247,15 @@ static dea_status add_lines(struct dea_context *ctx, const struct dea_result *re
   return DEA_OK;
 }
 
-static void finish(const char *kind, struct dea_panel *panel, const char *label)
+void dea_observe_time_axis(struct dea_panel *panel)
 {
-  if (kind == sweep) {
-    dea_panel_voltage_axis(panel);
-    dea_panel_even_tics(panel, 6);
-  } else {
-    snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
-    panel->x_min = 0;
-    panel->x_max = 0;
-    for (size_t i = 0; i < panel->series_count; i++) {
-      const struct dea_series *series = &panel->series[i];
-      panel->x_max = fmax(panel->x_max, series->values[series->count - 1]);
-    }
+  panel->x_min = 0;
+  panel->x_max = 0;
+  for (size_t s = 0; s < panel->series_count; s++) {
+    const struct dea_series *series = &panel->series[s];
+    panel->x_max = fmax(panel->x_max, series->values[series->count - 1]);
   }
-  snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
+  snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
   dea_panel_place_key(panel);
 }
 
@@ -336,7 +330,14 @@ dea_status dea_observe_build(struct dea_context *ctx, const struct dea_result *r
     }
   }
   snprintf(label, sizeof label, "Displacement {/:Italic %c} (\302\265m)", "xyz"[axis]);
-  finish(kind, panel, moves ? label : shown->label);
+  snprintf(panel->y_label, sizeof panel->y_label, "%s", moves ? label : shown->label);
+  if (of_time) {
+    dea_observe_time_axis(panel);
+  } else {
+    dea_panel_voltage_axis(panel);
+    dea_panel_even_tics(panel, 6);
+    dea_panel_place_key(panel);
+  }
   return DEA_OK;
 }
 

@@ -42,3 +42,5 @@ enum { DEA_OBSERVE_FIGURES = 4 };
 extern const struct dea_figure dea_observe_figures[DEA_OBSERVE_FIGURES];
 dea_status dea_observe_build(struct dea_context *ctx, const struct dea_result *result,
                              struct dea_plot *plot);
+/* An axis of time from 0 to the end of the longest curve, and the key. */
+void dea_observe_time_axis(struct dea_panel *panel);

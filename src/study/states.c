@@ -225,17 +225,10 @@ static dea_status make_room(struct search *s)
   if (s->count < s->capacity) {
     return DEA_OK;
   }
-  struct state *more = dea_alloc(s->ctx, 2 * s->capacity + 8, sizeof *more);
-  if (more == NULL) {
-    return DEA_E_MEMORY;
-  }
-  if (s->count > 0) {
-    memcpy(more, s->states, s->count * sizeof *more);
-  }
-  dea_free(s->ctx, s->states);
-  s->states = more;
-  s->capacity = 2 * s->capacity + 8;
-  return DEA_OK;
+  struct state *more = dea_resize(s->ctx, s->states, 2 * s->capacity + 8, sizeof *more);
+  s->states = more != NULL ? more : s->states;
+  s->capacity = more != NULL ? 2 * s->capacity + 8 : s->capacity;
+  return more != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
 /* Adds the state that the model is at where that is new; *index: which one it is. */

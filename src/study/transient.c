@@ -138,9 +138,9 @@ struct source {
 struct player {
   const struct dea_model_type *type;
   struct dea_model *model;
-  /* Of the supply, [0], and of the channels of the layout, [source_count]; owned as what follows:
-   * whether a channel has one, and voltages at this time, at the end of a step, and the time of the
-   * next corner of each. */
+  /* Of the supply, [0], and of the channels of the layout, [source_count]; as what follows in the
+   * memory of what is seen: whether a channel has one, and voltages at this time, at the end of a
+   * step, and the time of the next corner of each. */
   struct source *sources;
   size_t source_count;
   bool *own, any_own;
@@ -428,15 +428,13 @@ static dea_status make_sources(struct dea_context *ctx, const struct dea_result 
 {
   const struct dea_parts *parts = result->design->parts;
   size_t count = parts != NULL ? result->device->layout->channel_count : 1;
-  p->sources = dea_alloc(ctx, count, sizeof *p->sources);
-  p->own = dea_alloc(ctx, count, sizeof *p->own);
-  p->now_V = dea_alloc(ctx, count, sizeof *p->now_V);
-  p->next_V = dea_alloc(ctx, count, sizeof *p->next_V);
-  p->corner_s = dea_alloc(ctx, count, sizeof *p->corner_s);
-  if (p->sources == NULL || p->own == NULL || p->now_V == NULL || p->next_V == NULL ||
-      p->corner_s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  struct dea_arena *memory = &p->seen.memory;
+  p->sources = dea_arena_alloc(memory, count, sizeof *p->sources);
+  p->own = dea_arena_alloc(memory, count, sizeof *p->own);
+  p->now_V = dea_arena_alloc(memory, count, sizeof *p->now_V);
+  p->next_V = dea_arena_alloc(memory, count, sizeof *p->next_V);
+  p->corner_s = dea_arena_alloc(memory, count, sizeof *p->corner_s);
+  DEA_TRY(ctx, dea_arena_status(memory));
   p->source_count = count;
   p->sources[0].waveform = result->design->drive.waveform;
   for (size_t i = 0; parts != NULL && i < parts->channel_count; i++) {
@@ -449,18 +447,6 @@ static dea_status make_sources(struct dea_context *ctx, const struct dea_result 
     }
   }
   return DEA_OK;
-}
-
-static void free_sources(struct dea_context *ctx, struct player *p)
-{
-  for (size_t k = 0; k < p->source_count; k++) {
-    dea_waveform_destroy(p->sources[k].limited);
-  }
-  dea_free(ctx, p->sources);
-  dea_free(ctx, p->own);
-  dea_free(ctx, p->now_V);
-  dea_free(ctx, p->next_V);
-  dea_free(ctx, p->corner_s);
 }
 
 /* Waveforms of the sources, end and steps. */
@@ -572,11 +558,13 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   status = status == DEA_OK ? flushed : status;
   flushed = dea_study_sources(ctx, &p.seen, p.curve, result);
   status = status == DEA_OK ? flushed : status;
+  for (size_t k = 0; k < p.source_count; k++) {
+    dea_waveform_destroy(p.sources[k].limited);
+  }
   dea_monitor_set_free(&p.seen);
   if (p.model != NULL) {
     type->destroy(ctx, p.model);
   }
-  free_sources(ctx, &p);
   return dea_curve_end(ctx, p.curve, status);
 }
 
@@ -716,19 +704,6 @@ static dea_status add_in_time(struct dea_context *ctx, struct dea_panel *panel,
   return DEA_OK;
 }
 
-/* From 0 to the end of the longest curve. */
-static void set_time_axis(struct dea_panel *panel)
-{
-  panel->x_min = 0;
-  panel->x_max = 0;
-  for (size_t s = 0; s < panel->series_count; s++) {
-    const struct dea_series *series = &panel->series[s];
-    panel->x_max = fmax(panel->x_max, series->values[series->count - 1]);
-  }
-  snprintf(panel->x_label, sizeof panel->x_label, "Time {/:Italic t} (s)");
-  dea_panel_place_key(panel);
-}
-
 /* Many cycles lie close to each other. */
 static enum dea_series_style line_of(const struct dea_curve *curve)
 {
@@ -828,7 +803,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   plot->second_height = 1.0;
   DEA_TRY(ctx, add_voltages(ctx, curve, upper));
   snprintf(upper->y_label, sizeof upper->y_label, "Voltage {/:Italic V} (kV)");
-  set_time_axis(upper);
+  dea_observe_time_axis(upper);
   if (column < 0) {
     return DEA_OK;
   }
@@ -838,7 +813,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
            strcmp(c->key, "centre_z_m") == 0 ? "Displacement of the centre {/:Italic z}"
                                              : "Displacement of the edge {/:Italic u}",
            factor < 1e5 ? "mm" : "\302\265m");
-  set_time_axis(lower);
+  dea_observe_time_axis(lower);
   return DEA_OK;
 }
 
@@ -850,7 +825,7 @@ static dea_status build_one(struct dea_context *ctx, const struct dea_result *re
   DEA_TRY(ctx, add_models(ctx, result, panel, key, dea_point_columns[column].factor));
   snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
   if (panel->series_count > 0) {
-    set_time_axis(panel);
+    dea_observe_time_axis(panel);
   }
   return DEA_OK;
 }

@@ -14,6 +14,7 @@
 
 #include "base/correlations.h"
 #include "base/schema.h"
+#include "base/units.h"
 #include "base/yaml_write.h"
 #include "identify/fit_head.h"
 #include "result/observation.h"
@@ -208,9 +209,8 @@ static void take_law(void *user, const struct dea_material_number *number)
     laws->full = true;
     return;
   }
-  const bool bare = strcmp(number->unit, "1") == 0;
   snprintf(w->std_text[w->count], sizeof w->std_text[0], "%.3g%s%.20s", material->param_std[i],
-           bare ? "" : " ", bare ? "" : number->unit);
+           DEA_UNIT_BEHIND(number->unit));
   laws->of[w->count] = i;
   w->params[w->count] = param;
   w->value[w->count] = number->value;
