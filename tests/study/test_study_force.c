@@ -1,6 +1,5 @@
 /* Study "force" with a model of one spring: F = k d + c d^3 - b V^2 on a tip at depth d. */
 #include "design_text.h"
-#include "study/design_file.h"
 #include "study/study.h"
 
 #include "context_fixture.h"
@@ -86,22 +85,7 @@ static const struct dea_model_type spring = {.name = "spring",
 
 extern const struct dea_study dea_study_force;
 
-static void make(const struct dea_override *sets, size_t set_count, struct dea_design **design,
-                 struct dea_device **device, struct dea_result **result)
-{
-  assert_int_equal(dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets,
-                                          set_count, design),
-                   DEA_OK);
-  assert_int_equal(dea_device_build(ctx, *design, device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, *design, *device, result), DEA_OK);
-}
-
-static void end(struct dea_design *design, struct dea_device *device, struct dea_result *result)
-{
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
-}
+#include "study_result.h" // after the model: its names shadow none of the arguments above
 
 TEST(test_depths_and_preloads)
 {
@@ -109,10 +93,7 @@ TEST(test_depths_and_preloads)
       {"compute.voltage", "{from: 0 kV, to: 2 kV, step: 1 kV}"},
       {"compute.force",
        "{tip: flat, radius: 2 mm, side: back, depth: [1 mm, -1 mm], preload: [180 mN]}"}};
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
-  make(sets, 2, &design, &device, &result);
+  set_up_result(GOOD_DESIGN, sets, 2);
   assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_non_null(curve);
@@ -143,7 +124,7 @@ TEST(test_depths_and_preloads)
     }
   }
   dea_plot_destroy(ctx, plot);
-  end(design, device, result);
+  tear_down_result();
 }
 
 /* A tip that has passed what it was pressed against, and a model that knows none. */
@@ -155,10 +136,7 @@ TEST(test_nothing_touched)
   static const char *const name = "force";
   static const struct dea_model_type bare = {
       .name = "bare", .create = create, .destroy = destroy, .solve = solve};
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
-  make(sets, 2, &design, &device, &result);
+  set_up_result(GOOD_DESIGN, sets, 2);
   passed_m = 2e-3;
   assert_int_equal(dea_study_run(ctx, &spring, &name, 1, result), DEA_OK);
   passed_m = 1;
@@ -168,19 +146,16 @@ TEST(test_nothing_touched)
   assert_non_null(find_finding(
       ctx, DEA_NOTE, "model bare does not support indentation by a tip: no study 'force'"));
   assert_null(dea_result_find(result, "bare", "force"));
-  end(design, device, result);
+  tear_down_result();
 }
 
 /* Without the section nothing is computed. */
 TEST(test_nothing_asked)
 {
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
-  make(NULL, 0, &design, &device, &result);
+  set_up_result(GOOD_DESIGN, NULL, 0);
   assert_int_equal(dea_study_run(ctx, &spring, NULL, 0, result), DEA_OK);
   assert_null(dea_result_find(result, "spring", "force"));
-  end(design, device, result);
+  tear_down_result();
 }
 
 /* A tip goes on from the depth before where the next one is deeper; the numbers are those of a
@@ -193,32 +168,25 @@ TEST(test_deeper)
                         "preload: [180 mN]}"}};
   static const char *const name = "force";
   struct dea_model_type types[2] = {spring, spring};
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *results[2];
+  struct dea_result *each_own;
   types[1].save = save;
   types[1].load = load;
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
+  set_up_result(GOOD_DESIGN, sets, 2);
+  assert_int_equal(dea_result_create(ctx, design, device, &each_own), DEA_OK);
   for (int i = 0; i < 2; i++) {
     created = 0;
-    assert_int_equal(dea_result_create(ctx, design, device, &results[i]), DEA_OK);
-    assert_int_equal(dea_study_run(ctx, &types[i], &name, 1, results[i]), DEA_OK);
+    assert_int_equal(dea_study_run(ctx, &types[i], &name, 1, i == 0 ? each_own : result), DEA_OK);
     assert_int_equal(created, i == 0 ? 5 : 3); // from rest: 1 mm, 2 mm after 3, the preload
   }
-  const struct dea_curve *each = dea_result_find(results[0], "spring", "force");
-  const struct dea_curve *on = dea_result_find(results[1], "spring", "force");
+  const struct dea_curve *each = dea_result_find(each_own, "spring", "force");
+  const struct dea_curve *on = dea_result_find(result, "spring", "force");
   assert_true(each->count == 15 && on->count == 15);
   for (size_t i = 0; i < on->count; i++) {
     assert_close(on->points[i].force_N, each->points[i].force_N, 1e-12, 1e-15);
     assert_close(on->points[i].tip_depth_m, each->points[i].tip_depth_m, 1e-12, 0);
   }
-  dea_result_destroy(ctx, results[0]);
-  dea_result_destroy(ctx, results[1]);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
+  dea_result_destroy(ctx, each_own);
+  tear_down_result();
 }
 
 // Voltages between computed ones --------------------------------------------------------------
@@ -271,8 +239,7 @@ static dea_status film_load(struct dea_context *context, struct dea_model *model
 
 /* Study force of that film with these settings, the last of them NULL where there are no bands.
  * Returns how it ended. */
-static dea_status run_film(const char *const settings[3], struct dea_design **design,
-                           struct dea_device **device, struct dea_result **result)
+static dea_status run_film(const char *const settings[3])
 {
   const struct dea_override sets[] = {{"compute.voltage", settings[0]},
                                       {"compute.force", settings[1]},
@@ -284,9 +251,9 @@ static dea_status run_film(const char *const settings[3], struct dea_design **de
   type.solve = film_solve;
   film.solves = 0;
   jumped = false;
-  make(sets, settings[2] != NULL ? 3 : 2, design, device, result);
+  set_up_result(GOOD_DESIGN, sets, settings[2] != NULL ? 3 : 2);
   const struct dea_study_services services = {.processes = film.processes};
-  return dea_study_run_with(ctx, &type, &name, 1, &services, *result);
+  return dea_study_run_with(ctx, &type, &name, 1, &services, result);
 }
 
 #define TO_8_KV "{from: 0 kV, to: 8 kV, step: 0.1 kV}"
@@ -298,11 +265,8 @@ static const char *const usual[3] = {TO_8_KV, "{" ONE_MM "}", NULL};
 TEST(test_interpolated)
 {
   static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
   film = (struct dea_film){.end_V = INFINITY, .sticks = true};
-  assert_int_equal(run_film(settings, &design, &device, &result), DEA_OK);
+  assert_int_equal(run_film(settings), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_int_equal(curve->count, 81);
   int computed = 0;
@@ -333,7 +297,7 @@ TEST(test_interpolated)
   assert_close(dea_result_table_number(table, 0, "first_force_N", 0), taut_force(0), 1e-14, 0);
   assert_close(dea_result_table_number(table, 0, "last_force_N", 0), taut_force(8000) - 0.02, 1e-14,
                0);
-  end(design, device, result);
+  tear_down_result();
 }
 
 /* With a tolerance of 0, with bands, of few voltages, of falling ones: every one is computed. */
@@ -348,18 +312,15 @@ TEST(test_all_computed)
        "kV, 4.8 kV, 4.7 kV, 4.6 kV, 4.5 kV, 4.4 kV, 4.3 kV]}",
        "{" ONE_MM "}", NULL},
   };
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
   film = (struct dea_film){.end_V = INFINITY};
   for (size_t n = 0; n < sizeof cases / sizeof cases[0]; n++) {
-    assert_int_equal(run_film(cases[n], &design, &device, &result), DEA_OK);
+    assert_int_equal(run_film(cases[n]), DEA_OK);
     const struct dea_curve *curve = dea_result_find(result, "spring", "force");
     assert_int_equal(curve->count, film.solves);
     for (size_t i = 0; i < curve->count; i++) {
       assert_false(dea_load_point_interpolated(&curve->points[i]));
     }
-    end(design, device, result);
+    tear_down_result();
   }
 }
 
@@ -368,11 +329,8 @@ TEST(test_back)
 {
   static const char *const settings[3] = {"{from: 0 kV, to: 8 kV, step: 0.1 kV, back: yes}",
                                           "{" ONE_MM "}", NULL};
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
   film = (struct dea_film){.end_V = INFINITY};
-  assert_int_equal(run_film(settings, &design, &device, &result), DEA_OK);
+  assert_int_equal(run_film(settings), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_int_equal(curve->count, 161);
   for (size_t i = 81; i < 161; i++) {
@@ -381,20 +339,17 @@ TEST(test_back)
     assert_close(curve->points[i].force_N, taut_force(V) - (V > 5200 ? 0.02 : 0), 1e-14, 0);
   }
   assert_true(dea_load_point_interpolated(&curve->points[3]));
-  end(design, device, result);
+  tear_down_result();
 }
 
 /* A line that stops has its points up to there, and says why. */
 TEST(test_stops)
 {
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
   static const double ends_V[] = {7250, 4150, -1};
   static const size_t counts[] = {73, 42, 0};
   for (int i = 0; i < 3; i++) {
     film = (struct dea_film){.end_V = ends_V[i]};
-    assert_int_equal(run_film(usual, &design, &device, &result), DEA_E_NO_EQUILIBRIUM);
+    assert_int_equal(run_film(usual), DEA_E_NO_EQUILIBRIUM);
     const struct dea_curve *curve = dea_result_find(result, "spring", "force");
     assert_int_equal(curve->count, counts[i]);
     assert_int_equal(curve->status, DEA_E_NO_EQUILIBRIUM);
@@ -406,7 +361,7 @@ TEST(test_stops)
       assert_close(curve->points[n].force_N, taut_force(V) - (V > jump_V ? 0.02 : 0), 1e-3, 0);
     }
     assert_true(counts[i] == 0 || dea_load_point_interpolated(&curve->points[3]));
-    end(design, device, result);
+    tear_down_result();
     dea_context_clear(ctx);
   }
 }
@@ -414,18 +369,15 @@ TEST(test_stops)
 /* Where a state between others is not found, all are computed one after the other. */
 TEST(test_hidden)
 {
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
   static const char *const strict[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0000001}", NULL};
   film = (struct dea_film){.end_V = INFINITY, .hidden_V = 400};
-  assert_int_equal(run_film(strict, &design, &device, &result), DEA_OK);
+  assert_int_equal(run_film(strict), DEA_OK);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_int_equal(curve->count, 81);
   for (size_t i = 0; i < 81; i++) {
     assert_false(dea_load_point_interpolated(&curve->points[i]));
   }
-  end(design, device, result);
+  tear_down_result();
 }
 
 static bool interrupted(void *user)
@@ -437,12 +389,9 @@ static bool interrupted(void *user)
 TEST(test_interrupted)
 {
   static const char *const settings[3] = {TO_8_KV, "{" ONE_MM ", tolerance: 0.0002}", NULL};
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
   film = (struct dea_film){.end_V = INFINITY};
   dea_context_set_interrupt_fn(ctx, interrupted, NULL);
-  assert_int_equal(run_film(settings, &design, &device, &result), DEA_E_INTERRUPTED);
+  assert_int_equal(run_film(settings), DEA_E_INTERRUPTED);
   dea_context_set_interrupt_fn(ctx, NULL, NULL);
   const struct dea_curve *curve = dea_result_find(result, "spring", "force");
   assert_int_equal(curve->count, 14);
@@ -451,7 +400,7 @@ TEST(test_interrupted)
     assert_true(i == 0 || curve->points[i].voltage_V > curve->points[i - 1].voltage_V);
     assert_true(curve->points[i].force_N > 0);
   }
-  end(design, device, result);
+  tear_down_result();
   dea_context_clear(ctx);
 }
 
@@ -480,10 +429,12 @@ TEST(test_beside)
     const struct dea_curve *curves[3];
     for (size_t i = 0; i < 3; i++) {
       film = (struct dea_film){.end_V = ends_V[n], .processes = i + 1};
-      assert_int_equal(run_film(settings, &designs[i], &devices[i], &results[i]),
-                       n == 0 ? DEA_OK : DEA_E_NO_EQUILIBRIUM);
+      assert_int_equal(run_film(settings), n == 0 ? DEA_OK : DEA_E_NO_EQUILIBRIUM);
       assert_true((film.solves > 0) == (i == 0));
-      curves[i] = dea_result_find(results[i], "spring", "force");
+      designs[i] = design;
+      devices[i] = device;
+      results[i] = result;
+      curves[i] = dea_result_find(result, "spring", "force");
       assert_int_equal(curves[i]->count, n == 0 ? 5 * 81 : 73);
       assert_int_equal(curves[i]->status, curves[0]->status);
       assert_string_equal(curves[i]->stopped, curves[0]->stopped);
@@ -492,7 +443,10 @@ TEST(test_beside)
       }
     }
     for (int i = 0; i < 3; i++) {
-      end(designs[i], devices[i], results[i]);
+      design = designs[i];
+      device = devices[i];
+      result = results[i];
+      tear_down_result();
     }
     dea_context_clear(ctx);
   }
