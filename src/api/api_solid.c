@@ -140,8 +140,8 @@ static dea_status take_options(dea_context *ctx, const dea_solid_options *o,
                                struct dea_part_spec *parts, struct dea_solid_spec *out)
 {
   bool box = o->msh_file == NULL && o->elements[0] > 0 && o->elements[1] > 0 && o->elements[2] > 0;
-  *out = (struct dea_solid_spec){.order = o->order > 0 ? o->order : 2,
-                                 .order_z = o->order_z > 0 ? o->order_z : 2,
+  *out = (struct dea_solid_spec){.order = dea_mesh_order(o->order),
+                                 .order_z = dea_mesh_order(o->order_z),
                                  .part_count = o->part_count,
                                  .parts = parts};
   DOOR_CHECK(ctx, {"box_m", o->box_m, 3, false}, {"msh_unit_m", &o->msh_unit_m, 1, false},

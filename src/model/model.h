@@ -28,6 +28,12 @@ struct dea_path_options {
   bool stays; // the model then stands at the last point, stable or not, not where it did
 };
 
+/* Order of elements: the given one, 0: the usual one. */
+static inline int dea_mesh_order(int given)
+{
+  return given > 0 ? given : 2;
+}
+
 /* How a model is computed, which its device does not know: what a model with a mesh makes of it.
  * All 0: the defaults. The models without a mesh take nothing from here. */
 struct dea_model_settings {
@@ -37,7 +43,7 @@ struct dea_model_settings {
   enum dea_buckling_branch buckling_branch; // side that a slack film goes to
   double refinement;                        // of the mesh; up to 1: the coarsest
   double tip_refinement;                    // where fibre tips end on a disc; 0: no other
-  int order;                                // of the elements in the plane, 1 to 3; 0: 2
+  int order;                                // of the elements in the plane, 1 to 3; 0: usual
   int order_z;                              // through the thickness of a layer, the same
   int elements_z;           // through the film of a disc, or a ply that does not say; 0: 1
   const double (*sizes)[3]; // of elements of a free mesh: [size_count] x, y, size there [m]; lent

@@ -18,8 +18,8 @@ void dea_fibre_disc_of_device(const struct dea_device *d, const struct dea_model
   double finer = exp2(1 - fmax(1, settings->refinement)), a = d->electrode_radius_m;
   double l = d->pre_stretch;
   *out = (struct dea_fibre_disc){
-      .order = settings->order > 0 ? settings->order : 2,
-      .order_z = settings->order_z > 0 ? settings->order_z : 2,
+      .order = dea_mesh_order(settings->order),
+      .order_z = dea_mesh_order(settings->order_z),
       .through = settings->elements_z > 0 ? settings->elements_z : 1,
       .membrane = settings->film == DEA_FILM_MEMBRANE,
       .fibres = d->fibre_count,

@@ -456,7 +456,7 @@ static dea_status extrude(struct dea_context *ctx, const struct dea_model_settin
     plies[p] = (struct dea_ply){
         .thickness_m = mesh->surface[p] ? 0 : l->plies[p].thickness_m,
         .count = elements_through(settings, mesh, p),
-        .order_z = settings->order_z > 0 ? settings->order_z : 2,
+        .order_z = dea_mesh_order(settings->order_z),
     };
     if (mesh->plate.order > 0 && l->plies[p].elements == 0) {
       dea_cuts_through(plies[p].count, through);

@@ -143,7 +143,7 @@ dea_status dea_solid_model_assemble(struct dea_context *ctx, struct dea_model *m
     share[k - 1] = l->channels[k].ratio;
   }
   const struct dea_solid_options options = {
-      .order_z = model->settings.order_z > 0 ? model->settings.order_z : 2,
+      .order_z = dea_mesh_order(model->settings.order_z),
       .part_material_count = l->ply_count,
       .part_materials = model->plies.part_materials,
       .part_material_of = dea_plies_part_material,
