@@ -1,15 +1,11 @@
 #include "explore/sample_statistics.h"
 
+#include "base/sort.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 const double dea_shares[DEA_SHARES] = {0.025, 0.16, 0.5, 0.84, 0.975};
-
-static int rising(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 dea_status dea_spread_find(struct dea_context *ctx, const double *values, size_t count,
                            struct dea_spread *out)
@@ -30,7 +26,7 @@ dea_status dea_spread_find(struct dea_context *ctx, const double *values, size_t
     out->std += (sorted[i] - out->mean) * (sorted[i] - out->mean);
   }
   out->std = out->count > 1 ? sqrt(out->std / (double)(out->count - 1)) : NAN;
-  qsort(sorted, out->count, sizeof *sorted, rising);
+  qsort(sorted, out->count, sizeof *sorted, dea_rising);
   for (size_t k = 0; k < DEA_SHARES && out->count > 0; k++) {
     const double at = dea_shares[k] * (double)(out->count - 1);
     const size_t i = (size_t)at;

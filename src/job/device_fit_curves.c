@@ -2,6 +2,7 @@
 #include "job/device_fit_parts.h"
 
 #include "base/file.h"
+#include "base/sort.h"
 #include "base/units.h"
 #include "base/write_file.h"
 #include "compare/measured.h"
@@ -277,12 +278,6 @@ static double place_of(const struct dea_device_curve *curve, size_t i)
   return is_in_time(curve) ? curve->time_s[i] : curve->voltage_V[i];
 }
 
-static int rising(const void *a, const void *b)
-{
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Voltages, or times, of one group, sorted, each once, at the end of model->voltage_V. */
 static void add_stops(const struct dea_device_fit *fit, struct dea_device_model *model,
                       struct dea_device_group *group)
@@ -297,7 +292,7 @@ static void add_stops(const struct dea_device_fit *fit, struct dea_device_model 
       }
     }
   }
-  qsort(to, n, sizeof *to, rising);
+  qsort(to, n, sizeof *to, dea_rising);
   for (size_t i = 0; i < n; i++) {
     if (kept == 0 || to[i] != to[kept - 1]) {
       to[kept++] = to[i];

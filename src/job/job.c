@@ -1,6 +1,6 @@
-#define _POSIX_C_SOURCE 200809L // clock_gettime
 #include "job/job.h"
 
+#include "base/clock.h"
 #include "base/write_file.h"
 #include "job/run_folder.h"
 #include "result/provenance.h"
@@ -9,7 +9,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const char results_file[] = "results.h5";
@@ -194,7 +193,6 @@ static dea_status name_libraries(struct dea_context *ctx, const struct dea_model
 dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_result *result,
                        bool *began)
 {
-  struct timespec start, end;
   const struct dea_solver_counters before = *dea_context_counters(ctx);
   dea_status first = DEA_OK;
   char message[1024] = "";
@@ -205,7 +203,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
   const struct dea_study_services services = {job->keep != NULL ? dea_checkpoint_get_sink(job->keep)
                                                                 : NULL,
                                               &dea_rerun_designs, job->processes};
-  clock_gettime(CLOCK_MONOTONIC, &start);
+  const double began_s = dea_clock_s();
   for (size_t i = 0;
        i < job->model_count && first != DEA_E_INTERRUPTED && !dea_checkpoint_refused(job->keep);
        i++) {
@@ -217,9 +215,7 @@ dea_status dea_job_run(struct dea_context *ctx, struct dea_job *job, struct dea_
     }
     DEA_TRY(ctx, name_libraries(ctx, job->models[i], result));
   }
-  clock_gettime(CLOCK_MONOTONIC, &end);
-  result->provenance.wall_s =
-      (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+  result->provenance.wall_s = dea_clock_s() - began_s;
 #define COUNTED(member, label)                                                                     \
   result->provenance.solver.member = dea_context_counters(ctx)->member - before.member;
   DEA_SOLVER_COUNTERS(COUNTED)

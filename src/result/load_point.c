@@ -76,6 +76,12 @@ bool dea_load_point_interpolated(const struct dea_load_point *point)
   return (dea_load_point_flags(point) >> DEA_FLAG_INTERPOLATED & 1u) != 0;
 }
 
+bool dea_load_point_is_one_of_several(const struct dea_load_point *point)
+{
+  const unsigned several = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;
+  return (dea_load_point_flags(point) & several) != 0;
+}
+
 const char *dea_flags_text(unsigned flags, char out[DEA_FLAGS_SIZE])
 {
   size_t n = 0;

@@ -141,6 +141,8 @@ bool dea_load_point_bounds(const struct dea_load_point *point);
 /* All its numbers are predictions: valid, and none is a bound. */
 bool dea_load_point_trusted(const struct dea_load_point *point);
 bool dea_load_point_interpolated(const struct dea_load_point *point);
+/* Whether it is one of several states, of which another device may have found another. */
+bool dea_load_point_is_one_of_several(const struct dea_load_point *point);
 
 /* "slack unstable ...", each with a blank after it. */
 #define DEA_FLAG_WORD(name, word, kind, sentence) word " "

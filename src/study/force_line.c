@@ -13,7 +13,7 @@ enum { FIRST_GAPS = 8 }; // of a line, about: its first steps
 struct way {
   struct dea_context *ctx;
   const struct dea_force_line *asked;
-  struct dea_monitor_set seen;  // its memory is that of the points' values too
+  struct dea_monitor_set seen;  // its memory is that of the points too
   struct dea_sampled_line line; // its first `count` points rise; it has room for all
   bool *wanted;                 // [asked->count]
   struct dea_state taut;        // at the last point where the film had tension everywhere
@@ -22,16 +22,9 @@ struct way {
   bool filled;                  // and those between are interpolated
 };
 
-/* One of several states, or of a film that wrinkles: a line of those need not be smooth. */
-static bool is_smooth(const struct dea_load_point *point)
-{
-  const unsigned rough = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;
-  return (dea_load_point_flags(point) & rough) == 0;
-}
-
 static bool is_taut(const struct dea_load_point *point)
 {
-  return is_smooth(point) && !(point->min_tension_N_per_m < 0);
+  return !dea_load_point_is_one_of_several(point) && !(point->min_tension_N_per_m < 0);
 }
 
 /* Voltages from the first one on that rise. */
@@ -163,7 +156,7 @@ static dea_status fill(struct way *way)
   struct dea_sampled_line line = way->line;
   bool good = true;
   line.count = line.count < way->done ? line.count : way->done;
-  while (line.count > 0 && !is_smooth(&line.points[line.count - 1])) {
+  while (line.count > 0 && dea_load_point_is_one_of_several(&line.points[line.count - 1])) {
     line.count--;
   }
   while (good && dea_sampled_line_halve(&line, way->asked->tolerance, way->wanted) > 0) {
@@ -201,13 +194,11 @@ static dea_status make_room(struct way *way)
 {
   struct dea_context *ctx = way->ctx;
   size_t n = way->asked->count;
-  way->line.points = dea_alloc(ctx, n, sizeof *way->line.points);
-  way->line.computed = dea_alloc(ctx, n, sizeof *way->line.computed);
-  way->wanted = dea_alloc(ctx, n, sizeof *way->wanted);
-  if (way->line.points == NULL || way->line.computed == NULL || way->wanted == NULL) {
-    return DEA_E_MEMORY;
-  }
   DEA_TRY(ctx, dea_monitor_set_init(ctx, way->asked->type, way->asked->device, &way->seen));
+  way->line.points = dea_arena_alloc(&way->seen.memory, n, sizeof *way->line.points);
+  way->line.computed = dea_arena_alloc(&way->seen.memory, n, sizeof *way->line.computed);
+  way->wanted = dea_arena_alloc(&way->seen.memory, n, sizeof *way->wanted);
+  DEA_TRY(ctx, dea_arena_status(&way->seen.memory));
   for (size_t k = 0; k < n && way->seen.count > 0; k++) {
     way->line.points[k].monitors = dea_monitor_values_copy(&way->seen.memory, way->seen.values);
   }
@@ -242,8 +233,5 @@ dea_status dea_force_line_take(struct dea_context *ctx, const struct dea_force_l
   }
   dea_state_free_values(ctx, &way.taut);
   dea_monitor_set_free(&way.seen);
-  dea_free(ctx, way.line.points);
-  dea_free(ctx, way.line.computed);
-  dea_free(ctx, way.wanted);
   return status;
 }

@@ -2,6 +2,7 @@
  * each is reached, where each ends, and the band of what a sensor reads over them
  * (docs/theory/states.md). */
 #include "base/schema.h"
+#include "base/sort.h"
 #include "study/observe.h"
 #include "study/study.h"
 
@@ -914,12 +915,6 @@ static dea_status put_result(struct search *s)
   return DEA_OK;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 // Relaxed film -----------------------------------------------------------------------------------
 
 static const struct dea_result_column relaxed_columns[] = {
@@ -1008,7 +1003,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   struct search s = {.ctx = ctx, .type = type, .settings = settings, .result = result};
   size_t count =
       dea_study_stops(design, settings->voltages_V, settings->voltage_count, false, s.voltages_V);
-  qsort(s.voltages_V, count, sizeof *s.voltages_V, compare_numbers);
+  qsort(s.voltages_V, count, sizeof *s.voltages_V, dea_rising);
   dea_status status = dea_model_create_whole(ctx, type, design, result->device, &s.model);
   dea_status swept = status == DEA_OK ? sweep_up(&s, count) : status;
   status = forgive(ctx, swept); // states at the voltages that there are

@@ -127,12 +127,14 @@ static dea_status restore(struct dea_context *ctx, const struct dea_model_type *
 
 // Sweep ------------------------------------------------------------------------------------------
 
-/* A limit point that the model has gone past on its way here. */
-static dea_status add_passed(struct dea_context *ctx, const struct dea_model_type *type,
-                             const struct dea_model *model, struct dea_curve *curve)
+/* A limit point that the model has gone past on its way here, or where it has stopped; where it
+ * knows that. */
+static dea_status add_limit(struct dea_context *ctx,
+                            const struct dea_event *(*of)(const struct dea_model *model),
+                            const struct dea_model *model, struct dea_curve *curve)
 {
-  const struct dea_event *passed = type->passed != NULL ? type->passed(model) : NULL;
-  return passed != NULL ? dea_curve_add_event(ctx, curve, passed) : DEA_OK;
+  const struct dea_event *event = of != NULL ? of(model) : NULL;
+  return event != NULL ? dea_curve_add_event(ctx, curve, event) : DEA_OK;
 }
 
 /* Solves one voltage and adds its point, profile and surface. */
@@ -147,7 +149,7 @@ static dea_status sweep_point(struct dea_context *ctx, const struct dea_model_ty
                     1e-3 * voltage_V, curve->count);
   }
   DEA_TRY(ctx, type->solve(ctx, model, voltage_V, &point));
-  DEA_TRY(ctx, add_passed(ctx, type, model, curve));
+  DEA_TRY(ctx, add_limit(ctx, type->passed, model, curve));
   point.pull_in_distance_V =
       distance_to_pull_in(dea_result_find(result, type->name, "path"), &point);
   DEA_TRY(ctx, dea_study_add_point(ctx, type, model, result->device, &point, curve));
@@ -162,14 +164,6 @@ static void open_curve(struct dea_curve *curve)
   curve->complete = false;
   curve->status = DEA_E_INTERRUPTED;
   snprintf(curve->stopped, sizeof curve->stopped, "the run was ended before the sweep");
-}
-
-/* Where the model has stopped, if it knows that, as an event of the curve. */
-static dea_status add_limit(struct dea_context *ctx, const struct dea_model_type *type,
-                            const struct dea_model *model, struct dea_curve *curve)
-{
-  const struct dea_event *limit = type->limit != NULL ? type->limit(model) : NULL;
-  return limit != NULL ? dea_curve_add_event(ctx, curve, limit) : DEA_OK;
 }
 
 /* Says of a pull-in that it is one of a film without tension, which would not stay flat. */
@@ -230,7 +224,7 @@ static dea_status run(struct dea_context *ctx, const struct dea_model_type *type
   DEA_TRY(ctx, say_trust(ctx, type, curve));
   dea_curve_end(ctx, curve, status);
   if (dea_verdict_of(status)[0] != '\0') {
-    DEA_TRY(ctx, add_limit(ctx, type, model, curve));
+    DEA_TRY(ctx, add_limit(ctx, type->limit, model, curve));
     status = dea_curve_end(ctx, curve, say_slack_pull_in(ctx, curve, status));
   }
   return status;

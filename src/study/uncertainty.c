@@ -327,13 +327,6 @@ static bool is_answer(const struct dea_context *ctx, int column)
   return true;
 }
 
-/* Whether a point is one of several states, of which another device may have found another. */
-static bool is_one_of_several(const struct dea_load_point *point)
-{
-  const unsigned several = 1u << DEA_FLAG_SLACK | 1u << DEA_FLAG_UNSTABLE | 1u << DEA_FLAG_STATES;
-  return (dea_load_point_flags(point) & several) != 0;
-}
-
 /* The varied device at that point of a curve; NULL: it has no such point. */
 static const struct dea_load_point *varied_point(const struct work *w,
                                                  const struct dea_result *result,
@@ -341,7 +334,7 @@ static const struct dea_load_point *varied_point(const struct work *w,
 {
   const struct dea_curve *other =
       result != NULL ? dea_result_find(result, w->type->name, curve->kind) : NULL;
-  return other == NULL || i >= other->count || is_one_of_several(&other->points[i])
+  return other == NULL || i >= other->count || dea_load_point_is_one_of_several(&other->points[i])
              ? NULL
              : &other->points[i];
 }
@@ -390,7 +383,7 @@ static dea_status fill_curve(struct work *w, struct dea_curve *curve)
     std[i] = dea_load_point_empty();
     std[i].monitors = dea_monitor_values_copy(&curve->memory, curve->points[i].monitors);
     for (int c = 0; c < dea_column_count(w->ctx); c++) {
-      const bool has = is_answer(w->ctx, c) && !is_one_of_several(&curve->points[i]);
+      const bool has = is_answer(w->ctx, c) && !dea_load_point_is_one_of_several(&curve->points[i]);
       dea_point_set(&std[i], c, has ? std_of(w, curve, i, c) : NAN);
     }
   }
@@ -419,7 +412,8 @@ static double ends_at(const struct work *w, const struct dea_result *varied)
 {
   const struct dea_curve *sweep = dea_result_find(w->result, w->type->name, "sweep");
   for (size_t i = 0; sweep != NULL && i < sweep->count; i++) {
-    if (!is_one_of_several(&sweep->points[i]) && varied_point(w, varied, sweep, i) == NULL) {
+    if (!dea_load_point_is_one_of_several(&sweep->points[i]) &&
+        varied_point(w, varied, sweep, i) == NULL) {
       return sweep->points[i].voltage_V;
     }
   }

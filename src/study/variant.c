@@ -1,18 +1,11 @@
 #include "study/variant.h"
 
+#include "base/clock.h"
 #include "study/study.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
-
-static double now_s(void)
-{
-  struct timespec now;
-  return timespec_get(&now, TIME_UTC) == TIME_UTC ? (double)now.tv_sec + 1e-9 * (double)now.tv_nsec
-                                                  : 0;
-}
 
 static void take_size(const struct dea_model_type *type, const struct dea_model *model,
                       double refinement, struct dea_variant *variant)
@@ -46,14 +39,14 @@ dea_status dea_variant_run(struct dea_context *ctx, const struct dea_model_type 
 {
   struct dea_variant *variant;
   struct dea_model *model;
-  double start_s = now_s();
+  double start_s = dea_clock_s();
   DEA_TRY(ctx, dea_result_add_variant(ctx, result, type->name, run->study, run->name, &variant));
   dea_status status = type->create(ctx, run->device, &run->settings, &model);
   if (status == DEA_OK) {
     status = use_model(ctx, type, model, run, variant);
     type->destroy(ctx, model);
   }
-  variant->wall_s = now_s() - start_s;
+  variant->wall_s = dea_clock_s() - start_s;
   return dea_curve_end(ctx, &variant->curve, status);
 }
 

@@ -1,5 +1,7 @@
 #include "drive/leak_watch.h"
 
+#include "base/sort.h"
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -71,12 +73,6 @@ static void find_level(struct dea_leak_watch *watch, double in_s)
   watch->largest_V = fabs(found.level_V);
 }
 
-static int compare(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double largest_rise(const struct dea_leak_watch *watch, double base_A)
 {
   const struct dea_protocol *p = watch->protocol;
@@ -100,17 +96,17 @@ static void learn(struct dea_leak_part *part)
   for (size_t i = 0; i < DEA_LEAK_VISITS; i++) {
     sorted_A[i] = part->visits_A[i];
   }
-  qsort(sorted_A, DEA_LEAK_VISITS, sizeof *sorted_A, compare);
+  qsort(sorted_A, DEA_LEAK_VISITS, sizeof *sorted_A, dea_rising);
   part->base_A = part->least_base_A = 0.5 * (sorted_A[1] + sorted_A[2]);
   for (size_t i = 0; i < STEPS; i++) {
     steps_A[i] = part->visits_A[i + 1] - part->visits_A[i];
   }
-  qsort(steps_A, STEPS, sizeof *steps_A, compare);
+  qsort(steps_A, STEPS, sizeof *steps_A, dea_rising);
   double trend_A = steps_A[STEPS / 2];
   for (size_t i = 0; i < STEPS; i++) {
     steps_A[i] = fabs(steps_A[i] - trend_A);
   }
-  qsort(steps_A, STEPS, sizeof *steps_A, compare);
+  qsort(steps_A, STEPS, sizeof *steps_A, dea_rising);
   part->scatter_A = 1.4826 * steps_A[STEPS / 2] / sqrt(2); // of normal noise
 }
 
@@ -195,7 +191,7 @@ static bool add_sample(struct dea_leak_part *part, double current_A, double sinc
   if (part->in_group < DEA_LEAK_GROUP) {
     return false;
   }
-  qsort(part->group_A, DEA_LEAK_GROUP, sizeof *part->group_A, compare);
+  qsort(part->group_A, DEA_LEAK_GROUP, sizeof *part->group_A, dea_rising);
   part->sum_A += part->group_A[DEA_LEAK_GROUP / 2];
   part->in_group = 0;
   part->groups++;

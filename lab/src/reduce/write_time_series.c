@@ -1,6 +1,8 @@
 /* Voltage and series at common times (dea_reduced_series_fill). */
 #include "reduce/output.h"
 
+#include "base/sort.h"
+
 #include <stdlib.h>
 
 enum { COLUMNS_MAX = DEA_REDUCED_KINDS + 1 };
@@ -73,12 +75,6 @@ static size_t add_times(const struct columns *columns, size_t c, size_t stretche
   return n;
 }
 
-static int by_size(const void *a, const void *b)
-{
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The sample there, but for the rounding of two clocks; of fast channels also a straight line
  * between two neighbours. Else NAN: between the frames of a sensor nothing was measured. */
 static double value_at(const struct dea_channel *channel, double time_s, double finest_s)
@@ -143,7 +139,7 @@ dea_status dea_reduced_series_fill(struct dea_context *ctx, const struct dea_rec
   for (size_t c = 0; c < columns.count; c++) {
     n = add_times(&columns, c, stretches, out->time_s, n);
   }
-  qsort(out->time_s, n, sizeof *out->time_s, by_size);
+  qsort(out->time_s, n, sizeof *out->time_s, dea_rising);
   // two clocks' rounding, which is less than their steps also far from 0
   double same_s =
       fmin(1e-9 * fmax(fabs(columns.begin_s), fabs(columns.end_s)), 0.01 * columns.finest_s);
