@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-enum { FILE_MAX = 100000000 };
-
 /* ---- the films ---- */
 
 enum column { VOLTAGE, FIELD, THICKNESS, STRETCH, AREA, SURVIVED, COLUMNS };
@@ -102,11 +100,7 @@ static dea_status read_films(struct dea_breakdown_fit *fit, const char *path)
 {
   struct dea_context *ctx = fit->memory.ctx;
   struct dea_csv_columns table;
-  char *bytes;
-  size_t length;
-  DEA_TRY(ctx, dea_file_read(ctx, path, FILE_MAX, &bytes, &length));
-  dea_sha256_hex(bytes, length, fit->sha256);
-  dea_free(ctx, bytes);
+  dea_sha256_file(path, fit->sha256);
   DEA_TRY(ctx, dea_csv_columns_read(ctx, path, wanted, COLUMNS, NULL, &table));
   const size_t errors = dea_finding_count(ctx, DEA_ERROR);
   dea_status status = check_table(ctx, fit->file, &table);

@@ -22,22 +22,6 @@ void dea_device_fit_destroy(struct dea_context *ctx, struct dea_device_fit *fit)
 
 /* ---- the next measurement ---- */
 
-static void add_next(struct dea_device_fit *fit, const char *what, double shrink)
-{
-  size_t at = fit->next_count;
-  while (at > 0 && fit->next[at - 1].shrink > shrink) {
-    at--;
-  }
-  if (at == DEA_FIT_NEXT_MAX) {
-    return;
-  }
-  const size_t kept = fit->next_count < DEA_FIT_NEXT_MAX ? fit->next_count : DEA_FIT_NEXT_MAX - 1;
-  memmove(&fit->next[at + 1], &fit->next[at], (kept - at) * sizeof *fit->next);
-  fit->next[at].shrink = shrink;
-  snprintf(fit->next[at].what, sizeof fit->next[at].what, "%.79s", what);
-  fit->next_count = kept + 1;
-}
-
 static size_t place_of(const struct dea_information *of, size_t param)
 {
   size_t a = 0;
@@ -113,36 +97,22 @@ static void find_pairs(struct dea_device_fit *fit)
   }
 }
 
-static void tell_weak(struct dea_device_fit *fit)
-{
-  const struct dea_lsq_statistics *s = &fit->statistics;
-  struct dea_fit_param params[DEA_DEVICE_PARAMS_MAX];
-  for (size_t j = 0; j < fit->param_count; j++) {
-    params[j] = fit->params[j].param;
-  }
-  for (size_t k = s->active; k-- > 0 && fit->weak_count < DEA_FIT_WEAK_MAX;) {
-    if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
-      dea_fit_identify_direction(params, fit->param_count, s->direction + k * s->params,
-                                 s->singular[k] <= 1e-9 * s->singular[0], "curves",
-                                 fit->weak[fit->weak_count++]);
-    }
-  }
-}
-
 dea_status dea_device_identify(struct dea_context *ctx, struct dea_device_fit *fit,
                                const struct dea_device_candidate *candidates, size_t count)
 {
   struct dea_information base, now;
   double scale[DEA_DEVICE_PARAMS_MAX];
   double before[DEA_DEVICE_PARAMS_MAX], after[DEA_DEVICE_PARAMS_MAX];
+  struct dea_fit_param params[DEA_DEVICE_PARAMS_MAX];
   (void)ctx;
-  tell_weak(fit);
+  for (size_t j = 0; j < fit->param_count; j++) {
+    params[j] = fit->params[j].param;
+    scale[j] = params[j].scale;
+  }
+  fit->weak_count = dea_fit_identify_weak(params, &fit->statistics, "curves", fit->weak);
   find_pairs(fit);
   if (fit->statistics.active == 0 || !isfinite(fit->statistics.variance)) {
     return DEA_OK;
-  }
-  for (size_t j = 0; j < fit->param_count; j++) {
-    scale[j] = fit->params[j].param.scale;
   }
   dea_information_start(&fit->least_squares, fit->statistics.variance, scale, &base);
   const double without = dea_information_factor(&base, before);
@@ -150,7 +120,8 @@ dea_status dea_device_identify(struct dea_context *ctx, struct dea_device_fit *f
     now = base;
     dea_information_add(&now, candidates[c].J, candidates[c].rows, 1);
     const double gain = dea_information_factor(&now, after) - without;
-    add_next(fit, candidates[c].what, exp(-0.5 * gain / (double)base.count));
+    dea_fit_next_add(fit->next, &fit->next_count, candidates[c].what,
+                     exp(-0.5 * gain / (double)base.count));
     help_pairs(fit, &base, before, after, candidates[c].what);
   }
   return DEA_OK;

@@ -608,7 +608,7 @@ static dea_status run(struct work *w, const struct dea_fit_options *options)
   DEA_TRY(w->ctx, check_rest(w, &w->materials[fit->chosen]));
   DEA_TRY(w->ctx, fill_values(w, options->profile));
   DEA_TRY(w->ctx, fill_curves(w));
-  dea_fit_identify_weak(fit);
+  fit->weak_count = dea_fit_identify_weak(fit->model.params, &fit->statistics, "tests", fit->weak);
   dea_fit_identify_stability(fit);
   find_spreads(w);
   DEA_TRY(w->ctx, dea_fit_identify_next(w->ctx, fit));

@@ -113,13 +113,13 @@ dea_status dea_fit_profile(struct dea_context *ctx, const struct dea_lsq_problem
                            const struct dea_lsq_fit *fit,
                            const struct dea_lsq_statistics *statistics, size_t j, bool logarithmic,
                            bool all, struct dea_fit_value *value);
-/* A direction that the measurements (`what`: "tests") do not hold, or hardly: of two parameters of
- * one unit what they do hold, else the direction in units of the scales. */
-void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
-                                const double *direction, bool open, const char *what,
-                                char out[DEA_FIT_WEAK_SIZE]);
-/* The weak combinations in words, where the law ends to be stable, and the next test. */
-void dea_fit_identify_weak(struct dea_fit *fit);
+/* Combinations of parameters that the measurements (`what`: "tests") do not hold, or hardly, in
+ * words. Returns their number. */
+size_t dea_fit_identify_weak(const struct dea_fit_param *params, const struct dea_lsq_statistics *s,
+                             const char *what, char out[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE]);
+/* Adds a measurement to a list [DEA_FIT_NEXT_MAX], the best first. */
+void dea_fit_next_add(struct dea_fit_next *list, size_t *count, const char *what, double shrink);
+/* Where the law ends to be stable, and the next test. */
 void dea_fit_identify_stability(struct dea_fit *fit);
 /* Stretch of a mode from which a material is not stable, looked for up to `to`; NAN: it is. */
 double dea_fit_unstable_from(const struct dea_material *material, enum dea_coupon_mode mode,

@@ -8,8 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FILE_MAX = 100000000 };
-
 /* The other column that says the same; -1: there is none. */
 static int twin_of(int column)
 {
@@ -53,16 +51,6 @@ static void want(const struct dea_fit_test *test, char names[][DEA_CSV_FIELD_MAX
   }
 }
 
-static dea_status hash_file(struct dea_context *ctx, const char *path, char out[65])
-{
-  char *bytes;
-  size_t length;
-  DEA_TRY(ctx, dea_file_read(ctx, path, FILE_MAX, &bytes, &length));
-  dea_sha256_hex(bytes, length, out);
-  dea_free(ctx, bytes);
-  return DEA_OK;
-}
-
 static dea_status read_path(struct dea_arena *arena, const struct dea_fit_test *test,
                             const char *path, struct dea_fit_series *out)
 {
@@ -71,7 +59,7 @@ static dea_status read_path(struct dea_arena *arena, const struct dea_fit_test *
   struct dea_csv_columns columns;
   struct dea_fit_raw raw = {0};
   want(test, names, wanted);
-  DEA_TRY(arena->ctx, hash_file(arena->ctx, path, raw.sha256));
+  dea_sha256_file(path, raw.sha256);
   DEA_TRY(arena->ctx,
           dea_csv_columns_read(arena->ctx, path, wanted, DEA_FIT_COLUMNS, NULL, &columns));
   raw.file = columns.file;

@@ -9,9 +9,10 @@
 
 /* ---- combinations ---- */
 
-void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
-                                const double *direction, bool open, const char *what,
-                                char out[DEA_FIT_WEAK_SIZE])
+/* A direction that the measurements (`what`: "tests") do not hold, or hardly: of two parameters of
+ * one unit what they do hold, else the direction in units of the scales. */
+static void name_direction(const struct dea_fit_param *params, size_t n, const double *direction,
+                           bool open, const char *what, char out[DEA_FIT_WEAK_SIZE])
 {
   size_t index[DEA_LSQ_PARAMS_MAX], count = 0;
   double most = 0;
@@ -44,15 +45,31 @@ void dea_fit_identify_direction(const struct dea_fit_param *params, size_t n,
   }
 }
 
-void dea_fit_identify_weak(struct dea_fit *fit)
+size_t dea_fit_identify_weak(const struct dea_fit_param *params, const struct dea_lsq_statistics *s,
+                             const char *what, char out[DEA_FIT_WEAK_MAX][DEA_FIT_WEAK_SIZE])
 {
-  const struct dea_lsq_statistics *s = &fit->statistics;
-  for (size_t k = s->active; k-- > 0 && fit->weak_count < DEA_FIT_WEAK_MAX;) {
+  size_t count = 0;
+  for (size_t k = s->active; k-- > 0 && count < DEA_FIT_WEAK_MAX;) {
     if (s->singular[k] * DEA_FIT_WEAK_CONDITION < s->singular[0]) {
-      dea_fit_identify_direction(fit->model.params, fit->model.count, s->direction + k * s->params,
-                                 s->singular[k] <= 1e-9 * s->singular[0], "tests",
-                                 fit->weak[fit->weak_count++]);
+      name_direction(params, s->params, s->direction + k * s->params, dea_lsq_is_open(s, k), what,
+                     out[count++]);
     }
+  }
+  return count;
+}
+
+void dea_fit_next_add(struct dea_fit_next *list, size_t *count, const char *what, double shrink)
+{
+  size_t at = *count;
+  while (at > 0 && list[at - 1].shrink > shrink) {
+    at--;
+  }
+  if (at < DEA_FIT_NEXT_MAX) {
+    const size_t kept = *count < DEA_FIT_NEXT_MAX ? *count : DEA_FIT_NEXT_MAX - 1;
+    memmove(&list[at + 1], &list[at], (kept - at) * sizeof *list);
+    list[at].shrink = shrink;
+    snprintf(list[at].what, sizeof list[at].what, "%.79s", what);
+    *count = kept + 1;
   }
 }
 
@@ -173,10 +190,10 @@ static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct
   const size_t n = fit->model.count;
   struct dea_fit_series series;
   struct dea_lsq_problem problem;
-  struct dea_fit_next next;
+  char what[80];
   struct dea_information now = *base;
   double stress[NEXT_ROWS], variance[DEA_LSQ_PARAMS_MAX];
-  DEA_TRY(ctx, propose(arena, fit, which, longest_time(fit), &series, next.what));
+  DEA_TRY(ctx, propose(arena, fit, which, longest_time(fit), &series, what));
   double *J = dea_arena_alloc(arena, NEXT_ROWS * n, sizeof *J);
   DEA_TRY(ctx, dea_fit_model_stress(arena, &fit->model, &series, &problem));
   if (problem.residual(problem.user, fit->least_squares.p, stress) != DEA_OK ||
@@ -191,12 +208,7 @@ static dea_status weigh(struct dea_context *ctx, struct dea_arena *arena, struct
   dea_information_add(&now, J, NEXT_ROWS, 1);
   const double gain =
       dea_information_factor(&now, variance) - dea_information_factor(base, variance);
-  next.shrink = exp(-0.5 * gain / (double)base->count);
-  size_t at = fit->next_count++;
-  for (; at > 0 && fit->next[at - 1].shrink > next.shrink; at--) {
-    fit->next[at] = fit->next[at - 1];
-  }
-  fit->next[at] = next;
+  dea_fit_next_add(fit->next, &fit->next_count, what, exp(-0.5 * gain / (double)base->count));
   return DEA_OK;
 }
 

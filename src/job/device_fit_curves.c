@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FILE_MAX = 100000000 };
-
 struct reading {
   struct dea_context *ctx;
   struct dea_device_fit *fit;
@@ -169,12 +167,8 @@ static dea_status add_curve(struct reading *r, int column)
 
 static dea_status read_table(struct reading *r, const char *path)
 {
-  char *bytes;
-  size_t length;
   struct dea_measurement *table;
-  DEA_TRY(r->ctx, dea_file_read(r->ctx, path, FILE_MAX, &bytes, &length));
-  dea_sha256_hex(bytes, length, r->sha256);
-  dea_free(r->ctx, bytes);
+  dea_sha256_file(path, r->sha256);
   DEA_TRY(r->ctx, dea_measurement_read(r->ctx, path, &table));
   r->table = table;
   const bool in_time = r->text->kind.value == DEA_DEVICE_TRANSIENT; // has the waveform's voltage

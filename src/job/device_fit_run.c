@@ -234,14 +234,22 @@ static dea_status residual(void *user, const double *p, double *r)
   return DEA_OK;
 }
 
+/* Rows of a curve that are fitted. */
+static size_t count_used(const struct dea_device_curve *curve)
+{
+  size_t rows = 0;
+  for (size_t i = 0; i < curve->rows; i++) {
+    rows += curve->used[i] ? 1U : 0U;
+  }
+  return rows;
+}
+
 static void make_problem(struct work *w)
 {
   const bool meshed = w->model.type->load != NULL;
   size_t rows = 0;
   for (size_t c = 0; c < w->fit->curve_count; c++) {
-    for (size_t i = 0; i < w->fit->curves[c].rows; i++) {
-      rows += w->fit->curves[c].used[i] ? 1U : 0U;
-    }
+    rows += count_used(&w->fit->curves[c]);
   }
   for (size_t j = 0; j < w->fit->param_count; j++) {
     rows += isnan(w->fit->params[j].param.prior) ? 0U : 1U;
@@ -470,10 +478,7 @@ static dea_status find_statistics(struct work *w)
   struct dea_lsq_group groups[DEA_DEVICE_CURVES_MAX];
   size_t count = 0, at = 0;
   for (size_t c = 0; c < fit->curve_count; c++) {
-    size_t rows = 0;
-    for (size_t i = 0; i < fit->curves[c].rows; i++) {
-      rows += fit->curves[c].used[i] ? 1U : 0U;
-    }
+    const size_t rows = count_used(&fit->curves[c]);
     if (rows > 0) {
       groups[count++] = (struct dea_lsq_group){at, rows};
     }
@@ -482,11 +487,7 @@ static dea_status find_statistics(struct work *w)
   DEA_TRY(w->ctx, dea_lsq_statistics_find(w->ctx, &fit->least_squares, groups, count,
                                           fit->scale_known, &fit->statistics));
   for (size_t c = 0, g = 0; c < fit->curve_count; c++) {
-    size_t rows = 0;
-    for (size_t i = 0; i < fit->curves[c].rows; i++) {
-      rows += fit->curves[c].used[i] ? 1U : 0U;
-    }
-    if (rows > 0) {
+    if (count_used(&fit->curves[c]) > 0) {
       fit->curves[c].lag = fit->statistics.lag[g];
       fit->curves[c].effective = fit->statistics.effective[g++];
     }

@@ -22,6 +22,13 @@ void dea_sha256_hex(const void *bytes, size_t length, char out[65])
   SHA256_End(&hash, out);
 }
 
+void dea_sha256_file(const char *path, char out[65])
+{
+  if (SHA256File(path, out) == NULL) {
+    out[0] = '\0';
+  }
+}
+
 void dea_libraries_text(char *out, size_t size)
 {
   int major = 0, minor = 0, patch = 0;

@@ -14,5 +14,7 @@ dea_status dea_provenance_fill(struct dea_context *ctx, const char *input, size_
 void dea_provenance_add_libraries(const char *libraries, struct dea_provenance *provenance);
 /* SHA-256 of some bytes in hexadecimal. */
 void dea_sha256_hex(const void *bytes, size_t length, char out[65]);
+/* The same of a file; "" where it cannot be read. */
+void dea_sha256_file(const char *path, char out[65]);
 /* Names and versions, found at run time, of the libraries in use: "libyaml 0.2.5, HDF5 1.10.8". */
 void dea_libraries_text(char *out, size_t size);
