@@ -1,9 +1,8 @@
-/* A design, its device and an empty result for a study, made from a text; after the header whose
- * context it is made with. */
+/* The one design, device and result of a test; after the header whose context they are made with.
+ */
 #pragma once
 
-#include "design_text.h"
-#include "result/result.h"
+#include "study_run.h"
 
 static struct dea_design *design;
 static struct dea_device *device;
@@ -11,17 +10,13 @@ static struct dea_result *result;
 
 static inline void set_up_result(const char *text, const struct dea_override *sets, size_t count)
 {
-  dea_status status = read_and_build(ctx, text, sets, count, &design, &device);
-  if (status != DEA_OK) {
-    print_findings(ctx);
-  }
-  assert_int_equal(status, DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  const struct run run = run_begin(text, sets, count);
+  design = run.design;
+  device = run.device;
+  result = run.result;
 }
 
 static inline void tear_down_result(void)
 {
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
+  run_end(&(struct run){design, device, result});
 }

@@ -7,6 +7,7 @@
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "study_run.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,34 +37,15 @@ static const char cone[] =
     "  solid: {film: membrane, order: 1}\n";
 
 /* A run of studies of the cone, with keys of other values. */
-struct run {
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
-};
-
 static struct run run_studies(const struct dea_override *overrides, size_t count,
                               const char *const names[], size_t name_count)
 {
-  struct run run;
-  dea_status status = read_and_build(ctx, cone, overrides, count, &run.design, &run.device);
-  if (status != DEA_OK) {
-    print_findings(ctx);
-  }
-  assert_int_equal(status, DEA_OK);
-  assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
+  struct run run = run_begin(cone, overrides, count);
   const struct dea_study_services services = {.rerun = &dea_rerun_designs};
   assert_int_equal(
       dea_study_run_with(ctx, dea_model_find("3d"), names, name_count, &services, run.result),
       DEA_OK);
   return run;
-}
-
-static void end(struct run *run)
-{
-  dea_result_destroy(ctx, run->result);
-  dea_device_destroy(ctx, run->device);
-  dea_design_destroy(ctx, run->design);
 }
 
 static double get(const struct dea_load_point *point, const char *key)
@@ -80,7 +62,7 @@ static double by_hand(const struct dea_override *overrides, size_t count, const 
   struct run run = run_studies(overrides, count, sweep, 1);
   const struct dea_curve *curve = dea_result_find(run.result, "3d", "sweep");
   const double value = get(&curve->points[curve->count - 1], key);
-  end(&run);
+  run_end(&run);
   return value;
 }
 
@@ -109,8 +91,8 @@ TEST(test_force)
                  0.02 * fabs(most)); // ten times the tolerance of the force
   }
   assert_true(interpolated > 5);
-  end(&all);
-  end(&few);
+  run_end(&all);
+  run_end(&few);
 }
 
 /* Every mesh is that of a sweep with its refinement, and meshes are judged by monitors. */
@@ -142,7 +124,7 @@ TEST(test_convergence)
   }
   assert_true(hub && gauge);
   dea_convergence_destroy(ctx, c);
-  end(&run);
+  run_end(&run);
 }
 
 /* A variant is the sweep of that design. */
@@ -166,7 +148,7 @@ TEST(test_compare_design)
   assert_string_equal(dea_result_table_quantity(table, 2)->key, "hub_z_m");
   assert_close(dea_result_table_number(table, 2, "value", 0), get(&other->points[1], "hub_z_m"), 0,
                0);
-  end(&run);
+  run_end(&run);
 }
 
 /* Bands of monitors by central differences over runs of their own. */
@@ -191,14 +173,13 @@ TEST(test_uncertainty)
   assert_non_null(curve->std);
   assert_close(get(&curve->std[1], "hub_z_m"), sqrt(variance), 1e-6, 0);
   assert_true(isnan(get(&curve->std[1], "drive_voltage_V"))); // a place, no answer
-  end(&run);
+  run_end(&run);
 }
 
 /* Uncertainties of the law of two plies of one material: they deviate alike. */
 TEST(test_uncertain_laws)
 {
   static const char *const names[] = {"sweep", "uncertainty"};
-  struct run run = {0};
   char text[6000];
   const char *at = strstr(cone, "stretch_range"), *plies = strstr(cone, "electrodes:");
   assert_true(at != NULL && plies != NULL && plies < at);
@@ -208,8 +189,7 @@ TEST(test_uncertain_laws)
       "%.*sstandard_uncertainties: {c1: 3 kPa}, %s",
       (int)(plies - cone), cone, (int)(at - plies), plies, at);
   const struct dea_override written = {"compute.uncertainty", "{}"};
-  assert_int_equal(read_and_build(ctx, text, &written, 1, &run.design, &run.device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
+  struct run run = run_begin(text, &written, 1);
   const struct dea_study_services services = {.rerun = &dea_rerun_designs};
   assert_int_equal(dea_study_run_with(ctx, dea_model_find("3d"), names, 2, &services, run.result),
                    DEA_OK);
@@ -221,19 +201,17 @@ TEST(test_uncertain_laws)
   const double one = get(&dea_result_find(run.result, "3d", "sweep")->std[1], "hub_z_m");
   double z[2];
   for (int side = 0; side < 2; side++) { // of both at once
-    struct run other;
     const char *c1 = strstr(text, "c1: 178.4");
     memcpy((char *)(uintptr_t)c1, side == 0 ? "c1: 175.4" : "c1: 181.4", 9);
     static const char *const sweep[] = {"sweep"};
-    assert_int_equal(read_and_build(ctx, text, NULL, 0, &other.design, &other.device), DEA_OK);
-    assert_int_equal(dea_result_create(ctx, other.design, other.device, &other.result), DEA_OK);
+    struct run other = run_begin(text, NULL, 0);
     assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), sweep, 1, other.result), DEA_OK);
     z[side] = get(&dea_result_find(other.result, "3d", "sweep")->points[1], "hub_z_m");
     memcpy((char *)(uintptr_t)c1, "c1: 178.4", 9);
-    end(&other);
+    run_end(&other);
   }
   assert_close(one, fabs(z[1] - z[0]) / 2, 1e-6, 0);
-  end(&run);
+  run_end(&run);
 }
 
 /* Limits against a number of a part: those of a sweep of that design, levels between its points. */
@@ -281,8 +259,8 @@ TEST(test_operating_map)
         a >= 0 && b < 0 ? curve->points[i - 1].voltage_V + 2e3 * a / (a - b) : breakdown_V;
   }
   assert_close(dea_result_table_number(table, 0, "breakdown_V", 0), breakdown_V, 1e-6, 0);
-  end(&other);
-  end(&run);
+  run_end(&other);
+  run_end(&run);
 }
 
 TEST(test_operating_map_of_what_is_not_there)
@@ -298,16 +276,14 @@ TEST(test_operating_map_of_what_is_not_there)
     static const char *const names[] = {"operating-map"};
     const struct dea_override of = {"compute.operating_map", all[i].section};
     const struct dea_model_type *type = dea_model_find("3d");
-    struct run run;
-    assert_int_equal(read_and_build(ctx, cone, &of, 1, &run.design, &run.device), DEA_OK);
-    assert_int_equal(dea_result_create(ctx, run.design, run.device, &run.result), DEA_OK);
+    struct run run = run_begin(cone, &of, 1);
     assert_int_equal(dea_study_check_models(ctx, &type, 1, names, 1, run.result), DEA_E_DESIGN);
     if (find_error(ctx, all[i].message) == NULL) {
       print_findings(ctx);
       fail();
     }
     dea_finding_clear(ctx);
-    end(&run);
+    run_end(&run);
   }
 }
 

@@ -6,33 +6,17 @@
 #include "testing.h"
 
 #include "context_fixture.h" // after: its context shadows no name of the headers above
+#include "study_run.h"
 
 #define VOLTAGES "compute:\n  voltage: {values: [0 kV, 3 kV, 6 kV]}\n"
-
-struct run {
-  struct dea_design *design;
-  struct dea_device *device;
-  struct dea_result *result;
-};
 
 /* Studies of these names (NULL: those that the design asks for) of a design with overrides. */
 static struct run run(const char *model, const char *const names[], size_t count,
                       const struct dea_override *overrides, size_t override_count)
 {
-  struct run r;
-  assert_int_equal(
-      read_and_build(ctx, GOOD_DESIGN VOLTAGES, overrides, override_count, &r.design, &r.device),
-      DEA_OK);
-  assert_int_equal(dea_result_create(ctx, r.design, r.device, &r.result), DEA_OK);
+  struct run r = run_begin(GOOD_DESIGN VOLTAGES, overrides, override_count);
   assert_int_equal(dea_study_run(ctx, dea_model_find(model), names, count, r.result), DEA_OK);
   return r;
-}
-
-static void end(struct run *r)
-{
-  dea_result_destroy(ctx, r->result);
-  dea_device_destroy(ctx, r->device);
-  dea_design_destroy(ctx, r->design);
 }
 
 static const char *const map_only[] = {"operating-map"}, *const path_only[] = {"path"};
@@ -64,7 +48,7 @@ static void assert_row(const char *model, const struct dea_result_table *table, 
   if (strcmp(key, "pre_stretch") != 0 || row > 0) { // 1: slack from the start, and no event
     assert_limit(dea_result_table_number(table, row, "slack_V", 0), path, DEA_EVENT_SLACK, end_V);
   }
-  end(&r);
+  run_end(&r);
 }
 
 TEST(test_limits_are_those_of_the_paths)
@@ -91,7 +75,7 @@ TEST(test_limits_are_those_of_the_paths)
     }
     assert_close(r.design->pre_stretch.si, 1.5, 0, 0); // as it was
     assert_close(r.design->film.thickness_m.si, 100e-6, 1e-12, 0);
-    end(&r);
+    run_end(&r);
   }
 }
 
@@ -116,7 +100,7 @@ TEST(test_limits_grow_with_the_thickness)
                 isnan(dea_result_table_number(table, row, "level_V", 1)));
   }
   assert_true(compared > 10);
-  end(&r);
+  run_end(&r);
 }
 
 TEST(test_figures)
@@ -140,7 +124,7 @@ TEST(test_figures)
     assert_close(own->values[1], 6, 1e-12, 0);
     dea_plot_destroy(ctx, plot);
   }
-  end(&r);
+  run_end(&r);
 }
 
 /* The load lines hold the tips of the free actuator with no force; their work is the difference of
@@ -176,7 +160,7 @@ TEST(test_work_of_the_load_lines)
     assert_close(work, flat_J - free->energy_J, 1e-3, 0);
   }
   assert_int_equal(row, table->row_count);
-  end(&r);
+  run_end(&r);
 }
 
 /* No design asks for them; a model without load line says so. */
@@ -185,11 +169,11 @@ TEST(test_by_name_only)
   static const char *const line_only[] = {"load-line"};
   struct run r = run("lumped", NULL, 0, NULL, 0);
   assert_int_equal(r.result->table_count, 0);
-  end(&r);
+  run_end(&r);
   r = run("axisymmetric", line_only, 1, NULL, 0);
   assert_int_equal(r.result->table_count, 0);
   assert_non_null(find_finding(ctx, DEA_NOTE, "model axisymmetric does not support a load line"));
-  end(&r);
+  run_end(&r);
 }
 
 /* What the varied designs are told stays with them. */
@@ -200,7 +184,7 @@ TEST(test_varied_designs_leave_no_findings)
   static const struct dea_override tight = {"electrodes", "{diameter: 17 mm unstretched}"};
   struct run r = run("axisymmetric", path_only, 1, &tight, 1);
   dea_finding_get(ctx, &before);
-  end(&r);
+  run_end(&r);
   r = run("axisymmetric", map_only, 1, &tight, 1); // at a pre-stretch of 1.8 they leave the frame
   dea_finding_get(ctx, &after);
   assert_int_equal(after, before);
@@ -209,7 +193,7 @@ TEST(test_varied_designs_leave_no_findings)
       dea_result_find_table(r.result, "axisymmetric", "operating-map", "pre_stretch");
   assert_true(dea_result_table_number(table, 0, "breakdown_V", 0) > 0);
   assert_true(isnan(dea_result_table_number(table, 32, "breakdown_V", 0)));
-  end(&r);
+  run_end(&r);
 }
 
 TESTS(context_set_up, context_tear_down)

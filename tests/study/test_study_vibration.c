@@ -99,32 +99,19 @@ static struct dea_model_type spring(void)
                                  .respond = with_mass ? respond : NULL};
 }
 
+#include "study_result.h" // after the model: its names shadow none of the arguments above
+
 static const struct dea_override sets[] = {
     {"compute.voltage", "{from: 0 kV, to: 8 kV, step: 2 kV}"},
     {"compute.modal", "{count: 3}"},
     {"compute.frequency",
      "{bias: [1 kV, 2 kV], ripple: 10 V, from: 1 Hz, to: 1 kHz, points: 31, damping: 0.1}"}};
 
-static struct dea_design *design;
-static struct dea_device *device;
-static struct dea_result *result;
-
 static void compute(void)
 {
   const struct dea_model_type type = spring();
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 3, &design),
-      DEA_OK);
-  assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
-  assert_int_equal(dea_result_create(ctx, design, device, &result), DEA_OK);
+  set_up_result(GOOD_DESIGN, sets, 3);
   assert_int_equal(dea_study_run(ctx, &type, NULL, 0, result), DEA_OK);
-}
-
-static void release(void)
-{
-  dea_result_destroy(ctx, result);
-  dea_device_destroy(ctx, device);
-  dea_design_destroy(ctx, design);
 }
 
 TEST(test_points)
@@ -155,7 +142,7 @@ TEST(test_points)
   assert_close(curve->points[61].frequency_Hz, 1e3, 1e-12, 0);
   assert_close(curve->points[61].voltage_V, 2e3, 0, 0);
   assert_close(curve->points[0].centre_amplitude_m, 10 * push, 1e-3, 0);
-  release();
+  tear_down_result();
 }
 
 /* The terminal shows what moves at the lowest frequency and at the peak of a mass on a spring,
@@ -181,7 +168,7 @@ TEST(test_peaks)
                  sqrt(0.98 * square_Hz2(bias_V)), 0.13, 0); // half a step of the frequencies
     assert_close(dea_result_table_number(table, row + 1, "gain", 0), 5.025, 0.25, 0);
   }
-  release();
+  tear_down_result();
 }
 
 /* Phases of the figure go on from where they begin, near 180 and near 0 degrees. */
@@ -241,7 +228,7 @@ TEST(test_files)
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     assert_false(there(names[i]));
   }
-  release();
+  tear_down_result();
 }
 
 TEST(test_models_without_mass)
@@ -251,7 +238,7 @@ TEST(test_models_without_mass)
   assert_null(dea_result_find(result, "spring", "modal"));
   assert_null(dea_result_find(result, "spring", "frequency"));
   assert_true(dea_finding_count(ctx, DEA_NOTE) > 0); // it says so
-  release();
+  tear_down_result();
   with_mass = true;
 }
 
