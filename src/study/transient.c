@@ -817,38 +817,30 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
   return DEA_OK;
 }
 
+/* history_force, history_current */
 static dea_status build_one(struct dea_context *ctx, const struct dea_result *result,
-                            struct dea_plot *plot, const char *key, const char *label)
+                            struct dea_plot *plot)
 {
   struct dea_panel *panel = &plot->panels[0];
-  int column = dea_point_column_find(key);
-  DEA_TRY(ctx, add_models(ctx, result, panel, key, dea_point_columns[column].factor));
-  snprintf(panel->y_label, sizeof panel->y_label, "%s", label);
+  const bool force = strcmp(plot->name, "history_force") == 0;
+  const int column = dea_point_column_find(force ? "force_N" : "current_A");
+  if (!force && !supplied(first_curve(result))) {
+    return DEA_OK;
+  }
+  const struct dea_column *shown = &dea_point_columns[column];
+  DEA_TRY(ctx, add_models(ctx, result, panel, shown->key, shown->factor));
+  snprintf(panel->y_label, sizeof panel->y_label, "%s",
+           force ? "Out-of-plane force {/:Italic F} (mN)" : "Current {/:Italic I} (\302\265A)");
   if (panel->series_count > 0) {
     dea_observe_time_axis(panel);
   }
   return DEA_OK;
 }
 
-static dea_status build_force(struct dea_context *ctx, const struct dea_result *result,
-                              struct dea_plot *plot)
-{
-  return build_one(ctx, result, plot, "force_N", "Out-of-plane force {/:Italic F} (mN)");
-}
-
-static dea_status build_current(struct dea_context *ctx, const struct dea_result *result,
-                                struct dea_plot *plot)
-{
-  if (!supplied(first_curve(result))) {
-    return DEA_OK;
-  }
-  return build_one(ctx, result, plot, "current_A", "Current {/:Italic I} (\302\265A)");
-}
-
 static const struct dea_figure figures[] = {
     DEA_STUDY_FIGURE("history", study_name, build, "voltage and displacement against time"),
-    DEA_STUDY_FIGURE("history_force", study_name, build_force, "out-of-plane force against time"),
-    DEA_STUDY_FIGURE("history_current", study_name, build_current,
+    DEA_STUDY_FIGURE("history_force", study_name, build_one, "out-of-plane force against time"),
+    DEA_STUDY_FIGURE("history_current", study_name, build_one,
                      "current of the supply against time"),
     DEA_STUDY_FIGURE(
         "history_monitors", study_name, dea_observe_build,
