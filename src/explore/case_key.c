@@ -101,10 +101,8 @@ static dea_status evaluate(void *user, struct dea_context *ctx, struct dea_case 
   const size_t count = case_key->quantity_count;
   case_key->id[0] = case_key->model.why[0] = case_key->why[0] = '\0';
   case_key->model.ctx = ctx;
-  dea_status status =
-      io->has_near
-          ? dea_device_model_sweep_from(&case_key->model, io->near, io->p, case_key->points)
-          : dea_device_model_sweep(&case_key->model, io->p, case_key->points);
+  dea_status status = dea_device_model_sweep(&case_key->model, io->has_near ? io->near : NULL,
+                                             io->p, case_key->points);
   snprintf(io->id, sizeof io->id, "%s", case_key->id);
   snprintf(io->why, sizeof io->why, "%.*s", DEA_CASE_WHY_SIZE - 1, case_key->model.why);
   if (status == DEA_E_UNSUPPORTED || status == DEA_E_ARGUMENT) { // of this design: a mesh

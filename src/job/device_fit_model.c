@@ -275,19 +275,6 @@ void dea_device_model_end(struct dea_device_model *model)
   model->start = (struct dea_device_start){0};
 }
 
-dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
-                                  struct dea_load_point *points)
-{
-  struct dea_state *states = model->states;
-  bool *wanted = model->wanted;
-  model->states = NULL;
-  model->wanted = NULL;
-  dea_status status = evaluate(model, p, points);
-  model->states = states;
-  model->wanted = wanted;
-  return status;
-}
-
 /* The design of numbers p becomes the one to begin from; where it fails at a voltage nobody does.
  */
 static dea_status take_start(struct dea_device_model *model, const double *p)
@@ -327,7 +314,7 @@ static bool has_states(const struct dea_device_model *model)
   return any;
 }
 
-/* dea_device_model_sweep_from; model->states is NULL. */
+/* dea_device_model_sweep of a design to begin from; model->states is NULL. */
 static dea_status sweep_from(struct dea_device_model *model, const double *from, const double *p,
                              struct dea_load_point *points)
 {
@@ -358,15 +345,15 @@ static dea_status sweep_from(struct dea_device_model *model, const double *from,
   return evaluate(model, p, points);
 }
 
-dea_status dea_device_model_sweep_from(struct dea_device_model *model, const double *from,
-                                       const double *p, struct dea_load_point *points)
+dea_status dea_device_model_sweep(struct dea_device_model *model, const double *from,
+                                  const double *p, struct dea_load_point *points)
 {
   struct dea_state *states = model->states;
   bool *wanted = model->wanted;
   model->states = NULL;
   model->wanted = NULL;
-  dea_status status =
-      model->type->load != NULL ? sweep_from(model, from, p, points) : evaluate(model, p, points);
+  dea_status status = from != NULL && model->type->load != NULL ? sweep_from(model, from, p, points)
+                                                                : evaluate(model, p, points);
   model->states = states;
   model->wanted = wanted;
   return status;

@@ -73,14 +73,11 @@ void dea_device_model_want(struct dea_device_model *model, const bool *wanted);
 dea_status dea_device_model_points(struct dea_device_model *model, const double *p,
                                    const struct dea_load_point **out);
 /* The same of all stops, without a warm start, as a sweep of its own would find them; points:
- * [stop_count], written to. */
-dea_status dea_device_model_sweep(struct dea_device_model *model, const double *p,
-                                  struct dea_load_point *points);
-/* The same, begun from the states of the design of numbers `from`, which are kept for the next call
- * (dea_device_model_end). Where one of the two is slack, unstable or leaps, and where none is found
- * so, as above. The answer depends on `from` and p alone. */
-dea_status dea_device_model_sweep_from(struct dea_device_model *model, const double *from,
-                                       const double *p, struct dea_load_point *points);
+ * [stop_count], written to. from: begun from the states of the design of these numbers, which are
+ * kept for the next call (dea_device_model_end); not where one of the two is slack, unstable or
+ * leaps, or none is found so; NULL: from none. The answer depends on `from` and p alone. */
+dea_status dea_device_model_sweep(struct dea_device_model *model, const double *from,
+                                  const double *p, struct dea_load_point *points);
 /* A parameter, a text of a fit file, with what the design says of it: unit, limits, value; where it
  * starts, which with whole numbers may be 0. Errors are findings, the status DEA_OK also then. */
 dea_status dea_device_param_make(struct dea_context *ctx, const struct dea_fit_parameter_text *text,

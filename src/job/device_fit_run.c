@@ -332,7 +332,7 @@ static dea_status keep_designed(struct work *w)
   struct dea_load_point *points =
       dea_arena_alloc(&w->fit->memory, w->model.stop_count, sizeof *points);
   DEA_TRY(w->ctx, dea_arena_status(&w->fit->memory));
-  dea_status status = whole ? dea_device_model_sweep(&w->model, p, points) : DEA_E_DOMAIN;
+  dea_status status = whole ? dea_device_model_sweep(&w->model, NULL, p, points) : DEA_E_DOMAIN;
   DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? DEA_OK : status);
   w->designed = status == DEA_OK ? points : NULL;
   w->starts_designed =
@@ -434,7 +434,7 @@ static dea_status prepare(struct work *w)
   DEA_TRY(w->ctx, dea_device_model_begin(&w->model));
   DEA_TRY(w->ctx, keep_designed(w));
   if (!w->starts_designed) {
-    dea_status status = dea_device_model_sweep(&w->model, w->start, own);
+    dea_status status = dea_device_model_sweep(&w->model, NULL, w->start, own);
     DEA_TRY(w->ctx, status == DEA_E_DOMAIN ? tell_start(w) : status);
   }
   const struct dea_load_point *points = w->starts_designed ? w->designed : own;
@@ -462,7 +462,7 @@ static dea_status solve(struct work *w)
       DEA_TRY(w->ctx, check_count(w));
     }
     DEA_TRY(w->ctx, dea_lsq_solve(w->ctx, &w->problem, w->start, w->held, &w->fit->least_squares));
-    DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, w->fit->least_squares.p, points));
+    DEA_TRY(w->ctx, dea_device_model_sweep(&w->model, NULL, w->fit->least_squares.p, points));
     find_slack(w, points, false, w->slack);
     w->fit->settled = !cuts_others(w);
     if (w->fit->settled || round + 1 < ROUNDS_MAX) {
