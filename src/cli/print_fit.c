@@ -318,7 +318,7 @@ void cli_print_breakdown_fit(const struct dea_breakdown_fit *fit)
   putchar('\n');
   for (size_t k = 0; k < sizeof shares / sizeof shares[0]; k++) {
     double std;
-    const double field = dea_breakdown_fit_quantile(fit, shares[k], &std);
+    const double field = dea_weibull_quantile(&fit->fit, shares[k], &std);
     printf("%4.0f %% of such films break by %.4g V/um (68 %%: %.4g to %.4g)\n", 100 * shares[k],
            1e-6 * field, 1e-6 * field * exp(-std), 1e-6 * field * exp(std));
   }

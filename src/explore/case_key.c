@@ -565,11 +565,6 @@ void dea_case_key_destroy(struct dea_case_key *case_key)
   }
 }
 
-bool dea_case_key_warms(const struct dea_case_key *case_key)
-{
-  return case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
-}
-
 int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key)
 {
   for (size_t i = 0; i < case_key->quantity_count; i++) {

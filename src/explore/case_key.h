@@ -66,8 +66,6 @@ struct dea_case_key {
  * is computed; DEA_E_DESIGN then. out: owned by the caller, NULL on failure. */
 dea_status dea_case_key_read(struct dea_context *ctx, const char *file, struct dea_case_key **out);
 void dea_case_key_destroy(struct dea_case_key *case_key);
-/* Whether a design is solved faster from one nearby. */
-bool dea_case_key_warms(const struct dea_case_key *case_key);
 /* Number of a quantity of the question by its key, or -1. */
 int dea_case_key_quantity(const struct dea_case_key *case_key, const char *key);
 /* Whether a quantity is taken with the tip of compute.force held at its first depth. */

@@ -133,8 +133,10 @@ dea_status dea_order_make(const struct dea_case_key *case_key, const struct dea_
   for (size_t j = 0; j < case_key->variable_count; j++) {
     whole[j] = case_key->params[j].whole;
   }
+  const bool warms = // they may begin from each other
+      case_key->model.type->load != NULL && case_key->file->begin.value == DEA_BEGIN_NEAREST;
   return dea_order_of(case_key->ctx, plan->p, plan->count, case_key->variable_count, whole,
-                      dea_case_key_warms(case_key) ? GROUP : 1, out);
+                      warms ? GROUP : 1, out);
 }
 
 void dea_order_free(struct dea_context *ctx, struct dea_order *order)

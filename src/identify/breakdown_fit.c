@@ -210,12 +210,6 @@ static dea_status run(void *made, const void *file)
 
 DEA_FIT_FRAME(breakdown, run)
 
-double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double share,
-                                  double *log_std)
-{
-  return dea_weibull_quantile(&fit->fit, share, log_std);
-}
-
 double dea_breakdown_fit_stretch(const struct dea_breakdown_fit *fit)
 {
   double unused;

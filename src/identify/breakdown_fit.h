@@ -24,10 +24,6 @@ dea_status dea_breakdown_fit_run(struct dea_context *ctx, const struct dea_break
                                  struct dea_breakdown_fit **out);
 void dea_breakdown_fit_destroy(struct dea_context *ctx, struct dea_breakdown_fit *fit);
 
-/* Field at which that share of films breaks that are as the reference, and its standard
- * uncertainty, which counts on its logarithm. */
-double dea_breakdown_fit_quantile(const struct dea_breakdown_fit *fit, double share,
-                                  double *log_std);
 /* Stretch to which the field found belongs: 1, or that of all films where no power of it is known.
  */
 double dea_breakdown_fit_stretch(const struct dea_breakdown_fit *fit);
