@@ -123,17 +123,30 @@ static dea_status open_run(struct dea_context *ctx, const char *path, int number
   return DEA_OK;
 }
 
-static void close_run(struct dea_context *ctx, struct dea_report_run *run)
+dea_status dea_report_runs_open(struct dea_context *ctx, const char *const paths[], size_t count,
+                                struct dea_report_run runs[])
 {
-  for (size_t i = 0; i < run->note_count; i++) {
-    dea_free(ctx, run->notes[i]);
+  dea_status status = DEA_OK;
+  for (size_t i = 0; i < count && status == DEA_OK; i++) {
+    status = open_run(ctx, paths[i], (int)i + 1, &runs[i]);
+    status = status == DEA_OK ? dea_report_reduced(ctx, &runs[i]) : status;
   }
-  dea_free(ctx, run->notes);
-  dea_free(ctx, run->reduced);
-  dea_free(ctx, run->missing);
-  dea_run_destroy(ctx, run->run);
-  dea_device_destroy(ctx, run->device);
-  dea_design_destroy(ctx, run->design);
+  return status;
+}
+
+void dea_report_runs_close(struct dea_context *ctx, struct dea_report_run runs[], size_t count)
+{
+  for (struct dea_report_run *run = runs; run < runs + count; run++) {
+    for (size_t i = 0; i < run->note_count; i++) {
+      dea_free(ctx, run->notes[i]);
+    }
+    dea_free(ctx, run->notes);
+    dea_free(ctx, run->reduced);
+    dea_free(ctx, run->missing);
+    dea_run_destroy(ctx, run->run);
+    dea_device_destroy(ctx, run->device);
+    dea_design_destroy(ctx, run->design);
+  }
 }
 
 // What the page shows beyond what the run has -----------------------------------------------------
@@ -158,9 +171,8 @@ static dea_status complete(struct dea_context *ctx, struct dea_result *result)
   return DEA_OK;
 }
 
-/* Gives an emulator to the runs of its design. bytes: owned by the caller, NULL on failure. */
-static dea_status add_emulator(struct dea_context *ctx, const char *folder,
-                               struct dea_report_run *runs, size_t count, char **bytes)
+dea_status dea_report_runs_explore(struct dea_context *ctx, const char *folder,
+                                   struct dea_report_run runs[], size_t count, char **bytes)
 {
   char *path = dea_path_join(ctx, folder, "emulator.json"), hash[65];
   size_t length, found = 0;
@@ -201,23 +213,19 @@ dea_status dea_job_report(struct dea_context *ctx, const char *const runs[], siz
                     DEA_REPORT_RUNS_MAX, count);
   }
   void *before = dea_c_locale_enter();
-  dea_status status = DEA_OK;
+  dea_status status = dea_report_runs_open(ctx, runs, count, opened);
   for (size_t i = 0; i < count && status == DEA_OK; i++) {
-    status = open_run(ctx, runs[i], (int)i + 1, &opened[i]);
-    status = status == DEA_OK ? dea_report_reduced(ctx, &opened[i]) : status;
-    status = status == DEA_OK ? complete(ctx, opened[i].run->result) : status;
+    status = complete(ctx, opened[i].run->result);
   }
   dea_c_locale_leave(before);
   char *emulator = NULL;
   if (status == DEA_OK && options->explorer != NULL) {
-    status = add_emulator(ctx, options->explorer, opened, count, &emulator);
+    status = dea_report_runs_explore(ctx, options->explorer, opened, count, &emulator);
   }
   if (status == DEA_OK) {
     status = dea_report_write(ctx, opened, count, options, path);
   }
   dea_free(ctx, emulator);
-  for (size_t i = 0; i < count; i++) {
-    close_run(ctx, &opened[i]);
-  }
+  dea_report_runs_close(ctx, opened, count);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
