@@ -24,6 +24,7 @@ struct dea_cli {
   struct {                  // for the progress that is shown
     char what[64];
     double began_s, last_s; // when this part began, and the last call
+    bool open;              // its line has no end yet
   } progress;
 };
 
@@ -249,6 +250,8 @@ dea_status cli_print_text(dea_status status, struct dea_text *text);
 /* Has Ctrl-C and SIGTERM interrupt what the library does, a second one end the program, and
  * progress shown. */
 void cli_watch(struct dea_cli *cli);
+/* Clears the line of a progress that has no end, for what is printed next. */
+void cli_progress_clear(struct dea_cli *cli);
 /* From here on no signal ends or stops the program at once, not a second one either, because the
  * voltage has to come down first: hang-up, quit and the like count as an interruption too (hang-up
  * not under nohup). Progress is left out while stderr does not take it. */

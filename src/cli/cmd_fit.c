@@ -74,6 +74,7 @@ static int fit_material(struct dea_cli *cli, const struct request *request)
     struct dea_##kind##_file *file = NULL;                                                         \
     struct dea_##kind##_fit *fit = NULL;                                                           \
     const dea_status status = fit_##kind##_file(cli, request, &file, &fit);                        \
+    cli_progress_clear(cli);                                                                       \
     if (fit != NULL && request->json) {                                                            \
       cli_print_json(dea_##kind##_fit_json(fit, cli->command_line));                               \
     } else if (fit != NULL) {                                                                      \

@@ -98,6 +98,7 @@ static dea_status search(struct dea_cli *cli, const struct request *request,
   struct dea_optimise_report *report = dea_alloc(cli->ctx, 1, sizeof *report);
   dea_status status =
       report != NULL ? dea_optimise_run(case_key, &request->options, report) : DEA_E_MEMORY;
+  cli_progress_clear(cli);
   if (report != NULL && report->evaluations > 0) {
     print_report(case_key, report, request->options.folder);
   }

@@ -102,6 +102,7 @@ static void print_findings(struct dea_cli *cli)
 
 int cli_report(struct dea_cli *cli, dea_status status)
 {
+  cli_progress_clear(cli);
   print_findings(cli);
   bool said = dea_finding_count(cli->ctx, DEA_ERROR) > 0 && status == DEA_E_DESIGN;
   if (status != DEA_OK && !said) {

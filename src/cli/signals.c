@@ -66,10 +66,19 @@ static void show_progress(void *user, const char *what, size_t done, size_t tota
     return;
   }
   if (cli->terminal) {
+    cli->progress.open = done != total;
     fprintf(stderr, "\r\033[K%s %s%s%s", what, count, times, done == total ? "\n" : "");
     fflush(stderr);
   } else if (done == total) {
     fprintf(stderr, "%s %s%s\n", what, count, times);
+  }
+}
+
+void cli_progress_clear(struct dea_cli *cli)
+{
+  if (cli->progress.open) {
+    fputs("\r\033[K\r", stderr);
+    cli->progress.open = false;
   }
 }
 
