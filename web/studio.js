@@ -21,6 +21,17 @@
 
   // The editor: CodeMirror where this program was built with it, else a plain field -----------------
 
+  // What to replace of one text to make the other of it: from, to, by.
+  const between = (a, b) => {
+    let [from, back] = [0, 0];
+    while (from < a.length && a[from] === b[from]) {
+      from++;
+    }
+    while (back < Math.min(a.length, b.length) - from && a[a.length - 1 - back] === b[b.length - 1 - back]) {
+      back++;
+    }
+    return [from, a.length - back, b.slice(from, b.length - back)];
+  };
   const editor = (() => {
     const host = $('editor');
     const heard = [];
@@ -43,7 +54,10 @@
       };
       return {
         hear, get: () => field.value, read: (text) => { field.value = text; },
-        set: (text) => replace(text, 0, field.value.length),
+        set: (text) => {
+          const [from, to, by] = between(field.value, text);
+          replace(by, from, to);
+        },
         replace: (text, line, from, to) => replace(text, offset(line, from), offset(line, to)),
         go: (line, column) => { field.focus(); field.setSelectionRange(offset(line, column), offset(line, column)); },
         mark: () => {}, refresh: () => {},
@@ -64,7 +78,10 @@
     return {
       hear, get: () => mirror.getValue(),
       read: (text) => { mirror.setValue(text); mirror.clearHistory(); },
-      set: (text) => mirror.replaceRange(text, { line: 0, ch: 0 }, { line: mirror.lastLine() + 1, ch: 0 }, '*read'),
+      set: (text) => {
+        const [from, to, by] = between(mirror.getValue(), text);
+        mirror.replaceRange(by, mirror.posFromIndex(from), mirror.posFromIndex(to), '*read');
+      },
       replace: (text, line, from, to) => mirror.replaceRange(text, { line, ch: from }, { line, ch: to }, '*form'),
       go: (line, column) => { mirror.focus(); mirror.setCursor(line, column); },
       mark: (findings) => {
@@ -119,7 +136,25 @@
 
   // The schema: what keys there are, and what they mean ----------------------------------------------
 
-  let schema = null;
+  let schema = null; // of the file that is open
+  const schemas = new Map();
+  const readSchema = async () => {
+    const { name, kind } = open;
+    const text = editor.get();
+    const fit = ['design', 'breakdown', 'life'].find((key) => new RegExp(`^${key}:`, 'm').test(text));
+    const of = kind === 'fit' ? (fit === undefined ? 'fit' : `fit-${fit.replace('design', 'device')}`) : kind === 'sweep' || kind === 'optimise' ? 'explore' : '';
+    if (!schemas.has(of)) {
+      schemas.set(of, call('GET', 'schema', of !== '' ? { of } : {}));
+    }
+    const { json } = await schemas.get(of);
+    if (name === open.name) {
+      schema = json.schema ?? null;
+      if (open.values.length > 0) {
+        $('form').dataset.keys = '';
+        showValues();
+      }
+    }
+  };
   const flatten = (node) => {
     if (node === undefined || node === null || schema === null) {
       return [];
@@ -129,7 +164,7 @@
     }
     return [node, ...['oneOf', 'anyOf', 'allOf'].flatMap((how) => (node[how] ?? []).flatMap(flatten))];
   };
-  const root = () => (open.kind !== 'design' ? undefined : /^plies:/m.test(editor.get()) ? schema?.then : schema?.else);
+  const root = () => (open.kind !== 'design' ? schema : /^plies:/m.test(editor.get()) ? schema?.then : schema?.else);
   const at = (path) => path.reduce((nodes, key) => nodes.flatMap((node) => (key === '[]'
     ? flatten(node.items) : flatten(node.properties?.[key]))), flatten(root()));
   const describe = (path) => at(path).map((node) => node.description).find((text) => text !== undefined) ?? '';
@@ -213,9 +248,72 @@
   let state = { designs: [], runs: [], tables: [], folders: [], jobs: [] };
   const open = { name: '', version: '', saved: '', stamp: '', kind: 'design', busy: null, again: false, asked: false, values: [] };
 
+  const freeName = (name) => {
+    const taken = new Set(state.designs.map((one) => one.name));
+    let to = name;
+    for (let n = 2; taken.has(to); n++) {
+      to = `${stem(name)}-${n}.yaml`;
+    }
+    return to;
+  };
   const kindOf = (text) => (/^dea_fit:/m.test(text) ? 'fit' : /^dea_explore:/m.test(text)
     ? (/^objectives?:/m.test(text) ? 'optimise' : 'sweep') : /^dea:/m.test(text) ? 'design' : 'other');
 
+  // Lines that differ, by the longest common ones: [{ from, to, lines }], from and to in the first list.
+  const changes = (a, b) => {
+    const common = Array.from({ length: a.length + 1 }, () => new Uint32Array(b.length + 1));
+    for (let i = a.length - 1; i >= 0; i--) {
+      for (let j = b.length - 1; j >= 0; j--) {
+        common[i][j] = a[i] === b[j] ? common[i + 1][j + 1] + 1 : Math.max(common[i + 1][j], common[i][j + 1]);
+      }
+    }
+    const list = [];
+    for (let [i, j] = [0, 0]; i < a.length || j < b.length; i++, j++) {
+      const [from, start] = [i, j];
+      while (a[i] !== b[j]) {
+        if (j === b.length || (i < a.length && common[i + 1][j] >= common[i][j + 1])) {
+          i++;
+        } else {
+          j++;
+        }
+      }
+      if (i > from || j > start) {
+        list.push({ from, to: i, lines: b.slice(start, j) });
+      }
+    }
+    return list;
+  };
+  // Both changes of a text; null: they touch each other.
+  const merge = (base, mine, theirs) => {
+    const lines = base.split('\n');
+    const lists = [mine, theirs].map((text) => text.split('\n'));
+    if (lists.some((list) => list.length * lines.length > 4e6)) {
+      return null;
+    }
+    const all = lists.flatMap((list) => changes(lines, list)).sort((a, b) => a.from - b.from || a.to - b.to)
+      .filter((one, i, list) => JSON.stringify(one) !== JSON.stringify(list[i - 1])); // the same in both
+    if (all.some((one, i) => i > 0 && one.from <= all[i - 1].to)) {
+      return null;
+    }
+    all.reverse().forEach((one) => lines.splice(one.from, one.to - one.from, ...one.lines));
+    return lines.join('\n');
+  };
+  const unix = (text) => text.replace(/\r\n?/g, '\n'); // as the editor has it
+
+  // What another program has written: with what was changed here where that is elsewhere in the text, else asked.
+  const meet = (theirs) => {
+    const both = theirs.text !== undefined ? merge(open.saved, editor.get(), unix(theirs.text)) : null;
+    if (both === null) {
+      askWhich(theirs);
+      tell('not saved');
+      return;
+    }
+    tell(editor.get() === open.saved ? 'read again: another program has changed it' : 'merged with what another program has changed');
+    open.version = theirs.version;
+    open.saved = unix(theirs.text);
+    editor.set(both);
+    touch();
+  };
   const askWhich = (theirs) => {
     open.asked = true;
     $('asked-text').textContent = `${open.name} was changed by another program while you changed it here.`;
@@ -231,10 +329,10 @@
     };
     $('asked-theirs').onclick = () => {
       open.version = theirs.version;
-      open.saved = theirs.text;
+      open.saved = unix(theirs.text ?? '');
       open.asked = false;
       $('asked').hidden = true;
-      editor.set(theirs.text); // which can be undone
+      editor.set(open.saved); // which can be undone
     };
   };
 
@@ -249,10 +347,9 @@
     if (name !== open.name) {
       return;
     }
-    if (answer.status === 409) {
-      askWhich(answer.json);
-      tell('not saved');
-    } else if (answer.status === 200) {
+    if (answer.json?.changed) {
+      meet(answer.json);
+    } else if (answer.json?.version !== undefined) {
       open.version = answer.json.version;
       open.saved = text;
       tell('saved');
@@ -413,6 +510,7 @@
       }
     };
     showModels();
+    fillStudy();
   };
   // A key goes after one of its section, the way that stands there.
   const addKey = (value, beside) => {
@@ -468,7 +566,7 @@
   };
   const start = async (job) => {
     const answer = await call('POST', 'job', {}, JSON.stringify(job));
-    if (answer.status !== 200) {
+    if (answer.json?.id === undefined) {
       tell(answer.json?.error ?? `refused: ${answer.status}`);
       return;
     }
@@ -490,9 +588,35 @@
     $('folder-view').hidden = false;
     $('folder-title').textContent = name;
     const href = (file) => address('file', { name: `${name}/${file}` });
-    const links = json.map((file) => dea.element('li', {}, dea.element('a', { href: href(file), target: '_blank', rel: 'noopener', ...(/\.(svg|html|csv|yaml|json|png)$/.test(file) ? {} : { download: file }) }, file)));
+    const own = (file) => {
+      const button = dea.element('button', { type: 'button' }, 'Open a copy');
+      button.addEventListener('click', () => adopt(name, file));
+      return button;
+    };
+    const links = json.map((file) => dea.element('li', {}, ...(file.endsWith('.yaml') && /\.(optimise|fit)$/.test(name) ? [own(file), ' '] : []), dea.element('a', { href: href(file), target: '_blank', rel: 'noopener', ...(/\.(svg|html|csv|yaml|json|png)$/.test(file) ? {} : { download: file }) }, file)));
     const pictures = json.filter((file) => file.endsWith('.svg')).map((file) => dea.element('img', { src: href(file), alt: file, loading: 'lazy' }));
-    $('files').replaceChildren(dea.element('ul', {}, ...links), ...pictures);
+    const cases = json.includes('cases.csv') ? [casesTable((await call('GET', 'file', { name: `${name}/cases.csv` })).text)] : [];
+    $('files').replaceChildren(...cases, dea.element('ul', {}, ...links), ...pictures);
+  };
+  // The designs of a sweep or a search; the last of many.
+  const casesTable = (text) => {
+    const [head, ...rows] = text.trim().split('\n').map((line) => line.split(','));
+    const kept = head.flatMap((title, i) => (/^(id|time)\b/.test(title) ? [] : [i]));
+    const cell = (tag, row, i) => dea.element(tag, i < head.length - 2 ? { class: 'n' } : {}, tag === 'th' || row[i] === '' || !Number.isFinite(Number(row[i])) ? row[i] ?? '' : dea.number(Number(row[i])));
+    const line = (tag) => (row) => dea.element('tr', {}, ...kept.map((i) => cell(tag, row, i)));
+    return dea.element('div', { class: 'scroll', tabindex: '0' }, dea.element('table', {}, dea.element('thead', {}, line('th')(head)), dea.element('tbody', {}, ...rows.slice(-50).map(line('td')))));
+  };
+  // A design that a search or a fit has written, as one of this folder.
+  const adopt = async (folder, file) => {
+    const { text } = await call('GET', 'file', { name: `${folder}/${file}` });
+    const to = freeName(`${stem(folder)}-${stem(file)}.yaml`);
+    const { json } = kindOf(text) === 'design' ? await call('PUT', 'design', { name: to, version: '' }, text) : { json: { error: `${file} is no design` } };
+    command(`cp ${folder}/${file} ${to}`);
+    if (json?.version !== undefined && !json.changed) {
+      window.location.hash = encodeURIComponent(to);
+    } else {
+      tell(json?.error ?? `${to} is there`);
+    }
   };
   const showReport = (name) => {
     $('folder-view').hidden = false;
@@ -500,6 +624,26 @@
     $('files').replaceChildren(dea.element('iframe', { src: address('file', { name: `${name}/report.html` }), title: `Report of ${name}`, sandbox: 'allow-scripts' }));
     $('folder-view').scrollIntoView();
   };
+
+  // Whether a run has more to compute: it was killed before it could say how it ended, or interrupted.
+  const ends = new Map();
+  const unfinished = (one) => {
+    const part = state.runs.find((other) => other.name === `${one?.name}.part`);
+    if (one === undefined || part !== undefined || one.state === '' || one.summary === '') {
+      return (part ?? one ?? { state: '' }).state !== '';
+    }
+    const key = `${one.name} ${one.summary}`;
+    if (!ends.has(key)) {
+      ends.set(key, false);
+      call('GET', 'file', { name: `${one.name}/summary.json` }).then(({ json }) => {
+        ends.set(key, [json, ...(json?.more_models ?? [])].some((model) => model?.status === 'DEA_E_INTERRUPTED'));
+        showRuns();
+        showJobs();
+      });
+    }
+    return ends.get(key);
+  };
+  const goesOn = (job) => unfinished(state.runs.find((one) => one.name === job.output));
 
   const jobRow = (job) => {
     const going = job.state === 'running' || job.state === 'waiting';
@@ -515,20 +659,24 @@
       button('Stop', () => call('POST', 'stop', {}, JSON.stringify({ id: job.id })));
       row.append(dea.element('progress', { 'aria-label': job.output, ...(count !== null && Number(count[2]) > 0 ? { value: count[1], max: count[2] } : {}) }));
     } else if (job.action === 'run' && job.state !== 'done') {
-      button('Go on', () => start({ action: 'run', file: job.subject, output: job.output, resume: true }));
+      if (goesOn(job)) {
+        button('Go on', () => start({ action: 'run', file: job.subject, output: job.output, resume: true }));
+      }
       button('Start anew', () => start({ action: 'run', file: job.subject, output: job.output, force: true }));
     } else if (!going && !['run', 'report'].includes(job.action)) {
       button('Files', () => showFolder(job.output));
     }
-    row.append(dea.element('details', job.state === 'failed' ? { open: '' } : {}, dea.element('summary', {}, dea.element('span', { class: 'code' }, job.command)), dea.element('pre', { tabindex: '0' }, job.said)));
+    const asked = ['fit', 'sweep', 'optimise'].includes(job.action) && job.state === 'done'; // what it says is its result
+    row.append(dea.element('details', job.state === 'failed' || asked ? { open: '' } : {}, dea.element('summary', {}, dea.element('span', { class: 'code' }, job.command)), dea.element('pre', { tabindex: '0' }, job.said)));
     return row;
   };
   const showJobs = () => {
     const opened = new Set([...$('jobs').querySelectorAll('li')].filter((row) => row.querySelector('details').open).map((row) => row.dataset.id));
     const focus = document.activeElement?.closest?.('#jobs li')?.dataset.id;
     const jobs = state.jobs.slice(-6).reverse();
-    if ($('jobs').dataset.last !== JSON.stringify(jobs)) {
-      $('jobs').dataset.last = JSON.stringify(jobs);
+    const text = JSON.stringify([jobs, jobs.map(goesOn)]);
+    if ($('jobs').dataset.last !== text) {
+      $('jobs').dataset.last = text;
       $('jobs').replaceChildren(...jobs.map((job) => {
         const row = jobRow(job);
         row.querySelector('details').open ||= opened.has(String(job.id));
@@ -561,7 +709,7 @@
   const showRuns = () => {
     const runs = state.runs.filter((one) => !one.name.endsWith('.part')); // those are halves of others
     const going = state.jobs.filter((job) => job.state === 'running' || job.state === 'waiting').map((job) => job.output);
-    const text = JSON.stringify([open.name, going, [...chosen], runs.map((one) => [one.name, one.report, one.state])]);
+    const text = JSON.stringify([open.name, going, [...chosen], runs.map((one) => [one.name, one.report, unfinished(one)])]);
     if ($('shown').dataset.last !== text) {
       $('shown').dataset.last = text;
       const focus = document.activeElement?.value;
@@ -573,7 +721,7 @@
           $('shown').dataset.many = chosen.size > 1 ? '1' : '';
           showRuns();
           showCurves();
-          showFilm();
+          showPanels();
         });
         const row = dea.element('li', {}, dea.element('label', {}, box, one.name));
         const button = (text, title, act) => {
@@ -584,7 +732,7 @@
         if (one.report !== '') {
           button('Open report', `${one.name}/report.html`, () => showReport(one.name));
         }
-        if (one.state !== '' && one.name.startsWith(stem(open.name)) && !going.includes(one.name)) {
+        if (unfinished(one) && one.name.startsWith(stem(open.name)) && !going.includes(one.name)) {
           button('Go on', 'dea run --resume: from the state that the run has left', () => start({ action: 'run', file: open.name, output: one.name, resume: true }));
         }
         return row;
@@ -594,6 +742,7 @@
     if ($('measured').dataset.last !== JSON.stringify(state.tables)) {
       $('measured').dataset.last = JSON.stringify(state.tables);
       pick($('measured'), state.tables, 'none');
+      pick($('study-table'), state.tables, 'none');
     }
     $('report').disabled = shown().length === 0;
   };
@@ -621,7 +770,7 @@
     const names = { run: runs.map((one) => one.name), ...(measured !== '' ? { measured } : {}) };
     const answer = await call('GET', 'curves', names);
     drawing = false;
-    if (answer.status === 200) {
+    if (answer.status === 200 && answer.json === null) {
       curvesOf = text;
       dea.listeners.length = 0;
       $('curves').innerHTML = answer.text; // as the report: texts are texts
@@ -636,21 +785,22 @@
     await showMisfit(names);
     showCurves(); // what has come meanwhile
   };
-  // The film of the first run, while its panel is open; of one that goes on not more often than can be looked at.
-  let filmOf = '';
-  let filmAt = 0;
-  const showFilm = () => {
+  // Pages of the first run, while their panels are open; of one that goes on not more often than can be looked at.
+  const panels = [['film', 4000], ['sliders', Infinity]].map(([path, every]) => ({ path, every, of: '', at: -Infinity }));
+  const showPanels = () => {
     const [run] = shown();
-    const text = run !== undefined ? address('film', { run: run.name, stamp: run.stamp }) : '';
     const going = state.jobs.some((job) => job.state === 'running' && run?.name.startsWith(job.output));
-    $('space').hidden = run === undefined;
-    if ($('space').open && text !== '' && text !== filmOf && !(going && performance.now() - filmAt < 4000)) {
-      filmOf = text;
-      filmAt = performance.now();
-      $('space').querySelector('iframe').src = text;
+    for (const panel of panels) {
+      const text = run === undefined ? '' : address(panel.path, { run: run.name, stamp: [run.stamp, ...(panel.path === 'sliders' ? state.sweeps.map((one) => one.stamp) : [])] });
+      $(panel.path).hidden = run === undefined;
+      if ($(panel.path).open && text !== '' && text !== panel.of && !(going && performance.now() - panel.at < panel.every)) {
+        panel.of = text;
+        panel.at = performance.now();
+        $(panel.path).querySelector('iframe').src = text;
+      }
     }
   };
-  $('space').addEventListener('toggle', showFilm);
+  panels.forEach(({ path }) => $(path).addEventListener('toggle', showPanels));
   const showMisfit = async (names) => {
     if (names.measured === undefined && names.run.length < 2) {
       $('misfit').replaceChildren();
@@ -670,11 +820,11 @@
     const name = file.name.replace(/^\.+/, '').replace(/[/\\]/g, '-');
     const body = await file.arrayBuffer();
     let answer = await call('PUT', 'design', { name, version: '' }, body);
-    if (answer.status === 409 && window.confirm(`Replace ${name} in the folder?`)) {
+    if (answer.json?.changed && window.confirm(`Replace ${name} in the folder?`)) {
       answer = await call('PUT', 'design', { name, version: answer.json.version }, body);
     }
-    if (answer.status !== 200) {
-      tell(answer.json?.error ?? `not taken: ${answer.status}`);
+    if (answer.json?.version === undefined || answer.json.changed) {
+      tell(answer.json?.error ?? 'not taken');
       return;
     }
     state.tables = [...new Set([...state.tables, name])].sort();
@@ -698,6 +848,104 @@
   $('run-beside').addEventListener('click', () => { $('shown').dataset.many = '1'; run(true); });
   $('report').addEventListener('click', () => start({ action: 'report', runs: shown().map((one) => one.name), ...($('measured').value !== '' ? { measured: $('measured').value } : {}) }));
   $('fab').addEventListener('click', async () => { await touch(); start({ action: 'fab', file: open.name, output: `${stem(open.name)}.fab` }); });
+
+  // Fit, sweep, optimise: a file with a few entries, written for the design that is open --------------
+
+  const range = (text, factor) => text.replace(/^[+-]?[\d.]+(e[+-]?\d+)?/i, (number) => String(Number((number * factor).toPrecision(4))));
+  const given = (pattern) => open.values.filter((value) => value.origin === 'given' && pattern.test(value.key));
+  // Numbers that vary, by the names that the commands take: plies.film.thickness.
+  const numbers = () => given(/^(?!dea|compute|report|monitors)/).filter((value) => value.si !== undefined).map((value) => {
+    const [, list, rest] = /^(\w+\[\d+\])?(.*)$/.exec(value.key);
+    const name = list !== undefined ? open.values.find((one) => one.key === `${list}.name` && one.origin === 'given') : undefined;
+    return { name: name !== undefined ? `${list.replace(/\[.*/, '')}.${name.text}${rest}` : value.key, text: value.text };
+  });
+  const addRow = () => {
+    const known = numbers();
+    const free = known.find((one) => ![...$('study-keys').querySelectorAll('select')].some((select) => select.value === one.name)) ?? known[0];
+    const select = dea.element('select', { 'aria-label': 'Key' }, ...known.map((one) => dea.element('option', { value: one.name }, `${one.name} (${one.text})`)));
+    const ends = ['From', 'To'].map((label) => dea.element('input', { type: 'text', 'aria-label': label }));
+    const less = dea.element('button', { type: 'button', 'aria-label': 'Leave this key' }, '−');
+    const row = dea.element('li', {}, select, ...ends, less);
+    const fill = () => {
+      const of = known.find((one) => one.name === select.value);
+      [0.9, 1.1].forEach((factor, i) => { ends[i].value = range(of.text, factor); });
+      showStudy();
+    };
+    $('study-keys').append(row);
+    less.addEventListener('click', () => { row.remove(); showStudy(); });
+    select.addEventListener('change', fill);
+    if (free !== undefined) {
+      select.value = free.name;
+      fill();
+    }
+  };
+  const study = () => {
+    const kind = $('study-kind').value;
+    const action = kind === 'sliders' ? 'sweep' : kind;
+    const value = (id) => $(`study-${id}`).value.trim();
+    const name = freeName(`${stem(open.name)}-${kind}.yaml`);
+    const rows = [...$('study-keys').children].map((row) => {
+      const [key, low, high] = [...row.querySelectorAll('select, input')].map((one) => one.value.trim());
+      return `  - {name: ${/[[\]]/.test(key) ? `'${key}'` : key}, low: ${low}, high: ${high}${kind === 'sweep' ? `, steps: ${value('steps')}` : ''}}`;
+    });
+    const text = [`# Written by dea studio for ${open.name}.`, ...(kind === 'fit' ? ['dea_fit: 1'] : ['dea_explore: 1']), `name: ${stem(name)}`, `design: ${open.name}`, `model: ${value('model')}`,
+      ...(kind === 'fit' ? ['parameters:', ...rows, 'curves:', `  - {name: ${stem(value('table'))}, file: ${value('table')}}`]
+        : [`voltages: [${value('voltages')}]`, `quantities: [${value('quantities')}]`, 'variables:', ...rows]),
+      ...(kind === 'sliders' ? ['plan: sparse-grid'] : []),
+      ...(kind === 'optimise' ? [`objectives: [{quantity: ${value('objective')}, goal: ${value('goal')}}]`, ...(value('limit') !== '' ? [`limits: [{quantity: ${value('limit')}, above: ${value('above')}}]`] : []), 'starts: 1'] : []), ''].join('\n');
+    return { action, name, text, output: `${stem(name)}.${action}` };
+  };
+  const showStudy = () => {
+    const kind = $('study-kind').value;
+    for (const label of $('study-form').querySelectorAll('[data-for]')) {
+      label.hidden = !label.dataset.for.split(' ').includes(kind);
+    }
+    const { action, name, text, output } = study();
+    $('study-text').textContent = text;
+    command(`dea ${action} ${name} -o ${output}`);
+    $('study-open').disabled = $('study-run').disabled = $('study-keys').children.length === 0 || (kind === 'fit' && $('study-table').value === '');
+  };
+  // Entries for the design, once it is checked.
+  const fillStudy = () => {
+    if (!$('study').open || open.values.length === 0 || $('study-keys').children.length > 0) {
+      return;
+    }
+    const layout = given(/^plies\[/).length > 0;
+    const highest = given(/^compute\.voltage\.(to|values\[\d+\])$/).at(-1)?.text ?? '1 kV';
+    const moved = given(/^monitors\[\d+\]\.body$/).map((value) => `${open.values.find((one) => one.key === value.key.replace('body', 'name'))?.text.toLowerCase().replace(/\W/g, '_')}_z_m`);
+    const known = [...(layout ? moved : ['electrode_edge_u_m']), 'true_field_V_per_m', 'breakdown_margin', 'min_tension_N_per_m', 'capacitance_F'];
+    const few = Array.from({ length: 5 }, (_, i) => range(highest, i / 4));
+    $('study-voltages').value = $('study-kind').value === 'sliders' ? few.join(', ') : highest;
+    $('study-quantities').value = known.slice(0, 4).join(', ');
+    $('study-objective').value = known[0];
+    $('study-limit').value = 'breakdown_margin';
+    $('study-known').replaceChildren(...known.map((text) => dea.element('option', { value: text })));
+    pick($('study-model'), layout ? ['3d'] : ['lumped', 'axisymmetric', '3d'], null);
+    $('study-model').selectedIndex = 0;
+    $('study-kind').onchange = () => {
+      $('study-voltages').value = $('study-kind').value === 'sliders' ? few.join(', ') : highest;
+      showStudy();
+    };
+    addRow();
+  };
+  const writeStudy = async (run) => {
+    await touch();
+    const { action, name, text, output } = study();
+    const { json } = await call('PUT', 'design', { name, version: '' }, text);
+    if (json?.version === undefined || json.changed) {
+      tell(json?.error ?? `${name} is there`);
+    } else if (run) {
+      await start({ action, file: name, output });
+    } else {
+      window.location.hash = encodeURIComponent(name);
+    }
+  };
+  $('study').addEventListener('toggle', fillStudy);
+  $('study-form').addEventListener('submit', (event) => event.preventDefault());
+  $('study-form').addEventListener('input', showStudy);
+  $('study-more').addEventListener('click', addRow);
+  $('study-open').addEventListener('click', () => writeStudy(false));
+  $('study-run').addEventListener('click', () => writeStudy(true));
 
   // Files and the start page --------------------------------------------------------------------------
 
@@ -723,24 +971,27 @@
       window.location.hash = '';
       return;
     }
-    Object.assign(open, { name, version: answer.json.version, saved: answer.json.text, kind: kindOf(answer.json.text), stamp: '', asked: false, values: [] });
+    const text = unix(answer.json.text);
+    Object.assign(open, { name, version: answer.json.version, saved: text, kind: kindOf(text), stamp: '', asked: false, values: [] });
     $('asked').hidden = true;
     $('start').hidden = true;
     $('desk').hidden = false;
     $('folder-view').hidden = true;
-    editor.read(answer.json.text);
+    editor.read(text);
     editor.refresh();
     tell('saved');
     document.title = `${name} – dea studio`;
     $('edit-title').textContent = name;
     const design = open.kind === 'design';
-    for (const id of ['values', 'drawing', 'models']) {
+    for (const id of ['values', 'drawing', 'models', 'study']) {
       $(id).hidden = !design;
     }
     $('picture').replaceChildren();
     $('findings').replaceChildren();
     $('form').dataset.keys = '';
     $('form').replaceChildren();
+    $('study-keys').replaceChildren();
+    readSchema();
     $('run').disabled = open.kind === 'other';
     $('run').textContent = { fit: 'Fit', sweep: 'Sweep', optimise: 'Optimise' }[open.kind] ?? 'Run';
     $('run-beside').disabled = $('fab').disabled = !design;
@@ -752,7 +1003,7 @@
     showFiles();
     showRuns();
     showCurves();
-    showFilm();
+    showPanels();
     if (design) {
       await touch();
     } else if (state.folders.includes(`${stem(name)}.${open.kind}`)) {
@@ -770,14 +1021,10 @@
   $('file').addEventListener('change', () => { window.location.hash = encodeURIComponent($('file').value); });
 
   const copy = async (example) => {
-    const taken = new Set(state.designs.map((one) => one.name));
-    let to = `${stem(example)}.yaml`;
-    for (let n = 2; taken.has(to); n++) {
-      to = `${stem(example)}-${n}.yaml`;
-    }
+    const to = freeName(`${stem(example)}.yaml`);
     const answer = await call('POST', 'copy', { name: example, to });
     command(`dea examples ${example.replace(/\.yaml$/, '')} > ${to}`);
-    if (answer.status === 200) {
+    if (answer.json?.name !== undefined) {
       window.location.hash = encodeURIComponent(to);
     } else {
       tell(answer.json?.error ?? `refused: ${answer.status}`);
@@ -845,7 +1092,7 @@
     showJobs();
     showRuns();
     showCurves();
-    showFilm();
+    showPanels();
     look();
   };
   // Whether the file was written, by us or by another program.
@@ -865,15 +1112,7 @@
     if (answer.json.version === open.version) {
       return;
     }
-    if (editor.get() === open.saved) {
-      open.version = answer.json.version;
-      open.saved = answer.json.text;
-      editor.set(answer.json.text);
-      tell('read again: another program has changed it');
-      touch();
-    } else {
-      askWhich(answer.json);
-    }
+    meet(answer.json);
   };
   const begin = async () => {
     state = (await call('GET', 'state')).json;
@@ -884,7 +1123,6 @@
       window.location.replace(`#${encodeURIComponent(state.open)}`);
     }
     await route();
-    call('GET', 'schema').then(({ json }) => { schema = json.schema ?? null; if (open.values.length > 0) { $('form').dataset.keys = ''; showValues(); } });
   };
   dea.ready = begin();
 })();

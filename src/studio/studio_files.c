@@ -107,29 +107,39 @@ void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP])
   }
 }
 
+static void stamp_in(int folder, const char *name, const char *file, char out[DEA_STUDIO_STAMP])
+{
+  char path[NAME_MAX_LENGTH + 24];
+  snprintf(path, sizeof path, "%s/%s", name, file);
+  dea_studio_stamp(folder, path, out);
+}
+
 /* Adds what a name of the folder is to the lists. */
 static void add_entry(int folder, const char *name, json_t *lists)
 {
-  char stamp[DEA_STUDIO_STAMP], results[NAME_MAX_LENGTH + 16], page[NAME_MAX_LENGTH + 16];
+  char stamp[DEA_STUDIO_STAMP];
   struct stat file;
   if (fstatat(folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0) {
     return;
   }
   if (S_ISDIR(file.st_mode)) {
-    snprintf(results, sizeof results, "%s/results.h5", name);
-    snprintf(page, sizeof page, "%s/report.html", name);
-    dea_studio_stamp(folder, results, stamp);
+    stamp_in(folder, name, "results.h5", stamp);
     if (stamp[0] == '\0') {
       json_array_append_new(json_object_get(lists, "folders"), json_string(name));
+      stamp_in(folder, name, "emulator.json", stamp);
+      if (stamp[0] != '\0') {
+        json_array_append_new(json_object_get(lists, "sweeps"),
+                              json_pack("{s:s, s:s}", "name", name, "stamp", stamp));
+      }
       return;
     }
-    char report[DEA_STUDIO_STAMP], kept[DEA_STUDIO_STAMP], state[NAME_MAX_LENGTH + 16];
-    snprintf(state, sizeof state, "%s/3d_state.h5", name);
-    dea_studio_stamp(folder, page, report);
-    dea_studio_stamp(folder, state, kept);
+    char report[DEA_STUDIO_STAMP], state[DEA_STUDIO_STAMP], summary[DEA_STUDIO_STAMP];
+    stamp_in(folder, name, "report.html", report);
+    stamp_in(folder, name, "3d_state.h5", state);
+    stamp_in(folder, name, "summary.json", summary);
     json_array_append_new(json_object_get(lists, "runs"),
-                          json_pack("{s:s, s:s, s:s, s:s}", "name", name, "stamp", stamp, "report",
-                                    report, "state", kept));
+                          json_pack("{s:s, s:s, s:s, s:s, s:s}", "name", name, "stamp", stamp,
+                                    "report", report, "state", state, "summary", summary));
   } else if (S_ISREG(file.st_mode) &&
              (dea_text_ends_with(name, ".yaml") || dea_text_ends_with(name, ".yml"))) {
     dea_studio_stamp(folder, name, stamp);
@@ -153,7 +163,8 @@ static int is_shown(const struct dirent *entry)
 json_t *dea_studio_list(int folder)
 {
   struct dirent **entries = NULL;
-  json_t *lists = json_pack("{s:[], s:[], s:[], s:[]}", "designs", "runs", "tables", "folders");
+  json_t *lists =
+      json_pack("{s:[], s:[], s:[], s:[], s:[]}", "designs", "runs", "tables", "folders", "sweeps");
   const int count = scandirat(folder, ".", &entries, is_shown, by_name);
   for (int i = 0; i < count; i++) {
     if (i < FILES_MAX) {

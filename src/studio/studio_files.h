@@ -15,8 +15,10 @@ dea_status dea_studio_read(struct dea_context *ctx, int folder, const char *name
 /* What changes when a file is written; "" where there is none. */
 enum { DEA_STUDIO_STAMP = 64 };
 void dea_studio_stamp(int folder, const char *name, char out[DEA_STUDIO_STAMP]);
-/* {designs: [{name, stamp}], runs: [{name, stamp, report, state}], tables: [name], folders: [name]}
- * in the order of their names; NULL when memory is short. */
+/* {designs: [{name, stamp}], runs: [{name, stamp, report, state, summary}], tables: [name],
+ * folders: [name], sweeps: [{name, stamp}]} in the order of their names; NULL when memory is short.
+ * The last two of a run are stamps of what it can go on from, and of how it has ended; sweeps are
+ * those over numbers of designs, between which there are values. */
 json_t *dea_studio_list(int folder);
 /* [name] of the files in a folder of the folder; NULL: there is none. */
 json_t *dea_studio_list_in(int folder, const char *name);

@@ -51,6 +51,8 @@ static void give_error(struct work *w, int status, const char *text)
   give_json(w, status, json_pack("{s:s}", "error", text));
 }
 
+/* What a file or a result says against it is an answer, too: browsers note what has no status 200.
+ */
 static void give_failure(struct work *w)
 {
   size_t count;
@@ -63,7 +65,7 @@ static void give_failure(struct work *w)
     }
   }
   dea_text_add(&text, "%s", dea_context_message(w->ctx));
-  give_error(w, 422, dea_text_get(&text));
+  give_error(w, 200, dea_text_get(&text));
   dea_text_free(&text);
 }
 
@@ -181,7 +183,8 @@ static bool can_write(const struct work *w, const char *name)
   return fstatat(w->room->folder, name, &file, AT_SYMLINK_NOFOLLOW) != 0 || S_ISREG(file.st_mode);
 }
 
-/* Writes the body where the file is still the version that the page knows ("": none is there). */
+/* Writes the body where the file is still the version that the page knows ("": none is there); else
+ * says what is there: {changed, text, version}. */
 static void put_file(struct work *w)
 {
   const char *name = file_argument(w, "name"), *known = argument(w, "version", 0);
@@ -196,9 +199,10 @@ static void put_file(struct work *w)
   json_t *there = file_json(w, name);
   const char *version = there != NULL ? json_string_value(json_object_get(there, "version")) : "";
   if (strcmp(version, known != NULL ? known : "") != 0) {
-    give_json(w, 409,
-              there != NULL ? json_incref(there)
-                            : json_pack("{s:s, s:s}", "text", "", "version", ""));
+    json_t *other =
+        there != NULL ? json_incref(there) : json_pack("{s:s, s:s}", "text", "", "version", "");
+    json_object_set_new(other, "changed", json_true());
+    give_json(w, 200, other); // no failure, which a browser would note
   } else {
     char now[65];
     char *path = path_of(w, name);
@@ -344,9 +348,17 @@ static void get_check(struct work *w)
 
 static void get_schema(struct work *w)
 {
+  static const char *const kinds[] = {"--explore", "--fit", "--fit-device", "--fit-breakdown",
+                                      "--fit-life"};
+  const char *of = argument(w, "of", 0);
   struct dea_studio_line line = {.count = 0};
   dea_studio_line_add(&line, "schema");
   dea_studio_line_add(&line, "--json");
+  for (size_t i = 0; of != NULL && i < sizeof kinds / sizeof kinds[0]; i++) {
+    if (strcmp(kinds[i] + 2, of) == 0) {
+      dea_studio_line_add(&line, kinds[i]);
+    }
+  }
   give_json(w, 200, ask(w, &line, "schema"));
 }
 
@@ -394,13 +406,12 @@ static void get_compare(struct work *w)
   }
 }
 
-/* Figures of runs as HTML, or the film of one. */
-static void show_runs(struct work *w, bool film)
+/* Runs as HTML: figures, or one in space or with sliders, as a page of its own. */
+static void show_runs(struct work *w, enum dea_studio_view view)
 {
   const json_t *runs = json_object_get(w->request->arguments, "run");
   const char *measured = argument(w, "measured", 0);
   struct dea_studio_line unused = {.count = 0};
-  char *paths[DEA_STUDIO_RUNS_MAX + 1] = {NULL};
   const size_t asked = json_array_size(runs);
   if (!add_runs(w, runs, measured, &unused, NULL)) {
     return;
@@ -409,38 +420,35 @@ static void show_runs(struct work *w, bool film)
     give_error(w, 400, "1 to 6 runs can be shown at a time");
     return;
   }
-  bool whole = true;
-  for (size_t i = 0; i <= asked; i++) {
-    const char *name = i < asked ? json_string_value(json_array_get(runs, i)) : measured;
-    paths[i] = name != NULL ? path_of(w, name) : NULL;
-    whole = whole && (paths[i] != NULL || name == NULL);
-  }
   struct dea_text out = {.ctx = w->ctx};
+  json_t *lists = view == DEA_STUDIO_SLIDERS ? dea_studio_list(w->room->folder) : NULL;
   pthread_mutex_lock(&w->room->results_lock);
-  dea_status status =
-      whole ? dea_studio_curves(w->ctx, (const char *const *)paths, asked, paths[asked], film, &out)
-            : DEA_E_MEMORY;
+  const dea_status status = dea_studio_show(w->ctx, w->room->path, runs, measured,
+                                            json_object_get(lists, "sweeps"), view, &out);
   pthread_mutex_unlock(&w->room->results_lock);
   if (status == DEA_OK && !out.failed) {
     give(w, 200, html_mime, dea_text_get(&out), out.length);
+    w->reply->foreign = view != DEA_STUDIO_CURVES;
   } else {
     give_failure(w);
   }
+  json_decref(lists);
   dea_text_free(&out);
-  for (size_t i = 0; i <= asked; i++) {
-    dea_free(w->ctx, paths[i]);
-  }
 }
 
 static void get_curves(struct work *w)
 {
-  show_runs(w, false);
+  show_runs(w, DEA_STUDIO_CURVES);
 }
 
 static void get_film(struct work *w)
 {
-  show_runs(w, true);
-  w->reply->foreign = true; // a page of its own
+  show_runs(w, DEA_STUDIO_FILM);
+}
+
+static void get_sliders(struct work *w)
+{
+  show_runs(w, DEA_STUDIO_SLIDERS);
 }
 
 // Examples ----------------------------------------------------------------------------------------
@@ -658,7 +666,7 @@ static void post_job(struct work *w)
     give_error(w, 400, "actions are run, fab, fit, sweep, optimise and report");
   } else if (made) {
     const int id = dea_studio_jobs_add(w->room->jobs, action, subject, output, &line);
-    give_json(w, id > 0 ? 200 : 409,
+    give_json(w, 200,
               id > 0 ? json_pack("{s:i}", "id", id)
                      : json_pack("{s:s}", "error", "another one writes there, or too many wait"));
   }
@@ -696,6 +704,7 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
                 {"GET", "compare", get_compare},
                 {"GET", "curves", get_curves},
                 {"GET", "film", get_film},
+                {"GET", "sliders", get_sliders},
                 {"GET", "examples", get_examples},
                 {"GET", "picture", get_picture},
                 {"GET", "file", get_file},

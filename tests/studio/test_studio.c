@@ -1,5 +1,6 @@
 /* dea studio as a program on the network sees it: what it refuses, and what it answers. */
 // ctest: quick, heavy
+#include "cone_design.h"
 #include "studio_server.h"
 
 #include <arpa/inet.h>
@@ -214,8 +215,8 @@ TEST(test_no_file_outside)
                                       "..%5Coutside.yaml",
                                       "%ff%fe"};
   static const char *const routes[] = {
-      "design?name=",           "file?name=", "list?name=", "curves?run=", "compare?run=",
-      "curves?run=x&measured=", "film?run="};
+      "design?name=",           "file?name=", "list?name=",  "curves?run=", "compare?run=",
+      "curves?run=x&measured=", "film?run=",  "sliders?run="};
   char path[256];
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     for (size_t k = 0; k < sizeof routes / sizeof routes[0]; k++) {
@@ -278,13 +279,17 @@ TEST(test_writes_only_what_it_has_read)
   body_text("text", text, sizeof text);
   assert_string_equal(text, disc);
   snprintf(path, sizeof path, "design?name=new.yaml&version=%s", version);
-  assert_int_equal(ask("PUT", path, disc), 409); // no file of that name was read
+  assert_int_equal(ask("PUT", path, disc), 200); // no file of that name was read
+  assert_contains(answer, "\"changed\":true");
+  assert_int_equal(access("room/new.yaml", F_OK), -1);
   assert_int_equal(ask("PUT", "design?name=new.yaml&version=", disc), 200);
   body_text("version", version, sizeof version);
-  assert_int_equal(ask("PUT", "design?name=new.yaml&version=", "other"), 409);
+  assert_int_equal(ask("PUT", "design?name=new.yaml&version=", "other"), 200);
+  assert_contains(answer, "\"changed\":true");
   command_write("room/new.yaml", "written beside\n"); // by an editor
   snprintf(path, sizeof path, "design?name=new.yaml&version=%s", version);
-  assert_int_equal(ask("PUT", path, "other"), 409);
+  assert_int_equal(ask("PUT", path, "other"), 200);
+  assert_contains(answer, "\"changed\":true");
   body_text("text", text, sizeof text);
   assert_string_equal(text, "written beside\n");
   body_text("version", version, sizeof version);
@@ -309,6 +314,8 @@ TEST(test_checks_and_draws)
   assert_null(strstr(answer, "\"svg\""));
   assert_int_equal(ask("GET", "schema", NULL), 200);
   assert_contains(answer, "$defs");
+  assert_int_equal(ask("GET", "schema?of=explore", NULL), 200);
+  assert_contains(answer, "objectives");
 }
 
 TEST(test_copies_an_example)
@@ -364,6 +371,15 @@ static const char *wait_end(int id)
   return wait_job(id, "waiting", "running", state);
 }
 
+static const char grid[] = "dea_explore: 1\n"
+                           "name: grid\n"
+                           "design: disc.yaml\n"
+                           "model: lumped\n"
+                           "voltages: [0 kV, 1 kV, 2 kV]\n"
+                           "quantities: [electrode_edge_u_m]\n"
+                           "variables: [{name: pre_stretch, low: 1.4, high: 1.6}]\n"
+                           "plan: sparse-grid\n";
+
 TEST(test_runs_and_compares)
 {
   const int id = add_job("{\"action\":\"run\",\"file\":\"disc.yaml\",\"output\":\"a.run\"}");
@@ -382,6 +398,17 @@ TEST(test_runs_and_compares)
   assert_int_equal(ask("GET", "curves?run=a.run&run=a.run", NULL), 200);
   assert_int_equal(ask("GET", "film?run=a.run", NULL), 200);
   assert_contains(answer, "no film in space"); // a model of a point
+  assert_int_equal(ask("GET", "sliders?run=a.run", NULL), 200);
+  assert_contains(answer, "Content-Security-Policy: sandbox allow-scripts;");
+  assert_contains(answer, "class=\"sources\"");
+  assert_null(strstr(answer, "\"pre_stretch\"")); // its own points only, until there is a sweep
+  command_write("room/grid.yaml", grid);
+  assert_string_equal(
+      wait_end(add_job("{\"action\":\"sweep\",\"file\":\"grid.yaml\",\"output\":\"grid.sweep\"}")),
+      "done");
+  assert_contains(answer, "\"sweeps\":[{\"name\":\"grid.sweep\"");
+  assert_int_equal(ask("GET", "sliders?run=a.run", NULL), 200);
+  assert_contains(answer, "\"pre_stretch\"");
   assert_string_equal(wait_end(add_job("{\"action\":\"report\",\"runs\":[\"a.run\"]}")), "done");
   assert_int_equal(ask("GET", "file?name=a.run/report.html", NULL), 200);
   assert_contains(answer, "Content-Security-Policy: sandbox allow-scripts;"); // not for the user
@@ -439,22 +466,10 @@ TEST(test_twenty_clients)
   }
 }
 
-static const char cone[] =
-    "dea: 1\n"
-    "title: cone\n"
-    "shapes:\n"
-    "  - {name: film, kind: circle, radius: 20 mm}\n"
-    "  - {name: hub, kind: circle, radius: 5 mm}\n"
-    "  - {name: active, kind: difference, of: [film, hub]}\n"
-    "plies:\n"
-    "  - {name: film, shape: film, material: elastosil-2030, thickness: 100 um, pre_stretch: 1.2}\n"
-    "electrodes:\n"
-    "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
-    "  - {ply: film, side: top, shape: active, channel: drive}\n"
-    "supports: [{edge: film}]\n"
-    "bodies: [{name: hub, shape: hub, free: [z]}]\n"
-    "monitors: [{name: hub, body: hub}]\n"
-    "compute: {models: [3d], voltage: {to: 5 kV, step: 0.002 kV}, solid: {film: membrane}}\n";
+static const char cone[] = CONE_DESIGN(
+    "elastosil-2030",
+    "") "monitors: [{name: hub, body: hub}]\n"
+        "compute: {models: [3d], voltage: {to: 5 kV, step: 0.002 kV}, solid: {film: membrane}}\n";
 
 /* Waits until a run has kept a file. */
 static void wait_points(const char *results)
@@ -472,7 +487,8 @@ TEST(test_stops_a_run)
   const int id = add_job("{\"action\":\"run\",\"file\":\"cone.yaml\",\"output\":\"cone.run\"}");
   assert_int_equal(
       ask("POST", "job", "{\"action\":\"run\",\"file\":\"cone.yaml\",\"output\":\"cone.run\"}"),
-      409); // one writes there
+      200);
+  assert_contains(answer, "another one writes there");
   wait_points("room/cone.run/results.h5");
   assert_string_equal(wait_job(id, "waiting", "", now), "running");
   assert_int_equal(ask("GET", "curves?run=cone.run", NULL), 200); // while it goes on
@@ -484,6 +500,8 @@ TEST(test_stops_a_run)
   assert_int_equal(ask("POST", "stop", stop), 200);
   assert_string_equal(wait_end(id), "stopped");
   assert_int_equal(ask("POST", "stop", stop), 404);
+  assert_int_equal(ask("GET", "file?name=cone.run/summary.json", NULL), 200);
+  assert_contains(answer, "\"DEA_E_INTERRUPTED\""); // by which the page offers to go on
 }
 
 TEST(test_slow_clients_are_left)

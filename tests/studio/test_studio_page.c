@@ -1,6 +1,6 @@
 /* The page of dea studio in a browser, from an empty folder: an example copied and changed, its
- * drawing, a run whose points come, a table dropped on it, what another program writes, and what
- * the keyboard does. */
+ * drawing, a run whose points come, a table dropped on it, a value fitted to it, a search, sliders,
+ * a report, what another program writes, and what the keyboard does. */
 // ctest: browser, nightly
 #include "browser.h"
 #include "studio_server.h"
@@ -140,10 +140,70 @@ TEST(test_runs_beside_each_other)
   assert_quiet();
 }
 
+/* Fills the entries of a file for a fit or a search, and runs it. */
+static void run_study(const char *kind, const char *entries)
+{
+  char script[1000];
+  snprintf(script, sizeof script,
+           "(() => { const set = (id, text) => { const field = document.querySelector(id); "
+           "field.value = text; for (const name of ['input', 'change']) { field.dispatchEvent(new "
+           "Event(name, { bubbles: true })); } }; document.querySelector('#study').open = true; "
+           "set('#study-kind', '%s'); set('#study-keys select', 'plies.film.thickness'); %s; "
+           "document.querySelector('#study-run').click(); })()",
+           kind, entries);
+  act("document.querySelector('#study').open = true");
+  until("document.querySelector('#study-keys select') !== null");
+  act(script);
+  snprintf(script, sizeof script,
+           "[...document.querySelectorAll('#jobs .head')].some((one) => "
+           "one.textContent.includes('cone-loading-%s') && one.textContent.includes(': done'))",
+           kind);
+  until(script);
+  assert_quiet();
+}
+
+TEST(test_fits_a_value)
+{
+  run_study("fit", "set('#study-table', 'mine.csv')");
+  command_read("room/cone-loading-fit.yaml", command_out);
+  assert_contains(command_out, "design: cone-loading.yaml",
+                  "{name: plies.film.thickness, low: 90 um", "file: mine.csv");
+  until("document.querySelector('#jobs pre').textContent.includes('as built')");
+  until("[...document.querySelectorAll('#files img')].length > 0");
+}
+
+TEST(test_optimises)
+{
+  run_study("optimise", "set('#study-objective', 'capacitance_F'); set('#study-limit', "
+                        "'breakdown_margin'); set('#study-quantities', 'capacitance_F, "
+                        "breakdown_margin'); set('#study-voltages', '3 kV')");
+  until("document.querySelectorAll('#files tbody tr').length > 1"); // its designs
+  act("[...document.querySelectorAll('#files button')].find((one) => "
+      "one.nextElementSibling.textContent === 'best.yaml').click()");
+  until(
+      "document.querySelector('#edit-title').textContent === 'cone-loading-optimise-best.yaml' && "
+      "document.querySelector('#picture svg') !== null");
+  act("location.hash = 'cone-loading.yaml'");
+  until("document.querySelector('#edit-title').textContent === 'cone-loading.yaml' && "
+        "document.querySelector('[data-key=title]') !== null");
+  assert_quiet();
+}
+
+/* The report's sliders move its curves, over a number of the design where there is a sweep. */
+TEST(test_sliders)
+{
+  run_study("sliders", "set('#study-quantities', 'capacitance_F')");
+  act("document.querySelector('#sliders').open = true");
+  until("document.querySelector('#sliders iframe').src.includes('sliders?run=cone-loading.run')");
+  until("fetch(document.querySelector('#sliders iframe').src).then((a) => a.text()).then((text) => "
+        "text.includes('plies.film.thickness'))");
+  assert_quiet();
+}
+
 TEST(test_a_report_opens)
 {
-  act("document.querySelector('#space').open = true");
-  until("document.querySelector('#space iframe').src.includes('film?run=cone-loading.run')");
+  act("document.querySelector('#film').open = true");
+  until("document.querySelector('#film iframe').src.includes('film?run=cone-loading.run')");
   act("document.querySelector('#report').click()");
   until("document.querySelector('#files iframe') !== null");
   assert_quiet();
@@ -174,7 +234,8 @@ TEST(test_both_widths_and_schemes)
   assert_quiet();
 }
 
-/* Another program writes the file: read again where nothing is lost, else asked. */
+/* Another program writes the file: read again, merged where other lines were changed here, else
+ * asked. */
 TEST(test_another_program_writes)
 {
   static const char text[] = "fetch('design?name=cone-loading.yaml').then((a) => a.json())";
@@ -186,19 +247,28 @@ TEST(test_another_program_writes)
   command_write("room/cone-loading.yaml", command_out);
   until("document.querySelector('[data-key=title]').value === 'CONE pulled out'");
   assert_quiet();
-  // now at the same time
-  snprintf(script, sizeof script,
-           "%s.then((j) => { fetch('design?name=cone-loading.yaml&version=' + j.version, { method: "
-           "'PUT', body: j.text + '# theirs\\n' }); const field = "
-           "document.querySelector('[data-key=title]'); field.value = 'mine'; "
-           "field.dispatchEvent(new Event('input')); })",
-           text);
-  act(script);
-  until("!document.querySelector('#asked').hidden && "
-        "document.querySelector('#asked-other').textContent.includes('# theirs')");
-  act("document.querySelector('#asked-mine').click()");
-  snprintf(script, sizeof script, "%s.then((j) => j.text.includes('title: mine'))", text);
-  until(script);
+  // now at the same time: something else, then the same line
+  static const char other[] = "j.text + '# theirs\\n'",
+                    same[] = "j.text.replace(/title: .*/, 'title: theirs')";
+  for (size_t i = 0; i < 2; i++) {
+    snprintf(
+        script, sizeof script,
+        "%s.then((j) => { fetch('design?name=cone-loading.yaml&version=' + j.version, { method: "
+        "'PUT', body: %s }); const field = document.querySelector('[data-key=title]'); "
+        "field.value = 'mine %zu'; field.dispatchEvent(new Event('input')); })",
+        text, i == 0 ? other : same, i);
+    act(script);
+    if (i == 1) {
+      until("!document.querySelector('#asked').hidden && "
+            "document.querySelector('#asked-other').textContent.includes('title: theirs')");
+      act("document.querySelector('#asked-mine').click()");
+    }
+    snprintf(script, sizeof script,
+             "%s.then((j) => j.text.includes('title: mine %zu') && j.text.includes('# theirs'))",
+             text, i);
+    until(script);
+  }
+  assert_quiet();
 }
 
 TESTS(set_up, tear_down)

@@ -1,5 +1,6 @@
 /* Studies of a device made of plies by its monitors: against the same computed by hand. */
 // ctest: solid
+#include "cone_design.h"
 #include "design_text.h"
 #include "result/richardson.h"
 #include "study/observe.h"
@@ -13,28 +14,13 @@
 #include <string.h>
 
 static const char cone[] =
-    "dea: 1\n"
-    "title: cone\n"
-    "shapes:\n"
-    "  - {name: film, kind: circle, radius: 20 mm}\n"
-    "  - {name: hub, kind: circle, radius: 5 mm}\n"
-    "  - {name: active, kind: difference, of: [film, hub]}\n"
-    "plies:\n"
-    "  - {name: film, shape: film, material: film, thickness: 100 um, pre_stretch: 1.2}\n"
-    "electrodes:\n"
-    "  - {ply: film, side: bottom, shape: active, channel: ground}\n"
-    "  - {ply: film, side: top, shape: active, channel: drive}\n"
-    "supports:\n"
-    "  - {edge: film}\n"
-    "bodies:\n"
-    "  - {name: hub, shape: hub, free: [z], force_z: 100 mN}\n"
-    "monitors:\n"
-    "  - {name: hub, body: hub}\n"
-    "  - {name: gauge, from: [8 mm, 0 mm], to: [16 mm, 0 mm], ply: film}\n" FILM_MATERIAL
-    "compute:\n"
-    "  models: [3d]\n"
-    "  voltage: {values: [1 kV, 3 kV]}\n"
-    "  solid: {film: membrane, order: 1}\n";
+    CONE_DESIGN("film", ", force_z: 100 mN") "monitors:\n"
+                                             "  - {name: hub, body: hub}\n"
+                                             "  - {name: gauge, from: [8 mm, 0 mm], to: [16 mm, 0 "
+                                             "mm], ply: film}\n" FILM_MATERIAL "compute:\n"
+                                             "  models: [3d]\n"
+                                             "  voltage: {values: [1 kV, 3 kV]}\n"
+                                             "  solid: {film: membrane, order: 1}\n";
 
 /* A run of studies of the cone, with keys of other values. */
 static struct run run_studies(const struct dea_override *overrides, size_t count,
