@@ -11,6 +11,17 @@
 #include <sys/random.h>
 #include <unistd.h>
 
+void dea_studio_parts(bool *server, bool *editor)
+{
+  *server = *editor = false;
+#ifdef DEA_HAVE_CIVETWEB
+  *server = true;
+#endif
+#ifdef DEA_HAVE_CODEMIRROR
+  *editor = true;
+#endif
+}
+
 #ifdef DEA_HAVE_CIVETWEB
 #include "base/clock.h"
 

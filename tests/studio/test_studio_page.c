@@ -46,7 +46,7 @@ static void act(const char *expression)
 /* Waits until something is so in the page. */
 static void until(const char *expression)
 {
-  for (int i = 0; i < 1500; i++) {
+  for (int i = 0; i < 6000; i++) {
     if (browser_number(&browser, expression) == 1) {
       return;
     }
