@@ -266,7 +266,7 @@
       state.palette = both ? 'signed' : 'rising';
       state.range = both ? [-most, most] : [channel.low, channel.high];
       if (!(state.range[1] > state.range[0])) {
-        state.range = [state.range[0] - 1, state.range[0] + 1];
+        state.range = [-1, 1].map((one) => state.range[0] + one / channel.factor); // one of its unit
       }
       legend(colours, channel, state);
     };

@@ -1,6 +1,6 @@
 // A drawing like those of the page (plot_svg.c), made anew whenever numbers change.
 dea.axis = (low, high, most) => {
-  if (!(high > low)) {
+  if (!(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)))) { // one value, but for its last digits
     const room = high !== 0 ? 0.1 * Math.abs(high) || 1 : 1;
     [low, high] = Number.isFinite(low) ? [low - room, high + room] : [0, 1];
   }
