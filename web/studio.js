@@ -390,7 +390,43 @@
       open.values = answer.values;
       showValues();
     }
+    if (answer.good) {
+      showMesh();
+    }
   };
+
+  // The mesh of model 3d from above, while its panel is open: edges of elements by their corners.
+  const edges = { 3: [[0, 1, 2, 3]], 10: [[0, 1, 2, 3]], 5: [[0, 1, 2, 3], [4, 5, 6, 7]], 12: [[0, 1, 2, 3], [4, 5, 6, 7]] }; // by kinds of Gmsh
+  const drawMesh = (text) => {
+    const part = (name) => text.slice(text.indexOf(`$${name}\n`), text.indexOf(`$End${name}`)).split('\n').slice(2, -1).map((line) => line.split(' ').map(Number));
+    const nodes = new Map(part('Nodes').map(([number, x, y]) => [number, [1e3 * x, -1e3 * y]]));
+    const lines = new Set();
+    for (const [, kind, tags, ...rest] of part('Elements')) {
+      const corners = rest.slice(tags).map((number) => nodes.get(number).map((one) => one.toFixed(3)).join(' '));
+      for (const face of edges[kind] ?? []) {
+        face.forEach((corner, i) => lines.add([corners[corner], corners[face[(i + 1) % 4]]].sort().join('L')));
+      }
+    }
+    const all = [...nodes.values()];
+    const [left, top, right, bottom] = [0, 1].map((k) => all.reduce((low, one) => Math.min(low, one[k]), Infinity)).concat([0, 1].map((k) => all.reduce((high, one) => Math.max(high, one[k]), -Infinity)));
+    return dea.svg('svg', { viewBox: `${left} ${top} ${right - left} ${bottom - top}`, role: 'img', 'aria-label': 'Mesh from above' },
+      dea.svg('path', { d: [...lines].map((line) => `M${line}`).join(''), fill: 'none', stroke: 'currentColor', 'vector-effect': 'non-scaling-stroke' }));
+  };
+  let meshOf = '';
+  const showMesh = async () => {
+    const { name, version } = open;
+    if (!$('mesh').open || meshOf === `${name} ${version}`) {
+      return;
+    }
+    meshOf = `${name} ${version}`;
+    const { json } = await call('GET', 'mesh', { name });
+    const { mesh, msh } = json ?? {};
+    $('mesh').lastElementChild.replaceChildren(...(msh !== undefined && mesh !== undefined
+      ? [dea.element('p', { class: 'still' }, `${mesh.elements} elements, ${mesh.unknowns} unknowns, from above`), drawMesh(msh)]
+      : [dea.element('p', { class: 'still' }, json?.error ?? 'too large to be drawn')]));
+    command(json?.command ?? '');
+  };
+  $('mesh').addEventListener('toggle', showMesh);
 
   // Whatever has changed: saves and checks, one after the other.
   const touch = async () => {

@@ -300,50 +300,66 @@ static char *scratch_name(struct work *w, const char *ending)
   return dea_path_join(w->ctx, w->room->scratch, name);
 }
 
-/* Checks a design and draws it: {check, svg, command}. */
-static void check(struct work *w, const char *design, const char *shown)
+/* "dea check DESIGN --svg FILE", or of another command. */
+static void make_line(struct dea_studio_line *line, const char *command, const char *design,
+                      const char *option, const char *file)
 {
-  struct dea_studio_line line = {.count = 0};
-  struct dea_studio_line by_hand = {.count = 0};
-  struct dea_text command = {.ctx = w->ctx};
-  char *drawing = scratch_name(w, "svg"), *bytes = NULL, name[280];
+  *line = (struct dea_studio_line){.count = 0};
+  dea_studio_line_add(line, command);
+  add_file(line, design);
+  dea_studio_line_add(line, option);
+  add_file(line, file);
+}
+
+/* What a command says of a design, and the file that it writes: {COMMAND, ENDING, command}. */
+static void ask_file(struct work *w, const char *command, const char *design, const char *shown,
+                     const char *option, const char *ending)
+{
+  struct dea_studio_line line;
+  struct dea_text by_hand = {.ctx = w->ctx};
+  char *file = scratch_name(w, ending), *bytes = NULL, name[280];
   size_t length;
-  if (drawing == NULL) {
+  if (file == NULL) {
     give_failure(w);
     return;
   }
-  dea_studio_line_add(&line, "check");
-  add_file(&line, design);
+  make_line(&line, command, design, option, file);
   dea_studio_line_add(&line, "--json");
-  dea_studio_line_add(&line, "--svg");
-  dea_studio_line_add(&line, drawing);
-  json_t *json = ask(w, &line, "check");
-  if (dea_path_exists(drawing) &&
-      dea_file_read(w->ctx, drawing, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
-    json_object_set_new(json, "svg", json_stringn(bytes, length));
+  json_t *json = ask(w, &line, command);
+  if (dea_path_exists(file) &&
+      dea_file_read(w->ctx, file, DEA_STUDIO_BODY_MAX, &bytes, &length) == DEA_OK) {
+    json_object_set_new(json, ending, json_stringn(bytes, length));
     dea_free(w->ctx, bytes);
   }
-  unlink(drawing);
-  dea_free(w->ctx, drawing);
-  snprintf(name, sizeof name, "%.*s.svg", (int)strcspn(shown, "."), shown);
-  dea_studio_line_add(&by_hand, "check");
-  add_file(&by_hand, shown);
-  dea_studio_line_add(&by_hand, "--svg");
-  add_file(&by_hand, name);
-  dea_studio_line_show(&by_hand, &command);
-  json_object_set_new(json, "command", json_string(dea_text_get(&command)));
-  dea_text_free(&command);
+  unlink(file);
+  dea_free(w->ctx, file);
+  snprintf(name, sizeof name, "%.*s.%s", (int)strcspn(shown, "."), shown, ending);
+  make_line(&line, command, shown, option, name);
+  dea_studio_line_show(&line, &by_hand);
+  json_object_set_new(json, "command", json_string(dea_text_get(&by_hand)));
+  dea_text_free(&by_hand);
   give_json(w, 200, json);
+}
+
+static void get_of_design(struct work *w, const char *command, const char *option,
+                          const char *ending)
+{
+  const char *name = file_argument(w, "name");
+  if (name != NULL && can_write(w, name)) { // a link would lead out
+    ask_file(w, command, name, name, option, ending);
+  } else if (name != NULL) {
+    give_error(w, 404, "there is no such file in this folder");
+  }
 }
 
 static void get_check(struct work *w)
 {
-  const char *name = file_argument(w, "name");
-  if (name != NULL && can_write(w, name)) { // a link would lead out
-    check(w, name, name);
-  } else if (name != NULL) {
-    give_error(w, 404, "there is no such file in this folder");
-  }
+  get_of_design(w, "check", "--svg", "svg");
+}
+
+static void get_mesh(struct work *w)
+{
+  get_of_design(w, "mesh", "-o", "msh");
 }
 
 static void get_schema(struct work *w)
@@ -499,7 +515,7 @@ static void get_picture(struct work *w)
 {
   const struct dea_studio_example *example = example_argument(w);
   if (example != NULL) {
-    check(w, example->path, example->name);
+    ask_file(w, "check", example->path, example->name, "--svg", "svg");
   }
 }
 
@@ -700,6 +716,7 @@ void dea_studio_answer(struct dea_context *ctx, struct dea_studio_room *room,
                 {"GET", "design", get_design},
                 {"PUT", "design", put_file},
                 {"GET", "check", get_check},
+                {"GET", "mesh", get_mesh},
                 {"GET", "schema", get_schema},
                 {"GET", "compare", get_compare},
                 {"GET", "curves", get_curves},

@@ -234,6 +234,7 @@ TEST(test_no_file_outside)
     }
   }
   assert_int_equal(ask("GET", "check?name=link.yaml", NULL), 404);
+  assert_int_equal(ask("GET", "mesh?name=link.yaml", NULL), 404);
   assert_int_equal(
       raw("GET %s../../etc/passwd HTTP/1.1\r\nHost: 127.0.0.1:%d\r\n\r\n", secret, port), 403);
   command_read("outside.yaml", command_out);
@@ -299,6 +300,11 @@ TEST(test_writes_only_what_it_has_read)
   assert_string_equal(command_out, disc);
 }
 
+static const char cone[] = CONE_DESIGN(
+    "elastosil-2030",
+    "") "monitors: [{name: hub, body: hub}]\n"
+        "compute: {models: [3d], voltage: {to: 5 kV, step: 0.002 kV}, solid: {film: membrane}}\n";
+
 TEST(test_checks_and_draws)
 {
   assert_int_equal(ask("GET", "check?name=disc.yaml", NULL), 200);
@@ -308,6 +314,9 @@ TEST(test_checks_and_draws)
   assert_string_equal(json_string_value(json_object_get(json, "command")),
                       "dea check disc.yaml --svg disc.svg");
   json_decref(json);
+  command_write("room/cone.yaml", cone);
+  assert_int_equal(ask("GET", "mesh?name=cone.yaml", NULL), 200);
+  assert_contains(answer, "\"elements\"", "$Elements", "dea mesh cone.yaml -o cone.msh");
   command_write("room/bad.yaml", "dea: 1\nfilm: {thicknes: 1 um}\n");
   assert_int_equal(ask("GET", "check?name=bad.yaml", NULL), 200);
   assert_contains(answer, "thickness");
@@ -465,11 +474,6 @@ TEST(test_twenty_clients)
     close(listeners[i]);
   }
 }
-
-static const char cone[] = CONE_DESIGN(
-    "elastosil-2030",
-    "") "monitors: [{name: hub, body: hub}]\n"
-        "compute: {models: [3d], voltage: {to: 5 kV, step: 0.002 kV}, solid: {film: membrane}}\n";
 
 /* Waits until a run has kept a file. */
 static void wait_points(const char *results)

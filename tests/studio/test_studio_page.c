@@ -103,6 +103,15 @@ TEST(test_a_value_changes_text_and_drawing)
   assert_quiet();
 }
 
+TEST(test_a_mesh)
+{
+  act("document.querySelector('#mesh').open = true");
+  until("document.querySelector('#mesh path') !== null && "
+        "document.querySelector('#mesh path').getAttribute('d').length > 1000");
+  act("document.querySelector('#mesh').open = false");
+  assert_quiet();
+}
+
 TEST(test_points_come)
 {
   act("(() => { window.seen = []; new MutationObserver(() => { "
@@ -116,6 +125,7 @@ TEST(test_points_come)
   act("document.querySelector('#curves svg.chart').dispatchEvent(new KeyboardEvent('keydown', "
       "{ key: 'ArrowRight' }))");
   until("document.querySelector('#curves .readout').textContent !== ''"); // as in a report
+  until("![...document.querySelectorAll('button')].some((one) => one.textContent === 'Go on')");
   assert_quiet();
 }
 
