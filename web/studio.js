@@ -681,7 +681,7 @@
   };
   const goesOn = (job) => unfinished(state.runs.find((one) => one.name === job.output));
 
-  const jobRow = (job) => {
+  const jobRow = (job, newest) => {
     const going = job.state === 'running' || job.state === 'waiting';
     const count = /(\d+)\/(\d+)/.exec(job.progress);
     const head = dea.element('span', { class: 'head' }, dea.element('b', {}, job.output), ` ${job.action}: ${job.state}${going && job.progress ? `, ${job.progress}` : ''}`);
@@ -702,7 +702,7 @@
     } else if (!going && !['run', 'report'].includes(job.action)) {
       button('Files', () => showFolder(job.output));
     }
-    const asked = ['fit', 'sweep', 'optimise'].includes(job.action) && job.state === 'done'; // what it says is its result
+    const asked = newest && ['fit', 'sweep', 'optimise'].includes(job.action) && job.state === 'done'; // what it says is its result
     row.append(dea.element('details', job.state === 'failed' || asked ? { open: '' } : {}, dea.element('summary', {}, dea.element('span', { class: 'code' }, job.command)), dea.element('pre', { tabindex: '0' }, job.said)));
     return row;
   };
@@ -713,8 +713,8 @@
     const text = JSON.stringify([jobs, jobs.map(goesOn)]);
     if ($('jobs').dataset.last !== text) {
       $('jobs').dataset.last = text;
-      $('jobs').replaceChildren(...jobs.map((job) => {
-        const row = jobRow(job);
+      $('jobs').replaceChildren(...jobs.map((job, i) => {
+        const row = jobRow(job, i === 0);
         row.querySelector('details').open ||= opened.has(String(job.id));
         return row;
       }));
@@ -941,13 +941,16 @@
     command(`dea ${action} ${name} -o ${output}`);
     $('study-open').disabled = $('study-run').disabled = $('study-keys').children.length === 0 || (kind === 'fit' && $('study-table').value === '');
   };
-  // Entries for the design, once it is checked.
-  const fillStudy = () => {
+  // Entries for the design, once it is checked; at the highest voltage that its run says is safe.
+  const fillStudy = async () => {
     if (!$('study').open || open.values.length === 0 || $('study-keys').children.length > 0) {
       return;
     }
+    addRow();
+    const own = state.runs.find((one) => one.name === `${stem(open.name)}.run` && one.summary !== '');
+    const safe_V = own !== undefined ? (await call('GET', 'file', { name: `${own.name}/summary.json` })).json?.trust?.safe_V : 0;
     const layout = given(/^plies\[/).length > 0;
-    const highest = given(/^compute\.voltage\.(to|values\[\d+\])$/).at(-1)?.text ?? '1 kV';
+    const highest = safe_V > 0 ? `${Math.floor(safe_V / 10) / 100} kV` : given(/^compute\.voltage\.(to|values\[\d+\])$/).at(-1)?.text ?? '1 kV';
     const moved = given(/^monitors\[\d+\]\.body$/).map((value) => `${open.values.find((one) => one.key === value.key.replace('body', 'name'))?.text.toLowerCase().replace(/\W/g, '_')}_z_m`);
     const known = [...(layout ? moved : ['electrode_edge_u_m']), 'true_field_V_per_m', 'breakdown_margin', 'min_tension_N_per_m', 'capacitance_F'];
     const few = Array.from({ length: 5 }, (_, i) => range(highest, i / 4));
@@ -962,7 +965,7 @@
       $('study-voltages').value = $('study-kind').value === 'sliders' ? few.join(', ') : highest;
       showStudy();
     };
-    addRow();
+    showStudy();
   };
   const writeStudy = async (run) => {
     await touch();
