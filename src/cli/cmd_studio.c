@@ -4,6 +4,7 @@
 #include "cli/data_files.h"
 #include "studio/studio.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <spawn.h>
 #include <stdint.h>
@@ -71,7 +72,7 @@ static dea_status serve(struct dea_cli *cli, const struct request *request,
   fflush(stdout);
   if (!cli->quiet) {
     fprintf(stderr, "dea studio of %s; Ctrl-C ends it. The address is a key: keep it.\n",
-            options->folder);
+            request->what != NULL ? request->what : "this folder");
   }
   if (!request->no_browser) {
     open_browser(dea_studio_doorway(studio));
@@ -103,7 +104,7 @@ static int run(struct dea_cli *cli, void *user)
   char program[4096] = "";
   struct dea_studio_options options = {.program = program, .port = (int)request->port};
   options.open = split(request->what, &folder);
-  options.folder = dea_text_get(&folder);
+  options.folder = ".";
   dea_status status = cli_examples_find(cli->ctx, ".yaml", &list);
   struct dea_studio_example *examples = dea_alloc(cli->ctx, list.count, sizeof *examples);
   if (readlink("/proc/self/exe", program, sizeof program - 1) <= 0) {
@@ -111,6 +112,11 @@ static int run(struct dea_cli *cli, void *user)
   }
   if (options.open != NULL && !dea_path_exists(request->what)) {
     status = dea_fail(cli->ctx, DEA_E_IO, "there is no folder or design %s", request->what);
+  }
+  if (status == DEA_OK && !folder.failed &&
+      chdir(dea_text_get(&folder)) != 0) { // where runs name files
+    status = dea_fail(cli->ctx, DEA_E_IO, "cannot open the folder %s: %s", dea_text_get(&folder),
+                      strerror(errno));
   }
   if (status == DEA_OK && examples != NULL && !folder.failed) {
     options.example_count = choose(&list, examples);

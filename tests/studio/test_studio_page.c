@@ -210,6 +210,25 @@ TEST(test_sliders)
   assert_quiet();
 }
 
+/* Those of the reduced model, whose file the design names from its own folder. */
+TEST(test_sliders_of_the_reduced_model)
+{
+  command_write(
+      "room/disc.yaml",
+      "dea: 1\nfilm: {material: elastosil-2030, thickness: 100 um}\npre_stretch: 1.5\n"
+      "frame: {inner_radius: 15 mm}\nelectrodes: {radius: 3.75 mm stretched}\n"
+      "compute: {models: [reduced], reduced: {file: disc.json}, voltage: {to: 2 kV, step: "
+      "1 kV}}\n");
+  assert_int_equal(command_run("reduce-order room/disc.yaml -o room/disc.json -q"), 0);
+  act("fetch('job', { method: 'POST', body: JSON.stringify({ action: 'run', file: 'disc.yaml', "
+      "output: 'disc.run' }) }).then(() => 1)");
+  until("[...document.querySelectorAll('#jobs .head')].some((one) => "
+        "one.textContent.includes('disc.run') && one.textContent.includes(': done'))");
+  until("fetch('sliders?run=disc.run').then((a) => a.text()).then((text) => "
+        "text.includes('\"dea_reduced'))");
+  assert_quiet();
+}
+
 TEST(test_a_report_opens)
 {
   act("document.querySelector('#film').open = true");
