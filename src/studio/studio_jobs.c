@@ -145,7 +145,6 @@ struct job {
   char last[LAST_LINE]; // what it says of its progress
   char half[512];       // a line that has not ended
   size_t half_length;
-  bool rewritten; // that line takes the place of another one
 };
 
 struct dea_studio_jobs {

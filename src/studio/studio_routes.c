@@ -581,19 +581,19 @@ static void post_copy(struct work *w)
 
 // Runs --------------------------------------------------------------------------------------------
 
-/* Adds "OPTION VALUE" for each text of a list; false where one is no plain word. */
-static bool add_words(struct dea_studio_line *line, const char *option, const json_t *words)
+/* Adds "--model NAME" for each of a list; false where one is no plain word. */
+static bool add_models(struct dea_studio_line *line, const json_t *models)
 {
   size_t i;
-  const json_t *word;
-  json_array_foreach(words, i, word)
+  const json_t *model;
+  json_array_foreach(models, i, model)
   {
-    const char *text = json_string_value(word);
+    const char *text = json_string_value(model);
     if (text == NULL || text[0] == '\0' ||
         text[strspn(text, "abcdefghijklmnopqrstuvwxyz0123456789-")] != '\0' || text[0] == '-') {
       return false;
     }
-    dea_studio_line_add(line, option);
+    dea_studio_line_add(line, "--model");
     dea_studio_line_add(line, text);
   }
   return true;
@@ -632,15 +632,15 @@ static bool make_file_job(struct work *w, const json_t *body, const char *action
   add_file(line, text_of(body, "file"));
   dea_studio_line_add(line, "-o");
   add_file(line, output);
-  if (strcmp(action, "fab") == 0 || json_is_true(json_object_get(body, "force"))) {
+  if (strcmp(action, "fab") == 0 || strcmp(action, "fit") == 0 ||
+      json_is_true(json_object_get(body, "force"))) {
     dea_studio_line_add(line, "--force");
   }
   if (run && json_is_true(json_object_get(body, "resume"))) {
     dea_studio_line_add(line, "--resume");
   }
-  if (run && (!add_words(line, "--model", json_object_get(body, "models")) ||
-              !add_words(line, "--study", json_object_get(body, "studies")))) {
-    give_error(w, 400, "names of models and studies are small letters, digits and '-'");
+  if (run && !add_models(line, json_object_get(body, "models"))) {
+    give_error(w, 400, "names of models are small letters, digits and '-'");
     return false;
   }
   return true;
