@@ -26,14 +26,17 @@ static struct dea_fit_rows all_rows(const struct dea_fit *fit)
   return (struct dea_fit_rows){fit->series, fit->series_count, SIZE_MAX, 0, 0, fit->scatter_Pa};
 }
 
-/* The times that the tests span at the reference temperature, as far as the shift can be guessed.
- */
+/* The times that the fitted tests span at the reference temperature, as far as the shift can be
+ * guessed. */
 static void widen_times(struct work *w)
 {
   const struct dea_fit_file *file = w->fit->file;
   double longest = 1, shortest = 1;
   const bool shifts = file->reference_K.origin != DEA_ABSENT;
   for (size_t s = 0; s < w->fit->series_count && shifts; s++) {
+    if (!dea_fit_series_used(&w->fit->series[s])) {
+      continue;
+    }
     const double off_K = dea_fit_temperature_K(file, w->fit->series[s].test) - file->reference_K.si;
     const double shift =
         dea_branch_shift(DEA_FIT_WLF_C1, DEA_FIT_WLF_C2_K, fmax(off_K, -0.5 * DEA_FIT_WLF_C2_K));

@@ -41,7 +41,8 @@ static dea_status differentiate(const struct dea_lsq_problem *problem, double *p
 {
   const size_t m = problem->rows;
   double *plus = work, *minus = work + m;
-  const double h = (problem->step > 0 ? problem->step : step_share) * problem->scale[j];
+  const double share = problem->step > 0 ? problem->step : step_share;
+  const double h = fmax(share * problem->scale[j], short_share * fabs(p[j]));
   dea_status status;
   if (problem->second_order) {
     status = difference(problem, p, j, h, work, column);
