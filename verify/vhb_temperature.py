@@ -130,7 +130,7 @@ set title 'One curve: stress at the stretches 2 and 3.9'
 set logscale x; set format x '10^{{%L}}'; set logscale y; set ytics (50, 100, 200, 300); set yrange [35:330]; set xrange [1e-3:3]
 set xlabel 'rate times a(T) (1/s)'; set ylabel 'nominal stress (kPa)'
 plot {", ".join(f"'-' {style(t)}" for t in TEMPERATURES)}, \\
-     '-' with lines lc rgb '#666666' title 'law', '-' with lines lc rgb '#666666' notitle
+     '-' with lines lc rgb '#666666' title 'law, fitted', '-' with lines lc rgb '#666666' notitle
 {"".join(block(points[t]) for t in TEMPERATURES)}{"".join(lows)}
 unset logscale; set format '%g'; set yrange [-3:2]; set xrange [-5:85]; set ytics auto; set key left bottom
 set title 'Shift from 20 degC'; set xlabel 'temperature (degC)'; set ylabel 'log10 a'

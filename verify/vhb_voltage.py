@@ -283,7 +283,7 @@ set title 'Tension at 23 degC' offset 0,4.5; set ylabel 'nominal stress (kPa)' o
 plot '-' using 1:2 with points pt 7 ps 0.45 lc rgb 'black' title 'measured, 0 kV', \\
      '-' using 1:2 with points pt 6 ps 0.55 lc rgb '#cc0000' title 'measured, 6 kV', \\
      '-' using 1:2 with lines lw 2 lc rgb 'black' title 'fitted at 0 kV: {title}', \\
-     '-' using 1:2 with lines lw 2 lc rgb '#cc0000' title 'the same strip at 6 kV, predicted'
+     '-' using 1:2 with lines lw 2 lc rgb '#cc0000' title 'the same strip at 6 kV; ratio: nearest of three'
 {rows(off.items())}{rows(on.items())}{rows(sorted(curve.items()))}{rows((s, curve[s] - fall[s]) for s in fall if s in curve)}
 set ylabel 'fall of the nominal stress by 6 kV (kPa)'; set yrange [0:20]
 set title 'What 6 kV take, 23 degC' offset 0,4.5
