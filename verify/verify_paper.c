@@ -352,14 +352,15 @@ static void other_constants(void)
       {{"film.law", "yeoh-281"}, {"film.permittivity", "constant-1.5"}}};
   const struct swept s = sweep("3d", &simulated4, &group, 250, 8e3);
   const struct swept b = sweep("3d", &built4, &group, 250, 8e3);
-  printf("Not in the band: another model of the group, for contractile actuators "
-         "(github.com/sherwood01v/mesh-reinforcement-dea-project), has Yeoh 281.2, -8.087 and "
-         "0.9766 kPa\nand a permittivity of 1.5, half of what others measured on silicone. With "
-         "these as simulated: tip %.0f, centre %.0f um at 6 kV (8 kV: %.0f, %.0f);\nas built: tip "
-         "%.1f, centre %.1f um at 6 kV, %.0f and %.0f at 8 kV, anywhere %.0f. They move the answer "
-         "away from the measured 0.5 mm.\n\n",
-         tip_um(&s, 6e3), centre_um(&s, 6e3), tip_um(&s, 8e3), centre_um(&s, 8e3), tip_um(&b, 6e3),
-         centre_um(&b, 6e3), tip_um(&b, 8e3), centre_um(&b, 8e3), farthest_um(&b, 8e3));
+  printf(
+      "Not in the band: another model of the group, for contractile actuators\n"
+      "(github.com/sherwood01v/mesh-reinforcement-dea-project), has Yeoh 281.2, -8.087 and 0.9766 "
+      "kPa and a permittivity of 1.5, half of what\nothers measured on silicone. With these as "
+      "simulated: tip %.0f, centre %.0f um at 6 kV (8 kV: %.0f, %.0f); as built: tip %.1f,\n"
+      "centre %.1f um at 6 kV, %.0f and %.0f at 8 kV, anywhere %.0f. They move the answer away "
+      "from the measured 0.5 mm.\n\n",
+      tip_um(&s, 6e3), centre_um(&s, 6e3), tip_um(&s, 8e3), centre_um(&s, 8e3), tip_um(&b, 6e3),
+      centre_um(&b, 6e3), tip_um(&b, 8e3), centre_um(&b, 8e3), farthest_um(&b, 8e3));
 }
 
 /* How much of its pre-stretch a film would have to lose to do what was measured. */

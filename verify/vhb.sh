@@ -32,8 +32,9 @@ cat <<END
 
 Made by \`scripts/verify vhb\`; not to be edited. [$example](../../$example) fits \`dea fit\` to
 public relaxations of VHB 4910 at the stretches 2, 3 and 5 (a strip of 80 mm and 22 mm2, stretched at
-0.25 1/s, then held for 1000 s; eight values each), with 1 % as the uncertainty of a value. Where
-these numbers were published first could not be found out. Other stretches of that series are kept back.
+0.25 1/s, then held for 1000 s; eight values each), with 1 % as the uncertainty of a value. Length, rate
+and stretches are those that github.com/Chongran-Zhao/VHB4910_data describes; its values were not read, and no value
+beside the predictions was looked at.
 
 ## The law
 
