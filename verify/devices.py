@@ -286,7 +286,7 @@ def elsewhere():
     yield "The paper's actuator, four fibres", "largest displacement at 8 kV (mm)", 0.5, *bounds, "paper"
     for name, cell in (("four", 4), ("eight", 8)):
         change = max(-float(number_at(paper, f"| {d} mm |")[cell]) for d in ("0.5", "1.0", "1.5", "2.0"))
-        yield f"The paper's actuator, {name} fibres", "size of the force's change by 6 kV (mN), any depth", 180, 0, change, "paper"
+        yield f"The paper's actuator, {name} fibres", "size of the force's change by 6 kV, any depth (mN)", 180, 0, change, "paper"
     with open(os.path.join(ROOT, "docs/validation/vhb-under-voltage.csv"), encoding="utf-8") as file:
         for row in csv.DictReader(file):
             if row["measured drop (kPa)"] and row["stretch"] in ("1.25", "1.5", "2", "2.5", "2.95"):
@@ -361,7 +361,7 @@ def line(words):
     print("| " + " | ".join(str(w) for w in words) + " |")
 
 
-def write_csv(found):
+def write_csv(found, others):
     with open(os.path.join(ROOT, "docs/validation/devices.csv"), "w", encoding="utf-8", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(["device", "quantity", "unit", "measured", "measured uncertainty", "nominal", "low", "high", "in the band",
@@ -370,11 +370,15 @@ def write_csv(found):
             out.writerow([p["device"], p["label"], p["unit"], f"{p['measured']:.6g}", "" if p["error"] is None else f"{p['error']:.3g}",
                           f"{p['nominal']:.6g}", f"{p['low']:.6g}", f"{p['high']:.6g}", "yes" if p["inside"] else "no",
                           "yes" if p["telling"] else "no", p["slack"] + p["none"], p["runs"]])
+        for device, quantity, measured, low, high, _ in others:
+            label, unit = quantity.rstrip(")").rsplit(" (", 1)
+            out.writerow([device, label, unit, f"{measured:.6g}", "", "", f"{low:.6g}", f"{high:.6g}", "yes" if low <= measured <= high else "no",
+                          "yes" if 0 < high < 2 * low else "no", "", ""])
 
 
 def main():
     found, others = list(rows()), list(elsewhere())
-    write_csv(found)
+    write_csv(found, others)
     figure(found)
     telling = [p for p in found if p["telling"]]
     print("# Devices that others measured\n")
