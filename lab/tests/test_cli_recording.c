@@ -177,7 +177,9 @@ TEST(test_two_become_one)
 TEST(test_what_is_no_recording)
 {
   command_write("text.h5", "no recording at all");
-  command_expect("recording text.h5", 5, "text.h5 is no recording; dea import makes one");
+  command_expect("recording text.h5", 5,
+                 "text.h5 is no recording; dea import makes one of CSV, .mat, .lvm and .tdms, and "
+                 "examples/python/area_strain.py a table of pictures");
   command_expect("recording nowhere.h5", 5, "does not exist");
   assert_int_equal(command_run("recording /dev/null"), 5);
   assert_int_equal(command_run("recording"), 2);

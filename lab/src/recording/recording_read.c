@@ -341,7 +341,9 @@ static hid_t open_file(struct h5 *h)
   if (count > 0 && !is_h5) {
     h->status =
         dea_fail(h->ctx, DEA_E_IO,
-                 "%s is no recording; dea import makes one of CSV, .mat, .lvm and .tdms", h->path);
+                 "%s is no recording; dea import makes one of CSV, .mat, .lvm and .tdms, and "
+                 "examples/python/area_strain.py a table of pictures",
+                 h->path);
     return H5I_INVALID_HID;
   }
   // a superblock of version 3 whose flags say: open for one writer and many readers
