@@ -35,13 +35,13 @@ the voltage that is written, taut or with its tension lost in places, with the d
   Errors go with (size / order^2)^p (Babuska and Suri 1987); p is the one observed, between 1 (as of stresses of 1/sqrt(r), also where
   none is observed) and 2.
 * **+-**: how far the limit may be off, in % of the quantity: its change between p = {least_order:g} (or the observed p, if
-  larger) and p = 2; without an observed order three times the last change. Above a third of what is found the effectivity has a `~`.
-* **Effectivity**: estimated over found, of root mean squares over both voltages. In brackets and not counted: both below
+  larger) and p = 2; without an observed order three times the last change.
+* **Effectivity**: estimated over found, of root mean squares over both voltages. Not counted: both below
   {negligible:g} % of the quantity.
-* Nothing of the estimate is fitted to these designs. The sum around corners was chosen with the first table, the larger side
+* Nothing of the estimate is fitted to these designs. The sum around corners was chosen with the first set, the larger side
   with the first two.
 * All rows are in [trust.csv](trust.csv): values in um (stretches: 1) at the voltage, errors in % of the value. Where a mesh did not reach
-  the voltage, the row is of half of it. The tables below have the numbers outside of {within[0]:g} to {within[1]:g}."""
+  the voltage, the row is of half of it. The tables below have the numbers outside of {within[0]:g} to {within[1]:g} whose limit is known (+- at most a third of what is found)."""
 COLUMNS = """
 | design | kV | quantity | limit | found (%) | +- (%) | estimated (%) | effectivity |
 |---|---|---|---|---|---|---|---|"""
@@ -341,11 +341,10 @@ def row_of(name, quantity, states, tally):
     orders = ["-" if math.isnan(s[3]) else "none" if s[3] < LEAST_SEEN else f"{s[3]:.1f}" for s in states]
     star = " *" if (name, quantity) in FINE else ""
     errors = [f"{100 * x:.3f}" for x in relative]
-    page = f"| {name} | {states[-1][0]:g} | {quantity}{star} | {states[-1][2]:{digits}} | {' | '.join(errors)} | {ratio:.2f}"
-    page += ("" if known else " ~") + " |"
+    page = f"| {name} | {states[-1][0]:g} | {quantity}{star} | {states[-1][2]:{digits}} | {' | '.join(errors)} | {ratio:.2f} |"
     line = [name, f"{states[-1][0]:g}", quantity + star, f"{states[-1][1]:{digits}}", f"{states[-1][2]:{digits}}"]
     line += ([""] + orders)[-2:] + errors + [f"{ratio:.2f}", "yes" if counted else "no", "yes" if known else "no"]
-    return page, line, counted and not WITHIN[0] <= ratio <= WITHIN[1]
+    return page, line, counted and known and not WITHIN[0] <= ratio <= WITHIN[1]
 
 
 def print_count(name, ratios):
@@ -369,8 +368,8 @@ def estimated_anew(name, kV, design, sets, old, tally):
         estimated = math.sqrt(sum((error / value) ** 2 for value, error in states) / 2)
         ratio, counted, known = estimated / max(found, 1e-5), max(found, estimated) > NEGLIGIBLE, off <= WELL_KNOWN * found
         new = line[1:10] + [f"{100 * estimated:.3f}", f"{ratio:.2f}", "yes" if counted else "no", "yes" if known else "no"]
-        page = f"| {' | '.join([*new[:3], new[4], *new[7:11]])}{'' if known else ' ~'} |"
-        rows.append((page, new, counted and not WITHIN[0] <= ratio <= WITHIN[1], quantity, ratio, known))
+        page = f"| {' | '.join([*new[:3], new[4], *new[7:11]])} |"
+        rows.append((page, new, counted and known and not WITHIN[0] <= ratio <= WITHIN[1], quantity, ratio, known))
     for *_, quantity, ratio, known in (r for r in rows if r[1][-2] == "yes"):
         tally.setdefault(quantity if quantity in SHORT.values() else "of plies", []).append((ratio, known))
     return [r[:3] for r in rows]
@@ -421,7 +420,7 @@ def main():
         print("\n## Second set\n\nComputed after the sum around corners had been chosen.")
         every += print_set(2, HELD_BACK, lines)
     if NEWER:
-        print("\n## Third set\n\nComputed when the estimate was as it is.")
+        print("\n## Third set\n\nComputed after the larger side had been chosen.")
         every += print_set(3, NEWER, lines)
     if ESTIMATES:
         print("\n## All sets\n")
