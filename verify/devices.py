@@ -445,8 +445,6 @@ READING = """## What these say
 * **Acrylic discs wrinkle within the band**, at 5.4 kV and 2.3 times the area (nominal 4.6 kV and 2.9), with an assumed pre-stretch. With carbon black the disc
   agrees up to 3 kV and grows ever more slowly above: stiffness, resistance, or another film.
 
-The pre-stretch of each film and the stiffness of each electrode make the wide bands.
-
 Not counted, since what could be read of them (mostly abstracts) lacks a number that decides, such as pre-stretch, field, pressure or law: films and
 discs of Pelrine and others (2000), Wissler and Mazza (2005), Bozlar and others (2012), Akbari and others (2013), Feng and others (2024); cones of
 Bernat and others (2022), Cao and Conn (2018); membranes of Tews and others (2003), Dubois and others (2009), Shian and others (2013), Garnell and others
