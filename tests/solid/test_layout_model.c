@@ -485,6 +485,7 @@ TEST(test_disc_of_both_models)
  * the exact disc. */
 TEST(test_pull_in_is_told)
 {
+  only_nightly(); // test_solid_solve_stops has the disc's mesh, test_leaps_are_located a free one
   struct dea_device plain = test_soft_disc();
   struct dea_device *device = device_new();
   struct dea_layout *l = device->layout;
