@@ -352,9 +352,7 @@ dea_status dea_result_array(dea_context *ctx, const dea_result *result, const ch
     }
   }
   const char **known = dea_alloc(ctx->inner, result->array_count, sizeof *known);
-  if (known == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(known != NULL);
   for (size_t i = 0; i < result->array_count; i++) {
     known[i] = result->arrays[i]->name;
   }

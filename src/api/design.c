@@ -30,9 +30,7 @@ static dea_status read_with(struct dea_context *ctx, const dea_design *design,
 {
   *out = NULL;
   struct dea_override *overrides = api_overrides(ctx, settings, count);
-  if (overrides == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(overrides != NULL);
   dea_status status = dea_design_read_memory(ctx, design->name, design->bytes, design->length,
                                              overrides, count, out);
   dea_free(ctx, overrides);
@@ -292,9 +290,7 @@ dea_status dea_design_get(dea_context *ctx, const dea_design *design, const char
     }
   }
   const char **known = dea_alloc(ctx->inner, count, sizeof *known);
-  if (known == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(known != NULL);
   for (size_t i = 0; i < count; i++) {
     known[i] = design->values[i].key;
   }

@@ -111,6 +111,14 @@ void dea_context_clear(struct dea_context *ctx);
     }                                                                                              \
   } while (0)
 
+/* Returns DEA_E_MEMORY, which the context knows of, where there is not what was asked for. */
+#define DEA_NEED(there)                                                                            \
+  do {                                                                                             \
+    if (!(there)) {                                                                                \
+      return DEA_E_MEMORY;                                                                         \
+    }                                                                                              \
+  } while (0)
+
 /* Adds a finding (printf style); the same one is kept once, and of errors the first ones. Fails
  * only for want of memory. */
 dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,

@@ -86,9 +86,7 @@ dea_status dea_folder_lock(struct dea_context *ctx, const char *directory,
 {
   *out = NULL;
   struct dea_folder_lock *lock = dea_alloc(ctx, 1, sizeof *lock);
-  if (lock == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(lock != NULL);
   lock->file = -1;
   lock->path = dea_path_join(ctx, directory, DEA_FOLDER_LOCK_FILE);
   dea_status status = lock->path != NULL ? take(ctx, directory, lock) : DEA_E_MEMORY;

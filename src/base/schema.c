@@ -126,9 +126,7 @@ static dea_status read_settings(const struct dea_reader *reader, const struct de
                                 struct dea_location location, char *target)
 {
   void *values = dea_alloc(reader->ctx, 1, field->element_size);
-  if (values == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(values != NULL);
   memcpy(target, &values, sizeof values);
   const struct section inner = {field->record, node, path, values, location};
   return read_section(reader, &inner);
@@ -492,9 +490,7 @@ static dea_status check_unknown_keys(const struct dea_reader *reader, const stru
 static dea_status read_section(const struct dea_reader *reader, const struct section *section)
 {
   absent_section(section->record, section->base, section->location);
-  if (section->node != NULL) {
-    DEA_TRY(reader->ctx, check_unknown_keys(reader, section));
-  }
+  DEA_TRY(reader->ctx, section->node != NULL ? check_unknown_keys(reader, section) : DEA_OK);
   for (size_t i = 0; i < section->record->field_count; i++) {
     if (section->record->fields[i].elsewhere == NULL) {
       DEA_TRY(reader->ctx, read_field(reader, section, &section->record->fields[i]));

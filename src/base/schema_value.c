@@ -31,16 +31,12 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
   if (listing->count == listing->capacity) {
     size_t capacity = 2 * listing->capacity + 32;
     void *moved = dea_resize(reader->ctx, listing->items, capacity, sizeof *listing->items);
-    if (moved == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(moved != NULL);
     listing->items = moved;
     listing->capacity = capacity;
   }
   char *copy = dea_copy_text(reader->ctx, path, DEA_PATH_SIZE);
-  if (copy == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(copy != NULL);
   listing->items[listing->count++] =
       (struct dea_listed){copy, text, unit, unit != NULL ? si : NAN, origin, location};
   return DEA_OK;

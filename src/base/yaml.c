@@ -116,9 +116,7 @@ static int compare_keys(const void *a, const void *b)
 static dea_status check_keys(struct reading *r, const struct dea_node *section)
 {
   struct dea_node **sorted = dea_alloc(r->ctx, section->child_count, sizeof *sorted);
-  if (sorted == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(sorted != NULL);
   size_t count = 0;
   for (struct dea_node *child = section->child; child != NULL; child = child->next) {
     sorted[count++] = child;
@@ -166,9 +164,7 @@ static dea_status take_node(struct reading *r, int index, struct dea_node **out)
   const yaml_node_t *source = yaml_document_get_node(r->document, index);
   struct dea_location location = place_of(r, source->start_mark);
   struct dea_node *node = keep_memory(r->ctx, r->yaml, sizeof *node);
-  if (node == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(node != NULL);
   *node = (struct dea_node){.text = "", .location = location, .overridden = r->fixed != NULL};
   *out = node;
   if (source->type == YAML_SCALAR_NODE) {
@@ -218,9 +214,7 @@ dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char 
 {
   *out = NULL;
   struct dea_yaml *yaml = dea_alloc(ctx, 1, sizeof *yaml);
-  if (yaml == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(yaml != NULL);
   yaml->name = dea_intern(ctx, name);
   dea_status status = DEA_E_MEMORY;
   if (yaml->name != NULL) {
@@ -332,9 +326,7 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
     if (*link == NULL) {
       struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
       char *key = keep_text(ctx, yaml, *path, length);
-      if (made == NULL || key == NULL) {
-        return DEA_E_MEMORY;
-      }
+      DEA_NEED(made != NULL && key != NULL);
       *made = (struct dea_node){DEA_NODE_SECTION, "",       false, true, key,
                                 location,         location, NULL,  NULL, 0};
       *link = made;
@@ -382,9 +374,7 @@ static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea
     return DEA_OK;
   }
   node->key = keep_text(ctx, yaml, key, strlen(key));
-  if (node->key == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(node->key != NULL);
   node->key_place = location;
   node->next = old != NULL ? old->next : NULL;
   section->child_count += old == NULL; // NOLINT(clang-analyzer-core.NullDereference): walk sets it
@@ -400,9 +390,7 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   struct dea_location location = {.file =
                                       name.failed ? NULL : dea_intern(ctx, dea_text_get(&name))};
   dea_text_free(&name);
-  if (location.file == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(location.file != NULL);
   if (yaml->root->kind != DEA_NODE_SECTION) {
     return DEA_OK; // the reader of the schema says so
   }
@@ -433,9 +421,7 @@ static dea_status merge_below(struct dea_context *ctx, struct dea_yaml *yaml, co
     }
     const char *path = whole;
     struct dea_node *section = NULL, *copy = keep_memory(ctx, yaml, sizeof *copy);
-    if (copy == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(copy != NULL);
     *copy = *child;
     copy->overridden = true;
     DEA_TRY(ctx, walk(ctx, yaml, child->key_place, &path, &section));
@@ -485,9 +471,7 @@ dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
   if (item != NULL && *link == NULL) {
     struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
     char *key = keep_text(ctx, yaml, list, strlen(list));
-    if (made == NULL || key == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(made != NULL && key != NULL);
     *made = (struct dea_node){.kind = DEA_NODE_LIST, .text = "", .key = key};
     made->location = made->key_place = place;
     *link = made;

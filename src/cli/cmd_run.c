@@ -90,9 +90,7 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
     run->others.ctx = ctx;
     cli_designs_text(request->designs.at + 1, request->designs.count - 1, &run->others);
     overrides[count++] = (struct dea_override){"compute.compare", dea_text_get(&run->others)};
-    if (run->others.failed) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(!run->others.failed);
   }
   DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides, count,
                                       &run->design));
@@ -436,9 +434,7 @@ static dea_status run_all(struct dea_cli *cli, const struct request *request, st
   if (!began) {
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
   }
-  if (!dea_checkpoint_refused(run->job.keep)) {
-    DEA_TRY(ctx, deliver(cli, request, run));
-  }
+  DEA_TRY(ctx, !dea_checkpoint_refused(run->job.keep) ? deliver(cli, request, run) : DEA_OK);
   return status == DEA_OK ? DEA_OK : dea_fail(ctx, status, "%s", message);
 }
 

@@ -38,9 +38,7 @@ static dea_status take_files(struct dea_context *ctx, const char *folder, const 
 {
   list->folder = dea_copy_text(ctx, folder, strlen(folder));
   list->files = dea_alloc(ctx, found->gl_pathc, sizeof *list->files);
-  if (list->folder == NULL || list->files == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(list->folder != NULL && list->files != NULL);
   for (size_t i = 0; i < found->gl_pathc; i++) {
     const char *path = found->gl_pathv[i];
     if (!ends_in(path, outcome) || !is_regular(path)) {
@@ -51,9 +49,7 @@ static dea_status take_files(struct dea_context *ctx, const char *folder, const 
     file->path = dea_copy_text(ctx, path, strlen(path));
     file->name = dea_copy_text(ctx, name, strlen(name));
     list->count++;
-    if (file->path == NULL || file->name == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(file->path != NULL && file->name != NULL);
   }
   return DEA_OK;
 }

@@ -162,9 +162,7 @@ dea_status dea_material_lines_expand(struct dea_context *ctx, struct dea_yaml *y
     const struct dea_node *section = dea_node_find(root, sections[i]);
     char name[DEA_NAME_SIZE];
     snprintf(name, sizeof name, "%s.material", sections[i]);
-    if (section != NULL) {
-      DEA_TRY(ctx, expand_of(ctx, yaml, section, name));
-    }
+    DEA_TRY(ctx, section != NULL ? expand_of(ctx, yaml, section, name) : DEA_OK);
   }
   size_t number = 0;
   const struct dea_node *ply = plies != NULL ? plies->child : NULL;

@@ -28,9 +28,7 @@ dea_status dea_device_build(struct dea_context *ctx, const struct dea_design *de
 {
   *out = NULL;
   struct dea_device *device = dea_alloc(ctx, 1, sizeof *device);
-  if (device == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(device != NULL);
   dea_status status = fill(ctx, design, device);
   if (status != DEA_OK) {
     dea_device_destroy(ctx, device);

@@ -115,9 +115,7 @@ static dea_status forget_sheet(struct dea_context *ctx, const char *directory, c
   static const char ours[] = "999\nlibdea ";
   char start[sizeof ours] = "";
   char *path = dea_path_join(ctx, directory, dxf);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(path != NULL);
   size_t length;
   dea_file_head(path, start, sizeof ours - 1, &length);
   if (strcmp(start, ours) == 0) {
@@ -302,8 +300,6 @@ dea_status dea_workshop_write(struct dea_context *ctx, const struct dea_workshop
       DEA_TRY(ctx, write_sheet(ctx, workshop, directory, i, f));
     }
   }
-  if (!options->drawing_only) {
-    DEA_TRY(ctx, write_layout(ctx, workshop, directory));
-  }
+  DEA_TRY(ctx, !options->drawing_only ? write_layout(ctx, workshop, directory) : DEA_OK);
   return write_drawings(ctx, workshop, directory, options);
 }

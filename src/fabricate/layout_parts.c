@@ -641,9 +641,7 @@ dea_status dea_parts_make(struct dea_context *ctx, struct dea_workshop *w)
       add_blank(w, i);
     }
     for (int top = 0; top < 2; top++) {
-      if (dea_face_like(l, i, top == 1) == i) {
-        DEA_TRY(ctx, add_stencil(w, i, top == 1));
-      }
+      DEA_TRY(ctx, dea_face_like(l, i, top == 1) == i ? add_stencil(w, i, top == 1) : DEA_OK);
     }
   }
   add_template(w);

@@ -68,9 +68,7 @@ static dea_status check_path(const struct dea_part *part, size_t i,
   bool hole = part->contour[i].layer == DEA_LAYER_CUT_INNER;
   size_t count, at;
   struct dea_vertex *path = dea_alloc(part->ctx, 2 * contour->count, sizeof *path);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(path != NULL);
   bool good = dea_contour_offset(contour, hole ? -0.5 * kerf : 0.5 * kerf, path, &count, &at);
   dea_free(part->ctx, path);
   const struct dea_vertex *v = &contour->vertex[good ? 0 : at];
@@ -86,16 +84,12 @@ static dea_status check_contour(const struct dea_part *part, size_t i, double fe
   const struct dea_contour contour = dea_part_contour_get(part, i);
   size_t before = dea_finding_count(part->ctx, DEA_ERROR);
   double limit = feature * (1 - 1e-9);
-  if (part->contour[i].circle) {
-    DEA_TRY(part->ctx, check_circle(part, &contour, feature));
-  }
+  DEA_TRY(part->ctx, part->contour[i].circle ? check_circle(part, &contour, feature) : DEA_OK);
   for (size_t j = i; j < part->contour_count; j++) {
     const struct dea_contour other = dea_part_contour_get(part, j);
     if (is_cut(part->contour[j].layer)) {
       struct dea_gap gap = dea_contour_gap(&contour, j > i ? &other : NULL, limit);
-      if (gap.width_m < limit) {
-        DEA_TRY(part->ctx, report_gap(part, &contour, &gap, feature));
-      }
+      DEA_TRY(part->ctx, gap.width_m < limit ? report_gap(part, &contour, &gap, feature) : DEA_OK);
     }
   }
   if (dea_finding_count(part->ctx, DEA_ERROR) > before) {

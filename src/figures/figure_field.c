@@ -90,9 +90,7 @@ static dea_status build(struct dea_context *ctx, const struct dea_result *result
     }
   }
   const struct dea_curve *furthest = furthest_curve(result, models, count);
-  if (furthest != NULL) {
-    DEA_TRY(ctx, add_breakdown(ctx, panel, furthest, top));
-  }
+  DEA_TRY(ctx, furthest != NULL ? add_breakdown(ctx, panel, furthest, top) : DEA_OK);
   DEA_TRY(ctx, dea_figure_add_models(ctx, panel, result, column, false));
   snprintf(panel->y_label, sizeof panel->y_label, "True field {/:Italic E} (V/\302\265m)");
   panel->y_min = 0.0;

@@ -139,9 +139,7 @@ static dea_status build_boxes(struct dea_context *ctx, struct nesting *n)
 {
   size_t count = n->region->contour_count;
   struct dea_box *boxes = dea_alloc(ctx, count, sizeof *boxes);
-  if (boxes == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(boxes != NULL);
   for (size_t c = 0; c < count; c++) {
     const struct dea_contour contour = dea_region_contour(n->region, c);
     boxes[c] = (struct dea_box){{INFINITY, INFINITY, -INFINITY, -INFINITY}, c};

@@ -67,9 +67,7 @@ static dea_status make_room(struct dea_context *ctx, void **array, size_t count,
   }
   size_t larger = 2 * *capacity + 64;
   void *moved = dea_resize(ctx, *array, larger, size);
-  if (moved == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(moved != NULL);
   *array = moved;
   *capacity = larger;
   return DEA_OK;
@@ -104,9 +102,7 @@ static dea_status find_circles(struct work *w)
   struct dea_pieces *all = &w->all;
   w->circle = dea_arena_alloc(&all->arena, all->count, sizeof *w->circle);
   struct dea_box *order = dea_arena_alloc(&all->arena, all->count, sizeof *order); // by length
-  if (order == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(order != NULL);
   for (size_t i = 0; i < all->count; i++) {
     w->circle[i] = SIZE_MAX;
     order[i] = (struct dea_box){{all->piece[i].length_m}, i};
@@ -178,12 +174,8 @@ static dea_status cut_pair(struct work *w, size_t i, size_t j)
   double snap = w->all.snap_m, at[2][2];
   for (int k = 0; k < 2; k++) {
     const double *of_a = k == 0 ? a->from : a->to, *of_b = k == 0 ? b->from : b->to;
-    if (dea_piece_distance_m(b, of_a) <= snap) {
-      DEA_TRY(w->ctx, add_cut(w, j, of_a));
-    }
-    if (dea_piece_distance_m(a, of_b) <= snap) {
-      DEA_TRY(w->ctx, add_cut(w, i, of_b));
-    }
+    DEA_TRY(w->ctx, dea_piece_distance_m(b, of_a) <= snap ? add_cut(w, j, of_a) : DEA_OK);
+    DEA_TRY(w->ctx, dea_piece_distance_m(a, of_b) <= snap ? add_cut(w, i, of_b) : DEA_OK);
   }
   if (a->arc && b->arc && w->circle[i] == w->circle[j]) {
     return DEA_OK;
@@ -218,9 +210,7 @@ static dea_status find_cuts(struct work *w)
     size_t cursor = 0, j;
     dea_piece_grow_box(&all->piece[i], box);
     while (dea_pieces_next(all, box, &cursor, &j)) {
-      if (j > i && !dea_pieces_apart(all, i, j)) {
-        DEA_TRY(w->ctx, cut_pair(w, i, j));
-      }
+      DEA_TRY(w->ctx, j > i && !dea_pieces_apart(all, i, j) ? cut_pair(w, i, j) : DEA_OK);
     }
     if ((i & 255) == 0 && dea_interrupted(w->ctx)) {
       return dea_fail(w->ctx, DEA_E_INTERRUPTED, "interrupted while regions were combined");
@@ -326,9 +316,7 @@ static dea_status write_rings(struct work *w, const struct dea_region *region, s
   size_t polygon = 0, before = 0;
   out->end = dea_alloc(w->ctx, region->contour_count, sizeof *out->end);
   out->polygon = dea_alloc(w->ctx, region->contour_count, sizeof *out->polygon);
-  if (out->end == NULL || out->polygon == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(out->end != NULL && out->polygon != NULL);
   for (size_t c = 0; c < region->contour_count; c++) {
     const struct dea_contour own = dea_region_contour(region, c);
     bool hole = dea_contour_area_m2(&own) < 0;

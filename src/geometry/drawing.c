@@ -11,9 +11,7 @@ dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
 {
   struct dea_drawing *d = dea_alloc(ctx, 1, sizeof *d);
   *out = d;
-  if (d == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(d != NULL);
   d->ctx = ctx;
   d->settings = settings != NULL ? *settings : (struct dea_drawing_settings){0};
   d->settings.join_m = d->settings.join_m > 0 ? d->settings.join_m : 1e-6;
@@ -62,9 +60,7 @@ dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t c
   }
   size_t larger = *capacity + *capacity / 2 + 16;
   void *moved = dea_resize(ctx, *array, larger, size);
-  if (moved == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(moved != NULL);
   *array = moved;
   *capacity = larger;
   return DEA_OK;
@@ -87,9 +83,7 @@ dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size
           dea_drawing_make_room(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
   d->layer = names;
   const char *kept = dea_intern(d->ctx, name);
-  if (kept == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(kept != NULL);
   d->layer[d->layer_count] = kept;
   *layer = d->layer_count++;
   return DEA_OK;

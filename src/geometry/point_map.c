@@ -58,19 +58,13 @@ static dea_status grow(struct dea_point_map *map)
 {
   size_t capacity = map->capacity == 0 ? 64 : 2 * map->capacity;
   double(*point)[2] = dea_resize(map->ctx, map->point, capacity, sizeof *point);
-  if (point == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(point != NULL);
   map->point = point;
   size_t *next = dea_resize(map->ctx, map->next, capacity, sizeof *next);
-  if (next == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(next != NULL);
   map->next = next;
   size_t *head = dea_resize(map->ctx, map->head, capacity, sizeof *head);
-  if (head == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(head != NULL);
   map->head = head;
   map->capacity = map->heads = capacity;
   for (size_t h = 0; h < map->heads; h++) {
@@ -88,9 +82,7 @@ dea_status dea_point_map_add(struct dea_point_map *map, const double x_m[2], siz
   if (*index != SIZE_MAX) {
     return DEA_OK;
   }
-  if (map->count == map->capacity) {
-    DEA_TRY(map->ctx, grow(map));
-  }
+  DEA_TRY(map->ctx, map->count == map->capacity ? grow(map) : DEA_OK);
   map->point[map->count][0] = x_m[0];
   map->point[map->count][1] = x_m[1];
   put(map, map->count);

@@ -153,9 +153,7 @@ static dea_status restore(struct dea_context *ctx, void *user, const char *model
 {
   const struct dea_keep *keep = user;
   char *path = state_path(ctx, keep->directory, model);
-  if (path == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(path != NULL);
   dea_status status = dea_state_file_read(ctx, model, wanted, path, out);
   dea_free(ctx, path);
   return status;
@@ -173,9 +171,7 @@ static dea_status keep_point(struct dea_context *ctx, void *user, const struct d
                              const struct dea_state *state)
 {
   const struct dea_keep *keep = user;
-  if (fields != NULL) {
-    DEA_TRY(ctx, keep_fields(ctx, keep, result->design, curve, fields));
-  }
+  DEA_TRY(ctx, fields != NULL ? keep_fields(ctx, keep, result->design, curve, fields) : DEA_OK);
   if (state == NULL) {
     return DEA_OK;
   }
@@ -198,9 +194,7 @@ dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
                                  struct dea_keep **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(*out != NULL);
   (*out)->directory = dea_copy_text(ctx, directory, strlen(directory));
   if ((*out)->directory == NULL) {
     dea_free(ctx, *out);

@@ -6,9 +6,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
                         const char *directory)
 {
   const char *input = result->provenance.input;
-  if (input != NULL) {
-    DEA_TRY(ctx, dea_text_file_write(ctx, directory, "design.yaml", input));
-  }
+  DEA_TRY(ctx, input != NULL ? dea_text_file_write(ctx, directory, "design.yaml", input) : DEA_OK);
   return DEA_OK;
 }
 

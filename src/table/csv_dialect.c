@@ -46,9 +46,7 @@ static dea_status take_sample(struct sample *sample, struct dea_slice text)
   struct dea_slice line;
   sample->lines = dea_alloc(sample->ctx, SAMPLE_LINES, sizeof *sample->lines);
   sample->numbers = dea_alloc(sample->ctx, SAMPLE_LINES, sizeof *sample->numbers);
-  if (sample->lines == NULL || sample->numbers == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(sample->lines != NULL && sample->numbers != NULL);
   while (sample->count < SAMPLE_LINES &&
          (sample->count < 2 || lines.next - text.text < SAMPLE_BYTES) &&
          dea_lines_next(&lines, &line)) {
@@ -365,9 +363,7 @@ static dea_status fill(const struct sample *sample, struct dea_slice text,
     out->count = 1;
   }
   out->text = dea_alloc(sample->ctx, DEA_TABLE_COLUMNS_MAX, sizeof *out->text);
-  if (out->text == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(out->text != NULL);
   const struct candidate chosen = {.separator = out->separator, .decimal = out->decimal};
   size_t count;
   classify_fields(sample->lines[best->last], &chosen, out->text, &count);
@@ -412,9 +408,7 @@ static dea_status find_dialect(struct sample *sample, struct dea_slice text, boo
   bool found = false;
   DEA_TRY(sample->ctx, take_sample(sample, text));
   choose(sample, flags, flags + DEA_TABLE_COLUMNS_MAX, &best);
-  if (sample->count > 0) {
-    DEA_TRY(sample->ctx, refuse_thousands(sample, &best, flags, &found));
-  }
+  DEA_TRY(sample->ctx, sample->count > 0 ? refuse_thousands(sample, &best, flags, &found) : DEA_OK);
   if (found) {
     return dea_fail(sample->ctx, DEA_E_IO, "'%s' cannot be read", sample->file);
   }

@@ -282,9 +282,7 @@ static dea_status play(struct dea_cli *cli, const struct request *request,
                     protocol->file);
   }
   DEA_TRY(cli->ctx, clear_output(cli, request, file));
-  if (request->arm) {
-    DEA_TRY(cli->ctx, state_folder(cli, &folder));
-  }
+  DEA_TRY(cli->ctx, request->arm ? state_folder(cli, &folder) : DEA_OK);
   options.state_folder = folder;
   cli_voltage_is_on();
   dea_status status = dea_drive_run(cli->ctx, protocol, &options, report);
@@ -297,9 +295,7 @@ static dea_status export(struct dea_cli *cli, const struct request *request,
                          const struct dea_protocol *protocol)
 {
   char *csv = dea_path_join(cli->ctx, request->folder, "waveform.csv");
-  if (csv == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(csv != NULL);
   bool there = dea_path_exists(csv);
   dea_free(cli->ctx, csv);
   if (there && !request->force) {

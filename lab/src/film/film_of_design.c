@@ -36,9 +36,7 @@ static dea_status read(struct dea_context *ctx, const char *file, const char *te
 {
   *out = NULL;
   struct film *film = dea_alloc(ctx, 1, sizeof *film);
-  if (film == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(film != NULL);
   film->base.type = &dea_film_of_design;
   dea_status status = dea_design_read_memory(ctx, file, text, length, NULL, 0, &film->design);
   if (status != DEA_OK) {
@@ -136,9 +134,7 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
                     name, type == NULL ? "is not there" : "does not support transients");
   }
   struct film_model *m = dea_alloc(ctx, 1, sizeof *m);
-  if (m == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(m != NULL);
   *m = (struct film_model){.base = {.type = &dea_film_of_design, .name = type->name},
                            .design = ((const struct film *)film)->design,
                            .type = type};

@@ -350,9 +350,7 @@ static dea_status read_measurement(struct dea_lvm *lvm, struct dea_slice text)
 static dea_status read_text(struct dea_context *ctx, struct dea_slice text, struct dea_table *out)
 {
   struct dea_lvm *lvm = dea_alloc(ctx, 1, sizeof *lvm);
-  if (lvm == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(lvm != NULL);
   lvm->ctx = ctx;
   lvm->file = out->file;
   lvm->table = out;

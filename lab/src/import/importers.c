@@ -135,9 +135,7 @@ dea_status dea_table_read(struct dea_context *ctx, const char *file, const char 
   size_t length = 0;
   const struct dea_importer *importer = NULL;
   *out = NULL;
-  if (format != NULL) {
-    DEA_TRY(ctx, find_format(ctx, format, &importer));
-  }
+  DEA_TRY(ctx, format != NULL ? find_format(ctx, format, &importer) : DEA_OK);
   DEA_TRY(ctx, read_head(ctx, file, head, &length));
   if (importer == NULL) {
     importer = recognise(file, head, length);
@@ -146,9 +144,7 @@ dea_status dea_table_read(struct dea_context *ctx, const char *file, const char 
     return unknown_format(ctx, file, head, length);
   }
   struct dea_table *table = dea_alloc(ctx, 1, sizeof *table);
-  if (table == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(table != NULL);
   table->file = dea_intern(ctx, file);
   table->format = importer->name;
   dea_status status = table->file != NULL ? read_table(ctx, file, importer, table) : DEA_E_MEMORY;

@@ -193,13 +193,9 @@ dea_status dea_lvm_add_columns(struct dea_lvm *lvm)
   lvm->own = lvm->x == DEA_LVM_X_MULTI || (timed && lvm->differ);
   lvm->shared = lvm->x == DEA_LVM_X_ONE || (timed && !lvm->differ);
   lvm->x_column = SIZE_MAX;
-  if (lvm->shared) {
-    DEA_TRY(lvm->ctx, add_times(lvm, "X_Value", lvm->rows, &lvm->x_column));
-  }
+  DEA_TRY(lvm->ctx, lvm->shared ? add_times(lvm, "X_Value", lvm->rows, &lvm->x_column) : DEA_OK);
   for (size_t i = 0; i < lvm->count; i++) {
-    if (lvm->channels[i].total > 0) {
-      DEA_TRY(lvm->ctx, add_column(lvm, i));
-    }
+    DEA_TRY(lvm->ctx, lvm->channels[i].total > 0 ? add_column(lvm, i) : DEA_OK);
   }
   if (timed) {
     const struct dea_location location = {.file = lvm->file};

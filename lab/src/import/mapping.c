@@ -146,9 +146,7 @@ static dea_status read_bytes(struct dea_context *ctx, const char *bytes, size_t 
   struct dea_reader reader = {ctx, mapping->document, NULL};
   const struct dea_node *root = dea_yaml_root(mapping->document);
   DEA_TRY(ctx, dea_schema_read(&reader, &dea_mapping_record, root, "", mapping));
-  if (root->kind == DEA_NODE_SECTION) {
-    DEA_TRY(ctx, check(ctx, mapping));
-  }
+  DEA_TRY(ctx, root->kind == DEA_NODE_SECTION ? check(ctx, mapping) : DEA_OK);
   size_t found = dea_finding_count(ctx, DEA_ERROR) - errors;
   if (found > 0) {
     return dea_fail(ctx, DEA_E_DESIGN, "'%s' has %zu error%s", mapping->file, found,
@@ -162,9 +160,7 @@ dea_status dea_mapping_read_memory(struct dea_context *ctx, const char *file, co
 {
   *out = NULL;
   struct dea_mapping *mapping = dea_alloc(ctx, 1, sizeof *mapping);
-  if (mapping == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(mapping != NULL);
   mapping->file = dea_intern(ctx, file);
   dea_status status =
       mapping->file != NULL ? read_bytes(ctx, bytes, length, mapping) : DEA_E_MEMORY;

@@ -189,9 +189,7 @@ static dea_status add_channel(struct work *work, size_t column)
   DEA_TRY(work->ctx, copy_times(work, &clock, false, &channel.time_s));
   channel.values = dea_alloc(work->ctx, clock.count, sizeof *channel.values);
   recording->channels[recording->channel_count++] = channel; // owns the times from here on
-  if (channel.values == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(channel.values != NULL);
   DEA_TRY(work->ctx, copy_values(work, column, 1, channel.values));
   return dea_finding_add(work->ctx, DEA_NOTE, file_place(work),
                          "'%.60s'%s%.40s is taken as %s (%s)", c->name,
@@ -293,9 +291,7 @@ static dea_status add_profiles(struct work *work)
   profiles->points = points;
   profiles->x_m = dea_alloc(work->ctx, points, sizeof(double));
   profiles->z_m = dea_alloc(work->ctx, points * frames, sizeof(double));
-  if (profiles->x_m == NULL || profiles->z_m == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(profiles->x_m != NULL && profiles->z_m != NULL);
   DEA_TRY(work->ctx, copy_times(work, &clock, true, &profiles->time_s));
   profiles->count = frames;
   DEA_TRY(work->ctx, place_points(work, points, &falling));
@@ -359,9 +355,7 @@ static dea_status fill(struct work *work)
   DEA_TRY(work->ctx, dea_table_roles(work->ctx, work->table, work->mapping, work->roles));
   DEA_TRY(work->ctx, find_origin(work));
   for (size_t i = 0; i < work->table->column_count; i++) {
-    if (work->roles[i].use == DEA_USE_CHANNEL) {
-      DEA_TRY(work->ctx, add_channel(work, i));
-    }
+    DEA_TRY(work->ctx, work->roles[i].use == DEA_USE_CHANNEL ? add_channel(work, i) : DEA_OK);
   }
   DEA_TRY(work->ctx, add_profiles(work));
   DEA_TRY(work->ctx, warn(work));
@@ -375,9 +369,7 @@ static dea_status fill(struct work *work)
   work->recording->complete = true;
   if (work->mapping != NULL && work->mapping->title.text[0] != '\0') {
     char *title = dea_copy_text(work->ctx, work->mapping->title.text, DEA_TITLE_SIZE);
-    if (title == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(title != NULL);
     dea_free(work->ctx, work->recording->title);
     work->recording->title = title;
   }

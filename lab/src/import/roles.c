@@ -182,9 +182,7 @@ static dea_status take_mapping(struct work *work, size_t *clock)
   for (size_t i = 0; i < mapping->column_count; i++) {
     DEA_TRY(work->ctx, take_channel(work, &mapping->columns[i]));
   }
-  if (mapping->has_profile) {
-    DEA_TRY(work->ctx, take_profile(work));
-  }
+  DEA_TRY(work->ctx, mapping->has_profile ? take_profile(work) : DEA_OK);
   return DEA_OK;
 }
 
@@ -403,12 +401,8 @@ dea_status dea_table_roles(struct dea_context *ctx, const struct dea_table *tabl
   for (size_t i = 0; i < table->column_count; i++) {
     roles[i] = (struct dea_column_role){.factor = 1, .interval_s = NAN, .why = "not known"};
   }
-  if (mapping != NULL) {
-    DEA_TRY(ctx, take_mapping(&work, &clock));
-  }
-  if (mapping == NULL || mapping->time.text[0] == '\0') {
-    DEA_TRY(ctx, guess_times(&work));
-  }
+  DEA_TRY(ctx, mapping != NULL ? take_mapping(&work, &clock) : DEA_OK);
+  DEA_TRY(ctx, mapping == NULL || mapping->time.text[0] == '\0' ? guess_times(&work) : DEA_OK);
   for (size_t i = 0; mapping == NULL && i < table->column_count; i++) {
     guess_channel(&work, i);
   }

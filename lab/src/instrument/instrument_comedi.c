@@ -280,9 +280,7 @@ static dea_status set_up(struct dea_context *ctx, struct comedi *c)
 {
   const struct dea_protocol *p = c->protocol;
   DEA_TRY(ctx, open_output(ctx, c));
-  if (p->input_count > 0) {
-    DEA_TRY(ctx, find_part(ctx, c, DEA_COMEDI_INPUT, &c->input));
-  }
+  DEA_TRY(ctx, p->input_count > 0 ? find_part(ctx, c, DEA_COMEDI_INPUT, &c->input) : DEA_OK);
   for (size_t i = 0; i < p->input_count; i++) {
     DEA_TRY(ctx,
             add_channel(ctx, c, &c->input, DEA_COMEDI_TO_PHYSICAL,
@@ -330,9 +328,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   const struct dea_daq_raw *raw = data;
   struct comedi *c = dea_alloc(ctx, 1, sizeof *c);
-  if (c == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(c != NULL);
   c->base.type = &dea_instrument_comedi;
   c->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   c->protocol = protocol;
@@ -465,9 +461,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   while (count > 0) {
     size_t part, capacity = c->daq.capacity;
     DEA_TRY(ctx, dea_daq_part(ctx, &c->daq, c->name, count, &part));
-    if (c->daq.running) {
-      DEA_TRY(ctx, wait_for_room(ctx, c, &capacity));
-    }
+    DEA_TRY(ctx, c->daq.running ? wait_for_room(ctx, c, &capacity) : DEA_OK);
     part = part < capacity ? part : capacity;
     DEA_TRY(ctx, write_samples(ctx, c, volts, &part));
     c->daq.queued += part;

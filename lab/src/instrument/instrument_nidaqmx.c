@@ -241,9 +241,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   const struct dea_daq_raw *raw = data;
   struct nidaqmx *n = dea_alloc(ctx, 1, sizeof *n);
-  if (n == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(n != NULL);
   n->base.type = &dea_instrument_nidaqmx;
   n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   n->protocol = protocol;
@@ -299,9 +297,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
     n->daq.queued += (size_t)written;
     volts += written;
     count -= (size_t)written;
-    if (n->daq.asked_to_start && !n->daq.running) {
-      DEA_TRY(ctx, start_tasks(ctx, n));
-    }
+    DEA_TRY(ctx, n->daq.asked_to_start && !n->daq.running ? start_tasks(ctx, n) : DEA_OK);
   }
   return DEA_OK;
 }
@@ -338,9 +334,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
   int32_t code =
       n->driver.ReadAnalogF64(n->input, (int32_t)wanted, timeout_s, BY_SCAN, n->daq.scans,
                               (uint32_t)(most * n->protocol->input_count), &got, NULL);
-  if (code != NOT_YET_AVAILABLE) {
-    DEA_TRY(ctx, judge(ctx, n, code, "measure on"));
-  }
+  DEA_TRY(ctx, code != NOT_YET_AVAILABLE ? judge(ctx, n, code, "measure on") : DEA_OK);
   return got > 0 && (size_t)got <= wanted ? sink->samples(sink->user, n->daq.scans, (size_t)got)
                                           : DEA_OK;
 }

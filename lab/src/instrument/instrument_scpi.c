@@ -246,9 +246,7 @@ static dea_status set_up(struct dea_context *ctx, struct dea_scpi *s)
   for (size_t i = 0; i < s->raw.setup_count; i++) {
     DEA_TRY(ctx, dea_scpi_send(ctx, &s->link, timeout_s, s->raw.setup[i].text));
   }
-  if (plays) {
-    DEA_TRY(ctx, dea_scpi_output_open(ctx, s));
-  }
+  DEA_TRY(ctx, plays ? dea_scpi_output_open(ctx, s) : DEA_OK);
   return plays || s->raw.setup_count > 0 ? look_for_error(ctx, s) : DEA_OK;
 }
 
@@ -280,9 +278,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
                           const struct dea_protocol *protocol, struct dea_instrument **out)
 {
   struct dea_scpi *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(s != NULL);
   s->raw = *(const struct dea_scpi_raw *)data;
   s->base.type = &dea_instrument_scpi;
   s->base.roles = (s->raw.reading_count > 0 ? DEA_GIVES_READINGS : 0U) |
@@ -432,9 +428,7 @@ static dea_status take_response(struct dea_context *ctx, struct dea_scpi *s, con
   if (good && !isnan(value)) {
     DEA_TRY(ctx, scale(ctx, s, reading, response, field, &value, &good));
   }
-  if (number && !good) {
-    DEA_TRY(ctx, refuse(ctx, s, reading, response, alone));
-  }
+  DEA_TRY(ctx, number && !good ? refuse(ctx, s, reading, response, alone) : DEA_OK);
   if (!good) {
     value = NAN;
     s->base.lost++;

@@ -49,9 +49,7 @@ dea_status dea_line_wait(struct dea_context *ctx, struct dea_line_link *link, do
     const char *at = bytes;
     DEA_TRY(ctx, dea_socket_read(ctx, &link->socket, left_s, bytes, sizeof bytes, &length));
     *out = dea_line_next(&link->lines, &at, &length);
-    if (*out != NULL) {
-      DEA_TRY(ctx, dea_line_alone(ctx, link, *out, at, length));
-    }
+    DEA_TRY(ctx, *out != NULL ? dea_line_alone(ctx, link, *out, at, length) : DEA_OK);
     left_s = until_s - dea_clock_s();
     if (dea_interrupted(ctx)) {
       return dea_fail(ctx, DEA_E_INTERRUPTED, "interrupted");

@@ -177,9 +177,7 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
   static const struct dea_choice voltage = {.value = DEA_CHANNEL_VOLTAGE};
   static const struct dea_label no_unit;
   struct dea_line_supply *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(s != NULL);
   s->raw = *(const struct dea_line_supply_raw *)raw;
   s->raw_all = raw;
   s->language = language;

@@ -169,9 +169,7 @@ dea_status dea_sim_bench_sample(struct dea_sim_bench *bench, double control_V,
 {
   double rate_Hz = bench->protocol->rate_Hz.si;
   bench->state.time_s = (double)bench->samples / rate_Hz;
-  if (bench->samples > 0) {
-    DEA_TRY(bench->ctx, pass(bench));
-  }
+  DEA_TRY(bench->ctx, bench->samples > 0 ? pass(bench) : DEA_OK);
   report(bench, 1 / rate_Hz);
   bench->samples++;
   double asked_V = control_V * bench->protocol->amplifier.gain.si;
@@ -238,9 +236,7 @@ dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protoc
 {
   *out = NULL;
   struct dea_sim_bench *bench = dea_alloc(ctx, 1, sizeof *bench);
-  if (bench == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(bench != NULL);
   *bench = (struct dea_sim_bench){
       .ctx = ctx, .protocol = protocol, .settings = *settings, .type = protocol->film->type};
   dea_status status = begin(bench);

@@ -218,9 +218,7 @@ static dea_status check_inputs(struct dea_context *ctx, const struct dea_protoco
   for (size_t i = 0; i < protocol->input_count; i++) {
     const struct dea_protocol_input *input = &protocol->inputs[i];
     counts[input->kind.value]++;
-    if (input->kind.value == DEA_CHANNEL_VOLTAGE) {
-      DEA_TRY(ctx, check_range(ctx, plan, input));
-    }
+    DEA_TRY(ctx, input->kind.value == DEA_CHANNEL_VOLTAGE ? check_range(ctx, plan, input) : DEA_OK);
     if (input->filter_Hz.si >= 0.5 * protocol->rate_Hz.si) {
       DEA_TRY(ctx, dea_finding_add(ctx, DEA_WARNING, input->filter_Hz.location,
                                    "a filter of %g Hz does nothing at %g samples a second",

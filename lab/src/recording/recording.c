@@ -9,9 +9,7 @@
 dea_status dea_recording_create(struct dea_context *ctx, struct dea_recording **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(*out != NULL);
   (*out)->file = "";
   (*out)->title = dea_copy_text(ctx, "", 0);
   if ((*out)->title == NULL) {

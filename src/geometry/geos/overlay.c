@@ -97,19 +97,13 @@ static dea_status add_ring(const struct geos *g, const GEOSGeometry *ring, size_
   }
   size_t first = out->count > 0 ? out->end[out->count - 1] : 0, n = first + count - 1;
   double(*point)[2] = dea_resize(g->ctx, out->point, n + 1, sizeof *point);
-  if (point == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(point != NULL);
   out->point = point;
   size_t *end = dea_resize(g->ctx, out->end, out->count + 1, sizeof *end);
-  if (end == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(end != NULL);
   out->end = end;
   size_t *numbers = dea_resize(g->ctx, out->polygon, out->count + 1, sizeof *numbers);
-  if (numbers == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(numbers != NULL);
   out->polygon = numbers;
   for (unsigned k = 0; k + 1 < count; k++) { // the last one is the first
     GEOSCoordSeq_getXY_r(g->handle, points, k, &point[first + k][0], &point[first + k][1]);
@@ -168,9 +162,7 @@ static dea_status overlay(struct dea_context *ctx, enum dea_boolean what, const 
   struct geos g = {.ctx = ctx};
   *out = (struct dea_rings){0};
   GEOSGeometry **parts = dea_alloc(ctx, a->count + b->count + 2, sizeof(GEOSGeometry *));
-  if (parts == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(parts != NULL);
   g.handle = GEOS_init_r();
   if (g.handle == NULL) {
     dea_free(ctx, parts);
