@@ -265,8 +265,9 @@
       const most = Math.max(-channel.low, channel.high);
       state.palette = both ? 'signed' : 'rising';
       state.range = both ? [-most, most] : [channel.low, channel.high];
-      if (!(state.range[1] > state.range[0])) {
-        state.range = [-1, 1].map((one) => state.range[0] + one / channel.factor); // one of its unit
+      if (!(state.range[1] > state.range[0])) { // one value everywhere
+        const margin = 0.1 * Math.abs(state.range[0]) || 1 / channel.factor;
+        state.range = [state.range[0] - margin, state.range[0] + margin];
       }
       legend(colours, channel, state);
     };

@@ -1,5 +1,6 @@
 #include "base/yaml.h"
 
+#include "base/arena.h"
 #include "base/text.h"
 #include "base/yaml_check.h"
 
@@ -10,68 +11,58 @@
 
 enum { REPEATED_MAX = 100 };
 
-/* Blocks of memory that live as long as the document. */
-struct block {
-  struct block *next;
-};
-
 struct dea_yaml {
-  struct block *blocks;
+  struct dea_arena memory; // of all nodes and texts
   struct dea_node *root;
   const char *name;
 };
 
-/* One conversion of a libyaml document into nodes. */
+/* One text's way into nodes, event by event. */
 struct reading {
   struct dea_context *ctx;
   struct dea_yaml *yaml;
-  yaml_document_t *document;
-  const struct dea_location *fixed; // all places are this one, or NULL
-  size_t repeated;                  // keys that stand twice
+  const struct dea_yaml_text *text;
+  yaml_parser_t parser;
+  yaml_event_t event;
+  size_t depth, nodes, repeated; // repeated: keys that stand twice
 };
 
-static void *keep_memory(struct dea_context *ctx, struct dea_yaml *yaml, size_t size)
+static char *keep_text(struct dea_yaml *yaml, const char *text, size_t length)
 {
-  struct block *block = dea_alloc(ctx, 1, sizeof *block + size);
-  if (block == NULL) {
-    return NULL;
-  }
-  block->next = yaml->blocks;
-  yaml->blocks = block;
-  return block + 1;
-}
-
-static char *keep_text(struct dea_context *ctx, struct dea_yaml *yaml, const char *text,
-                       size_t length)
-{
-  char *copy = keep_memory(ctx, yaml, length + 1);
+  char *copy = dea_arena_alloc(&yaml->memory, length + 1, 1);
   if (copy != NULL) {
     memcpy(copy, text, length);
   }
   return copy;
 }
 
-static struct dea_location place_of(const struct reading *r, yaml_mark_t mark)
+static dea_status next_event(struct reading *r)
 {
-  if (r->fixed != NULL) {
-    return *r->fixed;
-  }
-  return (struct dea_location){r->yaml->name, mark.line + 1, mark.column + 1};
+  yaml_event_delete(&r->event);
+  return yaml_parser_parse(&r->parser, &r->event) != 0
+             ? DEA_OK
+             : dea_yaml_problem(r->ctx, r->text, &r->parser);
 }
 
-static bool is_null(const yaml_node_t *node)
+static dea_status refuse(const struct reading *r, const char *message)
 {
-  const char *text = (const char *)node->data.scalar.value;
-  return node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
-         (text[0] == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
+  return dea_yaml_refuse(r->ctx, r->text, r->event.start_mark, message);
 }
 
-static dea_status take_node(struct reading *r, int index, struct dea_node **out);
-
-static dea_status take_value(struct reading *r, const yaml_node_t *source, struct dea_node *node)
+static struct dea_location place_of(const struct reading *r)
 {
-  const char *text = (const char *)source->data.scalar.value;
-  if (strlen(text) != source->data.scalar.length) {
+  return r->text->fixed != NULL ? *r->text->fixed
+                                : (struct dea_location){r->yaml->name, r->event.start_mark.line + 1,
+                                                        r->event.start_mark.column + 1};
+}
+
+static dea_status take_node(struct reading *r, struct dea_node **out);
+
+static dea_status take_value(struct reading *r, struct dea_node *node)
+{
+  const char *text = (const char *)r->event.data.scalar.value;
+  const size_t size = r->event.data.scalar.length;
+  if (strlen(text) != size) {
     return dea_refuse(r->ctx, node->location, "the value holds a zero byte");
   }
   unsigned code;
@@ -82,17 +73,19 @@ static dea_status take_value(struct reading *r, const yaml_node_t *source, struc
       return dea_refuse(r->ctx, node->location, "the value holds a control character");
     }
   }
-  node->empty = is_null(source);
-  node->text = keep_text(r->ctx, r->yaml, text, source->data.scalar.length);
+  node->empty = r->event.data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
+                (text[0] == '\0' || strcmp(text, "~") == 0 || strcmp(text, "null") == 0);
+  node->text = keep_text(r->yaml, text, size);
   return node->text != NULL ? DEA_OK : DEA_E_MEMORY;
 }
 
-static dea_status take_list(struct reading *r, const yaml_node_t *source, struct dea_node *node)
+static dea_status take_list(struct reading *r, struct dea_node *node)
 {
   struct dea_node **last = &node->child;
-  for (const yaml_node_item_t *item = source->data.sequence.items.start;
-       item < source->data.sequence.items.top; item++) {
-    DEA_TRY(r->ctx, take_node(r, *item, last));
+  DEA_TRY(r->ctx, next_event(r));
+  while (r->event.type != YAML_SEQUENCE_END_EVENT) {
+    DEA_TRY(r->ctx, take_node(r, last));
+    DEA_TRY(r->ctx, next_event(r));
     last = &(*last)->next;
     node->child_count++;
   }
@@ -137,75 +130,96 @@ static dea_status check_keys(struct reading *r, const struct dea_node *section)
   return status;
 }
 
-static dea_status take_section(struct reading *r, const yaml_node_t *source, struct dea_node *node)
+static dea_status take_section(struct reading *r, struct dea_node *node)
 {
   struct dea_node **last = &node->child;
-  for (const yaml_node_pair_t *pair = source->data.mapping.pairs.start;
-       pair < source->data.mapping.pairs.top; pair++) {
-    const yaml_node_t *key = yaml_document_get_node(r->document, pair->key);
-    struct dea_location location = place_of(r, key->start_mark);
-    if (key->type != YAML_SCALAR_NODE) {
-      return dea_refuse(r->ctx, location, "a key must be a word");
+  DEA_TRY(r->ctx, next_event(r));
+  while (r->event.type != YAML_MAPPING_END_EVENT) {
+    if (r->event.type != YAML_SCALAR_EVENT && r->event.type != YAML_ALIAS_EVENT) {
+      return dea_refuse(r->ctx, place_of(r), "a key must be a word");
     }
-    struct dea_node *key_node = NULL;
-    DEA_TRY(r->ctx, take_node(r, pair->key, &key_node));
-    DEA_TRY(r->ctx, take_node(r, pair->value, last));
-    (*last)->key = key_node->text;
-    (*last)->key_place = location;
+    struct dea_node *key = NULL;
+    DEA_TRY(r->ctx, take_node(r, &key));
+    DEA_TRY(r->ctx, next_event(r));
+    DEA_TRY(r->ctx, take_node(r, last));
+    DEA_TRY(r->ctx, next_event(r));
+    (*last)->key = key->text;
+    (*last)->key_place = key->location;
     last = &(*last)->next;
     node->child_count++;
   }
   return check_keys(r, node);
 }
 
-/* Recursion ends at DEA_YAML_DEPTH_MAX, and there are no cycles: the check has seen to both. */
-static dea_status take_node(struct reading *r, int index, struct dea_node **out)
+/* The node that begins with the event, up to the event that it ends with. */
+static dea_status take_node(struct reading *r, struct dea_node **out)
 {
-  const yaml_node_t *source = yaml_document_get_node(r->document, index);
-  struct dea_location location = place_of(r, source->start_mark);
-  struct dea_node *node = keep_memory(r->ctx, r->yaml, sizeof *node);
+  const yaml_event_t *e = &r->event;
+  const bool value = e->type == YAML_SCALAR_EVENT, list = e->type == YAML_SEQUENCE_START_EVENT;
+  if (e->type == YAML_ALIAS_EVENT || (value  ? e->data.scalar.anchor
+                                      : list ? e->data.sequence_start.anchor
+                                             : e->data.mapping_start.anchor) != NULL) {
+    return refuse(r, "anchors (&name) and aliases (*name) are not supported; write the value out");
+  }
+  if ((value  ? e->data.scalar.tag
+       : list ? e->data.sequence_start.tag
+              : e->data.mapping_start.tag) != NULL) {
+    return refuse(r, "tags (!name) are not supported; write the plain value");
+  }
+  if (++r->nodes > DEA_YAML_NODES_MAX) {
+    return refuse(r, "there are too many values for a design");
+  }
+  if (r->depth >= DEA_YAML_DEPTH_MAX) {
+    return refuse(r, "sections and lists are nested too deeply");
+  }
+  struct dea_node *node = dea_arena_alloc(&r->yaml->memory, 1, sizeof *node);
   DEA_NEED(node != NULL);
-  *node = (struct dea_node){.text = "", .location = location, .overridden = r->fixed != NULL};
+  *node = (struct dea_node){.kind = value  ? DEA_NODE_VALUE
+                                    : list ? DEA_NODE_LIST
+                                           : DEA_NODE_SECTION,
+                            .text = "",
+                            .location = place_of(r),
+                            .overridden = r->text->fixed != NULL};
   *out = node;
-  if (source->type == YAML_SCALAR_NODE) {
-    node->kind = DEA_NODE_VALUE;
-    return take_value(r, source, node);
-  }
-  if (source->type == YAML_SEQUENCE_NODE) {
-    node->kind = DEA_NODE_LIST;
-    return take_list(r, source, node);
-  }
-  node->kind = DEA_NODE_SECTION;
-  return take_section(r, source, node);
+  r->depth++;
+  DEA_TRY(r->ctx, value ? take_value(r, node) : list ? take_list(r, node) : take_section(r, node));
+  r->depth--;
+  return DEA_OK;
 }
 
-/* Parses text into nodes of yaml. fixed: place of all nodes, or NULL. */
+/* The one document of a text. */
+static dea_status take_document(struct reading *r, struct dea_node **out)
+{
+  DEA_TRY(r->ctx, next_event(r)); // the stream begins
+  DEA_TRY(r->ctx, next_event(r));
+  if (r->event.type == YAML_STREAM_END_EVENT) {
+    return dea_yaml_refuse(r->ctx, r->text, (yaml_mark_t){0, 0, 0},
+                           r->text->fixed != NULL ? "no value is given" : "the file is empty");
+  }
+  DEA_TRY(r->ctx, next_event(r));
+  DEA_TRY(r->ctx, take_node(r, out));
+  DEA_TRY(r->ctx, next_event(r)); // the document ends
+  DEA_TRY(r->ctx, next_event(r));
+  return r->event.type == YAML_STREAM_END_EVENT
+             ? DEA_OK
+             : refuse(r, "a second document starts here; a file holds one");
+}
+
+/* Reads text into nodes of yaml. fixed: place of all nodes, or NULL. */
 static dea_status parse_into(struct dea_context *ctx, struct dea_yaml *yaml, const char *bytes,
                              size_t length, const struct dea_location *fixed, struct dea_node **out)
 {
-  if (length >= 3 &&
-      memcmp(bytes, "\xef\xbb\xbf", 3) == 0) { // the mark that some editors put first
-    bytes += 3;
-    length -= 3;
-  }
-  const struct dea_yaml_text text = {yaml->name, bytes, length, fixed};
-  yaml_parser_t parser;
-  yaml_document_t document;
-  DEA_TRY(ctx, dea_yaml_check(ctx, &text));
-  if (yaml_parser_initialize(&parser) == 0) {
+  const size_t mark = length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; // of editors
+  const struct dea_yaml_text text = {yaml->name, bytes + mark, length - mark, fixed};
+  struct reading r = {.ctx = ctx, .yaml = yaml, .text = &text};
+  if (yaml_parser_initialize(&r.parser) == 0) {
     return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
   }
-  yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
-  yaml_parser_set_input_string(&parser, (const unsigned char *)bytes, length);
-  dea_status status;
-  if (yaml_parser_load(&parser, &document) == 0) { // the check has found all that is wrong
-    status = dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
-  } else {
-    struct reading r = {.ctx = ctx, .yaml = yaml, .document = &document, .fixed = fixed};
-    status = take_node(&r, 1, out);
-    yaml_document_delete(&document);
-  }
-  yaml_parser_delete(&parser);
+  yaml_parser_set_encoding(&r.parser, YAML_UTF8_ENCODING);
+  yaml_parser_set_input_string(&r.parser, (const unsigned char *)text.bytes, text.length);
+  const dea_status status = take_document(&r, out);
+  yaml_event_delete(&r.event);
+  yaml_parser_delete(&r.parser);
   return status;
 }
 
@@ -215,6 +229,7 @@ dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char 
   *out = NULL;
   struct dea_yaml *yaml = dea_alloc(ctx, 1, sizeof *yaml);
   DEA_NEED(yaml != NULL);
+  yaml->memory.ctx = ctx;
   yaml->name = dea_intern(ctx, name);
   dea_status status = DEA_E_MEMORY;
   if (yaml->name != NULL) {
@@ -233,11 +248,7 @@ void dea_yaml_destroy(struct dea_context *ctx, struct dea_yaml *yaml)
   if (yaml == NULL) {
     return;
   }
-  for (struct block *block = yaml->blocks; block != NULL;) {
-    struct block *next = block->next;
-    dea_free(ctx, block);
-    block = next;
-  }
+  dea_arena_free(&yaml->memory);
   dea_free(ctx, yaml);
 }
 
@@ -324,8 +335,8 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
     struct dea_node **link = link_of_item(at, *path, length);
     link = link != NULL ? link : link_of(at, *path, length);
     if (*link == NULL) {
-      struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
-      char *key = keep_text(ctx, yaml, *path, length);
+      struct dea_node *made = dea_arena_alloc(&yaml->memory, 1, sizeof *made);
+      char *key = keep_text(yaml, *path, length);
       DEA_NEED(made != NULL && key != NULL);
       *made = (struct dea_node){DEA_NODE_SECTION, "",       false, true, key,
                                 location,         location, NULL,  NULL, 0};
@@ -357,8 +368,8 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
 
 /* Puts a node into a section in the place of the member `key`; one without a value takes it away.
  */
-static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea_node *section,
-                      const char *key, struct dea_location location, struct dea_node *node)
+static dea_status put(struct dea_yaml *yaml, struct dea_node *section, const char *key,
+                      struct dea_location location, struct dea_node *node)
 {
   struct dea_node **item = link_of_item(section, key, strlen(key));
   if (item != NULL) {
@@ -373,7 +384,7 @@ static dea_status put(struct dea_context *ctx, struct dea_yaml *yaml, struct dea
     section->child_count -= old != NULL;
     return DEA_OK;
   }
-  node->key = keep_text(ctx, yaml, key, strlen(key));
+  node->key = keep_text(yaml, key, strlen(key));
   DEA_NEED(node->key != NULL);
   node->key_place = location;
   node->next = old != NULL ? old->next : NULL;
@@ -397,7 +408,7 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   struct dea_node *section = NULL, *node = NULL;
   DEA_TRY(ctx, walk(ctx, yaml, location, &path, &section));
   DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &location, &node));
-  DEA_TRY(ctx, put(ctx, yaml, section, path, location, node));
+  DEA_TRY(ctx, put(yaml, section, path, location, node));
   return DEA_OK;
 }
 
@@ -420,12 +431,12 @@ static dea_status merge_below(struct dea_context *ctx, struct dea_yaml *yaml, co
       continue;
     }
     const char *path = whole;
-    struct dea_node *section = NULL, *copy = keep_memory(ctx, yaml, sizeof *copy);
+    struct dea_node *section = NULL, *copy = dea_arena_alloc(&yaml->memory, 1, sizeof *copy);
     DEA_NEED(copy != NULL);
     *copy = *child;
     copy->overridden = true;
     DEA_TRY(ctx, walk(ctx, yaml, child->key_place, &path, &section));
-    DEA_TRY(ctx, put(ctx, yaml, section, path, child->key_place, copy));
+    DEA_TRY(ctx, put(yaml, section, path, child->key_place, copy));
   }
   return DEA_OK;
 }
@@ -469,8 +480,8 @@ dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
     fill_in(item, used->overridden, &values);
   }
   if (item != NULL && *link == NULL) {
-    struct dea_node *made = keep_memory(ctx, yaml, sizeof *made);
-    char *key = keep_text(ctx, yaml, list, strlen(list));
+    struct dea_node *made = dea_arena_alloc(&yaml->memory, 1, sizeof *made);
+    char *key = keep_text(yaml, list, strlen(list));
     DEA_NEED(made != NULL && key != NULL);
     *made = (struct dea_node){.kind = DEA_NODE_LIST, .text = "", .key = key};
     made->location = made->key_place = place;
@@ -486,7 +497,7 @@ dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
     (*link)->child_count++;
   }
   user->kind = DEA_NODE_VALUE;
-  user->text = keep_text(ctx, yaml, name, strlen(name));
+  user->text = keep_text(yaml, name, strlen(name));
   user->child = NULL;
   user->child_count = 0;
   return user->text != NULL ? DEA_OK : DEA_E_MEMORY;

@@ -1,4 +1,5 @@
-/* YAML text as a tree of nodes with places, read through libyaml's document API.
+/* YAML text as a tree of nodes with places, read event by event: libyaml's documents would take
+ * minutes for a few megabytes of "[".
  *
  * Only what a design needs is taken: one document of sections, lists and values. Anchors with
  * aliases, tags, several documents and repeated keys are errors, each with its place. */

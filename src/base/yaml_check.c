@@ -1,26 +1,13 @@
 #include "base/yaml_check.h"
 
-#include "base/yaml.h"
-
 #include <stdio.h>
 #include <string.h>
-#include <yaml.h>
 
-/* State of the pass. */
-struct check {
-  struct dea_context *ctx;
-  const struct dea_yaml_text *text;
-  size_t depth, nodes, documents;
-  bool done;
-};
-
-static dea_status refuse(const struct check *check, yaml_mark_t mark, const char *message)
+dea_status dea_yaml_refuse(struct dea_context *ctx, const struct dea_yaml_text *text,
+                           yaml_mark_t mark, const char *message)
 {
-  struct dea_location location = {check->text->name, mark.line + 1, mark.column + 1};
-  DEA_TRY(check->ctx, dea_finding_add(check->ctx, DEA_ERROR,
-                                      check->text->fixed != NULL ? *check->text->fixed : location,
-                                      "%s", message));
-  return dea_fail(check->ctx, DEA_E_DESIGN, "%s", message);
+  const struct dea_location place = {text->name, mark.line + 1, mark.column + 1};
+  return dea_refuse(ctx, text->fixed != NULL ? *text->fixed : place, message);
 }
 
 /* Line and column of a byte, which libyaml does not know for text that it cannot decode. */
@@ -104,21 +91,22 @@ static const char *in_words(const struct dea_yaml_text *text, const yaml_parser_
   return NULL;
 }
 
-static dea_status parser_failed(const struct check *check, const yaml_parser_t *parser)
+dea_status dea_yaml_problem(struct dea_context *ctx, const struct dea_yaml_text *text,
+                            const yaml_parser_t *parser)
 {
   char message[300];
   const char *problem = parser->problem != NULL ? parser->problem : "unknown";
   if (parser->error == YAML_MEMORY_ERROR) {
-    return dea_fail(check->ctx, DEA_E_MEMORY, "out of memory in libyaml");
+    return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
   }
   if (parser->error == YAML_READER_ERROR) {
     snprintf(message, sizeof message, "this is not a text file in UTF-8: %s", problem);
-    return refuse(check, mark_of_byte(check->text, parser->problem_offset), message);
+    return dea_yaml_refuse(ctx, text, mark_of_byte(text, parser->problem_offset), message);
   }
   yaml_mark_t place = parser->problem_mark;
-  const char *words = in_words(check->text, parser, problem, &place);
+  const char *words = in_words(text, parser, problem, &place);
   if (words != NULL) {
-    return refuse(check, place, words);
+    return dea_yaml_refuse(ctx, text, place, words);
   }
   const bool context = parser->context != NULL;
   int length = snprintf(message, sizeof message, "this is not YAML: %s%s%s", problem,
@@ -127,89 +115,5 @@ static dea_status parser_failed(const struct check *check, const yaml_parser_t *
     snprintf(message + length, sizeof message - (size_t)length, " that begins in line %zu",
              parser->context_mark.line + 1);
   }
-  return refuse(check, place, message);
-}
-
-/* A value, list or section starts. */
-static dea_status check_node(struct check *check, const yaml_event_t *event,
-                             const yaml_char_t *anchor, const yaml_char_t *tag)
-{
-  if (anchor != NULL) {
-    return refuse(check, event->start_mark,
-                  "anchors (&name) and aliases (*name) are not supported; write the value out");
-  }
-  if (tag != NULL) {
-    return refuse(check, event->start_mark,
-                  "tags (!name) are not supported; write the plain value");
-  }
-  if (++check->nodes > DEA_YAML_NODES_MAX) {
-    return refuse(check, event->start_mark, "there are too many values for a design");
-  }
-  if (check->depth >= DEA_YAML_DEPTH_MAX) {
-    return refuse(check, event->start_mark, "sections and lists are nested too deeply");
-  }
-  return DEA_OK;
-}
-
-static dea_status check_event(struct check *check, const yaml_event_t *event)
-{
-  dea_status status = DEA_OK;
-  switch (event->type) {
-  case YAML_SCALAR_EVENT:
-    return check_node(check, event, event->data.scalar.anchor, event->data.scalar.tag);
-  case YAML_SEQUENCE_START_EVENT:
-    status =
-        check_node(check, event, event->data.sequence_start.anchor, event->data.sequence_start.tag);
-    check->depth++;
-    return status;
-  case YAML_MAPPING_START_EVENT:
-    status =
-        check_node(check, event, event->data.mapping_start.anchor, event->data.mapping_start.tag);
-    check->depth++;
-    return status;
-  case YAML_SEQUENCE_END_EVENT:
-  case YAML_MAPPING_END_EVENT:
-    check->depth--;
-    return DEA_OK;
-  case YAML_ALIAS_EVENT:
-    return check_node(check, event, event->data.alias.anchor, NULL);
-  case YAML_DOCUMENT_START_EVENT:
-    return ++check->documents == 1 ? DEA_OK
-                                   : refuse(check, event->start_mark,
-                                            "a second document starts here; a file holds one");
-  case YAML_STREAM_END_EVENT:
-    check->done = true;
-    return check->documents > 0
-               ? DEA_OK
-               : refuse(check, (yaml_mark_t){0, 0, 0},
-                        check->text->fixed != NULL ? "no value is given" : "the file is empty");
-  case YAML_NO_EVENT:
-  case YAML_STREAM_START_EVENT:
-  case YAML_DOCUMENT_END_EVENT:
-    return DEA_OK;
-  }
-  return DEA_OK;
-}
-
-dea_status dea_yaml_check(struct dea_context *ctx, const struct dea_yaml_text *text)
-{
-  struct check check = {.ctx = ctx, .text = text};
-  dea_status status = DEA_OK;
-  yaml_parser_t parser;
-  if (yaml_parser_initialize(&parser) == 0) {
-    return dea_fail(ctx, DEA_E_MEMORY, "out of memory in libyaml");
-  }
-  yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
-  yaml_parser_set_input_string(&parser, (const unsigned char *)text->bytes, text->length);
-  while (status == DEA_OK && !check.done) {
-    yaml_event_t event;
-    if (yaml_parser_parse(&parser, &event) == 0) {
-      status = parser_failed(&check, &parser);
-    } else {
-      status = check_event(&check, &event);
-      yaml_event_delete(&event);
-    }
-  }
-  yaml_parser_delete(&parser);
-  return status;
+  return dea_yaml_refuse(ctx, text, place, message);
 }

@@ -1,7 +1,9 @@
-/* What yaml.c asks of a text before it builds a tree of it. Not for others. */
+/* What is wrong with a text of YAML, for yaml.c. Not for others. */
 #pragma once
 
 #include "base/context.h"
+
+#include <yaml.h>
 
 /* Text to be read. */
 struct dea_yaml_text {
@@ -11,8 +13,9 @@ struct dea_yaml_text {
   const struct dea_location *fixed; // place of everything in it, or NULL
 };
 
-/* One pass over the events of the text, in time that grows with its length only. Refuses what is
- * not YAML or not UTF-8, what is empty, a second document, anchors, aliases, tags, nesting deeper
- * than DEA_YAML_DEPTH_MAX and more than DEA_YAML_NODES_MAX values: DEA_E_DESIGN after a finding.
- * libyaml alone takes minutes for a few megabytes of "[", since each token costs it the depth. */
-dea_status dea_yaml_check(struct dea_context *ctx, const struct dea_yaml_text *text);
+/* A finding at a place of the text, and DEA_E_DESIGN. */
+dea_status dea_yaml_refuse(struct dea_context *ctx, const struct dea_yaml_text *text,
+                           yaml_mark_t mark, const char *message);
+/* The same with what the parser has failed at, in words of who wrote the file. */
+dea_status dea_yaml_problem(struct dea_context *ctx, const struct dea_yaml_text *text,
+                            const yaml_parser_t *parser);

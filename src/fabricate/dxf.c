@@ -1,43 +1,17 @@
 /* Groups of a code and a value, as the DXF reference of AutoCAD 2000 has them: sections HEADER,
  * TABLES, BLOCKS, ENTITIES and OBJECTS, of which readers ask for the least that is legal. Handles
- * are hexadecimal numbers; 1 to 0x2f are used by tables and blocks. */
+ * are hexadecimal numbers; 1 to 0x2f are used by tables and blocks: tables from 1, block records A
+ * and B, their blocks C to F, dictionaries 10 and 11, entries of tables from 12. */
 #include "fabricate/dxf.h"
 
 #include "base/version.h"
 #include "fabricate/labels.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum handle {
-  BLOCK_RECORDS = 1,
-  LAYERS,
-  STYLES,
-  LINE_TYPES,
-  VIEWS,
-  USER_SYSTEMS,
-  VIEWPORTS,
-  APPLICATIONS,
-  DIMENSIONS,
-  MODEL_RECORD,
-  PAPER_RECORD,
-  MODEL_BEGIN,
-  MODEL_END,
-  PAPER_BEGIN,
-  PAPER_END,
-  ROOT,
-  GROUPS,
-  LAYER_ZERO,
-  STYLE,
-  BY_BLOCK,
-  BY_LAYER,
-  CONTINUOUS,
-  APPLICATION,
-  VIEWPORT,
-  DIMENSION,
-  FIRST_LAYER,
-  FIRST_ENTITY = 0x30,
-};
+enum handle { LAYERS = 2, MODEL_RECORD = 0xA, FIRST_LAYER = 0x1A, FIRST_ENTITY = 0x30 };
 
 /* Names and looks of the layers of a file. */
 struct layers {
@@ -82,23 +56,24 @@ static void point(struct file *file, int code, double x, double y)
   length(file, code + 10, y);
 }
 
-static void begin_section(struct file *file, const char *name)
+/* Groups that are the same in every file: "CODE VALUE|CODE VALUE|". */
+static void groups(struct file *file, const char *list)
 {
-  group(file, 0, "SECTION");
-  group(file, 2, name);
-}
-
-static void begin_object(struct file *file, const char *type, unsigned own, unsigned owner)
-{
-  group(file, 0, type);
-  handle(file, 5, own);
-  handle(file, 330, owner);
+  while (*list != '\0') {
+    char *value;
+    const int code = (int)strtol(list, &value, 10);
+    const int length = (int)strcspn(++value, "|");
+    dea_text_add(file->text, "%3d\n%.*s\n", code, length, value);
+    list = value + length + 1;
+  }
 }
 
 static void begin_entity(struct file *file, const char *type, unsigned own, unsigned owner,
                          const char *layer, const char *subclass)
 {
-  begin_object(file, type, own, owner);
+  group(file, 0, type);
+  handle(file, 5, own);
+  handle(file, 330, owner);
   group(file, 100, "AcDbEntity");
   group(file, 8, layer);
   group(file, 100, subclass);
@@ -106,19 +81,23 @@ static void begin_entity(struct file *file, const char *type, unsigned own, unsi
 
 /* ---- what stands before the drawing ---- */
 
+#define TABLE(name, own, entries)                                                                  \
+  "0 TABLE|2 " name "|5 " own "|330 0|100 AcDbSymbolTable|70 " entries "|"
+#define RECORD(type, own, owner, subclass, name)                                                   \
+  "0 " type "|5 " own "|330 " owner "|100 AcDbSymbolTableRecord|100 " subclass "|2 " name "|"
+#define LINE_TYPE(own, name, meaning)                                                              \
+  RECORD("LTYPE", own, "4", "AcDbLinetypeTableRecord", name)                                       \
+  "70 0|3 " meaning "|72 65|73 0|40 0.0|"
+#define BLOCK(begin, end, record, name)                                                            \
+  "0 BLOCK|5 " begin "|330 " record "|100 AcDbEntity|8 0|100 AcDbBlockBegin|2 " name               \
+  "|70 0|10 0.0|20 0.0|30 0.0|3 " name "|1 |0 ENDBLK|5 " end "|330 " record                        \
+  "|100 AcDbEntity|8 0|100 AcDbBlockEnd|"
+
+/* In millimetres, metric. */
 static void write_header(struct file *file, const double box_m[4], unsigned handles)
 {
-  group(file, 999, "libdea " DEA_VERSION);
-  begin_section(file, "HEADER");
-  group(file, 9, "$ACADVER");
-  group(file, 1, "AC1015");
-  group(file, 9, "$DWGCODEPAGE");
-  group(file, 3, "ANSI_1252");
-  group(file, 9, "$INSUNITS"); // millimetres
-  number(file, 70, 4);
-  group(file, 9, "$MEASUREMENT"); // metric
-  number(file, 70, 1);
-  group(file, 9, "$EXTMIN");
+  groups(file, "999 libdea " DEA_VERSION "|0 SECTION|2 HEADER|9 $ACADVER|1 AC1015|"
+               "9 $DWGCODEPAGE|3 ANSI_1252|9 $INSUNITS|70 4|9 $MEASUREMENT|70 1|9 $EXTMIN|");
   point(file, 10, box_m[0], box_m[1]);
   length(file, 30, 0);
   group(file, 9, "$EXTMAX");
@@ -129,172 +108,64 @@ static void write_header(struct file *file, const double box_m[4], unsigned hand
   group(file, 0, "ENDSEC");
 }
 
-static void begin_table(struct file *file, const char *name, unsigned own, int entries)
-{
-  group(file, 0, "TABLE");
-  group(file, 2, name);
-  handle(file, 5, own);
-  handle(file, 330, 0);
-  group(file, 100, "AcDbSymbolTable");
-  number(file, 70, entries);
-}
-
-static void begin_record(struct file *file, const char *type, unsigned own, unsigned owner,
-                         const char *subclass, const char *name)
-{
-  begin_object(file, type, own, owner);
-  group(file, 100, "AcDbSymbolTableRecord");
-  group(file, 100, subclass);
-  group(file, 2, name);
-}
-
-static void begin_entry(struct file *file, const char *type, unsigned own, unsigned owner,
-                        const char *subclass, const char *name)
-{
-  begin_record(file, type, own, owner, subclass, name);
-  number(file, 70, 0);
-}
-
-static void end_table(struct file *file)
-{
-  group(file, 0, "ENDTAB");
-}
-
 static void write_viewport(struct file *file, const double box_m[4])
 {
   double width = box_m[2] - box_m[0], height = box_m[3] - box_m[1];
-  begin_table(file, "VPORT", VIEWPORTS, 1);
-  begin_entry(file, "VPORT", VIEWPORT, VIEWPORTS, "AcDbViewportTableRecord", "*Active");
-  dea_text_add(file->text, " 10\n0.0\n 20\n0.0\n 11\n1.0\n 21\n1.0\n");
+  groups(file, TABLE("VPORT", "7", "1") RECORD("VPORT", "18", "7", "AcDbViewportTableRecord",
+                                               "*Active") "70 0|10 0.0|20 0.0|11 1.0|21 1.0|");
   point(file, 12, 0.5 * (box_m[0] + box_m[2]), 0.5 * (box_m[1] + box_m[3]));
   length(file, 40, 1.05 * height); // shown height
   dea_text_add(file->text, " 41\n%.6f\n", width / height);
-  end_table(file);
-}
-
-static void write_line_types(struct file *file)
-{
-  static const struct {
-    enum handle own;
-    const char *name, *meaning;
-  } types[] = {{BY_BLOCK, "ByBlock", ""},
-               {BY_LAYER, "ByLayer", ""},
-               {CONTINUOUS, "Continuous", "Solid line"}};
-  begin_table(file, "LTYPE", LINE_TYPES, 3);
-  for (size_t i = 0; i < 3; i++) {
-    begin_entry(file, "LTYPE", types[i].own, LINE_TYPES, "AcDbLinetypeTableRecord", types[i].name);
-    group(file, 3, types[i].meaning);
-    number(file, 72, 65);
-    number(file, 73, 0);
-    dea_text_add(file->text, " 40\n0.0\n");
-  }
-  end_table(file);
+  group(file, 0, "ENDTAB");
 }
 
 static void write_layers(struct file *file, const struct layers *layers)
 {
-  begin_table(file, "LAYER", LAYERS, (int)layers->count + 1);
-  begin_entry(file, "LAYER", LAYER_ZERO, LAYERS, "AcDbLayerTableRecord", "0");
-  number(file, 62, 7);
-  group(file, 6, "Continuous");
+  dea_text_add(file->text, "  0\nTABLE\n  2\nLAYER\n  5\n%X\n330\n0\n", LAYERS);
+  group(file, 100, "AcDbSymbolTable");
+  number(file, 70, (int)layers->count + 1);
+  groups(file, RECORD("LAYER", "12", "2", "AcDbLayerTableRecord", "0") "70 0|62 7|6 Continuous|");
   for (size_t i = 0; i < layers->count; i++) {
-    begin_entry(file, "LAYER", FIRST_LAYER + (unsigned)i, LAYERS, "AcDbLayerTableRecord",
-                layers->name[i]);
+    group(file, 0, "LAYER");
+    handle(file, 5, FIRST_LAYER + (unsigned)i);
+    handle(file, 330, LAYERS);
+    groups(file, "100 AcDbSymbolTableRecord|100 AcDbLayerTableRecord|");
+    group(file, 2, layers->name[i]);
+    number(file, 70, 0);
     number(file, 62, layers->colour[i]);
     group(file, 6, "Continuous");
     number(file, 290, layers->plotted[i]);
   }
-  end_table(file);
-}
-
-static void write_styles(struct file *file)
-{
-  begin_table(file, "STYLE", STYLES, 1);
-  begin_entry(file, "STYLE", STYLE, STYLES, "AcDbTextStyleTableRecord", "Standard");
-  dea_text_add(file->text, " 40\n0.0\n 41\n1.0\n 50\n0.0\n 71\n0\n 42\n2.5\n");
-  group(file, 3, "txt");
-  group(file, 4, "");
-  end_table(file);
-}
-
-static void write_dimension_style(struct file *file)
-{
-  begin_table(file, "DIMSTYLE", DIMENSIONS, 1);
-  group(file, 100, "AcDbDimStyleTable");
-  group(file, 0, "DIMSTYLE");
-  handle(file, 105, DIMENSION);
-  handle(file, 330, DIMENSIONS);
-  group(file, 100, "AcDbSymbolTableRecord");
-  group(file, 100, "AcDbDimStyleTableRecord");
-  group(file, 2, "Standard");
-  number(file, 70, 0);
-  end_table(file);
-}
-
-static void write_block_records(struct file *file)
-{
-  begin_table(file, "BLOCK_RECORD", BLOCK_RECORDS, 2);
-  for (int paper = 0; paper < 2; paper++) {
-    begin_record(file, "BLOCK_RECORD", paper ? PAPER_RECORD : MODEL_RECORD, BLOCK_RECORDS,
-                 "AcDbBlockTableRecord", paper ? "*Paper_Space" : "*Model_Space");
-  }
-  end_table(file);
+  group(file, 0, "ENDTAB");
 }
 
 static void write_tables(struct file *file, const double box_m[4], const struct layers *layers)
 {
-  begin_section(file, "TABLES");
+  groups(file, "0 SECTION|2 TABLES|");
   write_viewport(file, box_m);
-  write_line_types(file);
+  groups(file, TABLE("LTYPE", "4", "3") LINE_TYPE("14", "ByBlock", "") LINE_TYPE(
+                   "15", "ByLayer", "") LINE_TYPE("16", "Continuous", "Solid line") "0 ENDTAB|");
   write_layers(file, layers);
-  write_styles(file);
-  begin_table(file, "VIEW", VIEWS, 0);
-  end_table(file);
-  begin_table(file, "UCS", USER_SYSTEMS, 0);
-  end_table(file);
-  begin_table(file, "APPID", APPLICATIONS, 1);
-  begin_entry(file, "APPID", APPLICATION, APPLICATIONS, "AcDbRegAppTableRecord", "ACAD");
-  end_table(file);
-  write_dimension_style(file);
-  write_block_records(file);
-  group(file, 0, "ENDSEC");
+  groups(file, TABLE("STYLE", "3", "1")
+                   RECORD("STYLE", "13", "3", "AcDbTextStyleTableRecord",
+                          "Standard") "70 0|40 0.0|41 1.0|50 0.0|71 0|42 2.5|3 txt|4 |0 ENDTAB|");
+  groups(file, TABLE("VIEW", "5", "0") "0 ENDTAB|" TABLE("UCS", "6", "0") "0 ENDTAB|");
+  groups(file, TABLE("APPID", "8", "1")
+                   RECORD("APPID", "17", "8", "AcDbRegAppTableRecord", "ACAD") "70 0|0 ENDTAB|");
+  groups(file, TABLE("DIMSTYLE", "9",
+                     "1") "100 AcDbDimStyleTable|0 DIMSTYLE|105 19|330 9|100 AcDbSymbolTableRecord|"
+                          "100 AcDbDimStyleTableRecord|2 Standard|70 0|0 ENDTAB|");
+  groups(file, TABLE("BLOCK_RECORD", "1", "2")
+                   RECORD("BLOCK_RECORD", "A", "1", "AcDbBlockTableRecord", "*Model_Space")
+                       RECORD("BLOCK_RECORD", "B", "1", "AcDbBlockTableRecord",
+                              "*Paper_Space") "0 ENDTAB|0 ENDSEC|");
+  groups(file, "0 SECTION|2 BLOCKS|" BLOCK("C", "D", "A", "*Model_Space")
+                   BLOCK("E", "F", "B", "*Paper_Space") "0 ENDSEC|");
 }
 
-static void write_blocks(struct file *file)
-{
-  begin_section(file, "BLOCKS");
-  for (int paper = 0; paper < 2; paper++) {
-    const char *name = paper ? "*Paper_Space" : "*Model_Space";
-    unsigned record = paper ? PAPER_RECORD : MODEL_RECORD;
-    begin_entity(file, "BLOCK", paper ? PAPER_BEGIN : MODEL_BEGIN, record, "0", "AcDbBlockBegin");
-    group(file, 2, name);
-    number(file, 70, 0);
-    dea_text_add(file->text, " 10\n0.0\n 20\n0.0\n 30\n0.0\n");
-    group(file, 3, name);
-    group(file, 1, "");
-    begin_entity(file, "ENDBLK", paper ? PAPER_END : MODEL_END, record, "0", "AcDbBlockEnd");
-  }
-  group(file, 0, "ENDSEC");
-}
-
-static void begin_dictionary(struct file *file, unsigned own, unsigned owner)
-{
-  begin_object(file, "DICTIONARY", own, owner);
-  group(file, 100, "AcDbDictionary");
-  number(file, 281, 1);
-}
-
-/* What stands after the drawing. */
-static void write_objects(struct file *file)
-{
-  begin_section(file, "OBJECTS");
-  begin_dictionary(file, ROOT, 0);
-  group(file, 3, "ACAD_GROUP");
-  handle(file, 350, GROUPS);
-  begin_dictionary(file, GROUPS, ROOT);
-  group(file, 0, "ENDSEC");
-  group(file, 0, "EOF");
-}
+static const char objects[] = // after the drawing
+    "0 SECTION|2 OBJECTS|0 DICTIONARY|5 10|330 0|100 AcDbDictionary|281 1|3 ACAD_GROUP|350 11|"
+    "0 DICTIONARY|5 11|330 10|100 AcDbDictionary|281 1|0 ENDSEC|0 EOF|";
 
 /* ---- the drawing ---- */
 
@@ -409,7 +280,7 @@ static dea_status write_entities(struct file *file, const struct dea_workshop *w
                                         {.x_m = 0, .y_m = layout->height_m}};
   const double origin[2] = {0, 0};
   struct dea_text words = {.ctx = part->ctx};
-  begin_section(file, "ENTITIES");
+  groups(file, "0 SECTION|2 ENTITIES|");
   write_path(file, &edge, corners, 4, origin);
   dea_sheet_labels(workshop, index, &words);
   double height = dea_sheet_labels_height(layout);
@@ -441,9 +312,8 @@ dea_status dea_dxf_write(const struct dea_workshop *workshop, size_t index, stru
   struct file file = {out, FIRST_ENTITY, 9}; // to the picometre
   write_header(&file, box, FIRST_ENTITY + count_entities(workshop, index));
   write_tables(&file, box, &layers);
-  write_blocks(&file);
   dea_status status = write_entities(&file, workshop, index);
-  write_objects(&file);
+  groups(&file, objects);
   return status == DEA_OK && out->failed ? DEA_E_MEMORY : status;
 }
 
@@ -536,11 +406,10 @@ dea_status dea_dxf_write_layout(const struct dea_layout *layout, struct dea_text
   struct file file = {out, first, 12}; // to the femtometre
   write_header(&file, box, first + (unsigned)write_shapes(NULL, layout, used, &layers));
   write_tables(&file, box, &layers);
-  write_blocks(&file);
-  begin_section(&file, "ENTITIES");
+  groups(&file, "0 SECTION|2 ENTITIES|");
   write_shapes(&file, layout, used, &layers);
   group(&file, 0, "ENDSEC");
-  write_objects(&file);
+  groups(&file, objects);
   dea_status status = memory.failed || out->failed ? DEA_E_MEMORY : DEA_OK;
   dea_arena_free(&memory);
   return status;
