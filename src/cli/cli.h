@@ -165,6 +165,8 @@ size_t cli_processes(double given);
 /* "0.2" or "20%"; false otherwise. */
 bool cli_read_share(const char *text, double *share);
 
+// The last members of a command whose file has `options`, `struct request` and `run`.
+#define CLI_RUN .options = options, .request_size = sizeof(struct request), .run = run
 // Rows of several tables, for a `struct request` whose members have the options' names.
 #define CLI_AT(member) .target = offsetof(struct request, member)
 #define CLI_ONE(what, word, text, member, none, more)                                              \

@@ -235,7 +235,4 @@ static const struct cli_option options[] = {
 const struct dea_command cmd_check = {
     .name = "check",
     .summary = "Check a design file; say what it gives and what follows from it",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

@@ -496,8 +496,5 @@ const struct dea_command cmd_compare = {
         "Differences are a - b, relative ones over the range of b. The exit code is 1 when a "
         "tolerance is given and the largest difference of a quantity against the voltage exceeds "
         "it.",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

@@ -242,13 +242,9 @@ static const struct cli_option options[] = {
              "name one shell: bash, zsh or fish", "name one shell: bash, zsh or fish"),
     {0}};
 
-const struct dea_command cmd_completion = {
-    .name = "completion",
-    .summary = "Print the completion for a shell",
-    .about = "bash:  source <(dea completion bash)\n"
-             "zsh:   source <(dea completion zsh)\n"
-             "fish:  dea completion fish | source",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+const struct dea_command cmd_completion = {.name = "completion",
+                                           .summary = "Print the completion for a shell",
+                                           .about = "bash:  source <(dea completion bash)\n"
+                                                    "zsh:   source <(dea completion zsh)\n"
+                                                    "fish:  dea completion fish | source",
+                                           CLI_RUN};

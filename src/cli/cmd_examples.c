@@ -224,7 +224,4 @@ const struct dea_command cmd_examples = {
     .name = "examples",
     .summary = "List the example designs, print one, or copy all of them",
     .about = "Without arguments the examples are listed with their titles.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

@@ -119,7 +119,4 @@ const struct dea_command cmd_fab = {
     .about = "Writes for each part a DXF and an SVG file in mm, with the kerf taken into account, "
              "drawings at 1:1 with dimensions, the process sheet, and a drawing of the actuator. "
              "Kerf, sheet, leads, tabs and the like are in the section 'fabrication' of DESIGN.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

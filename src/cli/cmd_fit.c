@@ -137,8 +137,5 @@ const struct dea_command cmd_fit = {
              "says 'dea schema --fit', that of a device (with the key design) 'dea schema "
              "--fit-device', of breakdown tests (with the key breakdown) 'dea schema "
              "--fit-breakdown', of life tests (with the key life) 'dea schema --fit-life'.",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

@@ -286,7 +286,4 @@ const struct dea_command cmd_materials = {
     .about = "Own materials: put NAME.yaml into a directory that the environment variable "
              "DEA_MATERIALS names (several, separated by colons). What such a file holds says "
              "'dea schema --material'.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

@@ -143,9 +143,4 @@ static const struct cli_option options[] = {
     {0}};
 
 const struct dea_command cmd_mesh = {
-    .name = "mesh",
-    .summary = "Make the mesh of model 3d, and write it for Gmsh",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    .name = "mesh", .summary = "Make the mesh of model 3d, and write it for Gmsh", CLI_RUN};

@@ -149,8 +149,5 @@ const struct dea_command cmd_optimise = {
     .summary = "Find the best design within bounds and limits, or the front of two objectives",
     .about = "Writes the best design as best.yaml, which every command takes. Goes on where it was "
              "stopped. What the file holds says 'dea schema --explore'.",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

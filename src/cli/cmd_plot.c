@@ -94,8 +94,5 @@ const struct dea_command cmd_plot = {
         "map_film_thickness, designs, design_tips, "
         "design_profiles.\n\n"
         "Beside each picture lie its gnuplot script and data, for other styles: gnuplot NAME.gp",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

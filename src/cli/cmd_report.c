@@ -87,8 +87,5 @@ const struct dea_command cmd_report = {
     .summary = "Write runs as one HTML page that needs no network",
     .about = "One file with everything: drawing, curves, limits, convergence, materials with their "
              "sources, provenance. Several runs are set beside each other.",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

@@ -500,8 +500,5 @@ static const struct cli_option options[] = {
 const struct dea_command cmd_run = {
     .name = "run",
     .summary = "Solve a design: stretch, field, displacement and margins against voltage",
-    .options = options,
-    .request_size = sizeof(struct request),
     .on_ranks = on_ranks,
-    .run = run,
-};
+    CLI_RUN};

@@ -75,7 +75,4 @@ static const struct cli_option options[] = {
 const struct dea_command cmd_schema = {
     .name = "schema",
     .summary = "Print every key of a design file: form, unit, limits, default, meaning",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

@@ -171,8 +171,5 @@ const struct dea_command cmd_sweep = {
     .name = "sweep",
     .summary = "Compute many designs that differ in some values: grids, samples, uncertainty",
     .about = "Goes on where it was stopped. What the file holds says 'dea schema --explore'.",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

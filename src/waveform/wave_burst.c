@@ -23,9 +23,6 @@ static const struct dea_field fields[] = {
     DEA_WAVE_CYCLES(struct raw, bursts, "bursts", "number of bursts", "1"),
 };
 
-const struct dea_record dea_wave_burst_record = {"burst", "some cycles of a sine, a pause, again",
-                                                 fields, DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -67,11 +64,4 @@ static void extent(const struct dea_waveform *w, struct dea_wave_extent *out)
   dea_wave_sine_extent(p[MEAN], p[AMPLITUDE], 0, p[CYCLES], p[FREQUENCY], out); // whole ones
 }
 
-const struct dea_wave_type dea_wave_burst = {
-    .name = "burst",
-    .record = &dea_wave_burst_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-    .value = value,
-    .extent = extent,
-};
+DEA_WAVE_TYPE(burst, "some cycles of a sine, a pause, again", .value = value, .extent = extent);

@@ -30,9 +30,6 @@ static const struct dea_field fields[] = {
                    .default_text = "logarithmic"),
 };
 
-const struct dea_record dea_wave_chirp_record = {"chirp", "a sine of changing frequency", fields,
-                                                 DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -78,12 +75,5 @@ static bool cycle(const struct dea_waveform *w, size_t number, struct dea_wave_c
   return false; // none is like another
 }
 
-const struct dea_wave_type dea_wave_chirp = {
-    .name = "chirp",
-    .record = &dea_wave_chirp_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-    .value = value,
-    .extent = extent,
-    .cycle = cycle,
-};
+DEA_WAVE_TYPE(chirp, "a sine of changing frequency", .value = value, .extent = extent,
+              .cycle = cycle);

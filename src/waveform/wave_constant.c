@@ -13,9 +13,6 @@ static const struct dea_field fields[] = {
                   .default_text = "10 s"),
 };
 
-const struct dea_record dea_wave_constant_record = {"constant", "one voltage", fields,
-                                                    DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -28,9 +25,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
-const struct dea_wave_type dea_wave_constant = {
-    .name = "constant",
-    .record = &dea_wave_constant_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(constant, "one voltage", .value = NULL);

@@ -39,6 +39,17 @@
     .example = "50 %"                                                                              \
   }
 
+/* Record and type of a kind, at the end of its file, which has `fields`, `struct raw` and `make`;
+ * further members of the type, at least one. */
+#define DEA_WAVE_TYPE(word, meaning, ...)                                                          \
+  const struct dea_record dea_wave_##word##_record = {#word, meaning, fields,                      \
+                                                      DEA_WAVE_COUNT(fields)};                     \
+  const struct dea_wave_type dea_wave_##word = {.name = #word,                                     \
+                                                .record = &dea_wave_##word##_record,               \
+                                                .raw_size = sizeof(struct raw),                    \
+                                                .make = make,                                      \
+                                                __VA_ARGS__}
+
 /* Room for knots and blocks in a waveform that has none. DEA_E_MEMORY. */
 dea_status dea_wave_room(struct dea_context *ctx, struct dea_waveform *waveform, size_t knots,
                          size_t blocks);

@@ -16,9 +16,6 @@ static const struct dea_field fields[] = {
                   .default_text = "0 s"),
 };
 
-const struct dea_record dea_wave_ramp_record = {"ramp", "evenly from one voltage to another",
-                                                fields, DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -32,9 +29,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
-const struct dea_wave_type dea_wave_ramp = {
-    .name = "ramp",
-    .record = &dea_wave_ramp_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(ramp, "evenly from one voltage to another", .value = NULL);

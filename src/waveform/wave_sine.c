@@ -22,9 +22,6 @@ static const struct dea_field fields[] = {
     DEA_WAVE_CYCLES(struct raw, cycles, "cycles", "number of cycles", "10"),
 };
 
-const struct dea_record dea_wave_sine_record = {"sine", "a sine about a mean", fields,
-                                                DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -63,12 +60,4 @@ static bool cycle(const struct dea_waveform *w, size_t number, struct dea_wave_c
   return (double)number < p[CYCLES];
 }
 
-const struct dea_wave_type dea_wave_sine = {
-    .name = "sine",
-    .record = &dea_wave_sine_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-    .value = value,
-    .extent = extent,
-    .cycle = cycle,
-};
+DEA_WAVE_TYPE(sine, "a sine about a mean", .value = value, .extent = extent, .cycle = cycle);

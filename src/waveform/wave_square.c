@@ -17,9 +17,6 @@ static const struct dea_field fields[] = {
     DEA_WAVE_CYCLES(struct raw, cycles, "cycles", "number of pulses", "10"),
 };
 
-const struct dea_record dea_wave_square_record = {"square", "pulses of equal height", fields,
-                                                  DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -40,9 +37,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
-const struct dea_wave_type dea_wave_square = {
-    .name = "square",
-    .record = &dea_wave_square_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(square, "pulses of equal height", .value = NULL);

@@ -36,9 +36,6 @@ static const struct dea_field fields[] = {
                   .default_text = "0 s"),
 };
 
-const struct dea_record dea_wave_staircase_record = {
-    "staircase", "pulses at one voltage after the other", fields, DEA_WAVE_COUNT(fields)};
-
 /* Number of voltages; 0 after a finding. */
 static dea_status count_levels(const struct dea_reader *reader, const struct raw *raw,
                                size_t *count)
@@ -86,9 +83,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
-const struct dea_wave_type dea_wave_staircase = {
-    .name = "staircase",
-    .record = &dea_wave_staircase_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(staircase, "pulses at one voltage after the other", .value = NULL);

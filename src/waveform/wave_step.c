@@ -17,9 +17,6 @@ static const struct dea_field fields[] = {
                   .above_min = true, .default_text = "10 s"),
 };
 
-const struct dea_record dea_wave_step_record = {"step", "from one voltage to another", fields,
-                                                DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -39,9 +36,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
-const struct dea_wave_type dea_wave_step = {
-    .name = "step",
-    .record = &dea_wave_step_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(step, "from one voltage to another", .value = NULL);

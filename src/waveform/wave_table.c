@@ -23,9 +23,6 @@ static const struct dea_field fields[] = {
     DEA_WAVE_CYCLES(struct raw, repeat, "repeat", "how often the table is played", "1"),
 };
 
-const struct dea_record dea_wave_table_record = {"table", "times and voltages from a CSV file",
-                                                 fields, DEA_WAVE_COUNT(fields)};
-
 static const struct dea_csv_wanted columns[2] = {
     [TIME] = {.name = "time",
               .title = "time (s)",
@@ -99,9 +96,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return status;
 }
 
-const struct dea_wave_type dea_wave_table = {
-    .name = "table",
-    .record = &dea_wave_table_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(table, "times and voltages from a CSV file", .value = NULL);

@@ -15,9 +15,6 @@ static const struct dea_field fields[] = {
     DEA_WAVE_CYCLES(struct raw, cycles, "cycles", "number of cycles", "10"),
 };
 
-const struct dea_record dea_wave_triangle_record = {"triangle", "up and down evenly", fields,
-                                                    DEA_WAVE_COUNT(fields)};
-
 static dea_status make(const struct dea_reader *reader, const void *data, const char *beside,
                        struct dea_waveform *out)
 {
@@ -32,9 +29,4 @@ static dea_status make(const struct dea_reader *reader, const void *data, const 
   return DEA_OK;
 }
 
-const struct dea_wave_type dea_wave_triangle = {
-    .name = "triangle",
-    .record = &dea_wave_triangle_record,
-    .raw_size = sizeof(struct raw),
-    .make = make,
-};
+DEA_WAVE_TYPE(triangle, "up and down evenly", .value = NULL);

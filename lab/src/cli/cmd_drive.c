@@ -459,7 +459,4 @@ const struct dea_command cmd_drive = {
         "bench would be or was exceeded, an instrument failed, or the output is not known to be at "
         "0 V. 'dea schema --protocol' lists "
         "the keys of a protocol.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

@@ -307,7 +307,4 @@ const struct dea_command cmd_import = {
         "and unit, or from a mapping; 'dea schema "
         "--mapping' shows its keys. What was taken for what is said. Several files become one "
         "recording when they have one clock.",
-    .options = options,
-    .request_size = sizeof(struct request),
-    .run = run,
-};
+    CLI_RUN};

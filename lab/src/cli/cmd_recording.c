@@ -327,8 +327,5 @@ static const struct cli_option options[] = {
 const struct dea_command cmd_recording = {
     .name = "recording",
     .summary = "Say what is in a recording; copy, rescue or join it; write it as CSV",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};

@@ -293,8 +293,5 @@ const struct dea_command cmd_reduce = {
     .summary = "Make displacements, forces, times and discharges of a recording",
     .about = "Writes measurement.csv (for 'dea compare'), levels.csv, cycles.csv, profiles.csv, "
              "history.csv, discharges.csv, reduction.json and figures.",
-    .options = options,
-    .request_size = sizeof(struct request),
     .defaults = &defaults,
-    .run = run,
-};
+    CLI_RUN};
