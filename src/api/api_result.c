@@ -445,14 +445,12 @@ dea_status dea_result_write(dea_context *ctx, const dea_result *result, const ch
   const struct dea_run_folder_options inner = {.force = all.replace != 0,
                                                .no_figures = all.no_figures != 0};
   DEA_TRY(ctx->inner, dea_run_folder_prepare(ctx->inner, folder, inner.force));
-  DEA_TRY(ctx->inner, dea_run_folder_write(ctx->inner, result->inner, folder, &inner));
-  return DEA_OK;
+  return DEA_PASS(ctx->inner, dea_run_folder_write(ctx->inner, result->inner, folder, &inner));
 }
 
 dea_status dea_result_save(dea_context *ctx, const dea_result *result, const char *path)
 {
-  DEA_TRY(ctx->inner, dea_results_h5_write(ctx->inner, result->inner, path));
-  return DEA_OK;
+  return DEA_PASS(ctx->inner, dea_results_h5_write(ctx->inner, result->inner, path));
 }
 
 /* The design that was computed, read again; one that this version does not understand is left out,
@@ -490,8 +488,7 @@ dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
     dea_run_destroy(inner, contents.run);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  DEA_TRY(inner, api_result_make(ctx, contents, out));
-  return DEA_OK;
+  return DEA_PASS(inner, api_result_make(ctx, contents, out));
 }
 
 dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_design **out)
@@ -502,9 +499,8 @@ dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_des
   if (p->input == NULL) {
     return dea_fail(ctx->inner, DEA_E_UNSUPPORTED, "the result does not have its design");
   }
-  DEA_TRY(ctx->inner,
-          api_design_make(ctx,
-                          result->run != NULL ? result->run->design_file : result->design->file,
-                          p->input, p->overrides, out));
-  return DEA_OK;
+  return DEA_PASS(
+      ctx->inner,
+      api_design_make(ctx, result->run != NULL ? result->run->design_file : result->design->file,
+                      p->input, p->overrides, out));
 }

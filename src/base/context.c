@@ -161,6 +161,9 @@ dea_status dea_fail(struct dea_context *ctx, dea_status status, const char *form
 dea_status dea_fail_chain(struct dea_context *ctx, dea_status status, const char *function,
                           const char *file, int line)
 {
+  if (status == DEA_OK) {
+    return status;
+  }
   if (ctx->status != status) {
     dea_fail(ctx, status, "%s", dea_status_message(status));
   }

@@ -408,8 +408,7 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   struct dea_node *section = NULL, *node = NULL;
   DEA_TRY(ctx, walk(ctx, yaml, location, &path, &section));
   DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &location, &node));
-  DEA_TRY(ctx, put(yaml, section, path, location, node));
-  return DEA_OK;
+  return DEA_PASS(ctx, put(yaml, section, path, location, node));
 }
 
 enum { PATH_SIZE = 256 };
@@ -447,8 +446,7 @@ dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
   if (yaml->root->kind != DEA_NODE_SECTION) {
     return DEA_OK; // the reader of the schema says so
   }
-  DEA_TRY(ctx, merge_below(ctx, yaml, "", changes));
-  return DEA_OK;
+  return DEA_PASS(ctx, merge_below(ctx, yaml, "", changes));
 }
 
 /* Puts the next of the values in the place of each "$". */

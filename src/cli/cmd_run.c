@@ -104,9 +104,8 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
   }
   DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
   DEA_TRY(ctx, dea_result_create(ctx, run->design, run->device, &run->result));
-  DEA_TRY(ctx, dea_provenance_fill(ctx, bytes, length, overrides, count, cli->command_line,
-                                   &run->result->provenance));
-  return DEA_OK;
+  return DEA_PASS(ctx, dea_provenance_fill(ctx, bytes, length, overrides, count, cli->command_line,
+                                           &run->result->provenance));
 }
 
 static dea_status prepare(struct dea_cli *cli, const struct request *request, struct run *run)
@@ -117,8 +116,7 @@ static dea_status prepare(struct dea_cli *cli, const struct request *request, st
   DEA_TRY(ctx, dea_file_read(ctx, request->designs.at[0], DEA_YAML_SIZE_MAX, &bytes, &length));
   dea_status status = build(cli, request, bytes, length, run); // the very bytes that are kept
   dea_free(ctx, bytes);
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return DEA_PASS(ctx, status);
 }
 
 static void release(struct dea_cli *cli, struct run *run)

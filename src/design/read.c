@@ -242,8 +242,7 @@ static dea_status parse(struct dea_context *ctx, const struct dea_design_source 
   if (status == DEA_E_DESIGN) { // a finding that is counted with the others
     status = DEA_OK;
   }
-  DEA_TRY(ctx, status);
-  return DEA_OK;
+  return DEA_PASS(ctx, status);
 }
 
 /* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */

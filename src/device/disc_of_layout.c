@@ -78,8 +78,8 @@ static dea_status find_electrodes(struct dea_context *ctx, const struct dea_layo
   *out = circle_of(l, e[0].region);
   DEA_TRY(ctx, ask(ctx, out->radius_m > 0, "electrode", e[0].name, "is not round"));
   const struct circle other = circle_of(l, e[1].region);
-  DEA_TRY(ctx, ask(ctx, is_same(out, &other), "electrode", e[1].name, "is not as the other one"));
-  return DEA_OK;
+  return DEA_PASS(
+      ctx, ask(ctx, is_same(out, &other), "electrode", e[1].name, "is not as the other one"));
 }
 
 static dea_status take_film(struct dea_context *ctx, const struct dea_layout *l, size_t film,
@@ -401,8 +401,7 @@ dea_status dea_device_find_disc(struct dea_context *ctx, struct dea_device *devi
 dea_status dea_device_require_disc(struct dea_context *ctx, const struct dea_device *device)
 {
   struct dea_device disc = {.gravity = device->gravity};
-  DEA_TRY(ctx, device->disc ? DEA_OK : find(ctx, device->layout, &disc));
-  return DEA_OK;
+  return DEA_PASS(ctx, device->disc ? DEA_OK : find(ctx, device->layout, &disc));
 }
 
 double dea_device_pre_stretch(const struct dea_device *device)

@@ -94,12 +94,16 @@ static dea_status check_reach(struct maker *m, const struct dea_parts_ply *from,
   return dea_generator_check_reach(m->ctx, &ply->material, what, ply->pre_stretch, place);
 }
 
+/* Memory for as many of a kind as the file has. */
+#define MAKE(member, member_count)                                                                 \
+  l->member = dea_arena_alloc(&l->memory, m->parts->member_count, sizeof *l->member);              \
+  DEA_TRY(m->ctx, dea_arena_status(&l->memory));                                                   \
+  l->member_count = m->parts->member_count
+
 static dea_status add_plies(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->plies = dea_arena_alloc(&l->memory, m->parts->ply_count, sizeof *l->plies);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->ply_count = m->parts->ply_count;
+  MAKE(plies, ply_count);
   for (size_t i = 0; i < l->ply_count; i++) {
     const struct dea_parts_ply *from = &m->parts->plies[i];
     struct dea_layout_ply *to = &l->plies[i];
@@ -222,9 +226,7 @@ static dea_status add_channels(struct maker *m)
 static dea_status add_electrodes(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->electrodes = dea_arena_alloc(&l->memory, m->parts->electrode_count, sizeof *l->electrodes);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->electrode_count = m->parts->electrode_count;
+  MAKE(electrodes, electrode_count);
   for (size_t i = 0; i < l->electrode_count; i++) {
     const struct dea_parts_electrode *from = &m->parts->electrodes[i];
     struct dea_layout_electrode *to = &l->electrodes[i];
@@ -293,9 +295,7 @@ static dea_status take_hold(const struct maker *m, const struct dea_parts_suppor
 static dea_status add_supports(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->supports = dea_arena_alloc(&l->memory, m->parts->support_count, sizeof *l->supports);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->support_count = m->parts->support_count;
+  MAKE(supports, support_count);
   for (size_t i = 0; i < l->support_count; i++) {
     const struct dea_parts_support *from = &m->parts->supports[i];
     struct dea_layout_support *to = &l->supports[i];
@@ -338,9 +338,7 @@ static dea_status take_motion(const struct maker *m, const struct dea_parts_body
 static dea_status add_bodies(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->bodies = dea_arena_alloc(&l->memory, m->parts->body_count, sizeof *l->bodies);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->body_count = m->parts->body_count;
+  MAKE(bodies, body_count);
   for (size_t i = 0; i < l->body_count; i++) {
     const struct dea_parts_body *from = &m->parts->bodies[i];
     struct dea_layout_body *to = &l->bodies[i];
@@ -391,9 +389,7 @@ static dea_status take_spring(const struct maker *m, const struct dea_parts_spri
 static dea_status add_springs(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->springs = dea_arena_alloc(&l->memory, m->parts->spring_count, sizeof *l->springs);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->spring_count = m->parts->spring_count;
+  MAKE(springs, spring_count);
   for (size_t i = 0; i < l->spring_count; i++) {
     const struct dea_parts_spring *from = &m->parts->springs[i];
     struct dea_layout_spring *to = &l->springs[i];
@@ -438,9 +434,7 @@ static dea_status take_enclosure(const struct maker *m, const struct dea_parts_p
 static dea_status add_pressures(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->pressures = dea_arena_alloc(&l->memory, m->parts->pressure_count, sizeof *l->pressures);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->pressure_count = m->parts->pressure_count;
+  MAKE(pressures, pressure_count);
   for (size_t i = 0; i < l->pressure_count; i++) {
     const struct dea_parts_pressure *from = &m->parts->pressures[i];
     struct dea_layout_pressure *to = &l->pressures[i];
@@ -526,9 +520,7 @@ static dea_status take_monitor(const struct maker *m, const struct dea_parts_mon
 static dea_status add_monitors(struct maker *m)
 {
   struct dea_layout *l = m->out;
-  l->monitors = dea_arena_alloc(&l->memory, m->parts->monitor_count, sizeof *l->monitors);
-  DEA_TRY(m->ctx, dea_arena_status(&l->memory));
-  l->monitor_count = m->parts->monitor_count;
+  MAKE(monitors, monitor_count);
   for (size_t i = 0; i < l->monitor_count; i++) {
     DEA_TRY(m->ctx, take_monitor(m, &m->parts->monitors[i], &l->monitors[i]));
   }

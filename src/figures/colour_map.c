@@ -88,9 +88,8 @@ dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_resul
   *out = (struct dea_colour_map){.voltage_V = record->voltage_V};
   dea_voltage_words(result, record->model, record->voltage_V, out->words);
   DEA_TRY(ctx, dea_surface_lattice_create(ctx, record->mesh, pieces, &out->drawing));
-  DEA_TRY(ctx,
-          dea_surface_lattice_outlines(ctx, record->mesh, &out->outlines, &out->outline_count));
-  return DEA_OK;
+  return DEA_PASS(
+      ctx, dea_surface_lattice_outlines(ctx, record->mesh, &out->outlines, &out->outline_count));
 }
 
 void dea_colour_map_free(struct dea_context *ctx, struct dea_colour_map *picture)
@@ -135,6 +134,5 @@ dea_status dea_colour_map_write(struct dea_context *ctx, const struct dea_text *
   snprintf(file, sizeof file, "%.60s.dat", name);
   DEA_TRY(ctx, dea_text_write(ctx, dat, directory, file));
   snprintf(file, sizeof file, "%.60s.gp", name);
-  DEA_TRY(ctx, dea_text_write(ctx, gp, directory, file));
-  return DEA_OK;
+  return DEA_PASS(ctx, dea_text_write(ctx, gp, directory, file));
 }

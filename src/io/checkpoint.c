@@ -119,8 +119,7 @@ static dea_status keep_fields(struct dea_context *ctx, const struct dea_keep *ke
     field_name(curve->model, last - 1, name);
     dea_path_forget(ctx, keep->directory, name);
   }
-  DEA_TRY(ctx, write_pvd(ctx, keep->directory, curve->model, curve));
-  return DEA_OK;
+  return DEA_PASS(ctx, write_pvd(ctx, keep->directory, curve->model, curve));
 }
 
 dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_result *result,
@@ -314,8 +313,7 @@ static dea_status take_sweep(struct dea_context *ctx, const char *directory, con
   }
   DEA_TRY(ctx, take_surfaces(ctx, old, sweep->model, count, result));
   DEA_TRY(ctx, take_profiles(ctx, old, sweep->model, count, result));
-  DEA_TRY(ctx, take_tables(ctx, old, sweep, count, result));
-  return DEA_OK;
+  return DEA_PASS(ctx, take_tables(ctx, old, sweep, count, result));
 }
 
 dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory,

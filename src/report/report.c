@@ -144,5 +144,5 @@ dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run
   }
   dea_text_free(&report.text);
   dea_measured_destroy(ctx, measured);
-  return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
+  return DEA_PASS(ctx, status);
 }

@@ -96,8 +96,7 @@ static dea_status build_table(struct dea_context *ctx, const char *monitor, stru
   m->base.material = film != NULL ? film->name : "";
   m->base.frame_radius_m = m->base.fibre_tip_radius_m = reach_of(m->device);
   m->type = &dea_film_table_type;
-  DEA_TRY(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
-  return DEA_OK;
+  return DEA_PASS(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
 }
 
 static dea_status build(struct dea_context *ctx, bool moves, const char *monitor,
