@@ -1,10 +1,10 @@
 /* Fuzz target: a Gocator's lines of text, whole and in pieces. */
+#include "fuzz.h"
+
 #include "instrument/gocator_parse.h"
 #include "lines.h"
 
 #include <math.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 struct seen {
   size_t dropped, values, refused;

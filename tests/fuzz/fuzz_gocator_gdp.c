@@ -1,10 +1,10 @@
 /* Fuzz target: a Gocator's data stream, whole and in pieces, onto the grid of its first profile. */
+#include "fuzz.h"
+
 #include "instrument/gocator_frames.h"
 
 #include <math.h>
 #include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 struct stream {
   struct dea_gdp reader;
@@ -54,11 +54,8 @@ static void feed(struct dea_context *ctx, struct stream *s, const uint8_t *bytes
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  static struct dea_context *ctx;
+  struct dea_context *ctx = fuzz_begin();
   static struct stream whole, pieces;
-  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
-    return 0;
-  }
   memset(&whole, 0, sizeof whole);
   memset(&pieces, 0, sizeof pieces);
   whole.frames.offset_s = pieces.frames.offset_s = INFINITY;

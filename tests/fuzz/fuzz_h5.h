@@ -4,6 +4,8 @@
  * what. (Files with flipped bytes are HDF5's to refuse; what they then say is ours.) */
 #pragma once
 
+#include "fuzz.h"
+
 #include "base/context.h"
 
 #include <hdf5.h>
@@ -14,8 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static char fuzz_folder[] = "/tmp/dea-fuzz-XXXXXX", fuzz_path[64];
 

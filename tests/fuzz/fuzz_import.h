@@ -1,12 +1,12 @@
 /* One importer on hostile bytes: reads a table and makes what it can of it. */
 #pragma once
 
+#include "fuzz.h"
+
 #include "import/import.h"
 
 #include <stdint.h>
 #include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static inline const struct dea_importer *fuzz_importer(const char *name)
 {
@@ -35,21 +35,14 @@ static inline void fuzz_table(struct dea_context *ctx, const char *name, const c
   if (status == DEA_OK && table->column_count > 0) {
     status = dea_table_record(ctx, table, NULL, &recording);
   }
-  if (status != DEA_OK && dea_context_message(ctx)[0] == '\0') {
-    __builtin_trap(); // an error that nobody is told about
-  }
+  fuzz_check_message(ctx, status);
   dea_recording_destroy(ctx, recording);
   dea_table_destroy(ctx, table);
-  dea_finding_clear(ctx);
-  dea_context_clear(ctx);
 }
 
-/* One context for all inputs: reading the unit table takes longer than reading a file. */
-static inline int fuzz_bytes(const char *name, const uint8_t *data, size_t size)
-{
-  static struct dea_context *ctx;
-  if (ctx != NULL || dea_context_create(NULL, &ctx) == DEA_OK) {
-    fuzz_table(ctx, name, "fuzz", data, size);
+#define FUZZ_IMPORTER(name)                                                                        \
+  int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)                                     \
+  {                                                                                                \
+    fuzz_table(fuzz_begin(), name, "fuzz", data, size);                                            \
+    return 0;                                                                                      \
   }
-  return 0;
-}

@@ -1,7 +1,4 @@
 /* Fuzz target: the importer of csv. */
 #include "fuzz_import.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
-{
-  return fuzz_bytes("csv", data, size);
-}
+FUZZ_IMPORTER("csv")

@@ -20,12 +20,9 @@ static struct dea_table *make_table(struct dea_context *ctx)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  static struct dea_context *ctx;
+  struct dea_context *ctx = fuzz_begin();
   struct dea_mapping *mapping;
   struct dea_recording *recording = NULL;
-  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
-    return 0;
-  }
   dea_status status = dea_mapping_read_memory(ctx, "map.yaml", (const char *)data, size, &mapping);
   if (status == DEA_OK) {
     struct dea_table *table = make_table(ctx);
@@ -34,12 +31,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     dea_table_destroy(ctx, table);
   }
-  if (status == DEA_E_DESIGN && dea_finding_count(ctx, DEA_ERROR) == 0) {
-    __builtin_trap(); // an error that nobody is told about
-  }
+  fuzz_check_findings(ctx, status);
   dea_recording_destroy(ctx, recording);
   dea_mapping_destroy(ctx, mapping);
-  dea_finding_clear(ctx);
-  dea_context_clear(ctx);
   return 0;
 }

@@ -11,12 +11,9 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  static struct dea_context *ctx;
+  struct dea_context *ctx = fuzz_begin();
   static char name[64];
   static int file = -1;
-  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
-    return 0;
-  }
   if (file < 0) {
     char module[4096];
     if (!dea_mat_find(module, sizeof module)) {

@@ -1,7 +1,4 @@
 /* Fuzz target: the importer of tdms. */
 #include "fuzz_import.h"
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
-{
-  return fuzz_bytes("tdms", data, size);
-}
+FUZZ_IMPORTER("tdms")

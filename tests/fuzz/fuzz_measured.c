@@ -1,14 +1,14 @@
 /* Fuzz target: the folder of a reduced measurement. The first byte says which of its files the rest
  * is; the others are good. */
 #define _GNU_SOURCE // mkdtemp
+#include "fuzz.h"
+
 #include "compare/measured.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static char folder[] = "/tmp/fuzz-measured-XXXXXX";
 static const char *const names[] = {"measurement.csv", "profiles.csv", "history.csv"};
@@ -68,9 +68,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   put(0, good, sizeof good - 1);
   put(file, data + 1, size - 1);
   dea_status status = dea_measured_read(ctx, folder, &measured);
-  if (status != DEA_OK && dea_context_message(ctx)[0] == '\0') {
-    __builtin_trap(); // an error that nobody is told about
-  }
+  fuzz_check_message(ctx, status);
   size_t rows = 0;
   for (size_t i = 0; status == DEA_OK && i < measured->profile_count; i++) {
     rows += measured->profiles[i].z.count;

@@ -1,9 +1,9 @@
 /* Fuzz target: files of Gmsh, as plane meshes. */
+#include "fuzz.h"
+
 #include "model/solid/mesh/msh_read.h"
 
 #include <stdint.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void check(const struct dea_plane_mesh *mesh)
 {
@@ -30,11 +30,8 @@ static void check(const struct dea_plane_mesh *mesh)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  static struct dea_context *ctx;
+  struct dea_context *ctx = fuzz_begin();
   struct dea_plane_mesh *mesh;
-  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
-    return 0;
-  }
   char *text = dea_copy_text(ctx, (const char *)data, size);
   if (text == NULL) {
     return 0;
@@ -47,7 +44,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   }
   dea_plane_mesh_destroy(ctx, mesh);
   dea_free(ctx, text);
-  dea_finding_clear(ctx);
-  dea_context_clear(ctx);
   return 0;
 }

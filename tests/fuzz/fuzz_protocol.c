@@ -1,11 +1,11 @@
 /* Fuzz target: reading a protocol and its instruments' sections, and checking what it would play,
  * without playing it. Its paths count from lab/examples, where a design is. */
+#include "fuzz.h"
+
 #include "film/film_of_design.h"
 #include "instrument/instrument.h"
 
 #include <stdint.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static void look(struct dea_context *ctx, const char *text, size_t length)
 {
@@ -13,9 +13,7 @@ static void look(struct dea_context *ctx, const char *text, size_t length)
   dea_status status =
       dea_protocol_read_memory(ctx, &dea_film_of_design, DEA_SOURCE_DIR "/lab/examples/fuzz.yaml",
                                text, length, NULL, 0, &protocol);
-  if (status == DEA_E_DESIGN && dea_finding_count(ctx, DEA_ERROR) == 0) {
-    __builtin_trap(); // an error that nobody is told about
-  }
+  fuzz_check_findings(ctx, status);
   if (status == DEA_OK && dea_instrument_check(ctx, protocol) == DEA_OK &&
       dea_finding_count(ctx, DEA_ERROR) == 0) {
     struct dea_protocol_plan plan;
@@ -30,13 +28,7 @@ static void look(struct dea_context *ctx, const char *text, size_t length)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-  // One context for all inputs: reading the unit table takes longer than reading a protocol.
-  static struct dea_context *ctx;
-  if (ctx == NULL && dea_context_create(NULL, &ctx) != DEA_OK) {
-    return 0;
-  }
+  struct dea_context *ctx = fuzz_begin();
   look(ctx, (const char *)data, size);
-  dea_finding_clear(ctx);
-  dea_context_clear(ctx);
   return 0;
 }
