@@ -467,9 +467,7 @@ static dea_status check_in_folder(struct dea_context *context)
   struct dea_protocol *p;
   dea_status status =
       dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
-  if (status == DEA_OK) {
-    status = dea_protocol_check(context, p, &plan);
-  }
+  status = status == DEA_OK ? dea_protocol_check(context, p, &plan) : status;
   dea_protocol_destroy(context, p);
   return status;
 }
@@ -525,9 +523,7 @@ static dea_status export_in_folder(struct dea_context *context)
   snprintf(to, sizeof to, "%s/export", folder);
   dea_status status =
       dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
-  if (status == DEA_OK) {
-    status = dea_protocol_export(context, p, to);
-  }
+  status = status == DEA_OK ? dea_protocol_export(context, p, to) : status;
   dea_protocol_destroy(context, p);
   return status;
 }

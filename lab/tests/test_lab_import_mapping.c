@@ -382,9 +382,7 @@ static void record_once(struct dea_context *own)
   const char *map = "dea-import: 1\ncolumns: [{column: V, as: voltage}]\n"
                     "profile: {columns: 'z*', unit: mm, x_from: 0 mm, x_to: 1 mm}\n";
   dea_status status = dea_mapping_read_memory(own, "m", map, strlen(map), &mapping);
-  if (status == DEA_OK) {
-    status = dea_table_read(own, in_folder("memory.csv"), NULL, &table);
-  }
+  status = status == DEA_OK ? dea_table_read(own, in_folder("memory.csv"), NULL, &table) : status;
   if (status == DEA_OK) {
     status = dea_table_record(own, table, mapping, &recording);
     dea_table_destroy(own, table);

@@ -13,9 +13,7 @@ static dea_status record(const char *name, const char *text, const char *said,
   write_bytes(name, text, strlen(text));
   dea_finding_clear(ctx);
   dea_status status = dea_table_read(ctx, in_folder(name), NULL, &table);
-  if (status == DEA_OK) {
-    status = dea_table_record(ctx, table, NULL, out);
-  }
+  status = status == DEA_OK ? dea_table_record(ctx, table, NULL, out) : status;
   dea_table_destroy(ctx, table);
   const struct dea_finding *findings = dea_finding_get(ctx, &count);
   bool found = said == NULL;

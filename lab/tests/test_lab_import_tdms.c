@@ -359,6 +359,13 @@ TEST(test_crashed)
 
 TEST(test_refused)
 {
+  static const struct {
+    uint64_t type;
+    int count;
+    const char *said;
+  } channels[] = {{10, 0x7fffffff, "more values than the file has bytes"},
+                  {0x10000d, 1, "type 0x10000d"},
+                  {10, AS_BEFORE, "as before"}};
   begin_file();
   put_bench(METADATA | NEW_LIST | RAW | DAQMX);
   end_segment();
@@ -371,27 +378,15 @@ TEST(test_refused)
   begin_raw();
   end_segment();
   assert_refused("bad.tdms", bytes, length, 0, "DAQmx raw data");
-  begin_file();
-  begin_segment(METADATA | NEW_LIST | RAW);
-  put(1, 4);
-  put_object("/'g'/'c'", 10, 0x7fffffff, 0);
-  begin_raw();
-  end_segment();
-  assert_refused("bad.tdms", bytes, length, 0, "more values than the file has bytes");
-  begin_file();
-  begin_segment(METADATA | NEW_LIST | RAW);
-  put(1, 4);
-  put_object("/'g'/'c'", 0x10000d, 1, 0);
-  begin_raw();
-  end_segment();
-  assert_refused("bad.tdms", bytes, length, 0, "type 0x10000d");
-  begin_file();
-  begin_segment(METADATA | NEW_LIST | RAW);
-  put(1, 4);
-  put_object("/'g'/'c'", 10, AS_BEFORE, 0);
-  begin_raw();
-  end_segment();
-  assert_refused("bad.tdms", bytes, length, 0, "as before");
+  for (size_t i = 0; i < sizeof channels / sizeof channels[0]; i++) {
+    begin_file();
+    begin_segment(METADATA | NEW_LIST | RAW);
+    put(1, 4);
+    put_object("/'g'/'c'", (unsigned)channels[i].type, channels[i].count, 0);
+    begin_raw();
+    end_segment();
+    assert_refused("bad.tdms", bytes, length, 0, channels[i].said);
+  }
   begin_file();
   begin_segment(METADATA | NEW_LIST);
   put(0xffffffff, 4);

@@ -115,9 +115,7 @@ static dea_status begin(struct bench *b, const struct behaviour *behaviour, cons
   snprintf(b->text, sizeof b->text, section, b->emulator.port);
   dea_finding_clear(ctx);
   dea_status status = emulator_open(ctx, &b->protocol, b->text, &b->instrument);
-  if (status == DEA_OK) {
-    status = b->instrument->type->start(ctx, b->instrument);
-  }
+  status = status == DEA_OK ? b->instrument->type->start(ctx, b->instrument) : status;
   return status;
 }
 

@@ -89,9 +89,7 @@ static dea_status play(struct dea_context *context, const struct dea_protocol *p
       volts[k] = dea_protocol_value(p, (double)(i + k) / p->rate_Hz.si) / p->amplifier.gain.si;
     }
     status = bench->type->put(context, bench, volts, now);
-    if (status == DEA_OK) {
-      status = bench->type->get(context, bench, 0.1, &sink);
-    }
+    status = status == DEA_OK ? bench->type->get(context, bench, 0.1, &sink) : status;
   }
   r->lost = bench->lost;
   bench->type->stop(context, bench);
@@ -461,9 +459,7 @@ static dea_status play_short(struct dea_context *context)
   struct record r = {0};
   dea_status status =
       dea_protocol_read(context, &dea_film_of_design, in_folder("protocol.yaml"), NULL, 0, &p);
-  if (status == DEA_OK) {
-    status = play(context, p, 10, &r);
-  }
+  status = status == DEA_OK ? play(context, p, 10, &r) : status;
   dea_protocol_destroy(context, p);
   free_record(&r);
   return status;

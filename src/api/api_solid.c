@@ -221,9 +221,7 @@ dea_status dea_solid_new(dea_context *ctx, const dea_solid_options *options, dea
   bool enough = solid != NULL && parts != NULL && fills != NULL && ply_elements != NULL &&
                 copies != NULL && bodies != NULL;
   dea_status status = enough ? take_options(ctx, &all, parts, &spec) : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = take_bodies(ctx, &all, copies, bodies, &spec);
-  }
+  status = status == DEA_OK ? take_bodies(ctx, &all, copies, bodies, &spec) : status;
   if (status == DEA_OK && all.msh_file != NULL) {
     status = take_plies(ctx, &all, ply_elements, fills, &spec);
   }

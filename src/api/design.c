@@ -121,9 +121,7 @@ static dea_status make(dea_context *owner, const char *name, const char *bytes, 
   if (design->name != NULL && design->bytes != NULL) {
     status = read_with(ctx, design, settings, setting_count, &inner);
   }
-  if (status == DEA_OK) {
-    status = take_inner(ctx, design, inner);
-  }
+  status = status == DEA_OK ? take_inner(ctx, design, inner) : status;
   if (status != DEA_OK) {
     dea_design_free(design);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

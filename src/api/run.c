@@ -93,9 +93,7 @@ dea_status dea_run(dea_context *ctx, const dea_design *design, const dea_run_opt
   ctx->running = true;
   dea_status status = prepare(ctx, design, &contents);
   status = status == DEA_OK ? choose_models(ctx, &all, contents.design, &job) : status;
-  if (status == DEA_OK) {
-    status = compute(ctx, &job, contents.inner, &began);
-  }
+  status = status == DEA_OK ? compute(ctx, &job, contents.inner, &began) : status;
   ctx->running = false;
   if (!began) {
     dea_result_destroy(inner, contents.inner);

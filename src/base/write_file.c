@@ -104,9 +104,7 @@ dea_status dea_folder_make(struct dea_context *ctx, const char *directory)
       *c = '/';
     }
   }
-  if (status == DEA_OK) {
-    status = folder_make_one(ctx, path);
-  }
+  status = status == DEA_OK ? folder_make_one(ctx, path) : status;
   dea_free(ctx, path);
   return status;
 }

@@ -73,9 +73,7 @@ static dea_status write_files(struct dea_cli *cli, const struct request *request
   dea_status status = directory == NULL
                           ? DEA_E_MEMORY
                           : dea_workshop_prepare(cli->ctx, workshop, directory, &options);
-  if (status == DEA_OK) {
-    status = dea_workshop_write(cli->ctx, workshop, directory, &options);
-  }
+  status = status == DEA_OK ? dea_workshop_write(cli->ctx, workshop, directory, &options) : status;
   if (status == DEA_OK && request->json) {
     print_json(workshop, request, &options, directory);
   } else if (status == DEA_OK && !cli->quiet) {

@@ -63,9 +63,7 @@ static dea_status find_in(struct dea_context *ctx, const char *folder, const cha
   for (size_t i = 0; i < sizeof deeper / sizeof deeper[0] && status == DEA_OK; i++) {
     status = glob_folder(ctx, folder, deeper[i], GLOB_APPEND, &found);
   }
-  if (status == DEA_OK) {
-    status = take_files(ctx, folder, outcome, &found, list);
-  }
+  status = status == DEA_OK ? take_files(ctx, folder, outcome, &found, list) : status;
   globfree(&found);
   return status;
 }

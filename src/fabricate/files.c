@@ -60,9 +60,7 @@ dea_status dea_workshop_files(const struct dea_workshop *workshop,
       status = sink(user, name);
     }
   }
-  if (status == DEA_OK && !options->drawing_only) {
-    status = sink(user, LAYOUT_DXF);
-  }
+  status = status == DEA_OK && !options->drawing_only ? sink(user, LAYOUT_DXF) : status;
   for (size_t i = 0; i < DRAWINGS && status == DEA_OK; i++) {
     if (drawings[i].always || !options->drawing_only) {
       status = sink(user, drawings[i].name);
@@ -171,9 +169,7 @@ static dea_status write_sheet(struct dea_context *ctx, const struct dea_workshop
   void *locale = dea_c_locale_enter();
   dea_status status = formats[format].write(workshop, index, &text);
   dea_c_locale_leave(locale);
-  if (status == DEA_OK) {
-    status = dea_text_write(ctx, &text, directory, name);
-  }
+  status = status == DEA_OK ? dea_text_write(ctx, &text, directory, name) : status;
   dea_text_free(&text);
   return status;
 }
@@ -253,9 +249,7 @@ static dea_status write_process(struct dea_context *ctx, const struct dea_canvas
 {
   struct dea_document document = {.ctx = ctx};
   dea_status status = dea_process_write(ctx, workshop, sensitivity, &document);
-  if (status == DEA_OK) {
-    status = write_process_pdf(ctx, type, &document, directory);
-  }
+  status = status == DEA_OK ? write_process_pdf(ctx, type, &document, directory) : status;
   if (status == DEA_OK) {
     status = write_process_html(ctx, type, workshop, &document, directory);
   }
@@ -285,9 +279,7 @@ static dea_status write_layout(struct dea_context *ctx, const struct dea_worksho
   void *locale = dea_c_locale_enter();
   dea_status status = dea_dxf_write_layout(workshop->plan.layout, &dxf);
   dea_c_locale_leave(locale);
-  if (status == DEA_OK) {
-    status = dea_text_write(ctx, &dxf, directory, LAYOUT_DXF);
-  }
+  status = status == DEA_OK ? dea_text_write(ctx, &dxf, directory, LAYOUT_DXF) : status;
   dea_text_free(&dxf);
   return status;
 }

@@ -38,9 +38,7 @@ static dea_status state_at(struct dea_context *ctx, struct solver_state *s, doub
   s->type->destroy(ctx, s->model);
   s->model = NULL;
   dea_status status = dea_model_create(ctx, s->type, s->design, s->device, &s->model);
-  if (status == DEA_OK) {
-    status = s->type->solve(ctx, s->model, voltage_V, &s->point);
-  }
+  status = status == DEA_OK ? s->type->solve(ctx, s->model, voltage_V, &s->point) : status;
   DEA_TRY(ctx, answer(ctx, status, there));
   *there = *there && dea_load_point_valid(&s->point);
   return DEA_OK;

@@ -167,9 +167,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
   }
   DEA_TRY(ctx, dea_surface_say(ctx, name, record, options->voltage_V));
   dea_status status = make_maps(ctx, result, record, &maps);
-  if (status == DEA_OK) {
-    status = write_maps(ctx, &maps, &options->format, directory);
-  }
+  status = status == DEA_OK ? write_maps(ctx, &maps, &options->format, directory) : status;
   for (size_t k = 0; k < maps.count; k++) {
     dea_colour_map_free(ctx, &maps.pictures[k]);
   }

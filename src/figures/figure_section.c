@@ -45,9 +45,7 @@ static dea_status add_record(struct dea_context *ctx, struct dea_panel *panel,
   snprintf(look.title, sizeof look.title, "%.4g kV%s%s", 1e-3 * record->voltage_V,
            doubts != 0 ? ": " : "", dea_flags_text(doubts, words));
   dea_status status = dea_surface_lattice_create(ctx, record->mesh, PIECES, &drawing);
-  if (status == DEA_OK) {
-    status = add_diameter(ctx, panel, &drawing, 0, &look);
-  }
+  status = status == DEA_OK ? add_diameter(ctx, panel, &drawing, 0, &look) : status;
   if (status == DEA_OK && record->mesh->fibres > 0) {
     look.style = DEA_DASHED;
     look.title[0] = '\0';

@@ -558,15 +558,9 @@ static dea_status attempt(struct work *w, enum dea_boolean what, const struct de
   size_t edge = 0;
   w->chord = (struct dea_point_map){.ctx = w->ctx, .cell_m = w->height_m};
   dea_status status = write_rings(w, a, &edge, 0, &rings[0]);
-  if (status == DEA_OK) {
-    status = write_rings(w, b, &edge, a->contour_count, &rings[1]);
-  }
-  if (status == DEA_OK) {
-    status = geos->overlay(w->ctx, what, &rings[0], &rings[1], &rings[2]);
-  }
-  if (status == DEA_OK) {
-    status = read_rings(w, &rings[2], &arena, out, &unknown);
-  }
+  status = status == DEA_OK ? write_rings(w, b, &edge, a->contour_count, &rings[1]) : status;
+  status = status == DEA_OK ? geos->overlay(w->ctx, what, &rings[0], &rings[1], &rings[2]) : status;
+  status = status == DEA_OK ? read_rings(w, &rings[2], &arena, out, &unknown) : status;
   at[0] = unknown != NULL ? unknown[0] : NAN;
   at[1] = unknown != NULL ? unknown[1] : NAN;
   dea_arena_free(&arena);

@@ -43,9 +43,7 @@ dea_status dea_pieces_build(struct dea_context *ctx, const struct dea_region *co
     }
   }
   dea_status status = dea_arena_status(&p->arena);
-  if (status == DEA_OK) {
-    status = build_tree(ctx, p);
-  }
+  status = status == DEA_OK ? build_tree(ctx, p) : status;
   if (status != DEA_OK) {
     dea_pieces_free(p);
   }

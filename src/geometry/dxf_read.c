@@ -422,9 +422,7 @@ static dea_status read_block(struct reader *r, const struct block *block)
   r->entity = (struct entity){.layer = r->layer};
   while (status == DEA_OK && more) {
     status = read_pair(r, &code, &more);
-    if (status == DEA_OK && more) {
-      status = take_pair(r, code);
-    }
+    status = status == DEA_OK && more ? take_pair(r, code) : status;
   }
   status = status == DEA_OK ? end_entity(r) : status;
   status = status == DEA_OK ? end_polyline(r) : status;

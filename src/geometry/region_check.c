@@ -244,9 +244,7 @@ static dea_status say_no_area(struct dea_context *ctx, const struct dea_contour 
   struct dea_pieces all;
   dea_region_add(&alone, contour->vertex, contour->count);
   dea_status status = dea_region_status(&alone);
-  if (status == DEA_OK) {
-    status = dea_pieces_build(ctx, &of, 1, &all);
-  }
+  status = status == DEA_OK ? dea_pieces_build(ctx, &of, 1, &all) : status;
   if (status == DEA_OK) {
     const struct pair crossing = find_crossing(&all);
     status = crossing.count > 0

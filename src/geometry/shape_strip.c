@@ -125,9 +125,7 @@ static dea_status add_strip(struct dea_region *region, const double *value,
   struct dea_region own = {.ctx = region->ctx};
   s.v = dea_alloc(region->ctx, 4 * point_count, sizeof *s.v);
   dea_status status = s.v != NULL ? build(&s, &own) : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = dea_region_add_checked(region, &own);
-  }
+  status = status == DEA_OK ? dea_region_add_checked(region, &own) : status;
   dea_region_free(&own);
   dea_free(region->ctx, s.v);
   return status;

@@ -96,9 +96,7 @@ static dea_status write_vtu(struct dea_context *ctx, const char *directory, cons
   char *folder = dea_path_join(ctx, directory, DEA_FIELD_FOLDER);
   char *path = dea_path_join(ctx, directory, name);
   dea_status status = folder != NULL && path != NULL ? dea_folder_make(ctx, folder) : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = dea_vtu_write(ctx, mesh, voltage_V, whole, path);
-  }
+  status = status == DEA_OK ? dea_vtu_write(ctx, mesh, voltage_V, whole, path) : status;
   dea_free(ctx, folder);
   dea_free(ctx, path);
   return status;
@@ -177,9 +175,7 @@ static dea_status keep_point(struct dea_context *ctx, void *user, const struct d
   char *store = dea_path_join(ctx, keep->directory, "results.h5");
   char *path = state_path(ctx, keep->directory, curve->model);
   dea_status status = store != NULL && path != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = dea_results_h5_write(ctx, result, store);
-  }
+  status = status == DEA_OK ? dea_results_h5_write(ctx, result, store) : status;
   if (status == DEA_OK) {
     const struct dea_state_reach reach = {curve->count, curve->event_count};
     status = dea_state_file_write(ctx, curve->model, state, reach, path);

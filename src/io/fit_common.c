@@ -119,9 +119,7 @@ dea_status dea_fit_folder_write(struct dea_context *ctx, const char *directory, 
   char file[DEA_NAME_SIZE + 8], *json = NULL;
   snprintf(file, sizeof file, "%.63s.yaml", name);
   dea_status status = dea_json_text(ctx, root, &json);
-  if (status == DEA_OK && yaml != NULL) {
-    status = dea_text_write(ctx, yaml, directory, file);
-  }
+  status = status == DEA_OK && yaml != NULL ? dea_text_write(ctx, yaml, directory, file) : status;
   status = status == DEA_OK ? dea_text_write(ctx, csv, directory, "fit.csv") : status;
   status = status == DEA_OK ? dea_text_file_write(ctx, directory, "fit.json", json) : status;
   dea_free(ctx, json);

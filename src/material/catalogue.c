@@ -184,9 +184,7 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
   struct dea_catalogue_entry *entry = dea_alloc(ctx, 1, sizeof *entry);
   DEA_NEED(entry != NULL);
   dea_status status = load(ctx, name, location, &entry->file, &bytes, &length);
-  if (status == DEA_OK) {
-    status = read_entry(ctx, name, bytes, length, entry);
-  }
+  status = status == DEA_OK ? read_entry(ctx, name, bytes, length, entry) : status;
   dea_free(ctx, bytes);
   if (status != DEA_OK) {
     dea_catalogue_destroy(ctx, entry);

@@ -244,9 +244,7 @@ dea_status dea_picture_finish(struct dea_context *ctx, const char *pictures, con
     read_caption(script != NULL ? script : "", name, caption, sizeof caption);
     status = finish_one(ctx, pictures, name, caption, true);
   }
-  if (status == DEA_OK) {
-    status = finish_one(ctx, pictures, name, caption, false);
-  }
+  status = status == DEA_OK ? finish_one(ctx, pictures, name, caption, false) : status;
   dea_free(ctx, script);
   dea_free(ctx, path);
   return status;

@@ -385,9 +385,7 @@ dea_status dea_plot_write(struct dea_context *ctx, const struct dea_plot *plot,
   add_data(&dat, plot);
   dea_c_locale_leave(before);
   dea_status status = dea_text_write(ctx, &dat, directory, dat_name);
-  if (status == DEA_OK) {
-    status = dea_text_write(ctx, &gp, directory, gp_name);
-  }
+  status = status == DEA_OK ? dea_text_write(ctx, &gp, directory, gp_name) : status;
   dea_text_free(&gp);
   dea_text_free(&dat);
   return status;

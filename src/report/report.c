@@ -135,9 +135,7 @@ dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run
     status = status == DEA_OK ? dea_measured_fold(ctx, measured) : status;
     report.measurement = measured != NULL ? measured->points : NULL;
   }
-  if (status == DEA_OK) {
-    status = add_page(&report);
-  }
+  status = status == DEA_OK ? add_page(&report) : status;
   dea_c_locale_leave(before);
   if (status == DEA_OK) {
     status = dea_file_write(ctx, path, report.text.data, report.text.length);

@@ -268,15 +268,9 @@ dea_status dea_text_file_read(struct dea_context *ctx, const unsigned char *byte
   char *copy;
   struct dea_slice text;
   dea_status status = open_text(ctx, out->file, bytes, length, &copy, &text);
-  if (status == DEA_OK) {
-    status = narrow(ctx, &copy, &text);
-  }
-  if (status == DEA_OK) {
-    status = end_lines(ctx, &copy, &text);
-  }
-  if (status == DEA_OK) {
-    status = read(ctx, text, out);
-  }
+  status = status == DEA_OK ? narrow(ctx, &copy, &text) : status;
+  status = status == DEA_OK ? end_lines(ctx, &copy, &text) : status;
+  status = status == DEA_OK ? read(ctx, text, out) : status;
   if (out->fields != NULL) { // slices of it
     out->fields->copy = copy;
     copy = NULL;

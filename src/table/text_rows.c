@@ -422,9 +422,7 @@ dea_status dea_text_rows_read(struct dea_context *ctx, struct dea_slice text,
   rows.marks = rows.row != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.marks) : NULL;
   rows.clocks = rows.marks != NULL ? dea_alloc(ctx, dialect->count, sizeof *rows.clocks) : NULL;
   dea_status status = rows.clocks != NULL ? add_columns(&rows, text, titles, units) : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = read_lines(&rows, text);
-  }
+  status = status == DEA_OK ? read_lines(&rows, text) : status;
   dea_free(ctx, rows.column);
   dea_free(ctx, rows.row);
   dea_free(ctx, rows.marks);

@@ -81,9 +81,7 @@ dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform
     dea_wave_open(p.out, 0, 1 / until_s, 1);
     status = go_to(&p, 0, 0);
   }
-  if (status == DEA_OK) {
-    status = play(&p, waveform, slew_V_per_s, until_s);
-  }
+  status = status == DEA_OK ? play(&p, waveform, slew_V_per_s, until_s) : status;
   if (status != DEA_OK || !p.was_late) {
     dea_waveform_destroy(p.out);
     p.out = NULL;

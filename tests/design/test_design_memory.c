@@ -33,9 +33,7 @@ static dea_status read_example(struct dea_context *ctx)
   struct dea_device *device = NULL;
   dea_status status =
       dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design);
-  if (status == DEA_OK) {
-    status = dea_device_build(ctx, design, &device);
-  }
+  status = status == DEA_OK ? dea_device_build(ctx, design, &device) : status;
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);
   return status;

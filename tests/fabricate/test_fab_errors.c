@@ -31,9 +31,7 @@ static dea_status make_files(struct dea_context *ctx, const struct dea_design *f
   for (size_t i = 0; status == DEA_OK && i < workshop->count; i++) {
     struct dea_text text = {.ctx = ctx};
     status = dea_dxf_write(workshop, i, &text);
-    if (status == DEA_OK) {
-      status = dea_svg_write(workshop, i, &text);
-    }
+    status = status == DEA_OK ? dea_svg_write(workshop, i, &text) : status;
     dea_text_free(&text);
   }
   dea_workshop_destroy(ctx, workshop);
@@ -46,9 +44,7 @@ static dea_status build(struct dea_context *ctx, const char *text, const struct 
   struct dea_design *from = NULL;
   struct dea_device *built = NULL;
   dea_status status = read_and_build(ctx, text, sets, count, &from, &built);
-  if (status == DEA_OK) {
-    status = make_files(ctx, from, built);
-  }
+  status = status == DEA_OK ? make_files(ctx, from, built) : status;
   dea_device_destroy(ctx, built);
   dea_design_destroy(ctx, from);
   return status;

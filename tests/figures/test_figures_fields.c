@@ -333,12 +333,8 @@ static void store_and_read(struct dea_context *failing)
   struct dea_result *result = NULL;
   struct dea_run *run = NULL;
   dea_status status = make_result(failing, &result);
-  if (status == DEA_OK) {
-    status = dea_results_h5_write(failing, result, in_folder("m.h5"));
-  }
-  if (status == DEA_OK) {
-    status = dea_run_read(failing, in_folder("m.h5"), &run);
-  }
+  status = status == DEA_OK ? dea_results_h5_write(failing, result, in_folder("m.h5")) : status;
+  status = status == DEA_OK ? dea_run_read(failing, in_folder("m.h5"), &run) : status;
   failing_check(failing, status);
   dea_run_destroy(failing, run);
   dea_result_destroy(failing, result);

@@ -13,9 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   struct dea_device *device = NULL;
   dea_status status =
       dea_design_read_memory(ctx, "fuzz.yaml", (const char *)data, size, NULL, 0, &design);
-  if (status == DEA_OK) {
-    status = dea_device_build(ctx, design, &device);
-  }
+  status = status == DEA_OK ? dea_device_build(ctx, design, &device) : status;
   fuzz_check_findings(ctx, status);
   dea_device_destroy(ctx, device);
   dea_design_destroy(ctx, design);

@@ -100,9 +100,7 @@ static void expect_fault(const char *entities, const char *layer, size_t line, c
   struct dea_region region = {.ctx = ctx};
   dea_finding_clear(ctx);
   dea_status status = read_dxf_as(ctx, "", entities, &drawing);
-  if (status == DEA_OK) {
-    status = dea_drawing_region(drawing, layer, here, &region);
-  }
+  status = status == DEA_OK ? dea_drawing_region(drawing, layer, here, &region) : status;
   const struct dea_finding *finding = find_error(ctx, message);
   if (status != DEA_E_DESIGN || finding == NULL) {
     fail_msg("%s: '%s' should hold '%s'", dea_status_name(status), dea_context_message(ctx),
@@ -674,9 +672,7 @@ static void expect_svg_fault(const char *text, const char *message)
   struct dea_region region = {.ctx = ctx};
   dea_finding_clear(ctx);
   dea_status status = dea_drawing_read_svg(ctx, "a.svg", text, strlen(text), NULL, &drawing);
-  if (status == DEA_OK) {
-    status = dea_drawing_region(drawing, "a", here, &region);
-  }
+  status = status == DEA_OK ? dea_drawing_region(drawing, "a", here, &region) : status;
   if (status != DEA_E_DESIGN || find_error(ctx, message) == NULL) {
     fail_msg("%s: '%s' should hold '%s'", dea_status_name(status), dea_context_message(ctx),
              message);
@@ -786,9 +782,7 @@ static dea_status read_some(struct dea_context *own)
           LINE(a, 7, 9, 7, -7) "0\nLWPOLYLINE\n8\na\n" AT(5, 9) AT(5, -7) LINE(a, 0, 0, 2, 0)
               LINE(a, 2, 0, 2, 2) LINE(a, 2, 2, 0, 0) CIRCLE(\xe9, 5, 5, 1) "0\nX\n");
   dea_status status = dea_drawing_read_dxf(own, "a.dxf", text, strlen(text), NULL, &drawing);
-  if (status == DEA_OK) {
-    status = dea_drawing_region(drawing, "a", here, &region);
-  }
+  status = status == DEA_OK ? dea_drawing_region(drawing, "a", here, &region) : status;
   dea_region_free(&region);
   dea_drawing_destroy(drawing);
   return status;
@@ -800,9 +794,7 @@ static dea_status read_some_svg(struct dea_context *own)
   struct dea_drawing *drawing;
   struct dea_region region = {.ctx = own};
   dea_status status = dea_drawing_read_svg(own, "a.svg", text, sizeof text - 1, NULL, &drawing);
-  if (status == DEA_OK) {
-    status = dea_drawing_region(drawing, "a", here, &region);
-  }
+  status = status == DEA_OK ? dea_drawing_region(drawing, "a", here, &region) : status;
   dea_region_free(&region);
   dea_drawing_destroy(drawing);
   return status;

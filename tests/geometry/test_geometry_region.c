@@ -300,9 +300,7 @@ static dea_status build_some(struct dea_context *own)
     dea_region_add_grid(&copies, &region, count, step);
     status = dea_region_status(&copies);
   }
-  if (status == DEA_OK) {
-    status = dea_region_arrange(own, &copies);
-  }
+  status = status == DEA_OK ? dea_region_arrange(own, &copies) : status;
   dea_region_free(&region);
   dea_region_free(&copies);
   return status;

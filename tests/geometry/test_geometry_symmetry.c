@@ -194,9 +194,7 @@ static dea_status find_some(struct dea_context *own)
   dea_region_add_circle(&one, 0, 0, 1, false, here);
   dea_region_add_circle(&one, 3, 0, 1, false, here);
   dea_status status = dea_region_status(&one);
-  if (status == DEA_OK) {
-    status = dea_symmetry_find(own, list, labels, 1, 0, &found);
-  }
+  status = status == DEA_OK ? dea_symmetry_find(own, list, labels, 1, 0, &found) : status;
   dea_region_free(&one);
   return status;
 }

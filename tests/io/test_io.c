@@ -463,15 +463,9 @@ static void write_everything(struct dea_context *own)
   struct dea_result *r = NULL;
   d.report.svg = false; // scripts and data, without the process
   dea_status status = dea_result_create(own, &d, NULL, &r);
-  if (status == DEA_OK) {
-    status = fake_add_model(own, r, "lumped", 1.0, true);
-  }
-  if (status == DEA_OK) {
-    status = fake_add_profiles(own, r, "lumped");
-  }
-  if (status == DEA_OK) {
-    status = dea_run_folder_write(own, r, failing_folder, &options);
-  }
+  status = status == DEA_OK ? fake_add_model(own, r, "lumped", 1.0, true) : status;
+  status = status == DEA_OK ? fake_add_profiles(own, r, "lumped") : status;
+  status = status == DEA_OK ? dea_run_folder_write(own, r, failing_folder, &options) : status;
   failing_check(own, status);
   dea_result_destroy(own, r);
 }

@@ -394,16 +394,12 @@ static int run(struct dea_cli *cli, void *user)
     fflush(stdout);
   }
   const char *file = cli_output_name(request->output, request->protocol, "h5", &name);
-  if (status == DEA_OK && file == NULL) {
-    status = DEA_E_MEMORY;
-  }
+  status = status == DEA_OK && file == NULL ? DEA_E_MEMORY : status;
   if (status == DEA_OK && (request->arm || request->simulate)) {
     status = play(cli, request, protocol, file, &report);
     played = dea_path_exists(file) && (status == DEA_OK || report.played_s > 0);
   }
-  if (status == DEA_OK && request->folder != NULL) {
-    status = export(cli, request, protocol);
-  }
+  status = status == DEA_OK && request->folder != NULL ? export(cli, request, protocol) : status;
   if (request->json) {
     json_t *json = whole_json(cli, request, status, protocol, planned ? &plan : NULL);
     if (played) {

@@ -163,9 +163,7 @@ static dea_status write_file(struct dea_cli *cli, const struct request *request,
   DEA_NEED(partial != NULL);
   unlink(partial); // left by a process of the same number that was killed
   dea_status status = dea_recording_write(ctx, recording, partial);
-  if (status == DEA_OK) {
-    status = dea_partial_finish(ctx, partial, file);
-  }
+  status = status == DEA_OK ? dea_partial_finish(ctx, partial, file) : status;
   dea_free(ctx, partial);
   return status;
 }
@@ -250,9 +248,7 @@ static dea_status read_tables(struct dea_cli *cli, const struct request *request
   for (size_t i = 1; i < request->files.count && status == DEA_OK; i++) {
     struct dea_table *other;
     status = dea_table_read(cli->ctx, request->files.at[i], request->format, &other);
-    if (status == DEA_OK) {
-      status = dea_table_join(cli->ctx, *out, other);
-    }
+    status = status == DEA_OK ? dea_table_join(cli->ctx, *out, other) : status;
     dea_table_destroy(cli->ctx, other);
   }
   return status;
@@ -268,9 +264,7 @@ static int run(struct dea_cli *cli, void *user)
   }
   dea_status status =
       request->map != NULL ? dea_mapping_read(cli->ctx, request->map, &mapping) : DEA_OK;
-  if (status == DEA_OK) {
-    status = read_tables(cli, request, &table);
-  }
+  status = status == DEA_OK ? read_tables(cli, request, &table) : status;
   if (status == DEA_OK) {
     status =
         request->list ? list(cli, request, table, mapping) : record(cli, request, table, mapping);

@@ -285,9 +285,7 @@ static int run(struct dea_cli *cli, void *user)
                                : "--after is said of another recording: --with FILE");
   }
   dea_status status = dea_recording_read(cli->ctx, request->file, &recording);
-  if (status == DEA_OK && request->with != NULL) {
-    status = join(cli->ctx, request, recording);
-  }
+  status = status == DEA_OK && request->with != NULL ? join(cli->ctx, request, recording) : status;
   if (status == DEA_OK && request->output != NULL) {
     status = dea_recording_write(cli->ctx, recording, request->output);
   }

@@ -71,12 +71,8 @@ dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_desig
   table->type = dea_model_find("3d");
   table->step_V = (highest_V > 0 ? highest_V : 4e3) / STEPS;
   dea_status status = dea_model_create(ctx, table->type, design, device, &table->model);
-  if (status == DEA_OK) {
-    status = dea_monitor_set_init(ctx, table->type, device, &table->set);
-  }
-  if (status == DEA_OK) {
-    status = find_column(ctx, monitor, table);
-  }
+  status = status == DEA_OK ? dea_monitor_set_init(ctx, table->type, device, &table->set) : status;
+  status = status == DEA_OK ? find_column(ctx, monitor, table) : status;
   if (status != DEA_OK) {
     destroy(ctx, table);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -365,12 +365,8 @@ static dea_status read_tdms(struct dea_context *ctx, const char *file, const uns
 {
   struct dea_tdms tdms = {.ctx = ctx, .file = file};
   dea_status status = read_segments(&tdms, bytes, length, NULL);
-  if (status == DEA_OK) {
-    status = add_columns(&tdms, out);
-  }
-  if (status == DEA_OK) {
-    status = read_segments(&tdms, bytes, length, out);
-  }
+  status = status == DEA_OK ? add_columns(&tdms, out) : status;
+  status = status == DEA_OK ? read_segments(&tdms, bytes, length, out) : status;
   if (status == DEA_OK) {
     relate_times(&tdms, out);
     scale_values(&tdms, out);

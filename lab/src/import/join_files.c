@@ -123,9 +123,7 @@ dea_status dea_table_join(struct dea_context *ctx, struct dea_table *table, stru
 {
   struct table_clock a = {0}, b = {0};
   dea_status status = find_clock(ctx, table, &a);
-  if (status == DEA_OK) {
-    status = find_clock(ctx, other, &b);
-  }
+  status = status == DEA_OK ? find_clock(ctx, other, &b) : status;
   if (status == DEA_OK) {
     bool both = !isnan(a.origin_s) && !isnan(b.origin_s) && table->format == other->format;
     bool same = a.known && b.known

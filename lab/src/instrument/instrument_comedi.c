@@ -335,12 +335,8 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   c->wiring = (unsigned)raw->wiring.value;
   snprintf(c->name, sizeof c->name, "%s", raw->device.text);
   dea_status status = dea_daq_begin(ctx, protocol, raw->queue_s.si, &c->daq);
-  if (status == DEA_OK) {
-    status = dea_comedi_open(ctx, raw->library.text, &c->library);
-  }
-  if (status == DEA_OK) {
-    status = set_up(ctx, c);
-  }
+  status = status == DEA_OK ? dea_comedi_open(ctx, raw->library.text, &c->library) : status;
+  status = status == DEA_OK ? set_up(ctx, c) : status;
   if (status != DEA_OK) {
     status = dea_instrument_give_up(ctx, &c->base, status);
     close_it(ctx, &c->base);

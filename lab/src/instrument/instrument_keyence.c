@@ -214,9 +214,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
                                   .timeout_s = k->raw.timeout_s.si};
   dea_status status = dea_serial_open(ctx, "the Keyence LK", k->raw.device.text,
                                       (int)k->raw.baud.si, k->raw.parity.value, &k->link.socket);
-  if (status == DEA_OK) {
-    status = find_out(ctx, k);
-  }
+  status = status == DEA_OK ? find_out(ctx, k) : status;
   if (status != DEA_OK) {
     close_it(ctx, &k->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

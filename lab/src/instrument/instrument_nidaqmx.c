@@ -246,12 +246,8 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   n->protocol = protocol;
   dea_status status = dea_daq_begin(ctx, protocol, raw->queue_s.si, &n->daq);
-  if (status == DEA_OK) {
-    status = load(ctx, raw, n);
-  }
-  if (status == DEA_OK) {
-    status = set_up(ctx, n, wiring_values[raw->wiring.value]);
-  }
+  status = status == DEA_OK ? load(ctx, raw, n) : status;
+  status = status == DEA_OK ? set_up(ctx, n, wiring_values[raw->wiring.value]) : status;
   if (status != DEA_OK) {
     status = n->found ? dea_instrument_give_up(ctx, &n->base, status) : status;
     close_it(ctx, &n->base);

@@ -198,9 +198,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
   dea_instrument_add_displacement(&o->base, &o->raw.name);
   dea_status status =
       dea_serial_open(ctx, "the optoNCDT", o->raw.device.text, (int)o->raw.baud.si, 0, &o->line);
-  if (status == DEA_OK) {
-    status = find_out(ctx, o);
-  }
+  status = status == DEA_OK ? find_out(ctx, o) : status;
   if (status != DEA_OK) {
     close_it(ctx, &o->base);
     return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -316,9 +316,7 @@ static dea_status get(struct dea_context *ctx, struct dea_instrument *instrument
     while (status == DEA_OK && count < BLOCK_SAMPLES && taken < left) {
       status = sample(s, s->queue[taken++], s->volts + count++ * inputs, sink);
     }
-    if (status == DEA_OK) {
-      status = sink->samples(sink->user, s->volts, count);
-    }
+    status = status == DEA_OK ? sink->samples(sink->user, s->volts, count) : status;
   }
   s->done += taken;
   s->queued -= taken;

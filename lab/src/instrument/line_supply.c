@@ -200,9 +200,7 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
     status = dea_serial_open(ctx, language->what, s->raw.device.text, (int)s->raw.baud.si, 0,
                              &s->link.socket);
   }
-  if (status == DEA_OK) {
-    status = set_up(ctx, s);
-  }
+  status = status == DEA_OK ? set_up(ctx, s) : status;
   if (status != DEA_OK) {
     status =
         s->link.socket.descriptor >= 0 ? dea_instrument_give_up(ctx, &s->base, status) : status;

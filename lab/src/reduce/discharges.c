@@ -378,9 +378,7 @@ dea_status dea_discharges_find(struct dea_context *ctx, const struct dea_channel
     find_residual(&s);
     status = find_spikes(&s);
   }
-  if (status == DEA_OK && measured != NULL) {
-    status = find_breakdowns(&s);
-  }
+  status = status == DEA_OK && measured != NULL ? find_breakdowns(&s) : status;
   dea_free(ctx, s.work);
   dea_free(ctx, s.residual);
   dea_free(ctx, s.plateaus);
