@@ -90,6 +90,12 @@ TEST(test_in_time)
   assert_int_equal(command_run("plot in-time --figure history --format svg -o in-time-figures"), 0);
   command_read("in-time-figures/history.svg", command_out);
   assert_contains(command_out, "</svg>");
+  double highest_kV = 0;
+  command_read("in-time-figures/history.gp", command_out);
+  const char *range = strstr(command_out, "set yrange [*:");
+  assert_non_null(range); // the voltage that is held does not lie on the border
+  assert_int_equal(sscanf(range, "set yrange [*:%lf]", &highest_kV), 1);
+  assert_true(highest_kV > 8.1);
   command_read("in-time/lumped_transient.csv", command_out);
   assert_contains(command_out, "time (s),source V (kV)");
 }
