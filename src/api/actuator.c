@@ -82,7 +82,7 @@ dea_status dea_actuator_open(dea_context *ctx, const dea_design *design, const c
   const struct dea_model_type *type;
   DEA_TRY(inner, api_model_find(ctx, model, &type));
   dea_actuator *actuator = dea_alloc(inner, 1, sizeof *actuator);
-  DEA_NEED(actuator != NULL);
+  DEA_TRY_MEMORY(actuator != NULL);
   actuator->ctx = ctx;
   actuator->point = dea_load_point_empty();
   dea_status status = api_design_build(inner, design, &actuator->design, &actuator->device);
@@ -157,7 +157,7 @@ dea_status dea_actuator_get(dea_context *ctx, const dea_actuator *actuator, cons
     *out = state->get(&actuator->point);
   } else if (column < 0) {
     const char **known = dea_column_keys(ctx->inner);
-    DEA_NEED(known != NULL);
+    DEA_TRY_MEMORY(known != NULL);
     dea_status status =
         api_unknown(ctx, "quantity", key, known, (size_t)dea_column_count(ctx->inner));
     dea_free(ctx->inner, known);

@@ -70,7 +70,7 @@ dea_status dea_context_new(const dea_context_options *options, dea_context **out
     return DEA_E_ARGUMENT;
   }
   dea_context *ctx = resize_memory(&all, NULL, sizeof *ctx);
-  DEA_NEED(ctx != NULL);
+  DEA_TRY_MEMORY(ctx != NULL);
   *ctx = (dea_context){.options = all};
   const struct dea_allocator allocator = {resize_memory, release_memory, &ctx->options};
   dea_status status = dea_context_create(&allocator, &ctx->inner);

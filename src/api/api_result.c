@@ -352,7 +352,7 @@ dea_status dea_result_array(dea_context *ctx, const dea_result *result, const ch
     }
   }
   const char **known = dea_alloc(ctx->inner, result->array_count, sizeof *known);
-  DEA_NEED(known != NULL);
+  DEA_TRY_MEMORY(known != NULL);
   for (size_t i = 0; i < result->array_count; i++) {
     known[i] = result->arrays[i]->name;
   }
@@ -445,12 +445,12 @@ dea_status dea_result_write(dea_context *ctx, const dea_result *result, const ch
   const struct dea_run_folder_options inner = {.force = all.replace != 0,
                                                .no_figures = all.no_figures != 0};
   DEA_TRY(ctx->inner, dea_run_folder_prepare(ctx->inner, folder, inner.force));
-  return DEA_PASS(ctx->inner, dea_run_folder_write(ctx->inner, result->inner, folder, &inner));
+  return DEA_CHAIN(ctx->inner, dea_run_folder_write(ctx->inner, result->inner, folder, &inner));
 }
 
 dea_status dea_result_save(dea_context *ctx, const dea_result *result, const char *path)
 {
-  return DEA_PASS(ctx->inner, dea_results_h5_write(ctx->inner, result->inner, path));
+  return DEA_CHAIN(ctx->inner, dea_results_h5_write(ctx->inner, result->inner, path));
 }
 
 /* The design that was computed, read again; one that this version does not understand is left out,
@@ -488,7 +488,7 @@ dea_status dea_result_open(dea_context *ctx, const char *path, dea_result **out)
     dea_run_destroy(inner, contents.run);
     return dea_fail_chain(inner, status, __func__, __FILE__, __LINE__);
   }
-  return DEA_PASS(inner, api_result_make(ctx, contents, out));
+  return DEA_CHAIN(inner, api_result_make(ctx, contents, out));
 }
 
 dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_design **out)
@@ -499,7 +499,7 @@ dea_status dea_result_design(dea_context *ctx, const dea_result *result, dea_des
   if (p->input == NULL) {
     return dea_fail(ctx->inner, DEA_E_UNSUPPORTED, "the result does not have its design");
   }
-  return DEA_PASS(
+  return DEA_CHAIN(
       ctx->inner,
       api_design_make(ctx, result->run != NULL ? result->run->design_file : result->design->file,
                       p->input, p->overrides, out));

@@ -30,7 +30,7 @@ static dea_status read_with(struct dea_context *ctx, const dea_design *design,
 {
   *out = NULL;
   struct dea_override *overrides = api_overrides(ctx, settings, count);
-  DEA_NEED(overrides != NULL);
+  DEA_TRY_MEMORY(overrides != NULL);
   dea_status status = dea_design_read_memory(ctx, design->name, design->bytes, design->length,
                                              overrides, count, out);
   dea_free(ctx, overrides);
@@ -42,7 +42,7 @@ dea_status api_design_build(struct dea_context *ctx, const dea_design *design,
 {
   *device = NULL;
   DEA_TRY(ctx, read_with(ctx, design, design->settings, design->setting_count, inner));
-  return DEA_PASS(ctx, dea_device_build(ctx, *inner, device));
+  return DEA_CHAIN(ctx, dea_device_build(ctx, *inner, device));
 }
 
 /* Puts a newly read form into the place of the one that is there. Takes inner. */
@@ -146,8 +146,8 @@ dea_status dea_design_parse(dea_context *ctx, const char *text, const char *name
 {
   *out = NULL;
   api_begin(ctx);
-  return DEA_PASS(ctx->inner,
-                  make(ctx, name != NULL ? name : "design", text, strlen(text), NULL, 0, out));
+  return DEA_CHAIN(ctx->inner,
+                   make(ctx, name != NULL ? name : "design", text, strlen(text), NULL, 0, out));
 }
 
 /* Number of lines of the form "key=value" in a text; their places into settings, if not NULL:
@@ -184,7 +184,7 @@ dea_status api_design_make(dea_context *ctx, const char *name, const char *text,
     free_settings(ctx->inner, settings, count);
     return DEA_E_MEMORY;
   }
-  return DEA_PASS(ctx->inner, make(ctx, name, text, strlen(text), settings, count, out));
+  return DEA_CHAIN(ctx->inner, make(ctx, name, text, strlen(text), settings, count, out));
 }
 
 /* Where a key is among settings; count when it is not there. */
@@ -238,8 +238,8 @@ dea_status dea_design_copy(dea_context *ctx, const dea_design *design, dea_desig
   *out = NULL;
   api_begin(ctx);
   DEA_TRY(ctx->inner, join_settings(ctx->inner, design, NULL, NULL, 0, &settings, &count));
-  return DEA_PASS(ctx->inner,
-                  make(ctx, design->name, design->bytes, design->length, settings, count, out));
+  return DEA_CHAIN(ctx->inner,
+                   make(ctx, design->name, design->bytes, design->length, settings, count, out));
 }
 
 dea_status dea_design_set_all(dea_context *ctx, dea_design *design, const char *const *keys,
@@ -286,7 +286,7 @@ dea_status dea_design_get(dea_context *ctx, const dea_design *design, const char
     }
   }
   const char **known = dea_alloc(ctx->inner, count, sizeof *known);
-  DEA_NEED(known != NULL);
+  DEA_TRY_MEMORY(known != NULL);
   for (size_t i = 0; i < count; i++) {
     known[i] = design->values[i].key;
   }
@@ -319,7 +319,7 @@ dea_status dea_design_write(dea_context *ctx, dea_design *design, const char *pa
   const char *text;
   DEA_TRY(ctx->inner, dea_design_text(ctx, design, &text));
   // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): dea_design_text sets it or fails
-  return DEA_PASS(ctx->inner, dea_file_write(ctx->inner, path, text, strlen(text)));
+  return DEA_CHAIN(ctx->inner, dea_file_write(ctx->inner, path, text, strlen(text)));
 }
 
 dea_status dea_design_check(dea_context *ctx, const dea_design *design)

@@ -53,7 +53,7 @@ static dea_status prepare(dea_context *ctx, const dea_design *design,
   DEA_TRY(inner, api_design_build(inner, design, &contents->design, &contents->device));
   DEA_TRY(inner, dea_result_create(inner, contents->design, contents->device, &contents->inner));
   struct dea_override *overrides = api_overrides(inner, design->settings, design->setting_count);
-  DEA_NEED(overrides != NULL);
+  DEA_TRY_MEMORY(overrides != NULL);
   dea_status status =
       dea_provenance_fill(inner, design->bytes, design->length, overrides, design->setting_count,
                           NULL, &contents->inner->provenance);

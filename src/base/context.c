@@ -60,7 +60,7 @@ dea_status dea_context_create(const struct dea_allocator *allocator, struct dea_
   static const struct dea_allocator standard = {default_resize, default_release, NULL};
   const struct dea_allocator *a = allocator != NULL ? allocator : &standard;
   *out = a->resize(a->user, NULL, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   memset(*out, 0, sizeof **out);
   (*out)->allocator = *a;
   return DEA_OK;
@@ -239,10 +239,10 @@ dea_status dea_finding_add(struct dea_context *ctx, enum dea_severity severity,
   }
   void *items =
       grow(ctx, ctx->findings, ctx->finding_count, &ctx->finding_room, sizeof *ctx->findings);
-  DEA_NEED(items != NULL);
+  DEA_TRY_MEMORY(items != NULL);
   ctx->findings = items;
   char *copy = dea_copy_text(ctx, text, sizeof text);
-  DEA_NEED(copy != NULL);
+  DEA_TRY_MEMORY(copy != NULL);
   ctx->findings[ctx->finding_count++] = (struct dea_finding){severity, location, copy};
   if (ctx->finding_fn != NULL) {
     ctx->finding_fn(ctx->finding_user, &ctx->findings[ctx->finding_count - 1]);

@@ -112,9 +112,9 @@ void dea_context_clear(struct dea_context *ctx);
   } while (0)
 
 /* What the last call of a function gives, passed on the same way. */
-#define DEA_PASS(ctx, call) dea_fail_chain((ctx), (call), __func__, __FILE__, __LINE__)
+#define DEA_CHAIN(ctx, call) dea_fail_chain((ctx), (call), __func__, __FILE__, __LINE__)
 /* Returns DEA_E_MEMORY, which the context knows of, where there is not what was asked for. */
-#define DEA_NEED(there)                                                                            \
+#define DEA_TRY_MEMORY(there)                                                                      \
   do {                                                                                             \
     if (!(there)) {                                                                                \
       return DEA_E_MEMORY;                                                                         \

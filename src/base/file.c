@@ -27,7 +27,7 @@ static const char *kind_name(mode_t mode)
 static dea_status too_large(struct dea_context *ctx, const char *file, size_t max)
 {
   struct dea_location location = {.file = dea_intern(ctx, file)};
-  DEA_NEED(location.file != NULL);
+  DEA_TRY_MEMORY(location.file != NULL);
   DEA_TRY(ctx, dea_finding_add(ctx, DEA_ERROR, location,
                                "the file is larger than %zu MB, which is too much", max / 1000000));
   return dea_fail(ctx, DEA_E_DESIGN, "'%s' is larger than %zu MB", file, max / 1000000);
@@ -42,7 +42,7 @@ static dea_status read_all(struct dea_context *ctx, int fd, const char *file, si
     if (used + 1 >= capacity) {
       capacity = 2 * capacity + 16384;
       char *moved = dea_resize(ctx, *bytes, capacity, 1);
-      DEA_NEED(moved != NULL);
+      DEA_TRY_MEMORY(moved != NULL);
       *bytes = moved;
     }
     ssize_t got = read(fd, *bytes + used, capacity - used - 1);

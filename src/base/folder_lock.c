@@ -86,7 +86,7 @@ dea_status dea_folder_lock(struct dea_context *ctx, const char *directory,
 {
   *out = NULL;
   struct dea_folder_lock *lock = dea_alloc(ctx, 1, sizeof *lock);
-  DEA_NEED(lock != NULL);
+  DEA_TRY_MEMORY(lock != NULL);
   lock->file = -1;
   lock->path = dea_path_join(ctx, directory, DEA_FOLDER_LOCK_FILE);
   dea_status status = lock->path != NULL ? take(ctx, directory, lock) : DEA_E_MEMORY;

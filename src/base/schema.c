@@ -126,7 +126,7 @@ static dea_status read_settings(const struct dea_reader *reader, const struct de
                                 struct dea_location location, char *target)
 {
   void *values = dea_alloc(reader->ctx, 1, field->element_size);
-  DEA_NEED(values != NULL);
+  DEA_TRY_MEMORY(values != NULL);
   memcpy(target, &values, sizeof values);
   const struct section inner = {field->record, node, path, values, location};
   return read_section(reader, &inner);

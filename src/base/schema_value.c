@@ -31,12 +31,12 @@ dea_status dea_schema_list(const struct dea_reader *reader, const char *path, co
   if (listing->count == listing->capacity) {
     size_t capacity = 2 * listing->capacity + 32;
     void *moved = dea_resize(reader->ctx, listing->items, capacity, sizeof *listing->items);
-    DEA_NEED(moved != NULL);
+    DEA_TRY_MEMORY(moved != NULL);
     listing->items = moved;
     listing->capacity = capacity;
   }
   char *copy = dea_copy_text(reader->ctx, path, DEA_PATH_SIZE);
-  DEA_NEED(copy != NULL);
+  DEA_TRY_MEMORY(copy != NULL);
   listing->items[listing->count++] =
       (struct dea_listed){copy, text, unit, unit != NULL ? si : NAN, origin, location};
   return DEA_OK;

@@ -217,7 +217,7 @@ static dea_status take_findings(struct dea_context *ctx, const char *from, size_
     char *file = dea_copy_text(ctx, from, finding.file);
     const char *name = file != NULL ? dea_intern(ctx, file) : NULL;
     dea_free(ctx, file);
-    DEA_NEED(name != NULL);
+    DEA_TRY_MEMORY(name != NULL);
     DEA_TRY(ctx, dea_finding_add(ctx, finding.severity,
                                  (struct dea_location){name, finding.line, finding.column}, "%.*s",
                                  (int)finding.text, text));

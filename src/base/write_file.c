@@ -44,7 +44,7 @@ bool dea_path_is_folder(const char *path)
 dea_status dea_path_refuse(struct dea_context *ctx, const char *directory, const char *name)
 {
   char *path = dea_path_join(ctx, directory, name);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   bool there = dea_path_exists(path);
   dea_free(ctx, path);
   return !there ? DEA_OK
@@ -58,7 +58,7 @@ dea_status dea_path_make_way(struct dea_context *ctx, const char *directory, con
                              bool force)
 {
   char *path = dea_path_join(ctx, directory, name);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   bool there = dea_path_exists(path) && !dea_path_is_folder(path);
   dea_status status = there && force ? dea_path_check_target(ctx, path) : DEA_OK;
   if (there && force && status == DEA_OK) {
@@ -93,7 +93,7 @@ dea_status dea_folder_make(struct dea_context *ctx, const char *directory)
     return dea_fail(ctx, DEA_E_ARGUMENT, "the name of the folder is empty");
   }
   char *path = dea_copy_text(ctx, directory, SIZE_MAX);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = DEA_OK;
   for (char *c = path + 1; *c != '\0' && status == DEA_OK; c++) {
     if (*c == '/' && c[-1] != '/') {
@@ -181,7 +181,7 @@ dea_status dea_file_write(struct dea_context *ctx, const char *path, const char 
                           size_t length)
 {
   char *partial = dea_partial_name(ctx, path);
-  DEA_NEED(partial != NULL);
+  DEA_TRY_MEMORY(partial != NULL);
   dea_status status;
   if (write_new(partial, bytes, length)) {
     status = dea_partial_finish(ctx, partial, path);
@@ -197,7 +197,7 @@ dea_status dea_file_write_into(struct dea_context *ctx, const char *directory, c
                                const char *bytes, size_t length)
 {
   char *path = dea_path_join(ctx, directory, name);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = dea_file_write(ctx, path, bytes, length);
   dea_free(ctx, path);
   return status;

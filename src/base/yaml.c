@@ -109,7 +109,7 @@ static int compare_keys(const void *a, const void *b)
 static dea_status check_keys(struct reading *r, const struct dea_node *section)
 {
   struct dea_node **sorted = dea_alloc(r->ctx, section->child_count, sizeof *sorted);
-  DEA_NEED(sorted != NULL);
+  DEA_TRY_MEMORY(sorted != NULL);
   size_t count = 0;
   for (struct dea_node *child = section->child; child != NULL; child = child->next) {
     sorted[count++] = child;
@@ -173,7 +173,7 @@ static dea_status take_node(struct reading *r, struct dea_node **out)
     return refuse(r, "sections and lists are nested too deeply");
   }
   struct dea_node *node = dea_arena_alloc(&r->yaml->memory, 1, sizeof *node);
-  DEA_NEED(node != NULL);
+  DEA_TRY_MEMORY(node != NULL);
   *node = (struct dea_node){.kind = value  ? DEA_NODE_VALUE
                                     : list ? DEA_NODE_LIST
                                            : DEA_NODE_SECTION,
@@ -228,7 +228,7 @@ dea_status dea_yaml_parse(struct dea_context *ctx, const char *name, const char 
 {
   *out = NULL;
   struct dea_yaml *yaml = dea_alloc(ctx, 1, sizeof *yaml);
-  DEA_NEED(yaml != NULL);
+  DEA_TRY_MEMORY(yaml != NULL);
   yaml->memory.ctx = ctx;
   yaml->name = dea_intern(ctx, name);
   dea_status status = DEA_E_MEMORY;
@@ -337,7 +337,7 @@ static dea_status walk(struct dea_context *ctx, struct dea_yaml *yaml, struct de
     if (*link == NULL) {
       struct dea_node *made = dea_arena_alloc(&yaml->memory, 1, sizeof *made);
       char *key = keep_text(yaml, *path, length);
-      DEA_NEED(made != NULL && key != NULL);
+      DEA_TRY_MEMORY(made != NULL && key != NULL);
       *made = (struct dea_node){DEA_NODE_SECTION, "",       false, true, key,
                                 location,         location, NULL,  NULL, 0};
       *link = made;
@@ -385,7 +385,7 @@ static dea_status put(struct dea_yaml *yaml, struct dea_node *section, const cha
     return DEA_OK;
   }
   node->key = keep_text(yaml, key, strlen(key));
-  DEA_NEED(node->key != NULL);
+  DEA_TRY_MEMORY(node->key != NULL);
   node->key_place = location;
   node->next = old != NULL ? old->next : NULL;
   section->child_count += old == NULL; // NOLINT(clang-analyzer-core.NullDereference): walk sets it
@@ -401,14 +401,14 @@ dea_status dea_yaml_override(struct dea_context *ctx, struct dea_yaml *yaml, con
   struct dea_location location = {.file =
                                       name.failed ? NULL : dea_intern(ctx, dea_text_get(&name))};
   dea_text_free(&name);
-  DEA_NEED(location.file != NULL);
+  DEA_TRY_MEMORY(location.file != NULL);
   if (yaml->root->kind != DEA_NODE_SECTION) {
     return DEA_OK; // the reader of the schema says so
   }
   struct dea_node *section = NULL, *node = NULL;
   DEA_TRY(ctx, walk(ctx, yaml, location, &path, &section));
   DEA_TRY(ctx, parse_into(ctx, yaml, value, strlen(value), &location, &node));
-  return DEA_PASS(ctx, put(yaml, section, path, location, node));
+  return DEA_CHAIN(ctx, put(yaml, section, path, location, node));
 }
 
 enum { PATH_SIZE = 256 };
@@ -431,7 +431,7 @@ static dea_status merge_below(struct dea_context *ctx, struct dea_yaml *yaml, co
     }
     const char *path = whole;
     struct dea_node *section = NULL, *copy = dea_arena_alloc(&yaml->memory, 1, sizeof *copy);
-    DEA_NEED(copy != NULL);
+    DEA_TRY_MEMORY(copy != NULL);
     *copy = *child;
     copy->overridden = true;
     DEA_TRY(ctx, walk(ctx, yaml, child->key_place, &path, &section));
@@ -446,7 +446,7 @@ dea_status dea_yaml_merge(struct dea_context *ctx, struct dea_yaml *yaml,
   if (yaml->root->kind != DEA_NODE_SECTION) {
     return DEA_OK; // the reader of the schema says so
   }
-  return DEA_PASS(ctx, merge_below(ctx, yaml, "", changes));
+  return DEA_CHAIN(ctx, merge_below(ctx, yaml, "", changes));
 }
 
 /* Puts the next of the values in the place of each "$". */
@@ -480,7 +480,7 @@ dea_status dea_yaml_define(struct dea_context *ctx, struct dea_yaml *yaml,
   if (item != NULL && *link == NULL) {
     struct dea_node *made = dea_arena_alloc(&yaml->memory, 1, sizeof *made);
     char *key = keep_text(yaml, list, strlen(list));
-    DEA_NEED(made != NULL && key != NULL);
+    DEA_TRY_MEMORY(made != NULL && key != NULL);
     *made = (struct dea_node){.kind = DEA_NODE_LIST, .text = "", .key = key};
     made->location = made->key_place = place;
     *link = made;

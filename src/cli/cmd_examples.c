@@ -81,7 +81,7 @@ static dea_status unknown_example(struct dea_context *ctx, const struct cli_data
                                   const char *name)
 {
   const char **names = dea_alloc(ctx, list->count, sizeof *names);
-  DEA_NEED(names != NULL);
+  DEA_TRY_MEMORY(names != NULL);
   const char *nearest = NULL;
   for (size_t i = 0; i < list->count; i++) {
     list->files[i].name[cli_data_stem(list->files[i].name)] = '\0';

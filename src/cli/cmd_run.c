@@ -90,7 +90,7 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
     run->others.ctx = ctx;
     cli_designs_text(request->designs.at + 1, request->designs.count - 1, &run->others);
     overrides[count++] = (struct dea_override){"compute.compare", dea_text_get(&run->others)};
-    DEA_NEED(!run->others.failed);
+    DEA_TRY_MEMORY(!run->others.failed);
   }
   DEA_TRY(ctx, dea_design_read_memory(ctx, request->designs.at[0], bytes, length, overrides, count,
                                       &run->design));
@@ -104,8 +104,8 @@ static dea_status build(struct dea_cli *cli, const struct request *request, cons
   }
   DEA_TRY(ctx, dea_device_build(ctx, run->design, &run->device));
   DEA_TRY(ctx, dea_result_create(ctx, run->design, run->device, &run->result));
-  return DEA_PASS(ctx, dea_provenance_fill(ctx, bytes, length, overrides, count, cli->command_line,
-                                           &run->result->provenance));
+  return DEA_CHAIN(ctx, dea_provenance_fill(ctx, bytes, length, overrides, count, cli->command_line,
+                                            &run->result->provenance));
 }
 
 static dea_status prepare(struct dea_cli *cli, const struct request *request, struct run *run)
@@ -116,7 +116,7 @@ static dea_status prepare(struct dea_cli *cli, const struct request *request, st
   DEA_TRY(ctx, dea_file_read(ctx, request->designs.at[0], DEA_YAML_SIZE_MAX, &bytes, &length));
   dea_status status = build(cli, request, bytes, length, run); // the very bytes that are kept
   dea_free(ctx, bytes);
-  return DEA_PASS(ctx, status);
+  return DEA_CHAIN(ctx, status);
 }
 
 static void release(struct dea_cli *cli, struct run *run)

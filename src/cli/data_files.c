@@ -38,7 +38,7 @@ static dea_status take_files(struct dea_context *ctx, const char *folder, const 
 {
   list->folder = dea_copy_text(ctx, folder, strlen(folder));
   list->files = dea_alloc(ctx, found->gl_pathc, sizeof *list->files);
-  DEA_NEED(list->folder != NULL && list->files != NULL);
+  DEA_TRY_MEMORY(list->folder != NULL && list->files != NULL);
   for (size_t i = 0; i < found->gl_pathc; i++) {
     const char *path = found->gl_pathv[i];
     if (!ends_in(path, outcome) || !is_regular(path)) {
@@ -49,7 +49,7 @@ static dea_status take_files(struct dea_context *ctx, const char *folder, const 
     file->path = dea_copy_text(ctx, path, strlen(path));
     file->name = dea_copy_text(ctx, name, strlen(name));
     list->count++;
-    DEA_NEED(file->path != NULL && file->name != NULL);
+    DEA_TRY_MEMORY(file->path != NULL && file->name != NULL);
   }
   return DEA_OK;
 }

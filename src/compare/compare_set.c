@@ -19,7 +19,7 @@ dea_status dea_compare_set_create(struct dea_context *ctx, const char *reference
                                   struct dea_compare_set **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   snprintf((*out)->reference, sizeof(*out)->reference, "%s", reference);
   (*out)->measured = measured;
   (*out)->reference_result = reference_result;

@@ -77,7 +77,7 @@ static dea_status part_profiles(struct dea_context *ctx, struct dea_measured *m)
   size_t count, start = 0;
   DEA_TRY(ctx, count_profiles(ctx, rows, &count));
   m->profiles = dea_alloc(ctx, count, sizeof *m->profiles);
-  DEA_NEED(m->profiles != NULL);
+  DEA_TRY_MEMORY(m->profiles != NULL);
   for (size_t i = 0; i < rows->rows; i++) {
     if (begins(rows, start, i)) {
       double *std = rows->std[PROFILE_Z];
@@ -161,7 +161,7 @@ dea_status dea_measured_read(struct dea_context *ctx, const char *path, struct d
 {
   struct dea_measured *m = dea_alloc(ctx, 1, sizeof *m);
   *out = NULL;
-  DEA_NEED(m != NULL);
+  DEA_TRY_MEMORY(m != NULL);
   m->path = dea_intern(ctx, path);
   dea_status status = m->path == NULL            ? DEA_E_MEMORY
                       : dea_path_is_folder(path) ? read_folder(ctx, path, m)

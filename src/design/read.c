@@ -36,7 +36,7 @@ static dea_status make_sweep(struct dea_context *ctx, struct dea_design_raw *raw
   }
   double end = reaches ? to : from + copysign(span, to - from);
   design->compute.voltages_V = dea_alloc(ctx, count, sizeof *design->compute.voltages_V);
-  DEA_NEED(design->compute.voltages_V != NULL);
+  DEA_TRY_MEMORY(design->compute.voltages_V != NULL);
   design->compute.voltage_count = count;
   for (size_t i = 0; i < count; i++) {
     design->compute.voltages_V[i] =
@@ -53,7 +53,7 @@ static dea_status add_way_back(struct dea_context *ctx, struct dea_design *desig
     return DEA_OK;
   }
   double *both = dea_resize(ctx, design->compute.voltages_V, 2 * count - 1, sizeof *both);
-  DEA_NEED(both != NULL);
+  DEA_TRY_MEMORY(both != NULL);
   for (size_t i = 0; i + 1 < count; i++) {
     both[count + i] = both[count - 2 - i];
   }
@@ -72,7 +72,7 @@ static dea_status read_voltages(struct dea_context *ctx, struct dea_design_raw *
   design->compute.voltages_place = raw->voltages_V[0].location;
   design->compute.voltages_V =
       dea_alloc(ctx, raw->voltage_count, sizeof *design->compute.voltages_V);
-  DEA_NEED(design->compute.voltages_V != NULL);
+  DEA_TRY_MEMORY(design->compute.voltages_V != NULL);
   design->compute.voltage_count = raw->voltage_count;
   for (size_t i = 0; i < raw->voltage_count; i++) {
     design->compute.voltages_V[i] = raw->voltages_V[i].si;
@@ -218,7 +218,7 @@ static dea_status take_materials(const struct dea_reader *reader, struct dea_des
     }
   }
   design->materials = dea_alloc(ctx, design->material_count, sizeof *design->materials);
-  DEA_NEED(design->materials != NULL);
+  DEA_TRY_MEMORY(design->materials != NULL);
   memcpy(design->materials, raw->materials, design->material_count * sizeof *design->materials);
   return DEA_OK;
 }
@@ -242,7 +242,7 @@ static dea_status parse(struct dea_context *ctx, const struct dea_design_source 
   if (status == DEA_E_DESIGN) { // a finding that is counted with the others
     status = DEA_OK;
   }
-  return DEA_PASS(ctx, status);
+  return DEA_CHAIN(ctx, status);
 }
 
 /* Fills *raw from text; all of its owned members are in raw->design, also after a failure. */
@@ -252,7 +252,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_design_sour
   struct dea_design *design = &raw->design;
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   design->file = dea_intern(ctx, source->name);
-  DEA_NEED(design->file != NULL);
+  DEA_TRY_MEMORY(design->file != NULL);
   DEA_TRY(ctx, parse(ctx, source, changes, &design->document));
   struct dea_reader reader = {ctx, design->document, &design->values};
   DEA_TRY(ctx, dea_file_kind_check(ctx, design->document, "dea"));
@@ -310,7 +310,7 @@ dea_status dea_design_read_source(struct dea_context *ctx, const struct dea_desi
 {
   *out = NULL;
   struct dea_design_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
-  DEA_NEED(raw != NULL);
+  DEA_TRY_MEMORY(raw != NULL);
   dea_status status = read_raw(ctx, source, changes, raw);
   if (status == DEA_OK) {
     *out = dea_alloc(ctx, 1, sizeof **out);

@@ -208,7 +208,7 @@ dea_status dea_parts_read(const struct dea_reader *reader, const struct dea_shap
   struct dea_context *ctx = reader->ctx;
   struct dea_parts *parts = dea_alloc(ctx, 1, sizeof *parts);
   *out = parts;
-  DEA_NEED(parts != NULL);
+  DEA_TRY_MEMORY(parts != NULL);
   *parts = (struct dea_parts){.ctx = ctx, .memory = {.ctx = ctx}};
   DEA_TRY(ctx, take_lists(raw, parts));
   for (size_t i = 0; i < parts->shape_count; i++) {

@@ -30,7 +30,7 @@ static dea_status read_other_file(struct dea_context *ctx, const struct dea_desi
 {
   char *bytes = NULL, *path = dea_path_beside(ctx, source->name, variant->file.text);
   struct dea_design_source other = *source;
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &bytes, &other.length);
   if (status == DEA_E_IO) {
     const bool in_file = variant->file.location.line > 0; // else said as of a first file

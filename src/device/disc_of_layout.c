@@ -78,7 +78,7 @@ static dea_status find_electrodes(struct dea_context *ctx, const struct dea_layo
   *out = circle_of(l, e[0].region);
   DEA_TRY(ctx, ask(ctx, out->radius_m > 0, "electrode", e[0].name, "is not round"));
   const struct circle other = circle_of(l, e[1].region);
-  return DEA_PASS(
+  return DEA_CHAIN(
       ctx, ask(ctx, is_same(out, &other), "electrode", e[1].name, "is not as the other one"));
 }
 
@@ -401,7 +401,7 @@ dea_status dea_device_find_disc(struct dea_context *ctx, struct dea_device *devi
 dea_status dea_device_require_disc(struct dea_context *ctx, const struct dea_device *device)
 {
   struct dea_device disc = {.gravity = device->gravity};
-  return DEA_PASS(ctx, device->disc ? DEA_OK : find(ctx, device->layout, &disc));
+  return DEA_CHAIN(ctx, device->disc ? DEA_OK : find(ctx, device->layout, &disc));
 }
 
 double dea_device_pre_stretch(const struct dea_device *device)

@@ -7,7 +7,7 @@ dea_status dea_layout_create(struct dea_context *ctx, struct dea_layout **out)
 {
   struct dea_layout *layout = dea_alloc(ctx, 1, sizeof *layout);
   *out = NULL;
-  DEA_NEED(layout != NULL);
+  DEA_TRY_MEMORY(layout != NULL);
   *layout = (struct dea_layout){.ctx = ctx, .memory = {.ctx = ctx}};
   layout->channels = dea_arena_alloc(&layout->memory, 1, sizeof *layout->channels);
   if (layout->memory.failed) {

@@ -15,7 +15,7 @@ static dea_status not_there(struct dea_context *ctx, const struct dea_part_names
 {
   struct dea_text list = {.ctx = ctx};
   const char **all = dea_alloc(ctx, names->count, sizeof *all);
-  DEA_NEED(all != NULL);
+  DEA_TRY_MEMORY(all != NULL);
   for (size_t i = 0; i < names->count; i++) {
     all[i] = name_of(names, i);
     if (list.length < 300) {

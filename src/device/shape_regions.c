@@ -197,7 +197,7 @@ static dea_status read_drawing(struct maker *m, const struct dea_parts_shape *sh
   const char *file = path != NULL ? dea_intern(ctx, path) : NULL;
   dea_free(ctx, path);
   *out = NULL;
-  DEA_NEED(file != NULL);
+  DEA_TRY_MEMORY(file != NULL);
   for (size_t i = 0; i < m->drawing_count; i++) {
     if (m->drawings[i].file == file && m->drawings[i].unit_m == unit_m) {
       *out = m->drawings[i].drawing;
@@ -302,7 +302,7 @@ static dea_status make_all(struct maker *m)
     const char *text = dea_intern(m->ctx, name->text);
     m->layout->regions[i] = (struct dea_layout_region){
         .name = text, .region = {.ctx = m->ctx}, .location = name->location};
-    DEA_NEED(text != NULL);
+    DEA_TRY_MEMORY(text != NULL);
   }
   for (size_t i = 0; i < count; i++) {
     DEA_TRY(m->ctx, make(m, i));

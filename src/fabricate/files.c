@@ -113,7 +113,7 @@ static dea_status forget_sheet(struct dea_context *ctx, const char *directory, c
   static const char ours[] = "999\nlibdea ";
   char start[sizeof ours] = "";
   char *path = dea_path_join(ctx, directory, dxf);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   size_t length;
   dea_file_head(path, start, sizeof ours - 1, &length);
   if (strcmp(start, ours) == 0) {

@@ -68,7 +68,7 @@ static dea_status check_path(const struct dea_part *part, size_t i,
   bool hole = part->contour[i].layer == DEA_LAYER_CUT_INNER;
   size_t count, at;
   struct dea_vertex *path = dea_alloc(part->ctx, 2 * contour->count, sizeof *path);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   bool good = dea_contour_offset(contour, hole ? -0.5 * kerf : 0.5 * kerf, path, &count, &at);
   dea_free(part->ctx, path);
   const struct dea_vertex *v = &contour->vertex[good ? 0 : at];

@@ -694,7 +694,7 @@ static dea_status add_checks(struct dea_context *ctx, const struct sheet *s, boo
                                                     {0.15, 0.22, 0.12, 0.17, 0.17, 0.17}};
   const struct dea_fab_plan *plan = &s->w->plan;
   struct dea_tolerance_effects *found = dea_alloc(ctx, 1, sizeof *found);
-  DEA_NEED(found != NULL);
+  DEA_TRY_MEMORY(found != NULL);
   const bool solved = sensitivity || plan->device->disc; // a disc is quick
   const dea_status status =
       dea_tolerance_effects_find(ctx, plan->design, plan->device, solved, found);

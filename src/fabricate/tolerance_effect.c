@@ -277,7 +277,7 @@ dea_status dea_tolerance_effects_find(struct dea_context *ctx, const struct dea_
     return DEA_OK;
   }
   if (device->layout->monitor_count > 0) {
-    return DEA_PASS(ctx, ask_model(ctx, s, NULL, out));
+    return DEA_CHAIN(ctx, ask_model(ctx, s, NULL, out));
   }
   for (size_t q = 0; device->disc && q < sizeof questions / sizeof questions[0]; q++) {
     if (questions[q].fibres == (device->fibre_count > 0) && isnan(out->voltage_V)) {

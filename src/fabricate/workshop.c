@@ -88,7 +88,7 @@ void dea_sheet_place(const struct dea_sheet_layout *layout, int copy, double out
 static dea_status check_parts(struct dea_context *ctx, const struct dea_workshop *w)
 {
   for (size_t i = 0; i < w->count; i++) {
-    DEA_NEED(!w->part[i].failed);
+    DEA_TRY_MEMORY(!w->part[i].failed);
     DEA_TRY(ctx, dea_part_check(&w->part[i], w->plan.feature_m, w->plan.kerf_m));
   }
   return DEA_OK;
@@ -132,7 +132,7 @@ dea_status dea_workshop_create(struct dea_context *ctx, const struct dea_design 
 {
   *out = NULL;
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   dea_status status = make(ctx, design, device, *out);
   if (status != DEA_OK) {
     dea_workshop_destroy(ctx, *out);
@@ -180,7 +180,7 @@ dea_status dea_workshop_path(const struct dea_workshop *workshop, const struct d
                                                                     : 0;
   size_t at;
   *out = dea_alloc(part->ctx, 2 * contour.count, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   if (!dea_contour_offset(&contour, outwards, *out, count, &at)) { // was checked
     dea_free(part->ctx, *out);
     *out = NULL;

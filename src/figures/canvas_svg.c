@@ -40,7 +40,7 @@ static dea_status create(struct dea_context *ctx, enum dea_canvas_format format,
 {
   (void)format, (void)title;
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   **out = (struct dea_canvas){.ctx = ctx,
                               .path = {.ctx = ctx},
                               .body = {.ctx = ctx},
@@ -173,7 +173,7 @@ static dea_status finish(struct dea_canvas *canvas, const char **bytes, size_t *
       "font-family=\"'DejaVu Sans',Helvetica,Arial,sans-serif\" stroke-linejoin=\"round\">"
       "<path d=\"M0 0h%.0fv%.0fH0z\" fill=\"#fff\"/>\n%s</svg>\n",
       width, height, width, height, width, height, dea_text_get(&canvas->body));
-  DEA_NEED(!canvas->whole.failed && !canvas->body.failed && !canvas->path.failed);
+  DEA_TRY_MEMORY(!canvas->whole.failed && !canvas->body.failed && !canvas->path.failed);
   *bytes = canvas->whole.data;
   *length = canvas->whole.length;
   return DEA_OK;

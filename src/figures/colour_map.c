@@ -88,7 +88,7 @@ dea_status dea_colour_map_create(struct dea_context *ctx, const struct dea_resul
   *out = (struct dea_colour_map){.voltage_V = record->voltage_V};
   dea_voltage_words(result, record->model, record->voltage_V, out->words);
   DEA_TRY(ctx, dea_surface_lattice_create(ctx, record->mesh, pieces, &out->drawing));
-  return DEA_PASS(
+  return DEA_CHAIN(
       ctx, dea_surface_lattice_outlines(ctx, record->mesh, &out->outlines, &out->outline_count));
 }
 
@@ -134,5 +134,5 @@ dea_status dea_colour_map_write(struct dea_context *ctx, const struct dea_text *
   snprintf(file, sizeof file, "%.60s.dat", name);
   DEA_TRY(ctx, dea_text_write(ctx, dat, directory, file));
   snprintf(file, sizeof file, "%.60s.gp", name);
-  return DEA_PASS(ctx, dea_text_write(ctx, gp, directory, file));
+  return DEA_CHAIN(ctx, dea_text_write(ctx, gp, directory, file));
 }

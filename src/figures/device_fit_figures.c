@@ -97,7 +97,7 @@ static dea_status add_curve(struct dea_context *ctx, struct dea_plot *plot,
 {
   struct look look;
   struct place *places = dea_alloc(ctx, curve->rows, sizeof *places);
-  DEA_NEED(places != NULL);
+  DEA_TRY_MEMORY(places != NULL);
   for (size_t i = 0; i < curve->rows; i++) {
     places[i] =
         (struct place){is_in_time(curve) ? curve->time_s[i] : 1e-3 * curve->voltage_V[i], i};

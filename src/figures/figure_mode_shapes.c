@@ -34,7 +34,7 @@ static dea_status make_picture(struct dea_context *ctx, const struct dea_surface
   struct dea_field_mesh mesh = *record->mesh; // lends all but one array
   const struct dea_surface_record moved = {.voltage_V = record->voltage_V, .mesh = &mesh};
   double *values = dea_alloc(ctx, 3 * mesh.point_count, sizeof *values);
-  DEA_NEED(values != NULL);
+  DEA_TRY_MEMORY(values != NULL);
   for (size_t i = 0; i < 3 * mesh.point_count; i++) {
     values[i] = 1e-6 * shape->values[i];
   }

@@ -172,10 +172,10 @@ dea_status dea_surface_lattice_create(struct dea_context *ctx, const struct dea_
   DEA_TRY(ctx, check(ctx, mesh));
   size_t copies = dea_copy_count(mesh), cells = mesh->cell_count;
   out->patches = dea_alloc(ctx, cells * copies, sizeof *out->patches);
-  DEA_NEED(out->patches != NULL);
+  DEA_TRY_MEMORY(out->patches != NULL);
   size_t points = choose_lattices(mesh, piece_size(mesh, pieces), out->patches);
   out->at = dea_alloc(ctx, points * copies, sizeof *out->at);
-  DEA_NEED(out->at != NULL);
+  DEA_TRY_MEMORY(out->at != NULL);
   double(*to)[DEA_LATTICE_COLUMNS] = out->at;
   for (size_t c = 0; c < copies; c++) {
     const struct dea_copy copy = dea_copy_at(mesh, c);
@@ -289,7 +289,7 @@ dea_status dea_surface_lattice_outlines(struct dea_context *ctx, const struct de
   *count = 0;
   DEA_TRY(ctx, check(ctx, mesh));
   struct edge *edge = dea_alloc(ctx, edges, sizeof *edge);
-  DEA_NEED(edge != NULL);
+  DEA_TRY_MEMORY(edge != NULL);
   list_edges(mesh, edge);
   if (edges > 0) {
     qsort(edge, edges, sizeof *edge, by_place);

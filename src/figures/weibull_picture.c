@@ -76,7 +76,7 @@ static dea_status add_rows(struct dea_context *ctx, const struct dea_weibull_pic
                            struct dea_panel *panel)
 {
   struct row *rows = dea_alloc(ctx, picture->rows, sizeof *rows);
-  DEA_NEED(rows != NULL);
+  DEA_TRY_MEMORY(rows != NULL);
   for (size_t i = 0; i < picture->rows; i++) {
     rows[i] = (struct row){picture->values[i], picture->survived[i]};
   }

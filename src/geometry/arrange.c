@@ -139,7 +139,7 @@ static dea_status build_boxes(struct dea_context *ctx, struct nesting *n)
 {
   size_t count = n->region->contour_count;
   struct dea_box *boxes = dea_alloc(ctx, count, sizeof *boxes);
-  DEA_NEED(boxes != NULL);
+  DEA_TRY_MEMORY(boxes != NULL);
   for (size_t c = 0; c < count; c++) {
     const struct dea_contour contour = dea_region_contour(n->region, c);
     boxes[c] = (struct dea_box){{INFINITY, INFINITY, -INFINITY, -INFINITY}, c};

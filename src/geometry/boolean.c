@@ -67,7 +67,7 @@ static dea_status make_room(struct dea_context *ctx, void **array, size_t count,
   }
   size_t larger = 2 * *capacity + 64;
   void *moved = dea_resize(ctx, *array, larger, size);
-  DEA_NEED(moved != NULL);
+  DEA_TRY_MEMORY(moved != NULL);
   *array = moved;
   *capacity = larger;
   return DEA_OK;
@@ -102,7 +102,7 @@ static dea_status find_circles(struct work *w)
   struct dea_pieces *all = &w->all;
   w->circle = dea_arena_alloc(&all->arena, all->count, sizeof *w->circle);
   struct dea_box *order = dea_arena_alloc(&all->arena, all->count, sizeof *order); // by length
-  DEA_NEED(order != NULL);
+  DEA_TRY_MEMORY(order != NULL);
   for (size_t i = 0; i < all->count; i++) {
     w->circle[i] = SIZE_MAX;
     order[i] = (struct dea_box){{all->piece[i].length_m}, i};
@@ -316,7 +316,7 @@ static dea_status write_rings(struct work *w, const struct dea_region *region, s
   size_t polygon = 0, before = 0;
   out->end = dea_alloc(w->ctx, region->contour_count, sizeof *out->end);
   out->polygon = dea_alloc(w->ctx, region->contour_count, sizeof *out->polygon);
-  DEA_NEED(out->end != NULL && out->polygon != NULL);
+  DEA_TRY_MEMORY(out->end != NULL && out->polygon != NULL);
   for (size_t c = 0; c < region->contour_count; c++) {
     const struct dea_contour own = dea_region_contour(region, c);
     bool hole = dea_contour_area_m2(&own) < 0;

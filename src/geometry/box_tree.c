@@ -73,7 +73,7 @@ dea_status dea_box_tree_build(struct dea_context *ctx, struct dea_box *boxes, si
                               struct dea_box_tree *out)
 {
   *out = (struct dea_box_tree){.node = dea_alloc(ctx, 2 * count, sizeof *out->node)};
-  DEA_NEED(out->node != NULL);
+  DEA_TRY_MEMORY(out->node != NULL);
   if (count > 0) {
     build(out, boxes, count);
   }

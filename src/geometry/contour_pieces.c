@@ -6,7 +6,7 @@ static dea_status build_tree(struct dea_context *ctx, struct dea_pieces *p)
 {
   struct dea_box *boxes = dea_arena_alloc(&p->arena, p->count, sizeof *boxes);
   double all[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-  DEA_NEED(boxes != NULL);
+  DEA_TRY_MEMORY(boxes != NULL);
   for (size_t i = 0; i < p->count; i++) {
     boxes[i] = (struct dea_box){{INFINITY, INFINITY, -INFINITY, -INFINITY}, i};
     dea_piece_grow_box(&p->piece[i], boxes[i].side);

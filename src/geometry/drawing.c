@@ -11,7 +11,7 @@ dea_status dea_drawing_create(struct dea_context *ctx, const char *file,
 {
   struct dea_drawing *d = dea_alloc(ctx, 1, sizeof *d);
   *out = d;
-  DEA_NEED(d != NULL);
+  DEA_TRY_MEMORY(d != NULL);
   d->ctx = ctx;
   d->settings = settings != NULL ? *settings : (struct dea_drawing_settings){0};
   d->settings.join_m = d->settings.join_m > 0 ? d->settings.join_m : 1e-6;
@@ -60,7 +60,7 @@ dea_status dea_drawing_make_room(struct dea_context *ctx, void **array, size_t c
   }
   size_t larger = *capacity + *capacity / 2 + 16;
   void *moved = dea_resize(ctx, *array, larger, size);
-  DEA_NEED(moved != NULL);
+  DEA_TRY_MEMORY(moved != NULL);
   *array = moved;
   *capacity = larger;
   return DEA_OK;
@@ -83,7 +83,7 @@ dea_status dea_drawing_layer(struct dea_drawing *drawing, const char *name, size
           dea_drawing_make_room(d->ctx, &names, d->layer_count, &d->layer_room, sizeof *d->layer));
   d->layer = names;
   const char *kept = dea_intern(d->ctx, name);
-  DEA_NEED(kept != NULL);
+  DEA_TRY_MEMORY(kept != NULL);
   d->layer[d->layer_count] = kept;
   *layer = d->layer_count++;
   return DEA_OK;

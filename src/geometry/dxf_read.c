@@ -319,7 +319,7 @@ static dea_status add_spline(struct reader *r)
   }
   const double *knot = r->numbers.data, *x = knot + knots, *y = x + count, *weight = y + count;
   double(*point)[3] = dea_alloc(r->ctx, count, sizeof *point);
-  DEA_NEED(point != NULL);
+  DEA_TRY_MEMORY(point != NULL);
   bool good = true;
   for (size_t i = 0; i < count; i++) {
     point[i][2] = weights > 0 ? weight[i] : 1;

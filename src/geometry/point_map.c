@@ -58,13 +58,13 @@ static dea_status grow(struct dea_point_map *map)
 {
   size_t capacity = map->capacity == 0 ? 64 : 2 * map->capacity;
   double(*point)[2] = dea_resize(map->ctx, map->point, capacity, sizeof *point);
-  DEA_NEED(point != NULL);
+  DEA_TRY_MEMORY(point != NULL);
   map->point = point;
   size_t *next = dea_resize(map->ctx, map->next, capacity, sizeof *next);
-  DEA_NEED(next != NULL);
+  DEA_TRY_MEMORY(next != NULL);
   map->next = next;
   size_t *head = dea_resize(map->ctx, map->head, capacity, sizeof *head);
-  DEA_NEED(head != NULL);
+  DEA_TRY_MEMORY(head != NULL);
   map->head = head;
   map->capacity = map->heads = capacity;
   for (size_t h = 0; h < map->heads; h++) {

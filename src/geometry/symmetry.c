@@ -228,7 +228,7 @@ static dea_status prepare(struct finder *f, const struct dea_region *const regio
   }
   f->feature = dea_arena_alloc(&f->arena, pieces, sizeof *f->feature);
   struct dea_box *boxes = dea_arena_alloc(&f->arena, pieces, sizeof *boxes);
-  DEA_NEED(boxes != NULL);
+  DEA_TRY_MEMORY(boxes != NULL);
   for (size_t r = 0; r < count; r++) {
     for (size_t c = 0; c < regions[r]->contour_count; c++) {
       const struct dea_contour contour = dea_region_contour(regions[r], c);

@@ -137,7 +137,7 @@ static dea_status draw(struct dea_context *ctx, const struct dea_breakdown_fit *
                        const struct dea_plot_format *format, const char *directory)
 {
   double *field = dea_alloc(ctx, fit->rows, sizeof *field);
-  DEA_NEED(field != NULL);
+  DEA_TRY_MEMORY(field != NULL);
   for (size_t i = 0; i < fit->rows; i++) {
     field[i] = dea_breakdown_fit_reference_field(fit, i);
   }

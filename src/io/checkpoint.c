@@ -117,7 +117,7 @@ static dea_status keep_fields(struct dea_context *ctx, const struct dea_keep *ke
     field_name(curve->model, last - 1, name);
     dea_path_forget(ctx, keep->directory, name);
   }
-  return DEA_PASS(ctx, write_pvd(ctx, keep->directory, curve->model, curve));
+  return DEA_CHAIN(ctx, write_pvd(ctx, keep->directory, curve->model, curve));
 }
 
 dea_status dea_checkpoint_shapes(struct dea_context *ctx, const struct dea_result *result,
@@ -150,7 +150,7 @@ static dea_status restore(struct dea_context *ctx, void *user, const char *model
 {
   const struct dea_keep *keep = user;
   char *path = state_path(ctx, keep->directory, model);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = dea_state_file_read(ctx, model, wanted, path, out);
   dea_free(ctx, path);
   return status;
@@ -189,7 +189,7 @@ dea_status dea_checkpoint_create(struct dea_context *ctx, const char *directory,
                                  struct dea_keep **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->directory = dea_copy_text(ctx, directory, strlen(directory));
   if ((*out)->directory == NULL) {
     dea_free(ctx, *out);
@@ -309,7 +309,7 @@ static dea_status take_sweep(struct dea_context *ctx, const char *directory, con
   }
   DEA_TRY(ctx, take_surfaces(ctx, old, sweep->model, count, result));
   DEA_TRY(ctx, take_profiles(ctx, old, sweep->model, count, result));
-  return DEA_PASS(ctx, take_tables(ctx, old, sweep, count, result));
+  return DEA_CHAIN(ctx, take_tables(ctx, old, sweep, count, result));
 }
 
 dea_status dea_checkpoint_restore(struct dea_context *ctx, const char *directory,

@@ -21,7 +21,7 @@ dea_status dea_csv_want_column(struct dea_arena *memory, const struct dea_column
 {
   enum { EXAMPLE = 32 };
   char *title = dea_arena_alloc(memory, DEA_COLUMN_TITLE_SIZE + 2 * DEA_CSV_FIELD_MAX + EXAMPLE, 1);
-  DEA_NEED(title != NULL);
+  DEA_TRY_MEMORY(title != NULL);
   char *name = title + DEA_COLUMN_TITLE_SIZE, *key = name + DEA_CSV_FIELD_MAX;
   char *example = key + DEA_CSV_FIELD_MAX;
   dea_column_title(column, title, DEA_COLUMN_TITLE_SIZE);
@@ -105,7 +105,7 @@ static dea_status take_rows(struct reader *r, struct dea_measurement *m)
   size_t monitor_count = 0;
   memory->ctx = r->ctx;
   m->std = dea_alloc(r->ctx, r->table.rows, sizeof *m->std);
-  DEA_NEED(m->std != NULL && monitors != NULL);
+  DEA_TRY_MEMORY(m->std != NULL && monitors != NULL);
   for (size_t c = DEA_LOAD_POINT_COLUMNS; c < r->columns; c++) {
     if (r->table.values[c] != NULL) {
       monitors[monitor_count++] = (int)c;
@@ -150,7 +150,7 @@ dea_status dea_measurement_read(struct dea_context *ctx, const char *file,
   struct reader r = {.ctx = ctx, .memory = {.ctx = ctx}};
   struct dea_measurement *m = dea_alloc(ctx, 1, sizeof *m);
   *out = NULL;
-  DEA_NEED(m != NULL);
+  DEA_TRY_MEMORY(m != NULL);
   m->curve = (struct dea_curve){.model = "measurement", .kind = "sweep", .complete = true};
   const dea_status status = read_table(&r, file, m);
   dea_arena_free(&r.memory);

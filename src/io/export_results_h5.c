@@ -7,7 +7,7 @@ static dea_status write(struct dea_context *ctx, const struct dea_result *result
                         const char *directory)
 {
   char *path = dea_path_join(ctx, directory, "results.h5");
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = dea_results_h5_write(ctx, result, path);
   dea_free(ctx, path);
   return status;

@@ -424,7 +424,7 @@ static dea_status read_file(struct dea_context *ctx, const char *path, struct de
 static dea_status run_create(struct dea_context *ctx, struct dea_run **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   dea_status status = dea_result_create(ctx, NULL, NULL, &(*out)->result);
   if (status != DEA_OK) {
     dea_free(ctx, *out);

@@ -279,7 +279,7 @@ dea_status dea_emulator_at(struct dea_context *ctx, const struct dea_emulator *e
                            unsigned *flags)
 {
   double *w = dea_alloc(ctx, e->case_count + 2 * e->voltage_count, sizeof *w);
-  DEA_NEED(w != NULL);
+  DEA_TRY_MEMORY(w != NULL);
   double *x = w + e->case_count, *b = x + e->voltage_count;
   size_t high = 0;
   while (high + 1 < e->voltage_count && e->voltages_V[high] < voltage_V) {

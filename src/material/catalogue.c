@@ -66,7 +66,7 @@ static dea_status add_name(struct dea_context *ctx, const char **names, size_t *
   char name[DEA_NAME_SIZE];
   snprintf(name, sizeof name, "%.*s", (int)length, file);
   const char *kept = dea_intern(ctx, name);
-  DEA_NEED(kept != NULL);
+  DEA_TRY_MEMORY(kept != NULL);
   for (size_t i = 0; i < *count; i++) {
     if (names[i] == kept) {
       return DEA_OK;
@@ -82,7 +82,7 @@ dea_status dea_catalogue_names(struct dea_context *ctx, const char ***names, siz
   find_directories(&list);
   *count = 0;
   *names = dea_alloc(ctx, NAMES_MAX, sizeof **names);
-  DEA_NEED(*names != NULL);
+  DEA_TRY_MEMORY(*names != NULL);
   dea_status status = DEA_OK;
   for (size_t i = 0; i < list.count && status == DEA_OK; i++) {
     DIR *directory = opendir(list.path[i]);
@@ -148,7 +148,7 @@ static dea_status load(struct dea_context *ctx, const char *name, struct dea_loc
       fclose(probe);
     }
     *file = dea_intern(ctx, path);
-    DEA_NEED(*file != NULL);
+    DEA_TRY_MEMORY(*file != NULL);
     return dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, bytes, length);
   }
   return unknown_material(ctx, name, location);
@@ -182,7 +182,7 @@ dea_status dea_catalogue_read(struct dea_context *ctx, const char *name,
   size_t length = 0;
   *out = NULL;
   struct dea_catalogue_entry *entry = dea_alloc(ctx, 1, sizeof *entry);
-  DEA_NEED(entry != NULL);
+  DEA_TRY_MEMORY(entry != NULL);
   dea_status status = load(ctx, name, location, &entry->file, &bytes, &length);
   status = status == DEA_OK ? read_entry(ctx, name, bytes, length, entry) : status;
   dea_free(ctx, bytes);

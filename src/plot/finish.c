@@ -133,7 +133,7 @@ dea_status dea_png_finish(struct dea_context *ctx, const char *bytes, size_t len
   bool has = png && length > HEAD + 8 && memcmp(bytes + HEAD + 4, "pHYs", 4) == 0;
   *out_length = length + (png && !has ? CHUNK : 0);
   *out = dea_alloc(ctx, *out_length + 1, 1);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   if (!png || has) {
     memcpy(*out, bytes, length);
     return DEA_OK;
@@ -169,7 +169,7 @@ static dea_status read_named(struct dea_context *ctx, const char *directory, con
   *bytes = NULL;
   snprintf(file, sizeof file, "%.119s.%s", name, outcome);
   *path = dea_path_join(ctx, directory, file);
-  DEA_NEED(*path != NULL);
+  DEA_TRY_MEMORY(*path != NULL);
   return dea_path_exists(*path) ? dea_file_read(ctx, *path, FILE_MAX, bytes, length) : DEA_OK;
 }
 
@@ -222,7 +222,7 @@ static dea_status check_drawn(struct dea_context *ctx, const char *pictures, con
     }
     snprintf(file, sizeof file, "%.119s.%s", name, outcomes[i]);
     char *path = dea_path_join(ctx, pictures, file);
-    DEA_NEED(path != NULL);
+    DEA_TRY_MEMORY(path != NULL);
     if (!dea_file_head(path, &byte, 1, &length) || length == 0) {
       status = dea_fail(ctx, DEA_E_TOOL, "gnuplot has drawn nothing into %s", file);
     }

@@ -147,7 +147,7 @@ dea_status dea_gnuplot_draw(struct dea_context *ctx, const char *directory,
   char name[40];
   snprintf(name, sizeof name, ".drawing.%ld", (long)getpid());
   char *drawing = dea_path_join(ctx, directory, name);
-  DEA_NEED(drawing != NULL);
+  DEA_TRY_MEMORY(drawing != NULL);
   dea_status status = dea_folder_make(ctx, drawing);
   if (status == DEA_OK) {
     status = draw(ctx, directory, drawing, names, count);
@@ -168,7 +168,7 @@ dea_status dea_plot_folder_name(struct dea_plot_folder *folder, const char *name
 {
   char(*names)[sizeof *folder->names] =
       dea_resize(folder->ctx, folder->names, folder->count + 1, sizeof *names);
-  DEA_NEED(names != NULL);
+  DEA_TRY_MEMORY(names != NULL);
   folder->names = names;
   snprintf(names[folder->count++], sizeof *names, "%s", name);
   return DEA_OK;

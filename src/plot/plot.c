@@ -8,7 +8,7 @@ dea_status dea_plot_create(struct dea_context *ctx, const char *name, const char
                            struct dea_plot **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   snprintf((*out)->name, sizeof(*out)->name, "%s", name);
   snprintf((*out)->caption, sizeof(*out)->caption, "%s", caption);
   (*out)->panel_count = 1;
@@ -53,7 +53,7 @@ dea_status dea_panel_add(struct dea_context *ctx, struct dea_panel *panel, size_
                     DEA_PANEL_SERIES_MAX);
   }
   double *values = dea_alloc(ctx, 3 * count, sizeof *values);
-  DEA_NEED(values != NULL);
+  DEA_TRY_MEMORY(values != NULL);
   for (size_t i = 0; i < 3 * count; i++) {
     values[i] = NAN;
   }

@@ -142,5 +142,5 @@ dea_status dea_report_write(struct dea_context *ctx, const struct dea_report_run
   }
   dea_text_free(&report.text);
   dea_measured_destroy(ctx, measured);
-  return DEA_PASS(ctx, status);
+  return DEA_CHAIN(ctx, status);
 }

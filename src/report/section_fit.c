@@ -166,7 +166,7 @@ static dea_status add_figure(struct dea_report *report, const char *folder, cons
   size_t length;
   snprintf(file, sizeof file, "%.80s.svg", name);
   char *path = dea_path_join(report->ctx, folder, file);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = DEA_OK;
   if (dea_path_exists(path)) {
     status = dea_file_read(report->ctx, path, FILE_MAX, &bytes, &length);

@@ -182,7 +182,7 @@ dea_status dea_section_membrane(struct dea_report *report, const struct dea_repo
     return DEA_OK;
   }
   uint16_t *words = dea_alloc(report->ctx, steps.at[0]->mesh->point_count, sizeof *words);
-  DEA_NEED(words != NULL);
+  DEA_TRY_MEMORY(words != NULL);
   dea_section_begin(report, "membrane", run->number, "Deformed membrane");
   dea_text_add(out,
                "<div class=\"membrane interactive\" hidden></div><p class=\"still\">The page's "

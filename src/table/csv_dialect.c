@@ -46,7 +46,7 @@ static dea_status take_sample(struct sample *sample, struct dea_slice text)
   struct dea_slice line;
   sample->lines = dea_alloc(sample->ctx, SAMPLE_LINES, sizeof *sample->lines);
   sample->numbers = dea_alloc(sample->ctx, SAMPLE_LINES, sizeof *sample->numbers);
-  DEA_NEED(sample->lines != NULL && sample->numbers != NULL);
+  DEA_TRY_MEMORY(sample->lines != NULL && sample->numbers != NULL);
   while (sample->count < SAMPLE_LINES &&
          (sample->count < 2 || lines.next - text.text < SAMPLE_BYTES) &&
          dea_lines_next(&lines, &line)) {
@@ -363,7 +363,7 @@ static dea_status fill(const struct sample *sample, struct dea_slice text,
     out->count = 1;
   }
   out->text = dea_alloc(sample->ctx, DEA_TABLE_COLUMNS_MAX, sizeof *out->text);
-  DEA_NEED(out->text != NULL);
+  DEA_TRY_MEMORY(out->text != NULL);
   const struct candidate chosen = {.separator = out->separator, .decimal = out->decimal};
   size_t count;
   classify_fields(sample->lines[best->last], &chosen, out->text, &count);

@@ -16,7 +16,7 @@ dea_status dea_fields_read(struct dea_context *ctx, const char *file, struct dea
   struct dea_table table = {.file = dea_intern(ctx, file), .fields = out};
   size_t length;
   *out = (struct dea_fields){.file = table.file};
-  DEA_NEED(table.file != NULL);
+  DEA_TRY_MEMORY(table.file != NULL);
   const dea_status read = dea_file_read(ctx, file, FILE_MAX, &out->bytes, &length);
   DEA_TRY(ctx, read == DEA_E_DESIGN ? dea_fail(ctx, DEA_E_IO, "'%s' is too large", file) : read);
   const dea_status status = dea_text_file_read(ctx, (const unsigned char *)out->bytes, length,

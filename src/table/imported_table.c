@@ -72,7 +72,7 @@ dea_status dea_table_leave(struct dea_context *ctx, struct dea_table *table, str
                            struct dea_slice field, size_t line)
 {
   void *moved = dea_resize(ctx, table->left, table->left_count + 1, sizeof *table->left);
-  DEA_NEED(moved != NULL);
+  DEA_TRY_MEMORY(moved != NULL);
   table->left = moved;
   struct dea_table_left *left = &table->left[table->left_count++];
   *left = (struct dea_table_left){copy_text(ctx, name.text, name.length),

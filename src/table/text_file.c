@@ -201,7 +201,7 @@ static dea_status narrow(struct dea_context *ctx, char **copy, struct dea_slice 
     return DEA_OK;
   }
   char *out = dea_alloc(ctx, text->length, 1);
-  DEA_NEED(out != NULL);
+  DEA_TRY_MEMORY(out != NULL);
   size_t n = 0;
   for (size_t i = 0; i < text->length; i++) {
     const unsigned char *c = (const unsigned char *)text->text + i;
@@ -226,7 +226,7 @@ static dea_status open_text(struct dea_context *ctx, const char *file, const uns
   if (mark != 0) {
     size_t units = (length - 2) / 2;
     *copy = dea_alloc(ctx, units + 1, 3);
-    DEA_NEED(*copy != NULL);
+    DEA_TRY_MEMORY(*copy != NULL);
     *text = (struct dea_slice){*copy, to_utf8(bytes + 2, units, mark == 2, *copy)};
     return DEA_OK;
   }
@@ -250,7 +250,7 @@ static dea_status end_lines(struct dea_context *ctx, char **copy, struct dea_sli
     return DEA_OK;
   }
   char *lines = dea_alloc(ctx, text->length, 1);
-  DEA_NEED(lines != NULL);
+  DEA_TRY_MEMORY(lines != NULL);
   for (size_t i = 0; i < text->length; i++) {
     lines[i] = (char)(text->text[i] == '\r' ? '\n' : text->text[i]);
   }

@@ -437,7 +437,7 @@ dea_status dea_text_lines_read(struct dea_context *ctx, struct dea_slice text,
   const size_t capacity = rows_room(text, dialect);
   out->fields->lines = dea_alloc(ctx, capacity, sizeof *out->fields->lines);
   out->fields->numbers = dea_alloc(ctx, capacity, sizeof *out->fields->numbers);
-  DEA_NEED(out->fields->lines != NULL && out->fields->numbers != NULL);
+  DEA_TRY_MEMORY(out->fields->lines != NULL && out->fields->numbers != NULL);
   const dea_status status = read_lines(&rows, text);
   out->fields->rows = rows.count;
   return status;

@@ -19,7 +19,7 @@ static dea_status go_to(struct player *p, double time_s, double value_V)
   struct dea_waveform *w = p->out;
   if (w->knot_count == p->capacity) {
     struct dea_wave_knot *moved = dea_resize(w->ctx, w->knots, 2 * p->capacity, sizeof *moved);
-    DEA_NEED(moved != NULL);
+    DEA_TRY_MEMORY(moved != NULL);
     w->knots = moved;
     p->capacity *= 2;
   }
@@ -73,7 +73,7 @@ dea_status dea_waveform_limit(struct dea_context *ctx, const struct dea_waveform
   struct player p = {.capacity = 64, .follows = true};
   *out = NULL;
   p.out = dea_alloc(ctx, 1, sizeof *p.out);
-  DEA_NEED(p.out != NULL);
+  DEA_TRY_MEMORY(p.out != NULL);
   *p.out = (struct dea_waveform){
       .type = &limited, .ctx = ctx, .end_s = until_s, .longest_step_s = INFINITY};
   dea_status status = dea_wave_room(ctx, p.out, p.capacity, 1);

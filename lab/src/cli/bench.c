@@ -32,7 +32,7 @@ dea_status cli_bench_protocol_keys(struct dea_cli *cli, struct dea_text *out)
 dea_status cli_bench_schema(struct dea_context *ctx, bool protocol, struct dea_record **out)
 {
   struct dea_protocol_schema *schema = dea_alloc(ctx, 1, sizeof *schema);
-  DEA_NEED(schema != NULL);
+  DEA_TRY_MEMORY(schema != NULL);
   if (protocol) {
     dea_instrument_protocol_schema(schema);
   } else {

@@ -295,7 +295,7 @@ static dea_status export(struct dea_cli *cli, const struct request *request,
                          const struct dea_protocol *protocol)
 {
   char *csv = dea_path_join(cli->ctx, request->folder, "waveform.csv");
-  DEA_NEED(csv != NULL);
+  DEA_TRY_MEMORY(csv != NULL);
   bool there = dea_path_exists(csv);
   dea_free(cli->ctx, csv);
   if (there && !request->force) {

@@ -160,7 +160,7 @@ static dea_status write_file(struct dea_cli *cli, const struct request *request,
     return dea_fail(ctx, DEA_E_IO, "'%s' already exists; --force replaces it", file);
   }
   char *partial = dea_partial_name(ctx, file);
-  DEA_NEED(partial != NULL);
+  DEA_TRY_MEMORY(partial != NULL);
   unlink(partial); // left by a process of the same number that was killed
   dea_status status = dea_recording_write(ctx, recording, partial);
   status = status == DEA_OK ? dea_partial_finish(ctx, partial, file) : status;

@@ -168,7 +168,7 @@ dea_status dea_guard_begin(struct dea_context *ctx, const struct dea_protocol *p
   int ends[2];
   *out = NULL;
   struct dea_guard *made = dea_alloc(ctx, 1, sizeof *made);
-  DEA_NEED(made != NULL);
+  DEA_TRY_MEMORY(made != NULL);
   struct signs *signs =
       mmap(NULL, sizeof *signs, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (signs == MAP_FAILED || pipe(ends) != 0) {

@@ -36,7 +36,7 @@ static dea_status read(struct dea_context *ctx, const char *file, const char *te
 {
   *out = NULL;
   struct film *film = dea_alloc(ctx, 1, sizeof *film);
-  DEA_NEED(film != NULL);
+  DEA_TRY_MEMORY(film != NULL);
   film->base.type = &dea_film_of_design;
   dea_status status = dea_design_read_memory(ctx, file, text, length, NULL, 0, &film->design);
   if (status != DEA_OK) {
@@ -96,7 +96,7 @@ static dea_status build_table(struct dea_context *ctx, const char *monitor, stru
   m->base.material = film != NULL ? film->name : "";
   m->base.frame_radius_m = m->base.fibre_tip_radius_m = reach_of(m->device);
   m->type = &dea_film_table_type;
-  return DEA_PASS(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
+  return DEA_CHAIN(ctx, dea_film_table_create(ctx, m->design, m->device, monitor, &m->model));
 }
 
 static dea_status build(struct dea_context *ctx, bool moves, const char *monitor,
@@ -133,7 +133,7 @@ static dea_status open_model(struct dea_context *ctx, const struct dea_bench_fil
                     name, type == NULL ? "is not there" : "does not support transients");
   }
   struct film_model *m = dea_alloc(ctx, 1, sizeof *m);
-  DEA_NEED(m != NULL);
+  DEA_TRY_MEMORY(m != NULL);
   *m = (struct film_model){.base = {.type = &dea_film_of_design, .name = type->name},
                            .design = ((const struct film *)film)->design,
                            .type = type};

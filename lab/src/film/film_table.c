@@ -67,7 +67,7 @@ dea_status dea_film_table_create(struct dea_context *ctx, const struct dea_desig
   const double highest_V = dea_design_highest_V(design);
   struct dea_model *table = dea_alloc(ctx, 1, sizeof *table);
   *out = NULL;
-  DEA_NEED(table != NULL);
+  DEA_TRY_MEMORY(table != NULL);
   table->type = dea_model_find("3d");
   table->step_V = (highest_V > 0 ? highest_V : 4e3) / STEPS;
   dea_status status = dea_model_create(ctx, table->type, design, device, &table->model);

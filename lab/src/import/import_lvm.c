@@ -350,7 +350,7 @@ static dea_status read_measurement(struct dea_lvm *lvm, struct dea_slice text)
 static dea_status read_text(struct dea_context *ctx, struct dea_slice text, struct dea_table *out)
 {
   struct dea_lvm *lvm = dea_alloc(ctx, 1, sizeof *lvm);
-  DEA_NEED(lvm != NULL);
+  DEA_TRY_MEMORY(lvm != NULL);
   lvm->ctx = ctx;
   lvm->file = out->file;
   lvm->table = out;

@@ -133,7 +133,7 @@ static dea_status find_units(struct dea_context *ctx, struct dea_table *table)
       continue;
     }
     char *copy = dea_copy_text(ctx, unit.text, unit.length);
-    DEA_NEED(copy != NULL);
+    DEA_TRY_MEMORY(copy != NULL);
     dea_free(ctx, column->unit);
     column->unit = copy;
   }

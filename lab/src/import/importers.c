@@ -144,7 +144,7 @@ dea_status dea_table_read(struct dea_context *ctx, const char *file, const char 
     return unknown_format(ctx, file, head, length);
   }
   struct dea_table *table = dea_alloc(ctx, 1, sizeof *table);
-  DEA_NEED(table != NULL);
+  DEA_TRY_MEMORY(table != NULL);
   table->file = dea_intern(ctx, file);
   table->format = importer->name;
   dea_status status = table->file != NULL ? read_table(ctx, file, importer, table) : DEA_E_MEMORY;

@@ -46,7 +46,7 @@ static dea_status move(struct dea_context *ctx, struct dea_table *table, struct 
                     other->file, (int)DEA_TABLE_COLUMNS_MAX);
   }
   void *moved = dea_resize(ctx, table->columns, count, sizeof *table->columns);
-  DEA_NEED(moved != NULL);
+  DEA_TRY_MEMORY(moved != NULL);
   table->columns = moved;
   table->column_room = count;
   size_t before = table->column_count;

@@ -160,7 +160,7 @@ dea_status dea_mapping_read_memory(struct dea_context *ctx, const char *file, co
 {
   *out = NULL;
   struct dea_mapping *mapping = dea_alloc(ctx, 1, sizeof *mapping);
-  DEA_NEED(mapping != NULL);
+  DEA_TRY_MEMORY(mapping != NULL);
   mapping->file = dea_intern(ctx, file);
   dea_status status =
       mapping->file != NULL ? read_bytes(ctx, bytes, length, mapping) : DEA_E_MEMORY;

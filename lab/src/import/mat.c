@@ -68,7 +68,7 @@ dea_status dea_mat_write(struct dea_context *ctx, const char *file,
   }
   DEA_TRY(ctx, open_module(ctx, &type));
   char *partial = dea_partial_name(ctx, file);
-  DEA_NEED(partial != NULL);
+  DEA_TRY_MEMORY(partial != NULL);
   unlink(partial); // left by a process of the same number that was killed
   // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): open_module sets it or fails
   dea_status status = type->write(ctx, partial, variables, count, version);

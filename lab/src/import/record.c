@@ -189,7 +189,7 @@ static dea_status add_channel(struct work *work, size_t column)
   DEA_TRY(work->ctx, copy_times(work, &clock, false, &channel.time_s));
   channel.values = dea_alloc(work->ctx, clock.count, sizeof *channel.values);
   recording->channels[recording->channel_count++] = channel; // owns the times from here on
-  DEA_NEED(channel.values != NULL);
+  DEA_TRY_MEMORY(channel.values != NULL);
   DEA_TRY(work->ctx, copy_values(work, column, 1, channel.values));
   return dea_finding_add(work->ctx, DEA_NOTE, file_place(work),
                          "'%.60s'%s%.40s is taken as %s (%s)", c->name,
@@ -291,7 +291,7 @@ static dea_status add_profiles(struct work *work)
   profiles->points = points;
   profiles->x_m = dea_alloc(work->ctx, points, sizeof(double));
   profiles->z_m = dea_alloc(work->ctx, points * frames, sizeof(double));
-  DEA_NEED(profiles->x_m != NULL && profiles->z_m != NULL);
+  DEA_TRY_MEMORY(profiles->x_m != NULL && profiles->z_m != NULL);
   DEA_TRY(work->ctx, copy_times(work, &clock, true, &profiles->time_s));
   profiles->count = frames;
   DEA_TRY(work->ctx, place_points(work, points, &falling));
@@ -369,7 +369,7 @@ static dea_status fill(struct work *work)
   work->recording->complete = true;
   if (work->mapping != NULL && work->mapping->title.text[0] != '\0') {
     char *title = dea_copy_text(work->ctx, work->mapping->title.text, DEA_TITLE_SIZE);
-    DEA_NEED(title != NULL);
+    DEA_TRY_MEMORY(title != NULL);
     dea_free(work->ctx, work->recording->title);
     work->recording->title = title;
   }

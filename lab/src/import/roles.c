@@ -182,7 +182,7 @@ static dea_status take_mapping(struct work *work, size_t *clock)
   for (size_t i = 0; i < mapping->column_count; i++) {
     DEA_TRY(work->ctx, take_channel(work, &mapping->columns[i]));
   }
-  return DEA_PASS(work->ctx, mapping->has_profile ? take_profile(work) : DEA_OK);
+  return DEA_CHAIN(work->ctx, mapping->has_profile ? take_profile(work) : DEA_OK);
 }
 
 // Guessing ---------------------------------------------------------------------------------------

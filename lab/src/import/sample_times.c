@@ -99,7 +99,7 @@ dea_status dea_clock_read(struct dea_context *ctx, const struct dea_table *table
     return DEA_OK;
   }
   out->time_s = dea_alloc(ctx, out->count, sizeof *out->time_s);
-  DEA_NEED(out->time_s != NULL);
+  DEA_TRY_MEMORY(out->time_s != NULL);
   size_t n = 0;
   for (size_t i = next_number(c, 0); i < c->count; i = next_number(c, i + 1)) {
     out->time_s[n++] = c->values[i] * factor;

@@ -142,7 +142,7 @@ static dea_status find_object(struct dea_tdms *tdms, struct dea_tdms_text path, 
   if (tdms->count == tdms->capacity) {
     size_t capacity = 2 * tdms->capacity + 16;
     void *moved = dea_resize(tdms->ctx, tdms->objects, capacity, sizeof *tdms->objects);
-    DEA_NEED(moved != NULL);
+    DEA_TRY_MEMORY(moved != NULL);
     tdms->objects = moved;
     tdms->capacity = capacity;
   }
@@ -164,7 +164,7 @@ static dea_status add_to_order(struct dea_tdms *tdms, size_t object)
   if (tdms->order_count == tdms->order_room) {
     size_t capacity = 2 * tdms->order_room + 16;
     void *moved = dea_resize(tdms->ctx, tdms->order, capacity, sizeof *tdms->order);
-    DEA_NEED(moved != NULL);
+    DEA_TRY_MEMORY(moved != NULL);
     tdms->order = moved;
     tdms->order_room = capacity;
   }

@@ -34,7 +34,7 @@ dea_status dea_gocator_frames_begin(struct dea_context *ctx, struct dea_gocator_
   size_t points = profiles->width;
   frames->x_m = dea_alloc(ctx, points, sizeof *frames->x_m);
   frames->z_m = dea_alloc(ctx, points, sizeof *frames->z_m);
-  DEA_NEED(frames->x_m != NULL && frames->z_m != NULL);
+  DEA_TRY_MEMORY(frames->x_m != NULL && frames->z_m != NULL);
   for (size_t i = 0; i < points; i++) {
     frames->x_m[i] = first_m + (last_m - first_m) * (double)i / (double)(points - 1);
   }

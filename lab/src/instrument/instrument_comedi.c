@@ -328,7 +328,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   const struct dea_daq_raw *raw = data;
   struct comedi *c = dea_alloc(ctx, 1, sizeof *c);
-  DEA_NEED(c != NULL);
+  DEA_TRY_MEMORY(c != NULL);
   c->base.type = &dea_instrument_comedi;
   c->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   c->protocol = protocol;

@@ -423,7 +423,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   (void)protocol;
   struct gocator *g = dea_alloc(ctx, 1, sizeof *g);
-  DEA_NEED(g != NULL);
+  DEA_TRY_MEMORY(g != NULL);
   g->raw = *(const struct raw *)data;
   g->base.type = &dea_instrument_gocator;
   g->base.roles = (g->raw.mode.value == PROFILES ? DEA_SENDS_PROFILES : 0U) |

@@ -204,7 +204,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   struct keyence *k = dea_alloc(ctx, 1, sizeof *k);
   (void)protocol;
-  DEA_NEED(k != NULL);
+  DEA_TRY_MEMORY(k != NULL);
   k->raw = *(const struct raw *)data;
   k->base.type = &dea_instrument_keyence;
   k->base.roles = DEA_GIVES_READINGS;

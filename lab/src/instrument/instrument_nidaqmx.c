@@ -241,7 +241,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   const struct dea_daq_raw *raw = data;
   struct nidaqmx *n = dea_alloc(ctx, 1, sizeof *n);
-  DEA_NEED(n != NULL);
+  DEA_TRY_MEMORY(n != NULL);
   n->base.type = &dea_instrument_nidaqmx;
   n->base.roles = DEA_PLAYS_OUTPUT | (protocol->input_count > 0 ? DEA_READS_INPUTS : 0U);
   n->protocol = protocol;

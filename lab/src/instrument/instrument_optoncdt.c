@@ -188,7 +188,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
 {
   struct optoncdt *o = dea_alloc(ctx, 1, sizeof *o);
   (void)protocol;
-  DEA_NEED(o != NULL);
+  DEA_TRY_MEMORY(o != NULL);
   o->raw = *(const struct raw *)data;
   o->base.type = &dea_instrument_optoncdt;
   o->base.roles = DEA_GIVES_READINGS;

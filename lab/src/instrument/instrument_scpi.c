@@ -278,7 +278,7 @@ static dea_status open_it(struct dea_context *ctx, const void *data,
                           const struct dea_protocol *protocol, struct dea_instrument **out)
 {
   struct dea_scpi *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_NEED(s != NULL);
+  DEA_TRY_MEMORY(s != NULL);
   s->raw = *(const struct dea_scpi_raw *)data;
   s->base.type = &dea_instrument_scpi;
   s->base.roles = (s->raw.reading_count > 0 ? DEA_GIVES_READINGS : 0U) |

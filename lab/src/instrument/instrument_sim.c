@@ -197,7 +197,7 @@ static dea_status prepare(struct dea_context *ctx, const struct raw *raw, struct
   s->x_m = dea_alloc(ctx, points, sizeof *s->x_m);
   s->z_m = dea_alloc(ctx, points, sizeof *s->z_m);
   s->volts = dea_alloc(ctx, BLOCK_SAMPLES * s->protocol->input_count, sizeof *s->volts);
-  DEA_NEED(s->x_m != NULL && s->z_m != NULL && s->volts != NULL);
+  DEA_TRY_MEMORY(s->x_m != NULL && s->z_m != NULL && s->volts != NULL);
   double half_m = dea_sim_bench_model(s->bench)->frame_radius_m + raw->frame_width_m.si;
   for (size_t i = 0; i < points; i++) {
     double share = points > 1 ? (double)i / (double)(points - 1) : 0.5;
@@ -216,7 +216,7 @@ static dea_status open_sim(struct dea_context *ctx, const void *data,
   const struct dea_sim_settings settings = settings_of(raw);
   *out = NULL;
   struct sim *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_NEED(s != NULL);
+  DEA_TRY_MEMORY(s != NULL);
   s->base.type = &dea_instrument_sim;
   s->protocol = protocol;
   s->random = dea_sim_random_of((uint64_t)raw->seed.si);
@@ -266,7 +266,7 @@ static dea_status put(struct dea_context *ctx, struct dea_instrument *instrument
   if (s->queued + count > s->capacity) {
     size_t capacity = 2 * s->capacity + count;
     double *moved = dea_resize(ctx, s->queue, capacity, sizeof *moved);
-    DEA_NEED(moved != NULL);
+    DEA_TRY_MEMORY(moved != NULL);
     s->queue = moved;
     s->capacity = capacity;
   }

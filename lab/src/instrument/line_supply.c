@@ -177,7 +177,7 @@ dea_status dea_line_supply_open(struct dea_context *ctx, const struct dea_instru
   static const struct dea_choice voltage = {.value = DEA_CHANNEL_VOLTAGE};
   static const struct dea_label no_unit;
   struct dea_line_supply *s = dea_alloc(ctx, 1, sizeof *s);
-  DEA_NEED(s != NULL);
+  DEA_TRY_MEMORY(s != NULL);
   s->raw = *(const struct dea_line_supply_raw *)raw;
   s->raw_all = raw;
   s->language = language;

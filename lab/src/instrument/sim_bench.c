@@ -236,7 +236,7 @@ dea_status dea_sim_bench_create(struct dea_context *ctx, const struct dea_protoc
 {
   *out = NULL;
   struct dea_sim_bench *bench = dea_alloc(ctx, 1, sizeof *bench);
-  DEA_NEED(bench != NULL);
+  DEA_TRY_MEMORY(bench != NULL);
   *bench = (struct dea_sim_bench){
       .ctx = ctx, .protocol = protocol, .settings = *settings, .type = protocol->film->type};
   dea_status status = begin(bench);

@@ -305,7 +305,7 @@ static dea_status read_all(struct reader *reader, mat_t *mat)
       return dea_fail(reader->ctx, DEA_E_INTERRUPTED, "interrupted");
     }
   }
-  DEA_NEED(!reader->note.failed);
+  DEA_TRY_MEMORY(!reader->note.failed);
   if (reader->note.length > 0) {
     DEA_TRY(reader->ctx, dea_table_note(reader->ctx, reader->table, dea_text_get(&reader->note),
                                         reader->note.length));

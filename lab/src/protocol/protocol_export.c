@@ -313,7 +313,7 @@ static dea_status sample(struct dea_context *ctx, const struct dea_protocol *pro
   out->time_s = dea_alloc(ctx, out->count, sizeof *out->time_s);
   out->voltage_V = dea_alloc(ctx, out->count, sizeof *out->voltage_V);
   out->control_V = dea_alloc(ctx, out->count, sizeof *out->control_V);
-  DEA_NEED(out->time_s != NULL && out->voltage_V != NULL && out->control_V != NULL);
+  DEA_TRY_MEMORY(out->time_s != NULL && out->voltage_V != NULL && out->control_V != NULL);
   for (size_t i = 0; i < out->count; i++) {
     out->time_s[i] = (double)i / protocol->rate_Hz.si;
     out->voltage_V[i] = dea_protocol_samples_next(&next);
@@ -348,7 +348,7 @@ static dea_status write_mat(struct dea_context *ctx, const struct dea_protocol *
       {.name = "control_V", .values = wave->control_V, .count = wave->count},
   };
   char *file = dea_path_join(ctx, directory, "waveform.mat");
-  DEA_NEED(file != NULL);
+  DEA_TRY_MEMORY(file != NULL);
   dea_status status =
       dea_mat_write(ctx, file, variables, sizeof variables / sizeof variables[0], DEA_MAT_5);
   dea_free(ctx, file);

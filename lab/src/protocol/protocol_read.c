@@ -206,7 +206,7 @@ static dea_status take_design(struct dea_context *ctx, const struct dea_bench_fi
     return DEA_OK;
   }
   char *path = dea_path_beside(ctx, protocol->file, protocol->design_file.text);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &protocol->design_text, &length);
   if (status == DEA_E_IO) {
     status = dea_finding_add(ctx, DEA_ERROR, protocol->design_file.location,
@@ -225,7 +225,7 @@ static dea_status take_instruments(struct dea_context *ctx, struct dea_protocol 
     char path[48];
     snprintf(path, sizeof path, "instruments[%zu]", i);
     protocol->instruments[i].path = dea_intern(ctx, path);
-    DEA_NEED(protocol->instruments[i].path != NULL);
+    DEA_TRY_MEMORY(protocol->instruments[i].path != NULL);
   }
   protocol->sim.path = "sim";
   return DEA_OK;
@@ -284,7 +284,7 @@ static dea_status copy_lists(struct dea_context *ctx, struct dea_protocol_raw *r
   struct dea_protocol *protocol = &raw->protocol;
   protocol->inputs = dea_alloc(ctx, protocol->input_count, sizeof *protocol->inputs);
   protocol->steps = dea_alloc(ctx, protocol->step_count, sizeof *protocol->steps);
-  DEA_NEED(protocol->inputs != NULL && protocol->steps != NULL);
+  DEA_TRY_MEMORY(protocol->inputs != NULL && protocol->steps != NULL);
   memcpy(protocol->inputs, raw->inputs, protocol->input_count * sizeof *protocol->inputs);
   memcpy(protocol->steps, raw->steps, protocol->step_count * sizeof *protocol->steps);
   return DEA_OK;
@@ -300,7 +300,7 @@ static dea_status read_raw(struct dea_context *ctx, const struct dea_bench_film_
   size_t errors = dea_finding_count(ctx, DEA_ERROR);
   protocol->file = dea_intern(ctx, file);
   protocol->text = dea_alloc(ctx, length + 1, 1);
-  DEA_NEED(protocol->file != NULL && protocol->text != NULL);
+  DEA_TRY_MEMORY(protocol->file != NULL && protocol->text != NULL);
   memcpy(protocol->text, text, length);
   DEA_TRY(ctx, parse(ctx, protocol, length, overrides, override_count));
   DEA_TRY(ctx, complete_sim(ctx, protocol->document));
@@ -361,7 +361,7 @@ dea_status dea_protocol_read_memory(struct dea_context *ctx,
 {
   *out = NULL;
   struct dea_protocol_raw *raw = dea_alloc(ctx, 1, sizeof *raw);
-  DEA_NEED(raw != NULL);
+  DEA_TRY_MEMORY(raw != NULL);
   dea_status status = read_raw(ctx, films, file, text, length, overrides, override_count, raw);
   if (status == DEA_OK) {
     *out = dea_alloc(ctx, 1, sizeof **out);

@@ -58,7 +58,7 @@ dea_status dea_specimen_read(struct dea_context *ctx, const char *beside,
     return DEA_OK;
   }
   char *path = dea_path_beside(ctx, beside, file->text);
-  DEA_NEED(path != NULL);
+  DEA_TRY_MEMORY(path != NULL);
   dea_status status = dea_file_read(ctx, path, DEA_YAML_SIZE_MAX, &text, &length);
   if (status == DEA_OK) {
     status = read_text(ctx, path, text, length, out);

@@ -306,7 +306,7 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
 {
   const struct dea_recorded_series none = {.set = H5I_INVALID_HID};
   struct dea_recorder *recorder = *out = dea_alloc(ctx, 1, sizeof *recorder);
-  DEA_NEED(recorder != NULL);
+  DEA_TRY_MEMORY(recorder != NULL);
   *recorder = (struct dea_recorder){
       .ctx = ctx, .file = H5I_INVALID_HID, .disk = {.file = -1, .lasting = !options->plain}};
   for (size_t c = 0; c < DEA_CHANNELS_MAX; c++) {
@@ -317,7 +317,7 @@ static dea_status recorder_make(struct dea_context *ctx, const char *file,
   recorder->flush_s = options->flush_s > 0 ? options->flush_s : 0.2;
   recorder->flushed_s = dea_clock_s();
   recorder->path = dea_copy_text(ctx, file, SIZE_MAX);
-  DEA_NEED(recorder->path != NULL);
+  DEA_TRY_MEMORY(recorder->path != NULL);
   struct h5 h;
   dea_h5_begin(&h, ctx, recorder->path);
   recorder->file = make_file(&h, options->plain, &recorder->disk);

@@ -9,7 +9,7 @@
 dea_status dea_recording_create(struct dea_context *ctx, struct dea_recording **out)
 {
   *out = dea_alloc(ctx, 1, sizeof **out);
-  DEA_NEED(*out != NULL);
+  DEA_TRY_MEMORY(*out != NULL);
   (*out)->file = "";
   (*out)->title = dea_copy_text(ctx, "", 0);
   if ((*out)->title == NULL) {

@@ -142,7 +142,7 @@ static dea_status join_events(struct dea_context *ctx, struct dea_recording *rec
     return DEA_OK;
   }
   void *moved = dea_resize(ctx, recording->events, count, sizeof *recording->events);
-  DEA_NEED(moved != NULL);
+  DEA_TRY_MEMORY(moved != NULL);
   recording->events = moved;
   for (size_t i = 0; i < other->event_count; i++) {
     struct dea_recorded_event *event = &recording->events[recording->event_count++];

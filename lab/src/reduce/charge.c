@@ -141,7 +141,7 @@ dea_status dea_charge_find(struct dea_context *ctx, const struct dea_channel *cu
                            struct dea_reduced_cycle *cycles)
 {
   double *scratch = dea_alloc(ctx, current->count, 2 * sizeof *scratch);
-  DEA_NEED(scratch != NULL);
+  DEA_TRY_MEMORY(scratch != NULL);
   for (size_t k = 0; k < count; k++) {
     struct edges edges;
     struct dea_reduced_cycle *cycle = &cycles[k];

@@ -27,7 +27,7 @@ static dea_status add_run(struct dea_context *ctx, struct runs *runs, struct run
     return DEA_OK;
   }
   struct run *list = dea_list_grow(ctx, runs->list, runs->count, sizeof run, &runs->capacity);
-  DEA_NEED(list != NULL);
+  DEA_TRY_MEMORY(list != NULL);
   runs->list = list;
   runs->list[runs->count++] = run;
   return DEA_OK;
@@ -82,7 +82,7 @@ static dea_status add_part(struct dea_context *ctx, struct dea_cycle_list *out,
                            const struct dea_cycle_parts *part)
 {
   void *list = dea_list_grow(ctx, out->parts, out->count, sizeof *part, &out->capacity);
-  DEA_NEED(list != NULL);
+  DEA_TRY_MEMORY(list != NULL);
   out->parts = list;
   out->parts[out->count++] = *part;
   return DEA_OK;
@@ -233,7 +233,7 @@ static int by_time(const void *a, const void *b)
 static dea_status take_list(const struct finder *f, const struct dea_recording *recording)
 {
   bool *used = dea_alloc(f->ctx, recording->cycle_count, sizeof *used);
-  DEA_NEED(used != NULL);
+  DEA_TRY_MEMORY(used != NULL);
   name_parts(recording, f->out, used);
   size_t named = f->out->count;
   dea_status status = DEA_OK;

@@ -98,7 +98,7 @@ dea_status dea_lag_find(struct dea_context *ctx, const struct dea_channel *volta
     return DEA_OK;
   }
   double *x = dea_alloc(ctx, 3 * count + 1, sizeof *x);
-  DEA_NEED(x != NULL);
+  DEA_TRY_MEMORY(x != NULL);
   *out = search(voltage, series, span, x, x + count, x + 2 * count, count);
   dea_free(ctx, x);
   return DEA_OK;

@@ -97,7 +97,7 @@ dea_status dea_levelling_find(struct dea_context *ctx, const double *x_m, const 
 {
   struct dea_levelling *l = levelling;
   double *work = dea_alloc(ctx, points, 3 * sizeof *work), slope;
-  DEA_NEED(work != NULL);
+  DEA_TRY_MEMORY(work != NULL);
   l->by_frame =
       dea_frame_edges(x_m, rest, points, l->film_radius_m, work, l->edges_m, &l->frame_height_m);
   l->beside_m = NAN;

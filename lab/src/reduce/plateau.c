@@ -43,7 +43,7 @@ dea_status dea_voltage_scale_find(struct dea_context *ctx, const struct dea_chan
   *out = (struct dea_voltage_scale){0};
   size_t capacity = voltage->count < THINNED_MAX ? voltage->count : THINNED_MAX;
   double *values = dea_alloc(ctx, capacity + 1, sizeof *values);
-  DEA_NEED(values != NULL);
+  DEA_TRY_MEMORY(values != NULL);
   size_t n = thin_values(voltage, true, values);
   double noise = dea_spread(values, n, 0.0) / sqrt(6.0); // variance of 1, -2, 1 is 6
   out->noise_V = isnan(noise) ? 0.0 : noise;

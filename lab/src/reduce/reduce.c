@@ -127,7 +127,7 @@ static dea_status find_cycles(struct job *job)
   drop_unknown(&job->list);
   struct dea_reduction *r = job->out;
   r->cycles = dea_alloc(job->ctx, job->list.count, sizeof *r->cycles);
-  DEA_NEED(r->cycles != NULL);
+  DEA_TRY_MEMORY(r->cycles != NULL);
   r->cycle_count = job->list.count;
   DEA_TRY(job->ctx, set_voltages(job));
   dea_cycles_dose(job->measured != NULL ? job->measured : voltage, job->scale.active_V, r->cycles,
@@ -342,7 +342,7 @@ static dea_status reduce_channels(struct job *job, const struct dea_reduce_optio
     }
     DEA_TRY(job->ctx, copy_channel(job->ctx, channel, series));
     double *scratch = dea_alloc(job->ctx, channel->count, 2 * sizeof *scratch);
-    DEA_NEED(scratch != NULL);
+    DEA_TRY_MEMORY(scratch != NULL);
     dea_status status = take_clipped_out(job->ctx, series, scratch);
     dea_filter_apply(series, series->filter_Hz, series->values);
     if (status == DEA_OK && taken[k].kind == DEA_REDUCED_FORCE) {
@@ -606,7 +606,7 @@ dea_status dea_reduce(struct dea_context *ctx, const struct dea_recording *recor
                     recording->file != NULL && recording->file[0] != '\0' ? " " : "the recording ");
   }
   job.out = dea_alloc(ctx, 1, sizeof *job.out);
-  DEA_NEED(job.out != NULL);
+  DEA_TRY_MEMORY(job.out != NULL);
   take_options(options, job.out);
   dea_status status = reduce(&job, options);
   dea_free(ctx, job.list.parts);

@@ -99,7 +99,7 @@ static dea_status fill_values(struct dea_context *ctx, const struct dea_channel 
                               double **values)
 {
   *values = dea_alloc(ctx, table->rows, sizeof **values);
-  DEA_NEED(*values != NULL);
+  DEA_TRY_MEMORY(*values != NULL);
   for (size_t i = 0; i < table->rows; i++) {
     (*values)[i] = value_at(channel, table->time_s[i], finest_s);
   }
@@ -131,7 +131,7 @@ dea_status dea_reduced_series_fill(struct dea_context *ctx, const struct dea_rec
   out->thinned = columns.samples > most;
   size_t stretches = out->thinned ? most / (2 * columns.count) : 0, n = 0;
   out->time_s = dea_alloc(ctx, out->thinned ? most : columns.samples, sizeof *out->time_s);
-  DEA_NEED(out->time_s != NULL);
+  DEA_TRY_MEMORY(out->time_s != NULL);
   for (size_t c = 0; c < columns.count; c++) {
     n = add_times(&columns, c, stretches, out->time_s, n);
   }

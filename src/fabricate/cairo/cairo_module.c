@@ -113,7 +113,7 @@ static dea_status create(struct dea_context *ctx, enum dea_canvas_format format,
 {
   struct dea_canvas *canvas = dea_alloc(ctx, 1, sizeof *canvas);
   *out = NULL;
-  DEA_NEED(canvas != NULL);
+  DEA_TRY_MEMORY(canvas != NULL);
   *canvas = (struct dea_canvas){.ctx = ctx, .format = format, .bytes = {.ctx = ctx}};
   canvas->surface = make_surface(canvas, width_mm, height_mm, title);
   canvas->cr = cairo_create(canvas->surface);

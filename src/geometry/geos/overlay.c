@@ -97,13 +97,13 @@ static dea_status add_ring(const struct geos *g, const GEOSGeometry *ring, size_
   }
   size_t first = out->count > 0 ? out->end[out->count - 1] : 0, n = first + count - 1;
   double(*point)[2] = dea_resize(g->ctx, out->point, n + 1, sizeof *point);
-  DEA_NEED(point != NULL);
+  DEA_TRY_MEMORY(point != NULL);
   out->point = point;
   size_t *end = dea_resize(g->ctx, out->end, out->count + 1, sizeof *end);
-  DEA_NEED(end != NULL);
+  DEA_TRY_MEMORY(end != NULL);
   out->end = end;
   size_t *numbers = dea_resize(g->ctx, out->polygon, out->count + 1, sizeof *numbers);
-  DEA_NEED(numbers != NULL);
+  DEA_TRY_MEMORY(numbers != NULL);
   out->polygon = numbers;
   for (unsigned k = 0; k + 1 < count; k++) { // the last one is the first
     GEOSCoordSeq_getXY_r(g->handle, points, k, &point[first + k][0], &point[first + k][1]);
@@ -162,7 +162,7 @@ static dea_status overlay(struct dea_context *ctx, enum dea_boolean what, const 
   struct geos g = {.ctx = ctx};
   *out = (struct dea_rings){0};
   GEOSGeometry **parts = dea_alloc(ctx, a->count + b->count + 2, sizeof(GEOSGeometry *));
-  DEA_NEED(parts != NULL);
+  DEA_TRY_MEMORY(parts != NULL);
   g.handle = GEOS_init_r();
   if (g.handle == NULL) {
     dea_free(ctx, parts);
