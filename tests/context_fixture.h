@@ -5,6 +5,14 @@
 
 static struct dea_context *ctx;
 
+/* That a call with this context went well; says what it says when it did not. */
+#define assert_ok(call)                                                                            \
+  do {                                                                                             \
+    if ((call) != DEA_OK) {                                                                        \
+      fail_msg("%s: %s", #call, dea_context_message(ctx));                                         \
+    }                                                                                              \
+  } while (0)
+
 static inline int context_set_up(void **state)
 {
   (void)state;

@@ -411,56 +411,10 @@ static int whole_block(const double X[3])
   return 1;
 }
 
-/* Lowest and highest root of det (K - x M) = 0 of two coupled coordinates. */
-static void two_modes(double k1, double k2, double m1, double m2, double m12, double out[2])
-{
-  double a = m1 * m2 - m12 * m12, b = k1 * m2 + k2 * m1, root = sqrt(b * b - 4 * a * k1 * k2);
-  out[0] = (b - root) / (2 * a);
-  out[1] = (b + root) / (2 * a);
-}
-
 static int by_size(const void *a, const void *b)
 {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
-}
-
-/* A rigid block on springs under its bottom: six vibrations, of its mass and its tensor of inertia,
- * wherever its point of reference is. */
-TEST(test_vibrations_of_a_rigid_block)
-{
-  static const double points[2][BODIES_MAX][3] = {{{1, 0.5, 0}}, {{-0.3, 2, 0.7}}};
-  static const double k[3] = {3e3, 5e3, 11e3}, rho = 700, a = 2, b = 1, h = 1;
-  struct dea_part_material layer = dea_part_material_bonded(elastic);
-  double wanted[6], found[6], area = a * b, m = rho * a * b * h;
-  layer.density_kg_per_m3 = rho;
-  two_modes(k[0] * area, k[2] * a * a * area / 12, m, m * (a * a / 12 + h * h / 3), m * h / 2,
-            wanted);
-  two_modes(k[1] * area, k[2] * b * b * area / 12, m, m * (b * b / 12 + h * h / 3), m * h / 2,
-            wanted + 2);
-  wanted[4] = k[2] * area / m;
-  wanted[5] = (k[0] * b * b + k[1] * a * a) * area / 12 / (m * (a * a + b * b) / 12);
-  qsort(wanted, 6, sizeof *wanted, by_size);
-  for (int p = 0; p < 2; p++) {
-    struct dea_surface *bottom;
-    struct dea_foundation *springs;
-    struct bodies it =
-        bodies_create(&bar, &layer, 1, 1, points[p], 0, whole_block, free_nodes, NULL);
-    assert_int_equal(dea_surface_create(ctx, it.grid, DEA_FACE_BOTTOM, NULL, NULL, &bottom),
-                     DEA_OK);
-    assert_int_equal(dea_foundation_create(ctx, bottom, k, &springs), DEA_OK);
-    const struct dea_solid_load load = dea_foundation_load(springs);
-    assert_int_equal(dea_solid_add_load(ctx, it.solid, &load), DEA_OK);
-    solve(&it);
-    assert_int_equal(dea_solid_modes_lowest(ctx, it.solid, DEA_MODES_BY_MASS, 6, found, NULL),
-                     DEA_OK);
-    for (int i = 0; i < 6; i++) {
-      assert_close(found[i], wanted[i], 1e-9, 0);
-    }
-    bodies_destroy(&it);
-    dea_foundation_destroy(ctx, springs);
-    dea_surface_destroy(ctx, bottom);
-  }
 }
 
 /* A rigid block without mass on six springs, one for each component, which carries four masses that

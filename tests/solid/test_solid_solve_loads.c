@@ -1,4 +1,4 @@
-/* Loads in a solve, against closed forms: weight, foundation, pressure. */
+/* A pressure in a solve, against a closed form. */
 // ctest: solid
 #include "model/solid/equilibrium/load_steps.h"
 #include "model/solid/load/loads.h"
@@ -7,22 +7,9 @@
 #include "solid_fixture.h"
 
 static const struct block slab = {{1, 1, 2}, {1, 1, 4}, 2, 2};
-static const double mu = 1e5;
-static struct dea_element_set elements;
 static struct dea_grid *grid;
 static struct dea_solid *solid;
 static struct dea_solid_report report;
-
-/* Up and down only. */
-static int sideways(const void *self, const double X[3])
-{
-  return 1 | 2;
-}
-
-static int hangs(const void *self, const double X[3])
-{
-  return 1 | 2 | (X[2] > 2 - 1e-9 ? 4 : 0);
-}
 
 static int on_planes(const void *self, const double X[3])
 {
@@ -34,12 +21,10 @@ static void slab_create(const struct dea_part_material *layer,
 {
   grid = block_grid(ctx, &slab);
   solid = block_solid(ctx, grid, slab.order_z, layer, held);
-  assert_int_equal(dea_element_set_create(ctx, slab.order, slab.order_z, &elements), DEA_OK);
 }
 
 static void slab_destroy(void)
 {
-  dea_element_set_release(ctx, &elements);
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }
@@ -59,68 +44,6 @@ static struct dea_surface *side_create(enum dea_face side)
   struct dea_surface *surface;
   assert_int_equal(dea_surface_create(ctx, grid, side, outside, NULL, &surface), DEA_OK);
   return surface;
-}
-
-static double top_displacement(double z)
-{
-  size_t n = 0;
-  while (grid->X[3 * n + 2] < z - 1e-9 || grid->X[3 * n + 2] > z + 1e-9) {
-    n++;
-  }
-  return dea_solid_displacement(solid)[3 * n + 2];
-}
-
-/* Stretch of a bar that keeps its width, at a nominal stress: mu (l - 1/l) = P. */
-static double stretch(double P)
-{
-  double half = P / (2 * mu);
-  return half + sqrt(half * half + 1);
-}
-
-/* A block on springs, pressed down: the springs give way by traction over stiffness, whatever the
- * block does, and the block gets shorter. */
-TEST(test_slab_on_a_foundation)
-{
-  const struct dea_part_material soft = dea_part_material_bonded((const double[]){2e5, 0});
-  static const double stiffness[3] = {0, 0, 4e5}, traction[3] = {0, 0, -6e4};
-  slab_create(&soft, sideways);
-  struct dea_surface *bottom = side_create(DEA_FACE_BOTTOM), *top = side_create(DEA_FACE_TOP);
-  struct dea_foundation *springs;
-  assert_int_equal(dea_foundation_create(ctx, bottom, stiffness, &springs), DEA_OK);
-  const struct dea_solid_load load = dea_foundation_load(springs);
-  assert_int_equal(dea_solid_add_load(ctx, solid, &load), DEA_OK);
-  dea_load_traction(top, traction, dea_solid_force(solid));
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(report.unstable_modes, 0);
-  double down = top_displacement(0);
-  assert_close(down, traction[2] / stiffness[2], 1e-8, 0);
-  assert_close(top_displacement(2) - down, 2 * (stretch(traction[2]) - 1), 1e-8, 0);
-  slab_destroy();
-  dea_foundation_destroy(ctx, springs);
-  dea_surface_destroy(ctx, bottom);
-  dea_surface_destroy(ctx, top);
-}
-
-static double density(const void *self, int region, int ply)
-{
-  return 1000;
-}
-
-/* Hangs by its top and stretches under its weight: at a height z it carries what is below. */
-TEST(test_hanging_block)
-{
-  const struct dea_part_material soft = dea_part_material_bonded((const double[]){2e5, 0});
-  static const double g[3] = {0, 0, -60}; // so that its end stretches by two thirds
-  double way = 0;
-  slab_create(&soft, hangs);
-  assert_int_equal(dea_load_gravity(grid, &elements, density, NULL, g, dea_solid_force(solid)),
-                   DEA_OK);
-  assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  for (int i = 0; i < 1000; i++) { // midpoint rule
-    way -= 2.0 / 1000 * (stretch(1000 * 60 * 2.0 * (i + 0.5) / 1000) - 1);
-  }
-  assert_close(top_displacement(0), way, 1e-5, 0);
-  slab_destroy();
 }
 
 /* All around, with three mirror planes through the origin of the pressure's volume: a cube stays

@@ -163,6 +163,12 @@ static bool everywhere(const void *self, int region, int ply)
   return true;
 }
 
+static dea_status take_nothing(struct dea_context *own, void *user, size_t i, const double *real,
+                               const double *imaginary)
+{
+  return DEA_OK;
+}
+
 /* A flat film under voltage has the tension sigma - eps E^2, and all its frequencies out of the
  * plane fall with the root of that; below 0 they are unstable, each of them. */
 TEST(test_voltage_takes_tension_away)
@@ -202,10 +208,9 @@ TEST(test_voltage_takes_tension_away)
     assert_close(nearest, 0, 0, 1e-8); // K has 1e-10 of a spring (membrane.md)
     const struct dea_branches branches = {1, {{30e3, 0.1}}};
     const struct dea_damping none = {0};
-    double out[1][2][3], w = sqrt(rest[0]);
-    const size_t node = 0;
+    const double w = sqrt(rest[0]);
     assert_int_equal( // no excitation about what does not stand
-        dea_solid_respond_viscous(ctx, solid, &branches, &none, &w, 1, &node, 1, out),
+        dea_solid_respond_viscous(ctx, solid, &branches, &none, &w, 1, take_nothing, NULL),
         left > 0 ? DEA_OK : DEA_E_NOT_CONVERGED);
   }
   dea_solid_destroy(ctx, solid);

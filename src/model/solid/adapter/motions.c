@@ -225,8 +225,8 @@ static dea_status solve_each(struct dea_context *ctx, const struct dea_motions *
 {
   struct dea_damping spread = *damping;
   DEA_TRY(ctx, spread_ratio(ctx, m, &spread));
-  DEA_TRY(ctx, dea_solid_respond_viscous_each(ctx, m->solid, m->branches, &spread, rad_per_s, count,
-                                              take, out));
+  DEA_TRY(ctx, dea_solid_respond_viscous(ctx, m->solid, m->branches, &spread, rad_per_s, count,
+                                         take, out));
   return DEA_OK;
 }
 

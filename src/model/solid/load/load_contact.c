@@ -63,21 +63,11 @@ void dea_contact_move(struct dea_contact *contact, const double place_m[3])
   memcpy(contact->goal, place_m, sizeof contact->goal);
 }
 
-void dea_contact_place(const struct dea_contact *contact, double place_m[3])
-{
-  memcpy(place_m, contact->now, sizeof contact->now);
-}
-
 void dea_contact_hold(struct dea_contact *contact, const struct dea_contact *other)
 {
   const size_t count = contact->surface->face_count * (size_t)contact->shape.points;
   memcpy(contact->pressure, other->pressure, count * sizeof *contact->pressure);
   contact->held = true;
-}
-
-const double *dea_contact_pressure(const struct dea_contact *contact)
-{
-  return contact->pressure;
 }
 
 /* Gap at a point of a face, which is one of its nodes. */
@@ -204,16 +194,6 @@ void dea_contact_force(const struct dea_contact *contact, const double *u, doubl
       }
     }
   }
-}
-
-double dea_contact_area(const struct dea_contact *contact)
-{
-  size_t points = (size_t)contact->shape.points;
-  double area = 0;
-  for (size_t at = 0; at < contact->surface->face_count * points; at++) {
-    area += contact->pressure[at] > 0 ? contact->weight[at] : 0;
-  }
-  return area;
 }
 
 struct dea_solid_load dea_contact_load(struct dea_contact *contact)

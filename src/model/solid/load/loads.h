@@ -9,25 +9,10 @@
 
 /* ---- dead loads; force: [node_count][3] [N], added to ---- */
 
-/* Weight. elements: of the grid's orders; density of each region and ply, in the stretched flat
- * film, of a surface its mass per area [kg/m^2]; acceleration: of free fall. DEA_E_DOMAIN for an
- * inverted element. */
-dea_status dea_load_gravity(const struct dea_grid *grid, const struct dea_element_set *elements,
-                            double (*density_kg_per_m3)(const void *self, int region, int ply),
-                            const void *self, const double acceleration_m_per_s2[3], double *force);
 /* Force per reference area in a fixed direction. A total force over a patch: that over
  * dea_surface_area. */
 void dea_load_traction(const struct dea_surface *surface, const double traction_Pa[3],
                        double *force);
-
-/* ---- springs toward the reference place ---- */
-
-struct dea_foundation;
-/* stiffness: along the three axes, each 0 or more, per reference area. out: owned by the caller. */
-dea_status dea_foundation_create(struct dea_context *ctx, const struct dea_surface *surface,
-                                 const double stiffness_Pa_per_m[3], struct dea_foundation **out);
-void dea_foundation_destroy(struct dea_context *ctx, struct dea_foundation *foundation);
-struct dea_solid_load dea_foundation_load(struct dea_foundation *foundation);
 
 /* ---- spring of one component of a node, or of a rigid body, against the outside ---- */
 
@@ -113,20 +98,15 @@ dea_status dea_contact_create(struct dea_context *ctx, const struct dea_surface 
 void dea_contact_destroy(struct dea_context *ctx, struct dea_contact *contact);
 /* Where the next solve brings the tip. */
 void dea_contact_move(struct dea_contact *contact, const double place_m[3]);
-/* Where it is. */
-void dea_contact_place(const struct dea_contact *contact, double place_m[3]);
 /* Of the surface on the tip at the last equilibrium, u: its displacements. */
 void dea_contact_force(const struct dea_contact *contact, const double *u, double force_N[3]);
 /* Adds `factor` times the slopes of a component of that force: by u [node_count][3], and by the
- * pressures, as dea_contact_pressure has them, of those that there are. */
+ * pressures, the multipliers of the load, of those that there are. */
 void dea_contact_force_slope(const struct dea_contact *contact, const double *u, int component,
                              double factor, double *by_u, double *by_pressure);
-/* Reference area in contact [m^2]. */
-double dea_contact_area(const struct dea_contact *contact);
 /* Of the same surface moved: what has a pressure in the other contact stays in touch, of any sign
  * that its pressure comes to have, and without a penalty. For slopes at one state. */
 void dea_contact_hold(struct dea_contact *contact, const struct dea_contact *other);
-/* Contact pressures per reference area [face_count][points], at the nodes of each face of the
- * surface in their order; lent. */
-const double *dea_contact_pressure(const struct dea_contact *contact);
+/* Multipliers: contact pressures per reference area [face_count][points], at the nodes of each
+ * face of the surface in their order. */
 struct dea_solid_load dea_contact_load(struct dea_contact *contact);

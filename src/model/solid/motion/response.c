@@ -155,11 +155,6 @@ dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *
   return DEA_OK;
 }
 
-size_t dea_solid_response_modes(const struct dea_solid_response *r)
-{
-  return r->count;
-}
-
 /* The rest at s: 1/c sum s^k r_k solves c K q - w^2 M q + i w (mass) M q = f beside the modes, with
  * c = 1 + i w (stiffness) and s = (w^2 - i w (mass))/c. */
 static void add_rest(const struct dea_solid_response *r, size_t node, double w,

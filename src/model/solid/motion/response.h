@@ -32,23 +32,12 @@ void dea_solid_response_at(const struct dea_solid_response *response, size_t nod
 
 /* Answers of a solid whose part materials have branches (internal_variables.h), solved at each
  * frequency: as branches follow, K goes from its slow to its fast form. branches: [part materials
- * of the solid]; the ratio of the damping is not looked at. out: [count][node_count], real and
- * imaginary part [m/V]. Otherwise as a response. */
-dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *solid,
-                                     const struct dea_branches *branches,
-                                     const struct dea_damping *damping, const double *rad_per_s,
-                                     size_t count, const size_t *nodes, size_t node_count,
-                                     double (*out)[2][3]);
-
-/* The same; take gets the whole answer of each frequency i, [3 node_count] of both parts. */
-dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_solid *solid,
-                                          const struct dea_branches *branches,
-                                          const struct dea_damping *damping,
-                                          const double *rad_per_s, size_t count,
-                                          dea_status (*take)(struct dea_context *ctx, void *user,
-                                                             size_t i, const double *real,
-                                                             const double *imaginary),
-                                          void *user);
-
-/* Modes that it has. */
-size_t dea_solid_response_modes(const struct dea_solid_response *response);
+ * of the solid]; the ratio of the damping is not looked at. take gets the whole answer of each
+ * frequency i, [3 node_count] of both parts [m/V]. Otherwise as a response. */
+dea_status
+dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *solid,
+                          const struct dea_branches *branches, const struct dea_damping *damping,
+                          const double *rad_per_s, size_t count,
+                          dea_status (*take)(struct dea_context *ctx, void *user, size_t i,
+                                             const double *real, const double *imaginary),
+                          void *user);

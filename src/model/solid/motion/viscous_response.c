@@ -305,14 +305,13 @@ static dea_status respond(struct dea_context *ctx, struct system *y,
   return status;
 }
 
-dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_solid *s,
-                                          const struct dea_branches *branches,
-                                          const struct dea_damping *damping,
-                                          const double *rad_per_s, size_t count,
-                                          dea_status (*take)(struct dea_context *ctx, void *user,
-                                                             size_t i, const double *real,
-                                                             const double *imaginary),
-                                          void *user)
+dea_status
+dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
+                          const struct dea_branches *branches, const struct dea_damping *damping,
+                          const double *rad_per_s, size_t count,
+                          dea_status (*take)(struct dea_context *ctx, void *user, size_t i,
+                                             const double *real, const double *imaginary),
+                          void *user)
 {
   const struct taker taker = {take, user};
   const size_t capacity = PARTS + s->problem.part_material_count;
@@ -342,36 +341,4 @@ dea_status dea_solid_respond_viscous_each(struct dea_context *ctx, struct dea_so
   VecDestroy(&y.answer);
   s->found.factor_fits = s->found.predicted_fits = false;
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-}
-
-/* Nodes that are wanted of the whole answer. */
-struct wanted {
-  const size_t *nodes;
-  size_t count;
-  double (*out)[2][3];
-};
-
-static dea_status take_nodes(struct dea_context *ctx, void *user, size_t i, const double *real,
-                             const double *imaginary)
-{
-  const struct wanted *wanted = user;
-  (void)ctx;
-  for (size_t n = 0; n < wanted->count; n++) {
-    double(*out)[3] = wanted->out[i * wanted->count + n];
-    memcpy(out[0], real + 3 * wanted->nodes[n], sizeof out[0]);
-    memcpy(out[1], imaginary + 3 * wanted->nodes[n], sizeof out[1]);
-  }
-  return DEA_OK;
-}
-
-dea_status dea_solid_respond_viscous(struct dea_context *ctx, struct dea_solid *s,
-                                     const struct dea_branches *branches,
-                                     const struct dea_damping *damping, const double *rad_per_s,
-                                     size_t count, const size_t *nodes, size_t node_count,
-                                     double (*out)[2][3])
-{
-  struct wanted wanted = {nodes, node_count, out};
-  DEA_TRY(ctx, dea_solid_respond_viscous_each(ctx, s, branches, damping, rad_per_s, count,
-                                              take_nodes, &wanted));
-  return DEA_OK;
 }
