@@ -1,12 +1,11 @@
-/* Hexahedra with a potential: derivatives, invariance, the plate capacitor, the thin-film energy.
- */
+/* Hexahedra with a potential: the plate capacitor, the thin-film energy. */
 #include "solid_element.h"
 #include "testing.h"
 
 #include <string.h>
 
 static struct dea_hex_shape shape;
-static struct dea_element_result at, up, down;
+static struct dea_element_result at, up;
 
 static const double scale = 2e8; // V/m
 static const double pressures[DEA_HEX_PRESSURES_MAX] = {1e4, -2e3, 3e3,  5e2, -1e3,
@@ -26,14 +25,6 @@ static struct dea_part_material film(double pre_stretch)
                                     .permittivity_F_per_m = 2.5e-11,
                                     .thickness_m = 44e-6};
   assert_int_equal(dea_part_material_relax(&layer), DEA_OK);
-  return layer;
-}
-
-static struct dea_part_material plastic(void)
-{
-  static const double param[] = {5.2e5, 0.3};
-  struct dea_part_material layer = dea_part_material_bonded(param);
-  layer.permittivity_F_per_m = 4e-11;
   return layer;
 }
 
@@ -75,12 +66,6 @@ static dea_status capacity(const struct dea_part_material *layer, const struct s
   return element.type->capacity(&element, &in, L);
 }
 
-/* Unknown j of a sample. */
-static double *unknown(struct sample *s, int j)
-{
-  return j % 4 < 3 ? &s->u[3 * (j / 4) + j % 4] : &s->psi[j / 4];
-}
-
 static double largest(const double *values, int count)
 {
   double most = 0;
@@ -88,40 +73,6 @@ static double largest(const double *values, int count)
     most = fmax(most, fabs(values[i]));
   }
   return most;
-}
-
-static void check_derivatives(const struct dea_part_material *layer)
-{
-  int dofs = 4 * shape.nodes;
-  const double d = 1e-10;
-  struct sample s = distorted();
-  assert_int_equal(evaluate(layer, &s, DEA_TANGENT, &at), DEA_OK);
-  double most_g = largest(at.g, dofs), most_K = largest(at.K, dofs * dofs);
-  for (int j = 0; j < dofs; j++) {
-    double *x = unknown(&s, j), keep = *x;
-    *x = keep + d;
-    assert_int_equal(evaluate(layer, &s, DEA_FORCE, &up), DEA_OK);
-    *x = keep - d;
-    assert_int_equal(evaluate(layer, &s, DEA_FORCE, &down), DEA_OK);
-    *x = keep;
-    assert_close(at.g[j], (up.energy_J - down.energy_J) / (2 * d), 0, 1e-8 * most_g);
-    for (int i = 0; i < dofs; i++) {
-      assert_close(at.K[i * dofs + j], (up.g[i] - down.g[i]) / (2 * d), 0, 1e-8 * most_K);
-      assert_close(at.K[i * dofs + j], at.K[j * dofs + i], 0, 1e-13 * most_K);
-    }
-  }
-}
-
-TEST(test_derivatives_of_all_orders)
-{
-  for (int order = 1; order <= DEA_HEX_ORDER_MAX; order++) {
-    for (int order_z = 1; order_z <= (order < 3 ? 2 : 1); order_z++) {
-      const struct dea_part_material soft = film(1.5), hard = plastic();
-      assert_int_equal(dea_hex_shape_create(order, order_z, &shape), DEA_OK);
-      check_derivatives(&soft);
-      check_derivatives(&hard);
-    }
-  }
 }
 
 /* The electric part alone is -(1/2) phi L phi, and the tangent's block of the potentials is -c^2 L.
@@ -147,40 +98,6 @@ TEST(test_capacity_is_the_electric_energy)
     }
   }
   assert_close(at.energy_J - up.energy_J, energy, 1e-9, 0);
-}
-
-/* Turned and moved as a whole, and with a potential added everywhere, the element keeps its energy;
- * its forces turn with it and its charges stay. */
-TEST(test_rigid_motion_and_added_potential)
-{
-  static const double Q[9] = {0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6};
-  const struct dea_part_material soft = film(1.5);
-  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  struct sample s = distorted(), turned = s;
-  for (int n = 0; n < shape.nodes; n++) {
-    turned.psi[n] += 5e3 / scale;
-    for (int i = 0; i < 3; i++) {
-      double x = 1e-3 * (i + 1);
-      for (int j = 0; j < 3; j++) {
-        x += Q[3 * i + j] * (s.X[3 * n + j] + s.u[3 * n + j]);
-      }
-      turned.u[3 * n + i] = x - s.X[3 * n + i];
-    }
-  }
-  assert_int_equal(evaluate(&soft, &s, DEA_FORCE, &at), DEA_OK);
-  assert_int_equal(evaluate(&soft, &turned, DEA_FORCE, &up), DEA_OK);
-  assert_close(up.energy_J, at.energy_J, 1e-10, 0);
-  double most = largest(at.g, 4 * shape.nodes);
-  for (int n = 0; n < shape.nodes; n++) {
-    for (int i = 0; i < 3; i++) {
-      double g = 0;
-      for (int j = 0; j < 3; j++) {
-        g += Q[3 * i + j] * at.g[4 * n + j];
-      }
-      assert_close(up.g[4 * n + i], g, 0, 1e-9 * most);
-    }
-    assert_close(up.g[4 * n + 3], at.g[4 * n + 3], 0, 1e-9 * most);
-  }
 }
 
 /* A potential that is linear in the reference thickness is the thin film's field, whatever the
@@ -260,17 +177,6 @@ TEST(test_spread_in_place)
       assert_close(K[WIDE * i + j], both ? K3[SMALL * row + 3 * (j / 4) + j % 4] : 0, 0, 0);
     }
   }
-}
-
-TEST(test_inverted_element)
-{
-  static double L[DEA_HEX_NODES_MAX * DEA_HEX_NODES_MAX];
-  const struct dea_part_material soft = film(1.5);
-  assert_int_equal(dea_hex_shape_create(2, 2, &shape), DEA_OK);
-  struct sample s = distorted();
-  s.u[3 * 13 + 2] = 1e-4; // the middle node out through the top
-  assert_int_equal(evaluate(&soft, &s, DEA_ENERGY, &at), DEA_E_DOMAIN);
-  assert_int_equal(capacity(&soft, &s, L), DEA_E_DOMAIN);
 }
 
 TESTS(NULL, NULL)
