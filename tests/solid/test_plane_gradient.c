@@ -41,9 +41,7 @@ static void solve(const struct dea_model_type *type, const struct dea_device *de
   assert_int_equal(type->create(ctx, device, NULL, &model), DEA_OK);
   const dea_status status = stretch > 0 ? dea_model_stretch(ctx, type, model, device, stretch, out)
                                         : type->solve(ctx, model, voltage_V, out);
-  if (status != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(status);
   if (keep != NULL) {
     *keep = model;
   } else {
@@ -117,9 +115,8 @@ static void check(const char *model, double stretch, double floor)
     columns[k] = dea_point_column_find(keys[k]);
   }
   const struct dea_override stretched = {"pre_stretch", "1.8"};
-  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", &stretched,
-                                   stretch > 0 ? 1 : 0, &design),
-                   DEA_OK);
+  assert_ok(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", &stretched,
+                            stretch > 0 ? 1 : 0, &design));
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   struct dea_design_gradient ask = {.type = type,
                                     .design = design,
@@ -213,8 +210,7 @@ static void check_critical(const char *model, bool soft, const enum dea_event_ki
   struct dea_design *design;
   struct dea_device *device;
   struct dea_design_number numbers[DEA_NUMBERS_MAX];
-  assert_int_equal(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design),
-                   DEA_OK);
+  assert_ok(dea_design_read(ctx, DEA_SOURCE_DIR "/examples/frdea-4.yaml", NULL, 0, &design));
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   if (soft) {
     device->film = soft_film();

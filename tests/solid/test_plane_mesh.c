@@ -15,9 +15,7 @@ static struct dea_plane_mesh *two_squares(const char *file)
 {
   struct dea_plane_mesh *mesh;
   dea_status status = dea_msh_read(ctx, file, 1e-3, &mesh);
-  if (status != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(status);
   return mesh;
 }
 

@@ -105,8 +105,7 @@ static double whole_load(const struct dea_solid_load *load, const double *v, dou
   memset(g, 0, count * sizeof *g);
   load->prepare(load->self, u);
   for (size_t p = 0; p < load->piece_count; p++) {
-    assert_int_equal(load->evaluate(load->self, p, u, v != NULL ? DEA_TANGENT : DEA_FORCE, &at),
-                     DEA_OK);
+    assert_ok(load->evaluate(load->self, p, u, v != NULL ? DEA_TANGENT : DEA_FORCE, &at));
     energy += at.energy_J;
     for (int i = 0; i < 3 * at.node_count; i++) {
       g[3 * at.nodes[i / 3] + i % 3] += at.g[i];

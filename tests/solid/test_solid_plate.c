@@ -136,10 +136,9 @@ static double volume(const struct dea_grid *grid, int ply, int bits)
       memcpy(X + 3 * n, grid->X + 3 * grid->nodes[e * DEA_HEX_NODES_MAX + (size_t)n],
              3 * sizeof(double));
     }
-    assert_int_equal(grid->levels[e] == 1
-                         ? evaluate_membrane(&flat, &film, X, rest, 0, DEA_ENERGY, &result)
-                         : evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result),
-                     DEA_OK);
+    assert_ok(grid->levels[e] == 1
+                  ? evaluate_membrane(&flat, &film, X, rest, 0, DEA_ENERGY, &result)
+                  : evaluate_hex(&shape, &hard, X, rest, none, 0, DEA_ENERGY, &result));
     sum += grid->ply[e] == ply && (grid->region[e] & bits) == bits ? result.volume_m3 : 0;
   }
   return sum;

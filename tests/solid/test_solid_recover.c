@@ -55,9 +55,8 @@ static struct strip *strip_create(enum kind kind, int order, int order_z, size_t
   struct strip *s = calloc(1, sizeof *s);
   film = test_yeoh();
   s->kind = kind;
-  assert_int_equal(dea_grid_create(ctx, order, blocks, 2, plies, 2, fibre_on_second,
-                                   kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid),
-                   DEA_OK);
+  assert_ok(dea_grid_create(ctx, order, blocks, 2, plies, 2, fibre_on_second,
+                            kind == FLAT ? 0 : -0.5 * h_m, length_m, &s->grid));
   assert_int_equal(dea_element_set_create(ctx, order, order_z, &s->elements), DEA_OK);
   s->layers[0] = (struct dea_part_material){.pre_stretch = {l_pre, l_pre, 1 / (l_pre * l_pre)},
                                             .kappa_Pa = 4e7,
@@ -139,8 +138,7 @@ static void relax(struct strip *s, const double F[9])
     double cof[9], J = dea_cofactors(F, cof);
     if (s->layer[e] == 0 && s->kind != FLAT) {
       double field = s->across_V[e] / h_m;
-      assert_int_equal(dea_part_material_point(&s->layers[0], F, cof, J, 0, field, true, &point),
-                       DEA_OK);
+      assert_ok(dea_part_material_point(&s->layers[0], F, cof, J, 0, field, true, &point));
       double push = 0, size = 0; // along the current normal
       for (int i = 0; i < 3; i++) {
         push += point.P[3 * i + 2] * cof[3 * i + 2];
@@ -482,8 +480,7 @@ TEST(test_second_derivatives)
     struct dea_block block = {map_square, NULL, mirrors ? alone : cuts, cuts, mirrors ? 1 : 3,
                               3,          0};
     struct dea_grid *grid;
-    assert_int_equal(dea_grid_create(ctx, 2, &block, 1, &ply, 1, everywhere, 0, length_m, &grid),
-                     DEA_OK);
+    assert_ok(dea_grid_create(ctx, 2, &block, 1, &ply, 1, everywhere, 0, length_m, &grid));
     size_t count = grid->element_count, axes = 2 * (size_t)DEA_RECOVER_LEVELS * NUMBERS;
     double *value = calloc(count * 27 * NUMBERS, sizeof *value),
            *c = calloc(count * axes, sizeof *c);

@@ -46,9 +46,7 @@ static void create(void)
   const struct dea_part_material layer = dea_part_material_bonded(elastic);
   const struct dea_solid_options options = {
       .order_z = 2, .part_material_count = 1, .part_materials = &layer, .held = clamped};
-  assert_int_equal(
-      dea_grid_create(ctx, ORDER, &block, 1, &ply, 1, NULL, -0.5 * thickness, length, &grid),
-      DEA_OK);
+  assert_ok(dea_grid_create(ctx, ORDER, &block, 1, &ply, 1, NULL, -0.5 * thickness, length, &grid));
   assert_int_equal(dea_solid_create(ctx, grid, &options, &solid), DEA_OK);
 }
 
@@ -92,8 +90,7 @@ TEST(test_strip_buckles_at_eulers_strain)
   assert_int_equal(report.unstable_modes, 0);
   compress(above);
   assert_int_equal(report.unstable_modes, 1);
-  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 1, &value, NULL),
-                   DEA_OK);
+  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, 1, &value, NULL));
   assert_true(value < 0);
   for (int i = 0; i < 8; i++) {
     double middle = 0.5 * (below + above);
@@ -167,8 +164,7 @@ TEST(test_modes_of_a_clamped_strip)
   compress(0);
   double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
   assert_non_null(vector);
-  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector),
-                   DEA_OK);
+  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector));
   for (int k = 1; k < COUNT; k++) {
     assert_true(value[k] >= value[k - 1]);
   }
@@ -236,8 +232,7 @@ TEST(test_modes_of_a_square_plate)
   double *vector = dea_alloc(ctx, COUNT * 3 * grid->node_count, sizeof *vector);
   assert_non_null(vector);
   assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);
-  assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector),
-                   DEA_OK);
+  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, COUNT, value, vector));
   assert_close(value[0], D * 35.99 * 35.99, 3e-2, 0);
   assert_close(value[1], D * 73.41 * 73.41, 3e-2, 0);
   assert_close(value[2], value[1], 1e-7, 0);

@@ -179,9 +179,8 @@ static struct body strip(enum dea_solid_field_kind field, const struct location 
                                             .held = strip_held,
                                             .electrode = strip_faces,
                                             .self = &body.location};
-  assert_int_equal(dea_grid_create(ctx, 2, &block, 1, plies, ply_count, NULL, -0.5 * location->h,
-                                   location->b, &body.grid),
-                   DEA_OK);
+  assert_ok(dea_grid_create(ctx, 2, &block, 1, plies, ply_count, NULL, -0.5 * location->h,
+                            location->b, &body.grid));
   assert_int_equal(dea_solid_create(ctx, body.grid, &options, &body.solid), DEA_OK);
   return body;
 }

@@ -32,9 +32,7 @@ static double find_critical_slopes(const struct state *at,
   struct dea_design_change changes[OF_DEVICE];
   struct dea_critical critical = find_critical(at, settings, kind);
   make_changes(at, NULL, OF_DEVICE, sides, changes);
-  if (dea_critical_slopes(ctx, &critical, changes, OF_DEVICE, out) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_critical_slopes(ctx, &critical, changes, OF_DEVICE, out));
   dea_critical_end(ctx, &critical);
   for (int i = 0; i < OF_DEVICE; i++) {
     out[i] /= critical.voltage_V;

@@ -15,9 +15,8 @@ static const struct dea_curve *take(const char *force, struct dea_design **desig
   const struct dea_override sets[] = {{"compute.voltage", "{from: 0 kV, to: 6.6 kV, step: 0.2 kV}"},
                                       {"compute.force", force}};
   static const char *const name = "force";
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, design),
-      DEA_OK);
+  assert_ok(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, design));
   assert_int_equal(dea_device_build(ctx, *design, device), DEA_OK);
   assert_int_equal(dea_result_create(ctx, *design, *device, result), DEA_OK);
   assert_int_equal(dea_study_run(ctx, dea_model_find("3d"), &name, 1, *result), DEA_OK);
@@ -78,15 +77,13 @@ TEST(test_beside)
   struct dea_device *device;
   struct dea_result *results[2];
   const struct dea_curve *curves[2];
-  assert_int_equal(
-      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design),
-      DEA_OK);
+  assert_ok(
+      dea_design_read_memory(ctx, "test.yaml", GOOD_DESIGN, strlen(GOOD_DESIGN), sets, 2, &design));
   assert_int_equal(dea_device_build(ctx, design, &device), DEA_OK);
   for (size_t i = 0; i < 2; i++) {
     assert_int_equal(dea_result_create(ctx, design, device, &results[i]), DEA_OK);
     const struct dea_study_services services = {.processes = i + 1};
-    assert_int_equal(dea_study_run_with(ctx, dea_model_find("3d"), &name, 1, &services, results[i]),
-                     DEA_OK);
+    assert_ok(dea_study_run_with(ctx, dea_model_find("3d"), &name, 1, &services, results[i]));
     curves[i] = dea_result_find(results[i], "3d", name);
     assert_int_equal(curves[i]->count, 6);
   }

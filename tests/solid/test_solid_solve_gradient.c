@@ -57,9 +57,7 @@ static int number_count(const struct state *at)
 static void step_aside(const struct state *at, struct dea_model *model)
 {
   struct dea_load_point point;
-  if (solid->solve(ctx, model, 0.98 * at->voltage_V, &point) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->solve(ctx, model, 0.98 * at->voltage_V, &point));
 }
 
 /* The state of a model into that of a changed device on the same mesh. Not where there is a weight:
@@ -86,9 +84,7 @@ static struct dea_load_point solve(const struct state *at,
   struct dea_model *model = NULL;
   struct dea_load_point point = dea_load_point_empty();
   own.mesh_from = near;
-  if (solid->create(ctx, &at->device, &own, &model) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->create(ctx, &at->device, &own, &model));
   if (near != NULL && at->device.gravity == DEA_GRAVITY_OFF) {
     begin_at(at, model, near);
   }
@@ -100,10 +96,9 @@ static struct dea_load_point solve(const struct state *at,
   const bool exact = settings->field == DEA_FIELD_COUPLED || settings->order == 1;
   const int rounds = is_pressed(at) ? 1 : exact ? ROUNDS : 0;
   for (int i = 0; i < rounds; i++) { // beyond what the tolerances of contact and solver ask
-    if ((is_pressed(at) ? solid->indent(ctx, model, &at->pressed.tip, at->pressed.depth_m, &point)
-                        : solid->solve(ctx, model, at->voltage_V, &point)) != DEA_OK) {
-      fail_msg("%s", dea_context_message(ctx));
-    }
+    assert_ok((is_pressed(at)
+                   ? solid->indent(ctx, model, &at->pressed.tip, at->pressed.depth_m, &point)
+                   : solid->solve(ctx, model, at->voltage_V, &point)));
   }
   if (vibrates(at)) {
     point.frequency_Hz = frequency_of(solid, model, &point);
@@ -144,9 +139,7 @@ static struct dea_load_point find_slopes(const struct state *at,
                                        .change_count = (size_t)count,
                                        .columns = columns,
                                        .column_count = (size_t)key_count(at)};
-  if (solid->gradient(ctx, model, &ask, out) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->gradient(ctx, model, &ask, out));
   if (keep != NULL) {
     *keep = model;
   } else {

@@ -30,10 +30,8 @@ static struct dea_load_point solve(const struct dea_model_type *type,
 {
   struct dea_model *model;
   struct dea_load_point point;
-  if (type->create(ctx, device, settings, &model) != DEA_OK ||
-      type->solve(ctx, model, voltage_V, &point) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(type->create(ctx, device, settings, &model));
+  assert_ok(type->solve(ctx, model, voltage_V, &point));
   type->destroy(ctx, model);
   assert_int_equal(point.unstable_modes, 0);
   return point;

@@ -17,9 +17,7 @@ static struct dea_model *create(const struct dea_device *device,
                                 const struct dea_model_settings *settings)
 {
   struct dea_model *model;
-  if (dea_solid_module.create(ctx, device, settings, &model) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_solid_module.create(ctx, device, settings, &model));
   return model;
 }
 
@@ -49,9 +47,7 @@ TEST(test_modes_of_a_disc)
   double c = sqrt(797.745e3 / 970), R = d.frame_radius_m; // stress of Table 1 at 1.5
   struct dea_model *model = create(&d, &settings);
   assert_int_equal(dea_solid_module.solve(ctx, model, 0, &at), DEA_OK);
-  if (dea_solid_module.modes(ctx, model, &at, MODES, points, &shapes) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_solid_module.modes(ctx, model, &at, MODES, points, &shapes));
   int found = 0;
   for (int k = 0; k < MODES && found < 4; k++) {
     assert_close(points[k].mode, k + 1, 0, 0);
@@ -82,9 +78,7 @@ TEST(test_answer_to_a_slow_ripple)
   assert_int_equal(dea_solid_module.solve(ctx, model, 3980, &less), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 4020, &more), DEA_OK);
   assert_int_equal(dea_solid_module.solve(ctx, model, 4000, &at), DEA_OK);
-  if (dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 2, points) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 2, points));
   double centre = 50 * (more.centre_z_m - less.centre_z_m) / 40;
   double tip = 50 * (more.fibre_tip_z_m - less.fibre_tip_z_m) / 40;
   assert_true(centre < 0 && tip < 0); // away from the fibres
@@ -107,10 +101,8 @@ TEST(test_answer_of_a_viscous_film)
   for (int k = 0; k < 2; k++) {
     struct dea_model *model = create(&d, NULL);
     assert_int_equal(dea_solid_module.solve(ctx, model, 3000, &at), DEA_OK);
-    if (dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 3,
-                                 k == 0 ? elastic : viscous) != DEA_OK) {
-      fail_msg("%s", dea_context_message(ctx));
-    }
+    assert_ok(dea_solid_module.respond(ctx, model, &at, &excitation, frequency_Hz, 3,
+                                       k == 0 ? elastic : viscous));
     dea_solid_module.destroy(ctx, model);
     d.film.branch_count = 1;
     d.film.branches[0] = (struct dea_branch){100e3, 0.16};

@@ -21,10 +21,8 @@ static struct dea_load_point go(const struct state *at, const struct dea_model_s
 {
   struct dea_load_point out = {0};
   struct dea_model *model;
-  if (solid->create(ctx, &at->device, settings, &model) != DEA_OK ||
-      dea_model_stretch(ctx, solid, model, &at->device, stretch, &out) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->create(ctx, &at->device, settings, &model));
+  assert_ok(dea_model_stretch(ctx, solid, model, &at->device, stretch, &out));
   if (keep != NULL) {
     *keep = model;
   } else {
@@ -53,9 +51,7 @@ static struct dea_load_point find_slopes(const struct state *at,
                                        .holds_stretch = true,
                                        .stretch = stretch};
   struct dea_load_point there = go(at, settings, stretch, &model);
-  if (solid->gradient(ctx, model, &ask, out) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->gradient(ctx, model, &ask, out));
   solid->destroy(ctx, model);
   return there;
 }

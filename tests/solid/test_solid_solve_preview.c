@@ -18,18 +18,14 @@ static struct dea_model *create(const struct dea_device *device,
                                 const struct dea_model_settings *settings)
 {
   struct dea_model *model;
-  if (solid->create(ctx, device, settings, &model) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->create(ctx, device, settings, &model));
   return model;
 }
 
 static struct dea_load_point solve(struct dea_model *model, double voltage_V)
 {
   struct dea_load_point point;
-  if (solid->solve(ctx, model, voltage_V, &point) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(solid->solve(ctx, model, voltage_V, &point));
   assert_int_equal(point.unstable_modes, 0);
   assert_true(point.stable);
   return point;

@@ -81,10 +81,7 @@ static void respond_viscous(const struct dea_branches *branches, const struct de
                             const double *w, size_t count, size_t node, double (*out)[2][3])
 {
   struct wanted wanted = {node, out};
-  if (dea_solid_respond_viscous(ctx, solid, branches, damping, w, count, take_node, &wanted) !=
-      DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_solid_respond_viscous(ctx, solid, branches, damping, w, count, take_node, &wanted));
 }
 static double displacement, weight;
 
@@ -220,9 +217,7 @@ static void at_rest(size_t dofs, double voltage_V, const double *force, double s
   for (size_t i = 0; i < dofs; i++) {
     dea_solid_force(solid)[i] = share * force[i];
   }
-  if (dea_load_steps_solve(ctx, solid, voltage_V, &report) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_load_steps_solve(ctx, solid, voltage_V, &report));
   memcpy(u, dea_solid_displacement(solid), dofs * sizeof *u);
 }
 

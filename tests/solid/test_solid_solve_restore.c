@@ -38,9 +38,7 @@ static void push(struct dea_solid *s, const struct dea_grid *grid, double share)
     s->state.u[3 * n + 2] = share * grid->X[3 * n + 2];
   }
   s->found.factor_fits = false;
-  if (dea_load_steps_solve(ctx, s, 0, &report) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_load_steps_solve(ctx, s, 0, &report));
   assert_int_equal(report.unstable_modes, 0);
 }
 

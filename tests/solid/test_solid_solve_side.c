@@ -37,9 +37,7 @@ static void sweep(enum dea_buckling_branch side, struct dea_load_point points[VO
   const struct dea_model_settings settings = {.buckling_branch = side};
   assert_int_equal(dea_solid_module.create(ctx, &buckling, &settings, &model), DEA_OK);
   for (int i = 0; i < VOLTAGES; i++) {
-    if (dea_solid_module.solve(ctx, model, 1e3 * voltage_kV[i], &points[i]) != DEA_OK) {
-      fail_msg("%s", dea_context_message(ctx));
-    }
+    assert_ok(dea_solid_module.solve(ctx, model, 1e3 * voltage_kV[i], &points[i]));
     assert_int_equal(points[i].unstable_modes, 0);
   }
   dea_solid_module.destroy(ctx, model);
@@ -124,11 +122,9 @@ static size_t centre;
 static void create(int fibres, enum dea_outer_end end)
 {
   device = slack(fibres, end);
-  assert_int_equal(dea_solid_module.create(ctx, &device, &(struct dea_model_settings){0}, &made),
-                   DEA_OK);
+  assert_ok(dea_solid_module.create(ctx, &device, &(struct dea_model_settings){0}, &made));
   solid = ((const struct dea_solver_state *)made)->outcome.owner.solid;
-  assert_int_equal(dea_device_mesh_create(ctx, &device, &(struct dea_model_settings){0}, &mesh),
-                   DEA_OK);
+  assert_ok(dea_device_mesh_create(ctx, &device, &(struct dea_model_settings){0}, &mesh));
   grid = mesh.grid; // as the model has it
   centre = dea_grid_nearest(grid, (const double[3]){0});
 }
@@ -178,8 +174,7 @@ static bool take_front(struct dea_solid_report *report)
 {
   const struct dea_film_band film = {0, device.film_thickness_m};
   bool moved;
-  assert_int_equal(
-      dea_buckling_branch_take(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved), DEA_OK);
+  assert_ok(dea_buckling_branch_take(ctx, solid, grid, &film, DEA_BRANCH_FIBRES, report, &moved));
   return moved;
 }
 

@@ -109,9 +109,7 @@ static double wave_stiffness(const struct dea_device *device, const struct dea_l
   struct dea_plane plane;
   double stretch = device->pre_stretch * at->electrode_stretch;
   assert_int_equal(dea_film_create(ctx, device, &film), DEA_OK);
-  assert_int_equal(
-      dea_film_eval(&film, true, at->voltage_V / film.thickness_m, stretch, stretch, &plane),
-      DEA_OK);
+  assert_ok(dea_film_eval(&film, true, at->voltage_V / film.thickness_m, stretch, stretch, &plane));
   return plane.k11;
 }
 
@@ -243,8 +241,7 @@ TEST(test_path_beside_load_steps)
   struct dea_load_point rest, end;
   struct watched watched = {0};
   assert_int_equal(dea_solid_module.create(ctx, &device, &solid_film, &model), DEA_OK);
-  assert_int_equal(
-      dea_model_path(ctx, &dea_solid_module, model, &options, watch_point, NULL, &watched), DEA_OK);
+  assert_ok(dea_model_path(ctx, &dea_solid_module, model, &options, watch_point, NULL, &watched));
   assert_true(watched.count > 2 && watched.last.voltage_V >= 200);
   assert_int_equal(dea_solid_module.solve(ctx, model, 0, &rest), DEA_OK);
   assert_close(rest.electrode_edge_u_m, 0, 0, 1e-12);

@@ -107,8 +107,7 @@ TEST(test_prescribed_in_local_axes)
   for (int step = 1; step <= 3; step++) {
     for (size_t n = 0; n < grid->node_count; n++) {
       if (at_end(grid, n)) {
-        assert_int_equal(dea_solid_prescribe(ctx, solid, n, 2, (const double[3]){0, 0.5 * step, 0}),
-                         DEA_OK);
+        assert_ok(dea_solid_prescribe(ctx, solid, n, 2, (const double[3]){0, 0.5 * step, 0}));
       }
     }
     assert_int_equal(dea_load_steps_solve(ctx, solid, 0, &report), DEA_OK);

@@ -270,8 +270,7 @@ static void pulse(struct film film, double end, int steps, double out[2],
   film_create(&film);
   *energies = (struct dea_solid_energies){0};
   for (int i = 1; i <= steps; i++) { // to where the voltage is falling
-    assert_int_equal(step_to(&film, smooth(0.7 * end * i / steps, end, top), 0.7 * end / steps),
-                     DEA_OK);
+    assert_ok(step_to(&film, smooth(0.7 * end * i / steps, end, top), 0.7 * end / steps));
   }
   *energies = dea_solid_time_energies(film.time, false);
   struct dea_state state = {0};

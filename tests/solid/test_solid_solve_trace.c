@@ -63,18 +63,14 @@ static void start(double voltage_V, double step, double step_most, double unit_m
 static struct dea_continuation_point step(void)
 {
   struct dea_continuation_point point;
-  if (dea_solid_continuation_step(ctx, trace, &point) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_solid_continuation_step(ctx, trace, &point));
   return point;
 }
 
 static struct dea_continuation_point locate(void)
 {
   struct dea_continuation_point point;
-  if (dea_solid_continuation_locate(ctx, trace, &point) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_solid_continuation_locate(ctx, trace, &point));
   return point;
 }
 

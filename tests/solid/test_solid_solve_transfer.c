@@ -138,9 +138,7 @@ TEST(test_either_side)
     crease(0.25);
     crease(0.6875);
     assert_true(is_lost());
-    if (dea_solid_transfer_solution(ctx, solid, voltage_V, u, &report, &found) != DEA_OK) {
-      fail_msg("%s", dea_context_message(ctx));
-    }
+    assert_ok(dea_solid_transfer_solution(ctx, solid, voltage_V, u, &report, &found));
     assert_true(found);
     assert_int_equal(report.unstable_modes, 0);
     assert_close(dea_solid_voltage(solid), voltage_V, 1e-12, 0);
@@ -196,8 +194,7 @@ TEST(test_what_moves)
   memcpy(before, u, 3 * grid->node_count * sizeof *before);
   bool found;
   struct dea_solid_report report = {0};
-  assert_int_equal(dea_solid_transfer_solution(ctx, solid, critical_V(), u, &report, &found),
-                   DEA_OK);
+  assert_ok(dea_solid_transfer_solution(ctx, solid, critical_V(), u, &report, &found));
   assert_false(found);
   assert_close(dea_solid_voltage(solid), 0, 0, 0);
   assert_close(middle_z(), 0, 0, 0);

@@ -89,10 +89,8 @@ static void modes_out_of_plane(struct dea_solid *solid, const struct dea_grid *g
   double square[ALL], *vector = calloc(3 * ALL * grid->node_count, sizeof *vector);
   int count = 0;
   assert_non_null(vector);
-  if (dea_load_steps_solve(ctx, solid, 0, &report) != DEA_OK ||
-      dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, ALL, square, vector) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_load_steps_solve(ctx, solid, 0, &report));
+  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, ALL, square, vector));
   for (size_t k = 0; k < ALL && count < MODES; k++) {
     if (out_of_plane(solid, grid->node_count, vector + 3 * k * grid->node_count) > 0.5) {
       found[count++] = square[k];
@@ -135,10 +133,8 @@ static void lowest(const struct dea_part_material *layer, const struct block *bl
   struct dea_grid *grid = block_grid(ctx, block);
   struct dea_solid *solid = block_solid(ctx, grid, block->order_z, layer, all_around);
   struct dea_solid_report report;
-  if (dea_load_steps_solve(ctx, solid, 0, &report) != DEA_OK ||
-      dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL) != DEA_OK) {
-    fail_msg("%s", dea_context_message(ctx));
-  }
+  assert_ok(dea_load_steps_solve(ctx, solid, 0, &report));
+  assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL));
   dea_solid_destroy(ctx, solid);
   dea_grid_destroy(ctx, grid);
 }
@@ -198,8 +194,7 @@ TEST(test_voltage_takes_tension_away)
     int unstable = report.unstable_modes;
     assert_true(left > 0 ? unstable == 0 : unstable >= OUT_OF_PLANE && unstable < UNSTABLE_MAX);
     size_t count = left > 0 ? 1 : (size_t)unstable;
-    assert_int_equal(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL),
-                     DEA_OK);
+    assert_ok(dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_MASS, count, square, NULL));
     double nearest = INFINITY;
     for (size_t k = 0; k < count; k++) {
       assert_true(left > 0 || square[k] < 0);
