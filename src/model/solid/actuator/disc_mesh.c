@@ -128,11 +128,7 @@ dea_status dea_disc_mesh_create(struct dea_context *ctx, const struct dea_device
       .membrane = plate->membrane,
       .sector = {.fold = whole ? 0 : dea_fibre_disc_sectors(plate) / 2},
       .bottom_m = plate->membrane ? 0 : -0.5 * plate->film_thickness - plate->electrode_thickness};
-  const dea_status status = make_plane(ctx, device, out);
-  if (status != DEA_OK) {
-    dea_layout_mesh_free(ctx, out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, make_plane(ctx, device, out), dea_layout_mesh_free(ctx, out));
   DEA_TRY(ctx, like != NULL ? dea_layout_mesh_fill_like(ctx, settings, like, out)
                             : dea_layout_mesh_fill(ctx, settings, out));
   return DEA_OK;

@@ -223,9 +223,7 @@ static dea_status clip(struct dea_context *ctx, struct dea_layout_mesh *mesh,
       status = clip_region(ctx, mesh, i, &plies, &sector, &clipped[i]);
     }
   }
-  if (status == DEA_OK) {
-    status = add_ends(ctx, mesh, &plies, clipped);
-  }
+  status = status == DEA_OK ? add_ends(ctx, mesh, &plies, clipped) : status;
   dea_region_free(&plies);
   dea_region_free(&sector);
   return status;
@@ -254,9 +252,7 @@ static dea_status fill_plan(struct dea_arena *memory, const struct dea_layout_me
   const double layer_m = rows ? (fringe ? fringe_share : layer_share) * film_thickness_m(l) : 0;
   struct dea_gmsh_shape *shapes = dea_arena_alloc(memory, l->region_count, sizeof *shapes);
   struct dea_gmsh_shape *curves = dea_arena_alloc(memory, l->region_count, sizeof *curves);
-  if (shapes == NULL || curves == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(shapes != NULL && curves != NULL);
   *plan = (struct dea_gmsh_plan){.shapes = shapes,
                                  .curves = curves,
                                  .order = settings->order == 1 ? 1 : 2,
@@ -323,15 +319,11 @@ static dea_status make_plane(struct dea_context *ctx, const struct dea_model_set
   for (size_t i = 0, groups = 0; i < l->region_count; i++) {
     mesh->group[i] = mesh->group[i] != DEA_LAYOUT_NONE ? groups++ : DEA_LAYOUT_NONE;
   }
-  if (status == DEA_OK) {
-    status = fill_plan(&memory, mesh, settings, clipped, &plan);
-  }
+  status = status == DEA_OK ? fill_plan(&memory, mesh, settings, clipped, &plan) : status;
   if (status == DEA_OK && settings->size_count > 0) {
     take_sizes(settings, &plan);
   }
-  if (status == DEA_OK) {
-    status = dea_gmsh_mesh(ctx, &plan, &mesh->plane);
-  }
+  status = status == DEA_OK ? dea_gmsh_mesh(ctx, &plan, &mesh->plane) : status;
   for (size_t i = 0; clipped != NULL && i < l->region_count; i++) {
     dea_region_free(&clipped[i]);
   }
@@ -557,11 +549,7 @@ static dea_status fill(struct dea_context *ctx, const struct dea_model_settings 
 dea_status dea_layout_mesh_fill(struct dea_context *ctx, const struct dea_model_settings *settings,
                                 struct dea_layout_mesh *mesh)
 {
-  const dea_status status = fill(ctx, settings, mesh);
-  if (status != DEA_OK) {
-    dea_layout_mesh_free(ctx, mesh);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, fill(ctx, settings, mesh), dea_layout_mesh_free(ctx, mesh));
   return DEA_OK;
 }
 
@@ -590,11 +578,7 @@ dea_status dea_layout_mesh_create(struct dea_context *ctx, const struct dea_layo
   if (settings->domain == DEA_DOMAIN_SECTOR && dea_boolean_find(module, sizeof module)) {
     out->sector = dea_layout_sector_of(layout);
   }
-  dea_status status = make_plane(ctx, settings, out);
-  if (status != DEA_OK) {
-    dea_layout_mesh_free(ctx, out);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, make_plane(ctx, settings, out), dea_layout_mesh_free(ctx, out));
   DEA_TRY(ctx, dea_layout_mesh_fill(ctx, settings, out));
   return DEA_OK;
 }

@@ -607,9 +607,9 @@ dea_status dea_mesh_follow(struct dea_context *ctx, const struct dea_layout *lay
   if (!same_regions(layout, like->layout)) {
     status = move_plane(ctx, like, layout, &memory, &plane);
   }
-  if (status == DEA_OK) {
-    status = dea_layout_mesh_create_like(ctx, layout, settings, like, plane, &memory, out);
-  }
+  status = status == DEA_OK
+               ? dea_layout_mesh_create_like(ctx, layout, settings, like, plane, &memory, out)
+               : status;
   dea_arena_free(&memory);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

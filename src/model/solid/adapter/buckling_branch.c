@@ -84,9 +84,7 @@ dea_status dea_buckling_branch_take(struct dea_context *ctx, struct dea_solid *s
     return DEA_OK;
   }
   double *push = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *push);
-  if (push == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(push != NULL);
   set_push(&wanted, dea_solid_displacement(solid), push);
   dea_status status = dea_solid_push(ctx, solid, push, on_side, &wanted, report, moved);
   dea_free(ctx, push);

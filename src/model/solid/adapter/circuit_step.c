@@ -267,17 +267,11 @@ dea_status dea_circuit_step_create(struct dea_context *ctx, const struct dea_dri
 {
   struct dea_circuit_step *d = dea_solid_alloc(ctx, 1, sizeof *d);
   *out = NULL;
-  if (d == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(d != NULL);
   d->memory.ctx = ctx;
   d->driven = *driven;
   d->options = *time;
-  dea_status status = prepare(ctx, d);
-  if (status != DEA_OK) {
-    dea_circuit_step_destroy(ctx, d);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, prepare(ctx, d), dea_circuit_step_destroy(ctx, d));
   *out = d;
   return DEA_OK;
 }
@@ -459,11 +453,7 @@ static dea_status close_circuit(struct dea_context *ctx, struct dea_circuit_step
                                 const struct dea_circuit_film *film)
 {
   if (d->driven.channels) {
-    dea_status status = find_network(ctx, d, &d->network_next);
-    if (status != DEA_OK) {
-      dea_solid_time_reject(d->time);
-      return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-    }
+    DEA_TRY_ELSE(ctx, find_network(ctx, d, &d->network_next), dea_solid_time_reject(d->time));
     find_currents(d);
   }
   if (d->own) {

@@ -302,9 +302,7 @@ static dea_status add_along_mode(struct dea_context *ctx, struct work *w, const 
                                  double *out, double *pressures)
 {
   dea_status status = w->owner->hold != NULL ? w->owner->hold(ctx, w->owner->model) : DEA_OK;
-  if (status == DEA_OK) {
-    status = add_along(ctx, w, &m->way, 2, m->rate, out, pressures);
-  }
+  status = status == DEA_OK ? add_along(ctx, w, &m->way, 2, m->rate, out, pressures) : status;
   if (w->owner->hold != NULL) {
     w->owner->leave(ctx, w->owner->model);
   }
@@ -479,9 +477,7 @@ static dea_status quantities_at(struct dea_context *ctx, struct work *w, double 
   double energy_J;
   s->state.voltage_V = voltage_V;
   dea_status status = dea_adjoint_assemble(ctx, w->adjoint, voltage_V, &energy_J);
-  if (status == DEA_OK) {
-    status = add_quantities(ctx, w, voltage_V, energy_J, out);
-  }
+  status = status == DEA_OK ? add_quantities(ctx, w, voltage_V, energy_J, out) : status;
   s->state.voltage_V = w->owner->voltage_V;
   return status;
 }
@@ -690,15 +686,11 @@ static dea_status find_at_limit(struct dea_context *ctx, const struct dea_gradie
   dea_solid_restore_state(s, &owner->outcome->at_limit);
   there.voltage_V = dea_solid_voltage(s);
   w.null_mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *w.null_mode);
-  if (w.null_mode == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(w.null_mode != NULL);
   s->work.takes_small_pivots = true;
   dea_status status = dea_adjoint_create(ctx, s, OF_LIMIT, &w.adjoint);
   s->work.takes_small_pivots = false;
-  if (status == DEA_OK) {
-    status = find_limit(ctx, &w, out);
-  }
+  status = status == DEA_OK ? find_limit(ctx, &w, out) : status;
   dea_adjoint_destroy(ctx, w.adjoint);
   dea_free(ctx, w.null_mode);
   return status;
@@ -719,9 +711,8 @@ static dea_status find_there(struct dea_context *ctx, const struct dea_gradient_
     status = find_at_limit(ctx, owner, ask, out);
     dea_solid_restore_state(s, &here);
   }
-  if (status == DEA_OK) {
-    status = dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J);
-  }
+  status = status == DEA_OK ? dea_solid_assemble(ctx, s, owner->voltage_V, DEA_FORCE, &energy_J)
+                            : status;
   dea_solid_saved_state_free(&here);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

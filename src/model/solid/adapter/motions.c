@@ -64,9 +64,7 @@ static dea_status surface_of(struct dea_context *ctx, const struct dea_motions *
   size_t dofs = 3 * m->grid->node_count;
   double *u = dea_solid_displacement(m->solid), *keep = dea_solid_alloc(ctx, dofs, sizeof *keep);
   double scale = little * largest(m->grid->X, dofs) / largest(v, dofs);
-  if (keep == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(keep != NULL);
   memcpy(keep, u, dofs * sizeof *u);
   for (size_t i = 0; i < dofs; i++) {
     u[i] = scale * v[i];
@@ -124,9 +122,7 @@ dea_status dea_motions_modes(struct dea_context *ctx, const struct dea_motions *
   size_t dofs = 3 * m->grid->node_count;
   double *memory = dea_solid_alloc(ctx, count + (2 + count) * dofs, sizeof *memory);
   *shapes = NULL;
-  if (memory == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(memory != NULL);
   dea_status status = take_modes(ctx, m, ply, at, count, memory, points, shapes);
   dea_free(ctx, memory);
   return status;
@@ -240,9 +236,7 @@ dea_status dea_motions_respond(struct dea_context *ctx, const struct dea_motions
                                       excitation->damping_stiffness_s};
   struct answers out = {m, points};
   double *rad_per_s = dea_solid_alloc(ctx, count, sizeof *rad_per_s);
-  if (rad_per_s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(rad_per_s != NULL);
   for (size_t i = 0; i < count; i++) {
     rad_per_s[i] = 2 * pi * frequency_Hz[i];
     points[i] = *at;

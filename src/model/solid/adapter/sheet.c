@@ -715,9 +715,7 @@ static dea_status prepare(struct dea_context *ctx, struct dea_sheet *sheet)
     sheet->first[i] = first_of(sheet, i);
   }
   bool *marks = dea_solid_alloc(ctx, electrodes + sheet->columns, sizeof *marks);
-  if (marks == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(marks != NULL);
   number(sheet, marks, marks + electrodes);
   dea_free(ctx, marks);
   find_cells(sheet);
@@ -747,19 +745,13 @@ dea_status dea_sheet_create(struct dea_context *ctx, const struct dea_layout_mes
                     "a coupled field has ideal electrodes in time: no sheet_resistance");
   }
   struct dea_sheet *sheet = dea_solid_alloc(ctx, 1, sizeof *sheet);
-  if (sheet == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(sheet != NULL);
   sheet->memory.ctx = ctx;
   sheet->mesh = mesh;
   sheet->solid = solid;
   sheet->per_s = per_s;
   sheet->factor = 1;
-  const dea_status status = prepare(ctx, sheet);
-  if (status != DEA_OK) {
-    dea_sheet_destroy(ctx, sheet);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, prepare(ctx, sheet), dea_sheet_destroy(ctx, sheet));
   *out = sheet;
   return DEA_OK;
 }

@@ -14,9 +14,7 @@ static dea_status find_potentials(struct dea_context *ctx, const struct dea_soli
     return DEA_OK;
   }
   *out = dea_alloc(ctx, p->grid->node_count, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(*out != NULL);
   for (size_t n = 0; n < p->grid->node_count; n++) {
     (*out)[n] = dea_solid_field_scale(s) * s->state.u[3 * p->grid->node_count + n];
   }
@@ -67,10 +65,9 @@ static dea_status recover(struct dea_context *ctx, const struct dea_solid *s, in
   struct recovery work;
   *out = NULL;
   dea_status status = prepare(ctx, s, &work);
-  if (status == DEA_OK) {
-    status = ply < 0 ? dea_recover_volume(ctx, &work.in, out)
-                     : dea_recover_surface(ctx, &work.in, ply, out);
-  }
+  status = status == DEA_OK ? ply < 0 ? dea_recover_volume(ctx, &work.in, out)
+                                      : dea_recover_surface(ctx, &work.in, ply, out)
+                            : status;
   release(ctx, &work);
   return status;
 }

@@ -70,9 +70,7 @@ dea_status dea_solid_model_report(struct dea_context *ctx, void *self, double vo
   double capacitance_F;
   const bool charged = dea_charge_is_held(model->solid);
   dea_status status = dea_solid_extremes(model->solid, model->plies.films, &extremes);
-  if (status == DEA_OK) {
-    status = dea_solid_capacitance(ctx, model->solid, &capacitance_F);
-  }
+  status = status == DEA_OK ? dea_solid_capacitance(ctx, model->solid, &capacitance_F) : status;
   if (status != DEA_OK) {
     return dea_fail(ctx, status, "the film cannot be evaluated at %g V", voltage_V);
   }

@@ -324,9 +324,8 @@ static dea_status variant_point(struct dea_context *ctx, void *self, double volt
     }
   }
   dea_solid_model_describe(model, voltage_V, out);
-  if (status == DEA_OK) {
-    status = dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out);
-  }
+  status = status == DEA_OK ? dea_gradient_film_at(ctx, &film, &v->places, v->ask, voltage_V, out)
+                            : status;
   return status == DEA_OK
              ? DEA_OK
              : dea_fail(ctx, status, "a changed device cannot be evaluated at %g V", voltage_V);

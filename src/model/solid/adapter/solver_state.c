@@ -203,9 +203,7 @@ dea_status dea_solver_state_path(struct dea_context *ctx, struct dea_solver_stat
                                                             : solver_state->outcome.owner.step_V;
     status = dea_solid_continuation_create(ctx, solid, scale_V, &steps, &path);
   }
-  if (status == DEA_OK) {
-    status = follow_path(ctx, solver_state, path, &sinks);
-  }
+  status = status == DEA_OK ? follow_path(ctx, solver_state, path, &sinks) : status;
   if (path != NULL && !(status == DEA_OK && options->stays)) {
     dea_solid_restore_state(solid, &from);
     solver_state->report = report;
@@ -230,9 +228,7 @@ dea_status dea_solver_state_soften(struct dea_context *ctx, struct dea_model *mo
     return dea_fail(ctx, DEA_E_ARGUMENT, "1 to %d soft modes can be asked for", DEA_SOFT_MODES_MAX);
   }
   solver_state->soft = dea_solid_alloc(ctx, count * moves, sizeof *solver_state->soft);
-  if (solver_state->soft == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(solver_state->soft != NULL);
   DEA_TRY(ctx, dea_solid_modes_lowest(ctx, solid, DEA_MODES_BY_VOLUME, count, stiffness_N_per_m4,
                                       solver_state->soft));
   solver_state->soft_count = count;
@@ -292,9 +288,7 @@ dea_status dea_solver_state_push(struct dea_context *ctx, struct dea_solver_stat
                     push->mode + 1, solver_state->soft_count, push->parts);
   }
   double *way = dea_solid_alloc(ctx, moves, sizeof *way);
-  if (way == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(way != NULL);
   set_push(grid, push, folds ? NULL : solver_state->soft + push->mode * moves, fold, way);
   dea_status status =
       dea_solid_push(ctx, owner->solid, way, NULL, NULL, &solver_state->report, found);
@@ -313,14 +307,11 @@ dea_status dea_solver_state_transfer(struct dea_context *ctx, struct dea_solver_
   dea_solver_state_end_history(ctx, solver_state);
   *found = false;
   double *u = dea_solid_alloc(ctx, 3 * grid->node_count, sizeof *u);
-  if (u == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(u != NULL);
   dea_status status = dea_grid_transfer(ctx, other->problem.grid, other->state.u, grid, u);
-  if (status == DEA_OK) {
-    status = dea_solid_transfer_solution(ctx, owner->solid, from->voltage_V, u,
-                                         &solver_state->report, found);
-  }
+  status = status == DEA_OK ? dea_solid_transfer_solution(ctx, owner->solid, from->voltage_V, u,
+                                                          &solver_state->report, found)
+                            : status;
   dea_free(ctx, u);
   DEA_TRY(ctx, status);
   if (*found) {

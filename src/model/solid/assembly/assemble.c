@@ -154,10 +154,7 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
 {
   dea_solid_loads_prepare(s, u);
   for (size_t k = 0; k < s->problem.own_count; k++) {
-    dea_status status = evaluate_element(s, s->problem.own[k], u, voltage_V, DEA_ENERGY, NULL);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(evaluate_element(s, s->problem.own[k], u, voltage_V, DEA_ENERGY, NULL));
     *energy += s->work.element->energy_J;
   }
   for (size_t i = 0; i < s->problem.load_count; i++) {
@@ -166,9 +163,7 @@ static dea_status own_energy(struct dea_solid *s, const double *u, double voltag
     for (size_t p = from; p < to; p++) {
       dea_status status =
           s->problem.loads[i].evaluate(s->problem.loads[i].self, p, u, DEA_ENERGY, s->work.piece);
-      if (status != DEA_OK) {
-        return status;
-      }
+      DEA_TRY_STATUS(status);
       *energy += s->work.piece->node_count > 0 ? s->work.piece->energy_J : 0;
     }
   }
@@ -266,9 +261,7 @@ static dea_status fail_element(struct dea_context *ctx, const struct dea_solid *
   double X[DEA_HEX_DOFS_MAX], u[DEA_HEX_DOFS_MAX], x[3] = {0};
   const struct dea_element_input in = {
       .part_material = dea_solid_part_material(s, e), .X = X, .u = u};
-  if (strains == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(strains != NULL);
   int count = dea_solid_gather(s, e, s->problem.grid->X, X);
   dea_solid_gather(s, e, s->state.u, u);
   bool inverted = status == DEA_E_DOMAIN && element->type->strains(element, &in, strains) != DEA_OK;
@@ -438,9 +431,7 @@ dea_status dea_solid_assemble(struct dea_context *ctx, struct dea_solid *s, doub
   }
   dea_solid_loads_prepare(s, s->state.u);
   dea_status status = add_elements(ctx, s, voltage_V, level, energy);
-  if (status == DEA_OK) {
-    status = add_loads(ctx, s, level, energy);
-  }
+  status = status == DEA_OK ? add_loads(ctx, s, level, energy) : status;
   if (status == DEA_OK && level >= DEA_TANGENT) {
     status = dea_solid_bodies_add_pins(ctx, s, s->work.K);
   }

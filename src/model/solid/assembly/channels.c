@@ -156,10 +156,7 @@ static dea_status add_own(struct dea_solid *s, const struct sums *sums)
     if (!p->active[e]) {
       continue;
     }
-    dea_status status = dea_solid_element_capacitance(s, e, s->state.u, &C);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(dea_solid_element_capacitance(s, e, s->state.u, &C));
     add_element(s, e, C, sums);
   }
   return DEA_OK;
@@ -282,9 +279,7 @@ dea_status dea_solid_capacitances(struct dea_context *ctx, struct dea_solid *s, 
   }
   double *forces = dea_solid_alloc(ctx, s->problem.channel_count * s->problem.dofs, sizeof *forces);
   dea_status status = forces != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = add_motion(ctx, s, forces, capacitance_F);
-  }
+  status = status == DEA_OK ? add_motion(ctx, s, forces, capacitance_F) : status;
   dea_free(ctx, forces);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -96,9 +96,7 @@ static dea_status add_elements(struct dea_solid *s, double stiff, struct capacit
     if (status == DEA_OK && element->type->constraint != NULL) {
       status = element->type->constraint(element, &in, capacity->b, capacity->L);
     }
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(status);
     for (size_t i = 0; i < count; i++) {
       out[i] += of_element(s, e, stiff * dea_solid_part_material(s, e)->kappa_Pa, capacity,
                            v + i * p->dofs);
@@ -119,10 +117,7 @@ static dea_status add_loads(struct dea_solid *s, size_t count, const double *v, 
     dea_solid_share(load->piece_count, &from, &to);
     for (size_t k = from; k < to; k++) {
       double own[3 * DEA_PIECE_NODES_MAX];
-      dea_status status = load->evaluate(load->self, k, s->state.u, DEA_TANGENT, piece);
-      if (status != DEA_OK) {
-        return status;
-      }
+      DEA_TRY_STATUS(load->evaluate(load->self, k, s->state.u, DEA_TANGENT, piece));
       for (size_t i = 0; i < count && piece->node_count > 0; i++) {
         for (int n = 0; n < piece->node_count; n++) {
           memcpy(own + 3 * n, v + i * s->problem.dofs + 3 * piece->nodes[n], 3 * sizeof *own);
@@ -142,9 +137,7 @@ static dea_status add_pieces(struct dea_context *ctx, struct dea_solid *s,
   const double stiff = DEA_SOLID_STIFF * s->state.bulk_factor;
   const size_t pressures = dea_solid_pressure_count(s);
   double *own = dea_solid_alloc(ctx, pressures + 1, sizeof *own);
-  if (own == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(own != NULL);
   memcpy(own, s->state.multiplier, pressures * sizeof *own);
   dea_solid_update_multipliers(s);
   dea_solid_drop_bulk_modulus(s);
@@ -160,9 +153,7 @@ dea_status dea_solid_curvatures(struct dea_context *ctx, struct dea_solid *s, si
 {
   const size_t dofs = s->problem.dofs;
   struct capacity *capacity = dea_solid_alloc(ctx, 1, sizeof *capacity);
-  if (capacity == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(capacity != NULL);
   memset(out, 0, count * sizeof *out);
   memset(s->work.g, 0, dofs * sizeof *s->work.g);
   dea_status status = dea_solid_agree(ctx, add_pieces(ctx, s, capacity, count, v, out));

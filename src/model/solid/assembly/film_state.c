@@ -246,9 +246,7 @@ static dea_status compression_of(const struct dea_solid *s, const struct dea_sol
   bool compressed[DEA_HEX_GAUSS_MAX];
   dea_status status = find_compressed(s, films, e, compressed);
   dea_solid_element_input(s, e, s->state.u, s->state.voltage_V, &place, &in);
-  if (status == DEA_OK) {
-    status = element->type->strains(element, &in, &strains);
-  }
+  status = status == DEA_OK ? element->type->strains(element, &in, &strains) : status;
   for (int q = 0; status == DEA_OK && q < element->points; q++) {
     const int p = q % laminate->count;
     *ratio += compressed[p] ? fmax(-laminate->tension[p], 0) * laminate->area[p] *
@@ -334,9 +332,8 @@ static dea_status find_capacitance(struct dea_context *ctx, struct dea_solid *s,
   memcpy(s->work.trial, s->state.u, p->dofs * sizeof(double));
   for (int i = 0; i < 2 && status == DEA_OK; i++) {
     status = potential(ctx, s, sqrt(squares[i]), s->work.trial);
-    if (status == DEA_OK) {
-      status = dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i]);
-    }
+    status = status == DEA_OK ? dea_solid_energy(s, s->work.trial, sqrt(squares[i]), &energy[i])
+                              : status;
   }
   *capacitance_F =
       status == DEA_OK && step > 0 ? 2 * (energy[0] - energy[1]) / (squares[1] - squares[0]) : NAN;
@@ -377,14 +374,10 @@ dea_status dea_solid_extremes(struct dea_solid *s, const struct dea_solid_film_d
     if (status == DEA_OK && film->material != NULL && s->problem.active[e]) {
       status = field_of(s, e, film, out);
     }
-    if (status == DEA_OK) {
-      status = tension_of(s, films, e, out);
-    }
+    status = status == DEA_OK ? tension_of(s, films, e, out) : status;
   }
   status = dea_solid_agree(NULL, status);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   out->true_field_V_per_m = dea_solid_largest(out->true_field_V_per_m);
   out->area = dea_solid_largest(out->area);
   out->breakdown_margin = -dea_solid_largest(-out->breakdown_margin);

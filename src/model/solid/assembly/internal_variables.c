@@ -88,10 +88,7 @@ dea_status dea_internal_variables_create(struct dea_context *ctx, const struct d
   *out = NULL;
   dea_status status = h != NULL ? allocate_points(ctx, s, branches, h) : DEA_E_MEMORY;
   status = dea_solid_agree(ctx, status);
-  if (status != DEA_OK) {
-    dea_internal_variables_destroy(ctx, h);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_internal_variables_destroy(ctx, h));
   *out = h;
   return DEA_OK;
 }
@@ -164,10 +161,7 @@ dea_status dea_internal_variables_energy(const struct dea_internal_variables *h,
     if (h->first[e] == ELASTIC) {
       continue;
     }
-    dea_status status = find_strains(s, e, &strains);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(find_strains(s, e, &strains));
     for (int q = 0; q < dea_solid_element(s, e)->points; q++) {
       const double *B = h->B + 6 * (h->first[e] + (size_t)q);
       *energy_J += strains.volume_m3[q] *

@@ -376,9 +376,7 @@ dea_status dea_solid_factor(struct dea_context *ctx, Mat A, Mat *factor)
       break;
     }
   }
-  if (status == DEA_OK) {
-    status = factor_failure(ctx, *factor, error);
-  }
+  status = status == DEA_OK ? factor_failure(ctx, *factor, error) : status;
   if (status != DEA_OK) { // what is left of it is of no use: the next one is analysed anew
     MatDestroy(factor);
   }

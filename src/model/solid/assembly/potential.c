@@ -131,10 +131,7 @@ static dea_status add_capacity(struct dea_context *ctx, struct dea_solid *s, siz
   for (int n = 0; n < count; n++) {
     rows[n] = nodes[n];
   }
-  dea_status status = element->type->capacity(element, &in, L);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(element->type->capacity(element, &in, L));
   for (int a = 0; a < count; a++) {
     for (int b = 0; b < count && held[nodes[a]]; b++) {
       if (!held[nodes[b]]) {
@@ -231,10 +228,7 @@ dea_status dea_solid_solve_potential(struct dea_context *ctx, struct dea_solid *
   const double *force = s->state.force + 3 * nodes;
   const unsigned char *held = p->held + 3 * nodes;
   dea_solid_hold_potential(s, voltage_V, u);
-  dea_status status = assemble_capacity(ctx, s, u, psi);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(assemble_capacity(ctx, s, u, psi));
   for (size_t n = 0; n < nodes; n++) {
     field->right[n] -= held[n] ? 0 : force[n] / (c * c);
   }

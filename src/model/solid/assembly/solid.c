@@ -111,9 +111,7 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
 {
   *out = NULL;
   struct dea_solid *s = dea_solid_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(s != NULL);
   struct dea_solid_problem *p = &s->problem;
   s->memory.ctx = ctx;
   s->settings = options->settings != NULL ? *options->settings : dea_solid_settings_default();
@@ -122,20 +120,13 @@ dea_status dea_solid_create(struct dea_context *ctx, const struct dea_grid *grid
   p->per_node = options->field == DEA_SOLID_FIELD_COUPLED ? 4 : 3;
   p->dofs = (size_t)p->per_node * grid->node_count;
   dea_status status = dea_element_set_create(ctx, grid->order, options->order_z, &p->elements);
-  if (status == DEA_OK) {
-    status = fill_solid(ctx, s, options);
-  }
+  status = status == DEA_OK ? fill_solid(ctx, s, options) : status;
   struct dea_solid_row_lengths lengths = {0};
   status = dea_solid_create_matrix(ctx, s, status, &lengths);
-  if (status == DEA_OK) {
-    status = dea_solid_field_matrix(ctx, s, &lengths);
-  }
+  status = status == DEA_OK ? dea_solid_field_matrix(ctx, s, &lengths) : status;
   dea_free(ctx, lengths.own);
   dea_free(ctx, lengths.others);
-  if (status != DEA_OK) {
-    dea_solid_destroy(ctx, s);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_solid_destroy(ctx, s));
   *out = s;
   return DEA_OK;
 }
@@ -222,9 +213,7 @@ dea_status dea_solid_add_load(struct dea_context *ctx, struct dea_solid *solid,
 {
   struct dea_solid_load *loads =
       dea_resize(ctx, solid->problem.loads, solid->problem.load_count + 1, sizeof *loads);
-  if (loads == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(loads != NULL);
   solid->problem.loads = loads;
   loads[solid->problem.load_count++] = *load;
   return DEA_OK;

@@ -58,10 +58,7 @@ static inline dea_status find(const struct dea_hex_shape *s, const double *const
   for (int q = 0; q < s->gauss; q++) {
     const double *slope[3] = {slopes + width * q, slopes + width * (s->gauss + q),
                               slopes + width * (2 * s->gauss + q)};
-    dea_status status = find_point(s->weight[q], slope, &points[q]);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(find_point(s->weight[q], slope, &points[q]));
     for (int a = 0; a < 9 && count == 3; a++) {
       const double *local = points[q].local + a % 3;
       H[q][a] = slope[0][6 + a / 3] * local[0] + slope[1][6 + a / 3] * local[3] +
@@ -217,11 +214,8 @@ static dea_status evaluate_point(const struct dea_hex_shape *s,
 {
   const struct dea_hex_point *at = &work->points[q];
   struct dea_point point;
-  dea_status status = dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field,
-                                              order >= DEA_TANGENT, &point);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field,
+                                         order >= DEA_TANGENT, &point));
   dea_viscous_add(part_material, q, at->F, at->cof, at->J, order >= DEA_TANGENT, &point);
   *energy += at->weight * point.W;
   if (order >= DEA_FORCE) {
@@ -340,13 +334,8 @@ dea_status dea_hex_constraint(const struct dea_element *element, const struct de
   if (!dea_part_material_takes_pressure(in->part_material)) {
     return DEA_OK;
   }
-  dea_status status = dea_hex_find_points(s, in->X, in->u, work.points);
-  if (status == DEA_OK) {
-    status = dea_hex_project(s, work.points, work.factor, work.moment, theta);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_hex_find_points(s, in->X, in->u, work.points));
+  DEA_TRY_STATUS(dea_hex_project(s, work.points, work.factor, work.moment, theta));
   work.columns = 3 + 3 * s->pressures;
   memset(work.flux, 0, (size_t)(3 * s->gauss * work.columns) * sizeof *work.flux);
   for (int q = 0; q < s->gauss; q++) {
@@ -382,9 +371,7 @@ static dea_status bend_point(const struct dea_part_material *part_material, int 
   struct dea_point point;
   dea_status status =
       dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, true, &point);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   dea_viscous_add(part_material, q, at->F, at->cof, at->J, true, &point);
   *out = 0;
   for (int a = 0; a < 9; a++) {
@@ -478,9 +465,7 @@ static dea_status predict_point(const struct dea_part_material *part_material, i
   double S[9], dP[9], dS[9];
   dea_status status =
       dea_part_material_point(part_material, at->F, at->cof, at->J, pressure, field, true, &point);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   dea_viscous_add(part_material, q, at->F, at->cof, at->J, true, &point);
   dea_part_material_second_stress(at->cof, at->J, point.P, S);
   for (int i = 0; i < 3; i++) {
@@ -587,10 +572,7 @@ dea_status dea_hex_metric(const struct dea_element *element,
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
   const struct dea_hex_shape *s = element->basis;
   (void)part_material;
-  dea_status status = dea_hex_kinematics(s, X, rest, gradient, points);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_hex_kinematics(s, X, rest, gradient, points));
   size_t nodes = (size_t)s->nodes;
   memset(laplace, 0, nodes * nodes * sizeof *laplace);
   memset(volume, 0, nodes * sizeof *volume);
@@ -626,9 +608,7 @@ dea_status dea_hex_membrane_state(const struct dea_element *element,
   double factor[DEA_HEX_PRESSURES_MAX][DEA_HEX_PRESSURES_MAX], moment[DEA_HEX_PRESSURES_MAX];
   double theta[DEA_HEX_PRESSURES_MAX];
   dea_status status = dea_hex_find_points(shape, in->X, in->u, state);
-  if (status == DEA_OK) {
-    status = dea_hex_project(shape, state, factor, moment, theta);
-  }
+  status = status == DEA_OK ? dea_hex_project(shape, state, factor, moment, theta) : status;
   out->count = (shape->order + 1) * (shape->order + 1);
   for (int p = 0; p < out->count && status == DEA_OK; p++) {
     double N[6] = {0}, F[9] = {0}, weights = 0;
@@ -743,11 +723,8 @@ static dea_status total_stress(const struct dea_part_material *part_material,
                                const double *E, double P[9], double *field)
 {
   struct dea_point point;
-  dea_status status = dea_part_material_point(part_material, at->F, at->cof, at->J, pressure,
-                                              E == NULL ? thin_V_per_m : 0, false, &point);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_part_material_point(part_material, at->F, at->cof, at->J, pressure,
+                                         E == NULL ? thin_V_per_m : 0, false, &point));
   const double *c = at->cof;
   memcpy(P, point.P, 9 * sizeof *P);
   *field = E != NULL ? add_electric(part_material->permittivity_F_per_m, at, E, P)
@@ -821,9 +798,7 @@ static dea_status find_state(const struct dea_element *element, const struct dea
   out->thin_V_per_m = out->coupled ? 0 : dea_part_material_field(part_material, in->voltage_V);
   dea_status status = out->coupled ? dea_hex_kinematics(shape, in->X, in->u, gradient, out->at)
                                    : dea_hex_find_points(shape, in->X, in->u, out->at);
-  if (status == DEA_OK) {
-    status = dea_hex_project(shape, out->at, factor, moment, theta);
-  }
+  status = status == DEA_OK ? dea_hex_project(shape, out->at, factor, moment, theta) : status;
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
     out->pressure[q] = pressure_at(shape, part_material, q, in->multiplier, theta);
     if (out->coupled) {
@@ -849,9 +824,7 @@ dea_status dea_hex_recover(const struct dea_element *element, const struct dea_e
     out->volume_m3 += points.at[q].weight;
     out->volume_error = fmax(out->volume_error, fabs(points.at[q].J - 1));
   }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   dea_fit_create(shape->order, shape->order_z, &fit);
   dea_recovered_set(&fit, values, out);
   membrane_force(shape, &fit, in->X[3 * (shape->nodes - 1) + 2] - in->X[2], P, out);

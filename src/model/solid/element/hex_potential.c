@@ -163,13 +163,8 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
   double eps = in->part_material->permittivity_F_per_m;
   struct dea_element_input elastic = *in;
   elastic.voltage_V = 0;
-  dea_status status = dea_hex_evaluate(element, &elastic, order, out);
-  if (status == DEA_OK) {
-    status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_hex_evaluate(element, &elastic, order, out));
+  DEA_TRY_STATUS(dea_hex_kinematics(shape, in->X, in->u, gradient, points));
   if (order >= DEA_FORCE) {
     dea_element_spread(shape->nodes, out->g, order >= DEA_TANGENT ? out->K : NULL, out->g, out->K);
   }
@@ -233,12 +228,10 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
   struct dea_element_input elastic = *in;
   elastic.voltage_V = 0;
   dea_status status = dea_hex_find_motion(shape, in->X, in->u, motion->v, points, H);
-  if (status == DEA_OK) {
-    status = dea_hex_motion_at(element, &elastic, motion, points, H, stiffness, mass);
-  }
-  if (status == DEA_OK) {
-    status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
-  }
+  status = status == DEA_OK
+               ? dea_hex_motion_at(element, &elastic, motion, points, H, stiffness, mass)
+               : status;
+  status = status == DEA_OK ? dea_hex_kinematics(shape, in->X, in->u, gradient, points) : status;
   for (int q = 0; q < shape->gauss && status == DEA_OK; q++) {
     struct field_point field, change;
     field_at(shape, &points[q], gradient[q], motion->potential, c, &change);
@@ -255,10 +248,7 @@ static dea_status capacity(const struct dea_element *element, const struct dea_e
   double gradient[DEA_HEX_GAUSS_MAX][3][DEA_HEX_NODES_MAX];
   double B[ROWS_MAX][DEA_HEX_NODES_MAX]; // sqrt(weight) cof Grad N
   struct dea_hex_point points[DEA_HEX_GAUSS_MAX];
-  dea_status status = dea_hex_kinematics(shape, in->X, in->u, gradient, points);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_hex_kinematics(shape, in->X, in->u, gradient, points));
   for (int q = 0; q < shape->gauss; q++) {
     double root = sqrt(points[q].weight);
     for (int i = 0; i < 3; i++) {

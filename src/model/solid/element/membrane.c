@@ -153,10 +153,7 @@ static dea_status evaluate(const struct dea_element *element, const struct dea_e
       return DEA_E_DOMAIN;
     }
     in_plane_columns(shape->nodes, in->u, gradient, F);
-    dea_status status = point_at(part_material, q, F, field, &point);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(point_at(part_material, q, F, field, &point));
     out->energy_J += weight * point.W;
     out->volume_m3 += weight;
     if (order >= DEA_FORCE) {
@@ -186,10 +183,7 @@ static dea_status membrane_state(const struct dea_element *element,
     if (!(columns_at(shape, q, in->X, in->u, F) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = point_at(part_material, q, F, field, &point);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(point_at(part_material, q, F, field, &point));
     out->area[q] = point.area;
     out->tension[q] = part_material->thickness_m * point.tension_Pa[1];
     dea_membrane_force(point.P, F, point.area, out->force[q]);
@@ -304,10 +298,7 @@ static dea_status motion(const struct dea_element *element, const struct dea_ele
       }
     }
     dea_element_at(shape->nodes, shape->value[q], motion->v, here);
-    dea_status status = point_at(part_material, q, F, field, &point);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(point_at(part_material, q, F, field, &point));
     for (int a = 0; a < 36; a++) {
       *stiffness += weight * H[a / 6] * point.A[a] * H[a % 6];
     }
@@ -394,9 +385,7 @@ static dea_status recover(const struct dea_element *element, const struct dea_el
     double area = columns_at(shape, q, in->X, in->u, F);
     dea_status status =
         area > 0 ? recover_point(part_material, F, field, values[q], P[q]) : DEA_E_DOMAIN;
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(status);
     out->volume_m3 += part_material->thickness_m * area;
   }
   dea_fit_create(shape->order, 0, &fit);
@@ -425,10 +414,7 @@ static dea_status state(const struct dea_element *element, const struct dea_elem
     if (!(area > 0 && complete(F, out->F[q]) > 0)) {
       return DEA_E_DOMAIN;
     }
-    dea_status status = stress ? dea_membrane_point(in->part_material, F, field, &point) : DEA_OK;
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(stress ? dea_membrane_point(in->part_material, F, field, &point) : DEA_OK);
     out->volume_m3[q] = in->part_material->thickness_m * area;
     out->J[q] = 1;
     out->pressure[q] = 0;

@@ -154,15 +154,9 @@ dea_status dea_adjoint_create(struct dea_context *ctx, struct dea_solid *solid, 
 {
   struct dea_adjoint *a = dea_solid_alloc(ctx, 1, sizeof *a);
   *out = NULL;
-  if (a == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(a != NULL);
   *a = (struct dea_adjoint){.memory = {.ctx = ctx}, .s = solid, .count = count};
-  dea_status status = prepare(ctx, a);
-  if (status != DEA_OK) {
-    dea_adjoint_destroy(ctx, a);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, prepare(ctx, a), dea_adjoint_destroy(ctx, a));
   *out = a;
   return DEA_OK;
 }

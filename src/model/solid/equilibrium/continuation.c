@@ -321,9 +321,7 @@ static dea_status find_rate(struct dea_context *ctx, struct dea_solid_continuati
   dea_solid_raise_bulk_modulus(s);
   double energy;
   dea_status status = dea_solid_assemble(ctx, s, s->state.voltage_V, DEA_TANGENT, &energy);
-  if (status == DEA_OK) {
-    status = force_rate(ctx, t);
-  }
+  status = status == DEA_OK ? force_rate(ctx, t) : status;
   dea_solid_restore_bulk_modulus(s);
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, dea_solid_factorise(ctx, s, modes));
@@ -624,9 +622,7 @@ static dea_status allocate_path(struct dea_context *ctx, struct dea_solid *s,
   for (size_t i = 0; i < sizeof of_states / sizeof of_states[0]; i++) {
     *of_states[i] = dea_arena_alloc(&t->memory, states, sizeof(double));
   }
-  if (dea_solid_any(t->memory.failed)) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(!dea_solid_any(t->memory.failed));
   double volume = 0;
   dea_solid_lump_volume(s, t->metric);
   for (size_t i = 0; i < p->dofs; i++) {
@@ -685,18 +681,11 @@ dea_status dea_continuation_create_to(struct dea_context *ctx, struct dea_solid 
 {
   *out = NULL;
   struct dea_solid_continuation *t = dea_solid_alloc(ctx, 1, sizeof *t);
-  if (t == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(t != NULL);
   t->s = s;
   dea_status status = allocate_path(ctx, s, options, t);
-  if (status == DEA_OK) {
-    status = begin_path(ctx, t, goal, options->step);
-  }
-  if (status != DEA_OK) {
-    dea_solid_continuation_destroy(ctx, t);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  status = status == DEA_OK ? begin_path(ctx, t, goal, options->step) : status;
+  DEA_TRY_ELSE(ctx, status, dea_solid_continuation_destroy(ctx, t));
   *out = t;
   return DEA_OK;
 }
@@ -712,9 +701,7 @@ dea_status dea_solid_continuation_create(struct dea_context *ctx, struct dea_sol
   }
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   double *goal = dea_solid_alloc(ctx, s->work.load_steps.control_count, sizeof *goal);
-  if (goal == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(goal != NULL);
   dea_solid_controls_goal(s, voltage_V, goal);
   dea_status status = dea_continuation_create_to(ctx, s, goal, options, out);
   dea_free(ctx, goal);
@@ -753,9 +740,7 @@ static dea_status measure_critical(struct dea_context *ctx, struct dea_solid_con
   size_t count = b->mode + 1, dofs = 3 * s->problem.grid->node_count;
   double values[DEA_MODES_MAX];
   double *vectors = dea_solid_alloc(ctx, count * dofs, sizeof *vectors);
-  if (vectors == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(vectors != NULL);
   dea_status status = dea_solid_modes_lowest(ctx, s, DEA_MODES_BY_VOLUME, count, values, vectors);
   *value = values[b->mode];
   memcpy(t->mode, vectors + b->mode * dofs, dofs * sizeof *t->mode);

@@ -450,9 +450,7 @@ static dea_status iterate_all(struct dea_context *ctx, struct follow *w, bool *t
 {
   bool ends = false;
   dea_status status = begin(ctx, w);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   for (size_t i = 0; i < w->s->problem.load_count; i++) {
     w->load_error = w->s->problem.loads[i].update != NULL ? INFINITY : w->load_error;
   }

@@ -161,9 +161,7 @@ dea_status dea_solid_push(struct dea_context *ctx, struct dea_solid *s, const do
   *found = false;
   DEA_TRY(ctx, dea_solid_agree(ctx, dea_load_steps_prepare(ctx, s)));
   double *state = dea_solid_alloc(ctx, s->work.load_steps.state_count, sizeof *state);
-  if (state == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(state != NULL);
   dea_solid_state_get(s, state);
   dea_status status = solve_pushed(ctx, s, push_m, report);
   if (status == DEA_OK && report->unstable_modes > 0 && accept == NULL) {
@@ -229,9 +227,7 @@ static dea_status solve_at_load_factor(struct dea_context *ctx, struct dea_solid
   if (dea_solid_controls_increment(s, next)) {
     status = dea_solid_prescribed_increment(ctx, s, report);
   }
-  if (status == DEA_OK) {
-    status = dea_solid_equilibrate(ctx, s, report);
-  }
+  status = status == DEA_OK ? dea_solid_equilibrate(ctx, s, report) : status;
   if (status == DEA_OK && report->unstable_modes > 0 && !s->settings.accept_unstable) {
     status = descend_if_possible(ctx, s, report);
   }

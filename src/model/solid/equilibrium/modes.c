@@ -274,9 +274,7 @@ static dea_status find_modes(struct dea_context *ctx, struct eigen *f, enum dea_
   f->memory.ctx = ctx;
   f->order = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->order);
   f->value = dea_arena_alloc(&f->memory, (size_t)f->capacity, sizeof *f->value);
-  if (dea_solid_any(f->memory.failed)) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(!dea_solid_any(f->memory.failed));
   DEA_TRY(ctx, create_metric(ctx, f->solid, metric, &f->B));
   DEA_PETSC(ctx, VecDuplicateVecs(f->solid->work.right, f->capacity, &f->vectors));
   if (unstable > 0) {
@@ -317,9 +315,7 @@ static dea_status find_lowest(struct dea_context *ctx, struct dea_solid *s,
   if (status == DEA_OK && metric == DEA_MODES_BY_MASS) {
     status = refine(ctx, &f, count);
   }
-  if (status == DEA_OK) {
-    status = hand_over(ctx, &f, count, dofs, value, vector);
-  }
+  status = status == DEA_OK ? hand_over(ctx, &f, count, dofs, value, vector) : status;
   release(&f);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }
@@ -349,9 +345,8 @@ dea_status dea_solid_unstable_mode(struct dea_context *ctx, struct dea_solid *s,
   DEA_TRY(ctx, dea_solid_factor_stiff(ctx, s, &negative));
   int wanted = negative < 1 || negative > DEA_MODES_MAX ? 1 : negative;
   dea_status status = find_modes(ctx, &f, DEA_MODES_BY_VOLUME, wanted, 1);
-  if (status == DEA_OK) {
-    status = hand_over(ctx, &f, 1, 3 * s->problem.grid->node_count, value, vector);
-  }
+  status = status == DEA_OK ? hand_over(ctx, &f, 1, 3 * s->problem.grid->node_count, value, vector)
+                            : status;
   release(&f);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
 }

@@ -319,9 +319,7 @@ static dea_status chord_step(struct dea_context *ctx, struct dea_solid *s, struc
   }
   dea_status status = dea_solid_solve_potential(ctx, s, d->voltage_V, s->work.trial);
   double energy;
-  if (status == DEA_OK) {
-    status = dea_solid_energy(s, s->work.trial, d->voltage_V, &energy);
-  }
+  status = status == DEA_OK ? dea_solid_energy(s, s->work.trial, d->voltage_V, &energy) : status;
   if (status != DEA_OK) { // too far: the next step has a tangent of its own
     d->chord = false;
     return DEA_OK;
@@ -493,9 +491,7 @@ dea_status dea_solid_minimise(struct dea_context *ctx, struct dea_solid *s, bool
       .voltage_V = voltage_V, .start = s->found.factor_fits, .softness = 1, .report = report};
   s->found.factor_fits = false;
   dea_status status = dea_solid_solve_potential(ctx, s, voltage_V, s->state.u);
-  if (status == DEA_OK) {
-    status = descend(ctx, s, &d, soft);
-  }
+  status = status == DEA_OK ? descend(ctx, s, &d, soft) : status;
   soften(s, &d, 1);
   return status;
 }

@@ -132,9 +132,7 @@ dea_status dea_solid_lowest_by_laplace(struct dea_context *ctx, struct dea_solid
     int code = VecDuplicateVecs(s->work.right, z.steps + 1, vectors[i]);
     status = dea_solid_petsc(ctx, code, "VecDuplicateVecs");
   }
-  if (status == DEA_OK) {
-    status = iterate(ctx, &z, negative, lowest_Pa);
-  }
+  status = status == DEA_OK ? iterate(ctx, &z, negative, lowest_Pa) : status;
   for (int i = 0; i < 2; i++) {
     if (*vectors[i] != NULL) {
       VecDestroyVecs(z.steps + 1, vectors[i]);

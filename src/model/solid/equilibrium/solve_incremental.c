@@ -189,12 +189,8 @@ static dea_status leave_path(struct dea_context *ctx, struct search *a,
     }
   }
   struct dea_solid_change change = {.grew = false};
-  if (status == DEA_OK) {
-    status = dea_solid_descend_unstable(ctx, s, 0, &report);
-  }
-  if (status == DEA_OK) {
-    status = see_change(ctx, a, &change);
-  }
+  status = status == DEA_OK ? dea_solid_descend_unstable(ctx, s, 0, &report) : status;
+  status = status == DEA_OK ? see_change(ctx, a, &change) : status;
   if (status == DEA_OK && report.unstable_modes == 0 && !change.grew) {
     *a->report = report;
     a->went_on = true;
@@ -232,9 +228,7 @@ static dea_status look_at_modes(struct dea_context *ctx, const struct search *a,
     return DEA_OK;
   }
   double *mode = dea_solid_alloc(ctx, s->problem.dofs, sizeof *mode);
-  if (mode == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(mode != NULL);
   dea_status status = dea_solid_unstable_mode(ctx, s, &value, mode);
   if (status == DEA_OK && leaves_plane(s, mode)) {
     *of_mesh = unstable;
@@ -319,9 +313,7 @@ static dea_status search_path(struct dea_context *ctx, struct search *a)
   a->went_on = false;
   *a->stop = (struct dea_solid_stop){.kind = DEA_STOP_UNKNOWN};
   dea_status status = dea_continuation_create_to(ctx, a->s, a->goal, &options, &path);
-  if (status == DEA_OK) {
-    status = follow(ctx, a, path);
-  }
+  status = status == DEA_OK ? follow(ctx, a, path) : status;
   dea_solid_continuation_destroy(ctx, path);
   if (a->went_on) {
     see_plane(a);
@@ -592,12 +584,8 @@ static dea_status search_create(struct dea_context *ctx, struct dea_arena *memor
     *controls[i] = dea_arena_alloc(memory, count, sizeof(double));
   }
   dea_status status = dea_solid_agree(ctx, dea_arena_status(memory));
-  if (status == DEA_OK) {
-    status = dea_solid_save_state(ctx, s, &a->limit);
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_save_state(ctx, s, &a->start);
-  }
+  status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->limit) : status;
+  status = status == DEA_OK ? dea_solid_save_state(ctx, s, &a->start) : status;
   return status;
 }
 

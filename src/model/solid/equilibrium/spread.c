@@ -118,9 +118,7 @@ dea_status dea_solid_spread(struct dea_context *ctx, struct dea_solid *s,
   unsigned char *held = dea_solid_alloc(ctx, 3 * p->grid->node_count, sizeof *held);
   dea_status status = stiff != NULL && held != NULL ? DEA_OK : DEA_E_MEMORY;
   dea_solid_state_get(s, path->keep);
-  if (status == DEA_OK) {
-    status = spread(ctx, s, held, stiff, &after);
-  }
+  status = status == DEA_OK ? spread(ctx, s, held, stiff, &after) : status;
   if (status == DEA_OK) {
     *report = after;
   } else if (dea_solid_may_shorten(status)) {

@@ -227,9 +227,7 @@ static dea_status fade(struct dea_context *ctx, struct dea_solid *s, struct hold
       .self = hold, .piece_count = s->problem.grid->node_count, .evaluate = evaluate_hold};
   const double unit = s->problem.modulus_Pa / (s->problem.length_m * s->problem.length_m);
   dea_status status = dea_solid_agree(ctx, dea_solid_add_load(ctx, s, &load));
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   for (double k = hold_first; k > hold_least && status == DEA_OK; k /= hold_less) {
     struct dea_solid_report report = {.load_factor = 1};
     hold->k = k * unit;
@@ -290,9 +288,7 @@ static dea_status transfer_held(struct dea_context *ctx, struct dea_solid *s, st
   }
   dea_status status = fade(ctx, s, &hold);
   memset(c->way, 0, s->problem.dofs * sizeof *c->way);
-  if (status == DEA_OK) {
-    status = dea_solid_push(ctx, s, c->way, NULL, NULL, report, found);
-  }
+  status = status == DEA_OK ? dea_solid_push(ctx, s, c->way, NULL, NULL, report, found) : status;
   if (dea_solid_may_shorten(status)) {
     dea_context_clear(ctx);
     status = DEA_OK;

@@ -57,9 +57,7 @@ dea_status dea_spring_create(struct dea_context *ctx, const struct dea_spring_op
   *out = NULL;
   DEA_TRY(ctx, check_options(ctx, options));
   struct dea_spring *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(s != NULL);
   s->node = options->node;
   s->component = (size_t)options->component;
   s->unit_m = options->unit_m > 0 ? options->unit_m : 1;

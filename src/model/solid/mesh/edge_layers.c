@@ -430,9 +430,9 @@ static dea_status take_rows(struct dea_context *ctx, struct work *w, struct dea_
   int *edges = dea_alloc(ctx, mesh->edge_count * (size_t)w->line, sizeof *edges);
   struct dea_places places = {0};
   dea_status status = out != NULL && edges != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = dea_places_create(ctx, out->x, capacity, close_share * size_of(mesh), &places);
-  }
+  status = status == DEA_OK
+               ? dea_places_create(ctx, out->x, capacity, close_share * size_of(mesh), &places)
+               : status;
   if (status == DEA_OK && fill_well(w, &places, out)) {
     move_edges(w, &places, edges);
     double *x = mesh->x;

@@ -14,6 +14,7 @@
 #include "model/solid/mesh/fibre_disc.h"
 
 #include "model/solid/mesh/cuts.h"
+#include "model/solid/point/try.h"
 
 #include <math.h>
 #include <string.h>
@@ -449,9 +450,8 @@ static dea_status spread(struct dea_context *ctx, const struct builder *b,
                               b->lines.alpha * (double)(sector + mirrored), mirrored};
     blocks[i] = copied(copies[i].block, &copies[i]);
   }
-  if (status == DEA_OK) {
-    status = dea_blocks_mesh(ctx, p->order, blocks, count, p->frame_radius, out);
-  }
+  status = status == DEA_OK ? dea_blocks_mesh(ctx, p->order, blocks, count, p->frame_radius, out)
+                            : status;
   dea_free(ctx, blocks);
   dea_free(ctx, copies);
   return status;
@@ -499,9 +499,7 @@ dea_status dea_fibre_disc_plane(struct dea_context *ctx, const struct dea_fibre_
 {
   *out = NULL;
   struct builder *b = dea_alloc(ctx, 1, sizeof *b);
-  if (b == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(b != NULL);
   dea_status status = build(ctx, plate, like, b, out);
   dea_free(ctx, b);
   return status == DEA_OK ? DEA_OK : dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);

@@ -13,6 +13,7 @@
 #include "base/write_file.h"
 #include "model/solid/mesh/edge_layers.h"
 #include "model/solid/mesh/msh_read.h"
+#include "model/solid/point/try.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -397,9 +398,7 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   DEA_TRY(ctx, status);
   DEA_TRY(ctx, run_gmsh(ctx, plan, folder, said));
   char *mesh = dea_path_join(ctx, folder, "mesh.msh");
-  if (mesh == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(mesh != NULL);
   char *text = NULL;
   size_t length;
   if (!dea_path_exists(mesh)) {
@@ -409,12 +408,8 @@ static dea_status mesh_in(struct dea_context *ctx, const struct dea_gmsh_plan *p
   } else {
     status = dea_file_read(ctx, mesh, DEA_MSH_FILE_MAX, &text, &length);
   }
-  if (status == DEA_OK) {
-    status = dea_msh_parse(ctx, text, NULL, unit_m, out);
-  }
-  if (status == DEA_OK) {
-    status = check_quality(ctx, plan, *out);
-  }
+  status = status == DEA_OK ? dea_msh_parse(ctx, text, NULL, unit_m, out) : status;
+  status = status == DEA_OK ? check_quality(ctx, plan, *out) : status;
   dea_free(ctx, text);
   dea_free(ctx, mesh);
   return status;
@@ -531,9 +526,7 @@ static dea_status take_edges(struct dea_context *ctx, const struct dea_gmsh_plan
   size_t per = (size_t)mesh->order + 1, curves = plan->shape_count + plan->curve_count;
   mesh->edges = dea_alloc(ctx, before_count * curves, per * sizeof *mesh->edges);
   mesh->edge_curve = dea_alloc(ctx, before_count * curves, sizeof *mesh->edge_curve);
-  if (mesh->edges == NULL || mesh->edge_curve == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(mesh->edges != NULL && mesh->edge_curve != NULL);
   for (size_t i = 0; i < before_count; i++) {
     for (size_t k = 0; k < curves; k++) {
       bool on = true;
@@ -598,15 +591,10 @@ static dea_status classify(struct dea_context *ctx, const struct dea_gmsh_plan *
   unsigned char *within = dea_alloc(ctx, plan->shape_count, 1);
   int *number = dea_alloc(ctx, mesh->node_count, sizeof *number);
   dea_status status = within != NULL && number != NULL ? DEA_OK : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = name_all(ctx, plan, mesh);
-  }
-  if (status == DEA_OK) {
-    status = take_elements(ctx, plan, within, number, mesh);
-  }
-  if (status == DEA_OK) {
-    status = take_edges(ctx, plan, before, before_count, number, close, mesh);
-  }
+  status = status == DEA_OK ? name_all(ctx, plan, mesh) : status;
+  status = status == DEA_OK ? take_elements(ctx, plan, within, number, mesh) : status;
+  status =
+      status == DEA_OK ? take_edges(ctx, plan, before, before_count, number, close, mesh) : status;
   dea_free(ctx, number);
   dea_free(ctx, within);
   dea_free(ctx, before);
@@ -659,12 +647,8 @@ dea_status dea_gmsh_mesh(struct dea_context *ctx, const struct dea_gmsh_plan *pl
   *out = NULL;
   DEA_TRY(ctx, check_plan(ctx, plan));
   dea_status status = mesh_all(ctx, plan, out);
-  if (status == DEA_OK) {
-    status = classify(ctx, plan, *out);
-  }
-  if (status == DEA_OK) {
-    status = add_layers(ctx, plan, *out);
-  }
+  status = status == DEA_OK ? classify(ctx, plan, *out) : status;
+  status = status == DEA_OK ? add_layers(ctx, plan, *out) : status;
   if (status != DEA_OK) {
     dea_plane_mesh_destroy(ctx, *out);
     *out = NULL;

@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/write_file.h"
 #include "model/solid/mesh/places.h"
+#include "model/solid/point/try.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -220,9 +221,7 @@ static dea_status add_physical(struct reader *r, int dimension, long long tag,
                                struct physical **out)
 {
   *out = list_add(r->ctx, &r->physicals, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(*out != NULL);
   (*out)->dimension = dimension;
   (*out)->tag = tag;
   (*out)->index = SIZE_MAX;
@@ -276,9 +275,7 @@ static dea_status read_entities(struct reader *r)
       DEA_TRY(r->ctx, read_count(r, "a number of groups", &groups));
       for (size_t k = 0; k < groups; k++) {
         struct member *member = list_add(r->ctx, &r->members, sizeof *member);
-        if (member == NULL) {
-          return DEA_E_MEMORY;
-        }
+        DEA_NEED(member != NULL);
         *member = (struct member){.dimension = dimension, .entity = tag};
         DEA_TRY(r->ctx, read_int(r, "the number of a group", &member->physical));
         member->physical = llabs(member->physical); // negative: the other way round
@@ -295,9 +292,7 @@ static dea_status read_entities(struct reader *r)
 static dea_status add_node(struct reader *r, long long tag, struct raw_node **out)
 {
   *out = list_add(r->ctx, &r->nodes, sizeof **out);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(*out != NULL);
   (*out)->tag = tag;
   return DEA_OK;
 }
@@ -368,9 +363,7 @@ static dea_status find_kind(struct reader *r, long long type, const struct kind 
 static dea_status read_element(struct reader *r, const struct kind *kind, long long group)
 {
   struct raw_element *element = list_add(r->ctx, &r->elements, sizeof *element);
-  if (element == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(element != NULL);
   *element = (struct raw_element){.kind = kind, .group = group, .line = r->line};
   for (int n = 0; n < kind->nodes; n++) {
     DEA_TRY(r->ctx, read_int(r, "the number of a node", &element->nodes[n]));
@@ -789,9 +782,7 @@ static dea_status add_line(struct reader *r, const struct raw_element *e, double
       continue; // two numbers of one name
     }
     int *edge = list_add(r->ctx, curves, (size_t)(per + 1) * sizeof *edge);
-    if (edge == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(edge != NULL);
     edge[0] = index;
     // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): per is 2 or 3
     edge[1] = nodes[0];
@@ -812,9 +803,7 @@ static dea_status take_edges(struct reader *r, const struct list *curves,
   const int *from = curves->data;
   mesh->edges = dea_alloc(r->ctx, curves->count * per, sizeof *mesh->edges);
   mesh->edge_curve = dea_alloc(r->ctx, curves->count, sizeof *mesh->edge_curve);
-  if (mesh->edges == NULL || mesh->edge_curve == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(mesh->edges != NULL && mesh->edge_curve != NULL);
   for (size_t i = 0; i < curves->count; i++, from += per + 1) {
     mesh->edge_curve[i] = from[0];
     memcpy(mesh->edges + i * per, from + 1, per * sizeof *from);
@@ -838,9 +827,7 @@ static dea_status fill(struct reader *r, const struct survey *s, double unit_m,
   for (size_t i = s->quads; i < s->quads + s->lines && status == DEA_OK; i++) {
     status = add_line(r, &elements[i], unit_m, places, mesh, &curves);
   }
-  if (status == DEA_OK) {
-    status = take_edges(r, &curves, mesh);
-  }
+  status = status == DEA_OK ? take_edges(r, &curves, mesh) : status;
   dea_free(r->ctx, curves.data);
   dea_free(r->ctx, within);
   return status;
@@ -871,9 +858,7 @@ static dea_status build(struct reader *r, double unit_m, struct dea_plane_mesh *
   sort_elements(r, &s);
   size_t capacity = s.quads * (size_t)((s.order + 1) * (s.order + 1)) + 3; // and one line's
   *out = dea_plane_mesh_create(r->ctx, s.order, capacity, s.quads);
-  if (*out == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(*out != NULL);
   (*out)->quad_count = 0;
   DEA_TRY(r->ctx, dea_places_create(r->ctx, (*out)->x, capacity, same * s.size * unit_m, &places));
   dea_status status = fill(r, &s, unit_m, &places, *out);
@@ -893,9 +878,7 @@ dea_status dea_msh_parse(struct dea_context *ctx, const char *text, const char *
   }
   void *locale = dea_c_locale_enter();
   dea_status status = read_sections(&r);
-  if (status == DEA_OK) {
-    status = build(&r, unit_m, out);
-  }
+  status = status == DEA_OK ? build(&r, unit_m, out) : status;
   dea_c_locale_leave(locale);
   if (status != DEA_OK) {
     dea_plane_mesh_destroy(ctx, *out);

@@ -1,5 +1,7 @@
 #include "model/solid/mesh/plane_mesh.h"
 
+#include "model/solid/point/try.h"
+
 #include <stdint.h>
 #include <string.h>
 
@@ -59,14 +61,10 @@ void dea_plane_mesh_destroy(struct dea_context *ctx, struct dea_plane_mesh *mesh
 static dea_status add_name(struct dea_context *ctx, char ***names, size_t *count, const char *name)
 {
   char **moved = dea_resize(ctx, *names, *count + 1, sizeof *moved);
-  if (moved == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(moved != NULL);
   *names = moved;
   moved[*count] = dea_copy_text(ctx, name, strlen(name));
-  if (moved[*count] == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(moved[*count] != NULL);
   (*count)++;
   return DEA_OK;
 }
@@ -92,9 +90,7 @@ dea_status dea_plane_mesh_region(struct dea_context *ctx, struct dea_plane_mesh 
   }
   if (k == mesh->region_count) {
     unsigned char *moved = dea_resize(ctx, mesh->within, k + 1, n);
-    if (moved == NULL) {
-      return DEA_E_MEMORY;
-    }
+    DEA_NEED(moved != NULL);
     mesh->within = moved;
     memcpy(moved + k * n, within, n);
     mesh->region_count++;

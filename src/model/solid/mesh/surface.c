@@ -43,9 +43,7 @@ dea_surface_create(struct dea_context *ctx, const struct dea_grid *grid, enum de
   int local[DEA_FACE_NODES_MAX];
   *out = NULL;
   struct dea_surface *s = dea_alloc(ctx, 1, sizeof *s);
-  if (s == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(s != NULL);
   s->grid = grid;
   s->nodes = dea_alloc(ctx, grid->element_count, DEA_FACE_NODES_MAX * sizeof *s->nodes);
   s->element = dea_alloc(ctx, grid->element_count, sizeof *s->element);

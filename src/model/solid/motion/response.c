@@ -142,15 +142,10 @@ dea_status dea_solid_response_create(struct dea_context *ctx, struct dea_solid *
   double *force = dea_alloc(ctx, s->problem.dofs, sizeof *force);
   struct dea_solid_response *r = dea_alloc(ctx, 1, sizeof *r);
   dea_status status = dea_solid_any(force == NULL || r == NULL) ? DEA_E_MEMORY : DEA_OK;
-  if (status == DEA_OK) {
-    status = fill(ctx, s, highest_rad_per_s, r, force);
-  }
+  status = status == DEA_OK ? fill(ctx, s, highest_rad_per_s, r, force) : status;
   s->found.factor_fits = s->found.predicted_fits = false;
   dea_free(ctx, force);
-  if (status != DEA_OK) {
-    dea_solid_response_destroy(ctx, r);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, dea_solid_response_destroy(ctx, r));
   *out = r;
   return DEA_OK;
 }

@@ -223,9 +223,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
     return dea_fail(ctx, DEA_E_ARGUMENT, "a spectral radius lies between 0 and 1");
   }
   struct dea_solid_time *t = dea_solid_alloc(ctx, 1, sizeof *t);
-  if (t == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(t != NULL);
   t->memory.ctx = ctx;
   t->solid = solid;
   t->inertial = options->inertia;
@@ -234,11 +232,7 @@ dea_status dea_solid_time_create(struct dea_context *ctx, struct dea_solid *soli
   t->count = 3 * solid->problem.grid->node_count;
   t->stay = solid->settings.accept_unstable;
   solid->settings.accept_unstable = t->stay || t->inertial; // inertia decides where a film goes
-  dea_status status = start_time(ctx, t, options);
-  if (status != DEA_OK) {
-    dea_solid_time_destroy(ctx, t);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, start_time(ctx, t, options), dea_solid_time_destroy(ctx, t));
   *out = t;
   return DEA_OK;
 }
@@ -363,10 +357,7 @@ static dea_status solve_step(struct dea_context *ctx, struct dea_solid_time *t, 
   s->state.inertia = t->inertial ? &t->inertia : NULL;
   dea_status status = dea_load_steps_solve(ctx, s, voltage_V, report);
   s->state.inertia = NULL;
-  if (status != DEA_OK) {
-    return_to_accepted(t);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  DEA_TRY_ELSE(ctx, status, return_to_accepted(t));
   return DEA_OK;
 }
 
@@ -537,16 +528,9 @@ static double step_error(const struct dea_solid_time *t)
 static dea_status close_step(struct dea_context *ctx, struct dea_solid_time *t)
 {
   dea_status status = find_forces(ctx, t, t->F_next);
-  if (status == DEA_OK) {
-    status = constrain_at_end(ctx, t);
-  }
-  if (status == DEA_OK) {
-    status = find_energies(ctx, t);
-  }
-  if (status != DEA_OK) {
-    return_to_accepted(t);
-    return dea_fail_chain(ctx, status, __func__, __FILE__, __LINE__);
-  }
+  status = status == DEA_OK ? constrain_at_end(ctx, t) : status;
+  status = status == DEA_OK ? find_energies(ctx, t) : status;
+  DEA_TRY_ELSE(ctx, status, return_to_accepted(t));
   return DEA_OK;
 }
 

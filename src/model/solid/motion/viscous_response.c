@@ -192,14 +192,14 @@ static dea_status prepare_matrix(struct dea_context *ctx, struct system *y, doub
   size_t rows = (size_t)(end - from);
   PetscInt *lengths = dea_solid_alloc(ctx, 2 * rows + 1, sizeof *lengths);
   dea_status status = lengths == NULL ? DEA_E_MEMORY : DEA_OK;
-  if (status == DEA_OK) {
-    status = dea_solid_petsc(ctx, count_rows(y, from, end, lengths, lengths + rows, &longest),
-                             "MatGetRow");
-  }
-  if (status == DEA_OK) {
-    status = dea_solid_petsc(ctx, create_matrix(y, end - from, lengths, lengths + rows),
-                             "MatCreateSBAIJ");
-  }
+  status = status == DEA_OK
+               ? dea_solid_petsc(ctx, count_rows(y, from, end, lengths, lengths + rows, &longest),
+                                 "MatGetRow")
+               : status;
+  status = status == DEA_OK
+               ? dea_solid_petsc(ctx, create_matrix(y, end - from, lengths, lengths + rows),
+                                 "MatCreateSBAIJ")
+               : status;
   dea_free(ctx, lengths);
   DEA_TRY(ctx, status);
   *sum = dea_solid_alloc(ctx, (size_t)longest + 1, sizeof **sum);

@@ -20,9 +20,8 @@ dea_status dea_membrane_bond(const struct dea_part_material *film, struct dea_pa
   enum { XZ = 2, YZ = 5 }; // components of F
   struct dea_point point;
   dea_status status = dea_membrane_check(film);
-  if (status == DEA_OK) {
-    status = dea_part_material_point(film, one, one, 1, 0, 0, true, &point);
-  }
+  status =
+      status == DEA_OK ? dea_part_material_point(film, one, one, 1, 0, 0, true, &point) : status;
   if (status == DEA_OK) {
     double across = 0.5 * (point.A[9 * XZ + XZ] + point.A[9 * YZ + YZ]), mu = 1.5 * across;
     *bond = dea_part_material_bonded((const double[]){2 * mu * (1 + poisson_ratio), poisson_ratio});
@@ -103,9 +102,7 @@ static dea_status evaluate_point(const struct dea_part_material *part_material,
   }
   dea_status status =
       part_material->relaxed ? dea_tension_relaxed(&film, C, t) : dea_tension_taut(&film, C, t);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(status);
   out->W = t->W; // of branches 1/2 B : (c - 1)
   out->W -= viscous != NULL ? 0.5 * (viscous[0] + viscous[1] + viscous[2]) : 0;
   out->state = t->state;
@@ -129,10 +126,7 @@ dea_status dea_membrane_point_in_time(const struct dea_part_material *part_mater
                                       double field_V_per_m, struct dea_membrane_point *out)
 {
   struct dea_tension_point t;
-  dea_status status = evaluate_point(part_material, viscous, F, field_V_per_m, &t, out);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(evaluate_point(part_material, viscous, F, field_V_per_m, &t, out));
   for (int a = 0; a < 6; a++) { // A_iJkL = delta_ik S_JL + F_iM F_kN D_MJNL
     int i = a / 2, J = a % 2;
     out->P[a] = F[2 * i] * t.S[pair_of[0][J]] + F[2 * i + 1] * t.S[pair_of[1][J]];

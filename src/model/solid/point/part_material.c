@@ -192,10 +192,7 @@ dea_status dea_part_material_point(const struct dea_part_material *part_material
                                    const double cof[9], double J, double pressure,
                                    double field_V_per_m, bool tangent, struct dea_point *point)
 {
-  dea_status status = elastic(part_material, F, tangent, point);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(elastic(part_material, F, tangent, point));
   if (dea_part_material_takes_pressure(part_material)) {
     double slope, curvature;
     point->W += part_material->p0_Pa * (J - 1) +

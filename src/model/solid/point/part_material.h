@@ -10,6 +10,7 @@
 
 #include "material/material.h"
 #include "material/point.h"
+#include "model/solid/point/try.h"
 
 #include <math.h>
 

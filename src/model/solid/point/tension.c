@@ -1,5 +1,7 @@
 #include "model/solid/point/tension.h"
 
+#include "model/solid/point/try.h"
+
 #include <string.h>
 
 /* ---- the energy of the film by its metric ---- */
@@ -15,10 +17,7 @@ static dea_status principal_at(const struct dea_tension *film, double x1, double
 {
   const double l1 = sqrt(x1), l2 = sqrt(x2);
   struct dea_plane f, electric = {0};
-  dea_status status = dea_plane_elastic(film->material, l1, l2, &f);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_plane_elastic(film->material, l1, l2, &f));
   if (film->nominal_field_V_per_m != 0) {
     dea_plane_electric(film->material, film->nominal_field_V_per_m, l1, l2, &electric);
   }
@@ -45,10 +44,7 @@ static dea_status set_shear(const struct dea_tension *film, double mean, double 
   out->m = 0;
   for (int i = 0; i < 2; i++) {
     struct principal at;
-    dea_status status = principal_at(film, mean + node[i] * d, mean - node[i] * d, &at);
-    if (status != DEA_OK) {
-      return status;
-    }
+    DEA_TRY_STATUS(principal_at(film, mean + node[i] * d, mean - node[i] * d, &at));
     out->m += weight[i] * 0.25 * (at.D[0][0] - 2 * at.D[0][1] + at.D[1][1]);
   }
   return DEA_OK;
@@ -111,13 +107,8 @@ dea_status dea_tension_taut(const struct dea_tension *film, const double C[3],
   if (!(c.mean - c.d > 0)) {
     return DEA_E_DOMAIN;
   }
-  dea_status status = principal_at(film, c.mean + c.d, c.mean - c.d, &p);
-  if (status == DEA_OK) {
-    status = set_shear(film, c.mean, c.d, &p);
-  }
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(principal_at(film, c.mean + c.d, c.mean - c.d, &p));
+  DEA_TRY_STATUS(set_shear(film, c.mean, c.d, &p));
   out->W = p.W;
   assemble(&p, c.cosine, c.sine, out);
   add_branches(film, C, out);
@@ -179,10 +170,7 @@ static dea_status slope_at(const struct family *f, const double y[2], struct slo
     own[a] = share * (slack ? y[0] * r.nn[a] + y[1] * r.tt[a] : y[0] * r.nn[a]);
     own[a] += slack ? 0 : f->C[a];
   }
-  dea_status status = dea_tension_taut(f->film, own, at);
-  if (status != DEA_OK) {
-    return status;
-  }
+  DEA_TRY_STATUS(dea_tension_taut(f->film, own, at));
   out->frame = r;
   contract_tangent(at->D, r.nn, Dn);
   contract_tangent(at->D, slack ? r.tt : r.tn, D2);

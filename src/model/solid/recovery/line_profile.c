@@ -2,6 +2,7 @@
 
 #include "base/arena.h"
 #include "base/quadrature.h"
+#include "model/solid/point/try.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -137,9 +138,7 @@ static dea_status fill(struct dea_context *ctx, struct work *w, double plus, dou
   add_ray(w, minus, -1);
   qsort(w->rows, w->row_count, sizeof *w->rows, compare_rows);
   double *to = dea_alloc(ctx, w->row_count, COLUMNS * sizeof *to);
-  if (to == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(to != NULL);
   size_t n = w->row_count;
   for (size_t i = 0; i < n; i++) {
     for (size_t c = 0; c < COLUMNS; c++) {

@@ -385,9 +385,7 @@ dea_status dea_recover_errors(struct dea_context *ctx, const struct dea_recover_
   struct work w = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .count = count};
   struct dea_element_state *at = dea_alloc(ctx, 1, sizeof *at);
   dea_status status = at != NULL ? prepare(&w) : DEA_E_MEMORY;
-  if (status == DEA_OK) {
-    status = gather(&w, of, mirror, at);
-  }
+  status = status == DEA_OK ? gather(&w, of, mirror, at) : status;
   if (status == DEA_OK) {
     estimate(&w, of, error, part);
   }

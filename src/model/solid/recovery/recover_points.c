@@ -4,32 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct dea_mesh_field dea_recover_displacement = {
-    .name = "displacement_m",
-    .unit = "m",
-    .meaning = "displacement from the stretched flat film",
-    .kind = DEA_MESH_VECTOR,
-    .components = 3,
-};
-const struct dea_mesh_field dea_recover_plane_stretch = {
-    .name = "plane_stretch",
-    .unit = "1",
-    .meaning = "stretch from the unstretched film: larger and smaller in its plane, thickness",
-    .components = 3,
-};
-const struct dea_mesh_field dea_recover_tension = {
-    .name = "tension_N_per_m",
-    .unit = "N/m",
-    .meaning =
-        "true stress through the thickness of the layer, per current length: larger, smaller",
-    .components = 2,
-};
-const struct dea_mesh_field dea_recover_true_field = {
-    .name = "true_field_V_per_m",
-    .unit = "V/m",
-    .meaning = "voltage over the current thickness; 0 outside of the electrodes",
-    .components = 1,
-};
+const struct dea_mesh_field
+    dea_recover_displacement = {"displacement_m",
+                                "m",
+                                "displacement from the stretched flat film",
+                                DEA_MESH_VECTOR,
+                                3,
+                                false,
+                                NULL},
+    dea_recover_plane_stretch = DEA_RECOVER_VALUES(
+        "plane_stretch", "1",
+        "stretch from the unstretched film: larger and smaller in its plane, thickness", 3),
+    dea_recover_tension = DEA_RECOVER_VALUES(
+        "tension_N_per_m", "N/m",
+        "true stress through the thickness of the layer, per current length: larger, smaller", 2),
+    dea_recover_true_field =
+        DEA_RECOVER_VALUES("true_field_V_per_m", "V/m",
+                           "voltage over the current thickness; 0 outside of the electrodes", 1);
 
 /* ---- columns ---- */
 
@@ -184,11 +175,11 @@ void dea_recover_plane(const struct dea_part_material *part_material, const doub
   principal(T[0][0], T[1][1], 0.5 * (T[0][1] + T[1][0]), out->tension);
 }
 
-void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
-                     const struct dea_mesh_field *field, double **values, dea_status *status)
+dea_status dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                           const struct dea_recover_field *fields, size_t count)
 {
-  *values = NULL;
-  if (*status == DEA_OK) {
-    *status = dea_field_mesh_add(ctx, mesh, field, values);
+  for (size_t i = 0; i < count; i++) {
+    DEA_TRY(ctx, dea_field_mesh_add(ctx, mesh, &fields[i].field, fields[i].values));
   }
+  return DEA_OK;
 }

@@ -34,10 +34,21 @@ struct dea_plane_state {
 void dea_recover_plane(const struct dea_part_material *part_material, const double F[9],
                        const double force[6], struct dea_plane_state *out);
 
-/* Adds a field and writes where its values go; after a failure *status stays and *values is NULL.
- */
-void dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
-                     const struct dea_mesh_field *field, double **values, dea_status *status);
+/* Fields, and where their values go. */
+struct dea_recover_field {
+  struct dea_mesh_field field;
+  double **values;
+};
+#define DEA_RECOVER_VALUES(name, unit, meaning, components)                                        \
+  {                                                                                                \
+    name, unit, meaning, DEA_MESH_VALUES, components, false, NULL                                  \
+  }
+#define DEA_RECOVER_OF_CELLS(name, meaning)                                                        \
+  {                                                                                                \
+    name, "1", meaning, DEA_MESH_VALUES, 1, true, NULL                                             \
+  }
+dea_status dea_recover_add(struct dea_context *ctx, struct dea_field_mesh *mesh,
+                           const struct dea_recover_field *fields, size_t count);
 
 /* Fields that volume and surface have in common. */
 extern const struct dea_mesh_field dea_recover_displacement, dea_recover_plane_stretch,

@@ -186,37 +186,20 @@ struct fields {
 static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh, bool uneven,
                              struct fields *out)
 {
-  static const struct dea_mesh_field voltage = {
-      .name = DEA_VOLTAGE_FIELD,
-      .unit = "V",
-      .meaning = "voltage across the film, of electrodes with a sheet resistance",
-      .components = 1};
-  static const struct dea_mesh_field between = {"between_electrodes",
-                                                "1",
-                                                "1 where the film lies between electrodes",
-                                                DEA_MESH_VALUES,
-                                                1,
-                                                true,
-                                                NULL},
-                                     under = {"under_fibre",
-                                              "1",
-                                              "1 where a fibre lies on the film",
-                                              DEA_MESH_VALUES,
-                                              1,
-                                              true,
-                                              NULL};
-  dea_status status = DEA_OK;
-  dea_recover_add(ctx, mesh, &dea_recover_displacement, &out->displacement, &status);
-  dea_recover_add(ctx, mesh, &dea_recover_plane_stretch, &out->stretch, &status);
-  dea_recover_add(ctx, mesh, &dea_recover_tension, &out->tension, &status);
-  dea_recover_add(ctx, mesh, &dea_recover_true_field, &out->field, &status);
-  dea_recover_add(ctx, mesh, &between, &out->between, &status);
-  dea_recover_add(ctx, mesh, &under, &out->under, &status);
+  const struct dea_recover_field all[] = {
+      {dea_recover_displacement, &out->displacement},
+      {dea_recover_plane_stretch, &out->stretch},
+      {dea_recover_tension, &out->tension},
+      {dea_recover_true_field, &out->field},
+      {DEA_RECOVER_OF_CELLS("between_electrodes", "1 where the film lies between electrodes"),
+       &out->between},
+      {DEA_RECOVER_OF_CELLS("under_fibre", "1 where a fibre lies on the film"), &out->under},
+      {DEA_RECOVER_VALUES(DEA_VOLTAGE_FIELD, "V",
+                          "voltage across the film, of electrodes with a sheet resistance", 1),
+       &out->voltage},
+  };
   out->voltage = NULL;
-  if (uneven) {
-    dea_recover_add(ctx, mesh, &voltage, &out->voltage, &status);
-  }
-  return status;
+  return dea_recover_add(ctx, mesh, all, sizeof all / sizeof all[0] - (uneven ? 0 : 1));
 }
 
 static void fill_point(const struct work *w, size_t p, double *X, const struct fields *to)
@@ -265,15 +248,9 @@ dea_status dea_recover_surface(struct dea_context *ctx, const struct dea_recover
   struct work work = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in, .ply = ply};
   *out = NULL;
   dea_status status = prepare(&work);
-  if (status == DEA_OK) {
-    status = add_columns(&work);
-  }
-  if (status == DEA_OK) {
-    status = dea_field_mesh_create(ctx, work.point_count, out);
-  }
-  if (status == DEA_OK) {
-    status = fill_mesh(&work, *out);
-  }
+  status = status == DEA_OK ? add_columns(&work) : status;
+  status = status == DEA_OK ? dea_field_mesh_create(ctx, work.point_count, out) : status;
+  status = status == DEA_OK ? fill_mesh(&work, *out) : status;
   dea_free(ctx, work.stack);
   dea_arena_free(&work.memory);
   return dea_field_mesh_finish(ctx, status, out);

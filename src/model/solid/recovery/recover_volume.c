@@ -69,9 +69,7 @@ static dea_status add_column(struct work *w, size_t from, size_t end)
 {
   double force[DEA_ELEMENT_LEVEL_MAX][6] = {{0}};
   struct dea_recovered *at = dea_alloc(w->ctx, 1, sizeof *at);
-  if (at == NULL) {
-    return DEA_E_MEMORY;
-  }
+  DEA_NEED(at != NULL);
   for (size_t k = from; k < end; k++) {
     size_t e = w->stack[k].element;
     dea_status status = dea_recover_element(w->in, e, at);
@@ -180,56 +178,38 @@ struct fields {
   double *error, *ply, *region;
 };
 
+#define AXIS(name, meaning)                                                                        \
+  {                                                                                                \
+    name, "1", meaning, DEA_MESH_AXIS, 3, false, NULL                                              \
+  }
+
 static dea_status add_fields(struct dea_context *ctx, struct dea_field_mesh *mesh,
                              struct fields *out)
 {
-  static const struct dea_mesh_field
-      stretch = {"principal_stretch",
-                 "1",
-                 "principal stretches from the unstretched state",
-                 DEA_MESH_VALUES,
-                 3,
-                 false,
-                 NULL},
-      stress = {"principal_stress_Pa",
-                "Pa",
-                "principal true stresses, elastic, pressure and Maxwell together, largest first",
-                DEA_MESH_VALUES,
-                3,
-                false,
-                NULL},
-      axes[3] = {{"stress_axis_1", "1", "direction of the largest principal stress", DEA_MESH_AXIS,
-                  3, false, NULL},
-                 {"stress_axis_2", "1", "direction of the second principal stress", DEA_MESH_AXIS,
-                  3, false, NULL},
-                 {"stress_axis_3", "1", "direction of the smallest principal stress", DEA_MESH_AXIS,
-                  3, false, NULL}},
-      energy = {"energy_J_per_m3",
-                "J/m3",
-                "elastic energy per volume of the stretched flat film, pre-stretch included",
-                DEA_MESH_VALUES,
-                1,
-                false,
-                NULL},
-      error = {"volume_error", "1", "largest |J - 1| in the element", DEA_MESH_VALUES, 1,
-               true,           NULL},
-      ply = {"sheet", "1", "number of the layer, from below", DEA_MESH_VALUES, 1, true, NULL},
-      region = {"region", "1", "number of the region in the plane", DEA_MESH_VALUES, 1, true, NULL};
-  dea_status status = DEA_OK;
-  dea_recover_add(ctx, mesh, &dea_recover_displacement, &out->displacement, &status);
-  dea_recover_add(ctx, mesh, &stretch, &out->stretch, &status);
-  dea_recover_add(ctx, mesh, &dea_recover_plane_stretch, &out->plane, &status);
-  dea_recover_add(ctx, mesh, &stress, &out->stress, &status);
-  for (int k = 0; k < 3; k++) {
-    dea_recover_add(ctx, mesh, &axes[k], &out->axis[k], &status);
-  }
-  dea_recover_add(ctx, mesh, &dea_recover_tension, &out->tension, &status);
-  dea_recover_add(ctx, mesh, &dea_recover_true_field, &out->field, &status);
-  dea_recover_add(ctx, mesh, &energy, &out->energy, &status);
-  dea_recover_add(ctx, mesh, &error, &out->error, &status);
-  dea_recover_add(ctx, mesh, &ply, &out->ply, &status);
-  dea_recover_add(ctx, mesh, &region, &out->region, &status);
-  return status;
+  const struct dea_recover_field all[] = {
+      {dea_recover_displacement, &out->displacement},
+      {DEA_RECOVER_VALUES("principal_stretch", "1",
+                          "principal stretches from the unstretched state", 3),
+       &out->stretch},
+      {dea_recover_plane_stretch, &out->plane},
+      {DEA_RECOVER_VALUES(
+           "principal_stress_Pa", "Pa",
+           "principal true stresses, elastic, pressure and Maxwell together, largest first", 3),
+       &out->stress},
+      {AXIS("stress_axis_1", "direction of the largest principal stress"), &out->axis[0]},
+      {AXIS("stress_axis_2", "direction of the second principal stress"), &out->axis[1]},
+      {AXIS("stress_axis_3", "direction of the smallest principal stress"), &out->axis[2]},
+      {dea_recover_tension, &out->tension},
+      {dea_recover_true_field, &out->field},
+      {DEA_RECOVER_VALUES(
+           "energy_J_per_m3", "J/m3",
+           "elastic energy per volume of the stretched flat film, pre-stretch included", 1),
+       &out->energy},
+      {DEA_RECOVER_OF_CELLS("volume_error", "largest |J - 1| in the element"), &out->error},
+      {DEA_RECOVER_OF_CELLS("sheet", "number of the layer, from below"), &out->ply},
+      {DEA_RECOVER_OF_CELLS("region", "number of the region in the plane"), &out->region},
+  };
+  return dea_recover_add(ctx, mesh, all, sizeof all / sizeof all[0]);
 }
 
 static void fill_point(const struct work *w, size_t p, const struct fields *to)
@@ -304,15 +284,9 @@ dea_status dea_recover_volume(struct dea_context *ctx, const struct dea_recover_
   struct work work = {.ctx = ctx, .memory = {.ctx = ctx}, .in = in};
   *out = NULL;
   dea_status status = number_points(&work);
-  if (status == DEA_OK) {
-    status = take_means(&work);
-  }
-  if (status == DEA_OK) {
-    status = dea_field_mesh_create(ctx, work.point_count, out);
-  }
-  if (status == DEA_OK) {
-    status = fill_mesh(&work, *out);
-  }
+  status = status == DEA_OK ? take_means(&work) : status;
+  status = status == DEA_OK ? dea_field_mesh_create(ctx, work.point_count, out) : status;
+  status = status == DEA_OK ? fill_mesh(&work, *out) : status;
   dea_free(ctx, work.stack);
   dea_arena_free(&work.memory);
   return dea_field_mesh_finish(ctx, status, out);
